@@ -4,8 +4,8 @@
     cargo build --release
     benches/coco_eval.py [--program target/release/opendr] [--threads 2] [--rounds 5]
 
-From two JSON files on disk to the twelve numbers: 5,000 synthetic pictures, 36,000 objects of 80 classes, 100 detections
-a picture. Seconds of the whole process for ours, without start and imports for the others. Needs numpy, pycocotools,
+From two JSON files on disk to the twelve numbers: 5,000 synthetic images, 36,000 objects of 80 classes, 100 detections
+per image. Seconds of the whole process for ours, without start and imports for the others. Needs numpy, pycocotools,
 faster-coco-eval, hotcoco.
 """
 

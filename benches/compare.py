@@ -3,7 +3,7 @@
 
     benches/compare.py --opendr target/release/opendr --data ../shared [--threads 2]
 
-From a decoded 1080p frame to boxes: pre- plus post-processing, session, whole, as medians and as ratios; and frames a
+From a decoded 1080p frame to boxes: pre- plus post-processing, session, whole, as medians and as ratios; and frames per
 second over a folder of 200 JPEGs, decoding included. Both sides run the same ONNX file with the same ONNX Runtime
 library (set ORT_DYLIB_PATH to the one that Python imports). Needs numpy, onnxruntime, opencv-python-headless.
 """
@@ -147,7 +147,7 @@ def one_frame(arguments, learner, container, picture):
 
 
 def folder(arguments, learner, container, pictures):
-    """Frames a second over a folder of 200 JPEGs, process start and model loading left out on both sides."""
+    """Frames per second over a folder of 200 JPEGs, process start and model loading left out on both sides."""
     with tempfile.TemporaryDirectory() as place:
         for number in range(200):
             shutil.copy(pictures[number % len(pictures)], Path(place) / f"{number:03}.jpg")

@@ -28,7 +28,7 @@ SAMPLE_RATE, WINDOW, STEP, FOURIER, BANDS, CEPSTRA = 16000, 480, 320, 512, 40, 1
 
 
 def moving(path, frames):
-    """A picture that goes to and fro by a few pixels, RGB."""
+    """Frames of an RGB image that moves to and fro by a few pixels."""
     picture = Image.open(path).opencv()[:, :, ::-1]
     steps = [int(12 * np.sin(at / 8)) for at in range(frames)]
     return [np.ascontiguousarray(np.roll(picture, step, axis=1)) for step in steps]

@@ -47,7 +47,7 @@ def measure_stable_baselines3(name):
 
 
 def measure_ours(name, folder):
-    """Steps a second of a whole process."""
+    """Steps per second of a whole process."""
     steps, thousands = STEPS[name][0], (STEPS[name][0] + BEFORE[name]) // 1000
     command = {"ppo": ["ppo_cart_pole", "0"], "sac": ["sac_pendulum", "0", "1", str(thousands)]}[name]
     wall = time.perf_counter()
@@ -72,7 +72,7 @@ def main():
     import torch
 
     versions = f"Stable-Baselines3 {stable_baselines3.__version__}, torch {torch.__version__}"
-    print(f"{versions}, one thread, {given.rounds} rounds, medians of steps a second\n")
+    print(f"{versions}, one thread, {given.rounds} rounds, medians of steps per second\n")
     print("| learner | ours, CPU | SB3, CPU | ratio | ours, wall | SB3, wall | ratio |")
     print("|---|---|---|---|---|---|---|")
     for name in [given.only] if given.only else STEPS:

@@ -5,9 +5,9 @@
     python3 -m venv /tmp/space && /tmp/space/bin/pip install numpy shapely
     /tmp/space/bin/python benches/space.py --speed target/release/examples/space_speed
 
-Points are a scan of a flat street with walls, or a KITTI file that is given; boxes lie in heaps, as a detector tells them. The
+Points are a scan of a flat street with walls, or a KITTI file that is given; boxes lie in heaps, as a detector returns them. The
 reference sorts points into pillars as mmdetection3d's dynamic voxelisation does (cells of all points, then unique cells with
-sums), writes a picture of four numbers a pillar, and drops boxes by polygons of Shapely (GEOS), with circles first. Both sides
+sums), writes an image of four numbers per pillar, and drops boxes by polygons of Shapely (GEOS), with circles first. Both sides
 must find the same pillars and keep as many boxes. Seconds are medians.
 """
 

@@ -74,7 +74,7 @@ def scene(things, count, frames, seed=0):
     for frame in range(frames):
         picture, truth = ground.copy(), []
         for (name, small, box), place, speed in zip(picked, places, speeds):
-            # To and fro, so that nothing leaves the picture.
+            # To and fro, so that nothing leaves the image.
             x, y = (place + (20 - abs(frame % 40 - 20)) * speed).round().astype(int)
             height, width = small.shape[:2]
             picture[y : y + height, x : x + width] = small
@@ -90,7 +90,7 @@ def overlap(a, b):
 
 
 def recall(truths, answers):
-    """The share of what is there that is found, and how many boxes more a frame were told."""
+    """The share of objects that are detected, and the number of false positives per frame."""
     there = hit = extra = 0
     for truth, found in zip(truths, answers):
         used = set()
@@ -114,7 +114,7 @@ def ours(infer, learner, params, files):
 
 
 def slicing(onnx, picture, tile=256, overlap_pixels=48, threads=2):
-    """Every tile of a picture through NanoDet, in Python: the seconds of it."""
+    """Every tile of an image through NanoDet, in Python, with its duration in seconds."""
     import onnxruntime
 
     options = onnxruntime.SessionOptions()

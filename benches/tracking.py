@@ -5,7 +5,7 @@
     python3 -m venv /tmp/tracking && /tmp/tracking/bin/pip install trackers
     /tmp/tracking/bin/python benches/tracking.py --follow target/release/examples/follow
 
-25 objects walk about with noise, one in twenty boxes is missed, and boxes cross; both sides get the same boxes. Frames a second of
+25 objects walk about with noise, one in twenty boxes is missed, and boxes cross; both sides get the same boxes. Frames per second of
 the trackers alone: reading and writing boxes does not count. Rounds take turns; the figures are medians.
 """
 

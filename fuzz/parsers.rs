@@ -83,7 +83,7 @@ fn ctranslate2(bytes: &[u8]) {
 fn safetensors(bytes: &[u8]) {
     if let Ok(file) = opendr_import::SafetensorsFile::read(bytes) {
         for tensor in file.floats() {
-            assert_eq!(tensor.float_type.numbers(tensor.bytes).len(), tensor.dims.iter().product::<usize>());
+            assert_eq!(tensor.float_type.decode(tensor.bytes).len(), tensor.dims.iter().product::<usize>());
         }
     }
     if let Ok(networks) = opendr_import::whisper_from_safetensors(bytes) {
@@ -127,7 +127,7 @@ fn coco_files(bytes: &[u8]) {
     let end = texts.iter().position(|byte| *byte == 0).unwrap_or(texts.len());
     let results = texts.get(end + 1..).unwrap_or_default();
     let files = CocoFiles { threads: 1, ..CocoFiles::new(kind) };
-    if let Ok(done) = files.compare_texts(&texts[..end], results) {
+    if let Ok(done) = files.compare_readers(&texts[..end], results) {
         assert!(
             done.outcome.stats().iter().all(|number| *number == -1.0 || (0.0..=1.0 + 1e-9).contains(number))
         );

@@ -1,4 +1,4 @@
-//! Gives the shared library the name that programs look for.
+//! Sets the soname (install name on macOS) of the shared library.
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");

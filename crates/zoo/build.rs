@@ -1,4 +1,4 @@
-//! Lists the model cards, so that a new card is one new file and no other edit.
+//! Lists the model cards, so that a new card needs no other edit.
 
 use std::ffi::OsString;
 use std::fmt::Write;
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
 fn main() -> io::Result<()> {
-    // Asked at run time: a build folder that several checkouts share keeps this program.
+    // Read at run time, since a build folder shared by several checkouts keeps this program.
     let here = PathBuf::from(variable("CARGO_MANIFEST_DIR")?);
     let models = here.join("../../models");
     let mut code = String::new();
@@ -26,12 +26,12 @@ fn main() -> io::Result<()> {
     fs::write(Path::new(&variable("OUT_DIR")?).join("embedded.rs"), code)
 }
 
-/// A variable that cargo sets.
+/// Returns a variable that cargo sets.
 fn variable(name: &str) -> io::Result<OsString> {
     env::var_os(name).ok_or_else(|| io::Error::other(format!("cargo sets {name}")))
 }
 
-/// The importer's version with a fingerprint of its sources, where they are beside this crate.
+/// Returns the importer's version with a fingerprint of its sources, if they are beside this crate.
 fn importer(here: &Path) -> io::Result<String> {
     let mut hasher = DefaultHasher::new();
     let mut folders = vec![here.join("../import/src"), here.join("../onnx/src")];

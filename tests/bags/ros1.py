@@ -24,7 +24,7 @@ def write(path, compression, is_left):
         raw = (kind._type, data, kind._md5sum, kind)
         bag.write(topic, raw, genpy.Time(*divmod(stamp, 10**9)), raw=True)
     if is_left:
-        # As after a kill: nothing is closed.
+        # As after a kill: no file is closed.
         bag._file.flush()
         os._exit(0)
     bag.close()
@@ -42,7 +42,7 @@ def read(path):
 
 
 def listen(count):
-    """Prints what comes on the topics, as soon as all of it has come."""
+    """Prints the messages of the topics once all have arrived."""
     heard = []
 
     def hear(topic):

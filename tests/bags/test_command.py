@@ -1,4 +1,4 @@
-"""`opendr infer`, `eval` and `bag` beside rosbags and mcap: recordings of theirs are answered, ours are read by them."""
+"""`opendr infer`, `eval` and `bag` with rosbags and mcap: the command reads their recordings, and they read ours."""
 
 import json
 import shutil
@@ -50,7 +50,7 @@ def stamp_of(message):
 
 
 def check_boxes(found, lines, class_id):
-    """Detections are the boxes that the lines of JSON tell, logged with their picture, stamped as it was taken."""
+    """Detections are the boxes of the lines of JSON, logged with their image and with its stamp."""
     assert len(found) == len(lines) == robot.FRAMES
     for number, ((logged, kind, message), line) in enumerate(zip(found, lines, strict=True)):
         assert kind == "vision_msgs/msg/Detection2DArray"
@@ -88,7 +88,7 @@ def test_a_recording_is_answered_as_its_pictures_are(tmp_path, opendr, recording
 def test_series_are_answered(opendr, recording, storage):
     lines = opendr("infer", "gated_recurrent_unit", recording(storage), "--json").lines
     categories = [line["outputs"]["category"] for line in lines]
-    # The message has no header: the time of its recording stands for the stamp.
+    # The message has no header: its recording time is the stamp.
     assert [one["stamp_ns"] for one in categories] == [stamp(at) + robot.LOGGED_AFTER for at in range(robot.FRAMES)]
 
 
@@ -132,7 +132,7 @@ def test_answers_are_recorded(tmp_path, opendr, recording, storage, name, flags)
     if not is_ros1:
         ((_, _, info),) = on("/single_shot_detector/label_info", messages)
         assert [(one.class_id, one.class_name) for one in info.class_map] == [(0, "person")]
-    assert "is there already" in opendr(*DETECTOR, path, "--out", out, *flags, code=12).stderr
+    assert "already exists" in opendr(*DETECTOR, path, "--out", out, *flags, code=12).stderr
     opendr(*DETECTOR, path, "--out", out, *flags, "--overwrite", "--limit", 1)
     assert len(on(BOXES, read(out, is_ros1))) == 1
 
@@ -169,7 +169,7 @@ def test_answers_to_videos_are_recorded(tmp_path, opendr, recording):
     shutil.copy(video, tmp_path / "again.mp4")
     opendr(*DETECTOR, video, tmp_path / "again.mp4", "--out", out, "--with-input")
     times = [logged for logged, _, _ in on(BOXES, read(out, True))]
-    # Ten frames a second, as the recording had them.
+    # Ten frames per second, as in the recording.
     first = [max(number * robot.STEP, 1) for number in range(robot.FRAMES)]
     assert times[: robot.FRAMES] == pytest.approx(first, abs=1_000_000)
     second = [time - times[robot.FRAMES] for time in times[robot.FRAMES :]]
@@ -184,7 +184,7 @@ def test_a_recording_that_was_cut_is_answered_as_far_as_it_goes(tmp_path, opendr
     cut.write_bytes(file.read_bytes()[: file.stat().st_size * 6 // 10])
     out = tmp_path / "answers.mcap"
     done = opendr(*DETECTOR, cut, "--out", out, "--json", code=1)
-    assert "cut off" in done.stderr
+    assert "truncated" in done.stderr
     told, *lines = done.lines
     assert (told["input"], told["error"]["kind"]) == (str(cut), "Format")
     assert len(on(BOXES, read(out, False))) == len(lines)
@@ -192,7 +192,7 @@ def test_a_recording_that_was_cut_is_answered_as_far_as_it_goes(tmp_path, opendr
 
 
 def test_what_ctrl_c_leaves_is_read(tmp_path, opendr):
-    """A long recording, ended after its first answers."""
+    """A long recording, stopped after the first predictions."""
     path = tmp_path / "long.bag"
     store = robot.typestore(True)
     with Writer1(path) as writer:
@@ -213,7 +213,7 @@ def test_what_ctrl_c_leaves_is_read(tmp_path, opendr):
 
 
 def test_recordings_are_converted(tmp_path, opendr, recording):
-    """From ROS 1 to ROS 2 and back, each read by rosbags; what is not known is told and left out."""
+    """From ROS 1 to ROS 2 and back, each read by rosbags; unknown types are reported and skipped."""
     path = recording("bag1")
     before = {topic: on(topic, read(path, True)) for topic in ("/camera/image_raw", "/chatter", "/beats")}
     folder, again = tmp_path / "folder", tmp_path / "again.bag"
@@ -242,7 +242,7 @@ def test_messages_that_are_not_known_are_left_out_of_a_conversion(tmp_path, open
             fields = ["hi"] if topic == "/chatter" else [robot.header(store, 1, "a", 0, True), 20.0, 0.0]
             writer.write(connection, 10**9, store.serialize_ros1(store.types[kind](*fields), kind))
     done = opendr("bag", "convert", path, tmp_path / "a.mcap", "--ros2", code=1)
-    assert "left out: /heat (sensor_msgs/Temperature)" in done.stderr
+    assert "skipped: /heat (sensor_msgs/Temperature)" in done.stderr
     info = json.loads(opendr("bag", "info", tmp_path / "a.mcap", "--json").stdout)
     assert [(one["name"], one["messages"]) for one in info["topics"]] == [("/chatter", 1)]
     # As it is, everything is kept.
@@ -265,7 +265,7 @@ def test_another_version_of_a_message_is_told(tmp_path, opendr):
 
 @pytest.mark.parametrize("storage", STORAGES)
 def test_a_recording_is_a_data_set(tmp_path, opendr, storage):
-    """What the detector itself found is the truth: every box is right."""
+    """The detector's own predictions are the ground truth: every box is a true positive."""
     is_ros1 = storage == "bag1"
     drive = robot.write(tmp_path / ("drive.bag" if is_ros1 else "drive"), storage)
     truth = tmp_path / ("truth.bag" if is_ros1 else "truth")
@@ -283,5 +283,5 @@ def test_a_recording_is_a_data_set(tmp_path, opendr, storage):
 
 def test_recordings_do_not_mix_with_files(tmp_path, opendr, recording):
     pictures = robot.write_pictures(tmp_path / "pictures")
-    assert "by a command each" in opendr(*DETECTOR, recording("bag1"), pictures, code=11).stderr
-    assert "no input is a recording" in opendr(*DETECTOR, pictures, "--topic", "/a", code=12).stderr
+    assert "use one command for each" in opendr(*DETECTOR, recording("bag1"), pictures, code=11).stderr
+    assert "needs a recording" in opendr(*DETECTOR, pictures, "--topic", "/a", code=12).stderr

@@ -45,7 +45,7 @@ def read(path):
 
 
 def facts(path):
-    """What `rosbag info` tells; not the end, which it takes from the message written last, not the latest."""
+    """Returns the output of `rosbag info` without the end, which it takes from the message written last, not the latest."""
     lines = [line.split(":", 1) for line in run("rosbag", "info", path).splitlines() if ":" in line]
     return {key: value.strip() for key, value in lines if key in {"version", "start", "messages"}}
 
@@ -66,7 +66,7 @@ def test_bags_are_read(tmp_path, dump, compression):
 def test_a_bag_whose_recorder_was_killed_is_read(tmp_path, dump):
     head, messages = dump(write(tmp_path / "a.bag", verb="leave"))
     assert not head["is_complete"]
-    # Messages of the last chunk, which was still open, are there too.
+    # Messages of the last chunk, which was still open, are read too.
     assert sorted(messages) == wanted()
 
 
@@ -89,7 +89,7 @@ def test_our_bags_are_read(tmp_path, copy, options):
 def test_our_bag_whose_writer_was_killed_is_mended_by_reindex(tmp_path, copy):
     ours = copy(write(tmp_path / "a.bag"), tmp_path / "b.bag", "bag1")
     whole = bytearray(ours.read_bytes())
-    # As a writer that was killed leaves it: the header does not yet tell where the index is.
+    # As left by a killed writer: the header does not have the position of the index yet.
     at = whole.index(b"index_pos=") + len(b"index_pos=")
     whole[at : at + 8] = bytes(8)
     ours.write_bytes(whole[: int(len(whole) * 0.9)])

@@ -60,7 +60,7 @@ def wanted(is_cdr):
 
 
 def read(reader):
-    """What rosbags tells of a recording: messages, and its topics with their types, definitions and hashes."""
+    """Returns the messages of a recording, and its topics with types, definitions and hashes, as read by rosbags."""
     with reader:
         messages = [told(connection.topic, time, data) for connection, time, data in reader.messages()]
         connections = {
@@ -132,7 +132,7 @@ def test_a_file_of_bag2_is_read_alone(tmp_path, dump, storage):
     head, messages = dump(file)
     assert head["is_complete"]
     assert sorted(messages) == wanted(True)
-    # Without its metadata, the folder is what a recorder that was killed leaves.
+    # Without its metadata, the folder is as left by a killed recorder.
     os.remove(folder / "metadata.yaml")
     head, messages = dump(folder)
     assert not head["is_complete"]
@@ -145,7 +145,7 @@ def test_splits_are_one_recording(tmp_path, dump):
     other = write_bag2(tmp_path / "b", StoragePlugin.SQLITE3)
     os.rename(other / "b.db3", folder / "b.db3")
     metadata = folder / "metadata.yaml"
-    # Early recordings name the folder before the file.
+    # Early recordings have the folder in the file's path.
     metadata.write_text(metadata.read_text().replace("  - a.db3\n", "  - a/a.db3\n  - a/b.db3\n", 1))
     head, messages = dump(folder)
     assert (head["messages"], head["counts"], len(head["channels"])) == (240, [120, 120], 2)

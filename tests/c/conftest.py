@@ -1,4 +1,4 @@
-"""What the tests of C programs share: the installed library, a compiler, models."""
+"""Fixtures of the tests of C programs: the installed library, a compiler, models."""
 
 import importlib.util
 import os
@@ -74,7 +74,7 @@ def compiler(prefix, opendr, tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def pictures(shared, tmp_path_factory):
-    """A folder with two photographs and a file that is none."""
+    """A folder with two photographs and a file that is not an image."""
     folder = tmp_path_factory.mktemp("pictures")
     for name in ["bus.jpg", "zidane.jpg"]:
         shutil.copy(shared / "data/photos" / name, folder)

@@ -24,7 +24,7 @@ def test_examples_are_short(name):
 def test_pkg_config(compiler, pictures, name):
     program = compiler.build(EXAMPLES / name)
     if name.endswith(".cpp"):
-        # It stops at the file that is no picture.
+        # It stops at the file that is not an image.
         done = compiler.run(program, pictures / "bus.jpg")
         assert "bus.jpg: 5" in done.stdout.decode()
         assert "broken.png" in compiler.run(program, pictures, code=1).stderr.decode()
@@ -56,7 +56,7 @@ def test_faces_are_drawn(compiler, opendr, shared, tmp_path):
 
 @pytest.mark.parametrize(("name", "given", "code"), [
     ("faces.c", ".", 0),
-    # Networks take long there: one picture, and one that cannot be read for the twin in C++.
+    # Networks are slow under valgrind: one image, and one that cannot be read for the C++ example.
     ("poses.c", "zidane.jpg", 0),
     ("detect.c", "zidane.jpg", 0),
     ("detect.cpp", "broken.png", 1),

@@ -1,4 +1,4 @@
-"""Programs as they were written for OpenDR 3.0's C API, one for each of its headers, as C and as C++."""
+"""Programs for OpenDR 3.0's C API, one for each of its headers, as C and as C++."""
 
 import json
 import shutil
@@ -190,7 +190,7 @@ def test_face_recognition(compiler, build, shared, tmp_path, language):
             shutil.copy(pictures / f"{name}.jpg", people / person)
     (people / "third/broken.jpg").write_bytes(b"no picture")
     program, database = build("face_recognition", language), tmp_path / 'data "base" \\ 1.dat'
-    # A reference, other pictures of each person, somebody else, nobody.
+    # A reference, other images of each person, an unknown person, no face.
     given = [pictures / f"{name}.jpg" for name in ["img1", "img4", "img12", "img21", "img16"]]
     given.append(shared / "data/photos/coffee.png")
     for _ in range(2):

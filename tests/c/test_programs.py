@@ -80,7 +80,7 @@ def test_learner_is_measured(compiler, shared):
     outcome = json.loads(done.stdout)
     assert (outcome["metric"], outcome["samples"]) == ("coco_detection", 8)
     assert 0.3 < outcome["scalars"]["map50"] <= 1
-    # With a learner behind it, by a metric of what the first predicts.
+    # With a second learner, and a metric of the first one's target type.
     options = '{"limit": 8, "metric": "coco_detection", "then": ["movenet"]}'
     pipeline = json.loads(compiler.run(program, shared / "data/coco128", options).stdout)
     assert (pipeline["learner"], pipeline["samples"]) == ("centernet + movenet", 8)

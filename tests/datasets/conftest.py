@@ -1,4 +1,4 @@
-"""Data sets that crates/datasets writes, read by the tools that people use; and the other way round."""
+"""Data sets written by crates/datasets and read by reference tools, and the other way round."""
 
 import json
 import os

@@ -65,7 +65,7 @@ def runs(pixels):
 
 
 def entries(coco):
-    """Every annotation by its picture, without its own id: outlines as masks."""
+    """Every annotation by its image, without its own id: outlines as masks."""
     found = {}
     for picture in coco.dataset["images"]:
         of_picture = coco.loadAnns(coco.getAnnIds(imgIds=[picture["id"]]))
@@ -168,7 +168,7 @@ def test_voc_is_what_torchvision_reads(data, test_data, tmp_path):
     head, samples = data.samples("yolo", source, "--split", "val2017")
     assert len(names) == len(samples) == 65
     for name, sample in zip(names, samples, strict=True):
-        # As torchvision.datasets.VOCDetection: the picture, and the tree of the annotation.
+        # As torchvision.datasets.VOCDetection: the image, and the tree of the annotation.
         height, width = cv2.imread(str(tmp_path / "JPEGImages" / f"{name}.jpg")).shape[:2]
         root = ElementTree.parse(tmp_path / "Annotations" / f"{name}.xml").getroot()
         assert [int(root.find(f"size/{side}").text) for side in ("width", "height")] == [width, height]

@@ -71,6 +71,6 @@ def test_ours_trains_on_gymnasiums_hopper_as_well(tmp_path):
     ours = [hopping_by_ours(seed, tmp_path / str(seed)) for seed in range(5)]
     theirs = [hopping_by_stable_baselines3(seed) for seed in range(5)]
     print(f"ours {np.round(ours)}, Stable-Baselines3 {np.round(theirs)}")
-    # Falling at once comes to some 20.
+    # A policy that falls at once has a return of about 20.
     assert min(ours) > 100
     assert np.mean(ours) >= np.mean(theirs) - np.std(theirs, ddof=1)

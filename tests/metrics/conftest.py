@@ -1,4 +1,4 @@
-"""Comparison of crates/metrics with the tools that papers cite."""
+"""Comparison of crates/metrics with reference tools."""
 
 import json
 import os

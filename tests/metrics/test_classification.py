@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from sklearn import metrics
 
-# scikit-learn tells where a number is not defined, which is what is tested.
+# scikit-learn warns about undefined numbers, which are tested here.
 pytestmark = pytest.mark.filterwarnings("ignore::UserWarning")
 
 ZERO = {"zero": 0.0, "one": 1.0, "undefined": np.nan}
@@ -37,7 +37,7 @@ def same(report, key, wanted):
 
 
 def random_classes(seed):
-    """Truths and answers over a few classes, some of which never occur on one side."""
+    """Ground truths and predictions over a few classes, some of which occur only in one of the two."""
     random = np.random.default_rng(seed)
     names = random.choice([-3, 0, 1, 2, 5, 7, 1000], size=int(random.integers(1, 6)), replace=False)
     count = int(random.choice([1, 2, 7, 60, 300]))
@@ -79,7 +79,7 @@ def test_random_classes(compute, zero):
 @pytest.mark.parametrize("labels", [[0, 1, 2], [5], [9, 1000, -3, 0, 1, 2, 5, 7]])
 def test_chosen_labels(compute, zero, labels):
     data = [random_classes(seed) for seed in range(40)]
-    # scikit-learn refuses labels of which none is there.
+    # scikit-learn raises for labels that do not occur.
     data = [pair for pair in data if np.isin(labels, pair[0]).any()]
     cases = [classes_case(*pair, labels=labels, zero_division=zero) for pair in data]
     for report, pair in zip(compute(*cases), data):
@@ -201,7 +201,7 @@ def test_roc(compute, levels):
         same(report, "best_f1", f1)
         same(report, "best_f1_threshold", threshold)
         rates = np.array(metrics.roc_curve(positive, scores)[:2]).T
-        (drawn,) = [line for line in report["figures"][0]["lines"] if line["label"] == "answers"]
+        (drawn,) = [line for line in report["figures"][0]["lines"] if line["label"] == "predictions"]
         np.testing.assert_allclose(drawn["points"], rates, atol=1e-12)
 
 

@@ -98,7 +98,7 @@ def pose(entry):
 
 
 def samples(truth, results, kind):
-    """Picture by picture in the order of their numbers, which is pycocotools' order."""
+    """Samples by image in ascending order of their ids, the order of pycocotools."""
     name, field, convert = ("PoseList", "poses", pose) if kind == "keypoints" else ("BoundingBoxList", "boxes", box)
     pictures = {picture["id"]: ([], []) for picture in sorted(truth["images"], key=lambda picture: picture["id"])}
     for side, entries in enumerate((results, truth["annotations"])):
@@ -124,7 +124,7 @@ def assert_equal(report, stats, kind):
 
 
 def random_box(rng):
-    """From a fraction of a pixel to the whole picture; sometimes whole pixels, sometimes decimals."""
+    """From a fraction of a pixel to the whole image; sometimes whole pixels, sometimes decimals."""
     size = np.exp(rng.uniform(np.log(0.5), np.log([WIDTH, HEIGHT])))
     start = rng.uniform(0, 1, 2) * ([WIDTH, HEIGHT] - size)
     numbers = np.concatenate([start, size])
@@ -139,7 +139,7 @@ def jittered(rng, bounds):
 
 
 def polygons(rng, bounds):
-    """One or two outlines in a box, some reaching over the edge of the picture."""
+    """One or two outlines in a box, some reaching over the edge of the image."""
     left, top, width, height = bounds
     found = []
     for _ in range(rng.integers(1, 3)):
@@ -178,7 +178,7 @@ def random_objects(rng, kind):
     """Boxes, or masks: outlines and runs in the truth, runs in the results."""
     images, categories = pictures_and_classes(rng)
     annotations, results = [], []
-    # Some classes, and sometimes all, are never there; others are never found.
+    # Some classes, and sometimes all, never occur; others are never detected.
     there = [c["id"] for c in categories if rng.random() < 0.8]
     found = [c["id"] for c in categories if rng.random() < 0.8]
     for image in images:
@@ -260,7 +260,7 @@ def test_random_cases(compute, kind):
         stats = reference(*pair, kind)
         assert_equal(report, stats, kind)
         means.append(stats[0])
-    # The cases are what they are meant to be: nothing to find, nothing found, and a lot between.
+    # The cases cover no ground truth, no detections, and many of both.
     assert -1 in means and 0 in means and len(np.unique(np.round(means, 6))) > CASES / 2
 
 
@@ -330,7 +330,7 @@ def yolo(folder, split, segments):
 
 
 def moved(rng, truth, segments):
-    """Answers: the truth, moved a little, some twice, some of another class."""
+    """Predictions: the ground truth, moved slightly, some twice, some of another class."""
     results = []
     classes = [category["id"] for category in truth["categories"]]
     for entry in truth["annotations"]:

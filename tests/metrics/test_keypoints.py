@@ -18,7 +18,7 @@ def pose(places, visible, box=None):
 
 
 def case(persons, parts=1, **params):
-    """A sample for each of (places, visible, answer, found, box)."""
+    """A sample for each of (ground truth, visible, prediction, detected, box)."""
     samples = [
         {
             "prediction": {"type": "PoseList", "poses": [pose(answer, found)]},
@@ -61,7 +61,7 @@ def assert_equal(report, wanted):
 
 
 def annotations(folder, name):
-    """Persons of MMPose's samples, answered with noise of a tenth of the box, some joints not found."""
+    """Persons of MMPose's samples, predicted with noise of a tenth of the box, some joints not detected."""
     random = np.random.default_rng(3)
     persons = []
     for annotation in json.loads((folder / name).read_text())["annotations"]:
@@ -121,7 +121,7 @@ def test_torso(compute):
 
 
 def test_random_poses_on_a_grid(compute):
-    """Whole numbers: distances that are exactly the threshold."""
+    """Integers: distances that are exactly the threshold."""
     for seed in range(20):
         random = np.random.default_rng(seed)
         persons = []
@@ -141,7 +141,7 @@ def test_random_poses_on_a_grid(compute):
 
 
 def test_persons_in_one_picture(compute, test_data):
-    """Answers in another order, one too many and one too few."""
+    """Predictions in another order, one too many and one too few."""
     persons = annotations(test_data / "data" / "mmpose_samples", "coco/test_coco.json")
 
     def moved(places, at):
@@ -177,5 +177,5 @@ def test_what_cannot_be_counted_is_an_error(compute):
     good = ([[0, 0], [1, 1]], everything, [[0, 0], [1, 1]], everything, [0, 0, 4, 4])
     short = ([[0, 0], [1, 1]], everything, [[0, 0]], [True], [0, 0, 4, 4])
     joints, odd = compute(case([short]), case([good], normalize="joints", joints=[1]))
-    assert "1 joints cannot answer one of 2" in joints["error"]
+    assert "1 joints cannot be compared with one of 2" in joints["error"]
     assert "even number" in odd["error"]

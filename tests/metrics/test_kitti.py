@@ -117,7 +117,7 @@ def case(pictures, parts=1):
 
 
 def placed(name, x, z, rotation_y, size, occluded=0, truncated=0.0, confidence=0.0):
-    """A box on the street and where it is in the picture, with the two decimals of KITTI's files."""
+    """A box on the street and where it is in the image, with the two decimals of KITTI's files."""
     length, height, width = (round(side, 2) for side in size)
     pixels = FOCAL / z
     left, right = CENTER_X + (x - length / 2) * pixels, CENTER_X + (x + length / 2) * pixels
@@ -152,7 +152,7 @@ def dont_care(random):
 
 
 def picture(random):
-    """Truth of all sorts, and answers near it, twice, of the wrong class, of nothing, with equal scores."""
+    """Varied ground truth, and predictions near it, duplicated, of the wrong class, without ground truth, with equal scores."""
     truth, found = [], []
     for _ in range(int(random.integers(0, 8))):
         name = str(random.choice(list(SIZES), p=[0.4, 0.1, 0.05, 0.25, 0.05, 0.15]))
@@ -181,7 +181,7 @@ def assert_equals(report, wanted, pictures):
         if key in numbers:
             assert numbers[key] == pytest.approx(value, abs=1e-9), key
         else:
-            # Nothing is asked for: the kit prints 0.
+            # Without ground truth the kit prints 0.
             assert value == 0, key
     for key in ["map_3d_moderate_r40", "map_2d_easy_r11"]:
         parts = [numbers[f"{name.lower()}{key[3:]}"] for name in CLASSES if f"{name.lower()}{key[3:]}" in numbers]
@@ -235,7 +235,7 @@ def test_real_labels(compute, reference, test_data):
 
 
 def test_rotated_overlap(compute):
-    """A single answer at a known overlap is right on one side of the limit and wrong on the other."""
+    """A single prediction of known IoU is a true positive above the threshold and a false positive below."""
     random = np.random.default_rng(7)
     pictures, overlaps = [], []
     for _ in range(300):

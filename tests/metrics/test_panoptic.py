@@ -11,7 +11,7 @@ from pycocotools import mask
 DIVISOR = 1000
 VOID = 255
 
-# A picture is (found, truth); both are maps of labels, class * DIVISOR + object. Object 0 of a thing is, in the truth,
+# An image is (prediction, ground truth); both are maps of class * DIVISOR + object. Object 0 of a thing is, in the ground truth,
 # a crowd; class VOID does not count.
 
 
@@ -40,7 +40,7 @@ def segments_of(labels, things, is_truth):
 
 
 def write_coco(pictures, things, classes, folder):
-    """The two JSON files with their folders of pictures."""
+    """The two JSON files with their folders of images."""
     categories = [{"id": kind, "name": f"class {kind}", "isthing": int(kind in things)} for kind in classes]
     paths = []
     for side, name in enumerate(["found", "truth"]):
@@ -130,7 +130,7 @@ def random_truth(random, things, stuff):
 
 
 def random_answer(random, truth, things, stuff):
-    """Near the truth: shifted, of another class, left out, split, made up."""
+    """Predictions near the ground truth: shifted, of another class, missing, split, spurious."""
     found = np.full_like(truth, VOID * DIVISOR)
     for at, label in enumerate(random.permutation(np.unique(truth))):
         kind = int(label) // DIVISOR
@@ -162,7 +162,7 @@ def test_random_pictures(compute, tmp_path, seed):
 
 
 def test_void_as_torchmetrics(compute):
-    """Without crowds, which torchmetrics does not know, and void answers, which it does not count as missed."""
+    """Without crowds, which torchmetrics does not support, and void predictions, which it does not count as false negatives."""
     torch = pytest.importorskip("torch")
     detection = pytest.importorskip("torchmetrics.detection")
     random = np.random.default_rng(5)
@@ -214,7 +214,7 @@ def test_masks_are_as_good_as_labels(compute):
 
 
 def coco_pictures(folder, step):
-    """COCO's truth, thinned out, with label maps in place of its colours."""
+    """A part of COCO's ground truth, with label maps instead of its colours."""
     data = json.loads((folder / "panoptic_val2017.json").read_text())
     things = [kind["id"] for kind in data["categories"] if kind["isthing"]]
     for annotation in data["annotations"]:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from sklearn import metrics
 
-# scikit-learn tells where a number is not defined, which is what is tested.
+# scikit-learn warns about undefined numbers, which are tested here.
 pytestmark = pytest.mark.filterwarnings("ignore::UserWarning")
 
 

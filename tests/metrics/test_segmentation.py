@@ -20,7 +20,7 @@ def case(pictures, parts=1, **params):
 
 
 def random_picture(random, classes):
-    """Regions rather than noise, some of them void, the answer shifted against the truth."""
+    """Regions rather than noise, some of them void, with a prediction shifted from the ground truth."""
     height, width = (int(side) for side in random.integers(1, 40, size=2))
     truth = np.full((height, width), int(random.integers(0, classes)))
     for _ in range(8):
@@ -35,7 +35,7 @@ def random_picture(random, classes):
 def assert_equals_scikit(report, truth, answer):
     counted = truth != IGNORE
     truth, answer = truth[counted], answer[counted]
-    # A void answer is a miss that burdens no class.
+    # A void prediction is a false negative, but no false positive of a class.
     present = np.union1d(truth, answer)
     present = present[present != IGNORE]
     ious = metrics.jaccard_score(truth, answer, labels=present, average=None, zero_division=0)

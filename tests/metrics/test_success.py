@@ -34,7 +34,7 @@ def mixed(bits):
 
 
 class Random:
-    """crates/engine/src/random.rs: xoshiro256++ and whole numbers by Lemire's method."""
+    """crates/engine/src/random.rs: xoshiro256++ and integers by Lemire's method."""
 
     def __init__(self, seed):
         bits = mixed((1 + STEP & MASK) ^ mixed(seed + STEP & MASK))

@@ -1,4 +1,4 @@
-"""Our trackers beside permissive ones, on the same boxes: supervision (MIT) and trackers (Apache-2.0), with their defaults.
+"""Our trackers and permissively licensed ones on the same boxes: supervision (MIT) and trackers (Apache-2.0), with their defaults.
 
 The boxes are those that motmetrics has of two videos, without their identities and all of the same confidence.
 """
@@ -35,7 +35,7 @@ def rows(video, file):
 
 
 def frames_of(video):
-    """The truth and the found boxes of each frame."""
+    """The ground truth and the detected boxes of each frame."""
     truth, found = rows(video, "gt.txt"), rows(video, "test.txt")
     return [(truth.get(number, []), found.get(number, [])) for number in sorted({*truth, *found})]
 

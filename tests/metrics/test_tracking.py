@@ -44,7 +44,7 @@ HOTA_FIELDS = {
     "false_positives": "HOTA_FP",
 }
 
-# A row is (id, left, top, width, height, confidence, class); a picture is (rows of truth, rows of answer).
+# A row is (id, left, top, width, height, confidence, class); a frame is (rows of ground truth, rows of predictions).
 
 
 def target(rows):
@@ -128,7 +128,7 @@ def assert_equals_trackeval(report, wanted):
 
 
 def random_sequence(seed):
-    """A few walkers on a grid (hence ties), with gaps, switches, empty pictures and false alarms."""
+    """A few walkers on a grid (hence ties), with gaps, switches, empty images and false alarms."""
     random = np.random.default_rng(seed)
     walkers = int(random.integers(0, 7))
     place = random.integers(0, 12, size=(walkers, 2)) * 4
@@ -214,7 +214,7 @@ def test_another_threshold(compute):
 
 
 def challenge_sequence(seed):
-    """Truth of all classes, some of it marked 0, and answers near any of it."""
+    """Ground truth of all classes, some of it marked 0, and predictions near it."""
     random = np.random.default_rng(seed)
     frames = []
     for _ in range(8):

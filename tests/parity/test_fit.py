@@ -38,7 +38,7 @@ class Boxes(DatasetIterator):
 
 @pytest.fixture
 def interruptible():
-    """Ctrl-C raises, also where whoever started the tests in the background lets them ignore it."""
+    """Enables Ctrl-C, also if the tests were started in the background with SIGINT ignored."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
@@ -123,7 +123,7 @@ def test_arguments_of_the_constructor_are_those_of_fit(tmp_path):
         cls(epochs=0)
     with pytest.raises(TypeError, match="no argument 'momentum'"):
         cls(momentum=0.9)
-    with pytest.raises(TypeError, match="fit has no argument 'momentum'; parameters of the training: epochs, lr"):
+    with pytest.raises(TypeError, match="fit has no argument 'momentum'; the parameters of the training are epochs, lr"):
         learner.fit(Boxes(4), momentum=0.9)
 
 
@@ -139,7 +139,7 @@ def test_interrupt_saves(counter, tmp_path, interruptible):
 
 def test_a_learner_written_in_python_teaches(counter, tmp_path):
     class OneEachLearner(Learner):
-        """Finds one dog in every picture, and is not sure of another."""
+        """Detects one dog in every image, and another with a low score."""
 
         name = "one_each"
         task = "object_detection_2d"

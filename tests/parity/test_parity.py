@@ -23,7 +23,7 @@ from opendr import _opendr
 from opendr._native_learner import NativeLearner
 
 CLIPS = "data/speech_commands_v0.02_test"
-#: What learners of each type are given.
+#: Inputs of learners by type.
 INPUTS = {
     "Image": ["data/photos/zidane.jpg", "data/photos/t1.jpg"],
     "Audio": [f"{CLIPS}/yes/0bac8a71_nohash_0.wav", f"{CLIPS}/_silence_/1024.wav"],
@@ -33,9 +33,9 @@ INPUTS = {
     "Video": ["wave:3x9x32x40:0.05", "wave:3x30x32x40:0.7"],
     "SkeletonSequence": ["wave:32x15x2:0.05", "wave:32x15x2:0.7"],
 }
-#: What answers say of how sure they are, of which one case at least must have something.
+#: Fields of scores in predictions, of which at least one case must have some.
 SURE = ("confidence", "no_speech_prob", "labels")
-#: Others have to be trained first.
+#: Learners without pretrained models.
 PRETRAINED = {name for name in opendr.learners() if name == "counter" or _opendr.models(name)}
 
 
@@ -108,7 +108,7 @@ def test_data():
         pytest.skip("no OPENDR_TEST_DATA")
     os.environ["OPENDR_MODEL_REPOSITORY"] = str(Path(folder) / "models")
     os.environ["OPENDR_CACHE"] = str(Path(os.environ["OPENDR_TEST_CACHE"]) / "opendr")
-    # Answers of more threads may differ in the last digit.
+    # With more threads, predictions may differ in the last digit.
     os.environ["OPENDR_THREADS"] = "1"
     return Path(folder)
 
@@ -120,9 +120,9 @@ class Case:
         self.params = self.table.get("params", {})
         self.inputs = [file_of(name, test_data, folder) for name in self.table["inputs"]]
         entry = opendr.learners()[self.learner.partition("/")[0]]._entry
-        #: The port that they go into.
+        #: The port of the inputs.
         self.port = entry["ports"][0]["name"]
-        #: Whether what comes later depends on what came before: the command must be told that files belong together.
+        #: Whether the learner has a state: the command then needs the option for files of one sequence.
         self.stateful = entry["stateful"]
         self.targets = self.table.get("ports", {})
         self.folder = folder
@@ -188,7 +188,7 @@ def by_command(case):
 
 
 def outputs_of(line):
-    """The text of `outputs` in a line of the command, as it stands there."""
+    """Returns the unparsed text of `outputs` in a line of the command."""
     begin = line.index('"outputs":') + len('"outputs":')
     _, end = json.JSONDecoder().raw_decode(line, begin)
     return line[begin:end]

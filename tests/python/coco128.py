@@ -1,4 +1,4 @@
-"""The coco128 val pictures as pycocotools wants them."""
+"""The coco128 val images as pycocotools wants them."""
 
 import contextlib
 import io

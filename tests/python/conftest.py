@@ -1,4 +1,4 @@
-"""What the tests from outside share: the built command, real models and data, a cache."""
+"""Fixtures of the tests of the command: the built command, real models and data, a cache."""
 
 import json
 import os
@@ -27,7 +27,7 @@ def shared():
 
 @pytest.fixture(scope="session")
 def cache():
-    """A cache that lives on from run to run, so that packages are downloaded once."""
+    """A cache that is kept between runs, so that packages are downloaded once."""
     folder = Path(os.environ.get("OPENDR_TEST_CACHE", ROOT / "target/test-cache")) / "opendr"
     folder.mkdir(parents=True, exist_ok=True)
     return folder

@@ -24,7 +24,7 @@ def network(path: Path) -> Any:
 
 
 def blend(image: Any, x: Any, y: Any) -> Any:
-    """Bilinear samples at pixel centres; 0 beside the picture."""
+    """Bilinear samples at pixel centres; 0 outside the image."""
     height, width = image.shape[:2]
     left, top = np.floor(x).astype(int), np.floor(y).astype(int)
     right, down = (x - left)[..., None], (y - top)[..., None]
@@ -39,7 +39,7 @@ def blend(image: Any, x: Any, y: Any) -> Any:
 
 
 class Crop:
-    """A turned square of the picture; positions are complex numbers from the left-top corner of the first pixel."""
+    """A rotated square of the image; positions are complex numbers from the top-left corner of the first pixel."""
 
     def __init__(self, centre: complex, side: float, angle: float, pixels: int) -> None:
         self.turn = side / pixels * np.exp(1j * angle)

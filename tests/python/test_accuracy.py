@@ -1,4 +1,4 @@
-"""Accuracy through our pipeline on real pictures, scored with the field's own tools."""
+"""Accuracy of our pipeline on real images, computed by reference tools."""
 
 import json
 from pathlib import Path
@@ -9,9 +9,9 @@ import pytest
 from coco128 import Coco128
 
 PERSON = [0]
-#: Mean OKS over the annotated persons, and the share of MoveNet's persons found at OKS 0.5.
+#: Mean OKS over the annotated persons, and the share of persons detected by MoveNet at OKS 0.5.
 OPEN_POSE_FLOOR, AGREEMENT_FLOOR = 0.5, 0.65
-#: Where the Debian package dataset-fashion-mnist puts it.
+#: Folder of the Debian package dataset-fashion-mnist.
 FASHION_MNIST = Path("/usr/share/datasets/fashion-mnist")
 # COCO's 17 joints among OpenDR's 18.
 COCO_JOINTS = [0, 15, 14, 17, 16, 5, 2, 6, 3, 7, 4, 11, 8, 12, 9, 13, 10]
@@ -20,7 +20,7 @@ SIGMAS = np.array([26, 25, 25, 35, 35, 79, 79, 72, 72, 62, 62, 107, 107, 87, 87,
 
 
 def coco_points(pose):
-    """Where a pose of ours has COCO's joints, `[17, 2]`."""
+    """Returns the positions of COCO's joints in a pose of ours, `[17, 2]`."""
     return np.array([[pose["keypoints"][joint]["x"], pose["keypoints"][joint]["y"]] for joint in COCO_JOINTS])
 
 

@@ -1,4 +1,4 @@
-"""Classes are matched by their names: what `opendr eval` reports equals what a loop over `opendr infer` counts by hand."""
+"""Classes are matched by name: the report of `opendr eval` equals the counts of a loop over `opendr infer`."""
 
 import json
 import random
@@ -60,7 +60,7 @@ def test_streets_equal_a_mapping_by_hand(opendr, shared, tmp_path):
 
 
 def yolo(folder, source, names, order):
-    """The coco128 val pictures as a YOLO data set whose classes have these names in this order."""
+    """The coco128 val images as a YOLO data set whose classes have these names in this order."""
     (folder / "images/val").mkdir(parents=True)
     (folder / "labels/val").mkdir(parents=True)
     for picture in sorted((source / "images/val2017").glob("*.jpg"))[:24]:
@@ -102,7 +102,7 @@ def test_strangers_are_an_error_until_they_are_mapped(opendr, shared, coco80, tm
     for part in ["match one of the learner by name", "person, bicycle, car", "gizmo 0", "--classes", "--by-number"]:
         assert part in refused.stderr, refused.stderr
     by_number = opendr.eval("nanodet", strangers, "--by-number")
-    assert by_number["classes"]["by_number"] == "asked"
+    assert by_number["classes"]["by_number"] == "requested"
     pairs = ",".join(f"{name}=gizmo {number}" for number, name in enumerate(coco80))
     mapped = opendr.eval("nanodet", strangers, "--classes", pairs)
     assert mapped["scalars"] == by_number["scalars"]
@@ -128,8 +128,8 @@ def test_a_pipeline_is_measured_as_a_learner_is(opendr, shared, tmp_path):
     )
     report = opendr.eval("nanodet", tmp_path / "mot", "--then", "byte_track")
     assert report["learner"] == "nanodet + byte_track" and report["counted"] == 8
-    # The truth is what the pipeline gave; a bus is no class of the challenge, and is left out.
+    # The ground truth is the pipeline's prediction; a bus is not a class of the challenge, and is dropped.
     persons = opendr.eval("nanodet", tmp_path / "mot", "--then", "byte_track", "--metric", "identity")
     assert persons["scalars"]["idf1"] > 0.5 and report["scalars"]["hota"] > 0.5
     refused = opendr.run("eval", "nanodet", tmp_path / "mot", "--then", "ds_cnn", "--metric", "hota")
-    assert refused.returncode != 0 and "takes Audio" in refused.stderr
+    assert refused.returncode != 0 and "are Audio" in refused.stderr

@@ -1,4 +1,4 @@
-"""`opendr eval`, `score` and `data` from outside, beside pycocotools."""
+"""`opendr eval`, `score` and `data`, compared with pycocotools."""
 
 import contextlib
 import io
@@ -31,7 +31,7 @@ def coco128(shared):
 
 @pytest.fixture(scope="module")
 def evaluated(opendr, coco128, tmp_path_factory):
-    """The outcome of CenterNet on all pictures, and the folder that it was written into."""
+    """The outcome of CenterNet on all images, and the folder that it was written into."""
     folder = tmp_path_factory.mktemp("evaluated")
     return json.loads(done(opendr.run("eval", "centernet", coco128, "--out", folder, "--json", "--quiet"))), folder
 
@@ -59,7 +59,7 @@ def test_eval_gives_pycocotools_numbers(coco128, evaluated):
     assert outcome["scalars"]["map50"] > 0.5
     assert json.loads((folder / "report.json").read_text())["scalars"] == outcome["scalars"]
     assert (folder / "precision_recall.svg").read_text().startswith("<svg")
-    # 24 samples, each as it should be and as it was answered, six pictures in a row.
+    # 24 samples, each with ground truth and prediction, six images per row.
     worst, answers = (cv2.imread(str(folder / name)) for name in ["worst.png", "answers.png"])
     assert worst.shape == answers.shape and (worst != answers).any()
 
@@ -84,7 +84,7 @@ def test_broken_off_evaluation_goes_on(opendr, coco128, evaluated, tmp_path):
     assert "not complete" in output
     before = journal.read_bytes()
     again = opendr.run(*command[1:])
-    assert "going on after" in again.stderr
+    assert "resuming after" in again.stderr
     assert journal.read_bytes().startswith(before)
     scalars = json.loads((tmp_path / "report.json").read_text())["scalars"]
     assert scalars["map50"] == pytest.approx(evaluated[0]["scalars"]["map50"], abs=0.02)
@@ -145,7 +145,7 @@ def test_check_lists_what_is_broken_and_eval_leaves_it_out(opendr, coco128, tmp_
     checked = opendr.run("data", "check", tmp_path / "yolo", "--json")
     assert checked.returncode == 1
     problems = json.loads(checked.stdout)["list"]
-    places = {(problem["file"].rsplit("/", 1)[-1], json.dumps(problem.get("place"))) for problem in problems}
+    places = {(problem["file"].rsplit("/", 1)[-1], json.dumps(problem.get("location"))) for problem in problems}
     assert (pictures[0].name, "null") in places
     assert (f"{pictures[1].stem}.txt", '{"line": 1}') in places
     assert (f"{pictures[2].stem}.txt", '{"line": 2}') in places
@@ -174,11 +174,11 @@ def test_poses_are_evaluated_on_coco(opendr, shared, tmp_path):
 def test_wrong_use_is_told(opendr, coco128, tmp_path):
     for arguments, code, text in [
         (("eval", "centernet", tmp_path / "none"), 13, "no data set at"),
-        (("eval", "centernet", tmp_path), 11, "no data set of a known format"),
-        (("eval", "centernet", coco128, "--format", "nonsense"), 13, "there are coco"),
-        (("eval", "centernet", coco128, "--metric", "transcription"), 11, "compares with"),
+        (("eval", "centernet", tmp_path), 11, "not a data set of a known format"),
+        (("eval", "centernet", coco128, "--format", "nonsense"), 13, "choose one of coco"),
+        (("eval", "centernet", coco128, "--metric", "transcription"), 11, "needs the annotations"),
         (("eval", "centernet", coco128, "--metric-param", "use_classes"), 12, "NAME=VALUE"),
-        (("eval", "centernet", coco128, "--metric-param", "nonsense=1"), 12, "there are max_detections"),
+        (("eval", "centernet", coco128, "--metric-param", "nonsense=1"), 12, "it has max_detections"),
         (("score", tmp_path / "none.json", coco128, "--metric", "coco_detection"), 13, "none.json"),
         (("score", coco128, coco128), 12, "name a metric with --metric"),
     ]:

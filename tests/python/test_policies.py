@@ -1,4 +1,4 @@
-"""Policies by the command: trained, resumed, measured, filmed."""
+"""Policies with the command: training, resuming, evaluation, video."""
 
 import json
 
@@ -52,7 +52,7 @@ def test_wrong_use_is_told(opendr, tmp_path):
         (["fit", "ppo", "--env", "UavDepthCorridor-v1", "--env-param", "colour=red"], "max_obstacles"),
         (["fit", "sac", "--env", "CartPole-v1", "--out", tmp_path / "run"], "Discrete"),
         (["sim", "view", "CartPole-v1", "--out", tmp_path / "film.txt"], ".gif"),
-        (["sim", "view", "CartPole-v1", "--learner", "centernet"], "no policy"),
+        (["sim", "view", "CartPole-v1", "--learner", "centernet"], "is not a policy"),
     ]:
         done = opendr.run(*arguments)
         assert done.returncode not in (0, 101) and word in done.stderr, (arguments, done.stderr)

@@ -1,4 +1,4 @@
-"""The parameters of trainings searched by the command: policies and learners of data, gone on with, killed."""
+"""Hyperparameter search with the command: policies and learners of data sets, resumed and killed."""
 
 import json
 import signal
@@ -12,7 +12,7 @@ SHORT = ["--length", "4000", "--points", "4", "--tuning-seeds", "2", "--episodes
 
 
 def trials(output):
-    """How many trials the journal has begun."""
+    """Returns the number of trials in the journal."""
     operations = (json.loads(line) for line in (output / "study.log").read_text().splitlines())
     return sum(operation["op_code"] == 4 for operation in operations)
 
@@ -23,7 +23,7 @@ def test_a_policy_is_tuned_and_the_study_goes_on(opendr, tmp_path):
     done = opendr.run(*arguments, "--trials", "2", "--quiet")
     assert done.returncode == 0, done.stderr
     first = json.loads(done.stdout)
-    # Halving pauses both; the better one is carried to its end all the same.
+    # Halving pauses both; the better one is still completed.
     assert first["complete"] and first["trials"] == 2 and len(first["fresh_values"]) == 2
     assert 1e-5 <= first["params"]["learning_rate"] <= 1e-2 and first["params"]["n_steps"] in (32, 64)
     for name in ["history.svg", "importance.svg"]:

@@ -1,4 +1,4 @@
-"""Compares exported policies in ONNX Runtime with what the policies did.
+"""Compares exported policies in ONNX Runtime with the policies' own actions.
 
     cargo run -p opendr-rl --example export_policy FOLDER
     python tests/rl/compare_onnx.py FOLDER
@@ -16,7 +16,7 @@ TOLERANCE = 1e-6
 
 
 def actions(session, steps):
-    """What is done step by step, with what a recurrent policy remembers."""
+    """Returns the actions step by step, with the state of a recurrent policy."""
     states = {each.name: numpy.zeros((32, each.shape[1]), numpy.float32) for each in session.get_inputs() if each.name == "state"}
     for seen in steps:
         done, *after = session.run(["action", *["next_state" for _ in states]], {"observation": seen, **states})

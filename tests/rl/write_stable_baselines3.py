@@ -1,4 +1,4 @@
-"""Writes crates/rl/tests/data: small policies of Stable-Baselines3, and what they answer.
+"""Writes crates/rl/tests/data: small policies of Stable-Baselines3, and their actions.
 
     python tests/rl/write_stable_baselines3.py crates/rl/tests/data
 
@@ -17,7 +17,7 @@ from stable_baselines3 import DQN, PPO, SAC, TD3
 
 
 def moved_until_it_differs(model, seen):
-    """Adds noise to the parameters until the answers are not all the same; those."""
+    """Adds noise to the parameters until the actions differ; returns the actions."""
     while True:
         with torch.no_grad():
             for parameter in model.policy.parameters():

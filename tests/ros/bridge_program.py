@@ -1,4 +1,4 @@
-"""Run by a Python that has rclpy: the bridge of the Python package on real messages; prints what it saw as JSON."""
+"""Tests the bridge of the Python package on real messages, in a Python with rclpy; prints the results as JSON."""
 
 import json
 import sys

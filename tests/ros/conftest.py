@@ -1,4 +1,4 @@
-"""What the tests beside real ROS peers share: OpenDR's messages by the examples of crates/messages, and the peers."""
+"""Fixtures of the tests with real ROS peers: OpenDR's messages by the examples of crates/messages, and the peers."""
 
 import json
 import os
@@ -17,7 +17,7 @@ from programs import example  # noqa: E402
 
 @pytest.fixture(scope="session")
 def message_types_file(tmp_path_factory):
-    """What the example message_types prints."""
+    """The output of the example message_types."""
     file = tmp_path_factory.mktemp("messages") / "message_types.jsonl"
     with file.open("wb") as out:
         subprocess.run(example("messages", "message_types"), stdout=out, check=True)

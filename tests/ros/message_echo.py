@@ -1,4 +1,4 @@
-"""Speaks to crates/messages/examples/message_echo.rs."""
+"""Client of crates/messages/examples/message_echo.rs."""
 
 import re
 import subprocess
@@ -18,7 +18,7 @@ class MessageEcho:
         self.process.wait(60)
 
     def lines(self, requests):
-        """The answers, digits or `error: ...`, to requests (type, wire, bytes)."""
+        """Returns the responses, digits or `error: ...`, to requests (type, wire, bytes)."""
         requests = list(requests)
 
         def write():
@@ -44,6 +44,6 @@ class MessageEcho:
         return bytes.fromhex(answer)
 
     def peak_memory(self):
-        """The most that the process has had and the most that it has asked for, in bytes."""
+        """Returns the process's peak of allocated memory and its largest allocation, in bytes."""
         status = Path(f"/proc/{self.process.pid}/status").read_text()
         return tuple(int(re.search(rf"{name}:\s+(\d+) kB", status)[1]) << 10 for name in ("VmHWM", "VmPeak"))

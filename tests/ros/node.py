@@ -9,7 +9,7 @@ import threading
 from patience import PATIENCE
 from peers import ROOT, TARGET
 
-# The first picture takes longer: models are read, memory is taken.
+# The first image takes longer: models are read, memory is allocated.
 START = 120
 
 
@@ -19,13 +19,13 @@ def opendr():
 
 
 def environment():
-    """What keeps the command to models that it brings along, or that are in the cache of the tests."""
+    """Environment that limits the command to included models and those in the tests' cache."""
     cache = os.environ.get("OPENDR_TEST_CACHE", str(TARGET / "test-cache"))
     return {**os.environ, "OPENDR_CACHE": os.path.join(cache, "opendr")}
 
 
 class Node:
-    """A node, from when it says that it is ready until the block ends."""
+    """A node, from its message that it is ready until the end of the block."""
 
     verb = "run"
 
@@ -54,7 +54,7 @@ class Node:
         self.new_lines.put(None)
 
     def wait_for_line(self, part, timeout=PATIENCE):
-        """The next line with `part` in it that the node says on its terminal."""
+        """Returns the next line with `part` that the node prints."""
         while True:
             line = self.new_lines.get(timeout=timeout)
             assert line is not None, f"the node has ended: {self.lines}"
@@ -62,12 +62,12 @@ class Node:
                 return line
 
     def memory(self):
-        """Bytes that it holds now."""
+        """Returns the memory of the process in bytes."""
         with open(f"/proc/{self.process.pid}/status") as status:
             return 1024 * next(int(line.split()[1]) for line in status if line.startswith("VmRSS"))
 
     def stop(self, how=signal.SIGINT):
-        """Ends it; its exit code."""
+        """Ends the process and returns its exit code."""
         self.process.send_signal(how)
         return self.process.wait(PATIENCE)
 

@@ -2,7 +2,7 @@
 
 import time
 
-# Waits end as soon as there is what they wait for; this is for a machine that is busy.
+# Waits end as soon as their condition holds; the limit is for a busy machine.
 PATIENCE = 60
 
 

@@ -1,15 +1,15 @@
 """Real ROS nodes in processes of their own, for tests: `Ros2Peer`, `Ros1Peer`, `CyclonePeer` and `Roscore`.
 
-Each runs peer/peer_*.py with the interpreter that has its ROS and is told what to do over pipes:
+Each runs peer/peer_*.py with the Python interpreter of its ROS and sends it commands over pipes:
 
     with Ros2Peer("jazzy") as peer:
-        seen = peer.subscribe("/out", "vision_msgs/msg/Detection2DArray")
+        subscription = peer.subscribe("/out", "vision_msgs/msg/Detection2DArray")
         image = peer.encode("sensor_msgs/msg/Image", {"height": 1, "width": 1, "data": [7]})
         peer.publish("/in", "sensor_msgs/msg/Image", [image])
-        [message] = seen.wait(1)
+        [message] = subscription.wait(1)
         detections = peer.decode("vision_msgs/msg/Detection2DArray", message.data)
 
-`to=seen` has `publish` wait until a Subscription of another peer is connected. Messages are bytes: CDR with its header
+`to=subscription` makes `publish` wait until a Subscription of another peer is connected. Messages are bytes: CDR with its header
 for ROS 2, ROS 1's format for ROS 1.
 """
 
@@ -49,7 +49,7 @@ def new_domain():
 
 
 class PeerError(Exception):
-    """What a peer could not do."""
+    """An error of a peer."""
 
 
 class Peer:
@@ -145,7 +145,7 @@ class Peer:
         return self.request("decode", type=type, hex=data.hex())
 
     def encode(self, type, fields):
-        """Bytes of a message out of plain values; fields that are left out have their defaults."""
+        """Returns the bytes of a message with plain values; missing fields have their defaults."""
         return bytes.fromhex(self.request("encode", type=type, fields=fields))
 
     def advertise(self, topic, type, **options):
@@ -184,7 +184,7 @@ class Peer:
         return bytes.fromhex(self.request("call", timeout, service=service, type=type, hex=data.hex()))
 
     def serve(self, service, type, response):
-        """Answers every call with `response`; the requests go to the queue `requests` as (service, bytes)."""
+        """Responds to every call with `response`; the requests are put into the queue `requests` as (service, bytes)."""
         self.request("serve", service=service, type=type, hex=response.hex())
 
     def set_parameters(self, node, values):
@@ -220,7 +220,7 @@ class Peer:
         wait_until(lambda: name in self.nodes(), timeout, f"node {name}")
 
 
-# Commands that wait for somebody else.
+# Commands that wait for others.
 WAITING = {"call", "wait_for_publishers"}
 
 
@@ -233,7 +233,7 @@ class Ros2Peer(Peer):
         super().__init__(program, {"ROS_DOMAIN_ID": str(domain), **(environment or {})})
 
     def fields_alone(self, type, data):
-        """What rclpy wrote of a message, with zeros between the fields and nothing after them (peer/ros2_messages.py).
+        """Returns rclpy's bytes of a message, with zeros between the fields and nothing after them (peer/ros2_messages.py).
 
         PeerError when that is not as long as rclpy's messages are.
         """
@@ -261,7 +261,7 @@ class Ros1Peer(Peer):
         return self.request("md5sum", type=type)
 
     def md5sum_of_text(self, type, text):
-        """What ROS 1's own tools make of a whole definition."""
+        """Returns the results of ROS 1's own tools for a whole definition."""
         return self.request("md5sum_of_text", type=type, text=text)
 
 

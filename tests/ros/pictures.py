@@ -1,4 +1,4 @@
-"""Pictures for the tests: made here, or the photographs of OPENDR_TEST_DATA."""
+"""Images for the tests: generated here, or the photographs of OPENDR_TEST_DATA."""
 
 import os
 from pathlib import Path
@@ -8,7 +8,7 @@ from peers import ROOT
 
 
 def noise(width, height):
-    """RGB bytes that no detector takes for anything."""
+    """Returns RGB bytes in which no detector detects anything."""
     return bytes((x * 7 + y * 13 + 31 * channel) % 256 for y in range(height) for x in range(width) for channel in range(3))
 
 

@@ -1,4 +1,4 @@
-"""How messages with other fields in ROS 1 are meant to become ROS 2's and back, as plain values.
+"""Expected conversions of messages whose fields differ between ROS 1 and ROS 2, as plain values.
 
 Written from the documentation of the two, not from the Rust code, which is compared with it.
 """
@@ -8,7 +8,7 @@ ONLY_IN_ROS2 = {"texture_resource", "texture", "uv_coordinates", "mesh_file"}
 
 
 def class_number(text):
-    """vision_msgs 0.0.2 has numbers; -1 stands for what is none."""
+    """vision_msgs 0.0.2 has numbers; -1 stands for none."""
     try:
         return int(text) if text.isascii() and text.strip() == text and "_" not in text else -1
     except ValueError:
@@ -16,7 +16,7 @@ def class_number(text):
 
 
 def to_ros1(plain):
-    """ROS 1's fields of ROS 2's; what ROS 1 alone has is left out, so that it gets its defaults."""
+    """Converts fields of ROS 2 to those of ROS 1; fields that only ROS 1 has keep their defaults."""
     if isinstance(plain, list):
         return [to_ros1(item) for item in plain]
     if not isinstance(plain, dict):
@@ -38,7 +38,7 @@ def to_ros1(plain):
 
 
 def to_ros2(plain):
-    """ROS 2's fields of ROS 1's."""
+    """Converts fields of ROS 1 to those of ROS 2."""
     if isinstance(plain, list):
         return [to_ros2(item) for item in plain]
     if not isinstance(plain, dict):

@@ -1,4 +1,4 @@
-"""What peers received."""
+"""Messages received by peers."""
 
 import threading
 
@@ -20,7 +20,7 @@ class Received:
 
 
 class Subscription:
-    """What came on a topic."""
+    """The received messages of a topic."""
 
     def __init__(self, peer, number):
         self.peer = peer

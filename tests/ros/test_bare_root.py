@@ -1,4 +1,4 @@
-"""The command in a root with nothing but itself and the C library: a node all the same."""
+"""A node of the command in a file system with only the command and the C library."""
 
 import os
 import shutil

@@ -1,4 +1,4 @@
-"""Messages with random values go through OpenDR and come back as ROS's own serialization wrote them."""
+"""Messages with random values, read and written by OpenDR, equal ROS's own serialisation."""
 
 import ros1_forms
 
@@ -38,7 +38,7 @@ def test_ros1(known, ros1, echo):
             data = ros1.random(name, seed)
             again = echo.again(ours, "ros1", data)
             if again != data:
-                # Of these OpenDR keeps what ROS 2 can say.
+                # Of these OpenDR keeps the fields of ROS 2.
                 assert name in LOSSY, f"{name} with seed {seed}"
                 kept = ros1_forms.to_ros1(ros1_forms.to_ros2(ros1.decode(name, data)))
                 assert again == ros1.encode(name, kept), f"{name} with seed {seed}"
@@ -53,7 +53,7 @@ def test_ros1_counters_become_zero(ros1, echo):
     assert echo.again(name, "ros1", counted) == ros1.encode(name, {"header": header, **data})
 
 
-# They hold the picture or the points that they were found in, or say apart from the track's name that there is one.
+# They contain the image or the points of the detection, or a separate flag for a track.
 LOSSY = {f"vision_msgs/{name}" for name in ("Classification2D", "Detection2D", "Detection3D")}
 LOSSY |= {"vision_msgs/Detection2DArray", "vision_msgs/Detection3DArray", "opendr_msgs/ImageWithDetections"}
 

@@ -1,4 +1,4 @@
-"""Messages as Cyclone DDS writes them: a second implementation of CDR, and one that knows both byte orders."""
+"""Messages written by Cyclone DDS: a second implementation of CDR, with both byte orders."""
 
 import peers
 import pytest

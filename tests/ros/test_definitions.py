@@ -1,4 +1,4 @@
-"""Names, sums and hashes of OpenDR's messages beside ROS's own generators."""
+"""Names, MD5 sums and hashes of OpenDR's messages, compared with ROS's own generators."""
 
 import json
 from pathlib import Path

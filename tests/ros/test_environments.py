@@ -1,4 +1,4 @@
-"""Embedded worlds as nodes: a policy of OpenDR keeps a pole up over ROS, and rclpy sees it."""
+"""Environments as nodes: a policy of OpenDR balances a pole over ROS, and rclpy subscribes to it."""
 
 import subprocess
 from contextlib import ExitStack

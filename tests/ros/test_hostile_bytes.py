@@ -1,17 +1,17 @@
-"""Broken messages of every type: OpenDR reads them or says why not, and takes no memory for what is not there."""
+"""Broken messages of every type: OpenDR reads them or returns an error, and allocates no memory for missing data."""
 
 import random
 
 import pytest
 
-# The process needs 3 and 5 MiB without a message; an array of whose length nothing is known may ask for 1 MiB at once.
+# The process needs 3 and 5 MiB without a message; an array of unchecked length may allocate 1 MiB at once.
 MOST_HAD, MOST_ASKED_FOR = 8 << 20, 16 << 20
 LENGTHS = [0xFFFFFFFF, 0x7FFFFFFF, 0x80000000, 0x10000000, 0x00FFFFFF]
 
 
 def broken(data, values):
     """Cut at every length, bytes changed, lengths changed, more at the end."""
-    # Of a long one, what matters is at its front.
+    # For long messages, only the front is changed.
     for length in range(min(len(data), 600)):
         yield data[:length]
     for _ in range(150):
@@ -30,7 +30,7 @@ def check(echo, name, wire, samples):
     values = random.Random(name)
     requests = [(name, wire, hostile) for data in samples for hostile in broken(data, values)]
     read = [answer for answer in echo.lines(requests) if not answer.startswith("error: ")]
-    # One is still alive, and sane.
+    # The process is still running and correct.
     assert len(list(echo.lines([(name, wire, samples[0])]))) == 1
     had, asked_for = echo.peak_memory()
     assert had < MOST_HAD and asked_for < MOST_ASKED_FOR, f"{had >> 10} and {asked_for >> 10} KiB after {name}"

@@ -1,4 +1,4 @@
-"""Pictures from a node to a stock Fast DDS peer: compressed ones arrive; raw ones do when the peer has room."""
+"""Images from a node to a default Fast DDS peer: compressed images arrive, raw ones only with a large receive buffer."""
 
 import peers
 import pytest
@@ -8,7 +8,7 @@ from pictures import photograph
 
 IMAGE, COMPRESSED, DETECTOR = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage", "single_shot_detector"
 
-# A receive buffer that holds several pictures (docs/ros.md).
+# A receive buffer that holds several images (docs/ros.md).
 ROOM = """<?xml version="1.0" encoding="UTF-8"?>
 <profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
   <transport_descriptors>
@@ -46,9 +46,9 @@ def test_annotated_pictures_arrive(topic, kind, roomy, tmp_path):
         message = {"header": {"stamp": {"sec": 1, "nanosec": 1}, "frame_id": "eye"}, "format": "png", "data": list(photo)}
         data = peer.encode(COMPRESSED, message)
         peer.advertise("/photo", COMPRESSED)
-        # Until the node has heard of the listener it draws nothing.
+        # The node does not draw before it has discovered a subscriber.
         sending = peer.publish("/photo", COMPRESSED, [data], count=30, rate=5, background=True)
-        wait_until(lambda: seen.messages, 60, "a picture")
+        wait_until(lambda: seen.messages, 60, "an image")
         sending.result(60)
         seen.clear()
         answers.clear()

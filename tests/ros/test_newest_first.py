@@ -1,4 +1,4 @@
-"""A learner that takes 100 ms, and pictures at 30 Hz: what it takes next is always the newest."""
+"""A learner of 100 ms per image, and images at 30 Hz: it always processes the newest image."""
 
 from node import Node
 from patience import wait_until
@@ -28,7 +28,7 @@ def test_every_picture_it_takes_is_the_newest(ros2):
     answers = [(message.stamp[1], message.at) for message in list(seen.messages)]
     numbers = [number for number, _ in answers]
     assert numbers == sorted(set(numbers)) and len(numbers) < 150
-    # The learner was free when its last answer came. What it took then was the newest that had been sent, or the newer one was
+    # The learner was idle after its last prediction. The next image was the newest that had been sent, or the newer one was
     # still on its way.
     for (_, free), (taken, _) in zip(answers, answers[1:]):
         newest = max(number for number, at in enumerate(sent) if at <= free)

@@ -1,4 +1,4 @@
-"""Nodes of OpenDR among real nodes of ROS 1: Debian's roscore and rospy."""
+"""Nodes of OpenDR with real nodes of ROS 1: Debian's roscore and rospy."""
 
 import struct
 import subprocess
@@ -28,7 +28,7 @@ def detector(roscore):
 
 
 def answer(peer, topic, kind, message, subscription):
-    """The first answer to a message that is sent until it is there."""
+    """Sends a message until the first prediction arrives, and returns it."""
     stamp = tuple(peer.decode(kind, message)["header"]["stamp"].values())
 
     def found():

@@ -1,4 +1,4 @@
-"""Nodes of OpenDR among real nodes of ROS 2."""
+"""Nodes of OpenDR with real nodes of ROS 2."""
 
 import json
 import signal
@@ -19,7 +19,7 @@ DETECTOR, CLASSIFIER = "single_shot_detector", "image_classifier"
 
 @pytest.fixture(scope="module")
 def detector(ros2):
-    """A node around the detector that the command brings along."""
+    """A node of the detector that is included in the command."""
     with Node("ros2", DETECTOR, "--image", "/camera/image_raw", ROS_DOMAIN_ID=ros2.domain) as node:
         ros2.wait_for_node(f"/{DETECTOR}")
         yield node
@@ -40,7 +40,7 @@ def answered(ros2, topic, kind, message, *answers):
 
 
 def inferred(path):
-    """What the command answers to the picture, without a ROS."""
+    """Returns the command's prediction for the image, without ROS."""
     command = [opendr(), "infer", DETECTOR, path, "--json", "--quiet"]
     done = subprocess.run(command, env=environment(), capture_output=True, text=True, check=True)
     return json.loads(done.stdout)["outputs"]["boxes"]["boxes"]
@@ -162,7 +162,7 @@ def test_reset_and_labels(ros2, detector):
 
 
 def test_nonsense_does_not_stop_it(ros2, detector):
-    """Broken CDR, lengths of 4 GB, pictures that contradict themselves, another type on the topic."""
+    """Broken CDR, lengths of 4 GB, images that contradict themselves, another type on the topic."""
     seen = ros2.subscribe(f"/{DETECTOR}/boxes", BOXES)
     seen.wait_for_publishers()
     good = ros2.encode(IMAGE, image_fields(32, 24, noise(32, 24), sec=77))

@@ -1,4 +1,4 @@
-"""The peers speak with their own kind: what is wrong here is wrong with the tests, not with OpenDR."""
+"""Peers that communicate with each other: failures here are errors of the tests, not of OpenDR."""
 
 import itertools
 
@@ -125,7 +125,7 @@ def test_ros1(roscore):
 
 
 def test_cyclone(message_types_file):
-    """Beside Jazzy alone: Cyclone 11 cannot read the description of a type that Kilted's Fast DDS 3 announces with a
+    """With Jazzy only: Cyclone 11 cannot read the type description that Kilted's Fast DDS 3 announces with a
     publisher, and refuses it."""
     domain = peers.new_domain()
     kind = "vision_msgs/msg/Detection2DArray"

@@ -1,4 +1,4 @@
-"""A real ROS 1 (Debian's roscore, rospy and tools) and crates/ros1's probe, as processes that speak lines of JSON."""
+"""A real ROS 1 (Debian's roscore, rospy and tools) and crates/ros1's probe, as processes that exchange lines of JSON."""
 
 import json
 import os
@@ -43,7 +43,7 @@ def until(condition, seconds=30, what="it"):
 
 
 class Process:
-    """A program whose lines of JSON are kept."""
+    """A program whose lines of JSON are collected."""
 
     def __init__(self, command, environment):
         self.lines, self.other = [], []
@@ -150,7 +150,7 @@ class Ros:
         return done.stdout
 
     def tool_for(self, seconds, *words):
-        """What an endless tool tells within some seconds."""
+        """Returns the output of a tool that does not end, after some seconds."""
         process = Process([ROS / words[0], *words[1:]], self.environment)
         time.sleep(seconds)
         process.kill(signal.SIGINT)

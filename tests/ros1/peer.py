@@ -1,8 +1,8 @@
-"""The other end of a conversation with ros1_probe: a real rospy node. Needs Debian's Python with its ROS packages.
+"""A real rospy node as the peer of ros1_probe. Needs Debian's Python with its ROS packages.
 
     /usr/bin/python3 peer.py images|take_images|publish|take|serve|call NAME ...
 
-Tells what happens as lines of JSON, as ros1_probe does.
+Prints events as lines of JSON, as ros1_probe does.
 """
 
 import json
@@ -43,7 +43,7 @@ def take_images(topic, count):
 
     def take(message):
         late = time.time() - message.header.stamp.to_sec()
-        # `seq` is ours when opendr publishes, from 1 when rospy does; the bytes tell the number in either case.
+        # `seq` is ours when opendr publishes, from 1 when rospy does; the bytes contain the index in either case.
         whole = message.data == message.data[:1] * (640 * 480 * 3)
         say(image=message.header.seq, first=message.data[0], late_us=int(late * 1e6), whole=whole)
         taken.append(message.header.seq)

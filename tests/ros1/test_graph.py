@@ -1,4 +1,4 @@
-"""Life of a node: ROS's tools, a master that is killed, a name that is taken."""
+"""Life cycle of a node: ROS's tools, a killed master, a duplicate name."""
 
 import time
 import xmlrpc.client
@@ -64,7 +64,7 @@ def test_a_master_that_is_killed_and_started_again(program, tmp_path):
         held.wait_for("ready")
         speaker = ros.probe("publish", "/heard", 0, 20, "__name:=speaker")
         held.wait_for("text", 5)
-        # rospy never registers again: what it sends must go on coming through the connection that is there.
+        # rospy does not register again: its messages must continue to arrive over the existing connection.
         ros.peer("publish", "/heard", "faithful", 20)
         held.wait_for("text", where=lambda line: line["text"].startswith("faithful"))
         watcher = ros.probe("watch", "/gain", "__name:=watcher")
@@ -97,7 +97,7 @@ def test_a_master_that_is_killed_and_started_again(program, tmp_path):
 
 
 def test_a_master_that_does_not_tell_of_a_publisher(ros):
-    """It tells once of a change; what was lost is asked for. Here the master has forgotten a subscription."""
+    """The master reports a change once; the node polls for lost reports. Here the master has lost a subscription."""
     held = ros.probe("hold", "/told", "__name:=untold")
     ros.master.unregisterSubscriber("/untold", "/heard", held.wait_for("ready")[0]["ready"])
     assert "/untold" not in ros.subscribers("/heard") and "/untold" in ros.publishers("/told")

@@ -1,4 +1,4 @@
-"""Peers that talk nonsense: the node tells of it, keeps its memory and goes on."""
+"""Peers that send invalid data: the node reports it, bounds its memory and continues."""
 
 import socket
 import struct
@@ -12,7 +12,7 @@ from conftest import STRING, until
 
 
 class FakePublisher:
-    """Registers a topic and answers whoever connects with given bytes."""
+    """Registers a topic and sends given bytes to every connection."""
 
     def __init__(self, ros, topic, answer):
         self.answer = answer
@@ -47,12 +47,12 @@ MESSAGE = struct.pack("<II", 6, 2) + b"hi"
 
 @pytest.mark.parametrize("answer, told", [
     (GREETING + struct.pack("<I", 0xFFFFFFFF) + b"x" * 100, "4294967295 bytes"),
-    (struct.pack("<I", 0xFFFFFFFF), "header of 4294967295 bytes"),
+    (struct.pack("<I", 0xFFFFFFFF), "header has 4294967295 bytes"),
     (header(b"callerid"), "without ="),
     (struct.pack("<II", 8, 1000) + b"abcd", "field of 1000 bytes"),
     (header(b"callerid=/fake"), "md5sum"),
     (header(b"error=go away \xff"), "go away"),
-    (b"HTTP/1.1 200 OK\r\n\r\n", "header of"),
+    (b"HTTP/1.1 200 OK\r\n\r\n", "header has"),
 ])
 def test_a_publisher_that_talks_nonsense(ros, answer, told):
     topic = "/nonsense"
@@ -60,7 +60,7 @@ def test_a_publisher_that_talks_nonsense(ros, answer, told):
     fake = FakePublisher(ros, topic, answer)
     assert told in taker.wait_for("problem")[0]["problem"]
     assert taker.peak_kb() < 64 << 10
-    # An honest publisher is heard all the same.
+    # A valid publisher is still received.
     ros.peer("publish", topic, "honest", 20)
     assert taker.end().having("text")[0]["text"].startswith("honest")
     ros.master.unregisterPublisher("/fake", topic, "http://127.0.0.1:%d/" % fake.api.server_address[1])

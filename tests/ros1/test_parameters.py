@@ -43,4 +43,4 @@ def test_changes_are_told(ros):
     api = xmlrpc.client.ServerProxy(ros.master.lookupNode("/test", "/watcher")[2])
     assert api.shutdown("/test", "enough")[0] == 1
     watcher.end()
-    assert watcher.having("shutdown") == [{"shutdown": "/test asked for it: enough"}]
+    assert watcher.having("shutdown") == [{"shutdown": "requested by /test: enough"}]

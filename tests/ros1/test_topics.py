@@ -134,7 +134,7 @@ def test_a_clash_of_types_is_told_on_both_sides(ros):
     assert "sensor_msgs/Image" in giver.wait_for("problem")[0]["problem"]
     assert "std_msgs/String" in other.wait_for("problem")[0]["problem"]
     assert giver.process.poll() is None and other.process.poll() is None
-    # A problem that stays is told once.
+    # A persistent problem is reported once.
     time.sleep(1)
     assert len(other.having("problem")) == 1
 

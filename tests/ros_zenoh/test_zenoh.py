@@ -1,4 +1,4 @@
-"""A node over Zenoh beside PyZeROS and a Zenoh router: keys, hashes, attachments, services.
+"""A node over Zenoh with PyZeROS and a Zenoh router: keys, hashes, attachments, services.
 
 Run by `cargo xtask ros --zenoh`, which builds the command with the feature `zenoh`.
 """
@@ -134,7 +134,7 @@ def test_pictures_come_and_times_go(node, session):
 
 
 def test_ids_follow_from_tokens(node, session):
-    # Peers that begin to know each other directly may answer nothing for a moment.
+    # Peers that are establishing a direct connection may not respond for a moment.
     own = until(lambda: tokens(session), lambda own: {parts[5] for parts in own} == {"NN", "MP", "MS", "SS"})
     image = next(parts for parts in own if parts[5] == "MS" and parts[9] == "%camera%image_raw")
     assert image[10:12] == ["sensor_msgs::msg::dds_::Image_", Image.hash_rihs01()]
@@ -203,7 +203,7 @@ def test_nobody_is_there_without_a_router():
     words = ["single_shot_detector", "--image", "/image", "--offline", "--rmw", "zenoh"]
     override = 'connect/endpoints=["tcp/127.0.0.1:9"]'
     with Node("ros2", *words, ZENOH_CONFIG_OVERRIDE=override, ready=0) as node:
-        node.wait_for_line("no Zenoh router is there yet", 120)
+        node.wait_for_line("no Zenoh router is reachable", 120)
 
 
 def test_a_wrong_override_is_told():

@@ -1,4 +1,4 @@
-"""The reference environments beside Gymnasium 1.4: single steps from its own states, and whole episodes from seeds."""
+"""The reference environments and Gymnasium 1.4: single steps from its own states, and whole episodes from seeds."""
 
 import gymnasium
 import numpy as np
@@ -10,7 +10,7 @@ EPISODES = 20
 
 
 def bits(numbers):
-    """Doubles as whole numbers: the other side's parser of JSON may lose their last bit."""
+    """Doubles as integers: the other side's parser of JSON may lose their last bit."""
     return np.atleast_1d(numbers).astype(np.float64).view(np.uint64).tolist()
 
 
@@ -27,7 +27,7 @@ def test_single_steps(env_id, serve):
     env.reset(seed=1)
     requests, wanted, held = [], [], None
     for _ in range(STEPS):
-        # Held actions reach the far states; a tenth of them is drawn anew.
+        # Repeated actions reach distant states; a tenth of them is sampled again.
         if held is None or env.np_random.random() < 0.1:
             held = env.action_space.sample()
         requests.append({"id": env_id, "state": bits(state_of(env_id, env)), "action": bits(held)})

@@ -1,4 +1,4 @@
-"""What trainings leave behind, read by the tools that people use."""
+"""Outputs of trainings, read by reference tools."""
 
 import json
 import subprocess
@@ -25,7 +25,7 @@ def log():
 
 @pytest.fixture(scope="session")
 def shrink():
-    """Makes an ONNX file smaller by crates/optimize/examples/shrink.rs."""
+    """Quantises an ONNX file by crates/optimize/examples/shrink.rs."""
     command = example("optimize", "shrink")
 
     def run(precision, source, target):
@@ -36,7 +36,7 @@ def shrink():
 
 @pytest.fixture(scope="session")
 def exported(tmp_path_factory):
-    """The folder that crates/training/examples/export_all.rs fills."""
+    """The folder with the output of crates/training/examples/export_all.rs."""
     folder = tmp_path_factory.mktemp("exported")
     command = example("training", "export_all")
     subprocess.run([*command, str(folder)], cwd=ROOT, check=True)
@@ -45,7 +45,7 @@ def exported(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def own_module():
-    """Trains the module of crates/training/examples/own_module.rs on the pictures in a folder."""
+    """Trains the module of crates/training/examples/own_module.rs on the images in a folder."""
     command = example("training", "own_module")
 
     def run(pictures, output):

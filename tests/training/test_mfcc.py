@@ -1,4 +1,4 @@
-"""Cepstra that crates/perception/sound makes are librosa's and TensorFlow's."""
+"""Cepstra of crates/perception/sound equal those of librosa and TensorFlow."""
 
 import os
 import subprocess
@@ -92,7 +92,7 @@ def test_tensorflow(cepstra, tmp_path):
 
 
 def test_keyword_spotter_hears(cepstra, tmp_path, shared):
-    """The quantised network that was trained on TensorFlow's cepstra finds nine words of ten in ours."""
+    """The quantised network that was trained on TensorFlow's cepstra recognises nine words of ten from ours."""
     network = onnxruntime.InferenceSession(shared / "models/speech_commands/kws_dscnn_12.onnx")
     hits = []
     for index, word in enumerate(WORDS):

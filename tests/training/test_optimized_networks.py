@@ -1,4 +1,4 @@
-"""Networks that crates/optimize has made smaller: valid ONNX, and computed with bytes by ONNX Runtime."""
+"""Networks quantised by crates/optimize: valid ONNX, and computed in INT8 by ONNX Runtime."""
 
 import collections
 

@@ -1,4 +1,4 @@
-"""A module of one's own, trained by crates/training/examples/own_module.rs, does in ONNX Runtime what it learned."""
+"""A custom module, trained by crates/training/examples/own_module.rs, has the same accuracy in ONNX Runtime."""
 
 import csv
 

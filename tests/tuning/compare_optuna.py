@@ -109,7 +109,7 @@ def test_we_go_on_with_optunas_journal(tmp_path):
 
 
 def everything(study):
-    """Trials of every state, with numbers that JSON has not, and old distributions."""
+    """Trials of every state, with numbers that JSON does not have, and old distributions."""
 
     def objective(trial):
         trial.suggest_float("x", 0.1, 0.7, step=0.1)

@@ -1,4 +1,4 @@
-//! Checks: steps that pass or fail, are left out while nothing that they depend on has changed, and are summed up at the end.
+//! Checks: steps that pass or fail, are skipped while their inputs have not changed, and are summarised at the end.
 
 use std::fs::{self, File};
 use std::path::PathBuf;
@@ -16,12 +16,12 @@ const SLOWEST: usize = 10;
 
 /// The checks of one run.
 pub struct Checks {
-    /// Whether checks run though nothing has changed.
+    /// Whether checks run even if their inputs have not changed.
     all: bool,
     done: Mutex<Vec<Check>>,
 }
 
-/// One check that ended.
+/// A finished check.
 struct Check {
     name: String,
     state: State,
@@ -36,17 +36,17 @@ enum State {
     Unchanged,
 }
 
-/// Where the output of a check goes.
+/// Destination of a check's output.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Output {
-    /// To the terminal, as it comes.
+    /// To the terminal, immediately.
     Live,
-    /// To a file first and, when the check has ended, to the terminal: checks run beside each other.
+    /// To a file first and, when the check has ended, to the terminal: for checks that run in parallel.
     Kept,
 }
 
 impl Checks {
-    /// Begins a run; `all` runs also what has passed with the same inputs.
+    /// Begins a run; with `all`, checks that passed with the same inputs run again.
     pub fn begin(all: bool) -> Self {
         Self { all, done: Mutex::default() }
     }
@@ -55,22 +55,22 @@ impl Checks {
         self.done.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Returns whether a check passed with these inputs in this build folder, and notes that it is left out.
+    /// Returns whether a check passed with these inputs in this build folder; if so, records it as skipped.
     pub fn is_unchanged(&self, name: &str, inputs: Option<u64>) -> bool {
         let unchanged = !self.all && inputs.is_some() && passed_with(name) == inputs;
         if unchanged {
-            println!("\n=== {name}: unchanged since it passed, left out (--all runs it)");
+            println!("\n=== {name}: unchanged since it passed, skipped (--all runs it)");
             self.end(name, State::Unchanged, 0.0, Vec::new());
         }
         unchanged
     }
 
-    /// Returns whether inputs were kept for a part of a check ([`Checks::keep`]).
+    /// Returns whether a part of a check passed with these inputs ([`Checks::keep`]).
     pub fn has_passed(&self, part: &str, inputs: Option<u64>) -> bool {
         !self.all && inputs.is_some() && passed_with(part) == inputs
     }
 
-    /// Keeps the inputs with which a check, or a part of one, has passed.
+    /// Stores the inputs with which a check, or a part of one, has passed.
     pub fn keep(&self, name: &str, inputs: Option<u64>) -> Result<()> {
         let path = record(name);
         let failed = |error: std::io::Error| format!("{}: {error}", path.display());
@@ -83,7 +83,8 @@ impl Checks {
         }
     }
 
-    /// Runs a check of one program unless it is unchanged; whether it passed. `report` is where the program writes its tests.
+    /// Runs a check of one program unless its inputs have not changed. `report` is the program's JUnit report. Returns whether
+    /// the check passed.
     pub fn run(
         &self,
         name: &str,
@@ -96,7 +97,7 @@ impl Checks {
             return Ok(true);
         }
         if let Some(report) = &report {
-            // Nothing there is what is wanted.
+            // A missing file is no error.
             fs::remove_file(report).ok();
         }
         let start = Instant::now();
@@ -114,7 +115,7 @@ impl Checks {
         Ok(passed)
     }
 
-    /// Runs a program; whether it succeeded.
+    /// Runs a program. Returns whether it succeeded.
     fn execute(&self, name: &str, output: Output, command: &mut Command) -> Result<bool> {
         let typed = line(command);
         let cannot = |error: std::io::Error| format!("{name}: cannot run {typed}: {error}");
@@ -122,7 +123,7 @@ impl Checks {
             println!("\n=== {name}: {typed}");
             return Ok(command.status().map_err(cannot)?.success());
         }
-        println!("\n=== {name}: begins, beside others: {typed}");
+        println!("\n=== {name}: started in parallel: {typed}");
         let path = target().join(format!("xtask/logs/{}.log", file_name(name)));
         let failed = |error: std::io::Error| format!("{}: {error}", path.display());
         fs::create_dir_all(path.parent().unwrap_or(&path)).map_err(failed)?;
@@ -141,13 +142,13 @@ impl Checks {
         self.done().push(Check { name: name.to_owned(), state, seconds, tests });
     }
 
-    /// Notes a check that could not run at all.
+    /// Records a check that could not run.
     pub fn fail(&self, name: &str, error: &str) {
         println!("=== {name}: {error}");
         self.end(name, State::Failed, 0.0, Vec::new());
     }
 
-    /// Prints a line of JSON for each check, the slowest tests, and how many tests passed; an error if a check failed.
+    /// Prints a line of JSON for each check, the slowest tests, and the counts of tests. Fails if a check failed.
     pub fn finish(&self) -> Result<()> {
         let done = self.done();
         println!("\n=== summary");
@@ -176,7 +177,7 @@ impl Checks {
 }
 
 impl Check {
-    /// What it was, on one line for programs.
+    /// Returns the line of JSON of the check.
     fn line(&self) -> String {
         let count = |outcome| self.tests.iter().filter(|test| test.outcome == outcome).count();
         let outcome = match self.state {
@@ -196,12 +197,12 @@ impl Check {
     }
 }
 
-/// Where the inputs lie with which a check passed.
+/// Returns the file with the inputs with which a check passed.
 fn record(name: &str) -> PathBuf {
     target().join(format!("xtask/passed/{}", file_name(name)))
 }
 
-/// The inputs with which a check passed last.
+/// Returns the inputs with which a check passed last.
 fn passed_with(name: &str) -> Option<u64> {
     let text = fs::read_to_string(record(name)).ok()?;
     u64::from_str_radix(text.trim(), 16).ok()

@@ -1,12 +1,14 @@
-//! `cargo xtask generate`: writes what is made of the registry and checked in.
+//! `cargo xtask generate`: writes the generated files that are checked in.
 
+use crate::pages;
 use crate::shell::{Result, command, root, step, target};
-use crate::test::TEST_LEARNER;
+use crate::surfaces::TEST_LEARNER;
 use crate::wheel;
 
-/// Writes the ROS messages, the type stubs of Python, `docs/{learners,metrics,datasets}.md`, OpenDR's table in `docs/python.md` and the C
-/// headers; tests fail when these are stale.
+/// Writes the table of the crates in README.md, the diagram of the layers in DESIGN.md, the ROS messages, the type stubs of Python,
+/// `docs/{learners,metrics,datasets}.md`, OpenDR's table in `docs/python.md` and the C headers. Tests fail if they are not up to date.
 pub fn run() -> Result<()> {
+    pages::write()?;
     let mut messages = command("cargo");
     messages.args(["test", "-p", "opendr-message-generator", "--test", "messages"]).env("OPENDR_UPDATE", "1");
     step("ROS messages", &mut messages)?;

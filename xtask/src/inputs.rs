@@ -1,4 +1,4 @@
-//! What a check depends on, as one number: files of the tree, built programs, tools, environment.
+//! Hashes of the inputs of checks: files of the tree, built programs, tools, environment.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -9,33 +9,27 @@ use std::time::UNIX_EPOCH;
 
 use crate::shell::{Result, command, output, root};
 
-/// Variables whose value changes what is built or tested, by the beginning of their name.
+/// Prefixes of environment variables that affect builds or tests.
 const VARIABLES: [&str; 7] =
     ["OPENDR_", "ORT_", "RUSTFLAGS", "RUSTDOCFLAGS", "CARGO_BUILD_", "CARGO_PROFILE_", "PYTHONPATH"];
 
-/// The files of the working tree, tracked or not yet, without those that git ignores; with what is the same for every check.
+/// The files of the working tree, tracked or untracked, without ignored ones, and the inputs common to all checks.
 pub struct Tree {
     files: BTreeMap<String, u64>,
     machine: u64,
 }
 
 impl Tree {
-    /// Reads the tree; none where git does not know it (an unpacked archive), so that nothing counts as unchanged.
+    /// Reads the tree; `None` outside a git repository (an unpacked archive), so that no check is skipped.
     pub fn read(data: Option<&Path>) -> Option<Self> {
-        let listed =
-            output(command("git").args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"]))
-                .ok()?;
-        let mut files = BTreeMap::new();
-        for name in listed.split('\0').filter(|name| !name.is_empty()) {
-            // A file that was deleted and is still in the index is not there.
-            if let Ok(hash) = of_file(&root().join(name)) {
-                files.insert(name.to_owned(), hash);
-            }
-        }
-        Some(Self { files, machine: machine(data).ok()? })
+        let hashes = files().ok()?.into_iter().filter_map(|name| {
+            let hash = of_file(&root().join(&name)).ok()?;
+            Some((name, hash))
+        });
+        Some(Self { files: hashes.collect(), machine: machine(data).ok()? })
     }
 
-    /// Returns the number of the files whose path is `wanted`, and of `others`.
+    /// Returns the hash of the files whose path matches `wanted`, and of `others`.
     pub fn of(&self, wanted: impl Fn(&str) -> bool, others: &[u64]) -> u64 {
         let mut hasher = DefaultHasher::new();
         self.machine.hash(&mut hasher);
@@ -47,7 +41,21 @@ impl Tree {
     }
 }
 
-/// Returns the number of a file's content.
+/// Returns the paths of the files of the working tree, tracked or untracked, without ignored ones.
+pub fn files() -> Result<Vec<String>> {
+    let listed =
+        output(command("git").args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"]))?;
+    // A deleted file may still be in the index.
+    let files = listed.split('\0').filter(|name| !name.is_empty() && root().join(name).is_file());
+    Ok(files.map(str::to_owned).collect())
+}
+
+/// Returns the text of a file of the repository.
+pub fn text(file: &str) -> Result<String> {
+    fs::read_to_string(root().join(file)).map_err(|error| format!("{file}: {error}"))
+}
+
+/// Returns the hash of a file's content.
 pub fn of_file(path: &Path) -> Result<u64> {
     let failed = |error: std::io::Error| format!("{}: {error}", path.display());
     let mut file = File::open(path).map_err(failed)?;
@@ -61,7 +69,7 @@ pub fn of_file(path: &Path) -> Result<u64> {
     }
 }
 
-/// Compiler, test runner, interpreter, environment, and the names, sizes and times of the test data.
+/// Returns the hash of compiler, test runner, interpreter, environment, and of names, sizes and times of the test data.
 fn machine(data: Option<&Path>) -> Result<u64> {
     let mut hasher = DefaultHasher::new();
     for (program, argument) in [("rustc", "-vV"), ("cargo", "-V"), ("python3", "-VV")] {
@@ -77,7 +85,7 @@ fn machine(data: Option<&Path>) -> Result<u64> {
     Ok(hasher.finish())
 }
 
-/// Name, size and time of change of every file below a folder.
+/// Returns name, size and modification time of every file below a folder.
 fn listing(folder: &Path) -> Result<Vec<(PathBuf, u64, u64)>> {
     let mut found = Vec::new();
     let mut folders = vec![folder.to_owned()];

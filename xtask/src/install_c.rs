@@ -1,4 +1,4 @@
-//! `cargo xtask install-c PREFIX`: the C library with what programs need to find it.
+//! `cargo xtask install-c PREFIX`: installation of the C library with headers, pkg-config files and CMake package.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use crate::shell::{Result, command, root, step, target};
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// What a program links besides the static library: what `rustc --print native-static-libs` tells.
+/// Libraries that a program links with the static library, from `rustc --print native-static-libs`.
 const SYSTEM_LIBRARIES: [&str; 7] = ["gcc_s", "util", "rt", "pthread", "m", "dl", "c"];
 
 /// Builds the library for users and installs it under `prefix`.
@@ -16,7 +16,7 @@ pub fn run(prefix: &Path) -> Result<()> {
     install(prefix, &target().join("dist"))
 }
 
-/// As [`run`], the library that [`surfaces::build`](crate::surfaces::build) built, with the learner that tests use.
+/// Installs the library of [`surfaces::build`](crate::surfaces::build), which has the test learner.
 pub fn install_for_tests(prefix: &Path) -> Result<()> {
     install(prefix, &target().join("debug"))
 }
@@ -48,7 +48,7 @@ fn install(prefix: &Path, built: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The files in a folder and in the folders in it, each with its path below.
+/// Returns the files below a folder, each with its relative path.
 fn files_below(folder: &Path) -> Result<Vec<(PathBuf, String)>> {
     let failed = |error: std::io::Error| format!("{}: {error}", folder.display());
     let mut found = Vec::new();
@@ -81,7 +81,7 @@ fn pkg_config() -> String {
     )
 }
 
-/// What adds the folder of the headers that have OpenDR's names.
+/// Returns the pkg-config file that adds the folder of the headers with OpenDR's names.
 fn compat_pkg_config() -> String {
     format!(
         "prefix=${{pcfiledir}}/../..\n\
@@ -118,7 +118,7 @@ fn cmake_config() -> String {
     )
 }
 
-/// Before version 1, a program needs the minor version that it was written for.
+/// Returns CMake's version file. Before version 1, a program needs the minor version that it was written for.
 fn cmake_version() -> String {
     let minor = VERSION.rsplit_once('.').map_or(VERSION, |(minor, _)| minor);
     format!(
@@ -133,15 +133,15 @@ fn cmake_version() -> String {
     )
 }
 
-/// Where things are installed.
+/// The installation prefix.
 struct Place(PathBuf);
 
 impl Place {
     fn path(&self, name: &str) -> Result<PathBuf> {
         let path = self.0.join(name);
         let folder = path.parent().unwrap_or(&self.0);
-        fs::create_dir_all(folder).map_err(|error| format!("making {}: {error}", folder.display()))?;
-        // A program that runs keeps the library that it has.
+        fs::create_dir_all(folder).map_err(|error| format!("creating {}: {error}", folder.display()))?;
+        // Running programs keep the library that they have loaded.
         fs::remove_file(&path).ok();
         Ok(path)
     }
@@ -166,6 +166,8 @@ impl Place {
 
     #[cfg(not(unix))]
     fn link(&self, _to: &str, name: &str) -> Result<()> {
-        Err(format!("{name} is a link; this system has none, copy the library yourself"))
+        Err(format!(
+            "{name} is a symbolic link, which this system does not support; copy the library instead"
+        ))
     }
 }

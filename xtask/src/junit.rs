@@ -1,28 +1,28 @@
-//! Reports of test runners in JUnit's XML, which nextest and pytest write.
+//! Test reports in JUnit's XML format, which nextest and pytest write.
 
 use std::path::Path;
 
 use crate::shell::Result;
 
-/// One test that ran.
+/// A test in a report.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Test {
-    /// Its full name: program or file, then test.
+    /// Full name: program or file, then test.
     pub name: String,
-    /// How long it took.
+    /// Duration in seconds.
     pub seconds: f64,
-    /// How it ended.
+    /// Outcome of the test.
     pub outcome: Outcome,
 }
 
-/// How a test ended.
+/// Outcome of a test.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
-    /// It passed.
+    /// The test passed.
     Passed,
-    /// It failed, or could not begin or end.
+    /// The test failed, or its setup or teardown did.
     Failed,
-    /// It did not run, and says why itself.
+    /// The test was skipped.
     Skipped,
 }
 
@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_report_is_an_error() {
+    fn invalid_reports_are_errors() {
         assert!(parse("<testsuite>").is_err());
     }
 }

@@ -1,47 +1,62 @@
-//! The chores of this repository: `cargo xtask test`, `cargo xtask test-c`, `cargo xtask ros`, `cargo xtask realtime`, `cargo xtask install-c PREFIX`.
+//! Development tasks: checks, code generation, wheels, installation of the C library.
+//!
+//! `cargo xtask` without arguments lists the tasks. Each task is a module; `checks` runs and skips the steps of the test task,
+//! `shell` runs programs.
 
 mod checks;
 mod generate;
+mod imports;
 mod inputs;
 mod install_c;
 mod junit;
+mod layers;
+mod lexer;
+mod pages;
 mod parity;
+mod passages;
 mod realtime;
 mod ros;
 mod rust_tests;
 mod shell;
 mod ship;
 mod speed;
+mod suite;
 mod surfaces;
 mod test;
 mod tools;
 mod wheel;
+mod words;
+mod workspace;
 
 use std::process::ExitCode;
 
 const USAGE: &str = "\
 usage: cargo xtask VERB
 
-  test       everything that CI checks; installs what it needs (Debian packages, Python environments in target/);
-             what has passed in this build folder and has not changed since is left out
+  test       run all checks of CI; install their dependencies (Debian packages, Python environments in target/);
+             skip checks that passed in this build folder and whose inputs have not changed since
   test --all
-             that, with nothing left out
-  ship       the wheels that users get, in the profile dist, and the tests of what they are
+             run all checks without skipping any
+  ship       build the wheels for users in the profile dist, and test them
   test-extended
-             the tests that need PyTorch, with the interpreter OPENDR_TORCH_PYTHON
-  test-c     the part of it that tests the C library
-  ros        the part of it that tests messages and nodes beside real ROS peers
+             run the tests that need PyTorch, with the interpreter OPENDR_TORCH_PYTHON
+  test-c     run only the tests of the C library
+  ros        run only the tests of messages and nodes with real ROS peers
   ros --zenoh
-             the command with the feature zenoh beside a Zenoh router and peer; no part of the test command
-  generate   write stubs, C headers and docs/learners.md, which are made of the registry
-  realtime   fail when a task has no learner at 25 frames a second in 1 GB on 2 cores
+             run the tests of the feature zenoh with a Zenoh router and peer; not part of the task test
+  generate   write the generated stubs, C headers, pages of docs/, and parts of README.md and DESIGN.md
+  generate --crates
+             write only the table of the crates in README.md and the diagram of the layers in DESIGN.md
+  words      fail if documentation or messages have a phrase of xtask/words.tsv; print the term to use
+  layers     fail if a crate depends on a higher layer of xtask/layers.tsv, or if two files of a crate import each other
+  realtime   fail if a task has no learner with 25 frames per second in 1 GB on 2 cores
   realtime --write
-             that, and write what was measured into the cards; on a machine with nothing else to do
+             also write the measurements into the cards; needs an otherwise idle machine
   install-c PREFIX
-             the C library with its headers, pkg-config file and CMake package under PREFIX
+             install the C library with its headers, pkg-config file and CMake package under PREFIX
 
 environment:
-  OPENDR_TEST_DATA   folder with models/ and data/; tests that need it are skipped without";
+  OPENDR_TEST_DATA   folder with models/ and data/; without it, tests that need it are skipped";
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -53,7 +68,10 @@ fn main() -> ExitCode {
         ["test-c"] => test::run_c(),
         ["ros"] => ros::run_alone(),
         ["ros", "--zenoh"] => ros::run_zenoh(),
+        ["words"] => words::run(),
+        ["layers"] => layers::run(),
         ["generate"] => generate::run(),
+        ["generate", "--crates"] => pages::write(),
         ["realtime"] => realtime::run(),
         ["realtime", "--write"] => realtime::run_and_write(),
         ["install-c", prefix] => install_c::run(prefix.as_ref()),

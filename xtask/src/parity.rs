@@ -1,4 +1,4 @@
-//! The cases of `tests/cases` through every surface, all built with the test learner.
+//! Runners of the cases in `tests/cases` on every surface, built with the test learner.
 
 use std::path::Path;
 use std::process::Command;
@@ -6,7 +6,7 @@ use std::process::Command;
 use crate::shell::{Result, command, step, target};
 use crate::surfaces;
 
-/// Builds the runner in C and names the runner of each surface to `pytest`; the C library is installed under `prefix`.
+/// Builds the runner in C and sets the paths of all runners in the environment of `pytest`; the C library is under `prefix`.
 pub fn prepare(pytest: &mut Command, prefix: &Path) -> Result<()> {
     let runner = target().join("parity-runner");
     let mut gcc = command("gcc");

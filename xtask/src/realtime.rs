@@ -1,5 +1,5 @@
-//! `cargo xtask realtime`: the paper's promise of 25 frames a second in at most 1 GB, for every task; of sounds, that a
-//! second takes at most a fifth of a second.
+//! `cargo xtask realtime`: check of the paper's requirement of 25 frames per second in at most 1 GB for every task; for audio,
+//! of a real-time factor of at most 0.2.
 
 use std::collections::BTreeMap;
 use std::process::Command;
@@ -14,18 +14,18 @@ const REAL_TIME_FACTOR: f64 = 0.2;
 const MEGABYTES: f64 = 1000.0;
 const CORES: &str = "0,1";
 
-/// Measures every model that is cached or near, and fails when a task has none that keeps the promise.
+/// Measures every available model, and fails if a task has none that meets the requirement.
 pub fn run() -> Result<()> {
     measure(|_, _| Ok(()))
 }
 
-/// As [`run`]; the cards then have what was measured.
+/// The same as [`run`], and writes the measurements into the cards.
 pub fn run_and_write() -> Result<()> {
     measure(write_speed)
 }
 
-/// Calls `see` with each model and what `opendr bench` says of it.
-fn measure(see: impl Fn(&str, &Value) -> Result<()>) -> Result<()> {
+/// Calls `record` with each model and its report of `opendr bench`.
+fn measure(record: impl Fn(&str, &Value) -> Result<()>) -> Result<()> {
     let opendr = |arguments: &[&str]| {
         let mut opendr = bounded_opendr();
         opendr.args(arguments);
@@ -35,7 +35,7 @@ fn measure(see: impl Fn(&str, &Value) -> Result<()>) -> Result<()> {
     let mut best = BTreeMap::<String, Vec<String>>::new();
     for model in models.as_array().into_iter().flatten() {
         let [name, task] = ["model", "task"].map(|key| model[key].as_str().unwrap_or_default());
-        let kept = best.entry(task.to_owned()).or_default();
+        let fast_models = best.entry(task.to_owned()).or_default();
         let report = match json(&mut opendr(&[
             "bench", name, "--frames", "100", "--warmup", "5", "--json", "--quiet",
         ])) {
@@ -45,24 +45,24 @@ fn measure(see: impl Fn(&str, &Value) -> Result<()>) -> Result<()> {
                 continue;
             }
         };
-        see(name, &report)?;
+        record(name, &report)?;
         let number = |key: &str| report[key].as_f64().unwrap_or(f64::NAN);
         let (fps, peak) = (number("frames_per_second"), number("peak_memory_mb"));
         let (fast, how_fast) = match report["real_time_factor"].as_f64() {
             Some(factor) => (factor <= REAL_TIME_FACTOR, format!("real-time factor {factor:.3}")),
-            None => (fps >= FRAMES_PER_SECOND, format!("{fps:.0} frames a second")),
+            None => (fps >= FRAMES_PER_SECOND, format!("{fps:.0} frames per second")),
         };
         println!("{task}: {name}: {how_fast}, {peak:.0} MB, {}", report["runtime"]);
         if fast && peak <= MEGABYTES {
-            kept.push(name.to_owned());
+            fast_models.push(name.to_owned());
         }
     }
     let slow: Vec<_> =
-        best.iter().filter(|(_, kept)| kept.is_empty()).map(|(task, _)| task.as_str()).collect();
+        best.iter().filter(|(_, models)| models.is_empty()).map(|(task, _)| task.as_str()).collect();
     match slow.is_empty() {
         true => Ok(()),
         false => Err(format!(
-            "no learner at {FRAMES_PER_SECOND} frames a second (or a real-time factor of {REAL_TIME_FACTOR}) in \
+            "no learner with {FRAMES_PER_SECOND} frames per second (or a real-time factor of {REAL_TIME_FACTOR}) in \
              {MEGABYTES} MB for {}",
             slow.join(", ")
         )),

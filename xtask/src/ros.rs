@@ -1,20 +1,20 @@
-//! The tests beside real ROS peers: ROS 2 Jazzy and Kilted out of wheels, Cyclone DDS, Debian's ROS 1.
+//! The tests with real ROS peers: ROS 2 Jazzy and Kilted from wheels, Cyclone DDS, Debian's ROS 1.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use crate::shell::{Result, command, step, target};
-use crate::test::Suite;
+use crate::suite::Suite;
 use crate::tools::{Python, install_debian, requirements};
 use crate::{surfaces, wheel};
 
-/// The ROS 2 distributions that are peers: name, environment, requirements.
+/// The ROS 2 distributions of the peers: name, environment, requirements.
 const DISTRIBUTIONS: [(&str, &str, &str); 2] = [
     ("jazzy", "ros-jazzy-venv", "tests/ros/environment/jazzy.txt"),
     ("kilted", "ros-kilted-venv", "tests/ros/environment/kilted.txt"),
 ];
 
-/// What the tests need and nothing else of the test command, then the tests.
+/// Installs the dependencies of these tests only, then runs them.
 pub fn run_alone() -> Result<()> {
     let environments = Environments::install()?;
     surfaces::build()?;
@@ -26,8 +26,8 @@ pub fn run_alone() -> Result<()> {
     Ok(())
 }
 
-/// The command over Zenoh, beside a router and a peer out of Python packages. Zenoh takes minutes to build, so that this is no
-/// part of the test command.
+/// Runs the tests of the command over Zenoh, with a router and a peer from Python packages. Building Zenoh takes minutes, so
+/// they are not part of the test task.
 pub fn run_zenoh() -> Result<()> {
     install_debian()?;
     step(
@@ -44,7 +44,7 @@ pub fn run_zenoh() -> Result<()> {
     step("tests over Zenoh", &mut pytest)
 }
 
-/// The peers: interpreters with the packages of each distribution, and our messages built for them.
+/// The environments of the peers: interpreters with the packages of each distribution, and our messages built for them.
 pub struct Environments {
     tests: Python,
     distributions: Vec<(&'static str, PathBuf)>,
@@ -52,7 +52,7 @@ pub struct Environments {
 }
 
 impl Environments {
-    /// Brings the peers up to date.
+    /// Installs or updates the environments.
     pub fn install() -> Result<Self> {
         install_debian()?;
         let tests = Python::install(&requirements("ros-venv", &["tests/ros/requirements.txt"]))?;
@@ -70,7 +70,7 @@ impl Environments {
         Ok(Self { tests, distributions, ros1_messages })
     }
 
-    /// The suites; `package` is a folder with the Python package, `inputs` the numbers of the programs that they start.
+    /// Returns the suites; `package` is a folder with the Python package, `inputs` the hashes of the programs that they start.
     pub fn suites(&self, package: &Path, environment: impl Fn(&mut Command), inputs: &[u64]) -> [Suite; 2] {
         let mut peers = isolated(&self.tests.program());
         peers.args(["-m", "pytest", "-ra", "tests/ros"]);
@@ -84,14 +84,14 @@ impl Environments {
         environment(&mut ros1);
         let suite = |name, folders, command| Suite { name, folders, command, inputs: inputs.to_vec() };
         [
-            suite("tests beside real ROS peers", &["tests/ros"], peers),
+            suite("tests with real ROS peers", &["tests/ros"], peers),
             suite("tests of the ROS 1 client", &["tests/ros1"], ros1),
         ]
     }
 }
 
-/// A program in a network of its own, which has only loopback, with multicast: peers find each other and nobody else.
-/// Where that is not permitted, in this machine's network.
+/// Returns a command that runs a program in a network namespace with only loopback and multicast, so that peers discover only
+/// each other; in this machine's network where namespaces are not permitted.
 fn isolated(program: &Path) -> Command {
     for new in ["-n", "-rn"] {
         let try_out = Command::new("unshare").args([new, "true"]).stderr(Stdio::null()).status();
@@ -101,7 +101,7 @@ fn isolated(program: &Path) -> Command {
             return isolated;
         }
     }
-    println!("no network namespace is permitted here: the ROS peers talk over this machine's network");
+    println!("network namespaces are not permitted: the ROS peers use this machine's network");
     command(program)
 }
 

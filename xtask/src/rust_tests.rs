@@ -1,4 +1,4 @@
-//! The tests in Rust: programs that have not changed since they passed are left out.
+//! The tests in Rust; programs that have not changed since they passed are skipped.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -11,6 +11,7 @@ use serde_json::Value;
 use crate::checks::{Checks, Output};
 use crate::inputs::{Tree, of_file};
 use crate::junit::{self, Outcome};
+use crate::pages;
 use crate::shell::{Result, is_installed, output, root};
 
 /// Name of the check.
@@ -20,12 +21,12 @@ const NAME: &str = "tests";
 struct Program {
     id: String,
     path: PathBuf,
-    /// The folder of its package, relative to the root.
+    /// Folder of its package, relative to the root.
     package: String,
 }
 
-/// Runs the tests of every crate with the arguments `build` of cargo; whether they passed. `programs` is the number of what the tests
-/// start besides themselves.
+/// Runs the tests of every crate with the arguments `build` of cargo. `programs` is the hash of the programs that the tests start.
+/// Returns whether they passed.
 pub fn run(
     checks: &Checks,
     tree: Option<&Tree>,
@@ -34,7 +35,7 @@ pub fn run(
     build: &[&str],
 ) -> Result<bool> {
     if !is_installed("cargo-nextest") {
-        // All tests of a program in one process: slower to tell what failed, and as thorough.
+        // Without nextest: all tests of a program in one process, with a less precise report.
         return checks.run(NAME, None, Output::Live, None, cargo(&["test", "--no-fail-fast"]).args(build));
     }
     let start = Instant::now();
@@ -55,7 +56,7 @@ pub fn run(
         changed.len(),
         start.elapsed().as_secs_f64()
     );
-    // Nextest keeps its reports in the workspace, wherever cargo builds.
+    // Nextest writes its reports into the workspace, independent of cargo's build folder.
     let report = root().join("target/nextest/default/junit.xml");
     let mut nextest = cargo(&["nextest", "run", "--no-tests", "pass"]);
     nextest.args(build);
@@ -76,7 +77,7 @@ pub fn run(
         of.filter_map(|test| Some(test.name.split_once(' ')?.0.to_owned())).collect()
     });
     for (program, inputs) in changed {
-        // A program without tests is in no report.
+        // A program without tests is not in the report.
         if !failed.contains(&program.id) && (passed || ran.contains(&program.id)) {
             checks.keep(&part(program), *inputs)?;
         }
@@ -107,19 +108,23 @@ fn list(cargo: &dyn Fn(&[&str]) -> Command, build: &[&str]) -> Result<Vec<Progra
         .collect()
 }
 
-/// What the tests of a program depend on: the program, files that its package has, files that any test may read, programs that it
-/// starts.
+/// Returns the hash of the inputs of a program's tests: the program, the files of its package, files that any test may read, and
+/// programs that it starts.
 fn inputs_of(tree: &Tree, program: &Program, programs: u64) -> Result<u64> {
     let folder = format!("{}/", program.package);
-    // The command's own tests start the command, and the facade's the whole zoo.
+    // The command's own tests start the command; those of the facade use all models.
     let starts = if program.package == "apps/cli" { programs } else { 0 };
+    let is_of_pages = |file: &str| program.package == "xtask" && pages::is_input(file);
     Ok(tree.of(
-        |file| !file.ends_with(".rs") && (file.starts_with(&folder) || is_read_by_tests(file)),
+        |file| {
+            !file.ends_with(".rs") && (file.starts_with(&folder) || is_read_by_tests(file))
+                || is_of_pages(file)
+        },
         &[of_file(&program.path)?, starts],
     ))
 }
 
-/// Whether tests in Rust read a file outside of their package: cards, cases, pages, generated headers.
+/// Returns whether tests in Rust may read a file outside their package: cards, cases, pages, generated headers.
 fn is_read_by_tests(file: &str) -> bool {
     let folders = ["models/", "tests/cases/", "docs/", "ros/", "bindings/c/", "crates/messages/", "fuzz/"];
     !file.contains('/') || folders.iter().any(|folder| file.starts_with(folder))

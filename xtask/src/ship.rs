@@ -1,4 +1,4 @@
-//! `cargo xtask ship`: the wheels that users get, and the tests of what they are: small, quick to import, whole.
+//! `cargo xtask ship`: the wheels for users, and the tests of their size, import time and completeness.
 
 use crate::shell::{Result, command, step};
 use crate::test::Environment;

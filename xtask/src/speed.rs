@@ -1,4 +1,4 @@
-//! The speeds in the cards of `models/`.
+//! The measured speeds in the cards of `models/`.
 
 use std::fs;
 
@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use crate::shell::{Result, root};
 
-/// Writes what `opendr bench` measured of `LEARNER/VARIANT` into its card.
+/// Writes the report of `opendr bench` for `LEARNER/VARIANT` into its card.
 pub fn write_speed(model: &str, report: &Value) -> Result<()> {
     let (learner, variant) = model.split_once('/').ok_or_else(|| format!("{model} has no variant"))?;
     let path = root().join(format!("models/{learner}.toml"));
@@ -16,9 +16,9 @@ pub fn write_speed(model: &str, report: &Value) -> Result<()> {
     fs::write(&path, changed).map_err(|error| format!("{}: {error}", path.display()))
 }
 
-/// `speed = {...}` of a report, measured on `processor`.
+/// Returns the line `speed = {...}` of a report, measured on `processor`.
 fn speed_of(report: &Value, processor: &str) -> Result<String> {
-    let number = |value: &Value| value.as_f64().ok_or_else(|| "a report without its numbers".to_owned());
+    let number = |value: &Value| value.as_f64().ok_or_else(|| "the report lacks a number".to_owned());
     let rounded = |value: f64| match value {
         value if value >= 100.0 => format!("{value:.0}"),
         value if value >= 10.0 => format!("{value:.1}"),
@@ -31,7 +31,7 @@ fn speed_of(report: &Value, processor: &str) -> Result<String> {
     };
     let p50 = rounded(number(&report["p50_ms"]["total"])?);
     let peak = number(&report["peak_memory_mb"])?;
-    // The library's place says nothing to others.
+    // The path of the library is specific to this machine.
     let runtime = report["runtime"].as_str().unwrap_or_default();
     let runtime = runtime.split([',', '(']).next().unwrap_or_default().trim();
     let size = match &report["picture"] {
@@ -43,15 +43,15 @@ fn speed_of(report: &Value, processor: &str) -> Result<String> {
     ))
 }
 
-/// What the kernel calls the processor, without trade marks, e.g. `Intel Xeon Processor`.
+/// Returns the kernel's name of the CPU without trade marks, e.g. `Intel Xeon Processor`.
 fn processor() -> Result<String> {
     let text = fs::read_to_string("/proc/cpuinfo").map_err(|error| format!("/proc/cpuinfo: {error}"))?;
     let name = text.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
-    let (_, name) = name.ok_or("/proc/cpuinfo names no processor")?;
+    let (_, name) = name.ok_or("/proc/cpuinfo has no CPU name")?;
     Ok(name.replace("(R)", "").replace("(TM)", "").split_whitespace().collect::<Vec<_>>().join(" "))
 }
 
-/// The card with `speed` as the line of its variant.
+/// Returns the card with `speed` as the line of its variant.
 fn with_speed(card: &str, variant: &str, speed: &str) -> Option<String> {
     let mut lines: Vec<&str> = card.lines().collect();
     let name = format!("name = {variant:?}");
@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_speed_stands_in_the_block_of_its_variant() {
+    fn the_speed_is_written_into_the_block_of_its_variant() {
         let card = "[[variants]]\nname = \"a\"\nlicence = {}\n\n[[variants]]\nname = \"b\"\nlicence = {}\nspeed = {}\n";
         let with = with_speed(card, "a", "speed = 1").unwrap();
         assert_eq!(with, card.replacen("licence = {}\n", "licence = {}\nspeed = 1\n", 1));
@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sound_has_a_factor() {
+    fn audio_has_a_real_time_factor() {
         let mut report = json!({
             "runtime": "ONNX Runtime 1.31.1 (/x.so), cpu, 2 threads", "frames_per_second": 25.04, "p50_ms": { "total": 40.126 },
             "peak_memory_mb": 95.4, "picture": { "source": "s", "width": 1920, "height": 1080 },

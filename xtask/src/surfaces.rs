@@ -1,9 +1,11 @@
-//! Everything that the tests start, in one build.
+//! The programs that tests start, in one build.
 
 use std::path::PathBuf;
 
 use crate::shell::{Result, command, step, target};
-use crate::test::TEST_LEARNER;
+
+/// Feature of the test learner, which every build for tests has.
+pub const TEST_LEARNER: &str = "--features=opendr/test-learner";
 
 /// The examples that tests start.
 pub const EXAMPLES: [&str; 22] = [
@@ -31,29 +33,29 @@ pub const EXAMPLES: [&str; 22] = [
     "tflite_to_onnx",
 ];
 
-/// The arguments of `cargo build` for the command, the C library and [`EXAMPLES`], with the test learner. Choice and features are those of
-/// the tests, so that nothing is compiled twice; the wheel's module is compiled once more, for Python's sake.
+/// Returns the arguments of `cargo build` for the command, the C library and [`EXAMPLES`], with the test learner. Packages and features
+/// are those of the tests, so that nothing is compiled twice; only the wheel's module is compiled again, for Python.
 pub fn arguments() -> Vec<&'static str> {
     let words = ["build", "--workspace", "--lib", "--bins", TEST_LEARNER];
     words.into_iter().chain(EXAMPLES.into_iter().flat_map(|name| ["--example", name])).collect()
 }
 
-/// Builds them.
+/// Builds the command, the C library and the examples.
 pub fn build() -> Result<()> {
     step("command, C library and examples", command("cargo").args(arguments()))
 }
 
-/// Where an example lies.
+/// Returns the path of an example.
 pub fn example(name: &str) -> PathBuf {
     target().join("debug/examples").join(name)
 }
 
-/// Where the command lies.
+/// Returns the path of the command.
 pub fn opendr() -> PathBuf {
     target().join("debug/opendr")
 }
 
-/// The built programs of these names that exist, for their numbers.
+/// Returns the built programs that exist, for their hashes.
 pub fn programs() -> impl Iterator<Item = PathBuf> {
     let library = ["debug/libopendr_c.so", "debug/libopendr_c.a"].map(|name| target().join(name));
     let examples = EXAMPLES.iter().map(|name| example(name));

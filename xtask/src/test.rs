@@ -1,4 +1,4 @@
-//! `cargo xtask test`: everything that CI checks.
+//! `cargo xtask test`: all checks of CI.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -7,32 +7,19 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::checks::{Checks, Output};
 use crate::inputs::{Tree, of_file};
-use crate::shell::{Result, command, output, root, step, target};
+use crate::shell::{Result, command, output, root, step, target, task};
+use crate::suite::Suite;
+use crate::surfaces::TEST_LEARNER;
 use crate::tools::{self, Python, install_debian};
-use crate::{install_c, parity, ros, rust_tests, surfaces, wheel};
+use crate::{install_c, layers, parity, ros, rust_tests, surfaces, wheel, words};
 
-/// The learner that every surface is tested with is in every build for tests.
-pub const TEST_LEARNER: &str = "--features=opendr/test-learner";
-
-/// What needs a GPU, and ROS 2 over Zenoh.
+/// Features that need a GPU, and ROS 2 over Zenoh.
 const DEVICES: &str = "--features=opendr-training/cuda,opendr-training/wgpu,opendr-ros/zenoh";
 
-/// How many suites of Python run beside each other: they wait for programs, sockets and clocks more than they compute.
+/// Number of Python suites that run in parallel: they mostly wait for programs, sockets and clocks.
 const LANES: usize = 2;
 
-/// A suite of tests in Python.
-pub struct Suite {
-    /// Name of the check.
-    pub name: &'static str,
-    /// Folders of the tests, and files that they share.
-    pub folders: &'static [&'static str],
-    /// The program with its arguments and environment, without the report.
-    pub command: Command,
-    /// The number of what else it depends on.
-    pub inputs: Vec<u64>,
-}
-
-/// Runs every check, or with `all` unset those whose inputs have changed since they passed; fails if one does.
+/// Runs every check, or without `all` those whose inputs have changed since they passed. Fails if a check fails.
 pub fn run(all: bool) -> Result<()> {
     let data = test_data();
     let tree = Tree::read(data.as_deref());
@@ -42,10 +29,10 @@ pub fn run(all: bool) -> Result<()> {
         return checks.finish();
     }
     if data.is_none() {
-        println!("skipped: no OPENDR_TEST_DATA (tests with real models and pictures)");
+        println!("skipped: no OPENDR_TEST_DATA (tests with real models and images)");
     }
     if let Err(error) = check_all(&checks, tree.as_ref()) {
-        checks.fail("what the checks need", &error);
+        checks.fail("installation of dependencies", &error);
     }
     checks.finish()?;
     checks.keep("all checks", everything)?;
@@ -62,7 +49,7 @@ fn check_all(checks: &Checks, tree: Option<&Tree>) -> Result<()> {
             return Ok(());
         }
         let environments =
-            environments.join().map_err(|_| "installing what the tests need has panicked")??;
+            environments.join().map_err(|_| "the installation of the tests' dependencies panicked")??;
         let environment = Environment::of(&environments.outside)?;
         let tests = |arguments: &[&str]| {
             let mut cargo = cargo(arguments);
@@ -76,25 +63,32 @@ fn check_all(checks: &Checks, tree: Option<&Tree>) -> Result<()> {
         let examples = &mut tests(&["test", "--workspace", "--doc", TEST_LEARNER]);
         checks.run("documentation tests", sources, Output::Live, None, examples)?;
         let (suites, of_ros) = suites(&environments, &environment, programs)?;
-        run_beside_each_other(checks, tree, suites)?;
-        // Messages come at their rates there: what computes beside them would be told as a lost message.
-        run_beside_each_other(checks, tree, of_ros)
+        run_in_parallel(checks, tree, suites)?;
+        // These tests publish at fixed rates: other work in parallel would cause lost messages.
+        run_in_parallel(checks, tree, of_ros)
     })
 }
 
-/// Format, lints of every combination of features that no test builds, documentation. All of them check with the same features of what
-/// the workspace depends on, so that nothing is checked twice: the devices and Zenoh are on, and the whole workspace is chosen.
+/// Checks the format, the terms, the layers, the lints of every combination of features that no test builds, and the documentation. The
+/// lints and the documentation use the same features of the dependencies, so that nothing is checked twice: devices and Zenoh are on,
+/// and the whole workspace is selected.
 fn check_sources(checks: &Checks, tree: Option<&Tree>) -> Result<()> {
     let sources = tree.map(|tree| tree.of(is_source, &[]));
     let live = |name, command: &mut Command| checks.run(name, sources, Output::Live, None, command);
+    let of_files = |name, is_input: fn(&str) -> bool| {
+        let inputs = tree.map(|tree| tree.of(|file| is_input(file) || file.starts_with("xtask/"), &[]));
+        checks.run(name, inputs, Output::Live, None, &mut task(name)?)
+    };
     live("format", &mut cargo(&["fmt", "--all", "--check"]))?;
+    of_files("words", words::is_input)?;
+    of_files("layers", layers::is_input)?;
     live("lints", &mut clippy(&["--all-targets", TEST_LEARNER]))?;
     live(
         "documentation",
         linted(cargo(&["doc", "--workspace", "--no-deps", TEST_LEARNER, DEVICES]))
             .env("RUSTDOCFLAGS", "--deny warnings"),
     )?;
-    // The C library turns training on, and so is left out.
+    // The C library enables training and is therefore excluded.
     let free_threaded = |features: &str| {
         let mut clippy = clippy(&["--exclude=opendr-c", "--no-default-features", features]);
         clippy.env("PYO3_CONFIG_FILE", root().join("bindings/python/free_threaded.txt"));
@@ -112,14 +106,14 @@ fn check_sources(checks: &Checks, tree: Option<&Tree>) -> Result<()> {
     Ok(())
 }
 
-/// Clippy over the workspace with these arguments and [`DEVICES`].
+/// Returns the command of Clippy for the workspace with these arguments and [`DEVICES`].
 fn clippy(arguments: &[&str]) -> Command {
     let mut clippy = cargo(&["clippy", "--workspace", DEVICES]);
     clippy.args(arguments).args(["--", "--deny", "warnings"]);
     downloads_nothing(clippy)
 }
 
-/// Has cargo take crates of the workspace as `cargo clippy -- --deny warnings` has checked them, instead of checking them once more.
+/// Makes cargo reuse crates of the workspace checked by `cargo clippy -- --deny warnings`, instead of checking them again.
 fn linted(mut cargo: Command) -> Command {
     if let Ok(sysroot) = output(command("rustc").args(["--print", "sysroot"])) {
         cargo.env("RUSTC_WORKSPACE_WRAPPER", Path::new(sysroot.trim()).join("bin/clippy-driver"));
@@ -128,14 +122,14 @@ fn linted(mut cargo: Command) -> Command {
     downloads_nothing(cargo)
 }
 
-/// Burn's CUDA compiler comes through a build script that downloads LLVM, except where only documentation is built; a check needs no more
-/// than that.
+/// Disables downloads: the build script of Burn's CUDA compiler downloads LLVM unless only documentation is built, which suffices for
+/// checks.
 fn downloads_nothing(mut cargo: Command) -> Command {
     cargo.env("DOCS_RS", "1");
     cargo
 }
 
-/// The suites of Python, and those of ROS.
+/// Returns the suites of Python and of ROS.
 fn suites(
     environments: &Environments,
     environment: &Environment,
@@ -175,19 +169,19 @@ fn suites(
     parity::prepare(&mut parity.command, &prefix)?;
     let suites = vec![
         suite(
-            "tests of recordings beside their tools",
+            "tests of recordings with reference tools",
             &environments.references,
             &["tests/bags"],
             &[programs],
         ),
         suite(
-            "tests beside the reference tools",
+            "tests against reference tools",
             &environments.references,
             &["tests/metrics", "tests/datasets", "tests/training", "tests/simulation"],
             &[programs],
         ),
         of_package,
-        suite("tests from outside", &environments.outside, &["tests/python"], &[programs]),
+        suite("tests of the command", &environments.outside, &["tests/python"], &[programs]),
         parity,
         of_c,
     ];
@@ -195,8 +189,8 @@ fn suites(
     Ok((suites, of_ros.into()))
 }
 
-/// Runs suites in [`LANES`]; the first free lane takes the next.
-fn run_beside_each_other(checks: &Checks, tree: Option<&Tree>, suites: Vec<Suite>) -> Result<()> {
+/// Runs suites in [`LANES`] parallel lanes; a free lane takes the next suite.
+fn run_in_parallel(checks: &Checks, tree: Option<&Tree>, suites: Vec<Suite>) -> Result<()> {
     let waiting = Mutex::new(VecDeque::from(suites));
     let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).pop_front();
     std::thread::scope(|scope| {
@@ -218,7 +212,7 @@ fn run_beside_each_other(checks: &Checks, tree: Option<&Tree>, suites: Vec<Suite
     Ok(())
 }
 
-/// Whether a suite may read a file: its own, what suites share, and every page and table; but no source in Rust, since it starts programs.
+/// Returns whether a suite may read a file: its own files, shared ones, pages and tables; not Rust sources, since it starts programs.
 fn concerns(suite: &Suite, file: &str) -> bool {
     let own = suite.folders.iter().any(|folder| file.starts_with(folder));
     let others = file.starts_with("tests/")
@@ -228,7 +222,7 @@ fn concerns(suite: &Suite, file: &str) -> bool {
     own || !others && !file.ends_with(".rs")
 }
 
-/// Whether a file can change what cargo builds or says: all but the tests in Python and the package's Python half.
+/// Returns whether a file affects cargo's builds or tests: all but the tests in Python and the Python files of the package.
 fn is_source(file: &str) -> bool {
     !(file.ends_with(".py")
         || file.ends_with(".pyi")
@@ -236,7 +230,7 @@ fn is_source(file: &str) -> bool {
         || file.starts_with("docs/"))
 }
 
-/// The number of every program that the tests start.
+/// Returns the hash of all programs that the tests start.
 fn programs() -> Result<u64> {
     let numbers = surfaces::programs().map(|path| of_file(&path)).collect::<Result<Vec<_>>>()?;
     Ok(numbers.iter().fold(0, |all: u64, number| all.rotate_left(7) ^ number))
@@ -248,11 +242,11 @@ fn cargo(arguments: &[&str]) -> Command {
     cargo
 }
 
-/// What needs PyTorch, with an interpreter that has it and `tests/extended/requirements.txt`: the normal run does
-/// without, since torch's wheel brings gigabytes.
+/// Runs the tests that need PyTorch, with an interpreter that has it and `tests/extended/requirements.txt`. They are not part of the
+/// test task, since torch's wheel has gigabytes.
 pub fn run_extended() -> Result<()> {
     let python = std::env::var_os("OPENDR_TORCH_PYTHON").ok_or(
-        "OPENDR_TORCH_PYTHON is not set; name an interpreter with torch and tests/extended/requirements.txt",
+        "OPENDR_TORCH_PYTHON is not set; set it to an interpreter with torch and tests/extended/requirements.txt",
     )?;
     let folder = target().join("extended");
     wheel::package(&folder)?;
@@ -261,7 +255,7 @@ pub fn run_extended() -> Result<()> {
     step("tests with PyTorch", &mut pytest)
 }
 
-/// The tests of the C library alone.
+/// Runs only the tests of the C library.
 pub fn run_c() -> Result<()> {
     install_debian()?;
     let outside = Python::install(&tools::OUTSIDE)?;
@@ -279,7 +273,7 @@ pub fn run_c() -> Result<()> {
     step("tests of C programs", &mut pytest)
 }
 
-/// What the tests need besides Rust.
+/// The Python environments of the tests.
 struct Environments {
     outside: Python,
     references: Python,
@@ -299,7 +293,7 @@ impl Environments {
     }
 }
 
-/// What every test is given.
+/// The environment variables of every test.
 pub struct Environment {
     library: PathBuf,
     data: Option<PathBuf>,
@@ -307,12 +301,12 @@ pub struct Environment {
 }
 
 impl Environment {
-    /// Returns the environment with ONNX Runtime's library out of `python`.
+    /// Returns the environment with ONNX Runtime's library of `python`.
     pub fn of(python: &Python) -> Result<Self> {
         Ok(Self { library: python.onnxruntime()?, data: test_data(), cache: cache()? })
     }
 
-    /// Gives it to a program.
+    /// Sets the variables of a command.
     pub fn apply(&self, command: &mut Command) {
         command.env("ORT_DYLIB_PATH", &self.library).env("OPENDR_TEST_CACHE", &self.cache);
         command.env("OPENDR_BIN", surfaces::opendr()).env("OPENDR_EXAMPLES", target().join("debug/examples"));
@@ -323,14 +317,14 @@ impl Environment {
     }
 }
 
-/// `OPENDR_TEST_DATA`, or `../shared` beside the repository.
+/// Returns `OPENDR_TEST_DATA`, or `../shared` relative to the repository.
 fn test_data() -> Option<PathBuf> {
     let named = std::env::var_os("OPENDR_TEST_DATA").map(PathBuf::from);
     let data = named.or_else(|| root().parent().map(|folder| folder.join("shared")))?;
     data.join("models").is_dir().then_some(data)
 }
 
-/// Where packages that tests download stay from run to run.
+/// Returns the folder of packages that tests download, which is kept between runs.
 fn cache() -> Result<PathBuf> {
     let cache =
         std::env::var_os("OPENDR_TEST_CACHE").map_or_else(|| target().join("test-cache"), PathBuf::from);

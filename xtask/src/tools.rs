@@ -1,4 +1,4 @@
-//! What the tests need beyond Rust, Python and npm.
+//! Installation of the tests' dependencies: Debian packages and Python environments.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::shell::{Result, command, is_installed, root, step, target};
 
-/// Debian packages by the program that they bring.
+/// Debian packages by the program or folder that they provide.
 const DEBIAN: [(&str, &str); 20] = [
     ("ffmpeg", "ffmpeg"),
     ("g++", "g++"),
@@ -30,30 +30,30 @@ const DEBIAN: [(&str, &str); 20] = [
     ("/usr/share/sensor_msgs/msg", "ros-sensor-msgs"),
 ];
 
-/// A Python environment with the packages of files of requirements.
+/// A Python environment with the packages of requirements files.
 pub struct Python {
     folder: PathBuf,
 }
 
-/// What to install: requirements with all that they depend on, and packages of which only single files are read.
+/// Packages to install: requirements with their dependencies, and packages without dependencies.
 pub struct Requirements<'a> {
-    /// Name of the environment, a folder under the build folder.
+    /// Name of the environment, a folder in the build folder.
     pub name: &'a str,
     /// Files of requirements.
     pub files: &'a [&'a str],
-    /// A file of packages that come without what they depend on.
+    /// A file of packages to install without their dependencies.
     pub alone: Option<&'a str>,
 }
 
-/// Requirements without packages that come alone.
+/// Returns requirements without packages of the second kind.
 pub const fn requirements<'a>(name: &'a str, files: &'a [&'a str]) -> Requirements<'a> {
     Requirements { name, files, alone: None }
 }
 
-/// What the tests from outside compare with.
+/// Requirements of the tests of the command.
 pub const OUTSIDE: Requirements = requirements("test-venv", &["tests/python/requirements.txt"]);
 
-/// The tools that papers cite and people use, beside which metrics, data sets, logs, networks and recordings are tested.
+/// Reference tools, against which metrics, data sets, logs, networks and recordings are tested.
 pub const REFERENCES: Requirements = Requirements {
     name: "reference-venv",
     files: &[
@@ -66,11 +66,11 @@ pub const REFERENCES: Requirements = Requirements {
     alone: Some("tests/metrics/requirements_without_dependencies.txt"),
 };
 
-/// What the tests of the Python package need; the package itself comes as a wheel.
+/// Requirements of the tests of the Python package; the package itself is installed as a wheel.
 pub const PACKAGE: Requirements = requirements("python-venv", &["bindings/python/tests/requirements.txt"]);
 
 impl Python {
-    /// Makes the environment, or makes it anew when the requirements have changed.
+    /// Creates the environment, again if the requirements have changed.
     pub fn install(requirements: &Requirements) -> Result<Self> {
         let python = Self { folder: target().join(requirements.name) };
         let paths = |files: &[&str]| files.iter().map(|file| root().join(file)).collect::<Vec<_>>();
@@ -110,7 +110,7 @@ impl Python {
         Ok(python)
     }
 
-    /// Installs a wheel, and nothing that it depends on.
+    /// Installs a wheel without its dependencies.
     pub fn install_wheel(&self, wheel: &Path) -> Result<()> {
         let mut install = command(uv()?);
         install
@@ -120,12 +120,12 @@ impl Python {
         step("wheel's installation", &mut install)
     }
 
-    /// Its interpreter.
+    /// Returns the path of its interpreter.
     pub fn program(&self) -> PathBuf {
         self.folder.join("bin/python")
     }
 
-    /// ONNX Runtime's library out of its wheel.
+    /// Returns the path of ONNX Runtime's library in its wheel.
     pub fn onnxruntime(&self) -> Result<PathBuf> {
         let lib = self.folder.join("lib");
         let pythons = fs::read_dir(&lib).map_err(|error| format!("{}: {error}", lib.display()))?.flatten();
@@ -138,7 +138,7 @@ impl Python {
     }
 }
 
-/// The installer of Python packages: the one of this machine, or one of our own under the build folder.
+/// Returns the path of uv: that of this machine, or one installed in the build folder.
 fn uv() -> Result<PathBuf> {
     static INSTALLED: Mutex<()> = Mutex::new(());
     if is_installed("uv") {
@@ -164,7 +164,7 @@ pub fn install_debian() -> Result<()> {
     }
     let packages: Vec<_> = missing.iter().map(|(_, package)| *package).collect();
     if !is_installed("apt-get") {
-        return Err(format!("install {} and run again: there is no apt-get here", packages.join(", ")));
+        return Err(format!("apt-get is not available; install {} and run again", packages.join(", ")));
     }
     let apt = || {
         let mut apt = if is_installed("sudo") { command("sudo") } else { command("apt-get") };

@@ -1,23 +1,23 @@
-//! The wheel of `bindings/python`.
+//! The wheels of `bindings/python` and `bindings/models`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::shell::{Result, command, root, step, target};
-use crate::test::TEST_LEARNER;
+use crate::surfaces::TEST_LEARNER;
 use crate::tools::Python;
 
-/// What a wheel is built for.
+/// Purpose of a wheel.
 #[derive(Clone, Copy, PartialEq)]
 pub enum For {
-    /// Tests: out of the same build as everything else that they test, with the test learner.
+    /// Tests: from the same build as the other test programs, with the test learner.
     Tests,
-    /// Users: the profile `dist`, packed as small as it goes.
+    /// Users: in the profile `dist`, with the highest compression.
     Users,
 }
 
 impl For {
-    /// What maturin is given.
+    /// Returns the arguments of maturin.
     fn arguments(self) -> String {
         match self {
             Self::Tests => format!("--profile dev --compression-level 1 {TEST_LEARNER}"),
@@ -35,13 +35,13 @@ pub fn build(python: &Python, purpose: For) -> Result<PathBuf> {
     pip_wheel(python, &purpose.folder(), "bindings/python", &[("MATURIN_PEP517_ARGS", &purpose.arguments())])
 }
 
-/// Builds the data package with the weights of our own, `bindings/models`.
+/// Builds the data package `bindings/models` with our own weights.
 pub fn build_models(python: &Python) -> Result<PathBuf> {
     pip_wheel(python, &target().join("wheels-models"), "bindings/models", &[])
 }
 
 fn pip_wheel(python: &Python, folder: &Path, package: &str, environment: &[(&str, &str)]) -> Result<PathBuf> {
-    // Nothing there is what is wanted.
+    // A missing folder is no error.
     fs::remove_dir_all(folder).ok();
     let mut pip = command(python.program());
     pip.args(["-m", "pip", "--quiet", "--disable-pip-version-check", "wheel", "--no-deps", "--wheel-dir"]);
@@ -52,12 +52,12 @@ fn pip_wheel(python: &Python, folder: &Path, package: &str, environment: &[(&str
 
 /// Unpacks a wheel into a folder for `PYTHONPATH`.
 pub fn unpack(python: &Python, wheel: &Path, folder: &Path) -> Result<()> {
-    // Nothing there is what is wanted.
+    // A missing folder is no error.
     fs::remove_dir_all(folder).ok();
     step("wheel's files", command(python.program()).args(["-m", "zipfile", "-e"]).arg(wheel).arg(folder))
 }
 
-/// The package as it stands in the working tree, with the test learner, below `folder`, for `PYTHONPATH`.
+/// Builds the package of the working tree with the test learner into `folder`, for `PYTHONPATH`.
 pub fn package(folder: &Path) -> Result<()> {
     let python = Python::install(&crate::tools::PACKAGE)?;
     unpack(&python, &build(&python, For::Tests)?, folder)
@@ -69,6 +69,6 @@ fn only_wheel(folder: &Path) -> Result<PathBuf> {
     let wheels: Vec<_> = wheels.flatten().map(|entry| root().join(entry.path())).collect();
     match &wheels[..] {
         [wheel] => Ok(wheel.clone()),
-        _ => Err(format!("{}: one wheel is wanted, not {wheels:?}", folder.display())),
+        _ => Err(format!("{}: expected one wheel, not {wheels:?}", folder.display())),
     }
 }

@@ -1,29 +1,29 @@
-//! The flags of how classes are matched.
+//! Flags for the matching of classes.
 
 use std::collections::BTreeMap;
 
 use clap::{Arg, ArgAction, ArgMatches};
 use opendr::{Error, Result};
 
-/// Pairs of classes, and whether numbers are compared.
+/// Returns the flags of class pairs and of matching by index.
 pub fn flags() -> [Arg; 2] {
     [
         Arg::new("classes")
             .long("classes")
             .value_delimiter(',')
             .value_name("LEARNER=DATASET,...")
-            .help("Which class of the learner is which of the data set, where their names do not match"),
+            .help("Map classes of the learner to classes of the data set, where their names differ"),
         Arg::new("by-number")
             .long("by-number")
             .action(ArgAction::SetTrue)
-            .help("Compare the numbers of classes, whatever their names are"),
+            .help("Match classes by index and ignore their names"),
     ]
 }
 
-/// The pairs that the user gave with the flag `flag`.
+/// Returns the pairs that the user set with the flag `flag`.
 ///
 /// # Errors
-/// `InvalidParam` for what is no pair, and for a class that is given twice.
+/// `InvalidParam` for a malformed pair or a class that occurs twice.
 pub fn pairs(flag: &str, matches: &ArgMatches) -> Result<BTreeMap<String, String>> {
     let mut pairs = BTreeMap::new();
     for text in matches.get_many::<String>(flag).into_iter().flatten() {
@@ -31,7 +31,7 @@ pub fn pairs(flag: &str, matches: &ArgMatches) -> Result<BTreeMap<String, String
         let (one, other) =
             pair.filter(|(one, other)| !one.is_empty() && !other.is_empty()).ok_or_else(|| {
                 Error::invalid_param(format!(
-                    "--{flag} {text:?} is no pair of classes; write LEARNER=DATASET"
+                    "--{flag} {text:?} is not a pair of classes; write LEARNER=DATASET"
                 ))
             })?;
         if pairs.insert(one.to_owned(), other.to_owned()).is_some() {

@@ -1,4 +1,4 @@
-//! The flags of every command that reads a data set.
+//! Flags of the commands that read a data set.
 
 use std::path::PathBuf;
 
@@ -9,66 +9,66 @@ use opendr::datasets::Problems;
 
 use crate::stdout;
 
-/// The id of the argument that names the data set.
+/// Id of the argument that names the data set.
 pub const DATASET: &str = "dataset";
-/// Problems that are printed; the JSON has more.
+/// Maximum number of problems in the text output; JSON contains more.
 const MOST_PRINTED: usize = 20;
 
-/// The argument that names the data set.
+/// Returns the argument that names the data set.
 pub fn dataset() -> Arg {
     Arg::new(DATASET)
         .required(true)
         .value_name("DATASET")
         .value_parser(value_parser!(PathBuf))
-        .help("Its folder or file")
+        .help("Folder or file of the data set")
 }
 
-/// Format, part, and what to do with what is broken.
+/// Returns the flags of format, split and broken samples.
 pub fn flags() -> [Arg; 3] {
     [
         Arg::new("format")
             .long("format")
             .default_value("auto")
             .value_name("FORMAT")
-            .help("What it is (\"opendr data formats\" lists them); by default recognised"),
+            .help("Format of the data set (see \"opendr data formats\"); by default detected"),
         Arg::new("split")
             .long("split")
             .value_name("NAME")
-            .help("The part to read: val2017, train, testing, ..."),
+            .help("Split to read: val2017, train, testing, ..."),
         skip_broken_flag(),
     ]
 }
 
-/// What to do with what is broken.
+/// Returns the flag that skips broken samples.
 pub fn skip_broken_flag() -> Arg {
     Arg::new("skip-broken")
         .long("skip-broken")
         .action(ArgAction::SetTrue)
-        .help("Leave out what is broken, and list it, instead of ending with the first")
+        .help("Skip and list broken samples instead of ending with the first")
 }
 
-/// The data set that the user named.
+/// Returns the data set that the user named.
 pub fn external(matches: &ArgMatches) -> ExternalDataset {
     let path = matches.get_one::<PathBuf>(DATASET).cloned().unwrap_or_default();
     ExternalDataset::new(path, matches.get_one::<String>("format").cloned().unwrap_or_default())
 }
 
-/// The part that the user named.
+/// Returns the split that the user named.
 pub fn split(matches: &ArgMatches) -> Option<String> {
     matches.get_one("split").cloned()
 }
 
-/// Whether what is broken is left out.
+/// Returns whether broken samples are skipped.
 pub fn skip_broken(matches: &ArgMatches) -> bool {
     matches.get_flag("skip-broken")
 }
 
-/// What is to be done with what is broken.
+/// Returns the problem list of the command, which skips broken samples or fails at the first.
 pub fn problems(matches: &ArgMatches) -> Problems {
     if skip_broken(matches) { Problems::skipping() } else { Problems::strict() }
 }
 
-/// Prints what was broken.
+/// Prints the problems.
 ///
 /// # Errors
 /// `Io` when standard output cannot be written.

@@ -1,67 +1,37 @@
-//! What `opendr infer` is given: frames for a learner of pictures, else a file for each call; or recordings.
+//! Inputs of `opendr infer`: frames for a learner of images, one file per call for other learners, or recordings.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use clap::ArgMatches;
 use opendr::datasets::{open_value, value_files};
 use opendr::learner::Entry;
-use opendr::vision::{Frame, Source, SourceOptions};
-use opendr::{Error, Result, Value, ValueRef, ValueType};
+use opendr::vision::{Source, SourceOptions};
+use opendr::{Error, Result, ValueType};
 
-use crate::recordings::{RecordedSet, Recordings};
+use crate::item::{Datum, Item, Next};
+use crate::recordings::Recordings;
 use crate::report::Report;
 
-/// Everything that one call of the command reads, in order.
+/// All inputs of one command, in order.
 pub enum Inputs {
-    /// Pictures, videos, cameras.
+    /// Images, videos, cameras.
     Frames(Source),
-    /// Sounds, series, point clouds: a value a file.
+    /// Audio, time series, point clouds: one value per file.
     Files {
         kind: ValueType,
         paths: Vec<PathBuf>,
-        /// How many were given out.
+        /// Number of files already read.
         given: usize,
     },
-    /// Recordings of robots.
+    /// ROS recordings.
     Recordings(Recordings),
 }
 
-/// What one call is given.
-pub struct Item {
-    /// What goes into the first port.
-    pub datum: Datum,
-    /// What files have for further ports, by their names.
-    pub from_files: Vec<(&'static str, Value)>,
-    /// What a recording has besides.
-    pub recorded: Option<Box<RecordedSet>>,
-}
-
-/// What goes into the first port in one call.
-pub enum Datum {
-    Frame(Frame),
-    Value {
-        value: Box<Value>,
-        path: Arc<Path>,
-        /// Among all that is read.
-        index: u64,
-        /// Within its file.
-        number: u64,
-        /// Whether it is a piece of a recording, not a file of its own.
-        is_of_stream: bool,
-    },
-}
-
-/// The next item, or why it could not be read, with its file where there is one.
-pub type Next = std::result::Result<Item, (Option<PathBuf>, Error)>;
-
 impl Inputs {
-    /// Opens all inputs for the ports of a learner. Those that cannot be opened are reported and left out, unless there
-    /// is only one.
+    /// Opens all inputs for the ports of a learner. Inputs that cannot be opened are reported and skipped, unless there is only one.
     ///
     /// # Errors
-    /// `NotFound` when nothing is left, else what kept the only input from being opened, or the report from being
-    /// written.
+    /// `NotFound` when no input can be opened; the error of the only input, or of writing the report.
     pub fn open(
         entry: &'static Entry,
         inputs: &[&PathBuf],
@@ -84,12 +54,12 @@ impl Inputs {
             }
         }
         if paths.is_empty() {
-            return Err(Error::not_found("none of the inputs can be read; the reasons are above"));
+            return Err(Error::not_found("none of the inputs can be read; the errors are above"));
         }
         Ok(Self::Files { kind, paths, given: 0 })
     }
 
-    /// How many items there will be, as far as that is known.
+    /// Returns the number of remaining items, if it is known.
     pub fn len_hint(&self) -> Option<u64> {
         match self {
             Self::Frames(source) => source.len_hint(),
@@ -98,10 +68,10 @@ impl Inputs {
         }
     }
 
-    /// Whether items have nothing to do with each other, as frames of a video have.
-    pub fn are_separate(&self) -> bool {
+    /// Returns whether the items are independent, unlike frames of a video.
+    pub fn are_independent(&self) -> bool {
         match self {
-            Self::Frames(source) => source.is_pictures(),
+            Self::Frames(source) => source.is_images(),
             Self::Files { .. } => true,
             Self::Recordings(_) => false,
         }
@@ -117,7 +87,7 @@ impl Iterator for Inputs {
             Self::Frames(source) => {
                 let frame = source.next()?;
                 let frame = frame.map(|frame| item(Datum::Frame(frame)));
-                Some(frame.map_err(|error| (source.last_path().map(Path::to_owned), error)))
+                Some(frame.map_err(|error| (source.current_path().map(Path::to_owned), error)))
             }
             Self::Files { kind, paths, given } => {
                 let path = paths.get(*given)?;
@@ -130,62 +100,6 @@ impl Iterator for Inputs {
                 Some(value.map_err(|error| (Some(path.clone()), error)))
             }
             Self::Recordings(recordings) => recordings.next(),
-        }
-    }
-}
-
-impl Item {
-    /// The file or device it came from.
-    pub fn path(&self) -> &Arc<Path> {
-        match &self.datum {
-            Datum::Frame(frame) => &frame.path,
-            Datum::Value { path, .. } => path,
-        }
-    }
-
-    /// What is given to the learner's first port.
-    pub fn value(&self) -> ValueRef<'_> {
-        match &self.datum {
-            Datum::Frame(frame) => ValueRef::Image(&frame.image),
-            Datum::Value { value, .. } => value.as_value_ref(),
-        }
-    }
-
-    /// What a recording has for further ports, by their names.
-    pub fn further(&self) -> &[(&'static str, Value)] {
-        self.recorded.as_deref().map_or(&[], |recorded| &recorded.further)
-    }
-
-    /// Its number among all that was read, from 0.
-    pub fn index(&self) -> u64 {
-        match &self.datum {
-            Datum::Frame(frame) => frame.index,
-            Datum::Value { index, .. } => *index,
-        }
-    }
-
-    /// Its number within its file, from 0.
-    pub fn number(&self) -> u64 {
-        match &self.datum {
-            Datum::Frame(frame) => frame.number,
-            Datum::Value { number, .. } => *number,
-        }
-    }
-
-    /// When it was taken, where that is known, nanoseconds.
-    #[cfg(feature = "ros")]
-    pub fn stamp_ns(&self) -> Option<i64> {
-        match &self.datum {
-            Datum::Frame(frame) => frame.image.header.stamp_ns,
-            Datum::Value { value, .. } => value.header().stamp_ns,
-        }
-    }
-
-    /// Whether it is a frame of a video or camera, or of a recording.
-    pub fn is_of_stream(&self) -> bool {
-        match &self.datum {
-            Datum::Frame(frame) => frame.video.is_some(),
-            Datum::Value { is_of_stream, .. } => *is_of_stream,
         }
     }
 }

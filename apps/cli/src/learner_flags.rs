@@ -1,4 +1,4 @@
-//! Command-line flags out of a learner's tables: one per parameter, one per further port.
+//! Command-line flags of a learner: one per parameter and one per further port.
 
 use std::path::PathBuf;
 
@@ -10,19 +10,19 @@ use opendr::params::{Field, ParamKind, ParamMap};
 
 use crate::port_file::PortFile;
 
-/// Adds the learner's flags to a command that infers.
+/// Adds the learner's flags to a command that runs inference.
 pub fn add(command: Command, entry: &'static Entry) -> Command {
     let ports = entry.ports.iter().skip(1).map(port_flag);
     with_params(command, entry).args(ports)
 }
 
-/// Adds the learner's flags to a command that measures: something is drawn for an input without a file.
+/// Adds the learner's flags to `bench`, where synthetic values replace inputs without a file.
 pub fn add_for_bench(command: Command, entry: &'static Entry) -> Command {
     let ports = entry.ports.iter().skip(1).map(|port| port_flag(port).required(false));
     with_params(command, entry).args(ports)
 }
 
-/// Adds the learner's flags to a command that trains: its own parameters, and those of its training.
+/// Adds the learner's flags to a command that trains: parameters of the learner and of its training.
 pub fn add_for_fit(command: Command, entry: &'static Entry) -> Command {
     let heading = format!("Training of {}", entry.spec.name);
     let of_fit = entry.fit_params.iter().filter(|field| !is_own(entry, field));
@@ -38,12 +38,12 @@ pub fn with_params(command: Command, entry: &'static Entry) -> Command {
     command.args(params).before_help(about)
 }
 
-/// Whether a parameter of the training is one of the learner's own, too; one flag then stands for both.
+/// Returns whether a parameter of the training is also one of the learner; one flag then sets both.
 fn is_own(entry: &Entry, field: &Field) -> bool {
     entry.params.iter().any(|own| own.name == field.name)
 }
 
-/// The flag of a parameter.
+/// Returns the flag of a parameter.
 pub fn param_flag(heading: &str, field: &'static Field) -> Arg {
     let mut help = format!("{} [default: {}]", field.doc.trim_end_matches('.'), field.default.value());
     if let Some(range) = field.range {
@@ -52,6 +52,7 @@ pub fn param_flag(heading: &str, field: &'static Field) -> Arg {
     }
     let flag = Arg::new(field.name)
         .long(dashed(field.name))
+        .aliases(field.former.iter().map(|name| dashed(name)))
         .help(help)
         .help_heading(heading.to_owned())
         .allow_negative_numbers(true)
@@ -73,7 +74,7 @@ fn port_flag(port: &'static Port) -> Arg {
         .value_name("FILE")
 }
 
-/// `iou_threshold` is written `--iou-threshold`.
+/// Converts `iou_threshold` into `iou-threshold`.
 fn dashed(name: &'static str) -> String {
     name.replace('_', "-")
 }
@@ -88,15 +89,15 @@ fn value_name(kind: ParamKind) -> &'static str {
     }
 }
 
-/// The parameters that the user set.
+/// Returns the parameters that the user set.
 ///
 /// # Errors
-/// `InvalidParam` for a value of the wrong type; ranges are checked where the learner is made.
+/// `InvalidParam` for a value of the wrong type; the learner checks ranges when it is made.
 pub fn params(entry: &'static Entry, matches: &ArgMatches) -> Result<ParamMap> {
     values(entry.params, matches)
 }
 
-/// The parameters of the training that the user set.
+/// Returns the training parameters that the user set.
 ///
 /// # Errors
 /// As [`params`].
@@ -104,7 +105,7 @@ pub fn fit_params(entry: &'static Entry, matches: &ArgMatches) -> Result<ParamMa
     values(entry.fit_params, matches)
 }
 
-/// The values of those of `fields` that the user set.
+/// Returns the values of those `fields` that the user set.
 ///
 /// # Errors
 /// As [`params`].
@@ -113,7 +114,7 @@ pub fn values(fields: impl IntoIterator<Item = &'static Field>, matches: &ArgMat
     given.map(|(field, text)| Ok((field.name.to_owned(), field.parse(text)?))).collect()
 }
 
-/// The files of the further ports.
+/// Reads the files of the further ports.
 ///
 /// # Errors
 /// As [`PortFile::read`].

@@ -1,11 +1,25 @@
-//! The `opendr` command: it knows types, never learners. A library, so that the Python package has the command too.
+//! Command line `opendr`: inference, training, evaluation and model management of every learner.
+//!
+//! Each subcommand is one file of `command`; the other modules hold what subcommands share, such as the flags of data sets and
+//! the report of predictions. The command depends on data and target types, never on a learner: flags, ports and outputs come from
+//! the registry in the crate `opendr`, where the algorithms are. The crate is a library so that the Python package installs the
+//! same command. Begin with [`run`]:
+//!
+//! ```
+//! use std::ffi::OsString;
+//!
+//! let arguments = ["opendr", "data", "formats"].map(OsString::from);
+//! assert_eq!(opendr_cli::run(arguments), 0);
+//! ```
 
 mod class_flags;
 mod command;
 mod dataset_flags;
+mod dump;
 mod environment_flags;
 mod exit;
 mod inputs;
+mod item;
 mod learner_flags;
 mod loading;
 mod named_value;
@@ -13,6 +27,7 @@ mod peak_memory;
 mod port_file;
 mod progress_bar;
 mod progress_lines;
+mod recorded_set;
 #[cfg_attr(not(feature = "ros"), path = "recordings_absent.rs")]
 mod recordings;
 mod report;
@@ -23,9 +38,9 @@ mod writer;
 
 use std::ffi::OsString;
 
-pub use progress_bar::Bar;
+pub use progress_bar::ProgressBar;
 
-/// Runs the command that `arguments` are, the program's name first; its exit code.
+/// Runs the command line `arguments`, of which the first is the program's name, and returns the exit code.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let grammar = match command::grammar(&arguments) {
@@ -35,7 +50,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     match grammar.try_get_matches_from(&arguments) {
         Ok(matches) => exit::code_from(command::run(&matches)),
         Err(error) => {
-            // Printing fails only when nobody reads.
+            // Printing fails only when the output is closed.
             error.print().ok();
             error.exit_code() as u8
         }

@@ -1,4 +1,4 @@
-//! From what the user typed to a loaded learner.
+//! Loading of the learner that the command line names.
 
 use std::path::{Path, PathBuf};
 
@@ -8,23 +8,23 @@ use opendr::params::ParamMap;
 use opendr::zoo::{Zoo, ZooOptions};
 use opendr::{Device, Progress, Result, inference};
 
-/// Learners that work at once; each holds a model.
+/// Maximum number of copies of a learner that run in parallel.
 const MAX_WORKERS: usize = 4;
-/// With fewer samples for each, loading one more learner takes longer than it spares.
-const SAMPLES_A_WORKER: u64 = 8;
+/// Minimum number of samples per copy of a learner; below it, loading a copy takes longer than it saves.
+const SAMPLES_PER_WORKER: u64 = 8;
 
-/// The id of the argument that names the learner.
+/// Id of the argument that names the learner.
 pub const LEARNER: &str = "learner";
 
-/// The argument that names the learner.
+/// Returns the argument that names the learner.
 pub fn learner() -> Arg {
     Arg::new(LEARNER)
         .required(true)
         .value_name("LEARNER[/VARIANT]")
-        .help("What to run (see \"opendr models\")")
+        .help("Learner to run (see \"opendr models\")")
 }
 
-/// The flags of every command that runs a learner.
+/// Returns the flags of every command that runs a learner.
 pub fn flags() -> [Arg; 5] {
     [
         device_flag(),
@@ -33,36 +33,36 @@ pub fn flags() -> [Arg; 5] {
             .long("model")
             .value_parser(value_parser!(PathBuf))
             .value_name("PATH")
-            .help("A model container of your own instead of the pretrained one"),
+            .help("Model container to load instead of the pretrained model"),
         offline(),
         quiet(),
     ]
 }
 
-/// The flag that says where to run.
+/// Returns the flag of the device.
 pub fn device_flag() -> Arg {
     Arg::new("device")
         .long("device")
         .default_value("auto")
         .value_name("DEVICE")
-        .help(format!("Where to run: {}", Device::NAMES.join(", ")))
+        .help(format!("Device to run on: {}", Device::NAMES.join(", ")))
 }
 
-/// The flag that says how many cores may be used.
+/// Returns the flag of the number of threads.
 pub fn threads() -> Arg {
     Arg::new("threads")
         .long("threads")
         .value_parser(value_parser!(u16))
         .value_name("N")
-        .help("Threads that work, 0 for all cores [env: OPENDR_THREADS]")
+        .help("Number of threads, 0 for all cores [env: OPENDR_THREADS]")
 }
 
-/// The flag that keeps off the network.
+/// Returns the flag that disables the network.
 pub fn offline() -> Arg {
     Arg::new("offline").long("offline").action(ArgAction::SetTrue).help("Never use the network")
 }
 
-/// The flag that hides progress.
+/// Returns the flag that hides progress.
 pub fn quiet() -> Arg {
     Arg::new("quiet")
         .long("quiet")
@@ -71,34 +71,34 @@ pub fn quiet() -> Arg {
         .help("Print results and errors only")
 }
 
-/// The learner that the user named, by its registry or class name, with or without a variant.
+/// Finds the learner by registry or class name, with or without a variant.
 ///
 /// # Errors
-/// `NotFound`, with the names that there are.
+/// `NotFound`, with the known names.
 pub fn entry(spec: &str) -> Result<&'static Entry> {
     opendr::registry().find(spec.split('/').next().unwrap_or(spec))
 }
 
-/// The zoo as environment and flags set it up.
+/// Returns the zoo with the options of environment and flags.
 ///
 /// # Errors
-/// `NotFound` when there is no folder for the cache.
+/// `NotFound` without a folder for the cache.
 pub fn zoo(matches: &ArgMatches) -> Result<Zoo> {
     let mut options = ZooOptions::from_env()?;
     options.offline |= matches.get_flag("offline");
     Zoo::new(options)
 }
 
-/// The device that environment and flags name.
+/// Returns the device that flags or environment name.
 ///
 /// # Errors
-/// `InvalidParam` for what is no device.
+/// `InvalidParam` for an unknown device.
 pub fn device(matches: &ArgMatches) -> Result<Device> {
     let device: Device = matches.get_one::<String>("device").map_or("auto", String::as_str).parse()?;
     device.or_environment()
 }
 
-/// Calls `work` with sessions that take as many threads as `--threads` says, where a command has that.
+/// Calls `work` with sessions of `--threads` threads, if the command has that flag.
 pub fn with_threads<R>(matches: &ArgMatches, work: impl FnOnce() -> R) -> R {
     match matches.try_get_one::<u16>("threads") {
         Ok(Some(&threads)) => inference::with_threads(threads.into(), work),
@@ -106,10 +106,10 @@ pub fn with_threads<R>(matches: &ArgMatches, work: impl FnOnce() -> R) -> R {
     }
 }
 
-/// Makes and loads the learner, downloading its model where it is not cached.
+/// Makes and loads the learner; downloads its model if it is not cached.
 ///
 /// # Errors
-/// `InvalidParam` for a parameter that does not fit, else what kept the model from being got or loaded.
+/// `InvalidParam` for a wrong parameter; the error of the download or of loading.
 pub fn load(
     spec: &str,
     params: &ParamMap,
@@ -124,7 +124,7 @@ pub fn load(
     Ok(learner)
 }
 
-/// As [`load`], never a model of the user's own.
+/// As [`load`], but ignores `--model`.
 ///
 /// # Errors
 /// As [`load`].
@@ -139,17 +139,17 @@ pub fn load_pretrained(
     Ok(learner)
 }
 
-/// The container of the pretrained model, downloaded where it is not cached.
+/// Returns the path of the pretrained model's container; downloads it if it is not cached.
 ///
 /// # Errors
-/// What kept it from being got.
+/// The error of the download.
 pub fn pretrained(spec: &str, matches: &ArgMatches, progress: &dyn Progress) -> Result<PathBuf> {
     let entry = entry(spec)?;
     let variant = spec.split_once('/').map_or(String::new(), |(_, variant)| format!("/{variant}"));
     zoo(matches)?.get(&format!("{}{variant}", entry.spec.name), progress)
 }
 
-/// The container that `source` is: one of the user's own, or a pretrained model.
+/// Returns the path of the container `source`: an existing path, or a pretrained model.
 ///
 /// # Errors
 /// As [`pretrained`].
@@ -160,25 +160,25 @@ pub fn container(source: &str, matches: &ArgMatches, progress: &dyn Progress) ->
     }
 }
 
-/// How many learners work on `samples` that have nothing to do with each other. On a processor, side by side uses the
-/// cores better than several threads on one sample do.
+/// Returns the number of copies of a learner for `samples` independent samples. On a CPU, several single-threaded copies use the
+/// cores better than several threads per sample; on other devices it is 1.
 ///
 /// # Errors
-/// `InvalidParam` for a device or a number of threads that there is none of.
-pub fn how_many(matches: &ArgMatches, samples: Option<u64>) -> Result<usize> {
+/// `InvalidParam` for an unknown device or an invalid number of threads.
+pub fn copies(matches: &ArgMatches, samples: Option<u64>) -> Result<usize> {
     if inference::device(device(matches)?)? != Device::Cpu {
         return Ok(1);
     }
-    let worth = samples.unwrap_or(0) / SAMPLES_A_WORKER;
+    let worth = samples.unwrap_or(0) / SAMPLES_PER_WORKER;
     let most = inference::default_threads()?.min(MAX_WORKERS);
     Ok(usize::try_from(worth).unwrap_or(most).clamp(1, most))
 }
 
-/// `count` loaded learners, or pipelines of some, that share the threads.
+/// Loads `count` learners or pipelines, among which the threads are divided.
 ///
 /// # Errors
 /// As `load`.
-pub fn side_by_side<T>(count: usize, load: impl Fn() -> Result<T>) -> Result<Vec<T>> {
+pub fn load_copies<T>(count: usize, load: impl Fn() -> Result<T>) -> Result<Vec<T>> {
     let threads = (inference::default_threads()? / count).max(1);
     (0..count).map(|_| inference::with_threads(threads, &load)).collect()
 }

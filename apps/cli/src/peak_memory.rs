@@ -1,6 +1,6 @@
-//! How much memory the process has had at most.
+//! Peak memory of the process.
 
-/// Peak resident memory in 10^6 bytes, where the system tells it (Linux).
+/// Returns the peak resident memory in 10^6 bytes; `None` except on Linux.
 pub fn peak_memory_mb() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

@@ -1,5 +1,5 @@
-//! The file behind a further port. Of targets: one for every frame, one a line, or what `opendr infer --json` wrote, a line a
-//! frame. Of data: one for every frame, or a folder with one for each.
+//! Files of further ports. A file of targets holds one target for all frames, one per line, or the lines of
+//! `opendr infer --json`. Data come from one file for all frames, or from a folder with one file per frame.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,10 +9,10 @@ use opendr::learner::Port;
 use opendr::{Error, Result, ResultExt, Value, ValueType};
 use serde_json::{Map, Value as Json};
 
-/// Larger files are no list of targets.
+/// Maximum size of a file of targets, in bytes.
 const MAX_BYTES: u64 = 1 << 30;
 
-/// The values of one port.
+/// Values of one port.
 #[derive(Debug)]
 pub struct PortFile {
     name: &'static str,
@@ -30,8 +30,8 @@ impl PortFile {
     /// Reads the file that the user gave for `port`.
     ///
     /// # Errors
-    /// `NotFound` or `Io` when the file cannot be read, `Format` when it holds something else, `Unsupported` for data that is in
-    /// no file of its own.
+    /// `NotFound` or `Io` when the file cannot be read, `Format` for other content, `Unsupported` for a data type without a file
+    /// format.
     pub fn read(port: &Port, path: &Path) -> Result<Self> {
         let reading = || format!("reading {} for input {:?}", path.display(), port.name);
         Self::from_file(port, path).context(reading)
@@ -47,7 +47,9 @@ impl PortFile {
         }
         let size = fs::metadata(path)?.len();
         if size > MAX_BYTES {
-            return Err(Error::invalid_input(format!("{size} bytes; at most {MAX_BYTES}")));
+            return Err(Error::invalid_input(format!(
+                "the file has {size} bytes; at most {MAX_BYTES} are allowed"
+            )));
         }
         let text = fs::read(path)?;
         let values = match serde_json::from_slice::<Value>(&text) {
@@ -61,15 +63,15 @@ impl PortFile {
         Ok(Self { name: port.name, values })
     }
 
-    /// The port's name.
+    /// Returns the name of the port.
     pub fn name(&self) -> &'static str {
         self.name
     }
 
-    /// The value for frame number `index` of all that is read.
+    /// Returns the value for the frame of `index` among all inputs.
     ///
     /// # Errors
-    /// `InvalidInput` when the file has no value for it; what kept a file of the folder from being read.
+    /// `InvalidInput` when there is no value for the frame; the error of a file that cannot be read.
     pub fn value(&self, index: u64) -> Result<Value> {
         let at = usize::try_from(index).unwrap_or(usize::MAX);
         let none = |what: &str, count: usize| {
@@ -97,7 +99,7 @@ fn values_of_lines(port: &Port, text: &[u8]) -> Result<Vec<Option<Value>>> {
     lines.enumerate().map(value).collect()
 }
 
-/// The target that a line is, or that a line of `opendr infer --json` has among its outputs.
+/// Returns the target of a line: the line itself, or an output of a line of `opendr infer --json`.
 fn value_of_line(port: &Port, line: &[u8]) -> Result<Option<Value>> {
     let wrong = |error: serde_json::Error| Error::format(error.to_string());
     let mut line: Map<String, Json> = serde_json::from_slice(line).map_err(wrong)?;
@@ -112,12 +114,16 @@ fn value_of_line(port: &Port, line: &[u8]) -> Result<Option<Value>> {
     found.map(serde_json::from_value).transpose().map_err(wrong)
 }
 
-fn of_type(wanted: ValueType, value: Value) -> Result<Value> {
+fn of_type(expected: ValueType, value: Value) -> Result<Value> {
     let given = value.as_value_ref().value_type();
-    if given == wanted {
+    if given == expected {
         return Ok(value);
     }
-    Err(Error::invalid_input(format!("a {} where a {} is wanted", given.name(), wanted.name())))
+    Err(Error::invalid_input(format!(
+        "the file contains a {}, but the input is a {}",
+        given.name(),
+        expected.name()
+    )))
 }
 
 #[cfg(test)]
@@ -142,15 +148,18 @@ mod tests {
     }
 
     #[test]
-    fn one_target_serves_every_frame() {
+    fn one_target_applies_to_every_frame() {
         let file = read("one", BOXES).unwrap();
         assert_eq!(file.value(0).unwrap(), file.value(99).unwrap());
         let error = read("poses", r#"{"type":"PoseList","poses":[]}"#).unwrap_err();
-        assert!(error.to_string().contains("PoseList where a BoundingBoxList"), "{error}");
+        assert!(
+            error.to_string().contains("contains a PoseList, but the input is a BoundingBoxList"),
+            "{error}"
+        );
     }
 
     #[test]
-    fn lines_serve_a_frame_each() {
+    fn each_line_applies_to_one_frame() {
         let line = format!(r#"{{"input":"a","index":0,"outputs":{{"boxes":{BOXES}}}}}"#);
         let file = read("lines", &format!("{line}\n{{\"error\":{{}}}}\n\n{line}\n")).unwrap();
         assert!(file.value(0).is_ok() && file.value(2).is_ok());

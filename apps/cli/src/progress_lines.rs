@@ -1,13 +1,13 @@
-//! Progress where standard error is no terminal: now and then a line.
+//! Progress as lines, where standard error is not a terminal.
 
 use std::time::{Duration, Instant};
 
 use opendr::Unit;
 
-/// Least time between two lines.
+/// Minimum time between two lines.
 const PAUSE: Duration = Duration::from_secs(5);
 
-/// A piece of work that is told in lines.
+/// Progress of one piece of work.
 #[derive(Debug)]
 pub struct ProgressLines {
     what: String,
@@ -16,30 +16,38 @@ pub struct ProgressLines {
     done: u64,
     status: String,
     begun: Instant,
-    told: Instant,
+    last_print: Instant,
 }
 
 impl ProgressLines {
-    /// Work begins, and is told when it is a download.
+    /// Begins a piece of work; a download prints its name and size at once.
     pub fn begin(what: &str, total: Option<u64>, unit: Unit) -> Self {
         if unit == Unit::Bytes {
             let size = total.map_or_else(String::new, |bytes| format!(" ({})", megabytes(bytes)));
             eprintln!("{what}{size}");
         }
         let now = Instant::now();
-        Self { what: what.to_owned(), total, unit, done: 0, status: String::new(), begun: now, told: now }
+        Self {
+            what: what.to_owned(),
+            total,
+            unit,
+            done: 0,
+            status: String::new(),
+            begun: now,
+            last_print: now,
+        }
     }
 
-    /// `amount` more is done.
+    /// Adds `amount` to the progress.
     pub fn advance(&mut self, amount: u64) {
         self.done += amount;
-        if self.told.elapsed() >= PAUSE {
-            self.told = Instant::now();
+        if self.last_print.elapsed() >= PAUSE {
+            self.last_print = Instant::now();
             eprintln!("{}: {}", self.what, self.state(self.begun.elapsed()));
         }
     }
 
-    /// How it goes; told with the next line.
+    /// Sets the status text of the next line.
     pub fn status(&mut self, text: &str) {
         text.clone_into(&mut self.status);
     }
@@ -62,7 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_tell_size_and_time_left() {
+    fn lines_contain_size_and_time_left() {
         let mut lines = ProgressLines::begin("model", Some(20_000_000), Unit::Bytes);
         lines.advance(5_000_000);
         assert_eq!(lines.state(Duration::from_secs(2)), "5.0 MB of 20.0 MB, 6 s left");

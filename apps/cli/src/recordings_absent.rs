@@ -1,14 +1,14 @@
-//! In the place of recordings in a build without them: there are none.
+//! Replacement of the module `recordings` in builds without the feature `ros`.
 
 use std::convert::Infallible;
 use std::path::PathBuf;
 
 use clap::{Arg, ArgMatches, Command};
+use opendr::Result;
 use opendr::learner::{Entry, Outputs};
 use opendr::target::Classes;
-use opendr::{Result, Value};
 
-use crate::inputs::{Item, Next};
+use crate::item::{Item, Next};
 use crate::report::Report;
 
 pub fn flags() -> [Arg; 0] {
@@ -42,12 +42,6 @@ impl Iterator for Recordings {
     fn next(&mut self) -> Option<Next> {
         match self.0 {}
     }
-}
-
-pub struct RecordedSet {
-    pub further: Vec<(&'static str, Value)>,
-    pub is_last: bool,
-    _never: Infallible,
 }
 
 pub struct RecordingSink(Infallible);

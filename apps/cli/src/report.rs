@@ -1,4 +1,4 @@
-//! What is told of each frame: text for people, lines of JSON for programs (`docs/command-line.md`).
+//! Report of each frame's predictions: text for people, lines of JSON for programs (`docs/command-line.md`).
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -10,27 +10,27 @@ use opendr::learner::Outputs;
 use opendr::{Error, Result, ResultExt, Value};
 use serde::Serialize;
 
-use crate::inputs::Item;
-use crate::progress_bar::Bar;
+use crate::item::Item;
+use crate::progress_bar::ProgressBar;
 use crate::stdout;
 use crate::timings::Timings;
 
 /// A line of JSON.
 #[derive(Serialize)]
 struct Line<'a> {
-    /// The file, or the device; absent for a failure that belongs to none.
+    /// File or device; absent for an error without one.
     #[serde(skip_serializing_if = "Option::is_none")]
     input: Option<&'a str>,
-    /// Number of the frame within its input.
+    /// Index of the frame within its input.
     #[serde(skip_serializing_if = "Option::is_none")]
     index: Option<u64>,
-    /// The learner's outputs by name.
+    /// Outputs of the learner by name.
     #[serde(skip_serializing_if = "Option::is_none")]
     outputs: Option<BTreeMap<&'static str, &'a Value>>,
-    /// Why there are none.
+    /// Error, if there are no outputs.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<Failure>,
-    /// How long it took.
+    /// Duration of the stages.
     #[serde(skip_serializing_if = "Option::is_none")]
     timings_ms: Option<Timings>,
 }
@@ -42,42 +42,42 @@ struct Failure {
     message: String,
 }
 
-/// Where lines of JSON go, if anywhere.
+/// Destination of the lines of JSON.
 pub enum Json {
-    /// Text for people instead.
+    /// No JSON; text on standard output.
     Off,
-    /// To standard output, instead of text.
+    /// Standard output, instead of text.
     Stdout,
-    /// Into a file, besides text.
+    /// A file, besides text on standard output.
     File(PathBuf, BufWriter<File>),
 }
 
 impl Json {
-    /// A file that is written anew.
+    /// Creates the file `path`, or empties an existing one.
     ///
     /// # Errors
-    /// `Io` when it cannot be made.
+    /// `Io` when the file cannot be created.
     pub fn file(path: &Path) -> Result<Self> {
-        let file = File::create(path).context(|| format!("making {}", path.display()))?;
+        let file = File::create(path).context(|| format!("creating {}", path.display()))?;
         Ok(Self::File(path.to_owned(), BufWriter::new(file)))
     }
 }
 
-/// Tells of frames as they come.
+/// Report of frames in the order of processing.
 pub struct Report<'a> {
-    bar: &'a Bar,
+    bar: &'a ProgressBar,
     json: Json,
     timings: bool,
     failures: u64,
 }
 
 impl<'a> Report<'a> {
-    /// A report that prints around `bar`, with `timings` where they are wished.
-    pub fn new(bar: &'a Bar, json: Json, timings: bool) -> Self {
+    /// Creates a report that prints around `bar`; `timings` adds the duration of the stages.
+    pub fn new(bar: &'a ProgressBar, json: Json, timings: bool) -> Self {
         Self { bar, json, timings, failures: 0 }
     }
 
-    /// Tells what was found in a frame or file.
+    /// Reports the outputs of a frame or file.
     ///
     /// # Errors
     /// `Io` when it cannot be written.
@@ -96,7 +96,7 @@ impl<'a> Report<'a> {
         self.line(&Line { input: Some(&input), index: Some(item.number()), outputs, error: None, timings_ms })
     }
 
-    /// Tells that something failed; work goes on with the next.
+    /// Reports an error of one input.
     ///
     /// # Errors
     /// `Io` when it cannot be written.
@@ -109,10 +109,10 @@ impl<'a> Report<'a> {
         self.line(&Line { input, index: None, outputs: None, error, timings_ms: None })
     }
 
-    /// Ends the report; how many failures it told of.
+    /// Ends the report and returns the number of errors.
     ///
     /// # Errors
-    /// `Io` when what is left cannot be written.
+    /// `Io` when the rest of the file cannot be written.
     pub fn finish(mut self) -> Result<u64> {
         if let Json::File(path, file) = &mut self.json {
             file.flush().context(|| format!("writing {}", path.display()))?;
@@ -124,8 +124,9 @@ impl<'a> Report<'a> {
         if matches!(self.json, Json::Off) {
             return Ok(());
         }
-        let text = serde_json::to_string(line)
-            .map_err(|error| Error::internal("the answer has no JSON form").with_source(error))?;
+        let text = serde_json::to_string(line).map_err(|error| {
+            Error::internal("the predictions cannot be written as JSON").with_source(error)
+        })?;
         match &mut self.json {
             Json::Off => Ok(()),
             Json::Stdout => self.bar.suspend(|| stdout::print(text)),
@@ -136,7 +137,7 @@ impl<'a> Report<'a> {
     }
 }
 
-/// The outputs as people read them, indented under `name`.
+/// Formats the outputs as text, indented under `name`.
 pub fn text(name: &str, outputs: &Outputs, timings: Option<Timings>) -> String {
     let mut text = name.to_owned();
     if let Some(timings) = timings {
@@ -144,11 +145,11 @@ pub fn text(name: &str, outputs: &Outputs, timings: Option<Timings>) -> String {
         write!(text, " ({timings})").ok();
     }
     for (output, value) in outputs.iter() {
-        let found = format!("{value:#}");
-        if found.trim().is_empty() {
+        let text_form = format!("{value:#}");
+        if text_form.trim().is_empty() {
             write!(text, "\n  {output}: none").ok();
         }
-        for line in found.lines() {
+        for line in text_form.lines() {
             write!(text, "\n  {line}").ok();
         }
     }

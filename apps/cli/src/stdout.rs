@@ -1,4 +1,4 @@
-//! Standard output, whose reader may have gone.
+//! Standard output, with closed pipes distinguished from other errors.
 
 use std::fmt::Display;
 use std::io::Write;
@@ -9,7 +9,7 @@ use serde::Serialize;
 /// Prints a line.
 ///
 /// # Errors
-/// `Io` with the cause as its source, so that [`crate::exit`] can tell a closed pipe from a full disk.
+/// `Io` with the cause as its source, so that [`crate::exit`] can distinguish a closed pipe from a full disk.
 pub fn print(line: impl Display) -> Result<()> {
     let written = writeln!(std::io::stdout(), "{line}");
     written.map_err(|error| Error::io("writing to standard output").with_source(error))
@@ -18,9 +18,9 @@ pub fn print(line: impl Display) -> Result<()> {
 /// Prints a report as a line of JSON.
 ///
 /// # Errors
-/// As [`print`]; `Internal` for one that has no such form.
+/// As [`print`]; `Internal` for a report that serde cannot serialise.
 pub fn print_json(report: &impl Serialize) -> Result<()> {
-    print(json_or_told(serde_json::to_string(report))?)
+    print(json_or_error(serde_json::to_string(report))?)
 }
 
 /// Prints a report as JSON over several lines.
@@ -28,9 +28,9 @@ pub fn print_json(report: &impl Serialize) -> Result<()> {
 /// # Errors
 /// As [`print_json`].
 pub fn print_pretty_json(report: &impl Serialize) -> Result<()> {
-    print(json_or_told(serde_json::to_string_pretty(report))?)
+    print(json_or_error(serde_json::to_string_pretty(report))?)
 }
 
-fn json_or_told(json: serde_json::Result<String>) -> Result<String> {
-    json.map_err(|error| Error::internal("the report has no JSON form").with_source(error))
+fn json_or_error(json: serde_json::Result<String>) -> Result<String> {
+    json.map_err(|error| Error::internal("the report cannot be written as JSON").with_source(error))
 }

@@ -1,4 +1,4 @@
-//! `--then`: learners behind the learner of a command.
+//! `--then`: further learners of a pipeline.
 
 use clap::{Arg, ArgAction, ArgMatches};
 use opendr::learner::{AnyLearner, Entry};
@@ -7,26 +7,26 @@ use opendr::{Error, Pipeline, Progress, Result};
 
 use crate::{loading, named_value};
 
-/// The id of the flag.
+/// Id of the flag.
 const THEN: &str = "then";
-/// The word before a learner that takes each box found before it.
+/// Word before a learner that runs on each detected box.
 const EACH: &str = "each";
 
-/// The flag.
+/// Returns the flag.
 pub fn flag() -> Arg {
     Arg::new(THEN)
         .long(THEN)
         .action(ArgAction::Append)
         .value_name("[each] LEARNER[/VARIANT] [NAME=VALUE]...")
-        .help("A learner behind it, which takes what those before it predict (after the word each: each box that they found, one by one); again for one more")
+        .help("Append a learner to the pipeline, whose inputs are the predictions of those before it (after the word each: every detected box, one by one); may be repeated")
 }
 
-/// Whether there is a learner behind the first.
+/// Returns whether the command has a pipeline.
 pub fn is_given(matches: &ArgMatches) -> bool {
     matches.contains_id(THEN)
 }
 
-/// A learner that the flag names.
+/// A learner named by the flag.
 struct Named<'a> {
     spec: &'a str,
     entry: &'static Entry,
@@ -38,7 +38,9 @@ impl<'a> Named<'a> {
     fn parse(text: &'a str) -> Result<Self> {
         let mut words = text.split_whitespace().peekable();
         let each = words.next_if_eq(&EACH).is_some();
-        let spec = words.next().ok_or_else(|| Error::invalid_param("--then names no learner"))?;
+        let spec = words
+            .next()
+            .ok_or_else(|| Error::invalid_param("--then names no learner; write --then LEARNER"))?;
         let entry = loading::entry(spec)?;
         let params = words.map(|word| named_value::parse(THEN, word, entry.spec.class, entry.params));
         Ok(Self { spec, entry, each, params: params.collect::<Result<_>>()? })
@@ -49,15 +51,16 @@ fn named(matches: &ArgMatches) -> Result<Vec<Named<'_>>> {
     matches.get_many::<String>(THEN).into_iter().flatten().map(|text| Named::parse(text)).collect()
 }
 
-/// The learner at the end.
+/// Returns the last learner of the pipeline.
 ///
 /// # Errors
-/// `NotFound` for a learner that there is not; `InvalidParam` for a wrong parameter.
+/// `NotFound` for an unknown learner; `InvalidParam` for a wrong parameter.
 pub fn last(entry: &'static Entry, matches: &ArgMatches) -> Result<&'static Entry> {
     Ok(named(matches)?.last().map_or(entry, |named| named.entry))
 }
 
-/// The names of all learners, as a report has them, and the parameters that were set: those behind the first under their names.
+/// Returns the names of all learners for a report, and the set parameters; those of further learners have the learner's name as
+/// prefix.
 ///
 /// # Errors
 /// As [`last`].
@@ -71,10 +74,10 @@ pub fn describe(spec: &str, params: &ParamMap, matches: &ArgMatches) -> Result<(
     Ok((text, all))
 }
 
-/// The learner of the command with those of `--then` behind it.
+/// Builds the pipeline of the command's learner and those of `--then`.
 ///
 /// # Errors
-/// As [`last`], for a model that cannot be had or loaded, and as [`Pipeline::then`].
+/// As [`last`] and [`Pipeline::then`], and the error of a model that cannot be downloaded or loaded.
 pub fn pipeline(
     entry: &'static Entry,
     first: &dyn AnyLearner,

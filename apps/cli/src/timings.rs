@@ -1,4 +1,4 @@
-//! How long the stages of one call took.
+//! Durations of the stages of one call.
 
 use std::time::{Duration, Instant};
 
@@ -6,16 +6,16 @@ use opendr::Result;
 use opendr::inference::timing;
 use serde::Serialize;
 
-/// The stages of one call, in milliseconds.
+/// Durations of the stages of one call, in milliseconds.
 #[derive(Debug, Clone, Copy, Default, Serialize)]
 pub struct Timings {
-    /// From the call to the first run of a network.
+    /// Time from the call to the first run of a network.
     pub pre: f64,
-    /// Inside networks.
+    /// Time in networks.
     pub session: f64,
-    /// The rest: between and after the networks.
+    /// Remaining time, between and after the networks.
     pub post: f64,
-    /// All of it.
+    /// Total time.
     pub total: f64,
 }
 
@@ -26,7 +26,7 @@ impl Timings {
         timing::start();
         let result = call();
         let total = start.elapsed();
-        // Finer than a microsecond is noise.
+        // Digits below a microsecond are noise.
         let ms = |time: Duration| time.as_micros() as f64 / 1e3;
         let timings = match timing::take() {
             Some(runs) => {

@@ -1,4 +1,4 @@
-//! Annotated pictures and videos, drawn and encoded on a thread of their own while the next frame is inferred.
+//! Writer of annotated images and videos, on a thread of its own while inference continues.
 
 use std::collections::HashSet;
 use std::fs;
@@ -12,14 +12,14 @@ use opendr::vision::draw::{Style, draw};
 use opendr::vision::{Frame, VideoWriter, save};
 use opendr::{Error, Result, ResultExt};
 
-/// Frames that may wait to be written; more would only hold memory.
+/// Maximum number of frames that wait to be written, which bounds memory.
 const WAITING: usize = 2;
-/// Extensions of an output that is a video.
+/// Extensions of video outputs.
 const VIDEOS: [&str; 3] = ["mp4", "mov", "mkv"];
-/// Frames a second of a video made of pictures.
-const RATE_OF_PICTURES: f64 = 25.0;
+/// Frame rate of a video made of images, in hertz.
+const IMAGE_RATE: f64 = 25.0;
 
-/// What could not be written and why, with the input where there is one.
+/// Errors of writing, with the input if there is one.
 pub type Failures = Vec<(Option<PathBuf>, Error)>;
 
 /// Writes annotated frames.
@@ -29,48 +29,48 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// A writer of `frames` frames (`None`: nobody knows) to `out`: one video when its name ends as that of a video,
-    /// one picture when it has another extension, else a folder, which is made.
+    /// Creates a writer of `frames` frames (`None`: unknown) to `out`: a video if its extension is that of a video, an image if it
+    /// has another extension, else a folder, which is created.
     ///
     /// # Errors
-    /// `InvalidParam` when several frames are to go into one picture, `Io` when the folder cannot be made.
+    /// `InvalidParam` for several frames into one image, `Io` when the folder cannot be created.
     pub fn new(out: &Path, frames: Option<u64>) -> Result<Self> {
         let place = Place::new(out);
-        if matches!(place, Place::Picture(_)) && frames != Some(1) {
+        if matches!(place, Place::Image(_)) && frames != Some(1) {
             return Err(Error::invalid_param(format!(
-                "{} is one picture, and there may be several frames; give a folder, or a video (.mp4, .mov, .mkv)",
+                "{} is one image, but there may be several frames; give a folder, or a video (.mp4, .mov, .mkv)",
                 out.display()
             )));
         }
         let folder = if matches!(place, Place::Folder { .. }) { Some(out) } else { out.parent() };
         if let Some(folder) = folder.filter(|folder| !folder.as_os_str().is_empty()) {
-            fs::create_dir_all(folder).context(|| format!("making the folder {}", folder.display()))?;
+            fs::create_dir_all(folder).context(|| format!("creating the folder {}", folder.display()))?;
         }
         let (jobs, receiver) = sync_channel(WAITING);
         Ok(Self { jobs, thread: thread::spawn(move || write_all(place, &receiver)) })
     }
 
-    /// Hands a frame on to be drawn and written; waits while the thread is behind.
+    /// Queues a frame to be drawn and written; blocks while the queue is full.
     ///
     /// # Errors
-    /// `Internal` when the writing thread is gone.
+    /// `Internal` when the writing thread has ended.
     pub fn put(&self, frame: Frame, outputs: Outputs) -> Result<()> {
         self.jobs
             .send((frame, outputs))
-            .map_err(|_| Error::internal("the thread that writes pictures is gone"))
+            .map_err(|_| Error::internal("the thread that writes images has ended"))
     }
 
-    /// Waits until all is written.
+    /// Waits until all frames are written and returns the errors.
     pub fn finish(self) -> Failures {
         drop(self.jobs);
-        let panicked = |_| vec![(None, Error::internal("the thread that writes pictures panicked"))];
+        let panicked = |_| vec![(None, Error::internal("the thread that writes images panicked"))];
         self.thread.join().unwrap_or_else(panicked)
     }
 }
 
-/// Where frames go.
+/// Destination of the frames.
 enum Place {
-    Picture(PathBuf),
+    Image(PathBuf),
     Video(PathBuf, Video),
     Folder { path: PathBuf, taken: HashSet<PathBuf>, video: Option<(Arc<Path>, Video)> },
 }
@@ -96,17 +96,17 @@ impl Place {
         let is_video = |extension: &str| VIDEOS.iter().any(|known| known.eq_ignore_ascii_case(extension));
         match extension.map(|extension| extension.to_str().is_some_and(is_video)) {
             Some(true) => Self::Video(out.to_owned(), Video::Unopened),
-            Some(false) => Self::Picture(out.to_owned()),
+            Some(false) => Self::Image(out.to_owned()),
             None => Self::Folder { path: out.to_owned(), taken: HashSet::new(), video: None },
         }
     }
 
     fn write(&mut self, frame: Frame) -> Result<()> {
         match self {
-            Self::Picture(path) => save_beside(&frame, path),
+            Self::Image(path) => save_beside(&frame, path),
             Self::Video(path, video) => video.write(&frame, path),
             Self::Folder { path: folder, taken, .. } if frame.video.is_none() => {
-                save_beside(&frame, &free_name(folder, taken, &frame.path, extension_of_picture(&frame.path)))
+                save_beside(&frame, &free_name(folder, taken, &frame.path, image_extension(&frame.path)))
             }
             Self::Folder { path: folder, taken, video } => {
                 let (path, video) = match video {
@@ -128,21 +128,21 @@ impl Place {
     fn close(self) -> Result<()> {
         match self {
             Self::Video(_, video) | Self::Folder { video: Some((_, video)), .. } => video.close(),
-            Self::Picture(_) | Self::Folder { video: None, .. } => Ok(()),
+            Self::Image(_) | Self::Folder { video: None, .. } => Ok(()),
         }
     }
 }
 
-/// A video on its way.
+/// A video being written.
 enum Video {
     Unopened,
     Open(Arc<Path>, VideoWriter),
-    /// It failed, and that was said.
+    /// Failed; the error is already recorded.
     Failed(Arc<Path>),
 }
 
 impl Video {
-    /// Whether it is made of the input that `frame` comes from.
+    /// Returns whether the video is made from the input of `frame`.
     fn is_of(&self, frame: &Frame) -> bool {
         matches!(self, Self::Open(input, _) | Self::Failed(input) if *input == frame.path)
     }
@@ -158,7 +158,7 @@ impl Video {
     fn try_write(&mut self, frame: &Frame, path: &Path) -> Result<()> {
         if let Self::Unopened = self {
             check_is_other(&frame.path, path)?;
-            let rate = frame.video.as_ref().map_or(RATE_OF_PICTURES, |video| video.rate);
+            let rate = frame.video.as_ref().map_or(IMAGE_RATE, |video| video.frame_rate);
             *self = Self::Open(frame.path.clone(), VideoWriter::create(path, rate)?);
         }
         match self {
@@ -180,7 +180,7 @@ fn save_beside(frame: &Frame, path: &Path) -> Result<()> {
     save(&frame.image, path)
 }
 
-/// Refuses to write over the file that was read.
+/// Refuses to overwrite the input file.
 fn check_is_other(input: &Path, output: &Path) -> Result<()> {
     let same =
         output.canonicalize().is_ok_and(|output| input.canonicalize().is_ok_and(|input| input == output));
@@ -190,8 +190,8 @@ fn check_is_other(input: &Path, output: &Path) -> Result<()> {
     Err(Error::invalid_param(format!("{} is the input itself; write to another folder", output.display())))
 }
 
-/// The format of a written picture: the input's where that is written, else PNG.
-fn extension_of_picture(input: &Path) -> &'static str {
+/// Returns the extension of a written image: the input's format if it can be written, else PNG.
+fn image_extension(input: &Path) -> &'static str {
     let extension = input.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
     match extension.as_deref() {
         Some("jpg" | "jpeg") => "jpg",
@@ -201,7 +201,7 @@ fn extension_of_picture(input: &Path) -> &'static str {
     }
 }
 
-/// The input's own name in `folder`, with a number where two inputs have the same.
+/// Returns a path in `folder` with the input's name, with a number added where two inputs share a name.
 fn free_name(folder: &Path, taken: &mut HashSet<PathBuf>, input: &Path, extension: &str) -> PathBuf {
     let stem = input.file_stem().unwrap_or_else(|| "frame".as_ref());
     let mut number = 1;
@@ -225,10 +225,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_tell_what_is_written() {
+    fn extension_selects_the_destination() {
         assert!(matches!(Place::new(Path::new("seen")), Place::Folder { .. }));
         assert!(matches!(Place::new(Path::new("seen.MP4")), Place::Video(..)));
-        assert!(matches!(Place::new(Path::new("seen.png")), Place::Picture(_)));
+        assert!(matches!(Place::new(Path::new("seen.png")), Place::Image(_)));
         assert!(matches!(Place::new(&std::env::temp_dir()), Place::Folder { .. }));
     }
 

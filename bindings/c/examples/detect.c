@@ -1,4 +1,4 @@
-/* Objects in pictures, folders, videos or a camera: detect INPUT [MODEL] */
+/* Detects objects in images, folders, videos or a camera: detect INPUT [MODEL] */
 #include <opendr.h>
 #include <stdio.h>
 

@@ -1,4 +1,4 @@
-// Objects in pictures, folders, videos or a camera: detect_cpp INPUT [MODEL]
+// Detects objects in images, folders, videos or a camera: detect_cpp INPUT [MODEL]
 #include <opendr.h>
 
 #include <iostream>
@@ -12,19 +12,19 @@ struct Free {
     void operator()(opendr_bounding_box_list *boxes) const { opendr_bounding_box_list_free(&boxes); }
 };
 
-template <class T, class Make> std::unique_ptr<T, Free> made(Make make) {
+template <class T, class Create> std::unique_ptr<T, Free> create(Create function) {
     T *handle = nullptr;
-    if (make(&handle) != OPENDR_OK) throw std::runtime_error(opendr_last_error());
+    if (function(&handle) != OPENDR_OK) throw std::runtime_error(opendr_last_error());
     return std::unique_ptr<T, Free>(handle);
 }
 
 int main(int argc, char **argv) try {
     if (argc < 2) throw std::invalid_argument("usage: detect_cpp INPUT [MODEL]");
     const char *model = argc > 2 ? argv[2] : nullptr;
-    auto detector = made<opendr_learner>([&](auto out) { return opendr_load_nanodet(model, nullptr, nullptr, out); });
-    auto source = made<opendr_source>([&](auto out) { return opendr_source_open(argv[1], out); });
-    while (auto image = made<opendr_image>([&](auto out) { return opendr_source_next(source.get(), out); })) {
-        auto boxes = made<opendr_bounding_box_list>(
+    auto detector = create<opendr_learner>([&](auto out) { return opendr_load_nanodet(model, nullptr, nullptr, out); });
+    auto source = create<opendr_source>([&](auto out) { return opendr_source_open(argv[1], out); });
+    while (auto image = create<opendr_image>([&](auto out) { return opendr_source_next(source.get(), out); })) {
+        auto boxes = create<opendr_bounding_box_list>(
             [&](auto out) { return opendr_infer_nanodet(detector.get(), image.get(), out); });
         std::cout << opendr_source_path(source.get()) << ": " << opendr_bounding_box_list_count(boxes.get()) << "\n";
     }

@@ -1,4 +1,5 @@
-/* Faces in pictures, folders, videos or a camera, drawn into the last one: faces INPUT [MODEL [OUT.png]] */
+/* Detects faces in images, folders, videos or a camera and saves the last image with the faces drawn:
+ * faces INPUT [MODEL [OUT.png]] */
 #include <opendr.h>
 #include <stdio.h>
 
@@ -8,16 +9,16 @@ static int failed(const char *what) {
 }
 
 int main(int argc, char **argv) {
-    opendr_learner *finder = NULL;
+    opendr_learner *detector = NULL;
     opendr_source *source = NULL;
     opendr_image *image = NULL;
     opendr_status status;
     if (argc < 2) return fprintf(stderr, "usage: faces INPUT [MODEL [OUT.png]]\n"), 2;
-    if (opendr_load_ultra_light_face(argc > 2 ? argv[2] : NULL, NULL, NULL, &finder)) return failed("load");
-    if (opendr_source_open(argv[1], &source)) return opendr_learner_free(&finder), failed(argv[1]);
+    if (opendr_load_ultra_light_face(argc > 2 ? argv[2] : NULL, NULL, NULL, &detector)) return failed("load");
+    if (opendr_source_open(argv[1], &source)) return opendr_learner_free(&detector), failed(argv[1]);
     while ((status = opendr_source_next(source, &image)) != OPENDR_OK || image != NULL) {
         opendr_bounding_box_list *faces = NULL;
-        if (status != OPENDR_OK || opendr_infer_ultra_light_face(finder, image, &faces) != OPENDR_OK) {
+        if (status != OPENDR_OK || opendr_infer_ultra_light_face(detector, image, &faces) != OPENDR_OK) {
             failed("skipped");
         } else {
             printf("%s: %zu faces\n", opendr_source_path(source), opendr_bounding_box_list_count(faces));
@@ -28,6 +29,6 @@ int main(int argc, char **argv) {
         opendr_image_free(&image);
     }
     opendr_source_free(&source);
-    opendr_learner_free(&finder);
+    opendr_learner_free(&detector);
     return 0;
 }

@@ -1,4 +1,4 @@
-/* Joints of persons in pictures, folders, videos or a camera: poses INPUT [MODEL] */
+/* Estimates poses in images, folders, videos or a camera: poses INPUT [MODEL] */
 #include <opendr.h>
 #include <stdio.h>
 
@@ -8,17 +8,17 @@ static int failed(const char *what) {
 }
 
 int main(int argc, char **argv) {
-    opendr_learner *finder = NULL;
+    opendr_learner *estimator = NULL;
     opendr_source *source = NULL;
     opendr_image *image = NULL;
     opendr_status status;
     if (argc < 2) return fprintf(stderr, "usage: poses INPUT [MODEL]\n"), 2;
-    if (opendr_load_movenet(argc > 2 ? argv[2] : NULL, NULL, NULL, &finder)) return failed("load");
-    if (opendr_source_open(argv[1], &source)) return opendr_learner_free(&finder), failed(argv[1]);
+    if (opendr_load_movenet(argc > 2 ? argv[2] : NULL, NULL, NULL, &estimator)) return failed("load");
+    if (opendr_source_open(argv[1], &source)) return opendr_learner_free(&estimator), failed(argv[1]);
     while ((status = opendr_source_next(source, &image)) != OPENDR_OK || image != NULL) {
         opendr_pose_list *poses = NULL;
         opendr_pose pose;
-        if (status != OPENDR_OK || opendr_infer_movenet(finder, image, &poses) != OPENDR_OK) failed("skipped");
+        if (status != OPENDR_OK || opendr_infer_movenet(estimator, image, &poses) != OPENDR_OK) failed("skipped");
         else printf("%s\n", opendr_source_path(source));
         for (size_t i = 0; poses != NULL && i < opendr_pose_list_count(poses); i++) {
             opendr_pose_list_get(poses, i, &pose);
@@ -28,6 +28,6 @@ int main(int argc, char **argv) {
         opendr_image_free(&image);
     }
     opendr_source_free(&source);
-    opendr_learner_free(&finder);
+    opendr_learner_free(&estimator);
     return 0;
 }

@@ -2,18 +2,19 @@
 #define OPENDR_H
 
 /*
- * OpenDR in Rust: the C API. Made from the library; docs/c.md explains it.
+ * OpenDR in Rust: the C API. Generated from the library; docs/c.md explains it.
  *
- * The rules:
- *   - A function that answers opendr_status answers OPENDR_OK (0) or why it failed; opendr_last_error() tells it in words.
- *   - What a function writes to an opendr_X ** is a new handle, NULL when the call fails. Free it with opendr_X_free(),
- *     which takes the address of the variable and makes it NULL; freeing NULL is fine.
- *   - What a function points to (texts, numbers, pixels) belongs to the handle it was asked of, and lives as long as it.
- *   - What is handed in is copied, or only read during the call; it stays the caller's.
- *   - Texts are UTF-8. Paths are bytes as the system has them.
- *   - Learners, networks and sources may be used by several threads at once; values as long as nobody changes or frees them.
- *   - NULL, handles of another type, and lengths that cannot be are refused. That a pointer leads to as much memory as its
- *     length says, and that a handle is not used after it was freed, is the caller's promise.
+ * Rules:
+ *   - A function with the result opendr_status returns OPENDR_OK (0) or the kind of the error; opendr_last_error() returns its
+ *     message.
+ *   - A function writes a new handle to an opendr_X **, or NULL if the call fails. Free it with opendr_X_free(), which takes
+ *     the address of the variable and sets it to NULL; freeing NULL does nothing.
+ *   - Pointers that a function returns (texts, numbers, pixels) belong to the handle and are valid as long as the handle.
+ *   - Arguments are copied, or only read during the call; the caller keeps them.
+ *   - Texts are UTF-8. Paths are the bytes of the system's file names.
+ *   - Learners, networks and sources can be used by several threads at once; values as long as no thread changes or frees them.
+ *   - NULL, handles of another type and impossible lengths are errors. The caller guarantees that a pointer points to as much
+ *     memory as its length states, and that a handle is not used after it was freed.
  */
 #include <stdbool.h>
 #include <stddef.h>
@@ -44,14 +45,14 @@ typedef struct opendr_whisper_transcription opendr_whisper_transcription;
 typedef struct opendr_vosk_transcription opendr_vosk_transcription;
 typedef struct opendr_rl_target opendr_rl_target;
 
-// The time stamp of a value that has none.
+// The time stamp of a value without one.
 #define OPENDR_NO_STAMP INT64_MIN
 
-// How a call went; the numbers are the exit codes of the command `opendr`.
+// The status of a call; the numbers are the exit codes of the command `opendr`.
 typedef enum opendr_status {
-    // All went well.
+    // The call succeeded.
     OPENDR_OK = 0,
-    // A datum, target, pointer or file handed in does not fit: null, wrong shape, empty, NaN, undecodable picture.
+    // A datum, target, pointer or file is invalid: null, wrong shape, empty, NaN, undecodable image.
     OPENDR_INVALID_INPUT = 11,
     // A parameter is unknown, of the wrong type or out of range.
     OPENDR_INVALID_PARAM = 12,
@@ -59,21 +60,21 @@ typedef enum opendr_status {
     OPENDR_NOT_FOUND = 13,
     // The operating system refused to read or write.
     OPENDR_IO = 14,
-    // A server or package client could not be reached or broke off.
+    // A server or package client could not be reached, or the connection was lost.
     OPENDR_NETWORK = 15,
-    // Bytes differ from their checksum or stated size, or an archive member leaves its folder.
+    // A file does not match its checksum or stated size, or an archive member has a path outside its folder.
     OPENDR_INTEGRITY = 16,
     // A file or message does not follow its format.
     OPENDR_FORMAT = 17,
-    // This learner, runtime or build cannot do what was asked.
+    // The learner, runtime or build does not support the request.
     OPENDR_UNSUPPORTED = 18,
-    // The device asked for is not there or failed.
+    // The requested device is not available or failed.
     OPENDR_DEVICE = 19,
-    // A fault of OpenDR itself: please report it.
+    // A bug in OpenDR: please report it.
     OPENDR_INTERNAL = 20,
 } opendr_status;
 
-// The type of a picture's samples.
+// The sample type of an image.
 typedef enum opendr_samples {
     // 8 bits, 0 to 255.
     OPENDR_U8 = 0,
@@ -83,7 +84,7 @@ typedef enum opendr_samples {
     OPENDR_F32 = 2,
 } opendr_samples;
 
-// The channels of a picture in memory.
+// The channels of an image in memory.
 typedef enum opendr_pixel_format {
     // One channel: brightness, depth.
     OPENDR_GREY = 0,
@@ -91,21 +92,21 @@ typedef enum opendr_pixel_format {
     OPENDR_RGB = 1,
     // Blue, green, red (OpenCV).
     OPENDR_BGR = 2,
-    // Red, green, blue, opacity.
+    // Red, green, blue, alpha.
     OPENDR_RGBA = 3,
-    // Blue, green, red, opacity.
+    // Blue, green, red, alpha.
     OPENDR_BGRA = 4,
 } opendr_pixel_format;
 
-// The order of the axes of a picture in memory.
+// The order of the axes of an image in memory.
 typedef enum opendr_layout {
-    // [height, width, channels]: pixels lie together (cameras, OpenCV).
+    // [height, width, channels]: interleaved channels (cameras, OpenCV).
     OPENDR_HWC = 0,
-    // [channels, height, width]: planes lie together (networks).
+    // [channels, height, width]: planar channels (networks).
     OPENDR_CHW = 1,
 } opendr_layout;
 
-// The joints of a kind of body, and their order (docs/json.md).
+// The skeleton of a pose: its joints and their order (docs/json.md).
 typedef enum opendr_skeleton {
     // OpenDR's 18 joints of a person.
     OPENDR_OPENDR18 = 0,
@@ -121,40 +122,40 @@ typedef enum opendr_skeleton {
     OPENDR_FACE478 = 5,
     // JHMDB's 15 joints of a person.
     OPENDR_JHMDB15 = 6,
-    // The 25 joints of a person that Kinect v2 tells, as NTU RGB+D numbers them.
+    // Kinect v2's 25 joints of a person, in the order of NTU RGB+D.
     OPENDR_NTU25 = 7,
-    // Where the two jaws of a gripper go to grasp a thing.
+    // The positions of the two jaws of a gripper for a grasp.
     OPENDR_GRASP2 = 8,
 } opendr_skeleton;
 
-// A world to act in; threads take turns.
+// An environment; calls from several threads are serialised.
 typedef struct opendr_env opendr_env;
 
-// A learner with its model; threads may use it at once, one call is answered after the other.
+// A learner with its model; calls from several threads are serialised.
 typedef struct opendr_learner opendr_learner;
 
-// A network; threads may run it at once, one run after the other.
+// A network; runs from several threads are serialised.
 typedef struct opendr_network opendr_network;
 
-// Pictures one after the other; two threads may take from it at once.
+// A sequence of images; calls from several threads are serialised.
 typedef struct opendr_source opendr_source;
 
-// A text that the library made; free it with opendr_string_free().
+// A text created by the library; free it with opendr_string_free().
 typedef struct opendr_string opendr_string;
 
 // The outputs of one run of a network.
 typedef struct opendr_tensors opendr_tensors;
 
-// A datum or target of any type; a pointer to a handle of a data or target type may be cast to it.
+// A datum or target of any type; a pointer to a handle of a data or target type can be cast to it.
 typedef struct opendr_value opendr_value;
 
-// The matrices of a calibration, row by row, as KITTI names them.
+// The matrices of a calibration in row-major order, with KITTI's names.
 typedef struct opendr_calibration_matrices {
-    // Projection of the rectified camera frame into the left colour picture.
+    // Projection of the rectified camera frame into the left colour image.
     double p2[3][4];
     // Rectifying rotation.
     double r0_rect[3][3];
-    // From the lidar's frame to the camera's, metres.
+    // Transformation from the lidar frame to the camera frame, metres.
     double tr_velo_to_cam[3][4];
 } opendr_calibration_matrices;
 
@@ -164,11 +165,11 @@ typedef struct opendr_pixels {
     const void *data;
     // Bytes from the first sample to the end of the memory.
     size_t size;
-    // Pixels a row.
+    // Width in pixels.
     size_t width;
-    // Rows.
+    // Height in pixels.
     size_t height;
-    // Bytes from one row to the next; 0 when rows follow each other without a gap. Planes are height rows.
+    // Bytes from one row to the next; 0 for contiguous rows. A plane has height rows.
     size_t row_stride;
     // One of opendr_samples.
     int32_t samples;
@@ -180,132 +181,132 @@ typedef struct opendr_pixels {
 
 // A named part of an observation.
 typedef struct opendr_observation_part {
-    // Its name.
+    // Name of the part.
     const char *name;
-    // Its numbers, last axis fastest.
+    // Numbers in row-major order.
     const float *numbers;
-    // How many numbers there are.
+    // Count of numbers.
     size_t length;
-    // The sizes of its axes.
+    // Length of each axis.
     const size_t *shape;
-    // How many axes there are.
+    // Number of axes.
     size_t axes;
 } opendr_observation_part;
 
-// What an environment is like.
+// The specification of an environment.
 typedef struct opendr_env_spec {
-    // Name and version; lives as long as the environment.
+    // Name and version; valid as long as the environment.
     const char *id;
-    // What is seen, in Gymnasium's words; lives as long as the environment.
+    // Observation space in Gymnasium's notation; valid as long as the environment.
     const char *observation_space;
-    // What can be done, in Gymnasium's words; lives as long as the environment.
+    // Action space in Gymnasium's notation; valid as long as the environment.
     const char *action_space;
-    // How many numbers an observation has.
+    // Count of numbers of an observation.
     size_t observation_length;
-    // How many numbers an action has.
+    // Count of numbers of an action.
     size_t action_length;
-    // After how many steps an episode is truncated; 0 for never.
+    // Number of steps after which an episode is truncated; 0: unlimited.
     uint32_t max_episode_steps;
 } opendr_env_spec;
 
-// What a step earned, and whether the episode is over.
+// Reward of a step, and whether the episode is over.
 typedef struct opendr_env_step_result {
     // The reward.
     double reward;
-    // The task itself ended.
+    // Whether a terminal state was reached.
     bool terminated;
-    // The episode was cut by a time limit.
+    // Whether the episode was truncated by a time limit.
     bool truncated;
 } opendr_env_step_result;
 
-// Hears how long work goes: context is what was handed in with it, what the work in words, done of total (0 when it is not
-// known) what is done, status how it goes right now ("loss 0.31, 42 images/s", "" when there is nothing to say). It answers
-// whether to go on. It is called by one thread at a time, not always the same one, and must not use the learner that works.
+// Callback for the progress of a long call. context is the pointer given with the callback, what a description of the work,
+// done and total the progress (total is 0 when unknown), status a text such as "loss 0.31, 42 images/s", or "". Returns
+// whether to continue. It is called by one thread at a time, not always the same one, and must not use the running learner.
 typedef bool (*opendr_progress)(void *context, const char *what, uint64_t done, uint64_t total, const char *status);
 
 // A named input.
 typedef struct opendr_input {
-    // The input's name, e.g. "image".
+    // Name of the input, e.g. "image".
     const char *name;
-    // Any data or target; NULL leaves an optional input out.
+    // A datum or target; NULL omits an optional input.
     const struct opendr_value *value;
 } opendr_input;
 
 // A named output.
 typedef struct opendr_output {
-    // The output's name, e.g. "boxes".
+    // Name of the output, e.g. "boxes".
     const char *name;
-    // What was found, to be freed; set by the call, NULL when it failed.
+    // The prediction, set by the call, which must be freed; NULL if the call failed.
     struct opendr_value *value;
 } opendr_output;
 
-// A tensor in memory, its last axis fastest.
+// A tensor in row-major order.
 typedef struct opendr_tensor {
-    // Name within the network; NULL for an input that is given in its place in the order.
+    // Name within the network; NULL for an input that is given by position.
     const char *name;
     // The numbers.
     const float *numbers;
-    // How many there are: the product of the shape.
+    // Count of numbers: the product of the shape.
     size_t length;
-    // Size of each axis.
+    // Length of each axis.
     const size_t *shape;
     // Number of axes, at most 8.
     size_t axes;
 } opendr_tensor;
 
-// What a network declares of an input or output; it lives as long as the network.
+// The declaration of an input or output of a network; valid as long as the network.
 typedef struct opendr_tensor_info {
     // Name within the network.
     const char *name;
-    // Size of each axis, 0 where any size will do.
+    // Length of each axis; 0 for a dynamic axis.
     const size_t *shape;
     // Number of axes; 0 for a single number, and where the network does not declare them.
     size_t axes;
 } opendr_tensor_info;
 
-// How a picture becomes the input of a network: scaled, (level - mean) / std by channel, in the order of the axes.
+// Pre-processing of an image: resizing, (sample - mean) / std per channel, and the layout of the result.
 typedef struct opendr_preprocess {
-    // Pixels of a row of the input.
+    // Width of the input in pixels.
     size_t width;
-    // Rows of the input.
+    // Height of the input in pixels.
     size_t height;
     // The channels of the input: OPENDR_GREY, OPENDR_RGB or OPENDR_BGR.
     int32_t format;
     // One of opendr_layout.
     int32_t layout;
-    // Of each channel, in levels of 0 to 255; grey has the first.
+    // Mean of each channel, for samples of 0 to 255; greyscale uses the first.
     float mean[3];
-    // Of each channel, in levels of 0 to 255, not 0.
+    // Standard deviation of each channel, for samples of 0 to 255; not 0.
     float std[3];
-    // The level beside a picture that keeps its aspect ratio and stands in the middle; NaN stretches it instead.
+    // Sample value of the padding (letterbox, with the image in the centre); NaN stretches the image instead.
     float pad;
 } opendr_preprocess;
 
-// A box in space, in the camera frame of KITTI: x right, y down, z ahead.
+// A 3D box in the camera frame of KITTI: x right, y down, z forward.
 typedef struct opendr_bounding_box_3d {
-    // Class number; -1 when there is only a label.
+    // Class index; -1 when there is only a label.
     int64_t class_index;
-    // What the class is called, NULL when that is not known. Given to a list, it counts when class_index is -1.
+    // Name of the class; NULL when unknown. In an item given to a list, it is used when class_index is -1.
     const char *label;
-    // How much of the object lies outside the picture, 0 to 1; -1 when it is not known.
+    // Fraction of the object outside the image, 0 to 1; -1 when unknown.
     float truncated;
-    // 0 visible, 1 partly hidden, 2 mostly hidden, 3 or -1 not known.
+    // 0 visible, 1 partly occluded, 2 largely occluded, 3 or -1 unknown.
     int32_t occluded;
-    // Angle under which the object is seen, radians.
+    // Observation angle of the object, radians.
     float alpha;
-    // The object in the picture, corners x0, y0, x1, y1, pixels.
+    // The object in the image, corners x0, y0, x1, y1, pixels.
     float bbox2d[4];
     // Length, height and width, metres.
     float dimensions[3];
-    // x, y, z of the middle of its floor, metres.
+    // x, y, z of the centre of the bottom face, metres.
     float location[3];
-    // Turn about the vertical axis, radians; 0 looks along x.
+    // Rotation about the vertical axis, radians; 0 faces along x.
     float rotation_y;
     // Score.
     float confidence;
 } opendr_bounding_box_3d;
 
-// A point in a picture, pixels.
+// A point in an image, pixels.
 typedef struct opendr_point {
     // Pixels from the left edge.
     float x;
@@ -313,11 +314,11 @@ typedef struct opendr_point {
     float y;
 } opendr_point;
 
-// A box in a picture. Outlines (segments) are in the JSON of the list.
+// A box in an image. Masks (segments) are in the JSON of the list.
 typedef struct opendr_bounding_box {
-    // Class number; -1 when there is only a label.
+    // Class index; -1 when there is only a label.
     int64_t class_index;
-    // What the class is called, NULL when that is not known. Given to a list, it counts when class_index is -1.
+    // Name of the class; NULL when unknown. In an item given to a list, it is used when class_index is -1.
     const char *label;
     // Left edge, pixels.
     float left;
@@ -329,41 +330,41 @@ typedef struct opendr_bounding_box {
     float height;
     // Score, 0 to 1.
     float confidence;
-    // Points that belong to the box (eyes, nose, corners of the mouth of a face).
+    // Points of the object (eyes, nose, corners of the mouth of a face).
     const struct opendr_point *landmarks;
-    // How many there are.
+    // Number of landmarks.
     size_t landmark_count;
 } opendr_bounding_box;
 
-// What a category says.
+// The fields of a category.
 typedef struct opendr_category_fields {
-    // Class number.
+    // Class index.
     int64_t class_index;
-    // What the class means, NULL when that is not known.
+    // Name of the class; NULL when unknown.
     const char *description;
-    // Score of the class, 0 to 1; NaN when there is none.
+    // Score of the class, 0 to 1; NaN if there is none.
     float confidence;
-    // Score of every class.
+    // Scores of all classes.
     const float *probabilities;
-    // How many there are; 0 when the learner does not tell them.
+    // Number of probabilities; 0 if the learner predicts none.
     size_t probability_count;
 } opendr_category_fields;
 
-// The elements of a heat map, last axis fastest: either labels or scores, the other is NULL.
+// The elements of a heatmap in row-major order: either labels or scores, the other is NULL.
 typedef struct opendr_heatmap_fields {
-    // Class numbers.
+    // Class indices.
     const uint32_t *labels;
     // Scores.
     const float *scores;
-    // How many elements there are.
+    // Number of elements.
     size_t length;
-    // The sizes of the axes, e.g. height and width.
+    // Length of each axis, e.g. height and width.
     const size_t *shape;
-    // How many axes there are, 1 to 8.
+    // Number of axes, 1 to 8.
     size_t axes;
 } opendr_heatmap_fields;
 
-// A point found in a picture, pixels; (-1, -1) means not found.
+// A keypoint in an image, pixels; (-1, -1) means not detected.
 typedef struct opendr_keypoint {
     // Pixels from the left edge.
     float x;
@@ -373,63 +374,63 @@ typedef struct opendr_keypoint {
     float confidence;
 } opendr_keypoint;
 
-// One person.
+// The pose of one person or hand.
 typedef struct opendr_pose {
     // The joints in the order of the skeleton.
     const struct opendr_keypoint *keypoints;
-    // How many there are.
+    // Number of keypoints.
     size_t keypoint_count;
-    // Score of the whole, 0 to 1.
+    // Score of the pose, 0 to 1.
     float confidence;
     // One of opendr_skeleton.
     int32_t skeleton;
-    // The person's track; -1 when none is kept.
+    // Id of the person's track; -1 if there is none.
     int64_t id;
 } opendr_pose;
 
-// What a command says.
+// The fields of a spoken command.
 typedef struct opendr_speech_command_fields {
-    // Class number; -1 when there is only a word.
+    // Class index; -1 if there is only a word.
     int64_t class_index;
-    // The word, NULL when it is not known. Given to a command, it counts when class_index is -1.
+    // The word; NULL when unknown. In fields given to a command, it is used when class_index is -1.
     const char *label;
     // Score, 0 to 1.
     float confidence;
-    // Begin within the sound, seconds; NaN when it is not known.
+    // Start within the audio, seconds; NaN when unknown.
     float begin_s;
-    // End within the sound, seconds; NaN when it is not known.
+    // End within the audio, seconds; NaN when unknown.
     float end_s;
 } opendr_speech_command_fields;
 
-// A box of one object that is followed through space.
+// The 3D box of a tracked object at one time.
 typedef struct opendr_tracking_annotation_3d {
-    // Where it is.
+    // The box.
     struct opendr_bounding_box_3d bounding_box_3d;
-    // The object's number, the same at every time; -1 when it is not known.
+    // Identity of the object, the same at every time; -1 when unknown.
     int64_t id;
-    // Number of the cloud in its recording; -1 when it has none.
+    // Index of the cloud in its recording; -1 if it has none.
     int64_t frame;
 } opendr_tracking_annotation_3d;
 
-// A box of one object that is followed through a video.
+// The box of a tracked object in one frame.
 typedef struct opendr_tracking_annotation {
-    // Where it is.
+    // The box.
     struct opendr_bounding_box bounding_box;
-    // The object's number, the same in every picture; -1 when it is not known.
+    // Identity of the object, the same in every frame; -1 when unknown.
     int64_t id;
-    // Number of the picture in its video; -1 when it has none.
+    // Index of the frame in its video; -1 if it has none.
     int64_t frame;
 } opendr_tracking_annotation;
 
-// A part of a transcription. Tokens and measures are in the JSON of the transcription.
+// A segment of a transcription. Tokens and scores are in the JSON of the transcription.
 typedef struct opendr_whisper_segment {
-    // Number of the segment.
+    // Index of the segment.
     int64_t id;
-    // Begin within the sound, seconds.
+    // Start within the audio, seconds.
     float start_s;
-    // End within the sound, seconds.
+    // End within the audio, seconds.
     float end_s;
-    // The words.
+    // The text.
     const char *text;
 } opendr_whisper_segment;
 
@@ -437,14 +438,17 @@ typedef struct opendr_whisper_segment {
 extern "C" {
 #endif // __cplusplus
 
-// The text under a key of a JSON object, or of the object under section where that is not NULL; of a list, the item at
-// index. "" when there is none. Valid until the next call of this thread.
-const char *opendr_json_text(const char *json, const char *section, const char *key, int32_t index);
+// Returns the text under a key of a JSON object, or of the object under section if that is not NULL; of a list, the item at
+// index. Returns "" if there is none. Valid until the next call of this thread.
+const char *opendr_json_text(const char *json,
+                             const char *section,
+                             const char *key,
+                             int32_t index);
 
-// The number under a key, as opendr_json_text() finds it; 0 when there is none.
+// Returns the number under a key, with the arguments of opendr_json_text(); 0 if there is none.
 double opendr_json_number(const char *json, const char *section, const char *key, int32_t index);
 
-// Makes a datum of the named type ("Vector", "PointCloud", ...) of length numbers, which are copied, last axis fastest.
+// Creates a datum of the named type ("Vector", "PointCloud", ...) from length numbers in row-major order, which are copied.
 enum opendr_status opendr_array_create(const char *type_name,
                                        const float *numbers,
                                        size_t length,
@@ -452,29 +456,29 @@ enum opendr_status opendr_array_create(const char *type_name,
                                        size_t axes,
                                        struct opendr_value **value);
 
-// Shows the numbers of such a datum and the sizes of its axes; shape has room for axes sizes, as many as the type has.
-// The numbers live as long as the datum.
+// Writes a pointer to the numbers of such a datum and the lengths of its axes; shape has room for axes lengths, the number
+// of axes of the type. The numbers are valid as long as the datum.
 enum opendr_status opendr_array_read(const struct opendr_value *value,
                                      const float **numbers,
                                      size_t *length,
                                      size_t *shape,
                                      size_t axes);
 
-// Makes a sound of length samples in [-1, 1], which are copied, instant by instant (channels interleaved).
+// Creates audio from length samples in [-1, 1], with interleaved channels, which are copied.
 enum opendr_status opendr_audio_create(const float *samples,
                                        size_t length,
                                        size_t channels,
                                        uint32_t sample_rate,
                                        opendr_audio **audio);
 
-// Shows the samples of a sound, which live as long as it.
+// Writes a pointer to the samples of audio, valid as long as the audio, and their format.
 enum opendr_status opendr_audio_read(const opendr_audio *audio,
                                      const float **samples,
                                      size_t *length,
                                      size_t *channels,
                                      uint32_t *sample_rate);
 
-// Makes a calibration of its matrices.
+// Creates a calibration from its matrices.
 enum opendr_status opendr_calibration_create(const struct opendr_calibration_matrices *matrices,
                                              opendr_calibration **calibration);
 
@@ -485,116 +489,118 @@ enum opendr_status opendr_calibration_open(const char *path, opendr_calibration 
 enum opendr_status opendr_calibration_read(const opendr_calibration *calibration,
                                            struct opendr_calibration_matrices *matrices);
 
-// Reads a picture file: JPEG, PNG, BMP or WebP.
+// Reads an image file: JPEG, PNG, BMP or WebP.
 enum opendr_status opendr_image_open(const char *path, opendr_image **image);
 
-// Reads a picture from the bytes of a file.
+// Decodes an image from the bytes of a file.
 enum opendr_status opendr_image_decode(const uint8_t *bytes, size_t size, opendr_image **image);
 
-// Makes a picture of pixels in memory, which are copied.
+// Creates an image from pixels in memory, which are copied.
 enum opendr_status opendr_image_create(const struct opendr_pixels *pixels, opendr_image **image);
 
-// Shows the pixels of a picture as they are stored; they live as long as the picture, and until it is drawn onto.
-enum opendr_status opendr_image_read(const opendr_image *image, struct opendr_pixels *pixels);
+// Writes a pointer to the pixels of an image and their format. They are valid as long as the image, and until it is drawn
+// on.
+enum opendr_status opendr_image_read(const opendr_image *image,
+                                     struct opendr_pixels *pixels);
 
-// Writes a picture file; the extension of its name tells the format: .jpg, .png, .bmp or .webp.
+// Writes an image file in the format of its extension: .jpg, .png, .bmp or .webp.
 enum opendr_status opendr_image_save(const opendr_image *image, const char *path);
 
-// Makes a picture with boxes; picture and boxes stay the caller's.
+// Creates an image with boxes; the caller keeps image and boxes.
 enum opendr_status opendr_image_with_detections_create(const opendr_image *image,
                                                        const opendr_bounding_box_list *boxes,
                                                        opendr_image_with_detections **both);
 
-// Gives new handles of the picture and of the boxes, to be freed.
+// Creates new handles of the image and of the boxes, which must be freed.
 enum opendr_status opendr_image_with_detections_read(const opendr_image_with_detections *both,
                                                      opendr_image **image,
                                                      opendr_bounding_box_list **boxes);
 
-// Makes an observation of length numbers without parts, which are copied.
+// Creates an observation without parts from length numbers, which are copied.
 enum opendr_status opendr_observation_create(const float *numbers, size_t length, opendr_observation **observation);
 
-// Makes an observation of named parts, which are copied.
+// Creates an observation from named parts, which are copied.
 enum opendr_status opendr_observation_create_parts(const struct opendr_observation_part *parts,
                                                    size_t count,
                                                    opendr_observation **observation);
 
-// Shows all numbers of an observation in a row, which live as long as it.
+// Writes a pointer to all numbers of an observation as a flat array, valid as long as the observation.
 enum opendr_status opendr_observation_read(const opendr_observation *observation,
                                            const float **numbers,
                                            size_t *length);
 
-// How many named parts an observation has; 0 for what is none.
+// Returns the number of named parts of an observation; 0 if the handle is not an observation.
 size_t opendr_observation_part_count(const opendr_observation *observation);
 
-// Shows a part of an observation; what it points to lives as long as the observation.
+// Writes a part of an observation into part; its pointers are valid as long as the observation.
 enum opendr_status opendr_observation_get(const opendr_observation *observation,
                                           size_t index,
                                           struct opendr_observation_part *part);
 
-// Makes a cloud with its calibration, which both stay the caller's. image_shape is the height and width of the camera's
-// picture in pixels, or NULL.
+// Creates a point cloud with its calibration; the caller keeps both. image_shape is the height and width of the camera's
+// image in pixels, or NULL.
 enum opendr_status opendr_point_cloud_with_calibration_create(const opendr_point_cloud *cloud,
                                                               const opendr_calibration *calibration,
                                                               const size_t *image_shape,
                                                               opendr_point_cloud_with_calibration **both);
 
-// Gives new handles of the cloud and of the calibration, to be freed; height and width of the picture are 0 when they
-// are not known.
+// Creates new handles of the point cloud and of the calibration, which must be freed; height and width of the image are 0
+// when unknown.
 enum opendr_status opendr_point_cloud_with_calibration_read(const opendr_point_cloud_with_calibration *both,
                                                             opendr_point_cloud **cloud,
                                                             opendr_calibration **calibration,
                                                             size_t *height,
                                                             size_t *width);
 
-// Draws a target onto a picture; a type that has no place in a picture leaves it as it is. Copies of the picture stay
-// as they are.
+// Draws a target on an image; types that cannot be drawn leave it unchanged. Copies of the image are not changed.
 enum opendr_status opendr_value_draw(const struct opendr_value *target, opendr_image *image);
 
-// Makes an environment, e.g. "CartPole-v1".
+// Creates an environment, e.g. "CartPole-v1".
 //
-// params_json is an object of its parameters; NULL takes the defaults.
+// params_json is an object of its parameters; NULL uses the defaults.
 enum opendr_status opendr_env_make(const char *id, const char *params_json, struct opendr_env **env);
 
-// Tells what an environment is like.
+// Writes the specification of an environment into spec.
 enum opendr_status opendr_env_describe(const struct opendr_env *env, struct opendr_env_spec *spec);
 
-// Begins an episode; observation, which may be NULL, receives what is seen, to be freed.
+// Begins an episode; observation, which may be NULL, receives the observation, which must be freed.
 //
-// A seed fixes everything random until the next one; NULL goes on with the stream of random numbers.
+// A seed determines all random numbers until the next seed; NULL continues the current stream of random numbers.
 enum opendr_status opendr_env_reset(struct opendr_env *env, const uint64_t *seed, opendr_observation **observation);
 
-// Takes a step with an action of count numbers; observation, which may be NULL, receives what is seen, to be freed.
+// Takes a step with an action of count numbers; observation, which may be NULL, receives the observation, which must be
+// freed.
 enum opendr_status opendr_env_step(struct opendr_env *env,
                                    const float *action,
                                    size_t count,
                                    struct opendr_env_step_result *result,
                                    opendr_observation **observation);
 
-// A number that the last reset or step told beside observation and reward, e.g. "success".
+// Writes a number of the info of the last reset or step, e.g. "success", into value.
 enum opendr_status opendr_env_info(const struct opendr_env *env, const char *name, double *value);
 
-// Frees an environment and makes the variable NULL.
+// Frees an environment and sets the variable to NULL.
 enum opendr_status opendr_env_close(struct opendr_env **env);
 
-// Measures the learner on a data set on disk.
+// Evaluates the learner on a data set on disk.
 //
-// dataset_type is its format, e.g. "coco"; NULL recognises it. options_json is an object: "metric", "metric_params",
+// dataset_type is its format, e.g. "coco"; NULL detects it. options_json is an object: "metric", "metric_params",
 // "split", "limit", "out", "skip_broken", "classes" (an object: classes of the data set by classes of the learner), "by_number",
-// "resamples", and "then", a list of pretrained learners behind this one, such as ["byte_track"], so that the pipeline is
-// measured; NULL takes the defaults. The outcome is an object of JSON: under "scalars" the numbers by name; it is to be freed.
+// "resamples", and "then", a list of pretrained learners after this one, such as ["byte_track"], to evaluate the pipeline;
+// NULL uses the defaults. The outcome is a JSON object, with the scalars by name under "scalars"; it must be freed.
 enum opendr_status opendr_eval(const struct opendr_learner *learner,
                                const char *dataset,
                                const char *dataset_type,
                                const char *options_json,
                                struct opendr_string **outcome);
 
-// Trains the learner on a data set on disk, from its model where it has one, and loads the result.
+// Trains the learner on a data set on disk, from its model if it has one, and loads the result.
 //
-// dataset_type is its format, e.g. "coco"; NULL recognises it. options_json is an object: "params" (of the training), "split",
+// dataset_type is its format, e.g. "coco"; NULL detects it. options_json is an object: "params" (of the training), "split",
 // "val", "val_format", "val_split", "limit", "out", "logging_path", "resume", "teacher", "teacher_threshold",
-// "teacher_classes", "keep_empty", "skip_broken"; NULL takes the defaults. progress, which may be NULL, hears how it goes
-// and may stop it: what was done is then saved, to be resumed. The report is an object of JSON: under "curves" and
-// "scalars" the numbers by name, under "model" the path of the trained container; it is to be freed.
+// "teacher_classes", "keep_empty", "skip_broken"; NULL uses the defaults. progress, which may be NULL, receives the progress
+// and may stop the training, which then saves a checkpoint to resume from. The report is a JSON object, with the values by
+// name under "curves" and "scalars" and the path of the trained container under "model"; it must be freed.
 enum opendr_status opendr_fit(const struct opendr_learner *learner,
                               const char *dataset,
                               const char *dataset_type,
@@ -603,11 +609,11 @@ enum opendr_status opendr_fit(const struct opendr_learner *learner,
                               void *context,
                               struct opendr_string **report);
 
-// Trains a policy in environments that id names, e.g. "CartPole-v1", from its model where it has one, and loads the result.
+// Trains a policy in the environment id, e.g. "CartPole-v1", from its model if it has one, and loads the result.
 //
-// env_params_json is an object of parameters of the environment; NULL takes the defaults. options_json is an object:
-// "params" (of the training), "out", "logging_path", "resume"; NULL takes the defaults. progress and report are as
-// those of opendr_fit.
+// env_params_json is an object of parameters of the environment; NULL uses the defaults. options_json is an object:
+// "params" (of the training), "out", "logging_path", "resume"; NULL uses the defaults. progress and report are the same as
+// for opendr_fit.
 enum opendr_status opendr_fit_in(const struct opendr_learner *learner,
                                  const char *id,
                                  const char *env_params_json,
@@ -618,84 +624,84 @@ enum opendr_status opendr_fit_in(const struct opendr_learner *learner,
 
 // Loads a learner, e.g. "nanodet" or "yunet/320".
 //
-// path is a model container of your own; NULL takes the pretrained model, which is downloaded the first time. device is
-// "cpu", "cuda:0", ...; NULL takes the best one there is. params_json is an object of parameters; NULL takes the defaults.
+// path is a model container of your own; NULL loads the pretrained model, which is downloaded the first time. device is
+// "cpu", "cuda:0", ...; NULL selects the best available. params_json is an object of parameters; NULL uses the defaults.
 enum opendr_status opendr_load(const char *name,
                                const char *path,
                                const char *device,
                                const char *params_json,
                                struct opendr_learner **learner);
 
-// Makes a learner without a model, e.g. "ssd", to be trained by opendr_fit. device and params_json are as for
+// Creates a learner without a model, e.g. "ssd", for training with opendr_fit. device and params_json are the same as for
 // opendr_load.
 enum opendr_status opendr_create(const char *name,
                                  const char *device,
                                  const char *params_json,
                                  struct opendr_learner **learner);
 
-// Answers named inputs on the learner's own stream. Each output asked for gets a new handle, to be freed; outputs may be
-// left out. Inputs stay the caller's.
+// Predicts the outputs for named inputs on the learner's own stream. Each requested output receives a new handle, which must
+// be freed; not all outputs have to be requested. The caller keeps the inputs.
 enum opendr_status opendr_infer(const struct opendr_learner *learner,
                                 const struct opendr_input *inputs,
                                 size_t input_count,
                                 struct opendr_output *outputs,
                                 size_t output_count);
 
-// The name of the learner's input number index, NULL after the last. It lives as long as the learner.
+// Returns the name of the learner's input index, or NULL after the last; valid as long as the learner.
 const char *opendr_input_name(const struct opendr_learner *learner, size_t index);
 
-// The type of the learner's input number index, e.g. "Image"; NULL after the last. It lives as long as the learner.
+// Returns the type of the learner's input index, e.g. "Image", or NULL after the last; valid as long as the learner.
 const char *opendr_input_type(const struct opendr_learner *learner, size_t index);
 
-// The name of the learner's output number index, NULL after the last. It lives as long as the learner.
+// Returns the name of the learner's output index, or NULL after the last; valid as long as the learner.
 const char *opendr_output_name(const struct opendr_learner *learner, size_t index);
 
-// Sets a parameter that may change while the learner runs; value_json is a number, text, boolean, list or null.
+// Sets a live parameter; value_json is a number, text, boolean, list or null.
 enum opendr_status opendr_set_param(const struct opendr_learner *learner, const char *name, const char *value_json);
 
-// The parameters in force as a JSON object.
+// Writes the current parameters as a JSON object, which must be freed.
 enum opendr_status opendr_params(const struct opendr_learner *learner, struct opendr_string **json);
 
-// Forgets what the learner's own stream remembers.
+// Resets the state of the learner's own stream.
 enum opendr_status opendr_reset(const struct opendr_learner *learner);
 
-// The names of the classes in order, as a JSON list; empty when class numbers have no names.
+// Writes the names of the classes in order as a JSON list, which must be freed; empty when classes have no names.
 enum opendr_status opendr_classes(const struct opendr_learner *learner, struct opendr_string **json);
 
-// How many classes have names.
+// Writes the number of classes with names into count.
 enum opendr_status opendr_class_count(const struct opendr_learner *learner, size_t *count);
 
-// The name of a class, NULL when it has none. It lives as long as the learner.
+// Returns the name of a class, or NULL if it has none; valid as long as the learner.
 const char *opendr_class_name(const struct opendr_learner *learner, int64_t class_index);
 
-// Writes the model with the parameters in force as a container to the folder path.
+// Writes the model with the current parameters as a container to the folder path.
 enum opendr_status opendr_save(const struct opendr_learner *learner, const char *path);
 
-// Frees the learner and makes the variable NULL; a NULL in it is freed already.
+// Frees the learner and sets the variable to NULL; does nothing if it is NULL.
 enum opendr_status opendr_learner_free(struct opendr_learner **learner);
 
-// The learners that there are, as a JSON list of their names.
+// Writes the names of all learners as a JSON list, which must be freed.
 enum opendr_status opendr_learners(struct opendr_string **json);
 
 // Opens a network without its learner. path is an ONNX file (*.onnx) or a model container: a folder, its JSON (OpenDR's
 // too) or a zip.
 //
-// file names the ONNX file within a container, e.g. "encoder.onnx" or "detector/model.onnx"; NULL takes its only one. device
-// is "cpu", "cuda:0", ...; NULL takes the best one there is. A network that takes other numbers than floats is
-// OPENDR_UNSUPPORTED.
+// file is the ONNX file within a container, e.g. "encoder.onnx" or "detector/model.onnx"; NULL selects the only one. device
+// is "cpu", "cuda:0", ...; NULL selects the best available. Returns OPENDR_UNSUPPORTED for a network with inputs of other
+// types than float.
 enum opendr_status opendr_network_open(const char *path,
                                        const char *file,
                                        const char *device,
                                        struct opendr_network **network);
 
-// Opens the network of a loaded learner once more, on the learner's device, to run it without what the learner does before
-// and after. file is as for opendr_network_open(); the learner may be freed.
+// Opens the network of a loaded learner again, on the learner's device, to run it without the learner's pre- and
+// post-processing. file is the same as for opendr_network_open(); the learner may be freed.
 enum opendr_status opendr_network_of(const struct opendr_learner *learner,
                                      const char *file,
                                      struct opendr_network **network);
 
-// Runs a network. Each input is given once, by its name or, where that is NULL, in its place in the order. tensors receives
-// the outputs in the network's order, to be freed.
+// Runs a network. Each input is given once, by its name or, where that is NULL, by its position. tensors receives the outputs
+// in the network's order, which must be freed.
 enum opendr_status opendr_network_run(const struct opendr_network *network,
                                       const struct opendr_tensor *inputs,
                                       size_t input_count,
@@ -707,184 +713,185 @@ size_t opendr_network_input_count(const struct opendr_network *network);
 // Returns the number of the network's outputs.
 size_t opendr_network_output_count(const struct opendr_network *network);
 
-// Writes what the network declares of its input number index, counted from 0.
+// Writes the declaration of the network's input index into info.
 enum opendr_status opendr_network_input(const struct opendr_network *network,
                                         size_t index,
                                         struct opendr_tensor_info *info);
 
-// Writes what the network declares of its output number index, counted from 0.
+// Writes the declaration of the network's output index into info.
 enum opendr_status opendr_network_output(const struct opendr_network *network,
                                          size_t index,
                                          struct opendr_tensor_info *info);
 
-// Writes the model.json of the network's container as JSON ("learner", "params", "classes", "inputs", ...), to be freed;
-// "{}" for an ONNX file.
+// Writes the model.json of the network's container as JSON ("learner", "params", "classes", "inputs", ...), which must be
+// freed; "{}" for an ONNX file.
 enum opendr_status opendr_network_manifest(const struct opendr_network *network,
                                            struct opendr_string **json);
 
-// Frees the network and makes the variable NULL; a NULL in it is freed already.
+// Frees the network and sets the variable to NULL; does nothing if it is NULL.
 enum opendr_status opendr_network_free(struct opendr_network **network);
 
-// Writes the input of a network that is made of a picture: length numbers, width * height * channels.
+// Writes the network input for an image into numbers: length numbers, width * height * channels.
 enum opendr_status opendr_image_preprocess(const opendr_image *image,
                                            const struct opendr_preprocess *how,
                                            float *numbers,
                                            size_t length);
 
-// Opens a picture, a folder, a pattern ("photos/\*.jpg"), a video, or a camera ("camera:0").
+// Opens an image, a folder, a pattern ("photos/\*.jpg"), a video, or a camera ("camera:0").
 enum opendr_status opendr_source_open(const char *input, struct opendr_source **source);
 
-// The next picture, to be freed; *image is NULL at the end. After a file that cannot be read, the next call goes on with
-// the next file.
-enum opendr_status opendr_source_next(struct opendr_source *source,
-                                      opendr_image **image);
+// Reads the next image, which must be freed; *image is NULL at the end. After a file that cannot be read, the next call
+// continues with the next file.
+enum opendr_status opendr_source_next(struct opendr_source *source, opendr_image **image);
 
-// The file that the last picture, or the last failure, came from; "" for a camera, and when there was none yet. Valid
-// until the next call with this source.
+// Returns the file of the last image or the last failure; "" for a camera, and before the first image. Valid until the next
+// call with this source.
 const char *opendr_source_path(const struct opendr_source *source);
 
-// Closes the source and makes the variable NULL; a NULL in it is closed already.
+// Closes the source and sets the variable to NULL; does nothing if it is NULL.
 enum opendr_status opendr_source_free(struct opendr_source **source);
 
-// Why the last call of this thread that failed did so; "" when none did. Valid until the next failing call of this
+// Returns the message of the last failed call of this thread; "" if none failed. Valid until the next failing call of this
 // thread.
 const char *opendr_last_error(void);
 
-// Makes message what opendr_last_error() returns in this thread: for functions that are written over these.
+// Sets the message that opendr_last_error() returns in this thread, for functions implemented with those of this header.
 void opendr_set_last_error(const char *message);
 
-// The name of a status, e.g. "InvalidInput"; "unknown" for other numbers.
+// Returns the name of a status, e.g. "InvalidInput"; "unknown" for other numbers.
 const char *opendr_status_name(int32_t status);
 
-// The version of the library, e.g. "0.1.0".
+// Returns the version of the library, e.g. "0.1.0".
 const char *opendr_version(void);
 
-// The bytes of the text in UTF-8, ended by a zero; NULL for what is no string. They live as long as the string.
+// Returns the text in UTF-8, terminated by a zero byte, or NULL if the handle is not a string; valid as long as the string.
 const char *opendr_string_text(const struct opendr_string *string);
 
-// How many bytes the text has, the zero at its end not counted.
+// Returns the length of the text in bytes, without the terminating zero byte.
 size_t opendr_string_length(const struct opendr_string *string);
 
-// Frees the string and makes the variable NULL; a NULL in it is freed already.
+// Frees the string and sets the variable to NULL; does nothing if it is NULL.
 enum opendr_status opendr_string_free(struct opendr_string **string);
 
-// Makes a list of items, which are copied.
+// Creates a list of items, which are copied.
 enum opendr_status opendr_bounding_box_3d_list_create(const struct opendr_bounding_box_3d *items,
                                                       size_t count,
                                                       opendr_bounding_box_3d_list **list);
 
-// How many boxes there are; 0 for what is no such list.
+// Returns the number of boxes; 0 if the handle is not such a list.
 size_t opendr_bounding_box_3d_list_count(const opendr_bounding_box_3d_list *list);
 
-// Shows an item of the list; what it points to lives as long as the list.
+// Writes an item of the list into item; its pointers are valid as long as the list.
 enum opendr_status opendr_bounding_box_3d_list_get(const opendr_bounding_box_3d_list *list,
                                                    size_t index,
                                                    struct opendr_bounding_box_3d *item);
 
-// Makes a list of items, which are copied.
+// Creates a list of items, which are copied.
 enum opendr_status opendr_bounding_box_list_create(const struct opendr_bounding_box *items,
                                                    size_t count,
                                                    opendr_bounding_box_list **list);
 
-// How many boxes there are; 0 for what is no such list.
+// Returns the number of boxes; 0 if the handle is not such a list.
 size_t opendr_bounding_box_list_count(const opendr_bounding_box_list *list);
 
-// Shows an item of the list; what it points to lives as long as the list.
+// Writes an item of the list into item; its pointers are valid as long as the list.
 enum opendr_status opendr_bounding_box_list_get(const opendr_bounding_box_list *list,
                                                 size_t index,
                                                 struct opendr_bounding_box *item);
 
-// Makes a category; everything is copied.
+// Creates a category; the fields are copied.
 enum opendr_status opendr_category_create(const struct opendr_category_fields *fields, opendr_category **category);
 
-// Shows what a category says; what the fields point to lives as long as the category.
+// Writes the fields of a category; their pointers are valid as long as the category.
 enum opendr_status opendr_category_read(const opendr_category *category, struct opendr_category_fields *fields);
 
-// Makes a heat map; everything is copied.
+// Creates a heatmap; the elements are copied.
 enum opendr_status opendr_heatmap_create(const struct opendr_heatmap_fields *fields, opendr_heatmap **heatmap);
 
-// Shows the elements of a heat map, which live as long as it.
+// Writes pointers to the elements of a heatmap, valid as long as the heatmap.
 enum opendr_status opendr_heatmap_read(const opendr_heatmap *heatmap, struct opendr_heatmap_fields *fields);
 
-// Makes a list of items, which are copied.
+// Creates a list of items, which are copied.
 enum opendr_status opendr_pose_list_create(const struct opendr_pose *items, size_t count, opendr_pose_list **list);
 
-// How many persons there are; 0 for what is no such list.
+// Returns the number of persons; 0 if the handle is not such a list.
 size_t opendr_pose_list_count(const opendr_pose_list *list);
 
-// Shows an item of the list; what it points to lives as long as the list.
+// Writes an item of the list into item; its pointers are valid as long as the list.
 enum opendr_status opendr_pose_list_get(const opendr_pose_list *list, size_t index, struct opendr_pose *item);
 
-// Makes an action of count numbers, which are copied.
+// Creates an action from count numbers, which are copied.
 enum opendr_status opendr_rl_target_create(const float *values, size_t count, opendr_rl_target **target);
 
-// Shows the numbers of an action in a row, as the action space lays them out; they live as long as it.
-enum opendr_status opendr_rl_target_read(const opendr_rl_target *target, const float **values, size_t *count);
+// Writes a pointer to the numbers of an action as a flat array in the order of the action space, valid as long as the action.
+enum opendr_status opendr_rl_target_read(const opendr_rl_target *target,
+                                         const float **values,
+                                         size_t *count);
 
-// Makes a command; everything is copied.
+// Creates a command; the fields are copied.
 enum opendr_status opendr_speech_command_create(const struct opendr_speech_command_fields *fields,
                                                 opendr_speech_command **command);
 
-// Shows what a command says; the word lives as long as the command.
+// Writes the fields of a command; the word is valid as long as the command.
 enum opendr_status opendr_speech_command_read(const opendr_speech_command *command,
                                               struct opendr_speech_command_fields *fields);
 
-// Makes a list of items, which are copied.
+// Creates a list of items, which are copied.
 enum opendr_status opendr_tracking_annotation_3d_list_create(const struct opendr_tracking_annotation_3d *items,
                                                              size_t count,
                                                              opendr_tracking_annotation_3d_list **list);
 
-// How many tracks there are; 0 for what is no such list.
+// Returns the number of tracks; 0 if the handle is not such a list.
 size_t opendr_tracking_annotation_3d_list_count(const opendr_tracking_annotation_3d_list *list);
 
-// Shows an item of the list; what it points to lives as long as the list.
+// Writes an item of the list into item; its pointers are valid as long as the list.
 enum opendr_status opendr_tracking_annotation_3d_list_get(const opendr_tracking_annotation_3d_list *list,
                                                           size_t index,
                                                           struct opendr_tracking_annotation_3d *item);
 
-// Makes a list of items, which are copied.
+// Creates a list of items, which are copied.
 enum opendr_status opendr_tracking_annotation_list_create(const struct opendr_tracking_annotation *items,
                                                           size_t count,
                                                           opendr_tracking_annotation_list **list);
 
-// How many tracks there are; 0 for what is no such list.
+// Returns the number of tracks; 0 if the handle is not such a list.
 size_t opendr_tracking_annotation_list_count(const opendr_tracking_annotation_list *list);
 
-// Shows an item of the list; what it points to lives as long as the list.
+// Writes an item of the list into item; its pointers are valid as long as the list.
 enum opendr_status opendr_tracking_annotation_list_get(const opendr_tracking_annotation_list *list,
                                                        size_t index,
                                                        struct opendr_tracking_annotation *item);
 
-// Makes a transcription of words.
+// Creates a transcription from its text.
 enum opendr_status opendr_base_transcription_create(const char *text, opendr_base_transcription **transcription);
 
-// The words, NULL for what is no such transcription; they live as long as it.
+// Returns the text, or NULL if the handle is not such a transcription; valid as long as the transcription.
 const char *opendr_base_transcription_text(const opendr_base_transcription *transcription);
 
-// Makes a transcription of words so far; finished tells whether the phrase is.
+// Creates an intermediate or final transcription of a streaming recogniser; finished is whether the phrase is final.
 enum opendr_status opendr_vosk_transcription_create(const char *text,
                                                     bool finished,
                                                     opendr_vosk_transcription **transcription);
 
-// The words so far, NULL for what is no such transcription; they live as long as it.
+// Returns the text so far, or NULL if the handle is not such a transcription; valid as long as the transcription.
 const char *opendr_vosk_transcription_text(const opendr_vosk_transcription *transcription);
 
-// Whether the phrase is finished: the words will not change any more.
+// Returns whether the phrase is final: its text will not change any more.
 bool opendr_vosk_transcription_finished(const opendr_vosk_transcription *transcription);
 
-// Makes a transcription of words and its segments, which are copied.
+// Creates a transcription from its text and segments, which are copied.
 enum opendr_status opendr_whisper_transcription_create(const char *text,
                                                        const struct opendr_whisper_segment *segments,
                                                        size_t count,
                                                        opendr_whisper_transcription **transcription);
 
-// The words, NULL for what is no such transcription; they live as long as it.
+// Returns the text, or NULL if the handle is not such a transcription; valid as long as the transcription.
 const char *opendr_whisper_transcription_text(const opendr_whisper_transcription *transcription);
 
-// How many segments there are; 0 for what is no such transcription.
+// Returns the number of segments; 0 if the handle is not such a transcription.
 size_t opendr_whisper_transcription_count(const opendr_whisper_transcription *transcription);
 
-// Shows a segment; its words live as long as the transcription.
+// Writes a segment into segment; its text is valid as long as the transcription.
 enum opendr_status opendr_whisper_transcription_get(const opendr_whisper_transcription *transcription,
                                                     size_t index,
                                                     struct opendr_whisper_segment *segment);
@@ -892,47 +899,48 @@ enum opendr_status opendr_whisper_transcription_get(const opendr_whisper_transcr
 // Returns the number of tensors.
 size_t opendr_tensors_count(const struct opendr_tensors *tensors);
 
-// Writes where tensor number index lies, counted from 0; it lives as long as the tensors. Integers and truth values of a
-// network are rounded to floats.
+// Writes tensor index into tensor; its pointers are valid as long as the tensors. Integers and booleans of a network are
+// converted to floats, with rounding.
 enum opendr_status opendr_tensors_get(const struct opendr_tensors *tensors,
                                       size_t index,
                                       struct opendr_tensor *tensor);
 
-// Frees the tensors and makes the variable NULL; a NULL in it is freed already.
+// Frees the tensors and sets the variable to NULL; does nothing if it is NULL.
 enum opendr_status opendr_tensors_free(struct opendr_tensors **tensors);
 
-// The name of the value's type, e.g. "BoundingBoxList"; NULL for what is no value. It lives as long as the value.
+// Returns the name of the value's type, e.g. "BoundingBoxList", or NULL if the handle is not a value; valid as long as the
+// value.
 const char *opendr_value_type(const struct opendr_value *value);
 
-// The JSON of a target (docs/json.md).
+// Writes the JSON of a target (docs/json.md), which must be freed.
 enum opendr_status opendr_value_to_json(const struct opendr_value *value, struct opendr_string **json);
 
-// A target from its JSON (docs/json.md). type is the name of the type that is wanted, or NULL for any.
+// Reads a target from its JSON (docs/json.md). type_name is the expected type, or NULL for any.
 enum opendr_status opendr_value_from_json(const char *type_name, const char *json, struct opendr_value **value);
 
 // Reads a file as a value of the named type: "Image" (JPEG, PNG, BMP, WebP), "Audio" (WAVE), "Timeseries" (a table of
-// numbers as CSV or text, a line a moment; or NPY), "PointCloud" (KITTI's scans), or the JSON of a target.
+// numbers as CSV or text, one line per time step; or NPY), "PointCloud" (KITTI's scans), or the JSON of a target.
 enum opendr_status opendr_value_open(const char *type_name, const char *path, struct opendr_value **value);
 
-// The value as people read it: a line for each item.
+// Writes the text of the value for people, one line per item, which must be freed.
 enum opendr_status opendr_value_to_text(const struct opendr_value *value, struct opendr_string **string);
 
-// When the value was taken, nanoseconds; OPENDR_NO_STAMP when that is not known.
+// Writes the time stamp of the value in nanoseconds; OPENDR_NO_STAMP when unknown.
 enum opendr_status opendr_value_stamp(const struct opendr_value *value, int64_t *stamp_ns);
 
-// Sets when the value was taken; OPENDR_NO_STAMP forgets it.
+// Sets the time stamp of the value; OPENDR_NO_STAMP removes it.
 enum opendr_status opendr_value_set_stamp(struct opendr_value *value, int64_t stamp_ns);
 
-// The coordinate frame of the value; NULL when that is not known. The text lives as long as the value.
+// Returns the coordinate frame of the value, or NULL when unknown; valid as long as the value.
 const char *opendr_value_frame_id(const struct opendr_value *value);
 
-// Sets the coordinate frame of the value; NULL forgets it.
+// Sets the coordinate frame of the value; NULL removes it.
 enum opendr_status opendr_value_set_frame_id(struct opendr_value *value, const char *frame_id);
 
-// A handle of its own to the same value; bulky payloads stay shared.
+// Creates another handle of the same value; large payloads are shared.
 enum opendr_status opendr_value_copy(const struct opendr_value *value, struct opendr_value **copy);
 
-// Frees the value and makes the variable NULL; a NULL in it is freed already.
+// Frees the value and sets the variable to NULL; does nothing if it is NULL.
 enum opendr_status opendr_value_free(struct opendr_value **value);
 
 #ifdef __cplusplus
@@ -940,8 +948,8 @@ enum opendr_status opendr_value_free(struct opendr_value **value);
 #endif  // __cplusplus
 
 /*
- * The same functions for each type X of values: opendr_X_free(), opendr_X_copy(), opendr_X_to_text(), opendr_X_stamp(),
- * opendr_X_set_stamp(), opendr_X_frame_id(), opendr_X_set_frame_id(); see opendr_value_free() and its neighbours.
+ * Functions of each data and target type X: opendr_X_free(), opendr_X_copy(), opendr_X_to_text(), opendr_X_stamp(),
+ * opendr_X_set_stamp(), opendr_X_frame_id(), opendr_X_set_frame_id(); see the functions opendr_value_free(), ... .
  */
 #define OPENDR_VALUE_FUNCTIONS(X) \
     static inline opendr_status X##_free(X **variable) { \
@@ -972,7 +980,7 @@ enum opendr_status opendr_value_free(struct opendr_value **value);
         return opendr_value_set_frame_id((opendr_value *)value, frame_id); \
     }
 
-/* For each type X of targets besides: opendr_X_to_json(), opendr_X_from_json() and opendr_X_draw(). */
+/* Further functions of each target type X: opendr_X_to_json(), opendr_X_from_json() and opendr_X_draw(). */
 #define OPENDR_TARGET_FUNCTIONS(X, name) \
     static inline opendr_status X##_to_json(const X *value, opendr_string **json) { \
         return opendr_value_to_json((const opendr_value *)value, json); \
@@ -987,7 +995,7 @@ enum opendr_status opendr_value_free(struct opendr_value **value);
         return opendr_value_draw((const opendr_value *)value, image); \
     }
 
-/* For each type X of numbers along axes besides: opendr_X_create() and opendr_X_read(); see opendr_array_create(). */
+/* Further functions of each array type X: opendr_X_create() and opendr_X_read(); see opendr_array_create(). */
 #define OPENDR_ARRAY_FUNCTIONS(X, name, axes) \
     static inline opendr_status X##_create(const float *numbers, size_t length, const size_t shape[axes], X **variable) { \
         opendr_value *value = NULL; \
@@ -1050,17 +1058,17 @@ OPENDR_ARRAY_FUNCTIONS(opendr_skeleton_sequence, "SkeletonSequence", 5)
 
 /*
  * Learners. opendr_load_X() is opendr_load() with the learner's name; opendr_infer_X() is opendr_infer() with its inputs
- * and outputs. An output that is not wanted may be NULL.
+ * and outputs. An output that is not needed may be NULL.
  */
 
 /*
- * CenterNetDetectorLearner: CenterNet on MobileNetV3 finds the 80 COCO classes; the best of the light detectors here.
+ * CenterNetDetectorLearner: CenterNet on MobileNetV3 detects the 80 COCO classes; the most precise of the light detectors.
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.3): Detections below this score are dropped.
- *   iou_threshold (a float 0..=1, may change while it runs, default 0.5): Boxes of one class that overlap more than this (intersection over union) are one object.
- *   max_detections (an int 1..=100, may change while it runs, default 100): At most this many boxes a picture.
- *   suppression (a str, one of hard, soft, fast, cluster, may change while it runs, default hard): How overlapping boxes are thinned out.
+ *   threshold (a float 0..=1, live, default 0.3): Score below which detections are dropped.
+ *   iou_threshold (a float 0..=1, live, default 0.5): IoU above which boxes of one class count as one object.
+ *   max_detections (an int 1..=100, live, default 100): Maximum number of boxes per image.
+ *   suppression (a str, one of hard, soft, fast, cluster, live, default hard): Method of non-maximum suppression.
  *
  * Inputs:
  *   image (Image)
@@ -1090,13 +1098,13 @@ static inline opendr_status opendr_infer_centernet(const opendr_learner *learner
 }
 
 /*
- * NanodetLearner: NanoDet finds the 80 COCO classes; light, good on small things.
+ * NanodetLearner: NanoDet detects the 80 COCO classes; light, good for small objects.
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.35): Detections below this score are dropped.
- *   iou_threshold (a float 0..=1, may change while it runs, default 0.6): Boxes of one class that overlap more than this (intersection over union) are one object.
- *   max_detections (an int 1..=1000, may change while it runs, default 100): At most this many boxes a picture.
- *   suppression (a str, one of hard, soft, fast, cluster, may change while it runs, default hard): How overlapping boxes are thinned out.
+ *   threshold (a float 0..=1, live, default 0.35): Score below which detections are dropped.
+ *   iou_threshold (a float 0..=1, live, default 0.6): IoU above which boxes of one class count as one object.
+ *   max_detections (an int 1..=1000, live, default 100): Maximum number of boxes per image.
+ *   suppression (a str, one of hard, soft, fast, cluster, live, default hard): Method of non-maximum suppression.
  *
  * Inputs:
  *   image (Image)
@@ -1126,14 +1134,14 @@ static inline opendr_status opendr_infer_nanodet(const opendr_learner *learner,
 }
 
 /*
- * SingleShotDetectorLearner: SSD on MobileNetV1, a small detector that trains on classes of your own.
+ * SingleShotDetectorLearner: SSD on MobileNetV1, a small detector, trainable on own classes.
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.2): Detections below this score are dropped.
- *   iou_threshold (a float 0..=1, may change while it runs, default 0.45): Boxes of one class that overlap more than this (intersection over union) are one object.
- *   max_candidates (an int 1..=1000, may change while it runs, default 400): So many of the best boxes are looked at before overlapping ones are thinned out.
- *   max_detections (an int 1..=1000, may change while it runs, default 100): At most this many boxes a picture.
- *   suppression (a str, one of hard, soft, fast, cluster, may change while it runs, default hard): How overlapping boxes are thinned out.
+ *   threshold (a float 0..=1, live, default 0.2): Score below which detections are dropped.
+ *   iou_threshold (a float 0..=1, live, default 0.45): IoU above which boxes of one class count as one object.
+ *   max_candidates (an int 1..=1000, live, default 400): Number of candidates with the highest scores that enter the suppression.
+ *   max_detections (an int 1..=1000, live, default 100): Maximum number of boxes per image.
+ *   suppression (a str, one of hard, soft, fast, cluster, live, default hard): Method of non-maximum suppression.
  *
  * Inputs:
  *   image (Image)
@@ -1163,22 +1171,22 @@ static inline opendr_status opendr_infer_single_shot_detector(const opendr_learn
 }
 
 /*
- * TiledDetectionLearner: Looks at large pictures in tiles with any detector, where it is worth it, within a time budget.
+ * TiledDetectionLearner: Runs any detector on the relevant tiles of large images, within a time budget.
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.35): Detections below this score are dropped; the detector is not asked for any below 0.1.
- *   iou_threshold (a float 0..=1, may change while it runs, default 0.5): Boxes of one class from different tiles that overlap more than this (intersection over union) are one object.
- *   max_detections (an int 1..=2000, may change while it runs, default 500): At most this many boxes a picture.
- *   tile (an int 32..=4096 px, may change while it runs, default 256): Side of a tile in the picture. What is looked for should fill a tenth of it or more.
- *   tile_overlap (an int 0..=2048 px, may change while it runs, default 48): What neighbouring tiles share: what is smaller lies whole in one of them. At most half of a tile counts.
- *   whole (a bool, may change while it runs, default true): Whether the whole picture is looked at, too: for what is larger than a tile.
- *   time_budget (a float 0..=60000 ms, may change while it runs, default 0): Time for one picture; a tile that has begun is finished, and one is always looked at. 0: no limit, and answers that depend on nothing but the pictures.
- *   max_tiles (an int 0..=100000, may change while it runs, default 0): At most so many tiles of one picture are looked at, the others in the next ones; 0: no limit.
- *   detail_threshold (a float 0..=255, may change while it runs, default 16): A tile in which brightness differs by no more than this within 16 pixels, 0..=255, is empty; 0: no tile is.
- *   change_threshold (a float 0..=255, may change while it runs, default 6): A tile is looked at again once the brightness of 16 x 16 pixels in it changed by more than this, 0..=255; until then its last answer holds. 0: always.
- *   memory (an int 0..=1000, may change while it runs, default 5): For so many pictures the answer of a tile that changed holds, if there was no time to look again.
- *   rotation (an int 0..=1000, may change while it runs, default 4): In every so-manyth picture the tile that was not looked at for longest is, be there anything or not; 0: never.
- *   parallel_tiles (an int 0..=64, default 0): Tiles that are looked at side by side, each on a thread with a copy of the network; 0: as many as there are cores, at most four.
+ *   threshold (a float 0..=1, live, default 0.35): Score below which detections are dropped; the detector itself drops those below 0.1.
+ *   iou_threshold (a float 0..=1, live, default 0.5): IoU above which boxes of one class from different tiles count as one object.
+ *   max_detections (an int 1..=2000, live, default 500): Maximum number of boxes per image.
+ *   tile (an int 32..=4096 px, live, default 256): Side of a tile in the image. Objects should cover a tenth of it or more.
+ *   tile_overlap (an int 0..=2048 px, live, default 48): Overlap of neighbouring tiles: a smaller object is completely in one of them. At most half of a tile counts.
+ *   whole (a bool, live, default true): Whether the whole image is processed too, for objects larger than a tile.
+ *   time_budget (a float 0..=60000 ms, live, default 0): Time budget per image. A tile in progress is finished, and one is always processed. With 0 there is no limit, and the results are deterministic.
+ *   max_tiles (an int 0..=100000, live, default 0): Maximum number of tiles per image; the others are processed in the next images. 0: no limit.
+ *   detail_threshold (a float 0..=255, live, default 16): Range of brightness within 16 pixels, 0..=255, up to which a tile is empty; 0: no tile is.
+ *   change_threshold (a float 0..=255, live, default 6): Change of the brightness of 16 x 16 pixels, 0..=255, above which a tile is processed again; until then its last result is valid. 0: always.
+ *   memory (an int 0..=1000, live, default 5): Number of images for which the last result of a changed tile stays valid, if there is no time to process it again.
+ *   rotation (an int 0..=1000, live, default 4): Number of images after which the tile that was processed longest ago is processed again, in any case; 0: never.
+ *   parallel_tiles (an int 0..=64, default 0): Number of tiles that are processed in parallel, each on a thread with a copy of the network; 0: the number of cores, at most four.
  *
  * Inputs:
  *   image (Image)
@@ -1208,16 +1216,16 @@ static inline opendr_status opendr_infer_tiled_detection(const opendr_learner *l
 }
 
 /*
- * Seq2SeqNMSLearner: Tells which of a detector's overlapping boxes to keep, by how they lie and look; it trains.
+ * Seq2SeqNMSLearner: Learned non-maximum suppression of a detector's boxes, by geometry and appearance; trainable.
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.1): Boxes whose new score is below this are dropped.
- *   iou_filtering (a float 0..=1, may change while it runs, default 0.8): Of boxes that overlap more than this (intersection over union) only the best is looked at.
- *   max_dt_boxes (an int 1..=1000, may change while it runs, default 400): So many of the best boxes are looked at.
+ *   threshold (a float 0..=1, live, default 0.1): New score below which boxes are dropped.
+ *   iou_filtering (a float 0..=1, live, default 0.8): IoU above which only the box with the highest score enters the network.
+ *   max_dt_boxes (an int 1..=1000, live, default 400): Maximum number of boxes that enter the network, highest scores first.
  *
  * Inputs:
- *   image (Image): The picture.
- *   detections (BoundingBoxList): Its boxes before suppression; boxes of classes that the model does not know are left out.
+ *   image (Image): Image.
+ *   detections (BoundingBoxList): Boxes before suppression; boxes of classes that the model does not have are dropped.
  *
  * Outputs:
  *   boxes (BoundingBoxList)
@@ -1247,20 +1255,20 @@ static inline opendr_status opendr_infer_seq2seq_nms(const opendr_learner *learn
 }
 
 /*
- * GemLearner: Finds objects by a colour and an infrared camera and tells which of them to trust; it trains.
+ * GemLearner: Detects objects in a colour and an infrared image and predicts the weight of each sensor; trainable.
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.3): Detections below this score are dropped. OpenDR's default of 0.7 is for the scores of DETR.
- *   iou_threshold (a float 0..=1, may change while it runs, default 0.45): Boxes of one class that overlap more than this (intersection over union) are one object.
- *   max_detections (an int 1..=1000, may change while it runs, default 100): At most this many boxes a pair of pictures.
+ *   threshold (a float 0..=1, live, default 0.3): Score below which detections are dropped. OpenDR's default of 0.7 is for the scores of DETR.
+ *   iou_threshold (a float 0..=1, live, default 0.45): IoU above which boxes of one class count as one object.
+ *   max_detections (an int 1..=1000, live, default 100): Maximum number of boxes per pair of images.
  *
  * Inputs:
- *   colour (Image): The picture in colour. Boxes are in its pixels.
- *   infrared (Image): The picture of the infrared sensor (or of another, as in training), of the same view: sizes may differ, what it shows at a share of its width and height may not.
+ *   colour (Image): Colour image. Boxes are in its pixels.
+ *   infrared (Image): Image of the infrared sensor (or of another, as in training) with the same view. Its size may differ; points correspond by their relative positions.
  *
  * Outputs:
- *   boxes (BoundingBoxList): The objects, in pixels of the picture in colour.
- *   sensors (Category): How much each sensor counted, of sum one: class 0 is colour, 1 infrared (OpenDR's `weight1` and `weight2`).
+ *   boxes (BoundingBoxList): Detections, in pixels of the colour image.
+ *   sensors (Category): Weights of the sensors, of sum one: class 0 is colour, 1 infrared (OpenDR's `weight1` and `weight2`).
  */
 static inline opendr_status opendr_load_gem(const char *path, const char *device, const char *params_json,
     opendr_learner **learner) {
@@ -1292,16 +1300,16 @@ static inline opendr_status opendr_infer_gem(const opendr_learner *learner,
 }
 
 /*
- * VoxelObjectDetection3DLearner: PointPillars finds boxes in the scan of a lidar; it trains on classes of your own.
+ * VoxelObjectDetection3DLearner: PointPillars detects 3D boxes in lidar scans; trainable on your own classes.
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.3): Boxes below this score are dropped. OpenDR's default of 0 tells every box that the network thinks of.
- *   iou_threshold (a float 0..=1, may change while it runs, default 0.1): Boxes of one class whose floors overlap more than this (intersection over union) are one object.
- *   max_candidates (an int 1..=10000, may change while it runs, default 400): So many of the best boxes are looked at before overlapping ones are thinned out.
- *   max_detections (an int 1..=1000, may change while it runs, default 100): At most this many boxes a scan.
+ *   threshold (a float 0..=1, live, default 0.3): Minimum score of a box. OpenDR's default is 0.
+ *   iou_threshold (a float 0..=1, live, default 0.1): IoU on the ground above which boxes of one class are suppressed.
+ *   max_candidates (an int 1..=10000, live, default 400): Maximum number of boxes before non-maximum suppression, those with the highest scores.
+ *   max_detections (an int 1..=1000, live, default 100): Maximum number of boxes per scan.
  *
  * Inputs:
- *   point_cloud (PointCloud): What the lidar saw; a PointCloudWithCalibration places the boxes in its camera's frame and picture.
+ *   point_cloud (PointCloud): Scan of a lidar; with a PointCloudWithCalibration, the boxes are in its camera's frame and image.
  *
  * Outputs:
  *   boxes_3d (BoundingBox3DList)
@@ -1328,18 +1336,18 @@ static inline opendr_status opendr_infer_voxel_object_detection_3d(const opendr_
 }
 
 /*
- * SortLearner: SORT follows what a detector finds by motion and overlap alone, at next to no cost.
+ * SortLearner: SORT tracks the detections of any detector by motion and overlap only, at very low cost.
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.3): Detections below this score are left out.
- *   iou_threshold (a float 0.01..=1, may change while it runs, default 0.3): A track and a detection may be one object when they overlap at least this much (intersection over union).
- *   max_age (an int 0..=1000, may change while it runs, default 1): Frames for which an object may be out of sight.
- *   min_hits (an int 1..=100, may change while it runs, default 3): An object is told once it was seen in so many frames in a row; in the first frames of a stream at once.
- *   per_class (a bool, may change while it runs, default true): Only boxes of the same class can be one object.
+ *   threshold (a float 0..=1, live, default 0.3): Score below which detections are ignored.
+ *   iou_threshold (a float 0.01..=1, live, default 0.3): Minimum IoU of a track and its detection.
+ *   max_age (an int 0..=1000, live, default 1): Number of frames that a track is kept without a detection.
+ *   min_hits (an int 1..=100, live, default 3): Number of detections in a row that confirm a track; in the first frames of a stream, one.
+ *   per_class (a bool, live, default true): Whether only boxes of the same class match.
  *
  * Inputs:
- *   detections (BoundingBoxList): What was found in the frame; the confidences count.
- *   image (Image): The frame, which tells how the camera moved. All frames of a stream, or none. NULL leaves it out.
+ *   detections (BoundingBoxList): Detections in the frame, with their scores.
+ *   image (Image): Frame, from which the motion of the camera is estimated. Either all frames of a stream have one, or none. Optional: may be NULL.
  *
  * Outputs:
  *   tracks (TrackingAnnotationList)
@@ -1369,21 +1377,21 @@ static inline opendr_status opendr_infer_sort(const opendr_learner *learner,
 }
 
 /*
- * ByteTrackLearner: ByteTrack follows what a detector finds, through crowds too: detections of low confidence count.
+ * ByteTrackLearner: ByteTrack tracks the detections of any detector, also through crowds, with detections of low scores.
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.6): Detections from this score on are paired first.
- *   low_threshold (a float 0..=1, may change while it runs, default 0.1): Detections from this score on only go on with tracks.
- *   new_threshold (a float 0..=1, may change while it runs, default 0.7): A detection begins a track from this score on.
- *   iou_threshold (a float 0.01..=1, may change while it runs, default 0.2): A track and a detection may be one object when their overlap times the score is at least this.
- *   low_iou_threshold (a float 0.01..=1, may change while it runs, default 0.5): The same for detections of a low score, by overlap alone.
- *   track_buffer (an int 0..=1000, may change while it runs, default 30): Frames for which an object may be out of sight.
- *   min_hits (an int 1..=100, may change while it runs, default 2): An object is told once it was seen in so many frames in a row; in the first frames of a stream at once.
- *   per_class (a bool, may change while it runs, default true): Only boxes of the same class can be one object.
+ *   threshold (a float 0..=1, live, default 0.6): Score above which detections are associated first.
+ *   low_threshold (a float 0..=1, live, default 0.1): Score above which detections resume tracks.
+ *   new_threshold (a float 0..=1, live, default 0.7): Score above which a detection starts a track.
+ *   iou_threshold (a float 0.01..=1, live, default 0.2): Minimum of IoU times score of a track and its detection.
+ *   low_iou_threshold (a float 0.01..=1, live, default 0.5): Minimum IoU of a track and its detection of a low score.
+ *   track_buffer (an int 0..=1000, live, default 30): Number of frames that a track is kept without a detection.
+ *   min_hits (an int 1..=100, live, default 2): Number of detections in a row that confirm a track; in the first frames of a stream, one.
+ *   per_class (a bool, live, default true): Whether only boxes of the same class match.
  *
  * Inputs:
- *   detections (BoundingBoxList): What was found in the frame; the confidences count.
- *   image (Image): The frame, which tells how the camera moved. All frames of a stream, or none. NULL leaves it out.
+ *   detections (BoundingBoxList): Detections in the frame, with their scores.
+ *   image (Image): Frame, from which the motion of the camera is estimated. Either all frames of a stream have one, or none. Optional: may be NULL.
  *
  * Outputs:
  *   tracks (TrackingAnnotationList)
@@ -1413,20 +1421,20 @@ static inline opendr_status opendr_infer_byte_track(const opendr_learner *learne
 }
 
 /*
- * OcSortLearner: OC-SORT follows what a detector finds, through occlusions and uneven motion.
+ * OcSortLearner: OC-SORT tracks the detections of any detector through occlusions and non-linear motion.
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.6): Detections below this score are left out.
- *   iou_threshold (a float 0.01..=1, may change while it runs, default 0.3): A track and a detection may be one object when they overlap at least this much (intersection over union).
- *   max_age (an int 0..=1000, may change while it runs, default 30): Frames for which an object may be out of sight.
- *   min_hits (an int 1..=100, may change while it runs, default 3): An object is told once it was seen in so many frames in a row; in the first frames of a stream at once.
- *   delta_t (an int 1..=10, may change while it runs, default 3): Over so many frames directions are measured.
- *   inertia (a float 0..=1, may change while it runs, default 0.2): How much the direction counts beside the overlap.
- *   per_class (a bool, may change while it runs, default true): Only boxes of the same class can be one object.
+ *   threshold (a float 0..=1, live, default 0.6): Score below which detections are ignored.
+ *   iou_threshold (a float 0.01..=1, live, default 0.3): Minimum IoU of a track and its detection.
+ *   max_age (an int 0..=1000, live, default 30): Number of frames that a track is kept without a detection.
+ *   min_hits (an int 1..=100, live, default 3): Number of detections in a row that confirm a track; in the first frames of a stream, one.
+ *   delta_t (an int 1..=10, live, default 3): Number of frames over which directions are measured.
+ *   inertia (a float 0..=1, live, default 0.2): Weight of the direction, relative to the overlap.
+ *   per_class (a bool, live, default true): Whether only boxes of the same class match.
  *
  * Inputs:
- *   detections (BoundingBoxList): What was found in the frame; the confidences count.
- *   image (Image): The frame, which tells how the camera moved. All frames of a stream, or none. NULL leaves it out.
+ *   detections (BoundingBoxList): Detections in the frame, with their scores.
+ *   image (Image): Frame, from which the motion of the camera is estimated. Either all frames of a stream have one, or none. Optional: may be NULL.
  *
  * Outputs:
  *   tracks (TrackingAnnotationList)
@@ -1456,21 +1464,21 @@ static inline opendr_status opendr_infer_oc_sort(const opendr_learner *learner,
 }
 
 /*
- * ObjectTracking2DDeepSortLearner: DeepSORT follows the persons that a detector finds and knows them again by how they look.
+ * ObjectTracking2DDeepSortLearner: DeepSORT tracks the persons that a detector detects and re-identifies them by appearance.
  *
  * Parameters:
- *   max_dist (a float 0..=2, may change while it runs, default 0.2): Two boxes may show one object when their looks differ at most this much (1 less the cosine).
- *   min_confidence (a float 0..=1, may change while it runs, default 0.3): Detections below this score are left out.
- *   nms_max_overlap (a float 0..=1, may change while it runs, default 0.5): Of boxes that overlap more than this (intersection over union) the best is taken.
- *   max_iou_distance (a float 0..=0.99, may change while it runs, default 0.7): Without looks, a track and a box may be one object when 1 less their overlap is at most this.
- *   max_age (an int 0..=1000, may change while it runs, default 70): Frames for which an object may be out of sight.
- *   n_init (an int 1..=100, may change while it runs, default 3): An object is told once it was seen in so many frames in a row; in the first frames of a stream at once.
- *   nn_budget (an int 1..=200, may change while it runs, default 100): Looks that are remembered of each object.
- *   per_class (a bool, may change while it runs, default true): Only boxes of the same class can be one object.
+ *   max_dist (a float 0..=2, live, default 0.2): Maximum distance of the embeddings of a track and its detection (1 minus the cosine).
+ *   min_confidence (a float 0..=1, live, default 0.3): Score below which detections are ignored.
+ *   nms_max_overlap (a float 0..=1, live, default 0.5): IoU above which only the box with the highest score is kept.
+ *   max_iou_distance (a float 0..=0.99, live, default 0.7): Maximum of 1 minus IoU of a track and its detection, where embeddings do not match.
+ *   max_age (an int 0..=1000, live, default 70): Number of frames that a track is kept without a detection.
+ *   n_init (an int 1..=100, live, default 3): Number of detections in a row that confirm a track; in the first frames of a stream, one.
+ *   nn_budget (an int 1..=200, live, default 100): Number of embeddings that are stored per track.
+ *   per_class (a bool, live, default true): Whether only boxes of the same class match.
  *
  * Inputs:
- *   image (Image): The frame.
- *   detections (BoundingBoxList): What was found in it.
+ *   image (Image): Frame.
+ *   detections (BoundingBoxList): Detections in the frame.
  *
  * Outputs:
  *   tracks (TrackingAnnotationList)
@@ -1500,14 +1508,14 @@ static inline opendr_status opendr_infer_deep_sort(const opendr_learner *learner
 }
 
 /*
- * ObjectTracking2DFairMotLearner: NanoDet and ByteTrack in one call follow the persons in a video.
+ * ObjectTracking2DFairMotLearner: NanoDet and ByteTrack in one learner track the persons in a video.
  *
  * Parameters:
- *   threshold (a float 0.1..=1, may change while it runs, default 0.3): Detections from this score on are paired first; 0.1 more begins a track.
- *   track_buffer (an int 0..=1000, may change while it runs, default 30): Frames for which an object may be out of sight.
- *   min_box_area (a float 0..=1000000 px^2, may change while it runs, default 100): Smaller boxes are left out.
- *   every_class (a bool, may change while it runs, default false): Whether all classes of the detector are followed, or persons alone.
- *   camera_motion (a bool, may change while it runs, default true): Whether frames tell how the camera moved; a camera that stands still needs it not.
+ *   threshold (a float 0.1..=1, live, default 0.3): Score above which detections are associated first; 0.1 more starts a track.
+ *   track_buffer (an int 0..=1000, live, default 30): Number of frames that a track is kept without a detection.
+ *   min_box_area (a float 0..=1000000 px^2, live, default 100): Area below which boxes are ignored.
+ *   every_class (a bool, live, default false): Whether all classes of the detector are tracked, instead of persons only.
+ *   camera_motion (a bool, live, default true): Whether the motion of the camera is compensated; a fixed camera does not need it.
  *
  * Inputs:
  *   image (Image)
@@ -1537,16 +1545,16 @@ static inline opendr_status opendr_infer_fair_mot(const opendr_learner *learner,
 }
 
 /*
- * SiamRPNLearner: NanoTrack follows one object of any kind from a box in the first frame.
+ * SiamRPNLearner: NanoTrack tracks one object of any class from a box in the first frame.
  *
  * Parameters:
- *   window_influence (a float 0..=1, may change while it runs, default 0.455): How much a place far from where the object was is marked down.
- *   penalty (a float 0..=1, may change while it runs, default 0.138): How much another size or shape than before is marked down.
- *   size_rate (a float 0..=1, may change while it runs, default 0.348): How fast the size of the box follows what is seen.
+ *   window_influence (a float 0..=1, live, default 0.455): Weight of the window that penalises positions far from the previous one.
+ *   penalty (a float 0..=1, live, default 0.138): Penalty of changes of size and aspect ratio.
+ *   size_rate (a float 0..=1, live, default 0.348): Rate at which the size of the box follows the network's.
  *
  * Inputs:
- *   image (Image): The frame.
- *   init_box (BoundingBoxList): What is to be followed from this frame on: its first box. Given with the first call of a stream, else NULL.
+ *   image (Image): Frame.
+ *   init_box (BoundingBoxList): Object to track from this frame on: its first box. Given in the first call of a stream, otherwise NULL.
  *
  * Outputs:
  *   tracks (TrackingAnnotationList)
@@ -1576,13 +1584,13 @@ static inline opendr_status opendr_infer_nano_track(const opendr_learner *learne
 }
 
 /*
- * ObjectTracking3DAb3dmotLearner: AB3DMOT follows boxes in space by motion and shared volume.
+ * ObjectTracking3DAb3dmotLearner: AB3DMOT tracks 3D boxes by motion and shared volume.
  *
  * Parameters:
- *   max_staleness (an int 1..=1000, may change while it runs, default 2): An object that is out of sight for so many moments is forgotten.
- *   min_updates (an int 1..=100, may change while it runs, default 3): An object is told once it was seen so many moments in a row; in the first moments of a stream at once.
- *   iou_threshold (a float 0..=1, may change while it runs, default 0.01): A track and a box may be one object when they share at least this much of their volume (intersection over union).
- *   per_class (a bool, may change while it runs, default true): Only boxes of the same class can be one object.
+ *   max_staleness (an int 1..=1000, live, default 2): Number of steps without a detection after which a track is dropped.
+ *   min_updates (an int 1..=100, live, default 3): Number of detections in a row that confirm a track; in the first steps of a stream, one.
+ *   iou_threshold (a float 0..=1, live, default 0.01): Minimum IoU of the volumes of a track and its detection.
+ *   per_class (a bool, live, default true): Whether only boxes of the same class match.
  *
  * Inputs:
  *   boxes_3d (BoundingBox3DList)
@@ -1612,23 +1620,23 @@ static inline opendr_status opendr_infer_ab3dmot(const opendr_learner *learner,
 }
 
 /*
- * ObjectTracking3DVpitLearner: VPIT follows one object in the scans of a lidar from a box in the first; it trains on recordings.
+ * ObjectTracking3DVpitLearner: VPIT tracks one object in the scans of a lidar from a box in the first one; trainable on recordings.
  *
  * Parameters:
- *   window_influence (a float 0..=1, may change while it runs, default 0.4): How much a place far from where the object is expected is marked down.
- *   rotation_penalty (a float 0..=1, may change while it runs, default 0.98): What the score of another direction than the expected one is multiplied by.
- *   rotation_step (a float 0.01..=1 rad, may change while it runs, default 0.15): How far the directions are apart that are looked at.
- *   rotations_count (an int 1..=9, may change while it runs, default 3): How many directions are looked at, the expected one in their middle; an even number is one more.
- *   context_amount (a float 0..=2, default 0.25): What is seen around an object with it, in its mean sides.
- *   target_feature_merge_scale (a float 0..=1, may change while it runs, default 0): How much of every later view goes into what the object looks like; OpenDR's default is 0, too.
- *   extrapolation_mode (a str, one of linear+, linear, none, may change while it runs, default linear+): What is known of the object's way.
- *   offset_interpolation (a float 0..=1, may change while it runs, default 1): How much of the way to where it is seen the box moves.
- *   vertical_offset_interpolation (a float 0..=1, may change while it runs, default 0.5): The same for its height.
- *   min_top_score (a float 0..=1, may change while it runs, default 0): Below this score the object is out of sight: the box goes where it is expected.
+ *   window_influence (a float 0..=1, live, default 0.4): Weight of the window that penalises positions far from the expected one.
+ *   rotation_penalty (a float 0..=1, live, default 0.98): Factor of the scores of rotations other than the expected one.
+ *   rotation_step (a float 0.01..=1 rad, live, default 0.15): Step between the rotations that are compared.
+ *   rotations_count (an int 1..=9, live, default 3): Number of rotations that are compared, the expected one in the middle; an even number counts as one more.
+ *   context_amount (a float 0..=2, default 0.25): Margin around an object, in its mean sides.
+ *   target_feature_merge_scale (a float 0..=1, live, default 0): Weight of every later view in the features of the object; 0 as in OpenDR.
+ *   extrapolation_mode (a str, one of linear+, linear, none, live, default linear+): Prediction of the object's position.
+ *   offset_interpolation (a float 0..=1, live, default 1): Share of the offset to the detected position by which the box moves.
+ *   vertical_offset_interpolation (a float 0..=1, live, default 0.5): Share of the vertical offset by which the box moves.
+ *   min_top_score (a float 0..=1, live, default 0): Score below which the object counts as lost: the box moves to the expected position.
  *
  * Inputs:
- *   point_cloud (PointCloud): What the lidar saw; a PointCloudWithCalibration places the boxes in its camera's frame and picture.
- *   init_box (BoundingBox3DList): What is to be followed from this scan on: its first box. Given with the first call of a stream, else NULL.
+ *   point_cloud (PointCloud): Scan of a lidar; with a PointCloudWithCalibration, the boxes are in its camera's frame and image.
+ *   init_box (BoundingBox3DList): Object to track from this scan on: its first box. Given in the first call of a stream, otherwise NULL.
  *
  * Outputs:
  *   tracks_3d (TrackingAnnotation3DList)
@@ -1658,13 +1666,13 @@ static inline opendr_status opendr_infer_vpit(const opendr_learner *learner,
 }
 
 /*
- * UltraLightFaceLearner: Ultra-Light RFB finds faces in a few milliseconds; boxes only.
+ * UltraLightFaceLearner: Ultra-Light RFB detects faces in a few milliseconds; boxes only.
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.7): Faces below this score are dropped.
- *   iou_threshold (a float 0..=1, may change while it runs, default 0.3): Faces that overlap more than this (intersection over union) are one face.
- *   max_detections (an int 1..=1000, may change while it runs, default 200): At most this many faces a picture.
- *   suppression (a str, one of hard, soft, fast, cluster, may change while it runs, default hard): How overlapping boxes are thinned out.
+ *   threshold (a float 0..=1, live, default 0.7): Score below which faces are dropped.
+ *   iou_threshold (a float 0..=1, live, default 0.3): IoU above which boxes count as one face.
+ *   max_detections (an int 1..=1000, live, default 200): Maximum number of faces per image.
+ *   suppression (a str, one of hard, soft, fast, cluster, live, default hard): Method of non-maximum suppression.
  *
  * Inputs:
  *   image (Image)
@@ -1694,14 +1702,14 @@ static inline opendr_status opendr_infer_ultra_light_face(const opendr_learner *
 }
 
 /*
- * YunetLearner: YuNet finds faces with eyes, nose and corners of the mouth; tiny and fast.
+ * YunetLearner: YuNet detects faces with eyes, nose and corners of the mouth; tiny and fast.
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.6): Faces below this score are dropped.
- *   iou_threshold (a float 0..=1, may change while it runs, default 0.3): Faces that overlap more than this (intersection over union) are one face.
- *   max_detections (an int 1..=1000, may change while it runs, default 200): At most this many faces a picture.
- *   size (an int 32..=4096 px, default 640): Side of the network's input, for models that take any; a multiple of 32.
- *   suppression (a str, one of hard, soft, fast, cluster, may change while it runs, default hard): How overlapping boxes are thinned out.
+ *   threshold (a float 0..=1, live, default 0.6): Score below which faces are dropped.
+ *   iou_threshold (a float 0..=1, live, default 0.3): IoU above which boxes count as one face.
+ *   max_detections (an int 1..=1000, live, default 200): Maximum number of faces per image.
+ *   size (an int 32..=4096 px, default 640): Side of the network's input, for models of dynamic size; a multiple of 32.
+ *   suppression (a str, one of hard, soft, fast, cluster, live, default hard): Method of non-maximum suppression.
  *
  * Inputs:
  *   image (Image)
@@ -1731,12 +1739,12 @@ static inline opendr_status opendr_infer_yunet(const opendr_learner *learner,
 }
 
 /*
- * FaceRecognitionLearner: MobileFace tells whose faces a frame shows, after a few reference pictures of each person.
+ * FaceRecognitionLearner: MobileFace recognises the persons in an image by their faces, from a few reference images of each.
  *
  * Parameters:
- *   threshold (a float -1..=1, may change while it runs, default 0.38): Faces whose cosine with every picture of a known person is below this are unknown.
- *   face_threshold (a float 0..=1, default 0.6): What the detector scores below this is no face.
- *   picture (a str, one of frame, face, may change while it runs, default frame): What pictures show.
+ *   threshold (a float -1..=1, live, default 0.38): Cosine to every image of a known person below which a face is unknown.
+ *   face_threshold (a float 0..=1, default 0.6): Score of the detector below which faces are dropped.
+ *   input_kind (a str, one of frame, face, live, default frame): Content of the images.
  *
  * Inputs:
  *   image (Image)
@@ -1766,13 +1774,13 @@ static inline opendr_status opendr_infer_face_recognition(const opendr_learner *
 }
 
 /*
- * FaceMeshLearner: MediaPipe's face mesh: 468 points of a face and its irises, followed from frame to frame.
+ * FaceMeshLearner: MediaPipe's face mesh: 468 points of a face and its irises, tracked from frame to frame.
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.5): Faces of which the mesh is surer than this are answered.
- *   face_threshold (a float 0..=1, default 0.6): What the detector scores below this is no face.
- *   max_faces (an int 1..=50, may change while it runs, default 1): At most this many faces a picture; the detector runs on frames that show fewer.
- *   track (a bool, may change while it runs, default true): Whether faces are followed from frame to frame; else each frame is looked at anew.
+ *   threshold (a float 0..=1, live, default 0.5): Score of the mesh below which faces are dropped.
+ *   face_threshold (a float 0..=1, default 0.6): Score of the detector below which faces are dropped.
+ *   max_faces (an int 1..=50, live, default 1): Maximum number of faces per image; the detector runs on frames with fewer.
+ *   track (a bool, live, default true): Whether faces are tracked from frame to frame; otherwise the detector runs on each frame.
  *
  * Inputs:
  *   image (Image)
@@ -1802,11 +1810,11 @@ static inline opendr_status opendr_infer_face_mesh(const opendr_learner *learner
 }
 
 /*
- * FacialEmotionLearner: mini-XCEPTION tells which of seven emotions the largest face in a frame shows.
+ * FacialEmotionLearner: mini-XCEPTION classifies the emotion of the largest face in an image, one of seven.
  *
  * Parameters:
- *   face_threshold (a float 0..=1, default 0.6): What the detector scores below this is no face.
- *   picture (a str, one of frame, face, may change while it runs, default frame): What pictures show.
+ *   face_threshold (a float 0..=1, default 0.6): Score of the detector below which faces are dropped.
+ *   input_kind (a str, one of frame, face, live, default frame): Content of the images.
  *
  * Inputs:
  *   image (Image)
@@ -1836,15 +1844,15 @@ static inline opendr_status opendr_infer_facial_emotion(const opendr_learner *le
 }
 
 /*
- * ProgressiveSpatioTemporalBLNLearner: PST-BLN tells an expression by the landmarks of a face through time; it trains.
+ * ProgressiveSpatioTemporalBLNLearner: PST-BLN classifies facial expressions from sequences of landmarks; trainable.
  *
  * Parameters:
- *   num_class (an int 2..=10000, default none): Classes. None: as many as the data name.
- *   num_point (an int 2..=1000, default none): Landmarks of a face. None: as many as the data have.
- *   in_channels (an int 2..=3, default 2): Coordinates of a landmark: 2 (a third channel, where there is one, holds scores) or 3.
- *   num_frames (an int 1..=10000, default 20): Frames of a clip: the last of a longer recording; in a shorter one, the face stands still before it.
+ *   num_class (an int 2..=10000, default none): Number of classes; by default that of the data set.
+ *   num_point (an int 2..=1000, default none): Number of landmarks of a face; by default that of the data set.
+ *   in_channels (an int 2..=3, default 2): Coordinates of a landmark: 2 (an optional third channel has scores) or 3.
+ *   num_frames (an int 1..=10000, default 20): Frames of a clip: the last ones of a longer recording; a shorter one is extended by its first frame.
  *   blocksize (an int 1..=256, default 5): Channels of a block.
- *   topology (a list 1..=1000, default 2,2,4,4): Blocks of each layer.
+ *   topology (a list 1..=1000, default 2,2,4,4): Number of blocks of each layer.
  *
  * Inputs:
  *   skeleton_sequence (SkeletonSequence)
@@ -1874,12 +1882,12 @@ static inline opendr_status opendr_infer_progressive_spatio_temporal_bln(const o
 }
 
 /*
- * MovenetLearner: MoveNet finds 18 joints of one person (lightning) or of up to six (multipose).
+ * MovenetLearner: MoveNet detects 18 joints of one person (lightning) or of up to six (multipose).
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.2): Persons below this score are dropped.
- *   keypoint_threshold (a float 0..=1, may change while it runs, default 0.1): Joints below this score are missing.
- *   size (an int 128..=1024 px, default 256): Longer side of the input of MultiPose; a multiple of 32. Larger finds smaller persons.
+ *   threshold (a float 0..=1, live, default 0.2): Score below which persons are dropped.
+ *   keypoint_threshold (a float 0..=1, live, default 0.1): Score below which joints are missing.
+ *   size (an int 128..=1024 px, default 256): Longer side of the input of MultiPose; a multiple of 32. Larger values detect smaller persons.
  *
  * Inputs:
  *   image (Image)
@@ -1909,14 +1917,14 @@ static inline opendr_status opendr_infer_movenet(const opendr_learner *learner,
 }
 
 /*
- * PosenetLearner: PoseNet finds 18 joints of any number of persons; convolutions only.
+ * PosenetLearner: PoseNet detects 18 joints of several persons; convolutions only.
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.25): Persons below this score are dropped.
- *   keypoint_threshold (a float 0..=1, may change while it runs, default 0.1): Joints below this score are missing.
- *   peak_threshold (a float 0.01..=0.99, may change while it runs, default 0.5): Joints below this score start no person.
- *   nms_radius (a float 0..=200 px, may change while it runs, default 20): Joints of one kind nearer than this belong to one person, in pixels of the network's input.
- *   max_detections (an int 1..=100, may change while it runs, default 20): At most this many persons a picture.
+ *   threshold (a float 0..=1, live, default 0.25): Score below which persons are dropped.
+ *   keypoint_threshold (a float 0..=1, live, default 0.1): Score below which joints are missing.
+ *   peak_threshold (a float 0.01..=0.99, live, default 0.5): Score below which joints start no person.
+ *   nms_radius (a float 0..=200 px, live, default 20): Distance below which joints of one kind belong to one person, in pixels of the network's input.
+ *   max_detections (an int 1..=100, live, default 20): Maximum number of persons per image.
  *
  * Inputs:
  *   image (Image)
@@ -1946,15 +1954,15 @@ static inline opendr_status opendr_infer_posenet(const opendr_learner *learner,
 }
 
 /*
- * LightweightOpenPoseLearner: Lightweight OpenPose finds 18 joints of any number of persons and follows them; it trains.
+ * LightweightOpenPoseLearner: Lightweight OpenPose detects and tracks 18 joints of several persons; trainable.
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.1): Persons below this score are dropped. The score is the mean of those of the 18 joints; missing ones count as 0.
- *   keypoint_threshold (a float 0.01..=1, may change while it runs, default 0.1): Joints below this score are missing.
- *   base_height (an int 64..=2048 px, may change while it runs, default 256): Height of the network's input; the width follows from the picture. Larger finds smaller persons.
- *   upsample_ratio (an int 1..=8, may change while it runs, default 4): Steps between the cells of the heat maps in which joints are looked for.
- *   track (a bool, may change while it runs, default true): Whether persons keep their identity from frame to frame.
- *   smooth (a bool, may change while it runs, default true): Whether joints are smoothed over frames; needs `track`.
+ *   threshold (a float 0..=1, live, default 0.1): Score below which persons are dropped. The score is the mean over the 18 joints; missing ones count as 0.
+ *   keypoint_threshold (a float 0.01..=1, live, default 0.1): Score below which joints are missing.
+ *   base_height (an int 64..=2048 px, live, default 256): Height of the network's input; its width follows from the image. Larger values detect smaller persons.
+ *   upsample_ratio (an int 1..=8, live, default 4): Upsampling factor of the heatmaps for the search of joints.
+ *   track (a bool, live, default true): Whether persons keep their identity from frame to frame.
+ *   smooth (a bool, live, default true): Whether joints are smoothed over frames; needs `track`.
  *
  * Inputs:
  *   image (Image)
@@ -1984,22 +1992,22 @@ static inline opendr_status opendr_infer_lightweight_open_pose(const opendr_lear
 }
 
 /*
- * HighResolutionPoseEstimationLearner: Looks at large pictures twice: coarsely, then closer where persons may be.
+ * HighResolutionPoseEstimationLearner: Pose estimation in large images in two passes: coarse, then finer where persons may be.
  *
  * Parameters:
- *   first_pass_height (an int 64..=2048 px, may change while it runs, default 360): Height of the network's input for the whole picture.
- *   second_pass_height (an int 64..=2048 px, may change while it runs, default 540): Height of the network's input for a part of it, at most; small parts are magnified three times.
- *   method (a str, one of adaptive, primary, may change while it runs, default adaptive): How parts of the picture are chosen.
- *   percentage_around_crop (a float 0..=2, may change while it runs, default 0.3): What is added around a part on each side, as a share of its longer side.
- *   heatmap_threshold (a float 0.01..=1, may change while it runs, default 0.1): Where the coarse heat maps are above this, a closer look is worth it.
- *   detail_threshold (a float 1..=256, may change while it runs, default 32): Where brightness differs by more than this within 4 pixels of the coarse picture, a closer look is worth it too, 0..=255; 256 switches it off.
- *   max_regions (an int 1..=64, may change while it runs, default 4): At most this many parts are looked at in one picture; the others follow in the next frames.
- *   max_pixels (an int 1..=100000000 px, may change while it runs, default 300000): The parts that are looked at in one picture have at most so many pixels for the network, but for the first of them.
- *   threshold (a float 0..=1, may change while it runs, default 0.1): Persons below this score are dropped.
- *   keypoint_threshold (a float 0.01..=1, may change while it runs, default 0.1): Joints below this score are missing.
- *   upsample_ratio (an int 1..=8, may change while it runs, default 4): Steps between the cells of the heat maps in which joints are looked for.
- *   track (a bool, may change while it runs, default true): Whether persons keep their identity from frame to frame.
- *   smooth (a bool, may change while it runs, default true): Whether joints are smoothed over frames; needs `track`.
+ *   first_pass_height (an int 64..=2048 px, live, default 360): Height of the network's input for the whole image.
+ *   second_pass_height (an int 64..=2048 px, live, default 540): Maximum height of the network's input for a region; small regions are magnified three times.
+ *   method (a str, one of adaptive, primary, live, default adaptive): Selection of regions.
+ *   percentage_around_crop (a float 0..=2, live, default 0.3): Margin around a region on each side, as a share of its longer side.
+ *   heatmap_threshold (a float 0.01..=1, live, default 0.1): Value of the coarse heatmaps above which a cell is selected.
+ *   detail_threshold (a float 1..=256, live, default 32): Range of brightness within 4 pixels of the coarse image above which a cell is selected, 0..=255; 256 switches it off.
+ *   max_regions (an int 1..=64, live, default 4): Maximum number of regions per image; the others follow in the next frames.
+ *   max_pixels (an int 1..=100000000 px, live, default 300000): Maximum number of pixels of the network's inputs for the regions of an image; the first region is always processed.
+ *   threshold (a float 0..=1, live, default 0.1): Score below which persons are dropped.
+ *   keypoint_threshold (a float 0.01..=1, live, default 0.1): Score below which joints are missing.
+ *   upsample_ratio (an int 1..=8, live, default 4): Upsampling factor of the heatmaps for the search of joints.
+ *   track (a bool, live, default true): Whether persons keep their identity from frame to frame.
+ *   smooth (a bool, live, default true): Whether joints are smoothed over frames; needs `track`.
  *
  * Inputs:
  *   image (Image)
@@ -2029,13 +2037,13 @@ static inline opendr_status opendr_infer_high_resolution_pose_estimation(const o
 }
 
 /*
- * BlazePoseLearner: BlazePose finds 33 points of one person and follows them; hands, feet and face among them.
+ * BlazePoseLearner: BlazePose detects and tracks 33 keypoints of one person, including hands, feet and face.
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.5): A person below this score is dropped, and followed no longer.
- *   keypoint_threshold (a float 0..=1, may change while it runs, default 0.1): Points that are visible with less than this probability are missing.
- *   looks (an int 1..=4, may change while it runs, default 2): How often a person who is not followed yet is looked at: each look starts from where the one before saw the person.
- *   track (a bool, may change while it runs, default true): Whether the person is followed from frame to frame. Switch it off for single pictures.
+ *   threshold (a float 0..=1, live, default 0.5): Score below which the person is dropped and not tracked further.
+ *   keypoint_threshold (a float 0..=1, live, default 0.1): Probability of visibility below which keypoints are missing.
+ *   passes (an int 1..=4, live, default 2): Number of passes for a person who is not tracked yet; each pass starts from the square of the previous one.
+ *   track (a bool, live, default true): Whether the person is tracked from frame to frame; switch it off for single images.
  *
  * Inputs:
  *   image (Image)
@@ -2065,20 +2073,20 @@ static inline opendr_status opendr_infer_blazepose(const opendr_learner *learner
 }
 
 /*
- * FallDetectorLearner: Tells which persons have fallen, by a rule on their poses over time.
+ * FallDetectorLearner: Detects fallen persons by a rule on their poses over time.
  *
  * Parameters:
- *   hold (a float 0..=60 s, may change while it runs, default 0.5): A posture takes the place of another when it was seen for so long.
- *   threshold (a float 0..=1, may change while it runs, default 0.1): Persons below this score are dropped.
- *   keypoint_threshold (a float 0.01..=1, may change while it runs, default 0.1): Joints below this score are missing.
- *   base_height (an int 64..=2048 px, may change while it runs, default 368): Height of the input of LightweightOpenPose. Larger finds smaller persons; MoveNet has a size of its own.
+ *   hold (a float 0..=60 s, live, default 0.5): Time after which a new posture replaces the previous one.
+ *   threshold (a float 0..=1, live, default 0.1): Score below which persons are dropped.
+ *   keypoint_threshold (a float 0.01..=1, live, default 0.1): Score below which joints are missing.
+ *   base_height (an int 64..=2048 px, live, default 368): Height of the input of LightweightOpenPose; larger values detect smaller persons. MoveNet has its own size.
  *
  * Inputs:
  *   image (Image)
  *
  * Outputs:
- *   falls (BoundingBoxList): A box around each person: class 0 where nothing can be told, 1 for a fall, 2 for none.
- *   poses (PoseList): The persons, in the order of the boxes.
+ *   falls (BoundingBoxList): A box around each person: class 0 for an unknown posture, 1 for a fall, 2 for none.
+ *   poses (PoseList): Poses of the persons, in the order of the boxes.
  */
 static inline opendr_status opendr_load_fall_detector(const char *path, const char *device, const char *params_json,
     opendr_learner **learner) {
@@ -2107,15 +2115,15 @@ static inline opendr_status opendr_infer_fall_detector(const opendr_learner *lea
 }
 
 /*
- * HandPoseEstimationLearner: Finds 21 joints of each hand and follows hands through a video.
+ * HandPoseEstimationLearner: Detects 21 joints of each hand and tracks hands through a video.
  *
  * Parameters:
- *   max_hands (an int 1..=16, may change while it runs, default 2): At most this many hands a picture.
- *   threshold (a float 0..=1, may change while it runs, default 0.5): Hands below this score are dropped, and followed no longer.
- *   palm_threshold (a float 0..=1, may change while it runs, default 0.2): Palms below this score are not looked at. Lower than MediaPipe's 0.5: a closer look drops what is no hand.
- *   iou_threshold (a float 0..=1, may change while it runs, default 0.3): Palms that overlap more than this (intersection over union) are one palm.
- *   track (a bool, may change while it runs, default true): Whether hands are followed from frame to frame, each with a number. Switch it off for single pictures.
- *   mirrored (a bool, may change while it runs, default false): Whether pictures are mirrored, as those of a selfie are: what looks like a left hand is a right one then.
+ *   max_hands (an int 1..=16, live, default 2): Maximum number of hands per image.
+ *   threshold (a float 0..=1, live, default 0.5): Score below which hands are dropped and not tracked further.
+ *   palm_threshold (a float 0..=1, live, default 0.2): Score below which palms are dropped. Lower than MediaPipe's 0.5, as the second network rejects false palms.
+ *   iou_threshold (a float 0..=1, live, default 0.3): IoU above which palms count as one.
+ *   track (a bool, live, default true): Whether hands are tracked from frame to frame, each with an identity; switch it off for single images.
+ *   mirrored (a bool, live, default false): Whether images are mirrored, such as selfies: left and right hands are exchanged then.
  *
  * Inputs:
  *   image (Image)
@@ -2145,11 +2153,11 @@ static inline opendr_status opendr_infer_hand_pose(const opendr_learner *learner
 }
 
 /*
- * KeypointGestureLearner: Tells gestures by the key points of a hand or the path of a finger tip; trains in seconds.
+ * KeypointGestureLearner: Classifies gestures from the keypoints of a hand or the path of a finger tip; trains in seconds.
  *
  * Parameters:
  *   hidden (an int 2..=1024, default 32): Features of the first layer; the second has half as many.
- *   dropout (a float 0..=0.9, default 0.1): Share of features that are left out at random in each training step.
+ *   dropout (a float 0..=0.9, default 0.1): Dropout probability.
  *
  * Inputs:
  *   vector (Vector)
@@ -2179,12 +2187,12 @@ static inline opendr_status opendr_infer_keypoint_gesture(const opendr_learner *
 }
 
 /*
- * HandGestureLearner: Tells the gestures of the hands in a picture, and in a video those of a pointing finger.
+ * HandGestureLearner: Classifies the gestures of the hands in an image, and in a video those of a pointing finger.
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.5): Gestures below this score are dropped.
- *   max_hands (an int 1..=16, default 2): At most this many hands a picture.
- *   track (a bool, default true): Whether hands are followed from frame to frame. Switch it off for single pictures: paths need it.
+ *   threshold (a float 0..=1, live, default 0.5): Score below which gestures are dropped.
+ *   max_hands (an int 1..=16, default 2): Maximum number of hands per image.
+ *   track (a bool, default true): Whether hands are tracked from frame to frame, which paths need; switch it off for single images.
  *
  * Inputs:
  *   image (Image)
@@ -2214,11 +2222,11 @@ static inline opendr_status opendr_infer_hand_gesture(const opendr_learner *lear
 }
 
 /*
- * ImageClassifierLearner: Tells the class of a picture; learns the classes of a user's own pictures in minutes.
+ * ImageClassifierLearner: A small image classifier; trainable on your own images in minutes.
  *
  * Parameters:
- *   probabilities (a bool, may change while it runs, default true): Whether the answer has the score of every class.
- *   softmax (a bool, default true): Whether the network's answer is turned into probabilities by a softmax; false for one that ends in its own.
+ *   probabilities (a bool, live, default true): Whether the prediction has the score of every class.
+ *   softmax (a bool, default true): Whether a softmax is applied to the network's output; false for a network that ends in its own.
  *
  * Inputs:
  *   image (Image)
@@ -2248,13 +2256,13 @@ static inline opendr_status opendr_infer_image_classifier(const opendr_learner *
 }
 
 /*
- * MultilinearCompressiveLearner: Tells the class of a picture by few numbers that were measured of it.
+ * MultilinearCompressiveLearner: Classifies an image from a small multilinear measurement of it; trainable.
  *
  * Parameters:
- *   input_shape (a list 1..=4096, default 32,32,3): Height, width and channels (3) of the pictures that are measured; others are stretched to it.
+ *   input_shape (a list 1..=4096, default 32,32,3): Height, width and channels (3) of the measured images; other images are stretched.
  *   compressed_shape (a list 1..=4096, default 16,16,1): Height, width and channels of the measurement.
- *   backbone (a str, one of small, default small): What tells the class.
- *   n_class (an int 2..=10000, default none): Classes. None: as many as the data name.
+ *   backbone (a str, one of small, default small): Network architecture of the classifier.
+ *   n_class (an int 2..=10000, default none): Number of classes. None: the number of classes in the data set.
  *
  * Inputs:
  *   image (Image)
@@ -2284,10 +2292,10 @@ static inline opendr_status opendr_infer_multilinear_compressive(const opendr_le
 }
 
 /*
- * DeeplabLearner: DeepLab v3 tells the class of every pixel, in 8 bits.
+ * DeeplabLearner: DeepLab v3 predicts the class of every pixel, in INT8.
  *
  * Parameters:
- *   full_size (a bool, may change while it runs, default true): Whether the map has the size of the picture; else it has the network's.
+ *   full_size (a bool, live, default true): Whether the map has the size of the image; else it has the network's.
  *
  * Inputs:
  *   image (Image)
@@ -2317,11 +2325,11 @@ static inline opendr_status opendr_infer_deeplab(const opendr_learner *learner,
 }
 
 /*
- * BisenetLearner: BiSeNet tells the class of every pixel; it is trained on a user's own masks.
+ * BisenetLearner: BiSeNet predicts the class of every pixel; trainable on your own masks.
  *
  * Parameters:
- *   full_size (a bool, may change while it runs, default true): Whether the map has the size of the picture; else it has the network's.
- *   num_classes (an int 2..=255, default none): Classes. None: as many as the data name.
+ *   full_size (a bool, live, default true): Whether the map has the size of the image; else it has the network's.
+ *   num_classes (an int 2..=255, default none): Number of classes. None: the number of classes in the data set.
  *
  * Inputs:
  *   image (Image)
@@ -2351,11 +2359,11 @@ static inline opendr_status opendr_infer_bisenet(const opendr_learner *learner,
 }
 
 /*
- * SelfieSegmentationLearner: Tells a person near the camera from what is behind.
+ * SelfieSegmentationLearner: Separates a person near the camera from the background.
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.5): Pixels from this probability on are a person's.
- *   probabilities (a bool, may change while it runs, default false): Whether the map holds probabilities, for blending, instead of classes.
+ *   threshold (a float 0..=1, live, default 0.5): Minimum probability of a pixel of the person.
+ *   probabilities (a bool, live, default false): Whether the map holds probabilities, for blending, instead of classes.
  *
  * Inputs:
  *   image (Image)
@@ -2385,19 +2393,19 @@ static inline opendr_status opendr_infer_selfie_segmentation(const opendr_learne
 }
 
 /*
- * TiledSegmentationLearner: Tells the class of every pixel of large pictures in tiles, within a time budget.
+ * TiledSegmentationLearner: Predicts the class of every pixel of large images in tiles, within a time budget.
  *
  * Parameters:
- *   tile (an int 32..=4096 px, may change while it runs, default 512): Side of a tile in the picture. What is looked for should fill a tenth of it or more.
- *   tile_overlap (an int 0..=2048 px, may change while it runs, default 64): What neighbouring tiles share: what is smaller lies whole in one of them. At most half of a tile counts.
- *   whole (a bool, may change while it runs, default true): Whether the whole picture is looked at, too: for what is larger than a tile.
- *   time_budget (a float 0..=60000 ms, may change while it runs, default 0): Time for one picture; a tile that has begun is finished, and one is always looked at. 0: no limit, and answers that depend on nothing but the pictures.
- *   max_tiles (an int 0..=100000, may change while it runs, default 0): At most so many tiles of one picture are looked at, the others in the next ones; 0: no limit.
- *   detail_threshold (a float 0..=255, may change while it runs, default 16): A tile in which brightness differs by no more than this within 16 pixels, 0..=255, is empty; 0: no tile is.
- *   change_threshold (a float 0..=255, may change while it runs, default 6): A tile is looked at again once the brightness of 16 x 16 pixels in it changed by more than this, 0..=255; until then its last answer holds. 0: always.
- *   memory (an int 0..=1000, may change while it runs, default 5): For so many pictures the answer of a tile that changed holds, if there was no time to look again.
- *   rotation (an int 0..=1000, may change while it runs, default 4): In every so-manyth picture the tile that was not looked at for longest is, be there anything or not; 0: never.
- *   parallel_tiles (an int 0..=64, default 0): Tiles that are looked at side by side, each on a thread with a copy of the network; 0: as many as there are cores, at most four.
+ *   tile (an int 32..=4096 px, live, default 512): Side of a tile in the image. Objects should cover a tenth of it or more.
+ *   tile_overlap (an int 0..=2048 px, live, default 64): Overlap of neighbouring tiles: a smaller object is completely in one of them. At most half of a tile counts.
+ *   whole (a bool, live, default true): Whether the whole image is processed too, for objects larger than a tile.
+ *   time_budget (a float 0..=60000 ms, live, default 0): Time budget per image. A tile in progress is finished, and one is always processed. With 0 there is no limit, and the results are deterministic.
+ *   max_tiles (an int 0..=100000, live, default 0): Maximum number of tiles per image; the others are processed in the next images. 0: no limit.
+ *   detail_threshold (a float 0..=255, live, default 16): Range of brightness within 16 pixels, 0..=255, up to which a tile is empty; 0: no tile is.
+ *   change_threshold (a float 0..=255, live, default 6): Change of the brightness of 16 x 16 pixels, 0..=255, above which a tile is processed again; until then its last result is valid. 0: always.
+ *   memory (an int 0..=1000, live, default 5): Number of images for which the last result of a changed tile stays valid, if there is no time to process it again.
+ *   rotation (an int 0..=1000, live, default 4): Number of images after which the tile that was processed longest ago is processed again, in any case; 0: never.
+ *   parallel_tiles (an int 0..=64, default 0): Number of tiles that are processed in parallel, each on a thread with a copy of the network; 0: the number of cores, at most four.
  *
  * Inputs:
  *   image (Image)
@@ -2427,15 +2435,15 @@ static inline opendr_status opendr_infer_tiled_segmentation(const opendr_learner
 }
 
 /*
- * BodyPixLearner: BodyPix finds persons with the pixels of each.
+ * BodyPixLearner: BodyPix detects persons with a mask each.
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.2): Persons below this score are dropped.
- *   mask_threshold (a float 0.01..=0.99, may change while it runs, default 0.5): Pixels from this score on belong to a person.
- *   peak_threshold (a float 0.01..=0.99, may change while it runs, default 0.4): Joints below this score start no person.
- *   nms_radius (a float 0..=200 px, may change while it runs, default 30): Joints of one kind nearer than this belong to one person, in pixels of the network's input.
- *   max_detections (an int 1..=100, may change while it runs, default 20): At most this many persons a picture.
- *   resolution (an int 65..=1537 px, may change while it runs, default 513): Longer side of the network's input. Larger finds smaller persons.
+ *   threshold (a float 0..=1, live, default 0.2): Minimum score of a person.
+ *   mask_threshold (a float 0.01..=0.99, live, default 0.5): Minimum score of a pixel of a person.
+ *   peak_threshold (a float 0.01..=0.99, live, default 0.4): Minimum score of a joint from which a person is decoded.
+ *   nms_radius (a float 0..=200 px, live, default 30): Radius within which joints of one kind belong to one person, in pixels of the network's input.
+ *   max_detections (an int 1..=100, live, default 20): Maximum number of persons per image.
+ *   resolution (an int 65..=1537 px, live, default 513): Longer side of the network's input. A larger one detects smaller persons.
  *
  * Inputs:
  *   image (Image)
@@ -2465,17 +2473,17 @@ static inline opendr_status opendr_infer_bodypix(const opendr_learner *learner,
 }
 
 /*
- * BinaryHighResolutionLearner: Tells where a picture of full high definition shows what it has learned to look for; it trains.
+ * BinaryHighResolutionLearner: A small convolutional network detects where a high-resolution image shows the trained class; trainable.
  *
  * Parameters:
- *   architecture (a str, one of VGG_720p, VGG_1080p, default VGG_720p): The network that is trained; a loaded model is of the one it was trained as.
+ *   architecture (a str, one of VGG_720p, VGG_1080p, default VGG_720p): Architecture of the network that is trained; a loaded model has its own.
  *
  * Inputs:
  *   image (Image)
  *
  * Outputs:
- *   map (Heatmap): Probabilities `[rows, columns]`: that of row `y` and column `x` is of the square patch whose left-top corner is (8x, 8y).
- *   category (Category): Class 1 where one of the patches is rather that than class 0, by the probability of the best; of a picture of a patch's size its class.
+ *   map (Heatmap): Probabilities `[rows, columns]`: that of row `y` and column `x` is of the square patch whose top left corner is (8x, 8y).
+ *   category (Category): Class 1 where at least one patch has a probability above 0.5, with that of the best patch, else class 0. For an image of the size of a patch, the class of the patch.
  */
 static inline opendr_status opendr_load_binary_high_resolution(const char *path, const char *device, const char *params_json,
     opendr_learner **learner) {
@@ -2504,21 +2512,21 @@ static inline opendr_status opendr_infer_binary_high_resolution(const opendr_lea
 }
 
 /*
- * EfficientPsLearner: Tells class and object of every pixel, by fusing DeepLab, CenterNet and BodyPix.
+ * EfficientPsLearner: Predicts class and instance of every pixel by fusing DeepLab, CenterNet and BodyPix.
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.3): Objects below this score are dropped.
- *   box_masks (a bool, may change while it runs, default true): Whether objects of classes that no map of classes knows are the whole of their boxes; else they are left out.
- *   min_overlap (a float 0..=1, may change while it runs, default 0.1): Objects are dropped of whose box the map of classes confirms a smaller share.
- *   min_leftover (a float 0..=1, may change while it runs, default 0.1): Regions of a countable class outside of all boxes are objects from this share of the picture on.
- *   min_stuff (a float 0..=1, may change while it runs, default 0.02): Regions that are not countable are told from this share of the picture on.
+ *   threshold (a float 0..=1, live, default 0.3): Minimum score of an object.
+ *   box_masks (a bool, live, default true): Whether objects of classes without a class map fill their whole boxes; else they are dropped.
+ *   min_overlap (a float 0..=1, live, default 0.1): Minimum share of a box that the class map confirms.
+ *   min_leftover (a float 0..=1, live, default 0.1): Minimum share of the image of a region of a thing class outside of all boxes that counts as an object.
+ *   min_stuff (a float 0..=1, live, default 0.02): Minimum share of the image of a stuff region.
  *
  * Inputs:
  *   image (Image)
  *
  * Outputs:
- *   instance (Heatmap): 1000 times the class and the number of the object in its class, from 1; 0 where the class is not countable. 255000 where nothing is known.
- *   semantic (Heatmap): The class of each pixel; 255 where nothing is known.
+ *   instance (Heatmap): 1000 times the class plus the index of the object within its class, from 1; 0 for stuff classes. 255000 for void.
+ *   semantic (Heatmap): Class of each pixel; 255 for void.
  */
 static inline opendr_status opendr_load_efficient_ps(const char *path, const char *device, const char *params_json,
     opendr_learner **learner) {
@@ -2547,21 +2555,21 @@ static inline opendr_status opendr_infer_efficient_ps(const opendr_learner *lear
 }
 
 /*
- * EfficientLpsLearner: Tells class and object of every point of a lidar's scan; it trains on labelled scans.
+ * EfficientLpsLearner: Predicts class and instance of every point of a lidar scan; trainable on labelled scans.
  *
  * Parameters:
- *   things (a list, default ): The classes whose objects are told apart; a model brings those that it was trained with.
- *   projected (a bool, may change while it runs, default false): Whether the answers are maps of the range image's size instead of a number for each point.
- *   max_gap (a float 0.01..=10 m, may change while it runs, default 0.8): Points of neighbouring pixels farther apart than this are of two objects.
- *   min_points (an int 1..=100000, may change while it runs, default 5): Objects of fewer pixels are not told.
+ *   things (a list, default ): Thing classes, whose objects are distinguished; a loaded model has its own.
+ *   projected (a bool, live, default false): Whether the maps have the size of the range image instead of one value per point.
+ *   max_gap (a float 0.01..=10 m, live, default 0.8): Maximum distance between points of neighbouring pixels of one object.
+ *   min_points (an int 1..=100000, live, default 5): Minimum number of pixels of an object.
  *
  * Inputs:
- *   point_cloud (PointCloud): What the lidar saw; a PointCloudWithCalibration places the boxes in its camera's frame and picture.
+ *   point_cloud (PointCloud): Scan of a lidar; with a PointCloudWithCalibration, the boxes are in its camera's frame and image.
  *
  * Outputs:
- *   instance (Heatmap): Of each point (`[points]`) or pixel (`[rows, columns]`): 1000 times the class and the number of the object in its class, from 1; 0 where the class is not countable. 255000 where nothing is known.
- *   semantic (Heatmap): The class; 255 where nothing is known.
- *   depth (Heatmap): Metres, `[rows, columns]`, 0 where there is nothing; empty unless `projected`.
+ *   instance (Heatmap): Instance of each point (`[points]`) or pixel (`[rows, columns]`): 1000 times the class plus the index of the object within its class, from 1; 0 for stuff classes. 255000 for void.
+ *   semantic (Heatmap): Class of each point or pixel; 255 for void.
+ *   depth (Heatmap): Range in metres, `[rows, columns]`, 0 where there is no point; empty unless `projected`.
  */
 static inline opendr_status opendr_load_efficient_lps(const char *path, const char *device, const char *params_json,
     opendr_learner **learner) {
@@ -2595,36 +2603,36 @@ static inline opendr_status opendr_infer_efficient_lps(const opendr_learner *lea
 }
 
 /*
- * SemiGlobalMatchingLearner: Tells the distance of what two cameras see, by semi-global matching.
+ * SemiGlobalMatchingLearner: Computes disparity, depth and obstacles of a stereo pair by semi-global matching.
  *
  * Parameters:
- *   min_disparity (an int 0..=4096 px, may change while it runs, default 0): The least disparity that is looked for.
- *   num_disparities (an int 1..=1024 px, may change while it runs, default 64): How many disparities are looked for; rounded up to a multiple of 16.
- *   p1 (an int 0..=193, may change while it runs, default 8): What a step of one pixel in disparity costs, in differing neighbours of 62.
- *   p2 (an int 0..=193, may change while it runs, default 40): What a larger step costs.
- *   uniqueness_ratio (an int 0..=99 %, may change while it runs, default 5): By how many percent the second best disparity must be worse.
- *   disp12_max_diff (an int -1..=1000 px, may change while it runs, default 1): How far the right picture may disagree; -1 does not ask it.
- *   speckle_window_size (an int 0..=1000000 px, may change while it runs, default 100): Islands of at most so many pixels are forgotten.
- *   speckle_range (a float 0..=1000 px, may change while it runs, default 1): Neighbours belong to one island where they differ by at most so much.
- *   fill (a bool, may change while it runs, default false): Whether holes are filled from the background in their row.
- *   shrink (an int 1..=16 px, may change while it runs, default 1): Squares of as many pixels along each side are matched as one: faster, coarser.
- *   focal_length (a float 0..=1000000 px, may change while it runs, default 0): Focal length of the rectified pair. Depths need it.
- *   baseline (a float 0..=1000 m, may change while it runs, default 0): Between the cameras. Depths need it.
- *   disparity_offset (a float -10000..=10000 px, may change while it runs, default 0): How much further right the right principal point lies (Middlebury's doffs).
- *   camera_height (a float 0..=100 m, may change while it runs, default 0): How high the cameras are above the floor. Obstacles need it.
- *   camera_pitch (a float -89..=89 deg, may change while it runs, default 0): How far the cameras look down.
- *   min_height (a float 0..=100 m, may change while it runs, default 0.2): What rises less above the floor is no obstacle.
- *   max_height (a float 0..=100 m, may change while it runs, default 2): What hangs higher above the floor is no obstacle.
- *   max_distance (a float 0.1..=100 m, may change while it runs, default 10): What is farther is no obstacle.
+ *   min_disparity (an int 0..=4096 px, live, default 0): Minimum disparity.
+ *   num_disparities (an int 1..=1024 px, live, default 64): Number of disparities; rounded up to a multiple of 16.
+ *   p1 (an int 0..=193, live, default 8): Penalty of a disparity change of one pixel, in differing bits of the 62-bit census.
+ *   p2 (an int 0..=193, live, default 40): Penalty of a larger disparity change.
+ *   uniqueness_ratio (an int 0..=99 %, live, default 5): Margin by which the best disparity must be better than the second best.
+ *   disp12_max_diff (an int -1..=1000 px, live, default 1): Maximum difference in the left-right check; -1 for no check.
+ *   speckle_window_size (an int 0..=1000000 px, live, default 100): Maximum size of speckles, which are removed.
+ *   speckle_range (a float 0..=1000 px, live, default 1): Maximum disparity difference between neighbours of one speckle.
+ *   fill (a bool, live, default false): Whether holes are filled from the background in their row.
+ *   shrink (an int 1..=16 px, live, default 1): Factor by which the images are downscaled for matching: faster, coarser.
+ *   focal_length (a float 0..=1000000 px, live, default 0): Focal length of the rectified pair. Required for depths.
+ *   baseline (a float 0..=1000 m, live, default 0): Distance between the cameras. Required for depths.
+ *   disparity_offset (a float -10000..=10000 px, live, default 0): Difference of the principal points' x, right minus left (Middlebury's doffs).
+ *   camera_height (a float 0..=100 m, live, default 0): Height of the cameras above the floor. Required for obstacles.
+ *   camera_pitch (a float -89..=89 deg, live, default 0): Pitch of the cameras, positive downwards.
+ *   min_height (a float 0..=100 m, live, default 0.2): Minimum height of an obstacle above the floor.
+ *   max_height (a float 0..=100 m, live, default 2): Maximum height of an obstacle above the floor.
+ *   max_distance (a float 0.1..=100 m, live, default 10): Maximum distance of an obstacle.
  *
  * Inputs:
- *   left (Image): Of the left camera.
- *   right (Image): Of the right camera.
+ *   left (Image): Image of the left camera.
+ *   right (Image): Image of the right camera.
  *
  * Outputs:
- *   disparity (Heatmap): Disparity of each pixel of the left picture, pixels; 0 where nothing is known.
- *   depth (Heatmap): Distance ahead of each pixel, metres; 0 where nothing is known. Empty without focal length and baseline.
- *   obstacles (BoundingBox3DList): What stands on the floor, nearest first, seen from a level camera at the same place. None without focal length, baseline and camera height.
+ *   disparity (Heatmap): Disparity of each pixel of the left image in pixels; 0 where it is unknown.
+ *   depth (Heatmap): Depth of each pixel in metres; 0 where it is unknown. Empty without focal length and baseline.
+ *   obstacles (BoundingBox3DList): Obstacles on the floor, nearest first, in the frame of a level camera at the same position. Empty without focal length, baseline and camera height.
  */
 static inline opendr_status opendr_load_semi_global_matching(const char *path, const char *device, const char *params_json,
     opendr_learner **learner) {
@@ -2661,18 +2669,18 @@ static inline opendr_status opendr_infer_semi_global_matching(const opendr_learn
 }
 
 /*
- * AmbiguityMeasureLearner: Tells whether a map of values leaves a doubt where the best place is.
+ * AmbiguityMeasureLearner: Measures whether the highest peak of a map of values is ambiguous.
  *
  * Parameters:
- *   threshold (a float 0..=0.999999, may change while it runs, default 0.5): A map is ambiguous where what is left beside the best peak has this probability.
- *   temperature (a float 0.000001..=1000000, may change while it runs, default 1): Of the softmax; larger ones make maps more ambiguous.
+ *   threshold (a float 0..=0.999999, live, default 0.5): Minimum probability of all peaks except the best one at which a map is ambiguous.
+ *   temperature (a float 0.000001..=1000000, live, default 1): Temperature of the softmax; a higher one makes maps more ambiguous.
  *
  * Inputs:
  *   heatmap (Heatmap)
  *
  * Outputs:
- *   category (Category): Class 1 where it is ambiguous, else 0; the probabilities are those of the best peak and of all others.
- *   peaks (Heatmap): `[peaks, 4]`: row, column, value and probability of each peak, the most persistent first.
+ *   category (Category): Class 1 if the map is ambiguous, else 0; the probabilities are those of the best peak and of all others.
+ *   peaks (Heatmap): Peaks `[peaks, 4]`: row, column, value and probability, sorted by persistence.
  */
 static inline opendr_status opendr_load_ambiguity_measure(const char *path, const char *device, const char *params_json,
     opendr_learner **learner) {
@@ -2701,16 +2709,16 @@ static inline opendr_status opendr_infer_ambiguity_measure(const opendr_learner 
 }
 
 /*
- * GrConvNetLearner: GR-ConvNet finds where a gripper can take hold, in colour and depth.
+ * GrConvNetLearner: GR-ConvNet detects grasps of a parallel-jaw gripper in colour and depth.
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.2): Least quality of a grasp.
- *   max_grasps (an int 1..=100, may change while it runs, default 5): Most grasps of a picture.
- *   distance (an int 1..=224 px, may change while it runs, default 20): Least distance between two grasps, pixels of the network's map of 224.
+ *   threshold (a float 0..=1, live, default 0.2): Minimum quality of a grasp.
+ *   max_grasps (an int 1..=100, live, default 5): Maximum number of grasps per image.
+ *   distance (an int 1..=224 px, live, default 20): Minimum distance between two grasps, in pixels of the network's map of 224.
  *
  * Inputs:
- *   image (Image): In colour.
- *   depth (Image): Of the same size and place: one channel, 16 bits in millimetres or floats in metres; 0 where nothing is known.
+ *   image (Image): The colour image.
+ *   depth (Image): Depth of the same view and size: one channel, 16 bits in millimetres or floats in metres; 0 for unknown.
  *
  * Outputs:
  *   poses (PoseList)
@@ -2740,18 +2748,18 @@ static inline opendr_status opendr_infer_gr_conv_net(const opendr_learner *learn
 }
 
 /*
- * SpatioTemporalGCNLearner: ST-GCN tells what a person does from a clip of its moving skeleton; it trains.
+ * SpatioTemporalGCNLearner: ST-GCN classifies the action in a clip of a moving skeleton; trainable.
  *
  * Parameters:
- *   num_class (an int 2..=10000, default none): Classes. None: as many as the data name.
- *   num_point (an int 2..=1000, default none): Joints. None: as many as the graph has.
- *   num_person (an int 1..=64, default 2): Persons of a recording that are looked at, the first ones; the answer is the mean over those that are there.
- *   in_channels (an int 2..=3, default 3): Coordinates of a joint: 2 (a third channel, where there is one, holds scores) or 3.
- *   graph_type (a str, one of ntu, kinetics, coco, jhmdb, default ntu): Joints and bones.
- *   method_name (a str, one of stgcn, default stgcn): The network.
- *   num_frames (an int 1..=10000, default 300): Frames of a clip: the last of a longer recording; in a shorter one, the person stands still before it.
- *   channels (a list 1..=4096, default 64,64,64,64,128,128,128,256,256,256): Channels of each block.
- *   temporal_kernel (an int 3..=101, default 9): Frames that a block sees; odd.
+ *   num_class (an int 2..=10000, default none): Number of classes. None: the number of classes in the data set.
+ *   num_point (an int 2..=1000, default none): Number of joints. None: that of the graph.
+ *   num_person (an int 1..=64, default 2): Maximum number of persons, the first ones of a recording; the prediction is the mean over those present.
+ *   in_channels (an int 2..=3, default 3): Number of coordinates of a joint: 2 (a third channel of the input holds scores) or 3.
+ *   graph_type (a str, one of ntu, kinetics, coco, jhmdb, default ntu): Skeleton: joints and bones.
+ *   method_name (a str, one of stgcn, default stgcn): Network architecture.
+ *   num_frames (an int 1..=10000, default 300): Number of frames of a clip: the last ones of a longer recording; a shorter one is preceded by its repeated first frame.
+ *   channels (a list 1..=4096, default 64,64,64,64,128,128,128,256,256,256): Output channels of each block.
+ *   temporal_kernel (an int 3..=101, default 9): Kernel size in time of each block; odd.
  *
  * Inputs:
  *   skeleton_sequence (SkeletonSequence)
@@ -2781,18 +2789,18 @@ static inline opendr_status opendr_infer_spatio_temporal_gcn(const opendr_learne
 }
 
 /*
- * CoSTGCNLearner: CoST-GCN tells after every frame what a person does by its moving skeleton; it trains.
+ * CoSTGCNLearner: CoST-GCN classifies the action of a moving skeleton, updated with every frame; trainable.
  *
  * Parameters:
- *   num_classes (an int 2..=10000, default none): Classes. None: as many as the data name.
- *   num_point (an int 2..=1000, default none): Joints. None: as many as the graph has.
- *   num_person (an int 1..=64, default 2): Persons of a recording that are looked at, the first ones; the answer is the mean over those seen so far.
- *   in_channels (an int 2..=3, default 3): Coordinates of a joint: 2 (a third channel, where there is one, holds scores) or 3.
- *   graph_type (a str, one of ntu, kinetics, coco, jhmdb, default ntu): Joints and bones.
- *   backbone (a str, one of costgcn, default costgcn): The network.
- *   sequence_len (an int 1..=10000, default 300): Frames that an answer speaks of.
- *   channels (a list 1..=4096, default 64,64,64,64,128,128,128,256,256,256): Channels of each block.
- *   temporal_kernel (an int 3..=101, default 9): Frames that a block sees; odd.
+ *   num_classes (an int 2..=10000, default none): Number of classes. None: the number of classes in the data set.
+ *   num_point (an int 2..=1000, default none): Number of joints. None: that of the graph.
+ *   num_person (an int 1..=64, default 2): Maximum number of persons, the first ones of a recording; the prediction is the mean over those present so far.
+ *   in_channels (an int 2..=3, default 3): Number of coordinates of a joint: 2 (a third channel of the input holds scores) or 3.
+ *   graph_type (a str, one of ntu, kinetics, coco, jhmdb, default ntu): Skeleton: joints and bones.
+ *   backbone (a str, one of costgcn, default costgcn): Network architecture.
+ *   sequence_len (an int 1..=10000, default 300): Number of frames that a prediction covers.
+ *   channels (a list 1..=4096, default 64,64,64,64,128,128,128,256,256,256): Output channels of each block.
+ *   temporal_kernel (an int 3..=101, default 9): Kernel size in time of each block; odd.
  *
  * Inputs:
  *   skeleton_sequence (SkeletonSequence)
@@ -2822,15 +2830,15 @@ static inline opendr_status opendr_infer_co_st_gcn(const opendr_learner *learner
 }
 
 /*
- * X3DLearner: X3D tells what persons do in a clip; it trains.
+ * X3DLearner: X3D classifies the activity in a video clip; trainable.
  *
  * Parameters:
- *   backbone (a str, one of s, xs, m, l, default s): Frames of a clip, pixels of a frame and depth of the network, where nothing else is given.
- *   num_classes (an int 2..=10000, default none): Classes. None: as many as the data name.
- *   num_frames (an int 1..=256, default none): Frames of a clip, taken evenly from it. None: as the backbone has.
- *   side (an int 32..=1024 px, default none): Pixels of a side of a frame. None: as the backbone has.
- *   width (a float 0.1..=8, default 1): Factor on the channels.
- *   depth (a float 0.1..=8, default none): Factor on the number of blocks. None: as the backbone has.
+ *   backbone (a str, one of s, xs, m, l, default s): Default frames of a clip, side of a frame and depth of the network.
+ *   num_classes (an int 2..=10000, default none): Number of classes. None: the number of classes in the data set.
+ *   num_frames (an int 1..=256, default none): Number of frames of a clip, sampled evenly. None: that of the backbone.
+ *   side (an int 32..=1024 px, default none): Side of a frame in pixels. None: that of the backbone.
+ *   width (a float 0.1..=8, default 1): Factor on the number of channels.
+ *   depth (a float 0.1..=8, default none): Factor on the number of blocks. None: that of the backbone.
  *
  * Inputs:
  *   video (Video)
@@ -2860,15 +2868,15 @@ static inline opendr_status opendr_infer_x3d(const opendr_learner *learner,
 }
 
 /*
- * CoX3DLearner: CoX3D tells after every picture of a video what persons do; it trains.
+ * CoX3DLearner: CoX3D classifies the activity in a video, updated with every frame; trainable.
  *
  * Parameters:
- *   backbone (a str, one of s, xs, m, l, default s): Frames of a clip, pixels of a frame and depth of the network, where nothing else is given.
- *   num_classes (an int 2..=10000, default none): Classes. None: as many as the data name.
- *   temporal_window_size (an int 1..=256, default none): Frames that an answer is averaged over. None: as the backbone has.
- *   side (an int 32..=1024 px, default none): Pixels of a side of a frame. None: as the backbone has.
- *   width (a float 0.1..=8, default 1): Factor on the channels.
- *   depth (a float 0.1..=8, default none): Factor on the number of blocks. None: as the backbone has.
+ *   backbone (a str, one of s, xs, m, l, default s): Default frames of a clip, side of a frame and depth of the network.
+ *   num_classes (an int 2..=10000, default none): Number of classes. None: the number of classes in the data set.
+ *   temporal_window_size (an int 1..=256, default none): Number of frames over which the features are averaged. None: that of the backbone.
+ *   side (an int 32..=1024 px, default none): Side of a frame in pixels. None: that of the backbone.
+ *   width (a float 0.1..=8, default 1): Factor on the number of channels.
+ *   depth (a float 0.1..=8, default none): Factor on the number of blocks. None: that of the backbone.
  *
  * Inputs:
  *   image (Image)
@@ -2898,18 +2906,18 @@ static inline opendr_status opendr_infer_co_x3d(const opendr_learner *learner,
 }
 
 /*
- * AudiovisualEmotionLearner: Tells an emotion by the voice and the face; it trains.
+ * AudiovisualEmotionLearner: Recognises the emotion of a person from voice and face; trainable.
  *
  * Parameters:
- *   num_class (an int 2..=10000, default none): Classes. None: as many as the data name.
- *   seq_length (an int 2..=256, default 15): Frames of the faces, evenly spaced over the video.
- *   fusion (a str, one of ia, it, lt, default ia): How the branches learn of each other.
- *   sample_rate (an int 8000..=48000 Hz, default 22050): Samples of the sound a second.
- *   seconds (a float 0.2..=60 s, default 3.6): Sound that is looked at, from its begin; what is shorter is filled up.
+ *   num_class (an int 2..=10000, default none): Number of classes. None: the number of classes in the data set.
+ *   seq_length (an int 2..=256, default 15): Number of frames of the face, sampled evenly from the video.
+ *   fusion (a str, one of ia, it, lt, default ia): Fusion of the two branches.
+ *   sample_rate (an int 8000..=48000 Hz, default 22050): Sample rate of the audio.
+ *   seconds (a float 0.2..=60 s, default 3.6): Duration of the audio that is used, from its start; shorter audio is padded.
  *
  * Inputs:
  *   audio (Audio): The voice, at the learner's sample rate.
- *   video (Video): The face, cut out, `[3, frames, height, width]`. NULL leaves it out.
+ *   video (Video): The cropped face, `[3, frames, height, width]`. Optional: may be NULL.
  *
  * Outputs:
  *   category (Category)
@@ -2939,15 +2947,15 @@ static inline opendr_status opendr_infer_audiovisual_emotion(const opendr_learne
 }
 
 /*
- * RgbdHandGestureLearner: Tells a hand's gesture by its colour and its distance; it trains.
+ * RgbdHandGestureLearner: Recognises hand gestures from colour and depth; trainable.
  *
  * Parameters:
- *   n_class (an int 2..=10000, default none): Classes. None: as many as the data name.
- *   architecture (a str, one of small, default small): The network.
+ *   n_class (an int 2..=10000, default none): Number of classes. None: the number of classes in the data set.
+ *   architecture (a str, one of small, default small): Network architecture.
  *
  * Inputs:
- *   image (Image): The picture.
- *   depth (Image): Distances of the same view, one channel: floats in metres, 16 bits in millimetres, 8 bits in centimetres. What is not above 0 is not known.
+ *   image (Image): The colour image.
+ *   depth (Image): Depth of the same view, one channel: floats in metres, 16 bits in millimetres, 8 bits in centimetres. Values of at most 0 are unknown.
  *
  * Outputs:
  *   category (Category)
@@ -2977,15 +2985,15 @@ static inline opendr_status opendr_infer_rgbd_hand_gesture(const opendr_learner 
 }
 
 /*
- * GatedRecurrentUnitLearner: A gated recurrent unit tells abnormal heart beats from normal ones.
+ * GatedRecurrentUnitLearner: A gated recurrent unit classifies heart beats as normal or abnormal.
  *
  * Parameters:
- *   in_channels (an int 1..=1024, default none): Features of a series (leads of a recording). None: as the data have.
- *   series_length (an int 1..=1000000, default none): Instants of a series. None: as the data have.
- *   n_class (an int 2..=10000, default none): Classes. None: as many as the data name.
- *   dropout (a float 0..=0.99, default 0.2): Share of features that are left out at random in each training step.
- *   sample_rate (a float 50..=10000 Hz, default none): Instants a second of a stream, in which beats are found. None: each piece of a stream is a whole series.
- *   recurrent_unit (an int 1..=4096, default 512): Features of the recurrent unit's state.
+ *   in_channels (an int 1..=1024, default none): Number of features of a series (leads of a recording). None: that of the data set.
+ *   series_length (an int 1..=1000000, default none): Number of time steps of a series. None: that of the data set.
+ *   n_class (an int 2..=10000, default none): Number of classes. None: the number of classes in the data set.
+ *   dropout (a float 0..=0.99, default 0.2): Dropout probability.
+ *   sample_rate (a float 50..=10000 Hz, default none): Sample rate of a stream, in which beats are detected. None: each piece of a stream is a whole series.
+ *   recurrent_unit (an int 1..=4096, default 512): Number of features of the recurrent unit's state.
  *
  * Inputs:
  *   timeseries (Timeseries)
@@ -3015,17 +3023,17 @@ static inline opendr_status opendr_infer_gated_recurrent_unit(const opendr_learn
 }
 
 /*
- * AttentionNeuralBagOfFeatureLearner: A bag of learnt features with attention tells abnormal heart beats from normal ones.
+ * AttentionNeuralBagOfFeatureLearner: A neural bag of features with attention classifies heart beats as normal or abnormal.
  *
  * Parameters:
- *   in_channels (an int 1..=1024, default none): Features of a series (leads of a recording). None: as the data have.
- *   series_length (an int 1..=1000000, default none): Instants of a series. None: as the data have.
- *   n_class (an int 2..=10000, default none): Classes. None: as many as the data name.
- *   dropout (a float 0..=0.99, default 0.2): Share of features that are left out at random in each training step.
- *   sample_rate (a float 50..=10000 Hz, default none): Instants a second of a stream, in which beats are found. None: each piece of a stream is a whole series.
- *   n_codeword (an int 1..=4096, default 256): Learnt features.
- *   quantization_type (a str, one of nbof, tnbof, default nbof): What is put into the bag.
- *   attention_type (a str, one of spatial, temporal, spatialsa, temporalsa, spatiotemporal, default spatial): Over what attention is spread.
+ *   in_channels (an int 1..=1024, default none): Number of features of a series (leads of a recording). None: that of the data set.
+ *   series_length (an int 1..=1000000, default none): Number of time steps of a series. None: that of the data set.
+ *   n_class (an int 2..=10000, default none): Number of classes. None: the number of classes in the data set.
+ *   dropout (a float 0..=0.99, default 0.2): Dropout probability.
+ *   sample_rate (a float 50..=10000 Hz, default none): Sample rate of a stream, in which beats are detected. None: each piece of a stream is a whole series.
+ *   n_codeword (an int 1..=4096, default 256): Number of codewords.
+ *   quantization_type (a str, one of nbof, tnbof, default nbof): Input of the bag of features.
+ *   attention_type (a str, one of spatial, temporal, spatialsa, temporalsa, spatiotemporal, default spatial): Axis and kind of the attention.
  *
  * Inputs:
  *   timeseries (Timeseries)
@@ -3055,17 +3063,17 @@ static inline opendr_status opendr_infer_attention_neural_bag_of_feature(const o
 }
 
 /*
- * EdgeSpeechNetsLearner: EdgeSpeechNets tell which of a few words was spoken; in four sizes.
+ * EdgeSpeechNetsLearner: EdgeSpeechNets classify spoken words; four sizes.
  *
  * Parameters:
- *   architecture (a str, one of A, B, C, D, default A): Which network is trained; a loaded model has its own.
- *   output_classes_n (an int 2..=10000, default none): Classes. None: as many as the data name (in OpenDR 20, whatever the data).
- *   preprocess_to_mfcc (a bool, default true): Whether cepstra are made of the input; unset, it is a Timeseries of cepstra already, as many a frame as the network takes.
- *   sample_rate (an int 4000..=384000 Hz, default 16000): Samples a second of the sound.
- *   voice_activity (a str, default none): A container of `silero_vad`: seconds of a stream in which nobody speaks are then not answered, which is the wake-word mode. None: every second is answered.
+ *   architecture (a str, one of A, B, C, D, default A): Network that is trained; a loaded model has its own.
+ *   output_classes_n (an int 2..=10000, default none): Number of classes. None: the number of classes in the data set (OpenDR's default is 20).
+ *   preprocess_to_mfcc (a bool, default true): Whether cepstra are computed from the input. Unset, the input is a Timeseries of cepstra with the network's number of coefficients.
+ *   sample_rate (an int 4000..=384000 Hz, default 16000): Sample rate of the audio.
+ *   voice_activity (a str, default none): Path of a container of `silero_vad`; seconds of a stream without speech then yield no prediction (wake-word mode). None: every second yields a prediction.
  *
  * Inputs:
- *   audio (Audio): What was heard; a Timeseries of one feature is taken to be at the learner's sample rate.
+ *   audio (Audio): Audio; a Timeseries of one feature has the learner's sample rate.
  *
  * Outputs:
  *   category (Category)
@@ -3092,17 +3100,17 @@ static inline opendr_status opendr_infer_edge_speech_nets(const opendr_learner *
 }
 
 /*
- * QuadraticSelfOnnLearner: Two layers of quadratic neurons tell which of a few words was spoken.
+ * QuadraticSelfOnnLearner: A Self-ONN of two layers of quadratic neurons classifies spoken words.
  *
  * Parameters:
- *   expansion_order (an int 1..=9, default 3): Up to which power neurons take their input, in the network that is trained; a loaded model has its own.
- *   output_classes_n (an int 2..=10000, default none): Classes. None: as many as the data name (in OpenDR 20, whatever the data).
- *   preprocess_to_mfcc (a bool, default true): Whether cepstra are made of the input; unset, it is a Timeseries of cepstra already, as many a frame as the network takes.
- *   sample_rate (an int 4000..=384000 Hz, default 16000): Samples a second of the sound.
- *   voice_activity (a str, default none): A container of `silero_vad`: seconds of a stream in which nobody speaks are then not answered, which is the wake-word mode. None: every second is answered.
+ *   expansion_order (an int 1..=9, default 3): Highest power of the input in a neuron of the network that is trained; a loaded model has its own.
+ *   output_classes_n (an int 2..=10000, default none): Number of classes. None: the number of classes in the data set (OpenDR's default is 20).
+ *   preprocess_to_mfcc (a bool, default true): Whether cepstra are computed from the input. Unset, the input is a Timeseries of cepstra with the network's number of coefficients.
+ *   sample_rate (an int 4000..=384000 Hz, default 16000): Sample rate of the audio.
+ *   voice_activity (a str, default none): Path of a container of `silero_vad`; seconds of a stream without speech then yield no prediction (wake-word mode). None: every second yields a prediction.
  *
  * Inputs:
- *   audio (Audio): What was heard; a Timeseries of one feature is taken to be at the learner's sample rate.
+ *   audio (Audio): Audio; a Timeseries of one feature has the learner's sample rate.
  *
  * Outputs:
  *   category (Category)
@@ -3129,19 +3137,19 @@ static inline opendr_status opendr_infer_quadratic_self_onn(const opendr_learner
 }
 
 /*
- * MatchboxNetLearner: MatchboxNet tells which of a few words was spoken; small and quick.
+ * MatchboxNetLearner: MatchboxNet classifies spoken words; small and fast.
  *
  * Parameters:
- *   number_of_blocks (an int 1..=64, default 3): Blocks with a way past them (B in the paper).
- *   number_of_subblocks (an int 1..=64, default 1): Convolutions in a block (R in the paper).
- *   number_of_channels (an int 1..=4096, default 64): Channels of the blocks (C in the paper).
- *   output_classes_n (an int 2..=10000, default none): Classes. None: as many as the data name (in OpenDR 20, whatever the data).
- *   preprocess_to_mfcc (a bool, default true): Whether cepstra are made of the input; unset, it is a Timeseries of cepstra already, as many a frame as the network takes.
- *   sample_rate (an int 4000..=384000 Hz, default 16000): Samples a second of the sound.
- *   voice_activity (a str, default none): A container of `silero_vad`: seconds of a stream in which nobody speaks are then not answered, which is the wake-word mode. None: every second is answered.
+ *   number_of_blocks (an int 1..=64, default 3): Number of residual blocks (B in the paper).
+ *   number_of_subblocks (an int 1..=64, default 1): Number of convolutions per block (R in the paper).
+ *   number_of_channels (an int 1..=4096, default 64): Number of channels of the blocks (C in the paper).
+ *   output_classes_n (an int 2..=10000, default none): Number of classes. None: the number of classes in the data set (OpenDR's default is 20).
+ *   preprocess_to_mfcc (a bool, default true): Whether cepstra are computed from the input. Unset, the input is a Timeseries of cepstra with the network's number of coefficients.
+ *   sample_rate (an int 4000..=384000 Hz, default 16000): Sample rate of the audio.
+ *   voice_activity (a str, default none): Path of a container of `silero_vad`; seconds of a stream without speech then yield no prediction (wake-word mode). None: every second yields a prediction.
  *
  * Inputs:
- *   audio (Audio): What was heard; a Timeseries of one feature is taken to be at the learner's sample rate.
+ *   audio (Audio): Audio; a Timeseries of one feature has the learner's sample rate.
  *
  * Outputs:
  *   category (Category)
@@ -3168,13 +3176,13 @@ static inline opendr_status opendr_infer_matchboxnet(const opendr_learner *learn
 }
 
 /*
- * DsCnnLearner: DS-CNN tells twelve words apart, in 52 kB and 8 bits.
+ * DsCnnLearner: DS-CNN classifies twelve spoken words, in 52 kB and INT8.
  *
  * Parameters:
- *   voice_activity (a str, default none): A container of `silero_vad`: seconds of a stream in which nobody speaks are then not answered, which is the wake-word mode. None: every second is answered.
+ *   voice_activity (a str, default none): Path of a container of `silero_vad`; seconds of a stream without speech then yield no prediction (wake-word mode). None: every second yields a prediction.
  *
  * Inputs:
- *   audio (Audio): What was heard; a Timeseries of one feature is taken to be at the learner's sample rate.
+ *   audio (Audio): Audio; a Timeseries of one feature has the learner's sample rate.
  *
  * Outputs:
  *   category (Category)
@@ -3201,14 +3209,14 @@ static inline opendr_status opendr_infer_ds_cnn(const opendr_learner *learner,
 }
 
 /*
- * SileroVadLearner: Silero VAD tells whether somebody speaks, 32 ms at a time.
+ * SileroVadLearner: Silero VAD detects speech in chunks of 32 ms.
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.5): The least probability that speech begins with; it is quiet again 0.15 below.
- *   min_silence_duration_ms (an int 0..=60000 ms, may change while it runs, default 100): How long it must be quiet until speech is over.
+ *   threshold (a float 0..=1, live, default 0.5): Minimum probability at which speech starts; it ends 0.15 below.
+ *   min_silence_duration_ms (an int 0..=60000 ms, live, default 100): Duration of silence that ends speech.
  *
  * Inputs:
- *   audio (Audio): What was heard; a Timeseries of one feature is taken to be at the learner's sample rate.
+ *   audio (Audio): Audio; a Timeseries of one feature has the learner's sample rate.
  *
  * Outputs:
  *   category (Category)
@@ -3235,31 +3243,31 @@ static inline opendr_status opendr_infer_silero_vad(const opendr_learner *learne
 }
 
 /*
- * WhisperLearner: Whisper writes down what was said, with times.
+ * WhisperLearner: Whisper transcribes speech, with timestamps.
  *
  * Parameters:
- *   temperature (a list 0..=10, may change while it runs, default 0,0.2,0.4,0.6,0.8,1): How random tokens are drawn; the next is tried where the answer to the one before stammers or is unlikely. 0 takes the likeliest.
- *   compression_ratio_threshold (a float 0..=1000, may change while it runs, default 2.4): Text that packs better than this stammers. None: no text does.
- *   logprob_threshold (a float -1000..=0, may change while it runs, default -0.8): Tokens whose logarithms of probabilities have a smaller mean are unlikely. None: none are.
- *   no_speech_threshold (a float 0..=1, may change while it runs, default 0.6): A window that is silent with a higher probability, and whose text is unlikely, has none. None: all have.
- *   condition_on_previous_text (a bool, may change while it runs, default false): Whether the text of a window is what the next begins with: connected, but errors go on too.
- *   language (a str, may change while it runs, default en): What is spoken, e.g. `en`. None: multilingual models find out in the first 30 s.
- *   sample_len (an int 1..=448, may change while it runs, default none): The most tokens of a window. None: 224.
- *   best_of (an int 1..=64, may change while it runs, default none): Texts that are drawn at each temperature above 0, of which the likeliest is taken. None: one.
- *   beam_size (an int 1..=64, may change while it runs, default none): Texts that are followed at temperature 0. None: one, always the likeliest token.
- *   patience (a float 0..=64, may change while it runs, default none): So many times as many texts are finished before such a search ends. None: 1.
- *   length_penalty (a float 0..=1, may change while it runs, default none): How longer texts are preferred (Google's GNMT), 0 to 1. None: by the mean of their tokens.
- *   initial_prompt (a str, may change while it runs, default none): Text that the first window begins behind: names and spellings to be expected.
- *   prefix (a str, may change while it runs, default none): Text that every window begins with.
- *   suppress_tokens (a str, may change while it runs, default -1): Numbers of tokens that are never written, separated by commas; -1 stands for signs that nobody speaks. None: all may be.
- *   suppress_blank (a bool, may change while it runs, default true): Whether no window begins with a space or its end.
- *   without_timestamps (a bool, may change while it runs, default false): Whether segments have no times; then there is one for each window.
- *   max_initial_timestamp (a float 0..=30 s, may change while it runs, default 1): The latest begin of a window's first segment. None: anywhere.
- *   partial_interval (a float 0.5..=30 s, may change while it runs, default 3): How often a stream tells what it understood of a phrase that goes on. None: only phrases that are over.
- *   silence_level (a float 0..=1, may change while it runs, default 0.002): Sound in a stream whose root mean square is lower is silence.
+ *   temperature (a list 0..=10, live, default 0,0.2,0.4,0.6,0.8,1): Sampling temperatures; the next one is used where the text at the previous one is repetitive or unlikely. 0 selects the likeliest token.
+ *   compression_ratio_threshold (a float 0..=1000, live, default 2.4): Compression ratio above which a text counts as repetitive. None: no limit.
+ *   logprob_threshold (a float -1000..=0, live, default -0.8): Mean log-probability of the tokens below which a text counts as unlikely. None: no limit.
+ *   no_speech_threshold (a float 0..=1, live, default 0.6): Probability of no speech above which a window with an unlikely text counts as silent. None: no window does.
+ *   condition_on_previous_text (a bool, live, default false): Whether the text of a window is the prompt of the next: more coherent, but errors can propagate.
+ *   language (a str, live, default en): Language of the speech, e.g. `en`. None: multilingual models detect it in the first 30 s.
+ *   sample_len (an int 1..=448, live, default none): Maximum number of tokens per window. None: 224.
+ *   best_of (an int 1..=64, live, default none): Number of samples at each temperature above 0, of which the likeliest is selected. None: one.
+ *   beam_size (an int 1..=64, live, default none): Beam size at temperature 0. None: greedy decoding.
+ *   patience (a float 0..=64, live, default none): Factor on the number of finished texts that ends a beam search. None: 1.
+ *   length_penalty (a float 0..=1, live, default none): Exponent of the length penalty (Google's GNMT), 0 to 1. None: candidates are ranked by the mean of their tokens.
+ *   initial_prompt (a str, live, default none): Prompt of the first window: names and spellings to expect.
+ *   prefix (a str, live, default none): Text at the start of every window.
+ *   suppress_tokens (a str, live, default -1): Token ids that are never decoded, separated by commas; -1 stands for symbols that are not spoken. None: no token is suppressed.
+ *   suppress_blank (a bool, live, default true): Whether a window must not begin with a space or with its end.
+ *   without_timestamps (a bool, live, default false): Whether to omit timestamps; each window is then one segment.
+ *   max_initial_timestamp (a float 0..=30 s, live, default 1): Latest start of a window's first segment. None: no limit.
+ *   partial_interval (a float 0.5..=30 s, live, default 3): Interval of partial transcriptions of an unfinished phrase in a stream. None: finished phrases only.
+ *   silence_level (a float 0..=1, live, default 0.002): Root mean square below which audio in a stream is silence.
  *
  * Inputs:
- *   audio (Audio): What was heard; a Timeseries of one feature is taken to be at the learner's sample rate.
+ *   audio (Audio): Audio; a Timeseries of one feature has the learner's sample rate.
  *
  * Outputs:
  *   transcription (WhisperTranscription)
@@ -3286,11 +3294,11 @@ static inline opendr_status opendr_infer_whisper(const opendr_learner *learner,
 }
 
 /*
- * PpoLearner: Proximal policy optimisation: the method to begin with, for actions of any kind.
+ * PpoLearner: Proximal policy optimisation: a robust first choice, for discrete and continuous actions.
  *
  * Parameters:
- *   deterministic (a bool, may change while it runs, default true): Whether it takes its most likely actions, else some by chance.
- *   seed (an int, default 0): What fixes those by chance, from the beginning of a stream on.
+ *   deterministic (a bool, live, default true): Whether the policy takes its most likely actions instead of sampling.
+ *   seed (an int, default 0): Seed of sampled actions, at the start of a stream.
  *
  * Inputs:
  *   observation (Observation)
@@ -3320,11 +3328,11 @@ static inline opendr_status opendr_infer_ppo(const opendr_learner *learner,
 }
 
 /*
- * SacLearner: Soft actor-critic: few steps for continuous actions, where steps are dear.
+ * SacLearner: Soft actor-critic: sample-efficient, for continuous actions and environments with expensive steps.
  *
  * Parameters:
- *   deterministic (a bool, may change while it runs, default true): Whether it takes its most likely actions, else some by chance.
- *   seed (an int, default 0): What fixes those by chance, from the beginning of a stream on.
+ *   deterministic (a bool, live, default true): Whether the policy takes its most likely actions instead of sampling.
+ *   seed (an int, default 0): Seed of sampled actions, at the start of a stream.
  *
  * Inputs:
  *   observation (Observation)
@@ -3354,11 +3362,11 @@ static inline opendr_status opendr_infer_sac(const opendr_learner *learner,
 }
 
 /*
- * Td3Learner: Twin delayed policy gradients: deterministic policies of continuous actions.
+ * Td3Learner: Twin delayed deep deterministic policy gradient: deterministic policies for continuous actions.
  *
  * Parameters:
- *   deterministic (a bool, may change while it runs, default true): Whether it takes its most likely actions, else some by chance.
- *   seed (an int, default 0): What fixes those by chance, from the beginning of a stream on.
+ *   deterministic (a bool, live, default true): Whether the policy takes its most likely actions instead of sampling.
+ *   seed (an int, default 0): Seed of sampled actions, at the start of a stream.
  *
  * Inputs:
  *   observation (Observation)
@@ -3388,11 +3396,11 @@ static inline opendr_status opendr_infer_td3(const opendr_learner *learner,
 }
 
 /*
- * DqnLearner: Deep Q-learning: one choice among few, learnt from steps of the past.
+ * DqnLearner: Deep Q-learning: discrete actions, trained from a replay buffer.
  *
  * Parameters:
- *   deterministic (a bool, may change while it runs, default true): Whether it takes its most likely actions, else some by chance.
- *   seed (an int, default 0): What fixes those by chance, from the beginning of a stream on.
+ *   deterministic (a bool, live, default true): Whether the policy takes its most likely actions instead of sampling.
+ *   seed (an int, default 0): Seed of sampled actions, at the start of a stream.
  *
  * Inputs:
  *   observation (Observation)
@@ -3422,11 +3430,11 @@ static inline opendr_status opendr_infer_dqn(const opendr_learner *learner,
 }
 
 /*
- * EndToEndPlanningRLLearner: Flies a drone between obstacles, from its depth camera to heading and yaw.
+ * EndToEndPlanningRLLearner: Flies a drone between obstacles: maps its depth images to heading and yaw.
  *
  * Parameters:
- *   deterministic (a bool, may change while it runs, default true): Whether it takes its most likely actions, else some by chance.
- *   seed (an int, default 0): What fixes those by chance, from the beginning of a stream on.
+ *   deterministic (a bool, live, default true): Whether the policy takes its most likely actions instead of sampling.
+ *   seed (an int, default 0): Seed of sampled actions, at the start of a stream.
  *
  * Inputs:
  *   observation (Observation)

@@ -2,15 +2,15 @@
 #define OPENDR_COMPAT_H
 
 /*
- * OpenDR 3.0's own names over opendr.h, for programs that were written for its C API. The names are frozen; docs/c.md has a
- * table of them. Each header of OpenDR is in the folder opendr, by its name; this one includes all of them.
+ * OpenDR 3.0's own names, implemented with opendr.h, for programs written for its C API. The names are frozen; docs/c.md has a
+ * table of them. Each header of OpenDR is in the folder opendr, under its name; this header includes all of them.
  *
- * Failures: as in OpenDR, functions return nothing. They print what went wrong to stderr, opendr_last_error() has it too, and
- * a model that was not loaded has NULL for its handles.
+ * Errors: as in OpenDR, functions return nothing. They print the message to stderr, opendr_last_error() returns it too, and
+ * the handles of a model that was not loaded are NULL.
  *
- * Memory: loadX() and initX() begin a model, picture or vector, and freeX() of the same name frees it; freeing it again does
+ * Memory: loadX() and initX() initialise a model, image or vector, and freeX() of the same name frees it; freeing it again does
  * nothing. loadTensor(), loadTensorVector(), loadDetectionsVector(), iterTensorVector(), forwardX() and the initX() that fill
- * a tensor take what was begun by initTensor(), initTensorVector() or initDetectionsVector(), and free what is in it.
+ * a tensor take objects initialised by initTensor(), initTensorVector() or initDetectionsVector(), and free their content.
  */
 #include "opendr/activity_recognition_x3d.h"
 #include "opendr/data.h"

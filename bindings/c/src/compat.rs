@@ -1,4 +1,4 @@
-//! What the headers with OpenDR's own names (`include/opendr`) need beyond the rest: values out of a model's JSON.
+//! Access to the values of a model's JSON, for the headers with OpenDR's own names (`include/opendr`).
 
 use std::cell::RefCell;
 use std::ffi::{CString, c_char};
@@ -13,8 +13,8 @@ thread_local! {
     static LAST_TEXT: RefCell<CString> = RefCell::default();
 }
 
-/// The text under a key of a JSON object, or of the object under section where that is not NULL; of a list, the item at
-/// index. "" when there is none. Valid until the next call of this thread.
+/// Returns the text under a key of a JSON object, or of the object under section if that is not NULL; of a list, the item at
+/// index. Returns "" if there is none. Valid until the next call of this thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_json_text(
     json: *const c_char,
@@ -27,7 +27,7 @@ pub unsafe extern "C" fn opendr_json_text(
         let value = unsafe { json_value(json, section, key, index) }?;
         let found = value
             .as_str()
-            .ok_or_else(|| Error::not_found("there is no text under this key; give another"))?;
+            .ok_or_else(|| Error::not_found("the value of this key is not a text; give another key"))?;
         let found = CString::new(found.replace('\0', "\u{fffd}")).unwrap_or_default();
         let kept = LAST_TEXT.try_with(|last| {
             last.replace(found);
@@ -37,7 +37,7 @@ pub unsafe extern "C" fn opendr_json_text(
     })
 }
 
-/// The number under a key, as opendr_json_text() finds it; 0 when there is none.
+/// Returns the number under a key, with the arguments of opendr_json_text(); 0 if there is none.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_json_number(
     json: *const c_char,
@@ -48,7 +48,9 @@ pub unsafe extern "C" fn opendr_json_number(
     guard_value(0.0, || {
         // SAFETY: the rules at the top of opendr.h.
         let value = unsafe { json_value(json, section, key, index) }?;
-        value.as_f64().ok_or_else(|| Error::not_found("there is no number under this key; give another"))
+        value
+            .as_f64()
+            .ok_or_else(|| Error::not_found("the value of this key is not a number; give another key"))
     })
 }
 
@@ -63,9 +65,9 @@ unsafe fn json_value(
     // SAFETY: the caller's promise.
     let (json, section, key) =
         unsafe { (text(json, "json")?, optional_text(section, "section")?, text(key, "key")?) };
-    let mut value: Value =
-        serde_json::from_str(json).map_err(|error| Error::format("json is no JSON").with_source(error))?;
-    let missing = |name: &str| Error::not_found(format!("there is no key {name:?}; give one that there is"));
+    let mut value: Value = serde_json::from_str(json)
+        .map_err(|error| Error::format("json is not valid JSON").with_source(error))?;
+    let missing = |name: &str| Error::not_found(format!("there is no key {name:?}; give an existing key"));
     for name in section.into_iter().chain([key]) {
         value = value.get_mut(name).map(Value::take).ok_or_else(|| missing(name))?;
     }

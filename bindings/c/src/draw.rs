@@ -1,4 +1,4 @@
-//! Drawing what was found.
+//! Drawing of targets.
 
 use opendr::vision::draw::{Style, draw};
 use opendr::{Error, Result, Value};
@@ -7,8 +7,7 @@ use crate::handle;
 use crate::status::{guard, opendr_status};
 use crate::value::{AnyValue, opendr_image, opendr_value};
 
-/// Draws a target onto a picture; a type that has no place in a picture leaves it as it is. Copies of the picture stay
-/// as they are.
+/// Draws a target on an image; types that cannot be drawn leave it unchanged. Copies of the image are not changed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_value_draw(
     target: *const opendr_value,
@@ -19,10 +18,10 @@ pub unsafe extern "C" fn opendr_value_draw(
 }
 
 /// # Safety
-/// Both are null or lead to handles that nobody else uses meanwhile.
+/// Both are null or point to handles that are not used elsewhere meanwhile.
 unsafe fn draw_value(target: *const opendr_value, image: *mut opendr_image) -> Result<()> {
     if target.cast::<opendr_image>() == image && !image.is_null() {
-        return Err(Error::invalid_input("a picture cannot be drawn onto itself; give a target"));
+        return Err(Error::invalid_input("an image cannot be drawn on itself; give a target"));
     }
     // SAFETY: the caller's promise.
     let (target, image) =

@@ -1,4 +1,4 @@
-//! Environments that policies act in, with the meaning of Gymnasium.
+//! Environments with the semantics of Gymnasium.
 
 use std::ffi::c_char;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -15,42 +15,42 @@ use crate::status::{guard, opendr_status};
 use crate::texts::Texts;
 use crate::value::{AnyValue, opendr_observation};
 
-/// A world to act in; threads take turns.
+/// An environment; calls from several threads are serialised.
 pub struct opendr_env(());
 
-/// What an environment is like.
+/// The specification of an environment.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct opendr_env_spec {
-    /// Name and version; lives as long as the environment.
+    /// Name and version; valid as long as the environment.
     pub id: *const c_char,
-    /// What is seen, in Gymnasium's words; lives as long as the environment.
+    /// Observation space in Gymnasium's notation; valid as long as the environment.
     pub observation_space: *const c_char,
-    /// What can be done, in Gymnasium's words; lives as long as the environment.
+    /// Action space in Gymnasium's notation; valid as long as the environment.
     pub action_space: *const c_char,
-    /// How many numbers an observation has.
+    /// Count of numbers of an observation.
     pub observation_length: usize,
-    /// How many numbers an action has.
+    /// Count of numbers of an action.
     pub action_length: usize,
-    /// After how many steps an episode is truncated; 0 for never.
+    /// Number of steps after which an episode is truncated; 0: unlimited.
     pub max_episode_steps: u32,
 }
 
-/// What a step earned, and whether the episode is over.
+/// Reward of a step, and whether the episode is over.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct opendr_env_step_result {
     /// The reward.
     pub reward: f64,
-    /// The task itself ended.
+    /// Whether a terminal state was reached.
     pub terminated: bool,
-    /// The episode was cut by a time limit.
+    /// Whether the episode was truncated by a time limit.
     pub truncated: bool,
 }
 
 struct World {
     environment: Box<dyn Environment>,
-    seen: Vec<f32>,
+    observation: Vec<f32>,
     info: Info,
 }
 
@@ -66,7 +66,7 @@ impl Held for Env {
 
 impl Env {
     /// # Safety
-    /// As [`handle::held`].
+    /// The same as for [`handle::held`].
     unsafe fn of<'a>(env: *const opendr_env) -> Result<&'a Self> {
         // SAFETY: the caller's promise.
         unsafe { handle::held(env, "env") }
@@ -78,21 +78,21 @@ impl Env {
 }
 
 impl World {
-    /// Gives the variable what is seen, where the caller wants it.
-    fn show(&self, out: Option<Out<opendr_observation>>) -> Result<()> {
+    /// Writes the observation to the variable, if the caller gave one.
+    fn write_observation(&self, out: Option<Out<opendr_observation>>) -> Result<()> {
         if let Some(out) = out {
             let space = &self.environment.spec().observation;
-            out.set(AnyValue::from(observation_from_numbers(space, &self.seen)?));
+            out.set(AnyValue::from(observation_from_numbers(space, &self.observation)?));
         }
         Ok(())
     }
 }
 
-/// A variable for an observation; NULL where the caller wants none.
+/// Returns the variable for an observation; `None` if the caller gave NULL.
 ///
 /// # Safety
-/// As [`Out::new`].
-unsafe fn wanted(observation: *mut *mut opendr_observation) -> Result<Option<Out<opendr_observation>>> {
+/// The same as for [`Out::new`].
+unsafe fn optional_out(observation: *mut *mut opendr_observation) -> Result<Option<Out<opendr_observation>>> {
     if observation.is_null() {
         return Ok(None);
     }
@@ -100,7 +100,7 @@ unsafe fn wanted(observation: *mut *mut opendr_observation) -> Result<Option<Out
     unsafe { Out::new(observation, "observation") }.map(Some)
 }
 
-/// What an id and parameters from C make.
+/// Returns the source of environments for an id and parameters from C.
 ///
 /// # Safety
 /// They are null or texts.
@@ -110,14 +110,14 @@ pub(crate) unsafe fn source_of(id: *const c_char, params_json: *const c_char) ->
         (text(id, "id")?, optional_text(params_json, "the parameters of an environment")?.unwrap_or("{}"))
     };
     let params: ParamMap = serde_json::from_str(params).map_err(|error| {
-        Error::invalid_param("the parameters of an environment are no JSON object").with_source(error)
+        Error::invalid_param("the parameters of an environment are not a JSON object").with_source(error)
     })?;
     RegisteredSource::new(id, &params)
 }
 
-/// Makes an environment, e.g. "CartPole-v1".
+/// Creates an environment, e.g. "CartPole-v1".
 ///
-/// params_json is an object of its parameters; NULL takes the defaults.
+/// params_json is an object of its parameters; NULL uses the defaults.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_env_make(
     id: *const c_char,
@@ -128,14 +128,14 @@ pub unsafe extern "C" fn opendr_env_make(
         // SAFETY: the rules at the top of opendr.h.
         let (out, source) = unsafe { (Out::new(env, "env")?, source_of(id, params_json)?) };
         let environment = source.make()?;
-        let seen = vec![0.0; environment.spec().observation.len()];
-        let world = Mutex::new(World { environment, seen, info: Info::default() });
+        let observation = vec![0.0; environment.spec().observation.len()];
+        let world = Mutex::new(World { environment, observation, info: Info::default() });
         out.set(Env { world, texts: Texts::default() });
         Ok(())
     })
 }
 
-/// Tells what an environment is like.
+/// Writes the specification of an environment into spec.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_env_describe(
     env: *const opendr_env,
@@ -161,9 +161,9 @@ pub unsafe extern "C" fn opendr_env_describe(
     })
 }
 
-/// Begins an episode; observation, which may be NULL, receives what is seen, to be freed.
+/// Begins an episode; observation, which may be NULL, receives the observation, which must be freed.
 ///
-/// A seed fixes everything random until the next one; NULL goes on with the stream of random numbers.
+/// A seed determines all random numbers until the next seed; NULL continues the current stream of random numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_env_reset(
     env: *mut opendr_env,
@@ -172,17 +172,18 @@ pub unsafe extern "C" fn opendr_env_reset(
 ) -> opendr_status {
     guard(|| {
         // SAFETY: the rules at the top of opendr.h.
-        let (env, out) = unsafe { (Env::of(env)?, wanted(observation)?) };
+        let (env, out) = unsafe { (Env::of(env)?, optional_out(observation)?) };
         // SAFETY: null, or a number by the rules at the top of opendr.h.
         let seed = unsafe { seed.as_ref() }.copied();
         let mut world = env.lock();
-        let World { environment, seen, info } = &mut *world;
-        *info = environment.reset(seed, &ResetOptions::new(), seen)?;
-        world.show(out)
+        let World { environment, observation, info } = &mut *world;
+        *info = environment.reset(seed, &ResetOptions::new(), observation)?;
+        world.write_observation(out)
     })
 }
 
-/// Takes a step with an action of count numbers; observation, which may be NULL, receives what is seen, to be freed.
+/// Takes a step with an action of count numbers; observation, which may be NULL, receives the observation, which must be
+/// freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_env_step(
     env: *mut opendr_env,
@@ -195,18 +196,18 @@ pub unsafe extern "C" fn opendr_env_step(
         let place = place(result, "result")?;
         // SAFETY: the rules at the top of opendr.h.
         let (env, action, out) =
-            unsafe { (Env::of(env)?, slice(action, count, "action")?, wanted(observation)?) };
+            unsafe { (Env::of(env)?, slice(action, count, "action")?, optional_out(observation)?) };
         let mut world = env.lock();
-        let World { environment, seen, info } = &mut *world;
-        let Step { reward, terminated, truncated, info: told } = environment.step(action, seen)?;
-        *info = told;
+        let World { environment, observation, info } = &mut *world;
+        let Step { reward, terminated, truncated, info: new_info } = environment.step(action, observation)?;
+        *info = new_info;
         // SAFETY: the rules at the top of opendr.h.
         unsafe { place.write(opendr_env_step_result { reward, terminated, truncated }) };
-        world.show(out)
+        world.write_observation(out)
     })
 }
 
-/// A number that the last reset or step told beside observation and reward, e.g. "success".
+/// Writes a number of the info of the last reset or step, e.g. "success", into value.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_env_info(
     env: *const opendr_env,
@@ -220,7 +221,7 @@ pub unsafe extern "C" fn opendr_env_info(
         let world = env.lock();
         let number = world.info.get(name).ok_or_else(|| {
             let names: Vec<_> = world.info.iter().map(|(name, _)| name).collect();
-            Error::not_found(format!("no {name:?} was told; there are: {}", names.join(", ")))
+            Error::not_found(format!("the info has no {name:?}; its names are: {}", names.join(", ")))
         })?;
         // SAFETY: the rules at the top of opendr.h.
         unsafe { place.write(number) };
@@ -228,7 +229,7 @@ pub unsafe extern "C" fn opendr_env_info(
     })
 }
 
-/// Frees an environment and makes the variable NULL.
+/// Frees an environment and sets the variable to NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_env_close(env: *mut *mut opendr_env) -> opendr_status {
     // SAFETY: the rules at the top of opendr.h.

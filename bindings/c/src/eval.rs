@@ -1,4 +1,4 @@
-//! A learner measured on a data set.
+//! Evaluation of a learner on a data set.
 
 use std::ffi::c_char;
 
@@ -12,12 +12,12 @@ use crate::pointer::{optional_text, path};
 use crate::status::{guard, opendr_status};
 use crate::string::{Text, opendr_string};
 
-/// Measures the learner on a data set on disk.
+/// Evaluates the learner on a data set on disk.
 ///
-/// dataset_type is its format, e.g. "coco"; NULL recognises it. options_json is an object: "metric", "metric_params",
+/// dataset_type is its format, e.g. "coco"; NULL detects it. options_json is an object: "metric", "metric_params",
 /// "split", "limit", "out", "skip_broken", "classes" (an object: classes of the data set by classes of the learner), "by_number",
-/// "resamples", and "then", a list of pretrained learners behind this one, such as ["byte_track"], so that the pipeline is
-/// measured; NULL takes the defaults. The outcome is an object of JSON: under "scalars" the numbers by name; it is to be freed.
+/// "resamples", and "then", a list of pretrained learners after this one, such as ["byte_track"], to evaluate the pipeline;
+/// NULL uses the defaults. The outcome is a JSON object, with the scalars by name under "scalars"; it must be freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_eval(
     learner: *const opendr_learner,
@@ -31,7 +31,7 @@ pub unsafe extern "C" fn opendr_eval(
 }
 
 /// # Safety
-/// As [`opendr_eval`].
+/// The same as for [`opendr_eval`].
 unsafe fn eval(
     learner: *const opendr_learner,
     dataset: *const c_char,
@@ -49,25 +49,25 @@ unsafe fn eval(
             optional_text(options_json, "options_json")?.unwrap_or("{}"),
         )
     };
-    let refused = |error| {
-        Error::invalid_param("options_json is no JSON object of options of opendr_eval").with_source(error)
+    let invalid = |error| {
+        Error::invalid_param("options_json is not a JSON object of options of opendr_eval").with_source(error)
     };
     let mut options: serde_json::Map<String, serde_json::Value> =
-        serde_json::from_str(options).map_err(refused)?;
+        serde_json::from_str(options).map_err(invalid)?;
     let then = options.remove("then").unwrap_or_else(|| serde_json::Value::Array(Vec::new()));
-    let then: Vec<String> = serde_json::from_value(then).map_err(refused)?;
-    let options: EvalOptions = serde_json::from_value(options.into()).map_err(refused)?;
+    let then: Vec<String> = serde_json::from_value(then).map_err(invalid)?;
+    let options: EvalOptions = serde_json::from_value(options.into()).map_err(invalid)?;
     let external = ExternalDataset::new(dataset, dataset_type);
     let dataset = DatasetRef::External(&external);
-    let measured = match then.is_empty() {
+    let evaluated = match then.is_empty() {
         true => options.run(&mut loaded.lock(), loaded.entry, dataset, &Silent)?,
         false => eval_pipeline(loaded, &then, &options, dataset)?,
     };
-    out.set(Text::of_json(&measured)?);
+    out.set(Text::of_json(&evaluated)?);
     Ok(())
 }
 
-/// Measures the learner with pretrained ones behind it.
+/// Evaluates a pipeline of the learner and pretrained learners after it.
 fn eval_pipeline(
     loaded: &Loaded,
     then: &[String],

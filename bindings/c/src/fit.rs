@@ -1,4 +1,4 @@
-//! A learner trained on a data set.
+//! Training of learners.
 
 use std::ffi::{c_char, c_void};
 
@@ -13,13 +13,13 @@ use crate::progress::{Listener, opendr_progress};
 use crate::status::{guard, opendr_status};
 use crate::string::{Text, opendr_string};
 
-/// Trains the learner on a data set on disk, from its model where it has one, and loads the result.
+/// Trains the learner on a data set on disk, from its model if it has one, and loads the result.
 ///
-/// dataset_type is its format, e.g. "coco"; NULL recognises it. options_json is an object: "params" (of the training), "split",
+/// dataset_type is its format, e.g. "coco"; NULL detects it. options_json is an object: "params" (of the training), "split",
 /// "val", "val_format", "val_split", "limit", "out", "logging_path", "resume", "teacher", "teacher_threshold",
-/// "teacher_classes", "keep_empty", "skip_broken"; NULL takes the defaults. progress, which may be NULL, hears how it goes
-/// and may stop it: what was done is then saved, to be resumed. The report is an object of JSON: under "curves" and
-/// "scalars" the numbers by name, under "model" the path of the trained container; it is to be freed.
+/// "teacher_classes", "keep_empty", "skip_broken"; NULL uses the defaults. progress, which may be NULL, receives the progress
+/// and may stop the training, which then saves a checkpoint to resume from. The report is a JSON object, with the values by
+/// name under "curves" and "scalars" and the path of the trained container under "model"; it must be freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_fit(
     learner: *const opendr_learner,
@@ -37,7 +37,7 @@ pub unsafe extern "C" fn opendr_fit(
 }
 
 /// # Safety
-/// As [`opendr_fit`].
+/// The same as for [`opendr_fit`].
 unsafe fn fit(
     learner: *const opendr_learner,
     dataset: *const c_char,
@@ -66,15 +66,15 @@ unsafe fn fit(
 
 fn options_from_json(json: &str) -> Result<FitOptions> {
     serde_json::from_str(json).map_err(|error| {
-        Error::invalid_param("options_json is no JSON object of options of opendr_fit").with_source(error)
+        Error::invalid_param("options_json is not a JSON object of options of opendr_fit").with_source(error)
     })
 }
 
-/// Trains a policy in environments that id names, e.g. "CartPole-v1", from its model where it has one, and loads the result.
+/// Trains a policy in the environment id, e.g. "CartPole-v1", from its model if it has one, and loads the result.
 ///
-/// env_params_json is an object of parameters of the environment; NULL takes the defaults. options_json is an object:
-/// "params" (of the training), "out", "logging_path", "resume"; NULL takes the defaults. progress and report are as
-/// those of opendr_fit.
+/// env_params_json is an object of parameters of the environment; NULL uses the defaults. options_json is an object:
+/// "params" (of the training), "out", "logging_path", "resume"; NULL uses the defaults. progress and report are the same as
+/// for opendr_fit.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_fit_in(
     learner: *const opendr_learner,
@@ -98,7 +98,8 @@ pub unsafe extern "C" fn opendr_fit_in(
         };
         let options = options_from_json(options)?;
         let environments = FitEnvironments { env: &source, val_env: None };
-        let fitted = opendr::fit_in(loaded.lock().as_mut(), loaded.entry, environments, &options, &listener)?;
+        let fitted =
+            opendr::fit_policy(loaded.lock().as_mut(), loaded.entry, environments, &options, &listener)?;
         out.set(Text::of_json(&fitted)?);
         Ok(())
     })

@@ -1,4 +1,4 @@
-//! What C holds: boxes behind pointers, known by their first bytes.
+//! Handles of C: pointers to boxed values, identified by their first bytes.
 
 use std::ptr;
 
@@ -6,30 +6,30 @@ use opendr::{Error, Result};
 
 use crate::pointer::{null, place};
 
-/// What can stand behind a handle.
+/// Types that handles can contain.
 pub(crate) trait Held {
-    /// What C calls it.
+    /// Name of the type in C.
     const NAME: &'static str;
-    /// The first bytes of its handles.
+    /// First bytes of its handles.
     const MAGIC: u64;
 }
 
-/// What a handle's pointer leads to.
+/// The memory that a handle points to.
 #[repr(C)]
 struct Handle<T> {
     magic: u64,
     held: T,
 }
 
-/// A new handle.
+/// Creates a handle.
 pub(crate) fn handle<T: Held, P>(held: T) -> *mut P {
     Box::into_raw(Box::new(Handle { magic: T::MAGIC, held })).cast()
 }
 
-/// What a handle holds.
+/// Returns the value of a handle.
 ///
 /// # Safety
-/// The pointer is null or leads to at least eight bytes; a handle of this kind is not freed or changed meanwhile.
+/// The pointer is null or points to at least eight bytes; a handle of this kind is not freed or changed meanwhile.
 pub(crate) unsafe fn held<'a, T: Held, P>(pointer: *const P, name: &str) -> Result<&'a T> {
     let handle = pointer.cast::<Handle<T>>();
     // SAFETY: the caller's promise.
@@ -38,10 +38,10 @@ pub(crate) unsafe fn held<'a, T: Held, P>(pointer: *const P, name: &str) -> Resu
     Ok(unsafe { &(*handle).held })
 }
 
-/// What a handle holds, to change it.
+/// Returns the value of a handle, to change it.
 ///
 /// # Safety
-/// As [`held`], and nobody else uses the handle meanwhile.
+/// The same as for [`held`], and the handle is not used elsewhere meanwhile.
 pub(crate) unsafe fn held_mut<'a, T: Held, P>(pointer: *mut P, name: &str) -> Result<&'a mut T> {
     let handle = pointer.cast::<Handle<T>>();
     // SAFETY: the caller's promise.
@@ -50,10 +50,10 @@ pub(crate) unsafe fn held_mut<'a, T: Held, P>(pointer: *mut P, name: &str) -> Re
     Ok(unsafe { &mut (*handle).held })
 }
 
-/// Frees what a variable holds and makes it null; a null in it is freed already.
+/// Frees the handle in a variable and sets the variable to null; does nothing if it is null.
 ///
 /// # Safety
-/// `variable` is null or leads to a variable, which holds null or what [`held_mut`] may take.
+/// `variable` is null or points to a variable, which contains null or a valid argument of [`held_mut`].
 pub(crate) unsafe fn free<T: Held, P>(variable: *mut *mut P, name: &str) -> Result<()> {
     let variable = place(variable, name)?;
     // SAFETY: the caller's promise.
@@ -63,8 +63,8 @@ pub(crate) unsafe fn free<T: Held, P>(variable: *mut *mut P, name: &str) -> Resu
     }
     // SAFETY: the caller's promise.
     unsafe { check(handle, name) }?;
-    // SAFETY: a handle of this kind, made by `handle`; its first bytes are wiped, so that a second free through another
-    // variable is found as long as the memory is not used again.
+    // SAFETY: a handle of this kind, created by `handle`; its first bytes are cleared, so that a second free through another
+    // variable is detected as long as the memory is not reused.
     unsafe {
         variable.write(ptr::null_mut());
         ptr::write_volatile(&raw mut (*handle).magic, 0);
@@ -74,7 +74,7 @@ pub(crate) unsafe fn free<T: Held, P>(variable: *mut *mut P, name: &str) -> Resu
 }
 
 /// # Safety
-/// As [`held`].
+/// The same as for [`held`].
 unsafe fn check<T: Held>(handle: *const Handle<T>, name: &str) -> Result<()> {
     if handle.is_null() {
         return Err(null(name));
@@ -82,18 +82,18 @@ unsafe fn check<T: Held>(handle: *const Handle<T>, name: &str) -> Result<()> {
     // SAFETY: aligned, and at least eight bytes by the caller's promise.
     if !handle.is_aligned() || unsafe { (*handle).magic } != T::MAGIC {
         return Err(Error::invalid_input(format!(
-            "{name} is no {} (another type, or freed); give what an OpenDR function made",
+            "{name} is not an {} (another type, or freed); give a handle that an OpenDR function created",
             T::NAME
         )));
     }
     Ok(())
 }
 
-/// A variable for a new handle: null until the call succeeds.
+/// A variable for a new handle, null until the call succeeds.
 pub(crate) struct Out<P>(*mut *mut P);
 
 impl<P> Out<P> {
-    /// Makes the variable null.
+    /// Sets the variable to null.
     ///
     /// # Safety
     /// `variable` is null or may be written to.
@@ -104,7 +104,7 @@ impl<P> Out<P> {
         Ok(Self(variable))
     }
 
-    /// Gives the variable a new handle.
+    /// Sets the variable to a new handle.
     pub(crate) fn set<T: Held>(self, held: T) {
         // SAFETY: as `new` was promised.
         unsafe { self.0.write(handle(held)) };

@@ -1,4 +1,4 @@
-//! Learners of any kind, by name.
+//! Learners.
 
 use std::ffi::c_char;
 use std::ptr;
@@ -15,24 +15,24 @@ use crate::string::{Text, opendr_string};
 use crate::texts::Texts;
 use crate::value::{AnyValue, opendr_value};
 
-/// A learner with its model; threads may use it at once, one call is answered after the other.
+/// A learner with its model; calls from several threads are serialised.
 pub struct opendr_learner(());
 
 /// A named input.
 #[repr(C)]
 pub struct opendr_input {
-    /// The input's name, e.g. "image".
+    /// Name of the input, e.g. "image".
     pub name: *const c_char,
-    /// Any data or target; NULL leaves an optional input out.
+    /// A datum or target; NULL omits an optional input.
     pub value: *const opendr_value,
 }
 
 /// A named output.
 #[repr(C)]
 pub struct opendr_output {
-    /// The output's name, e.g. "boxes".
+    /// Name of the output, e.g. "boxes".
     pub name: *const c_char,
-    /// What was found, to be freed; set by the call, NULL when it failed.
+    /// The prediction, set by the call, which must be freed; NULL if the call failed.
     pub value: *mut opendr_value,
 }
 
@@ -49,7 +49,7 @@ impl Held for Loaded {
 
 impl Loaded {
     /// # Safety
-    /// As [`handle::held`].
+    /// The same as for [`handle::held`].
     pub(crate) unsafe fn of<'a>(learner: *const opendr_learner) -> Result<&'a Self> {
         // SAFETY: the caller's promise.
         unsafe { handle::held(learner, "learner") }
@@ -62,8 +62,8 @@ impl Loaded {
 
 /// Loads a learner, e.g. "nanodet" or "yunet/320".
 ///
-/// path is a model container of your own; NULL takes the pretrained model, which is downloaded the first time. device is
-/// "cpu", "cuda:0", ...; NULL takes the best one there is. params_json is an object of parameters; NULL takes the defaults.
+/// path is a model container of your own; NULL loads the pretrained model, which is downloaded the first time. device is
+/// "cpu", "cuda:0", ...; NULL selects the best available. params_json is an object of parameters; NULL uses the defaults.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_load(
     name: *const c_char,
@@ -77,7 +77,7 @@ pub unsafe extern "C" fn opendr_load(
 }
 
 /// # Safety
-/// As [`opendr_load`].
+/// The same as for [`opendr_load`].
 unsafe fn load(
     name: *const c_char,
     container: *const c_char,
@@ -86,30 +86,30 @@ unsafe fn load(
     learner: *mut *mut opendr_learner,
 ) -> Result<()> {
     // SAFETY: the caller's promise.
-    let (out, wanted) = unsafe { (Out::new(learner, "learner")?, Wish::of(name, device, params_json)?) };
+    let (out, request) = unsafe { (Out::new(learner, "learner")?, Request::of(name, device, params_json)?) };
     let learner = if container.is_null() {
-        opendr::learner_with(wanted.spec, &wanted.params, wanted.device, &Silent)?
+        opendr::learner_with(request.spec, &request.params, request.device, &Silent)?
     } else {
-        let mut learner = wanted.make()?;
+        let mut learner = request.make()?;
         // SAFETY: the caller's promise.
         learner.load(unsafe { path(container, "path") }?)?;
         learner
     };
-    out.set(wanted.loaded(learner));
+    out.set(request.loaded(learner));
     Ok(())
 }
 
-/// A learner as the caller names it.
-struct Wish<'a> {
+/// The caller's arguments that determine a learner.
+struct Request<'a> {
     spec: &'a str,
     entry: &'static Entry,
     device: Device,
     params: ParamMap,
 }
 
-impl<'a> Wish<'a> {
+impl<'a> Request<'a> {
     /// # Safety
-    /// As [`opendr_load`].
+    /// The same as for [`opendr_load`].
     unsafe fn of(name: *const c_char, device: *const c_char, params_json: *const c_char) -> Result<Self> {
         // SAFETY: the caller's promise.
         let (spec, device, params) = unsafe {
@@ -122,7 +122,7 @@ impl<'a> Wish<'a> {
         let entry = opendr::registry().find(spec.split('/').next().unwrap_or(spec))?;
         let device = device.parse()?;
         let params = serde_json::from_str(params).map_err(|error| {
-            Error::invalid_param("params_json is no JSON object of parameters").with_source(error)
+            Error::invalid_param("params_json is not a JSON object of parameters").with_source(error)
         })?;
         Ok(Self { spec, entry, device, params })
     }
@@ -136,7 +136,7 @@ impl<'a> Wish<'a> {
     }
 }
 
-/// Makes a learner without a model, e.g. "ssd", to be trained by opendr_fit. device and params_json are as for
+/// Creates a learner without a model, e.g. "ssd", for training with opendr_fit. device and params_json are the same as for
 /// opendr_load.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_create(
@@ -147,14 +147,15 @@ pub unsafe extern "C" fn opendr_create(
 ) -> opendr_status {
     guard(|| {
         // SAFETY: the rules at the top of opendr.h.
-        let (out, wanted) = unsafe { (Out::new(learner, "learner")?, Wish::of(name, device, params_json)?) };
-        out.set(wanted.loaded(wanted.make()?));
+        let (out, request) =
+            unsafe { (Out::new(learner, "learner")?, Request::of(name, device, params_json)?) };
+        out.set(request.loaded(request.make()?));
         Ok(())
     })
 }
 
-/// Answers named inputs on the learner's own stream. Each output asked for gets a new handle, to be freed; outputs may be
-/// left out. Inputs stay the caller's.
+/// Predicts the outputs for named inputs on the learner's own stream. Each requested output receives a new handle, which must
+/// be freed; not all outputs have to be requested. The caller keeps the inputs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_infer(
     learner: *const opendr_learner,
@@ -168,7 +169,7 @@ pub unsafe extern "C" fn opendr_infer(
 }
 
 /// # Safety
-/// As [`opendr_infer`].
+/// The same as for [`opendr_infer`].
 unsafe fn infer(
     learner: *const opendr_learner,
     inputs: *const opendr_input,
@@ -177,10 +178,10 @@ unsafe fn infer(
     output_count: usize,
 ) -> Result<()> {
     // SAFETY: the caller's promise.
-    let wanted = unsafe { Wanted::new(outputs, output_count) }?;
+    let requested = unsafe { RequestedOutputs::new(outputs, output_count) }?;
     // SAFETY: the caller's promise.
     let (loaded, inputs) = unsafe { (Loaded::of(learner)?, slice(inputs, input_count, "inputs")?) };
-    wanted.check(loaded.entry)?;
+    requested.check(loaded.entry)?;
     let mut ports = Ports::default();
     for input in inputs.iter().filter(|input| !input.value.is_null()) {
         // SAFETY: the caller's promise.
@@ -192,21 +193,21 @@ unsafe fn infer(
         }
         ports = ports.with(name, &value.value);
     }
-    let answer = loaded.lock().infer(&ports)?;
-    wanted.give(&answer)
+    let predicted = loaded.lock().infer(&ports)?;
+    requested.write(&predicted)
 }
 
-/// The outputs that the caller asked for.
-struct Wanted<'a> {
+/// The outputs that the caller requested.
+struct RequestedOutputs<'a> {
     names: Vec<&'a str>,
     outputs: *mut opendr_output,
 }
 
-impl Wanted<'_> {
-    /// Makes every value null.
+impl RequestedOutputs<'_> {
+    /// Sets every value to null.
     ///
     /// # Safety
-    /// `outputs` leads to `count` outputs whose names are texts; they may be written to until this is dropped.
+    /// `outputs` points to `count` outputs whose names are texts; they may be written to until this is dropped.
     unsafe fn new(outputs: *mut opendr_output, count: usize) -> Result<Self> {
         // SAFETY: the caller's promise.
         unsafe { slice(outputs.cast::<std::mem::MaybeUninit<opendr_output>>(), count, "outputs") }?;
@@ -228,19 +229,20 @@ impl Wanted<'_> {
     fn check(&self, entry: &Entry) -> Result<()> {
         let known: Vec<_> = entry.outputs.iter().map(|output| output.name).collect();
         match self.names.iter().find(|name| !known.contains(name)) {
-            Some(name) => {
-                Err(Error::invalid_input(format!("no output {name:?}; there are {}", known.join(", "))))
-            }
+            Some(name) => Err(Error::invalid_input(format!(
+                "unknown output {name:?}; the outputs are {}",
+                known.join(", ")
+            ))),
             None => Ok(()),
         }
     }
 
-    fn give(self, answer: &Outputs) -> Result<()> {
-        let found = self.names.iter().map(|name| answer.get(name).cloned());
-        let found: Option<Vec<_>> = found.collect();
-        let found =
-            found.ok_or_else(|| Error::internal("the learner left an output out; please report it"))?;
-        for (index, value) in found.into_iter().enumerate() {
+    fn write(self, predicted: &Outputs) -> Result<()> {
+        let values = self.names.iter().map(|name| predicted.get(name).cloned());
+        let values: Option<Vec<_>> = values.collect();
+        let values =
+            values.ok_or_else(|| Error::internal("the learner omitted an output; please report it"))?;
+        for (index, value) in values.into_iter().enumerate() {
             // SAFETY: within the outputs, as `new` was promised.
             unsafe {
                 (&raw mut (*self.outputs.add(index)).value).write(handle::handle(AnyValue::from(value)))
@@ -250,7 +252,7 @@ impl Wanted<'_> {
     }
 }
 
-/// The name of the learner's input number index, NULL after the last. It lives as long as the learner.
+/// Returns the name of the learner's input index, or NULL after the last; valid as long as the learner.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_input_name(learner: *const opendr_learner, index: usize) -> *const c_char {
     guard_value(ptr::null(), || {
@@ -260,7 +262,7 @@ pub unsafe extern "C" fn opendr_input_name(learner: *const opendr_learner, index
     })
 }
 
-/// The type of the learner's input number index, e.g. "Image"; NULL after the last. It lives as long as the learner.
+/// Returns the type of the learner's input index, e.g. "Image", or NULL after the last; valid as long as the learner.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_input_type(learner: *const opendr_learner, index: usize) -> *const c_char {
     guard_value(ptr::null(), || {
@@ -270,7 +272,7 @@ pub unsafe extern "C" fn opendr_input_type(learner: *const opendr_learner, index
     })
 }
 
-/// The name of the learner's output number index, NULL after the last. It lives as long as the learner.
+/// Returns the name of the learner's output index, or NULL after the last; valid as long as the learner.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_output_name(learner: *const opendr_learner, index: usize) -> *const c_char {
     guard_value(ptr::null(), || {
@@ -280,7 +282,7 @@ pub unsafe extern "C" fn opendr_output_name(learner: *const opendr_learner, inde
     })
 }
 
-/// Sets a parameter that may change while the learner runs; value_json is a number, text, boolean, list or null.
+/// Sets a live parameter; value_json is a number, text, boolean, list or null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_set_param(
     learner: *const opendr_learner,
@@ -292,14 +294,14 @@ pub unsafe extern "C" fn opendr_set_param(
         let (loaded, name, json) =
             unsafe { (Loaded::of(learner)?, text(name, "name")?, text(value_json, "value_json")?) };
         let value: ParamValue = serde_json::from_str(json).map_err(|error| {
-            Error::invalid_param(format!("{name} = {json} is no JSON value; write texts as \"text\""))
+            Error::invalid_param(format!("{name} = {json} is not a JSON value; write texts as \"text\""))
                 .with_source(error)
         })?;
         loaded.lock().set(name, value)
     })
 }
 
-/// The parameters in force as a JSON object.
+/// Writes the current parameters as a JSON object, which must be freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_params(
     learner: *const opendr_learner,
@@ -314,7 +316,7 @@ pub unsafe extern "C" fn opendr_params(
     })
 }
 
-/// Forgets what the learner's own stream remembers.
+/// Resets the state of the learner's own stream.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_reset(learner: *const opendr_learner) -> opendr_status {
     guard(|| {
@@ -324,7 +326,7 @@ pub unsafe extern "C" fn opendr_reset(learner: *const opendr_learner) -> opendr_
     })
 }
 
-/// The names of the classes in order, as a JSON list; empty when class numbers have no names.
+/// Writes the names of the classes in order as a JSON list, which must be freed; empty when classes have no names.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_classes(
     learner: *const opendr_learner,
@@ -339,7 +341,7 @@ pub unsafe extern "C" fn opendr_classes(
     })
 }
 
-/// How many classes have names.
+/// Writes the number of classes with names into count.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_class_count(
     learner: *const opendr_learner,
@@ -353,7 +355,7 @@ pub unsafe extern "C" fn opendr_class_count(
     })
 }
 
-/// The name of a class, NULL when it has none. It lives as long as the learner.
+/// Returns the name of a class, or NULL if it has none; valid as long as the learner.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_class_name(
     learner: *const opendr_learner,
@@ -367,7 +369,7 @@ pub unsafe extern "C" fn opendr_class_name(
     })
 }
 
-/// Writes the model with the parameters in force as a container to the folder path.
+/// Writes the model with the current parameters as a container to the folder path.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_save(learner: *const opendr_learner, path: *const c_char) -> opendr_status {
     guard(|| {
@@ -377,14 +379,14 @@ pub unsafe extern "C" fn opendr_save(learner: *const opendr_learner, path: *cons
     })
 }
 
-/// Frees the learner and makes the variable NULL; a NULL in it is freed already.
+/// Frees the learner and sets the variable to NULL; does nothing if it is NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_learner_free(learner: *mut *mut opendr_learner) -> opendr_status {
     // SAFETY: the rules at the top of opendr.h.
     guard(|| unsafe { handle::free::<Loaded, _>(learner, "learner") })
 }
 
-/// The learners that there are, as a JSON list of their names.
+/// Writes the names of all learners as a JSON list, which must be freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_learners(json: *mut *mut opendr_string) -> opendr_status {
     guard(|| {

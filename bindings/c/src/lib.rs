@@ -1,11 +1,15 @@
-//! The C API: what `include/opendr.h` declares and `docs/c.md` explains.
+//! C API of OpenDR: the library `libopendr` and its header `opendr.h`.
 //!
-//! It knows types, never learners: these functions take any learner and any value; what the header has for one learner
-//! or one type is made from the registry and the list of types (`tests/header`), `static inline`, over these.
+//! The functions of this crate take any learner and any value; they depend on data and target types, never on single
+//! learners. The functions for one learner or one type in `include/opendr.h` are `static inline` wrappers of these, generated
+//! from the registry and the list of types (`tests/header`). The headers with OpenDR 3.0's names in `include/opendr` are
+//! written by hand. `docs/c.md` explains the API, and `examples` has programs in C and C++.
 //!
-//! Every function checks what can be checked (null, wrong handles, lengths), catches panics, and answers a status. What
-//! it cannot check, the caller promises: that pointers lead to as much memory as their lengths say, and that a handle is
+//! Every function checks its arguments as far as possible (null, wrong handles, lengths), catches panics, and returns a
+//! status. The caller guarantees the rest: that pointers point to as much memory as their lengths state, and that a handle is
 //! not used after it was freed, or freed while another thread uses it.
+//!
+//! Begin with [`opendr_load`] and [`opendr_infer`].
 
 #![allow(non_camel_case_types, clippy::missing_safety_doc)]
 

@@ -1,4 +1,4 @@
-//! Networks alone: tensors in, tensors out, whatever learner they belong to.
+//! Networks without their learners: tensors in, tensors out.
 
 use std::ffi::{CString, c_char};
 use std::fs;
@@ -14,16 +14,16 @@ use crate::status::{guard, guard_value, opendr_status};
 use crate::string::{Text, opendr_string};
 use crate::tensors::{Tensors, opendr_tensor, opendr_tensors};
 
-/// A network; threads may run it at once, one run after the other.
+/// A network; runs from several threads are serialised.
 pub struct opendr_network(());
 
-/// What a network declares of an input or output; it lives as long as the network.
+/// The declaration of an input or output of a network; valid as long as the network.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct opendr_tensor_info {
     /// Name within the network.
     pub name: *const c_char,
-    /// Size of each axis, 0 where any size will do.
+    /// Length of each axis; 0 for a dynamic axis.
     pub shape: *const usize,
     /// Number of axes; 0 for a single number, and where the network does not declare them.
     pub axes: usize,
@@ -41,7 +41,7 @@ impl Held for Network {
     const MAGIC: u64 = u64::from_le_bytes(*b"ODRnetwk");
 }
 
-/// A [`TensorInfo`] as C reads it.
+/// A [`TensorInfo`] in the form of C.
 struct Declared {
     name: CString,
     shape: Vec<usize>,
@@ -86,7 +86,7 @@ impl Network {
         let session = Session::open(network, device)?;
         if let Some(other) = session.inputs().iter().find(|input| input.element_type != ElementType::F32) {
             return Err(Error::unsupported(format!(
-                "the network takes {other}, and opendr_network_run() floats alone; use its learner"
+                "the network takes {other}, and opendr_network_run() supports only floats; use its learner"
             )));
         }
         let declared = |infos: &[TensorInfo]| infos.iter().map(Declared::from).collect();
@@ -95,14 +95,14 @@ impl Network {
     }
 
     /// # Safety
-    /// As [`handle::held`].
+    /// The same as for [`handle::held`].
     unsafe fn of<'a>(network: *const opendr_network) -> Result<&'a Self> {
         // SAFETY: the caller's promise.
         unsafe { handle::held(network, "network") }
     }
 
     /// # Safety
-    /// What the tensors point to is there.
+    /// The pointers of the tensors are valid.
     unsafe fn run(&self, given: &[opendr_tensor]) -> Result<Tensors> {
         let infos = self.session.inputs();
         let mut views: Vec<Option<TensorView<'_>>> = vec![None; infos.len()];
@@ -147,9 +147,9 @@ impl Network {
 /// Opens a network without its learner. path is an ONNX file (*.onnx) or a model container: a folder, its JSON (OpenDR's
 /// too) or a zip.
 ///
-/// file names the ONNX file within a container, e.g. "encoder.onnx" or "detector/model.onnx"; NULL takes its only one. device
-/// is "cpu", "cuda:0", ...; NULL takes the best one there is. A network that takes other numbers than floats is
-/// OPENDR_UNSUPPORTED.
+/// file is the ONNX file within a container, e.g. "encoder.onnx" or "detector/model.onnx"; NULL selects the only one. device
+/// is "cpu", "cuda:0", ...; NULL selects the best available. Returns OPENDR_UNSUPPORTED for a network with inputs of other
+/// types than float.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_network_open(
     path: *const c_char,
@@ -172,8 +172,8 @@ pub unsafe extern "C" fn opendr_network_open(
     })
 }
 
-/// Opens the network of a loaded learner once more, on the learner's device, to run it without what the learner does before
-/// and after. file is as for opendr_network_open(); the learner may be freed.
+/// Opens the network of a loaded learner again, on the learner's device, to run it without the learner's pre- and
+/// post-processing. file is the same as for opendr_network_open(); the learner may be freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_network_of(
     learner: *const opendr_learner,
@@ -193,8 +193,8 @@ pub unsafe extern "C" fn opendr_network_of(
     })
 }
 
-/// Runs a network. Each input is given once, by its name or, where that is NULL, in its place in the order. tensors receives
-/// the outputs in the network's order, to be freed.
+/// Runs a network. Each input is given once, by its name or, where that is NULL, by its position. tensors receives the outputs
+/// in the network's order, which must be freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_network_run(
     network: *const opendr_network,
@@ -227,7 +227,7 @@ pub unsafe extern "C" fn opendr_network_output_count(network: *const opendr_netw
     guard_value(0, || Ok(unsafe { Network::of(network) }?.outputs.len()))
 }
 
-/// Writes what the network declares of its input number index, counted from 0.
+/// Writes the declaration of the network's input index into info.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_network_input(
     network: *const opendr_network,
@@ -238,7 +238,7 @@ pub unsafe extern "C" fn opendr_network_input(
     guard(|| unsafe { declared(&Network::of(network)?.inputs, index, info) })
 }
 
-/// Writes what the network declares of its output number index, counted from 0.
+/// Writes the declaration of the network's output index into info.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_network_output(
     network: *const opendr_network,
@@ -254,7 +254,7 @@ pub unsafe extern "C" fn opendr_network_output(
 unsafe fn declared(all: &[Declared], index: usize, info: *mut opendr_tensor_info) -> Result<()> {
     let place = place(info, "info")?;
     let Declared { name, shape } = all.get(index).ok_or_else(|| {
-        Error::invalid_input(format!("there is no tensor {index}; there are {}, counted from 0", all.len()))
+        Error::invalid_input(format!("tensor {index} is out of range; there are {} tensors", all.len()))
     })?;
     let info = opendr_tensor_info { name: name.as_ptr(), shape: shape.as_ptr(), axes: shape.len() };
     // SAFETY: the caller's promise.
@@ -262,8 +262,8 @@ unsafe fn declared(all: &[Declared], index: usize, info: *mut opendr_tensor_info
     Ok(())
 }
 
-/// Writes the model.json of the network's container as JSON ("learner", "params", "classes", "inputs", ...), to be freed;
-/// "{}" for an ONNX file.
+/// Writes the model.json of the network's container as JSON ("learner", "params", "classes", "inputs", ...), which must be
+/// freed; "{}" for an ONNX file.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_network_manifest(
     network: *const opendr_network,
@@ -277,7 +277,7 @@ pub unsafe extern "C" fn opendr_network_manifest(
     })
 }
 
-/// Frees the network and makes the variable NULL; a NULL in it is freed already.
+/// Frees the network and sets the variable to NULL; does nothing if it is NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_network_free(network: *mut *mut opendr_network) -> opendr_status {
     // SAFETY: the rules at the top of opendr.h.

@@ -1,4 +1,4 @@
-//! What C hands in, checked as far as it can be.
+//! Checked conversion of pointers from C.
 
 use std::ffi::{CStr, c_char};
 use std::path::Path;
@@ -11,20 +11,20 @@ pub(crate) fn null(name: &str) -> Error {
     Error::invalid_input(format!("{name} is null; give a pointer"))
 }
 
-/// What a pointer leads to.
+/// Returns the value that a pointer points to.
 ///
 /// # Safety
-/// It is null or leads to a `T` that nobody changes meanwhile.
+/// It is null or points to a `T` that is not changed meanwhile.
 pub(crate) unsafe fn reference<'a, T>(pointer: *const T, name: &str) -> Result<&'a T> {
     check(pointer, name)?;
     // SAFETY: not null and aligned; the rest is the caller's promise.
     Ok(unsafe { &*pointer })
 }
 
-/// A place to write to, which may hold anything yet.
+/// Returns a pointer to write to; the memory may be uninitialised.
 ///
 /// # Errors
-/// `InvalidInput` when it is null or crooked.
+/// `InvalidInput` when it is null or unaligned.
 pub(crate) fn place<T>(pointer: *mut T, name: &str) -> Result<*mut T> {
     check(pointer, name).map(|()| pointer)
 }
@@ -34,15 +34,15 @@ fn check<T>(pointer: *const T, name: &str) -> Result<()> {
         return Err(null(name));
     }
     if !pointer.is_aligned() {
-        return Err(Error::invalid_input(format!("{name} is no valid pointer; give one from its own type")));
+        return Err(Error::invalid_input(format!("{name} is not aligned; give a pointer to its own type")));
     }
     Ok(())
 }
 
-/// As many items as C says there are; null is nothing when there are none.
+/// Returns a slice of `count` items; `pointer` may be null if `count` is 0.
 ///
 /// # Safety
-/// `pointer` leads to `count` items that nobody changes meanwhile.
+/// `pointer` points to `count` items that are not changed meanwhile.
 pub(crate) unsafe fn slice<'a, T>(pointer: *const T, count: usize, name: &str) -> Result<&'a [T]> {
     if count == 0 {
         return Ok(&[]);
@@ -51,17 +51,17 @@ pub(crate) unsafe fn slice<'a, T>(pointer: *const T, count: usize, name: &str) -
     let bytes = count.checked_mul(size_of::<T>());
     if bytes.is_none_or(|bytes| bytes > isize::MAX as usize - pointer.addr().min(isize::MAX as usize)) {
         return Err(Error::invalid_input(format!(
-            "{name} of {count} items do not fit in memory; give their true number"
+            "{name} of {count} items exceeds the address space; give the actual count"
         )));
     }
     // SAFETY: not null, aligned, no longer than the address space; the rest is the caller's promise.
     Ok(unsafe { slice::from_raw_parts(pointer, count) })
 }
 
-/// A text in UTF-8.
+/// Returns a text in UTF-8.
 ///
 /// # Safety
-/// It is null or ends with a zero byte, and nobody changes it meanwhile.
+/// It is null or ends with a zero byte, and is not changed meanwhile.
 pub(crate) unsafe fn text<'a>(pointer: *const c_char, name: &str) -> Result<&'a str> {
     if pointer.is_null() {
         return Err(null(name));
@@ -69,14 +69,14 @@ pub(crate) unsafe fn text<'a>(pointer: *const c_char, name: &str) -> Result<&'a 
     // SAFETY: the caller's promise.
     let text = unsafe { CStr::from_ptr(pointer) };
     text.to_str().map_err(|_| {
-        Error::invalid_input(format!("{name} is no UTF-8: {}; write it in UTF-8", text.to_string_lossy()))
+        Error::invalid_input(format!("{name} is not UTF-8: {}; give it in UTF-8", text.to_string_lossy()))
     })
 }
 
-/// A text that may be left out by null.
+/// Returns a text, or `None` for null.
 ///
 /// # Safety
-/// As [`text`].
+/// The same as for [`text`].
 pub(crate) unsafe fn optional_text<'a>(pointer: *const c_char, name: &str) -> Result<Option<&'a str>> {
     if pointer.is_null() {
         return Ok(None);
@@ -85,10 +85,10 @@ pub(crate) unsafe fn optional_text<'a>(pointer: *const c_char, name: &str) -> Re
     unsafe { text(pointer, name) }.map(Some)
 }
 
-/// A path: any bytes where the system has such names, else UTF-8.
+/// Returns a path: any bytes on systems with such file names, else UTF-8.
 ///
 /// # Safety
-/// As [`text`].
+/// The same as for [`text`].
 pub(crate) unsafe fn path<'a>(pointer: *const c_char, name: &str) -> Result<&'a Path> {
     #[cfg(unix)]
     {

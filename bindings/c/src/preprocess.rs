@@ -1,9 +1,9 @@
-//! From a picture to the numbers that a network takes.
+//! Pre-processing of an image to the input of a network.
 
 use std::mem::MaybeUninit;
 
 use opendr::data::{Image, PixelFormat};
-use opendr::vision::{Anchor, ChannelOrder, Preprocess};
+use opendr::vision::{ChannelOrder, LetterboxAlign, Preprocess};
 use opendr::{Error, Result};
 
 use crate::data::{FORMATS, LAYOUTS, from_number};
@@ -11,27 +11,27 @@ use crate::pointer::{place, reference, slice};
 use crate::status::{guard, opendr_status};
 use crate::value::{opendr_image, typed};
 
-/// How a picture becomes the input of a network: scaled, (level - mean) / std by channel, in the order of the axes.
+/// Pre-processing of an image: resizing, (sample - mean) / std per channel, and the layout of the result.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct opendr_preprocess {
-    /// Pixels of a row of the input.
+    /// Width of the input in pixels.
     pub width: usize,
-    /// Rows of the input.
+    /// Height of the input in pixels.
     pub height: usize,
     /// The channels of the input: OPENDR_GREY, OPENDR_RGB or OPENDR_BGR.
     pub format: i32,
     /// One of opendr_layout.
     pub layout: i32,
-    /// Of each channel, in levels of 0 to 255; grey has the first.
+    /// Mean of each channel, for samples of 0 to 255; greyscale uses the first.
     pub mean: [f32; 3],
-    /// Of each channel, in levels of 0 to 255, not 0.
+    /// Standard deviation of each channel, for samples of 0 to 255; not 0.
     pub std: [f32; 3],
-    /// The level beside a picture that keeps its aspect ratio and stands in the middle; NaN stretches it instead.
+    /// Sample value of the padding (letterbox, with the image in the centre); NaN stretches the image instead.
     pub pad: f32,
 }
 
-/// Writes the input of a network that is made of a picture: length numbers, width * height * channels.
+/// Writes the network input for an image into numbers: length numbers, width * height * channels.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_image_preprocess(
     image: *const opendr_image,
@@ -49,7 +49,7 @@ pub unsafe extern "C" fn opendr_image_preprocess(
         let preprocess = how.to_preprocess()?;
         if length != preprocess.len() {
             return Err(Error::invalid_input(format!(
-                "{length} numbers for an input of shape {:?}; give room for as many as that has",
+                "numbers has room for {length} numbers, and the input has the shape {:?}; give room for all",
                 preprocess.shape()
             )));
         }
@@ -71,14 +71,14 @@ impl opendr_preprocess {
             PixelFormat::Bgr => ChannelOrder::Bgr,
             PixelFormat::Rgba | PixelFormat::Bgra => {
                 return Err(Error::invalid_input(
-                    "a network's input has no opacity; give OPENDR_GREY, OPENDR_RGB or OPENDR_BGR",
+                    "a network's input has no alpha channel; give OPENDR_GREY, OPENDR_RGB or OPENDR_BGR",
                 ));
             }
         };
-        let is_sound = |std: &f32| std.is_finite() && *std != 0.0;
-        if !self.mean.iter().all(|mean| mean.is_finite()) || !self.std.iter().all(is_sound) {
+        let is_valid = |std: &f32| std.is_finite() && *std != 0.0;
+        if !self.mean.iter().all(|mean| mean.is_finite()) || !self.std.iter().all(is_valid) {
             return Err(Error::invalid_input(format!(
-                "mean {:?} and std {:?} of the channels; give finite numbers, and no std of 0",
+                "mean {:?} or std {:?} is invalid; give finite numbers, and no std of 0",
                 self.mean, self.std
             )));
         }
@@ -88,8 +88,8 @@ impl opendr_preprocess {
             .normalise(self.mean, self.std);
         match self.pad {
             stretched if stretched.is_nan() => Ok(preprocess),
-            pad if pad.is_finite() => Ok(preprocess.letterbox(Anchor::Centre, pad)),
-            pad => Err(Error::invalid_input(format!("pad {pad}; give a level of 0 to 255, or NaN"))),
+            pad if pad.is_finite() => Ok(preprocess.letterbox(LetterboxAlign::Centre, pad)),
+            pad => Err(Error::invalid_input(format!("pad is {pad}; give a value of 0 to 255, or NaN"))),
         }
     }
 }

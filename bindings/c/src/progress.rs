@@ -1,4 +1,4 @@
-//! How long work goes, told to the caller.
+//! Progress of long calls, reported to the caller.
 
 use std::ffi::{CString, c_char, c_void};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -6,9 +6,9 @@ use std::sync::{Mutex, PoisonError};
 
 use opendr::{Progress, Unit};
 
-/// Hears how long work goes: context is what was handed in with it, what the work in words, done of total (0 when it is not
-/// known) what is done, status how it goes right now ("loss 0.31, 42 images/s", "" when there is nothing to say). It answers
-/// whether to go on. It is called by one thread at a time, not always the same one, and must not use the learner that works.
+/// Callback for the progress of a long call. context is the pointer given with the callback, what a description of the work,
+/// done and total the progress (total is 0 when unknown), status a text such as "loss 0.31, 42 images/s", or "". Returns
+/// whether to continue. It is called by one thread at a time, not always the same one, and must not use the running learner.
 pub type opendr_progress = Option<
     unsafe extern "C" fn(
         context: *mut c_void,
@@ -19,20 +19,20 @@ pub type opendr_progress = Option<
     ) -> bool,
 >;
 
-/// What the caller was told last.
+/// The last reported progress.
 #[derive(Default)]
-struct Told {
+struct Report {
     what: CString,
     status: CString,
     done: u64,
     total: u64,
 }
 
-/// The caller's function as the toolkit's progress.
+/// The caller's callback as a [`Progress`] of the toolkit.
 pub(crate) struct Listener {
     call: opendr_progress,
     context: *mut c_void,
-    told: Mutex<Told>,
+    report: Mutex<Report>,
     stopped: AtomicBool,
 }
 
@@ -46,16 +46,16 @@ impl Listener {
     /// # Safety
     /// `call` may be called with `context` from any thread as long as the listener lives.
     pub(crate) unsafe fn new(call: opendr_progress, context: *mut c_void) -> Self {
-        Self { call, context, told: Mutex::default(), stopped: AtomicBool::new(false) }
+        Self { call, context, report: Mutex::default(), stopped: AtomicBool::new(false) }
     }
 
-    /// Changes what is told, and tells it.
-    fn tell(&self, change: impl FnOnce(&mut Told)) {
+    /// Changes the report and calls the callback with it.
+    fn update(&self, change: impl FnOnce(&mut Report)) {
         let Some(call) = self.call else { return };
-        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
-        change(&mut told);
-        let Told { what, status, done, total } = &*told;
-        // SAFETY: as `new` was promised; the texts live until the call is over.
+        let mut report = self.report.lock().unwrap_or_else(PoisonError::into_inner);
+        change(&mut report);
+        let Report { what, status, done, total } = &*report;
+        // SAFETY: as `new` was promised; the texts are valid until the call returns.
         if !unsafe { call(self.context, what.as_ptr(), *done, *total, status.as_ptr()) } {
             self.stopped.store(true, Ordering::Relaxed);
         }
@@ -64,20 +64,20 @@ impl Listener {
 
 impl Progress for Listener {
     fn begin(&self, what: &str, total: Option<u64>, _unit: Unit) {
-        self.tell(|told| {
+        self.update(|report| {
             let what = CString::new(what).unwrap_or_default();
-            *told = Told { what, total: total.unwrap_or(0), ..Told::default() };
+            *report = Report { what, total: total.unwrap_or(0), ..Report::default() };
         });
     }
 
     fn advance(&self, amount: u64) {
-        self.tell(|told| told.done += amount);
+        self.update(|report| report.done += amount);
     }
 
     fn end(&self) {}
 
     fn status(&self, text: &str) {
-        self.tell(|told| told.status = CString::new(text).unwrap_or_default());
+        self.update(|report| report.status = CString::new(text).unwrap_or_default());
     }
 
     fn stopped(&self) -> bool {

@@ -1,4 +1,4 @@
-//! How a call went.
+//! The status of calls.
 
 use std::any::Any;
 use std::cell::RefCell;
@@ -9,13 +9,13 @@ use opendr::{Error, ErrorKind, Result};
 
 use crate::pointer::text;
 
-/// How a call went; the numbers are the exit codes of the command `opendr`.
+/// The status of a call; the numbers are the exit codes of the command `opendr`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum opendr_status {
-    /// All went well.
+    /// The call succeeded.
     OPENDR_OK = 0,
-    /// A datum, target, pointer or file handed in does not fit: null, wrong shape, empty, NaN, undecodable picture.
+    /// A datum, target, pointer or file is invalid: null, wrong shape, empty, NaN, undecodable image.
     OPENDR_INVALID_INPUT = 11,
     /// A parameter is unknown, of the wrong type or out of range.
     OPENDR_INVALID_PARAM = 12,
@@ -23,17 +23,17 @@ pub enum opendr_status {
     OPENDR_NOT_FOUND = 13,
     /// The operating system refused to read or write.
     OPENDR_IO = 14,
-    /// A server or package client could not be reached or broke off.
+    /// A server or package client could not be reached, or the connection was lost.
     OPENDR_NETWORK = 15,
-    /// Bytes differ from their checksum or stated size, or an archive member leaves its folder.
+    /// A file does not match its checksum or stated size, or an archive member has a path outside its folder.
     OPENDR_INTEGRITY = 16,
     /// A file or message does not follow its format.
     OPENDR_FORMAT = 17,
-    /// This learner, runtime or build cannot do what was asked.
+    /// The learner, runtime or build does not support the request.
     OPENDR_UNSUPPORTED = 18,
-    /// The device asked for is not there or failed.
+    /// The requested device is not available or failed.
     OPENDR_DEVICE = 19,
-    /// A fault of OpenDR itself: please report it.
+    /// A bug in OpenDR: please report it.
     OPENDR_INTERNAL = 20,
 }
 
@@ -60,14 +60,14 @@ thread_local! {
     static LAST_ERROR: RefCell<CString> = RefCell::default();
 }
 
-/// Why the last call of this thread that failed did so; "" when none did. Valid until the next failing call of this
+/// Returns the message of the last failed call of this thread; "" if none failed. Valid until the next failing call of this
 /// thread.
 #[unsafe(no_mangle)]
 pub extern "C" fn opendr_last_error() -> *const c_char {
     LAST_ERROR.try_with(|error| error.borrow().as_ptr()).unwrap_or(c"".as_ptr())
 }
 
-/// Makes message what opendr_last_error() returns in this thread: for functions that are written over these.
+/// Sets the message that opendr_last_error() returns in this thread, for functions implemented with those of this header.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_set_last_error(message: *const c_char) {
     guard_value((), || {
@@ -77,7 +77,7 @@ pub unsafe extern "C" fn opendr_set_last_error(message: *const c_char) {
     });
 }
 
-/// The name of a status, e.g. "InvalidInput"; "unknown" for other numbers.
+/// Returns the name of a status, e.g. "InvalidInput"; "unknown" for other numbers.
 #[unsafe(no_mangle)]
 pub extern "C" fn opendr_status_name(status: i32) -> *const c_char {
     const NAMES: [&CStr; 10] = [
@@ -101,13 +101,13 @@ pub extern "C" fn opendr_status_name(status: i32) -> *const c_char {
     }
 }
 
-/// The version of the library, e.g. "0.1.0".
+/// Returns the version of the library, e.g. "0.1.0".
 #[unsafe(no_mangle)]
 pub extern "C" fn opendr_version() -> *const c_char {
     concat!(env!("CARGO_PKG_VERSION"), "\0").as_ptr().cast()
 }
 
-/// Runs the body of a function that answers a status: errors and panics are kept for [`opendr_last_error`].
+/// Runs the body of a function that returns a status; stores errors and panics for [`opendr_last_error`].
 pub(crate) fn guard(body: impl FnOnce() -> Result<()>) -> opendr_status {
     match caught(body) {
         Ok(()) => OPENDR_OK,
@@ -115,7 +115,7 @@ pub(crate) fn guard(body: impl FnOnce() -> Result<()>) -> opendr_status {
     }
 }
 
-/// Runs the body of a function that answers a value; `failed` stands for none.
+/// Runs the body of a function that returns a value; returns `failed` on errors.
 pub(crate) fn guard_value<T>(failed: T, body: impl FnOnce() -> Result<T>) -> T {
     caught(body).unwrap_or_else(|error| {
         keep(&error);
@@ -128,9 +128,9 @@ fn caught<T>(body: impl FnOnce() -> Result<T>) -> Result<T> {
 }
 
 fn error_of_panic(panic: &(dyn Any + Send)) -> Error {
-    let words = panic.downcast_ref::<&str>().copied();
-    let words = words.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("unknown");
-    Error::internal(format!("a fault of OpenDR itself: {words}; please report it"))
+    let message = panic.downcast_ref::<&str>().copied();
+    let message = message.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("unknown");
+    Error::internal(format!("a bug in OpenDR: {message}; please report it"))
 }
 
 fn keep(error: &Error) -> opendr_status {
@@ -140,7 +140,7 @@ fn keep(error: &Error) -> opendr_status {
 
 fn remember(message: &str) {
     let message = CString::new(message.replace('\0', "\u{fffd}")).unwrap_or_default();
-    // A thread that is ending keeps none.
+    // The thread-local is not available while the thread ends.
     LAST_ERROR.try_with(|last| last.replace(message)).ok();
 }
 

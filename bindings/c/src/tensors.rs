@@ -1,4 +1,4 @@
-//! Tensors that networks take and give.
+//! Inputs and outputs of networks.
 
 use std::ffi::{CString, c_char};
 
@@ -12,17 +12,17 @@ use crate::status::{guard, guard_value, opendr_status};
 /// The outputs of one run of a network.
 pub struct opendr_tensors(());
 
-/// A tensor in memory, its last axis fastest.
+/// A tensor in row-major order.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct opendr_tensor {
-    /// Name within the network; NULL for an input that is given in its place in the order.
+    /// Name within the network; NULL for an input that is given by position.
     pub name: *const c_char,
     /// The numbers.
     pub numbers: *const f32,
-    /// How many there are: the product of the shape.
+    /// Count of numbers: the product of the shape.
     pub length: usize,
-    /// Size of each axis.
+    /// Length of each axis.
     pub shape: *const usize,
     /// Number of axes, at most 8.
     pub axes: usize,
@@ -30,7 +30,7 @@ pub struct opendr_tensor {
 
 impl opendr_tensor {
     /// # Safety
-    /// Numbers and shape lead to as much memory as their lengths say.
+    /// Numbers and shape point to as much memory as their lengths state.
     pub(crate) unsafe fn view<'a>(self) -> Result<TensorView<'a>> {
         // SAFETY: the caller's promise.
         let (numbers, shape) = unsafe {
@@ -43,7 +43,7 @@ impl opendr_tensor {
     }
 }
 
-/// What an [`opendr_tensors`] holds.
+/// The value of an [`opendr_tensors`].
 #[derive(Default)]
 pub(crate) struct Tensors(Vec<Tensor>);
 
@@ -59,7 +59,7 @@ impl Held for Tensors {
 }
 
 impl Tensors {
-    /// Copies a tensor; numbers of other types become floats.
+    /// Copies a tensor; numbers of other types are converted to floats.
     pub(crate) fn add(&mut self, name: CString, tensor: &TensorView<'_>) -> Result<()> {
         let numbers = match tensor.data() {
             TensorData::F32(numbers) => numbers.to_vec(),
@@ -70,7 +70,7 @@ impl Tensors {
             TensorData::Bool(numbers) => numbers.iter().map(|number| f32::from(u8::from(*number))).collect(),
             _ => {
                 let kind = tensor.element_type();
-                return Err(Error::unsupported(format!("an output of {kind} has no form as floats")));
+                return Err(Error::unsupported(format!("an output of {kind} cannot be converted to floats")));
             }
         };
         self.0.push(Tensor { name, numbers, shape: tensor.shape().to_vec() });
@@ -85,8 +85,8 @@ pub unsafe extern "C" fn opendr_tensors_count(tensors: *const opendr_tensors) ->
     guard_value(0, || Ok(unsafe { handle::held::<Tensors, _>(tensors, "tensors") }?.0.len()))
 }
 
-/// Writes where tensor number index lies, counted from 0; it lives as long as the tensors. Integers and truth values of a
-/// network are rounded to floats.
+/// Writes tensor index into tensor; its pointers are valid as long as the tensors. Integers and booleans of a network are
+/// converted to floats, with rounding.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_tensors_get(
     tensors: *const opendr_tensors,
@@ -99,7 +99,7 @@ pub unsafe extern "C" fn opendr_tensors_get(
         let tensors = unsafe { handle::held::<Tensors, _>(tensors, "tensors") }?;
         let Tensor { name, numbers, shape } = tensors.0.get(index).ok_or_else(|| {
             let count = tensors.0.len();
-            Error::invalid_input(format!("there is no tensor {index}; there are {count}, counted from 0"))
+            Error::invalid_input(format!("tensor {index} is out of range; there are {count} tensors"))
         })?;
         let (name, axes, length) = (name.as_ptr(), shape.len(), numbers.len());
         let tensor = opendr_tensor { name, numbers: numbers.as_ptr(), length, shape: shape.as_ptr(), axes };
@@ -109,7 +109,7 @@ pub unsafe extern "C" fn opendr_tensors_get(
     })
 }
 
-/// Frees the tensors and makes the variable NULL; a NULL in it is freed already.
+/// Frees the tensors and sets the variable to NULL; does nothing if it is NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_tensors_free(tensors: *mut *mut opendr_tensors) -> opendr_status {
     // SAFETY: the rules at the top of opendr.h.

@@ -1,4 +1,4 @@
-//! Data and targets of any type: what their handles have in common.
+//! Handles of data and targets of any type.
 
 use std::ffi::c_char;
 use std::ptr;
@@ -11,7 +11,7 @@ use crate::status::{guard, guard_value, opendr_status};
 use crate::string::{Text, opendr_string};
 use crate::texts::Texts;
 
-/// A datum or target of any type; a pointer to a handle of a data or target type may be cast to it.
+/// A datum or target of any type; a pointer to a handle of a data or target type can be cast to it.
 pub struct opendr_value(());
 
 macro_rules! typed {
@@ -29,10 +29,10 @@ typed! {
     opendr_base_transcription opendr_whisper_transcription opendr_vosk_transcription opendr_rl_target
 }
 
-/// The time stamp of a value that has none.
+/// The time stamp of a value without one.
 pub const OPENDR_NO_STAMP: i64 = i64::MIN;
 
-/// What handles of values hold.
+/// The value of a handle of a datum or target.
 pub(crate) struct AnyValue {
     pub(crate) value: Value,
     pub(crate) texts: Texts,
@@ -50,20 +50,20 @@ impl<V: Into<Value>> From<V> for AnyValue {
 }
 
 impl AnyValue {
-    /// What is behind any handle of a value.
+    /// Returns the value of a handle of any data or target type.
     ///
     /// # Safety
-    /// As [`handle::held`].
+    /// The same as for [`handle::held`].
     pub(crate) unsafe fn of<'a, P>(value: *const P, name: &str) -> Result<&'a Self> {
         // SAFETY: the caller's promise.
         unsafe { handle::held(value, name) }
     }
 
-    /// The value, when it is of this type.
+    /// Returns the value, if it is of this type.
     pub(crate) fn typed<D: Datum>(&self, name: &str) -> Result<&D> {
         D::from_value_ref(self.value.as_value_ref()).ok_or_else(|| {
-            let (wanted, given) = (D::TYPE.name(), self.type_name());
-            Error::invalid_input(format!("{name} takes a {wanted}, not a {given}; give one"))
+            let (expected, given) = (D::TYPE.name(), self.type_name());
+            Error::invalid_input(format!("{name} takes a {expected}, not a {given}; give one"))
         })
     }
 
@@ -72,16 +72,17 @@ impl AnyValue {
     }
 }
 
-/// The value behind a handle that should be of type `D`.
+/// Returns the value of a handle of type `D`.
 ///
 /// # Safety
-/// As [`handle::held`].
+/// The same as for [`handle::held`].
 pub(crate) unsafe fn typed<'a, D: Datum, P>(value: *const P, name: &str) -> Result<&'a D> {
     // SAFETY: the caller's promise.
     unsafe { AnyValue::of(value, name) }?.typed(name)
 }
 
-/// The name of the value's type, e.g. "BoundingBoxList"; NULL for what is no value. It lives as long as the value.
+/// Returns the name of the value's type, e.g. "BoundingBoxList", or NULL if the handle is not a value; valid as long as the
+/// value.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_value_type(value: *const opendr_value) -> *const c_char {
     guard_value(ptr::null(), || {
@@ -91,7 +92,7 @@ pub unsafe extern "C" fn opendr_value_type(value: *const opendr_value) -> *const
     })
 }
 
-/// The JSON of a target (docs/json.md).
+/// Writes the JSON of a target (docs/json.md), which must be freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_value_to_json(
     value: *const opendr_value,
@@ -102,18 +103,18 @@ pub unsafe extern "C" fn opendr_value_to_json(
         let (json, value) = unsafe { (Out::new(json, "json")?, AnyValue::of(value, "value")?) };
         if !value.value.as_value_ref().value_type().is_target() {
             return Err(Error::unsupported(format!(
-                "{} has no JSON form; write it as a file",
+                "{} cannot be written as JSON; write it as a file",
                 value.type_name()
             )));
         }
         let text = serde_json::to_string(&value.value)
-            .map_err(|error| Error::internal("the value has no JSON form").with_source(error))?;
+            .map_err(|error| Error::internal("the value cannot be written as JSON").with_source(error))?;
         json.set(Text::new(text));
         Ok(())
     })
 }
 
-/// A target from its JSON (docs/json.md). type is the name of the type that is wanted, or NULL for any.
+/// Reads a target from its JSON (docs/json.md). type_name is the expected type, or NULL for any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_value_from_json(
     type_name: *const c_char,
@@ -122,19 +123,19 @@ pub unsafe extern "C" fn opendr_value_from_json(
 ) -> opendr_status {
     guard(|| {
         // SAFETY: the rules at the top of opendr.h.
-        let (out, wanted, json) = unsafe {
+        let (out, expected, json) = unsafe {
             (Out::new(value, "value")?, optional_text(type_name, "type_name")?, text(json, "json")?)
         };
-        let wanted = wanted.map(str::parse::<ValueType>).transpose()?;
+        let expected = expected.map(str::parse::<ValueType>).transpose()?;
         let value: Value = serde_json::from_str(json).map_err(|error| {
-            Error::format("no JSON of a target; docs/json.md shows them").with_source(error)
+            Error::format("the JSON is not a target; see docs/json.md").with_source(error)
         })?;
         let value = AnyValue::from(value);
-        match wanted {
-            Some(wanted) if wanted.name() != value.type_name() => Err(Error::invalid_input(format!(
-                "JSON of a {} where a {} is wanted; give that",
+        match expected {
+            Some(expected) if expected.name() != value.type_name() => Err(Error::invalid_input(format!(
+                "the JSON is of a {}, not of a {}; give the expected type",
                 value.type_name(),
-                wanted.name()
+                expected.name()
             ))),
             _ => {
                 out.set(value);
@@ -145,7 +146,7 @@ pub unsafe extern "C" fn opendr_value_from_json(
 }
 
 /// Reads a file as a value of the named type: "Image" (JPEG, PNG, BMP, WebP), "Audio" (WAVE), "Timeseries" (a table of
-/// numbers as CSV or text, a line a moment; or NPY), "PointCloud" (KITTI's scans), or the JSON of a target.
+/// numbers as CSV or text, one line per time step; or NPY), "PointCloud" (KITTI's scans), or the JSON of a target.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_value_open(
     type_name: *const c_char,
@@ -162,7 +163,7 @@ pub unsafe extern "C" fn opendr_value_open(
     })
 }
 
-/// The value as people read it: a line for each item.
+/// Writes the text of the value for people, one line per item, which must be freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_value_to_text(
     value: *const opendr_value,
@@ -176,7 +177,7 @@ pub unsafe extern "C" fn opendr_value_to_text(
     })
 }
 
-/// When the value was taken, nanoseconds; OPENDR_NO_STAMP when that is not known.
+/// Writes the time stamp of the value in nanoseconds; OPENDR_NO_STAMP when unknown.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_value_stamp(value: *const opendr_value, stamp_ns: *mut i64) -> opendr_status {
     guard(|| {
@@ -190,7 +191,7 @@ pub unsafe extern "C" fn opendr_value_stamp(value: *const opendr_value, stamp_ns
     })
 }
 
-/// Sets when the value was taken; OPENDR_NO_STAMP forgets it.
+/// Sets the time stamp of the value; OPENDR_NO_STAMP removes it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_value_set_stamp(value: *mut opendr_value, stamp_ns: i64) -> opendr_status {
     guard(|| {
@@ -201,7 +202,7 @@ pub unsafe extern "C" fn opendr_value_set_stamp(value: *mut opendr_value, stamp_
     })
 }
 
-/// The coordinate frame of the value; NULL when that is not known. The text lives as long as the value.
+/// Returns the coordinate frame of the value, or NULL when unknown; valid as long as the value.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_value_frame_id(value: *const opendr_value) -> *const c_char {
     guard_value(ptr::null(), || {
@@ -211,7 +212,7 @@ pub unsafe extern "C" fn opendr_value_frame_id(value: *const opendr_value) -> *c
     })
 }
 
-/// Sets the coordinate frame of the value; NULL forgets it.
+/// Sets the coordinate frame of the value; NULL removes it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_value_set_frame_id(
     value: *mut opendr_value,
@@ -227,7 +228,7 @@ pub unsafe extern "C" fn opendr_value_set_frame_id(
     })
 }
 
-/// A handle of its own to the same value; bulky payloads stay shared.
+/// Creates another handle of the same value; large payloads are shared.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_value_copy(
     value: *const opendr_value,
@@ -241,7 +242,7 @@ pub unsafe extern "C" fn opendr_value_copy(
     })
 }
 
-/// Frees the value and makes the variable NULL; a NULL in it is freed already.
+/// Frees the value and sets the variable to NULL; does nothing if it is NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_value_free(value: *mut *mut opendr_value) -> opendr_status {
     // SAFETY: the rules at the top of opendr.h.

@@ -1,4 +1,4 @@
-/* The learner with two ports, an init port and two outputs, by its own functions: counter MODEL */
+/* Calls a learner with two ports, an init port and two outputs by its generated functions: counter MODEL */
 #undef NDEBUG
 #include <assert.h>
 #include <pthread.h>

@@ -4,17 +4,17 @@
  * CounterLearner: Counts boxes.
  *
  * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.5): Boxes below this score are dropped.
- *   factor (an int 1..=9, default 2): What the count is multiplied with.
+ *   threshold (a float 0..=1, live, default 0.5): Boxes below this score are dropped.
+ *   factor (an int 1..=9, default 2): Factor of the count.
  *
  * Inputs:
- *   image (Image): A picture.
- *   detections (BoundingBoxList): What was found in it.
- *   first (BoundingBoxList): Where to begin. Given with the first call of a stream, else NULL.
+ *   image (Image): An image.
+ *   detections (BoundingBoxList): The detections to count.
+ *   first (BoundingBoxList): Boxes whose number is the initial count. Given in the first call of a stream, otherwise NULL.
  *
  * Outputs:
  *   count (BoundingBoxList): One box whose left edge is the count.
- *   poses (PoseList): Nothing.
+ *   poses (PoseList): An empty list.
  */
 static inline opendr_status opendr_load_counter(const char *path, const char *device, const char *params_json,
     opendr_learner **learner) {

@@ -1,10 +1,11 @@
 /*
- * What a learner answers, for the tests that compare surfaces; the twin of crates/opendr/examples/infer_json.rs:
+ * Prints the predictions of a learner, for the tests that compare the interfaces; the counterpart of
+ * crates/opendr/examples/infer_json.rs:
  * runner LEARNER[=CONTAINER] PARAMS_JSON PORT=FILE PORT=FILE ... , PORT=FILE ...
  *
- * Commas stand between the calls of one stream. Each gives a line with the JSON of the outputs by name.
+ * Commas separate the calls of one stream. Each call prints one line with the JSON of its outputs by name.
  *
- * runner --fit LEARNER DATASET OPTIONS_JSON gives the report of a training, and how often it was told of, on standard error.
+ * runner --fit LEARNER DATASET OPTIONS_JSON prints the report of a training, and the number of progress events on standard error.
  */
 #include <opendr.h>
 #include <stdio.h>
@@ -35,7 +36,7 @@ static void print(opendr_output *outputs, size_t count) {
     printf("}\n");
 }
 
-/* The input that `PORT=FILE` is. */
+/* Reads the input of an argument `PORT=FILE`. */
 static opendr_input input(const opendr_learner *learner, char *word) {
     opendr_input input;
     opendr_value *value = NULL;
@@ -50,8 +51,8 @@ static opendr_input input(const opendr_learner *learner, char *word) {
     return input;
 }
 
-/* Counts the calls; stops at the call whose number the environment names. */
-static bool told(void *context, const char *what, uint64_t done, uint64_t total, const char *status) {
+/* Progress callback: counts the calls and stops the training at the call number in STOP_AT. */
+static bool on_progress(void *context, const char *what, uint64_t done, uint64_t total, const char *status) {
     const char *stop = getenv("STOP_AT");
     int *calls = (int *)context;
     *calls += 1;
@@ -64,7 +65,7 @@ static int fit(char **words) {
     opendr_string *report = NULL;
     int calls = 0;
     check(opendr_create(words[0], "cpu", NULL, &learner));
-    check(opendr_fit(learner, words[1], NULL, words[2], told, &calls, &report));
+    check(opendr_fit(learner, words[1], NULL, words[2], on_progress, &calls, &report));
     puts(opendr_string_text(report));
     fprintf(stderr, "%d\n", calls);
     check(opendr_string_free(&report));

@@ -1,4 +1,4 @@
-//! Memory of NumPy arrays, read and shown.
+//! Memory of NumPy arrays: reading theirs, exposing ours.
 
 use std::sync::Arc;
 
@@ -7,11 +7,11 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple};
 
-/// A NumPy array's memory: where it is and how it is laid out.
+/// A NumPy array's memory: address, shape, strides and element type.
 ///
-/// It is valid as long as the caller holds the array: NumPy moves no memory of an array that others hold. Elements are
-/// copied out byte by byte through raw pointers, so neither alignment nor a thread of the user's that writes meanwhile
-/// can do more harm than a torn picture.
+/// It is valid as long as the caller holds the array: NumPy does not move memory that is referenced elsewhere. Elements
+/// are copied out byte by byte through raw pointers, so unaligned elements are allowed, and a concurrent write by
+/// another thread leads to a torn image at worst.
 pub struct ArrayMemory {
     start: *const u8,
     shape: Vec<usize>,
@@ -22,7 +22,7 @@ pub struct ArrayMemory {
 
 /// An element type of arrays.
 pub trait Element: Copy + Default {
-    /// As `__array_interface__` writes it.
+    /// Type string of `__array_interface__`.
     const TYPE_TEXT: &'static str;
 }
 
@@ -55,7 +55,7 @@ impl Element for i8 {
 }
 
 impl ArrayMemory {
-    /// The memory of `array`, which must be a NumPy array: nothing else is trusted to describe its memory rightly.
+    /// Returns the memory of `array`, which must be a NumPy array: the description of other objects is not trusted.
     pub fn of(array: &Bound<'_, PyAny>) -> PyResult<Self> {
         static NDARRAY: PyOnceLock<(Py<PyAny>, Py<PyAny>)> = PyOnceLock::new();
         let py = array.py();
@@ -66,9 +66,9 @@ impl ArrayMemory {
         })?;
         if !array.is_instance(ndarray.bind(py))? {
             let given = array.get_type().name()?;
-            return Err(PyTypeError::new_err(format!("a numpy.ndarray is wanted, not {given}")));
+            return Err(PyTypeError::new_err(format!("expected a numpy.ndarray, not {given}")));
         }
-        // NumPy's own words, in one call, not those of a subclass.
+        // NumPy's own getter, since a subclass may override the attribute.
         let interface = describe.bind(py).call1((array,))?.cast_into::<PyDict>()?;
         let entry = |name: &str| {
             interface
@@ -85,33 +85,33 @@ impl ArrayMemory {
         Ok(Self { start: address as *const u8, shape, strides, type_text })
     }
 
-    /// Size of each axis.
+    /// Length of each axis.
     pub fn shape(&self) -> &[usize] {
         &self.shape
     }
 
-    /// Whether the elements are of `T`.
+    /// Returns whether the elements are of type `T`.
     pub fn is<T: Element>(&self) -> bool {
         self.type_text == T::TYPE_TEXT
     }
 
-    /// NumPy's letters for the element type, for messages.
+    /// NumPy's string for the element type, for error messages.
     pub fn type_text(&self) -> &str {
         &self.type_text
     }
 
-    /// All elements, last axis fastest.
+    /// Returns all elements in row-major order.
     pub fn to_vec<T: Element>(&self) -> PyResult<Vec<T>> {
         let mut elements = Vec::new();
         self.copy_into(&mut elements)?;
         Ok(elements)
     }
 
-    /// Puts all elements, last axis fastest, into `elements`, whose memory is used again.
+    /// Copies all elements in row-major order into `elements`, whose memory is reused.
     pub fn copy_into<T: Element>(&self, elements: &mut Vec<T>) -> PyResult<()> {
         if !self.is::<T>() {
             return Err(PyTypeError::new_err(format!(
-                "an array of {} is wanted, not of {}; use astype",
+                "expected an array of {}, not of {}; use astype",
                 T::TYPE_TEXT,
                 self.type_text
             )));
@@ -119,41 +119,41 @@ impl ArrayMemory {
         copy(self.start, &self.shape, &self.strides, elements)
     }
 
-    /// Puts a picture seen as `[channels, height, width]` into `elements` as it lies in memory where that is one of
-    /// the usual ways, else with its pixels together; which it was, and the shape.
-    pub fn copy_picture<T: Element>(&self, elements: &mut Vec<T>) -> PyResult<(Stored, [usize; 3])> {
+    /// Copies an image, indexed as `[channels, height, width]`, into `elements`. Keeps the memory layout where it is one of
+    /// [`StorageLayout`], else writes HWC. Returns the layout and the shape.
+    pub fn copy_image<T: Element>(&self, elements: &mut Vec<T>) -> PyResult<(StorageLayout, [usize; 3])> {
         let (&[channels, height, width], &[channel, row, column]) = (&self.shape[..], &self.strides[..])
         else {
             return Err(PyValueError::new_err(format!(
-                "a picture has 3 axes (channels, height, width), not the shape {:?}",
+                "an image has 3 axes (channels, height, width), not the shape {:?}",
                 self.shape
             )));
         };
         if !self.is::<T>() {
-            return Err(PyTypeError::new_err(format!("samples of {} are wanted", T::TYPE_TEXT)));
+            return Err(PyTypeError::new_err(format!("expected samples of {}", T::TYPE_TEXT)));
         }
         let shape = [channels, height, width];
         let size = size_of::<T>() as isize;
-        let together = column == channels as isize * size;
-        // Opacity comes first when four channels are reversed: no usual way.
+        let interleaved = column == channels as isize * size;
+        // Four reversed channels would be ABGR, which is no pixel format here.
         let reversed = channel == -size && channels == 3;
-        if together && (channel == size || reversed) {
+        if interleaved && (channel == size || reversed) {
             let start = self.start.wrapping_sub(if reversed { 2 * size_of::<T>() } else { 0 });
             copy(start, &[height, width * channels], &[row, size], elements)?;
-            return Ok((if reversed { Stored::TogetherReversed } else { Stored::Together }, shape));
+            return Ok((if reversed { StorageLayout::HwcReversed } else { StorageLayout::Hwc }, shape));
         }
         if column == size {
             copy(self.start, &shape, &self.strides, elements)?;
-            return Ok((Stored::Planes, shape));
+            return Ok((StorageLayout::Chw, shape));
         }
         copy(self.start, &[height, width, channels], &[row, column, channel], elements)?;
-        Ok((Stored::Together, shape))
+        Ok((StorageLayout::Hwc, shape))
     }
 }
 
-/// Strides that NumPy leaves out, since nothing lies between the elements.
+/// Returns the strides of a contiguous row-major array, which NumPy omits.
 fn strides_of_row_major(shape: &[usize], type_text: &str) -> Vec<isize> {
-    // A type is a byte order, a letter, and the bytes of an element.
+    // A type string is a byte order, a letter, and the size of an element in bytes.
     let mut stride: isize = type_text.get(2..).and_then(|size| size.parse().ok()).unwrap_or_default();
     let mut strides = vec![0; shape.len()];
     for (place, side) in strides.iter_mut().zip(shape).rev() {
@@ -163,15 +163,15 @@ fn strides_of_row_major(shape: &[usize], type_text: &str) -> Vec<isize> {
     strides
 }
 
-/// How a picture lies in memory.
+/// Memory layout of an image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stored {
+pub enum StorageLayout {
     /// `[channels, height, width]`.
-    Planes,
+    Chw,
     /// `[height, width, channels]`.
-    Together,
-    /// `[height, width, channels]`, blue first.
-    TogetherReversed,
+    Hwc,
+    /// `[height, width, channels]`, in BGR order.
+    HwcReversed,
 }
 
 fn copy<T: Element>(
@@ -185,7 +185,7 @@ fn copy<T: Element>(
     elements.clear();
     elements
         .try_reserve_exact(count)
-        .map_err(|_| PyValueError::new_err(format!("no memory for {count} elements")))?;
+        .map_err(|_| PyValueError::new_err(format!("out of memory for {count} elements")))?;
     if count > 0 {
         let (shape, strides) = merged_axes(shape, strides);
         copy_axis(start, &shape, &strides, elements);
@@ -193,7 +193,7 @@ fn copy<T: Element>(
     Ok(())
 }
 
-/// The same elements along as few axes as it takes: what lies one after the other is one axis, of one element is none.
+/// Merges axes that are contiguous in memory and drops axes of one element.
 fn merged_axes(shape: &[usize], strides: &[isize]) -> (Vec<usize>, Vec<isize>) {
     let mut axes: Vec<(usize, isize)> = Vec::with_capacity(shape.len());
     for (&side, &stride) in shape.iter().zip(strides).filter(|(side, _)| **side != 1) {
@@ -212,8 +212,8 @@ fn copy_axis<T: Element>(start: *const u8, shape: &[usize], strides: &[isize], e
     match (shape, strides) {
         (&[side], &[stride]) if stride == size as isize => {
             let filled = elements.len();
-            // SAFETY: NumPy says that `side` elements lie here one after the other; room for all was reserved; T is
-            // a plain number, for which any bytes will do.
+            // SAFETY: NumPy guarantees `side` contiguous elements here; capacity for all was reserved; T is
+            // a plain number, for which any bytes are valid.
             unsafe {
                 let room = elements.as_mut_ptr().add(filled).cast::<u8>();
                 std::ptr::copy_nonoverlapping(start, room, side * size);
@@ -222,7 +222,7 @@ fn copy_axis<T: Element>(start: *const u8, shape: &[usize], strides: &[isize], e
         }
         (&[side], &[stride]) => {
             for index in 0..side as isize {
-                // SAFETY: NumPy says that an element lies here; it may be unaligned.
+                // SAFETY: NumPy guarantees an element here; it may be unaligned.
                 elements.push(unsafe { start.wrapping_offset(index * stride).cast::<T>().read_unaligned() });
             }
         }
@@ -233,13 +233,13 @@ fn copy_axis<T: Element>(start: *const u8, shape: &[usize], strides: &[isize], e
         }
         // No axes: one number.
         _ => {
-            // SAFETY: NumPy says that an element lies here; it may be unaligned.
+            // SAFETY: NumPy guarantees an element here; it may be unaligned.
             elements.push(unsafe { start.cast::<T>().read_unaligned() });
         }
     }
 }
 
-/// Where an array's elements lie, for `__array_interface__`; NumPy keeps the object that said so alive.
+/// Builds the dictionary of `__array_interface__`; NumPy keeps the object that returns it alive.
 pub fn array_interface<'py>(
     py: Python<'py>,
     address: usize,
@@ -259,7 +259,7 @@ pub fn array_interface<'py>(
     Ok(interface)
 }
 
-/// Numbers of a target, shared with NumPy without a copy: `numpy.asarray(it)`, read-only.
+/// Array of a target, shared with NumPy without a copy: `numpy.asarray(array)`, read-only.
 #[pyclass(frozen, module = "opendr._opendr")]
 pub struct NativeArray {
     elements: Elements,
@@ -272,12 +272,12 @@ enum Elements {
 }
 
 impl NativeArray {
-    /// Class numbers.
+    /// Wraps class indices.
     pub fn from_labels(labels: Arc<Vec<u32>>, shape: &[usize]) -> Self {
         Self { elements: Elements::U32(labels), shape: shape.to_vec() }
     }
 
-    /// Scores.
+    /// Wraps scores.
     pub fn from_scores(scores: Arc<Vec<f32>>, shape: &[usize]) -> Self {
         Self { elements: Elements::F32(scores), shape: shape.to_vec() }
     }

@@ -1,26 +1,26 @@
-//! Progress of long calls, and Ctrl-C while Python waits for them.
+//! Progress of long calls, and their interruption by Ctrl-C.
 
 use std::sync::{Mutex, PoisonError};
 
 use opendr::{Progress, Result, Unit};
-use opendr_cli::Bar;
+use opendr_cli::ProgressBar;
 use pyo3::prelude::*;
 
 use crate::error::ToPython;
 
-/// The command's bar; work stops when a signal handler of Python raises.
+/// The progress bar of the command; work stops when a signal handler of Python raises.
 pub struct PythonBar {
-    bar: Bar,
+    bar: ProgressBar,
     raised: Mutex<Option<PyErr>>,
 }
 
 impl PythonBar {
-    /// A bar, or nothing at all when `quiet`.
+    /// Creates a bar, which prints nothing when `quiet`.
     pub fn new(quiet: bool) -> Self {
-        Self { bar: Bar::without_interrupt(quiet), raised: Mutex::default() }
+        Self { bar: ProgressBar::without_interrupt(quiet), raised: Mutex::default() }
     }
 
-    /// Does `work` with the interpreter released, and raises what stopped it.
+    /// Runs `work` with the GIL released. Raises the exception of a signal handler that stopped it.
     pub fn run<T: Send>(self, py: Python<'_>, work: impl FnOnce(&Self) -> Result<T> + Send) -> PyResult<T> {
         let done = py.detach(|| work(&self));
         match self.raised.into_inner().unwrap_or_else(PoisonError::into_inner) {

@@ -4,7 +4,7 @@ use std::ffi::OsString;
 
 use pyo3::prelude::*;
 
-/// Runs the command; its exit code. Learners that were registered from Python are there too.
+/// Runs the command and returns its exit code. Learners registered from Python are available.
 #[pyfunction]
 pub fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
     py.detach(|| opendr_cli::run(arguments))

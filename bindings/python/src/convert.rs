@@ -1,4 +1,4 @@
-//! OpenDR's texts and conversions of targets, made by the toolkit for the Python classes.
+//! OpenDR's texts and conversions of targets, for the Python classes.
 
 use opendr::target::{
     BoundingBox3DList, BoundingBoxList, KittiColumns, TrackingAnnotation3DList, TrackingAnnotationList,
@@ -12,20 +12,20 @@ use serde::de::DeserializeOwned;
 use crate::error::ToPython;
 use crate::target::{item_or_target_from_python, python_from_target, target_from_python, value_from_json};
 
-/// The JSON of a Python target, as every surface writes it.
+/// Returns the JSON of a Python target, the same as on every surface.
 #[pyfunction]
 pub fn json(target: &Bound<'_, PyAny>) -> PyResult<String> {
     crate::target::json(&target_from_python(target)?).to_python(target.py())
 }
 
-/// The Python target that a JSON object is.
+/// Returns the Python target of a JSON object.
 #[pyfunction]
 #[pyo3(name = "value_from_json")]
 pub fn value_from_json_text<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyAny>> {
     python_from_target(py, &value_from_json(text).to_python(py)?)
 }
 
-/// OpenDR's text of a Python target or of a single item.
+/// Returns OpenDR's text of a Python target or of a single item.
 #[pyfunction]
 pub fn text(target: &Bound<'_, PyAny>) -> PyResult<String> {
     let (value, is_item) = item_or_target_from_python(target)?;
@@ -43,14 +43,14 @@ fn text_of_first(items: &[impl ToString]) -> String {
     items.first().map(ToString::to_string).unwrap_or_default()
 }
 
-/// What was found, a readable line each.
+/// Returns the text of a target for people, one line per item.
 #[pyfunction]
 pub fn readable_text(target: &Bound<'_, PyAny>) -> PyResult<String> {
     Ok(format!("{:#}", target_from_python(target)?.as_value_ref()))
 }
 
-/// The rows of `mot()`: `[frame, left, top, width, height, confidence]`, with the id after the frame for tracks; the
-/// confidence on demand.
+/// Returns the rows of `mot()`: `[frame, left, top, width, height, confidence]`, with the id after the frame for tracks;
+/// the confidence only `with_confidence`.
 #[pyfunction]
 pub fn mot(target: &Bound<'_, PyAny>, with_confidence: bool, frame: i64) -> PyResult<Vec<Vec<f32>>> {
     let mut rows: Vec<Vec<f32>> = match target_from_python(target)? {
@@ -64,14 +64,14 @@ pub fn mot(target: &Bound<'_, PyAny>, with_confidence: bool, frame: i64) -> PyRe
     Ok(rows)
 }
 
-/// Tracks from rows of `mot()`.
+/// Returns tracks from rows of `mot()`.
 #[pyfunction]
 pub fn from_mot(py: Python<'_>, rows: Vec<Vec<f32>>) -> PyResult<Bound<'_, PyAny>> {
     let tracks = TrackingAnnotationList::from_mot(rows.iter().map(Vec::as_slice)).to_python(py)?;
     python_from_target(py, &Value::TrackingAnnotationList(tracks))
 }
 
-/// The entries of `coco()`.
+/// Returns the entries of `coco()`.
 #[pyfunction]
 pub fn coco<'py>(target: &Bound<'py, PyAny>, with_confidence: bool) -> PyResult<Bound<'py, PyAny>> {
     match target_from_python(target)? {
@@ -80,14 +80,14 @@ pub fn coco<'py>(target: &Bound<'py, PyAny>, with_confidence: bool) -> PyResult<
     }
 }
 
-/// Boxes from COCO's entries.
+/// Returns boxes from COCO's entries.
 #[pyfunction]
 pub fn from_coco<'py>(entries: &Bound<'py, PyAny>, image_id: i64) -> PyResult<Bound<'py, PyAny>> {
     let boxes = BoundingBoxList::from_coco(from_python::<Vec<_>>(entries)?, Some(image_id));
     python_from_target(entries.py(), &Value::BoundingBoxList(boxes))
 }
 
-/// The columns of `kitti()`.
+/// Returns the columns of `kitti()`.
 #[pyfunction]
 pub fn kitti<'py>(target: &Bound<'py, PyAny>, with_tracking_info: bool) -> PyResult<Bound<'py, PyAny>> {
     let columns = match target_from_python(target)? {
@@ -98,7 +98,7 @@ pub fn kitti<'py>(target: &Bound<'py, PyAny>, with_tracking_info: bool) -> PyRes
     python_from(target.py(), &columns)
 }
 
-/// Boxes in space from KITTI's columns, or tracks where `ids` tell whose.
+/// Returns 3D boxes from KITTI's columns, or tracks where `ids` are given.
 #[pyfunction]
 #[pyo3(signature = (columns, ids=None, frames=None))]
 pub fn from_kitti<'py>(
@@ -119,14 +119,15 @@ fn no_such(value: &Value, what: &str) -> Error {
     Error::unsupported(format!("{} has no {what}", value.as_value_ref().value_type().name()))
 }
 
-/// Plain Python of anything that has a JSON form.
+/// Converts a serialisable value to plain Python objects, by JSON.
 fn python_from<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
     let text = serde_json::to_string(value);
-    let text: Result<_> = text.map_err(|error| Error::internal("no JSON form").with_source(error));
+    let text: Result<_> =
+        text.map_err(|error| Error::internal("the value cannot be written as JSON").with_source(error));
     py.import("json")?.call_method1("loads", (text.to_python(py)?,))
 }
 
-/// Anything that has a JSON form, of plain Python.
+/// Converts plain Python objects to a deserialisable value, by JSON.
 fn from_python<T: DeserializeOwned>(value: &Bound<'_, PyAny>) -> PyResult<T> {
     let text: String = value.py().import("json")?.call_method1("dumps", (value,))?.extract()?;
     let read: Result<T> =

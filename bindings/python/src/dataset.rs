@@ -1,4 +1,4 @@
-//! Data sets for Python, and data sets of Python for the toolkit.
+//! Data sets of the toolkit for Python, and data sets of Python for the toolkit.
 
 use std::path::PathBuf;
 
@@ -17,7 +17,7 @@ use crate::target::target_from_python;
 
 type DataAndTarget<'py> = (Vec<Bound<'py, PyAny>>, Option<Bound<'py, PyAny>>);
 
-/// A data set on disk, open.
+/// An opened data set on disk.
 #[pyclass(frozen, module = "opendr._opendr")]
 pub struct Dataset {
     dataset: Box<dyn DatasetIterator>,
@@ -48,7 +48,7 @@ impl Dataset {
         self.dataset.len()
     }
 
-    /// The data of a sample, and its target or `None`.
+    /// Returns the data of a sample, and its target or `None`.
     fn get<'py>(&self, py: Python<'py>, index: usize) -> PyResult<DataAndTarget<'py>> {
         self.check(index)?;
         let sample = py.detach(|| self.dataset.get(index)).to_python(py)?;
@@ -57,20 +57,20 @@ impl Dataset {
         Ok((data.collect::<PyResult<_>>()?, target.transpose()?))
     }
 
-    /// The target of a sample or `None`; no picture is read where that can be spared.
+    /// Returns the target of a sample or `None`, without reading images where the format allows it.
     fn target<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Option<Bound<'py, PyAny>>> {
         self.check(index)?;
         let target = py.detach(|| self.dataset.target(index)).to_python(py)?;
         target.as_ref().map(|value| python_from_value(py, value.into())).transpose()
     }
 
-    /// What reports call a sample.
+    /// Returns the name of a sample in reports.
     fn name(&self, index: usize) -> PyResult<String> {
         self.check(index)?;
         Ok(self.dataset.name(index))
     }
 
-    /// The number of the video or drive that a sample is a frame of, or `None`.
+    /// Returns the index of the sequence (video or drive) of a sample, or `None`.
     fn sequence(&self, index: usize) -> PyResult<Option<usize>> {
         self.check(index)?;
         Ok(self.dataset.sequence(index))
@@ -81,7 +81,7 @@ impl Dataset {
         self.dataset.classes().iter().map(str::to_owned).collect()
     }
 
-    /// What was left out as broken.
+    /// Samples that were skipped as broken, with the reasons.
     #[getter]
     fn problems(&self) -> Vec<String> {
         self.problems.list().iter().map(ToString::to_string).collect()
@@ -91,12 +91,16 @@ impl Dataset {
 impl Dataset {
     fn check(&self, index: usize) -> PyResult<()> {
         let count = self.dataset.len();
-        let missing = || PyIndexError::new_err(format!("there is no sample {index} among {count}"));
+        let missing = || {
+            PyIndexError::new_err(format!(
+                "sample index {index} is out of range; the data set has {count} samples"
+            ))
+        };
         (index < count).then_some(()).ok_or_else(missing)
     }
 }
 
-/// The numbers of samples in two parts, as [`Subset::split`] draws them; `sequences` says which stay together.
+/// Returns the sample indices of the two parts of [`Subset::split`]; samples with the same entry in `sequences` stay together.
 #[pyfunction]
 pub fn split(
     py: Python<'_>,
@@ -109,13 +113,13 @@ pub fn split(
     parts.map(|[first, second]| (first, second)).to_python(py)
 }
 
-/// The numbers of samples in a random order, as [`Subset::shuffled`] draws it.
+/// Returns the sample indices in the random order of [`Subset::shuffled`].
 #[pyfunction]
 pub fn shuffled(count: usize, seed: u64) -> Vec<usize> {
     Subset::shuffled(Sequences(vec![None; count]), seed).indices().to_vec()
 }
 
-/// A data set of which nothing is known but what stays together.
+/// A data set without data, of which only the sequences are known.
 struct Sequences(Vec<Option<usize>>);
 
 impl AnyDataset for Sequences {}
@@ -134,7 +138,7 @@ impl DatasetIterator for Sequences {
     }
 }
 
-/// The formats that there are.
+/// Returns a table of each data set format.
 #[pyfunction]
 pub fn formats(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
     let tables = datasets::formats().iter().map(|format| {
@@ -149,7 +153,7 @@ pub fn formats(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
     PyList::new(py, tables.collect::<PyResult<Vec<_>>>()?)
 }
 
-/// The type of a datum or target, by the class of the toolkit that it is of.
+/// Returns the type of a datum or target, by the name of its class in `opendr.engine`.
 pub fn type_of(object: &Bound<'_, PyAny>) -> PyResult<ValueType> {
     for class in object.get_type().mro() {
         let module: String = class.getattr("__module__")?.extract()?;
@@ -159,10 +163,10 @@ pub fn type_of(object: &Bound<'_, PyAny>) -> PyResult<ValueType> {
         }
     }
     let class = object.get_type().name()?.to_string();
-    Err(PyTypeError::new_err(format!("a {class} is no datum or target of opendr.engine; give one")))
+    Err(PyTypeError::new_err(format!("expected a datum or target of opendr.engine, not {class}")))
 }
 
-/// The types that ports take.
+/// Returns the value types of the ports.
 pub fn types_of_ports(ports: &[Port]) -> Vec<ValueType> {
     ports.iter().map(|port| port.value_type).collect()
 }
@@ -174,21 +178,21 @@ fn problems(skip_broken: bool) -> Problems {
 fn target_type(name: &str) -> Result<ValueType> {
     let mut targets = ValueType::ALL.iter().copied().filter(|value_type| value_type.is_target());
     targets.find(|target| target.name() == name).ok_or_else(|| {
-        Error::invalid_param(format!("target = {name:?} is no target type, e.g. \"BoundingBoxList\""))
+        Error::invalid_param(format!("target = {name:?} is not a target type; one is \"BoundingBoxList\""))
     })
 }
 
-/// A data set that a method of a learner is given.
+/// The data set argument of a learner's method.
 pub enum GivenDataset {
     /// An `ExternalDataset`.
     External(ExternalDataset),
-    /// Any other data set, and its class.
+    /// Any other data set, and the name of its class.
     Samples(PythonDataset, String),
 }
 
 impl GivenDataset {
-    /// An `ExternalDataset`, or any data set of Python whose samples have data of these types; of the types that they are where none
-    /// are given.
+    /// Accepts an `ExternalDataset`, or any data set of Python. Its data are converted to `types`, or by their own classes where
+    /// `types` is empty.
     pub fn from_python(object: &Bound<'_, PyAny>, types: &[ValueType]) -> PyResult<Self> {
         let external = object.py().import("opendr.engine.datasets")?.getattr("ExternalDataset")?;
         if object.is_instance(&external)? {
@@ -200,7 +204,7 @@ impl GivenDataset {
         Ok(Self::Samples(PythonDataset::new(object, types.to_vec())?, class))
     }
 
-    /// As the toolkit takes it.
+    /// Borrows the data set in the form of the toolkit.
     pub fn as_ref(&self) -> DatasetRef<'_> {
         match self {
             Self::External(external) => DatasetRef::External(external),
@@ -208,7 +212,7 @@ impl GivenDataset {
         }
     }
 
-    /// What outcomes call it: its path, or its class.
+    /// Name of the data set in outcomes: its path, or its class.
     pub fn name(&self) -> String {
         match self {
             Self::External(external) => external.path().display().to_string(),
@@ -220,7 +224,7 @@ impl GivenDataset {
 /// A `DatasetIterator` of Python: `len`, and `[index]` for a pair of datum and target.
 pub struct PythonDataset {
     object: Py<PyAny>,
-    /// Of the data of a sample.
+    /// Types of the data of a sample.
     types: Vec<ValueType>,
     length: usize,
     classes: Classes,
@@ -262,7 +266,8 @@ impl PythonDataset {
         Ok(Sample { data: values.collect::<PyResult<_>>()?, target })
     }
 
-    /// Reads a sample while which Ctrl-C came: that is no failure of the sample, but for whoever asks whether to stop.
+    /// Reads a sample again after Ctrl-C interrupted the read, and raises the interrupt once more, in the main thread: the sample
+    /// did not fail, and [`opendr::Progress::stopped`] has to report the interrupt.
     fn read_again(&self, py: Python<'_>, index: usize) -> PyResult<Sample> {
         let sample = self.read(py, index);
         py.import("_thread")?.call_method0("interrupt_main")?;

@@ -1,4 +1,4 @@
-//! Data on their way from Python: objects that own NumPy arrays.
+//! Conversion of data between the toolkit and Python objects that own NumPy arrays.
 
 use std::path::PathBuf;
 
@@ -6,31 +6,32 @@ use opendr::data::{
     Audio, Calibration, ImageWithDetections, Observation, PointCloud, PointCloudWithCalibration,
     SkeletonSequence, Timeseries, Vector, Video,
 };
-use opendr::{Error, Header, Result, Value, ValueRef, ValueType};
+use opendr::{Error, Result, Value, ValueRef, ValueType};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::array::{ArrayMemory, NativeArray};
 use crate::error::ToPython;
+use crate::header::header_from_python;
 use crate::pixels::{image_from_python, python_from_image};
 use crate::target::{python_from_target, target_from_python};
 
-/// The value of type `wanted` that a Python object is.
-pub fn value_from_python(object: &Bound<'_, PyAny>, wanted: ValueType) -> PyResult<Value> {
-    if wanted.is_target() {
+/// Converts a Python object to a value of type `value_type`.
+pub fn value_from_python(object: &Bound<'_, PyAny>, value_type: ValueType) -> PyResult<Value> {
+    if value_type.is_target() {
         return target_from_python(object);
     }
     let py = object.py();
     let numbers = || Numbers::of(&object.getattr("data")?);
-    let mut value = match wanted {
+    let mut value = match value_type {
         ValueType::Image => return image_from_python(object, Vec::new()).map(Value::Image),
         ValueType::Video => Value::Video(numbers()?.datum(Video::new)?),
         ValueType::PointCloud => Value::PointCloud(numbers()?.datum(PointCloud::new)?),
         ValueType::Timeseries => Value::Timeseries(numbers()?.datum(Timeseries::new)?),
         ValueType::Vector => Value::Vector(numbers()?.datum(Vector::new)?),
         ValueType::SkeletonSequence => Value::SkeletonSequence(numbers()?.datum(SkeletonSequence::new)?),
-        // A series has no rate of its own.
+        // A time series has no sample rate.
         ValueType::Audio if !object.hasattr("sample_rate")? => {
             Value::Timeseries(numbers()?.datum(Timeseries::new)?)
         }
@@ -55,13 +56,16 @@ pub fn value_from_python(object: &Bound<'_, PyAny>, wanted: ValueType) -> PyResu
             };
             Value::ImageWithDetections(ImageWithDetections::new(image, boxes))
         }
-        other => return Err(Error::unsupported(format!("{} from Python", other.name()))).to_python(py),
+        other => {
+            return Err(Error::unsupported(format!("{} cannot be converted from Python", other.name())))
+                .to_python(py);
+        }
     };
     *value.header_mut() = header_from_python(object)?;
     Ok(value)
 }
 
-/// The value of the type called `kind` that a file holds.
+/// Reads a value of the type called `kind` from a file.
 #[pyfunction]
 pub fn open_value<'py>(py: Python<'py>, kind: &str, path: PathBuf) -> PyResult<Bound<'py, PyAny>> {
     let kind: ValueType = kind.parse().to_python(py)?;
@@ -69,7 +73,7 @@ pub fn open_value<'py>(py: Python<'py>, kind: &str, path: PathBuf) -> PyResult<B
     python_from_value(py, value.as_value_ref())
 }
 
-/// The Python object of a value.
+/// Converts a value to its Python object.
 pub fn python_from_value<'py>(py: Python<'py>, value: ValueRef<'_>) -> PyResult<Bound<'py, PyAny>> {
     let name = value.value_type().name();
     let array = |numbers: &[f32], shape: &[usize]| NativeArray::from_scores(numbers.to_vec().into(), shape);
@@ -81,45 +85,38 @@ pub fn python_from_value<'py>(py: Python<'py>, value: ValueRef<'_>) -> PyResult<
         ValueRef::Timeseries(data) => (array(data.as_slice(), &data.shape()),).into_pyobject(py)?,
         ValueRef::Vector(data) => (array(data.as_slice(), &data.shape()),).into_pyobject(py)?,
         ValueRef::SkeletonSequence(data) => (array(data.as_slice(), &data.shape()),).into_pyobject(py)?,
-        ValueRef::Audio(sound) => {
-            (array(sound.as_slice(), &sound.array().shape()), sound.sample_rate()).into_pyobject(py)?
+        ValueRef::Audio(audio) => {
+            (array(audio.as_slice(), &audio.array().shape()), audio.sample_rate()).into_pyobject(py)?
         }
         ValueRef::Calibration(matrices) => {
             (matrices.p2, matrices.r0_rect, matrices.tr_velo_to_cam).into_pyobject(py)?
         }
-        ValueRef::Observation(seen) if seen.parts().len() == 0 => {
-            (array(seen.as_slice(), &[seen.as_slice().len()]),).into_pyobject(py)?
+        ValueRef::Observation(data) if data.parts().len() == 0 => {
+            (array(data.as_slice(), &[data.as_slice().len()]),).into_pyobject(py)?
         }
-        ValueRef::Observation(seen) => {
+        ValueRef::Observation(data) => {
             let parts = PyDict::new(py);
-            for (part, shape, numbers) in seen.parts() {
+            for (part, shape, numbers) in data.parts() {
                 parts.set_item(part, array(numbers, shape))?;
             }
             (parts,).into_pyobject(py)?
         }
-        ValueRef::ImageWithDetections(seen) => {
-            let boxes = python_from_target(py, &Value::BoundingBoxList(seen.boxes.clone()))?;
-            (python_from_image(py, seen.image.clone())?, boxes).into_pyobject(py)?
+        ValueRef::ImageWithDetections(data) => {
+            let boxes = python_from_target(py, &Value::BoundingBoxList(data.boxes.clone()))?;
+            (python_from_image(py, data.image.clone())?, boxes).into_pyobject(py)?
         }
-        ValueRef::PointCloudWithCalibration(seen) => {
-            let cloud = array(seen.cloud.as_slice(), &seen.cloud.shape());
-            let calibration = python_from_value(py, ValueRef::Calibration(&seen.calibration))?;
-            (cloud, calibration, seen.image_shape).into_pyobject(py)?
+        ValueRef::PointCloudWithCalibration(data) => {
+            let cloud = array(data.cloud.as_slice(), &data.cloud.shape());
+            let calibration = python_from_value(py, ValueRef::Calibration(&data.calibration))?;
+            (cloud, calibration, data.image_shape).into_pyobject(py)?
         }
         target if target.value_type().is_target() => return python_from_target(py, &target.to_value()),
-        _ => return Err(Error::unsupported(format!("{name} for Python"))).to_python(py),
+        _ => return Err(Error::unsupported(format!("{name} cannot be converted to Python"))).to_python(py),
     };
     let value = value.to_value();
     let header = value.header();
     let schema = py.import("opendr._schema")?;
     schema.call_method1("datum_from_parts", (name, parts, header.stamp_ns, header.frame_id.as_deref()))
-}
-
-/// Time stamp and frame id of a Python datum or target.
-pub fn header_from_python(object: &Bound<'_, PyAny>) -> PyResult<Header> {
-    let stamp_ns = object.getattr("timestamp")?.extract()?;
-    let frame_id: Option<String> = object.getattr("frame_id")?.extract()?;
-    Ok(Header { stamp_ns, frame_id: frame_id.filter(|id| !id.is_empty()).map(Into::into) })
 }
 
 /// The elements of an array of floats.
@@ -137,7 +134,7 @@ impl<'py> Numbers<'py> {
 
     fn datum<T, const D: usize>(self, make: impl FnOnce(Vec<f32>, [usize; D]) -> Result<T>) -> PyResult<T> {
         let shape = <[usize; D]>::try_from(self.shape).map_err(|shape| {
-            PyValueError::new_err(format!("an array of {D} axes is wanted, not one of shape {shape:?}"))
+            PyValueError::new_err(format!("expected an array of {D} axes, not one of shape {shape:?}"))
         })?;
         make(self.elements, shape).to_python(self.py)
     }
@@ -158,7 +155,7 @@ fn calibration(object: &Bound<'_, PyAny>) -> PyResult<Calibration> {
     })
 }
 
-/// A matrix that is an attribute; anyone may have set it to anything.
+/// Reads a matrix from an attribute, which users may have set to anything.
 fn matrix<const COLUMNS: usize>(object: &Bound<'_, PyAny>, name: &str) -> PyResult<[[f64; COLUMNS]; 3]> {
     let numpy = object.py().import("numpy")?;
     let rows = numpy.call_method1("asarray", (object.getattr(name)?,))?.call_method0("tolist")?;
@@ -167,7 +164,7 @@ fn matrix<const COLUMNS: usize>(object: &Bound<'_, PyAny>, name: &str) -> PyResu
         .ok_or_else(|| PyValueError::new_err(format!("{name} should be 3 rows of {COLUMNS} finite numbers")))
 }
 
-/// From one array, or a dictionary of arrays by name.
+/// Reads an observation from one array, or from a dictionary of arrays by name.
 fn observation(object: &Bound<'_, PyAny>) -> PyResult<Observation> {
     let py = object.py();
     let data = object.getattr("data")?;

@@ -4,9 +4,9 @@ use opendr::Error;
 use pyo3::exceptions::{PyNotImplementedError, PyRuntimeError};
 use pyo3::prelude::*;
 
-/// The exception of an error, with the error's kind as its class and its message as its text.
+/// Converts an error to an exception, whose class is that of the error's kind and whose text is the error's message.
 pub fn exception(py: Python<'_>, error: &Error) -> PyErr {
-    // What a Python learner raised goes on as it was.
+    // An exception raised by a Python learner is raised unchanged.
     if let Some(raised) = std::error::Error::source(error).and_then(|source| source.downcast_ref::<PyErr>()) {
         return raised.clone_ref(py);
     }
@@ -18,7 +18,7 @@ pub fn exception(py: Python<'_>, error: &Error) -> PyErr {
     }
 }
 
-/// The error that a Python exception is, with the exception as its source.
+/// Converts a Python exception to an error with the exception as its source.
 pub fn error_from_exception(py: Python<'_>, raised: PyErr) -> Error {
     let text = raised.value(py).to_string();
     if raised.is_instance_of::<PyNotImplementedError>(py) {
@@ -28,9 +28,9 @@ pub fn error_from_exception(py: Python<'_>, raised: PyErr) -> Error {
     Error::internal(format!("{name}: {text}")).with_source(raised)
 }
 
-/// Turns results of the toolkit into results of Python.
+/// Conversion of results of the toolkit to results of Python.
 pub trait ToPython<T> {
-    /// With the error as an exception.
+    /// Converts the error to an exception.
     fn to_python(self, py: Python<'_>) -> PyResult<T>;
 }
 

@@ -1,4 +1,4 @@
-//! Anything in Python that predicts, measured on a data set: functions, pipelines, learners written in Python.
+//! Evaluation of functions, pipelines and learners written in Python on a data set.
 
 use opendr::dataset::DatasetIterator;
 use opendr::evaluation::{EvalOptions, Predictor, Subject};
@@ -12,27 +12,27 @@ use crate::bar::PythonBar;
 use crate::dataset::{GivenDataset, type_of};
 use crate::datum::{python_from_value, value_from_python};
 use crate::error::{ToPython, error_from_exception};
-use crate::handle::json_of;
+use crate::report::json_of;
 
-/// Names of inputs by their place: what is called takes them in order.
-const PLACES: [&str; 8] = ["0", "1", "2", "3", "4", "5", "6", "7"];
+/// Port names of positional inputs.
+const POSITIONS: [&str; 8] = ["0", "1", "2", "3", "4", "5", "6", "7"];
 
-/// A function of the data of a sample.
+/// A predictor that calls a Python function with the data of a sample.
 struct Function {
     infer: Py<PyAny>,
-    /// Forgets the samples before.
+    /// Function that resets the state.
     reset: Option<Py<PyAny>>,
-    wanted: ValueType,
+    prediction: ValueType,
 }
 
 impl Function {
     fn call<'py>(&self, py: Python<'py>, ports: &Ports<'_>) -> PyResult<Bound<'py, PyAny>> {
         let data =
-            PLACES.iter().map_while(|place| ports.get(place)).map(|value| python_from_value(py, value));
+            POSITIONS.iter().map_while(|place| ports.get(place)).map(|value| python_from_value(py, value));
         self.infer.bind(py).call1(PyTuple::new(py, data.collect::<PyResult<Vec<_>>>()?)?)
     }
 
-    /// The prediction of the wanted type among those that were returned, else the first.
+    /// Returns the first returned value of the prediction's type, else the first returned value.
     fn predict(&self, py: Python<'_>, ports: &Ports<'_>) -> PyResult<Option<Value>> {
         let returned = self.call(py, ports)?;
         let several: Vec<Bound<'_, PyAny>> = match (returned.cast::<PyDict>(), returned.cast::<PyTuple>()) {
@@ -40,8 +40,9 @@ impl Function {
             (_, Ok(in_order)) => in_order.iter().collect(),
             _ => vec![returned],
         };
-        let wanted = several.iter().find(|value| type_of(value).is_ok_and(|found| found == self.wanted));
-        let Some(value) = wanted.or(several.first()) else { return Ok(None) };
+        let matching =
+            several.iter().find(|value| type_of(value).is_ok_and(|value_type| value_type == self.prediction));
+        let Some(value) = matching.or(several.first()) else { return Ok(None) };
         value_from_python(value, type_of(value)?).map(Some)
     }
 }
@@ -50,7 +51,7 @@ impl Predictor for Function {
     fn reset(&mut self) {
         let Some(reset) = &self.reset else { return };
         Python::attach(|py| {
-            // A reset has no error to return; what it raises Python shows as unraisable.
+            // `reset` cannot return an error; Python reports an exception as unraisable.
             if let Err(raised) = reset.call0(py) {
                 raised.write_unraisable(py, Some(reset.bind(py)));
             }
@@ -58,7 +59,7 @@ impl Predictor for Function {
     }
 
     fn infer(&mut self, ports: &Ports<'_>) -> Result<Outputs> {
-        let header = ports.get(PLACES[0]).map(|value| value.to_value().header().clone());
+        let header = ports.get(POSITIONS[0]).map(|value| value.to_value().header().clone());
         let predicted =
             Python::attach(|py| self.predict(py, ports).map_err(|raised| error_from_exception(py, raised)))?;
         Ok(predicted
@@ -73,11 +74,11 @@ impl Predictor for Function {
     }
 }
 
-/// Measures `infer` on a data set by the metric that `options` (JSON) name; the outcome as JSON and as text. `types` are those of the
-/// data that it takes, by default those of the first sample; `classes` what the class numbers of its predictions mean.
+/// Evaluates `infer` on a data set by the metric named in `options` (JSON). Returns the outcome as JSON and as text. `types` are the
+/// types of its inputs, by default those of the first sample; `classes` are the names of the class indices of its predictions.
 #[pyfunction]
 #[pyo3(signature = (infer, reset, dataset, types, classes, name, options, verbose))]
-#[allow(clippy::too_many_arguments)] // One call from each of three places in Python, by place.
+#[allow(clippy::too_many_arguments)] // Called from three places in Python, with positional arguments.
 pub fn evaluate(
     py: Python<'_>,
     infer: Py<PyAny>,
@@ -90,17 +91,20 @@ pub fn evaluate(
     verbose: bool,
 ) -> PyResult<(String, String)> {
     let mut options = eval_options_from_json(options).to_python(py)?;
-    let metric = options.metric.as_deref().ok_or_else(|| Error::invalid_param("name a metric"));
+    let metric = options
+        .metric
+        .as_deref()
+        .ok_or_else(|| Error::invalid_param("no metric is given; name one with metric"));
     let metric = metric.and_then(find).to_python(py)?;
     let types = types.iter().map(|name| name.parse()).collect::<Result<Vec<ValueType>>>().to_python(py)?;
     let dataset = GivenDataset::from_python(dataset, &types)?;
     options.name.get_or_insert_with(|| dataset.name());
-    let mut function = [Function { infer, reset, wanted: metric.prediction }];
+    let mut function = [Function { infer, reset, prediction: metric.prediction }];
     PythonBar::new(!verbose).run(py, |bar| {
         let job = options.open_by(metric, dataset.as_ref())?;
         let types = if types.is_empty() && !job.dataset.is_empty() { types_of(&job.dataset)? } else { types };
         let ports: Vec<Port> =
-            PLACES.into_iter().zip(types).map(|(place, value_type)| port(place, value_type)).collect();
+            POSITIONS.into_iter().zip(types).map(|(place, value_type)| port(place, value_type)).collect();
         let subject = Subject { learner: name, ..Subject::default() };
         let outcome =
             job.run_pipelines(&mut function, &ports, classes.into_iter().collect(), subject, bar)?;
@@ -108,13 +112,13 @@ pub fn evaluate(
     })
 }
 
-/// What can be chosen of an evaluation.
+/// Reads the options of an evaluation.
 ///
 /// # Errors
-/// `InvalidParam` for what is none of the options.
+/// `InvalidParam` for an unknown option.
 pub fn eval_options_from_json(options: &str) -> Result<EvalOptions> {
     serde_json::from_str(options).map_err(|error| {
-        Error::invalid_param(format!("eval has no such arguments: {error}")).with_source(error)
+        Error::invalid_param(format!("invalid arguments of eval: {error}")).with_source(error)
     })
 }
 

@@ -1,4 +1,4 @@
-//! A learner for Python: what the classes of the package hold.
+//! Learners and streams, which the classes of the Python package wrap.
 
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -10,7 +10,7 @@ use opendr::learner::{AnyLearner, AnyStream, Entry, Outputs, Port, Ports};
 use opendr::params::ParamMap;
 use opendr::rl::EvaluationProtocol;
 use opendr::{
-    ActingStream, Device, Error, FitData, FitEnvironments, FitOptions, Pool, Statistics, Value, ValueType,
+    Device, Error, FitData, FitEnvironments, FitOptions, PolicyController, Pool, Statistics, Value, ValueType,
 };
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -24,10 +24,11 @@ use crate::error::ToPython;
 use crate::evaluate::eval_options_from_json;
 use crate::param::{params_from_python, python_from_params};
 use crate::pixels::image_from_python;
+use crate::report::json_of;
 use crate::target::{Payload, payloads};
 use crate::{plugin, zoo};
 
-/// A learner of the registry. Calls from several threads wait for each other; [`Handle::stream`] gives each its own.
+/// A learner of the registry. Calls from several threads are serialised; [`Handle::stream`] gives each thread its own state.
 #[pyclass(frozen, module = "opendr._opendr")]
 pub struct Handle {
     entry: &'static Entry,
@@ -58,7 +59,7 @@ impl Handle {
         py.detach(|| lock(&self.learner).load(&path)).to_python(py)
     }
 
-    /// Loads the pretrained model, or a variant of it, got into the cache where it is not there; its folder.
+    /// Loads the pretrained model, or a variant of it, which is downloaded into the cache if needed. Returns its folder.
     #[pyo3(signature = (variant=None, verbose=true))]
     fn load_pretrained(&self, py: Python<'_>, variant: Option<String>, verbose: bool) -> PyResult<PathBuf> {
         let spec = zoo::spec(self.entry.spec.name, variant.as_deref());
@@ -78,7 +79,7 @@ impl Handle {
         py.detach(|| lock(&self.learner).is_ready())
     }
 
-    /// Answers named ports; `overrides` are live parameters for this call only.
+    /// Returns the outputs for inputs by port name; `overrides` are live parameters for this call only.
     #[pyo3(signature = (ports, overrides=None))]
     fn infer(
         &self,
@@ -87,28 +88,28 @@ impl Handle {
         overrides: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Vec<Payload>> {
         let overrides = overrides.map(params_from_python).transpose()?.unwrap_or_default();
-        self.inputs.answer(py, ports, |ports| {
+        self.inputs.infer(py, ports, |ports| {
             let mut learner = lock(&self.learner);
-            let kept = replace(learner.as_mut(), &overrides)?;
+            let previous = replace(learner.as_mut(), &overrides)?;
             let outputs = learner.infer(ports);
-            replace(learner.as_mut(), &kept)?;
+            replace(learner.as_mut(), &previous)?;
             outputs
         })
     }
 
-    /// Takes the next piece, `None` at the end; what it found.
+    /// Processes the next chunk, `None` at the end. Returns the outputs that are ready.
     #[pyo3(signature = (ports=None))]
     fn push(&self, py: Python<'_>, ports: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<Vec<Payload>>> {
         self.inputs.push(py, ports, |ports, emit| lock(&self.learner).push(ports, emit))
     }
 
-    /// A stream of its own for another camera or thread.
+    /// Returns a stream with its own state, for another camera or thread.
     fn stream(&self, py: Python<'_>) -> PyResult<Stream> {
         let stream = py.detach(|| lock(&self.learner).stream()).to_python(py)?;
         Ok(Stream { stream: Mutex::new(stream), inputs: Inputs::of(self.entry) })
     }
 
-    /// Measures the learner on a data set; the outcome as JSON and as text. `options` are JSON.
+    /// Evaluates the learner on a data set. `options` are JSON. Returns the outcome as JSON and as text.
     fn eval(
         &self,
         py: Python<'_>,
@@ -125,8 +126,8 @@ impl Handle {
         })
     }
 
-    /// Trains the learner; the report as JSON and as text. `options` are JSON; a `teacher` is another handle, or the name and
-    /// the object of a learner written in Python.
+    /// Trains the learner. `options` are JSON; `teacher` is another handle, or the name and the object of a learner written in
+    /// Python. Returns the report as JSON and as text.
     fn fit(
         &self,
         py: Python<'_>,
@@ -153,7 +154,7 @@ impl Handle {
         })
     }
 
-    /// Makes the model smaller and loads the result; the report as JSON and as text.
+    /// Trains the policy in an environment. `options` are JSON. Returns the report as JSON and as text.
     #[pyo3(signature = (env, val_env, options, silent))]
     fn fit_in(
         &self,
@@ -171,12 +172,12 @@ impl Handle {
             let val_env = val_env.as_ref().map(|val_env| val_env as &dyn EnvironmentSource);
             let environments = FitEnvironments { env: &env, val_env };
             let fitted =
-                opendr::fit_in(lock(&self.learner).as_mut(), self.entry, environments, &options, bar)?;
+                opendr::fit_policy(lock(&self.learner).as_mut(), self.entry, environments, &options, bar)?;
             Ok((json_of(&fitted)?, fitted.to_string()))
         })
     }
 
-    /// Measures the policy on fixed episodes; the numbers as JSON.
+    /// Evaluates the policy on `episodes` episodes with consecutive seeds. Returns the scalars as JSON.
     fn eval_in(
         &self,
         py: Python<'_>,
@@ -189,19 +190,20 @@ impl Handle {
         PythonBar::new(!verbose).run(py, |bar| {
             let stream = lock(&self.learner).stream()?;
             let mut environment = env.make()?;
-            let mut acting = ActingStream::new(stream, self.entry, environment.spec())?;
+            let mut acting = PolicyController::new(stream, self.entry, environment.spec())?;
             let protocol = EvaluationProtocol { episodes, first_seed, ..EvaluationProtocol::default() };
-            let report = opendr::eval_in(&mut acting, environment.as_mut(), &protocol, bar)?;
+            let report = opendr::evaluate_policy(&mut acting, environment.as_mut(), &protocol, bar)?;
             json_of(&Statistics::from(&report).scalars)
         })
     }
 
-    /// The environment that the loaded policy was trained in.
+    /// Id of the environment that the loaded policy was trained in.
     #[getter]
     fn trained_in(&self, py: Python<'_>) -> Option<String> {
-        py.detach(|| opendr::trained_in(lock(&self.learner).as_ref()).map(str::to_owned))
+        py.detach(|| opendr::training_environment(lock(&self.learner).as_ref()).map(str::to_owned))
     }
 
+    /// Writes the optimised model to `output` and loads it. Returns the report as JSON and as text.
     fn optimize(
         &self,
         py: Python<'_>,
@@ -220,7 +222,9 @@ impl Handle {
             let mut learner = lock(&self.learner);
             let report = opendr::optimize_loaded(learner.as_mut(), self.entry, data, &options, &output, bar)?;
             let json = serde_json::to_string(&report);
-            let json = json.map_err(|error| Error::internal("no JSON form").with_source(error))?;
+            let json = json.map_err(|error| {
+                Error::internal("the report cannot be written as JSON").with_source(error)
+            })?;
             Ok((json, report.to_string()))
         })
     }
@@ -252,12 +256,12 @@ impl Handle {
 
 #[pymethods]
 impl Stream {
-    /// As [`Handle::infer`].
+    /// Returns the outputs for inputs by port name.
     fn infer(&self, py: Python<'_>, ports: &Bound<'_, PyDict>) -> PyResult<Vec<Payload>> {
-        self.inputs.answer(py, ports, |ports| lock(&self.stream).infer(ports))
+        self.inputs.infer(py, ports, |ports| lock(&self.stream).infer(ports))
     }
 
-    /// As [`Handle::push`].
+    /// Processes the next chunk, `None` at the end. Returns the outputs that are ready.
     #[pyo3(signature = (ports=None))]
     fn push(&self, py: Python<'_>, ports: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<Vec<Payload>>> {
         self.inputs.push(py, ports, |ports, emit| lock(&self.stream).push(ports, emit))
@@ -269,14 +273,11 @@ impl Stream {
 }
 
 fn options_from_json(json: &str) -> opendr::Result<FitOptions> {
-    serde_json::from_str(json).map_err(|error| Error::invalid_param("no options of fit").with_source(error))
+    serde_json::from_str(json)
+        .map_err(|error| Error::invalid_param("invalid options of fit").with_source(error))
 }
 
-pub fn json_of(report: &impl serde::Serialize) -> opendr::Result<String> {
-    serde_json::to_string(report).map_err(|error| Error::internal("no JSON form").with_source(error))
-}
-
-/// The teacher that `fit` is given.
+/// Converts the argument `teacher` of `fit`.
 fn teacher_from_python(teacher: &Bound<'_, PyAny>) -> PyResult<Teacher> {
     let py = teacher.py();
     let Ok(handle) = teacher.cast::<Handle>() else {
@@ -288,28 +289,28 @@ fn teacher_from_python(teacher: &Bound<'_, PyAny>) -> PyResult<Teacher> {
     py.detach(make).to_python(py)
 }
 
-/// Whoever waits here has released the interpreter, so that a learner written in Python can run meanwhile.
+/// Locks a mutex. Callers have released the GIL, so that a learner written in Python can run meanwhile.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Sets parameters; what they were.
+/// Sets parameters and returns their previous values.
 fn replace(learner: &mut dyn AnyLearner, params: &ParamMap) -> opendr::Result<ParamMap> {
-    let mut kept = learner.params();
-    kept.retain(|name, _| params.contains_key(name));
+    let mut previous = learner.params();
+    previous.retain(|name, _| params.contains_key(name));
     for (name, value) in params {
         if let Err(error) = learner.set(name, value.clone()) {
-            kept.into_iter().try_for_each(|(name, value)| learner.set(&name, value))?;
+            previous.into_iter().try_for_each(|(name, value)| learner.set(&name, value))?;
             return Err(error);
         }
     }
-    Ok(kept)
+    Ok(previous)
 }
 
-/// How a learner's inputs come from Python.
+/// Conversion of a learner's inputs from Python.
 struct Inputs {
     ports: &'static [Port],
-    /// Memory of pictures, used again from call to call.
+    /// Memory of images, reused from call to call.
     spare: Pool<Vec<u8>>,
 }
 
@@ -318,7 +319,8 @@ impl Inputs {
         Self { ports: entry.ports, spare: Pool::default() }
     }
 
-    fn answer(
+    /// Converts the inputs, calls `infer` with the GIL released, and returns the outputs.
+    fn infer(
         &self,
         py: Python<'_>,
         ports: &Bound<'_, PyDict>,
@@ -327,7 +329,7 @@ impl Inputs {
         let values = self.read(ports)?;
         let payloads = py.detach(|| {
             let outputs = infer(&named(&values));
-            self.keep(values);
+            self.reclaim(values);
             payloads(&outputs?)
         });
         payloads.to_python(py)
@@ -340,12 +342,12 @@ impl Inputs {
         push: impl FnOnce(Option<&Ports<'_>>, &mut dyn FnMut(Outputs)) -> opendr::Result<()> + Send,
     ) -> PyResult<Vec<Vec<Payload>>> {
         let values = ports.map(|ports| self.read(ports)).transpose()?;
-        let found: opendr::Result<_> = py.detach(|| {
-            let mut found = Vec::new();
-            push(values.as_deref().map(named).as_ref(), &mut |outputs| found.push(outputs))?;
-            found.iter().map(payloads).collect()
+        let emitted: opendr::Result<_> = py.detach(|| {
+            let mut emitted = Vec::new();
+            push(values.as_deref().map(named).as_ref(), &mut |outputs| emitted.push(outputs))?;
+            emitted.iter().map(payloads).collect()
         });
-        found.to_python(py)
+        emitted.to_python(py)
     }
 
     fn read(&self, ports: &Bound<'_, PyDict>) -> PyResult<Vec<(&'static str, Value)>> {
@@ -354,22 +356,22 @@ impl Inputs {
             let name: String = name.extract()?;
             let port = self.ports.iter().find(|port| port.name == name).ok_or_else(|| {
                 let names: Vec<_> = self.ports.iter().map(|port| port.name).collect();
-                PyTypeError::new_err(format!("no input {name:?}; there are {}", names.join(", ")))
+                PyTypeError::new_err(format!("unknown input {name:?}; the inputs are {}", names.join(", ")))
             })?;
             let value = match port.value_type {
                 ValueType::Image => {
                     let spare = std::mem::take(&mut *self.spare.take());
                     Value::Image(image_from_python(&object, spare)?)
                 }
-                wanted => value_from_python(&object, wanted)?,
+                value_type => value_from_python(&object, value_type)?,
             };
             values.push((port.name, value));
         }
         Ok(values)
     }
 
-    /// Keeps the memory of pictures that nobody else holds.
-    fn keep(&self, values: Vec<(&'static str, Value)>) {
+    /// Keeps the memory of images that are not referenced elsewhere, for reuse.
+    fn reclaim(&self, values: Vec<(&'static str, Value)>) {
         for (_, value) in values {
             if let Value::Image(image) = value
                 && let Samples::U8(samples) = image.into_pixels()

@@ -1,8 +1,12 @@
-//! The native half of the Python package `opendr`: registry, learners, values, sources, zoo, command.
+//! Native module of the Python package `opendr`.
 //!
-//! It knows data and target types, never learners. Data are Python objects that own NumPy arrays; their memory is read
-//! through raw pointers in one pass, since other threads may write to it. Targets cross as the JSON objects of
-//! `docs/json.md`, so that one schema serves every surface. The lock is released in every long call.
+//! The module `opendr._opendr` exports the registry, learners, values, data sets, sources, environments, studies, the zoo and
+//! the command; the Python files of the package build their classes on it. It depends on data and target types, never on single
+//! learners. Data are Python objects that own NumPy arrays; their memory is read through raw pointers in one pass, since other
+//! threads may write to it. Targets are passed as the JSON objects of `docs/json.md`, the schema of every surface. The GIL is
+//! released in every long call.
+//!
+//! Begin with `Handle` in `handle.rs`, a learner, and with `datum.rs` and `target.rs`, the conversions of values.
 
 mod array;
 mod bar;
@@ -14,11 +18,13 @@ mod environment;
 mod error;
 mod evaluate;
 mod handle;
+mod header;
 mod metric;
 mod param;
 mod pixels;
 mod plugin;
 mod registry;
+mod report;
 #[cfg(feature = "ros")]
 mod ros_bridge;
 mod source;
@@ -28,7 +34,7 @@ mod zoo;
 
 use pyo3::prelude::*;
 
-// Nothing here counts on the interpreter's lock: what threads share is frozen, or behind a mutex.
+// The module does not depend on the GIL: state shared by threads is frozen or behind a mutex.
 #[pymodule(gil_used = false)]
 fn _opendr(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let prefix = module.py().import("sys")?.getattr("prefix")?;

@@ -1,4 +1,4 @@
-//! Metrics for Python.
+//! The class `Metric` of Python and the tables of the metrics.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -13,7 +13,7 @@ use crate::param::params_from_python;
 use crate::registry::{field, rows};
 use crate::target::target_from_python;
 
-/// An accumulator. Calls from several threads wait for each other.
+/// A metric with its accumulated samples. Calls from several threads are serialised.
 #[pyclass(frozen, module = "opendr._opendr")]
 pub struct Metric {
     entry: &'static MetricEntry,
@@ -23,7 +23,7 @@ pub struct Metric {
 
 struct State {
     metric: Box<dyn AnyMetric>,
-    /// The number of the next sample.
+    /// Index of the next sample.
     next: usize,
 }
 
@@ -32,12 +32,12 @@ impl Metric {
     #[new]
     fn new(py: Python<'_>, name: &str, params: &Bound<'_, PyDict>) -> PyResult<Self> {
         let params = params_from_python(params)?;
-        let made = find(name).and_then(|entry| Ok((entry, entry.make(&params)?)));
-        let (entry, metric) = made.to_python(py)?;
+        let found = find(name).and_then(|entry| Ok((entry, entry.make(&params)?)));
+        let (entry, metric) = found.to_python(py)?;
         Ok(Self { entry, params, state: Mutex::new(State { metric, next: 0 }) })
     }
 
-    /// Counts the answer to one sample; how good it is, 0 to 1.
+    /// Adds the prediction for one sample. Returns its score, 0 to 1.
     #[pyo3(signature = (prediction, truth, at=None))]
     fn update(
         &self,
@@ -57,18 +57,18 @@ impl Metric {
         counted.to_python(py)
     }
 
-    /// The video or drive is over.
+    /// Ends the current sequence (video or drive).
     fn end_sequence(&self) {
         self.lock().metric.end_sequence();
     }
 
-    /// Counts what another of the same kind counted, which is empty then.
+    /// Adds the samples of another metric of the same kind, which is empty afterwards.
     fn merge(&self, py: Python<'_>, other: &Self) -> PyResult<()> {
         if std::ptr::eq(self, other) {
             return Err(Error::invalid_input("a metric cannot be merged with itself")).to_python(py);
         }
         let merged = py.detach(|| {
-            // Not both locked at once: two threads may merge two metrics crosswise.
+            // The two are never locked at once: two threads that merge two metrics crosswise would deadlock.
             let empty = other.entry.make(&other.params)?;
             let (counted, next) = {
                 let mut state = other.lock();
@@ -82,7 +82,7 @@ impl Metric {
         merged.to_python(py)
     }
 
-    /// The report as JSON.
+    /// Returns the report as JSON.
     fn finish(&self, py: Python<'_>) -> PyResult<String> {
         let json = py.detach(|| serde_json::to_string(&self.lock().metric.finish()));
         json.map_err(|error| Error::internal("the report has no JSON form").with_source(error)).to_python(py)
@@ -95,13 +95,13 @@ impl Metric {
     }
 }
 
-/// The name of a task's metric.
+/// Returns the name of a task's metric.
 #[pyfunction]
 pub fn metric_of(py: Python<'_>, task: &str) -> PyResult<&'static str> {
     task.parse::<Task>().and_then(opendr::evaluation::metric_of).to_python(py)
 }
 
-/// The metrics that there are.
+/// Returns a table of each metric.
 #[pyfunction]
 pub fn metrics(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
     let tables = opendr::metrics::metrics().iter().map(|entry| {

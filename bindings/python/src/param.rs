@@ -1,4 +1,4 @@
-//! Parameters between Python and the toolkit.
+//! Conversion of parameters between Python and the toolkit.
 
 use opendr::params::{ParamMap, ParamValue};
 use pyo3::IntoPyObjectExt;
@@ -6,10 +6,10 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyList, PyString, PyTuple};
 
-/// Lists in lists; a list may hold itself.
+/// Maximum depth of nested lists; bounded, since a list may contain itself.
 const MAX_DEPTH: usize = 8;
 
-/// The value that a Python object is: `None`, bool, int, float, str, a list or tuple of such, or a NumPy number.
+/// Converts a Python object: `None`, bool, int, float, str, a list or tuple of these, or a NumPy number.
 pub fn param_from_python(value: &Bound<'_, PyAny>) -> PyResult<ParamValue> {
     param_at_depth(value, 0)
 }
@@ -27,7 +27,7 @@ fn param_at_depth(value: &Bound<'_, PyAny>, depth: usize) -> PyResult<ParamValue
     if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
         if depth == MAX_DEPTH {
             return Err(PyTypeError::new_err(format!(
-                "a parameter has lists in lists, more than {MAX_DEPTH} deep; give flat lists"
+                "a parameter has lists nested more than {MAX_DEPTH} deep; give flat lists"
             )));
         }
         let items: PyResult<_> = value.try_iter()?.map(|item| param_at_depth(&item?, depth + 1)).collect();
@@ -44,12 +44,12 @@ fn param_at_depth(value: &Bound<'_, PyAny>, depth: usize) -> PyResult<ParamValue
     })
 }
 
-/// The parameters that a Python dictionary holds.
+/// Converts a Python dictionary to parameters.
 pub fn params_from_python(params: &Bound<'_, PyDict>) -> PyResult<ParamMap> {
     params.iter().map(|(name, value)| Ok((name.extract::<String>()?, param_from_python(&value)?))).collect()
 }
 
-/// The Python object of a value.
+/// Converts a value to its Python object.
 pub fn python_from_param(py: Python<'_>, value: &ParamValue) -> PyResult<Py<PyAny>> {
     match value {
         ParamValue::None => Ok(py.None()),
@@ -64,7 +64,7 @@ pub fn python_from_param(py: Python<'_>, value: &ParamValue) -> PyResult<Py<PyAn
     }
 }
 
-/// The Python dictionary of parameters.
+/// Converts parameters to a Python dictionary.
 pub fn python_from_params<'py>(py: Python<'py>, params: &ParamMap) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     for (name, value) in params {

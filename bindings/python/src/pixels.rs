@@ -1,4 +1,4 @@
-//! Pictures: read from NumPy's memory, shown as NumPy's memory, opened, saved, drawn on.
+//! Images: reading them from NumPy's memory, exposing them as NumPy's memory, saving, drawing.
 
 use std::path::PathBuf;
 
@@ -10,20 +10,20 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::array::{ArrayMemory, Element, Stored, array_interface};
-use crate::datum::header_from_python;
+use crate::array::{ArrayMemory, Element, StorageLayout, array_interface};
 use crate::error::ToPython;
+use crate::header::header_from_python;
 use crate::target::target_from_python;
 
-/// A picture in native memory. `numpy.asarray(it)` is a read-only view as `[channels, height, width]`, RGB, without a
-/// copy, however the pixels are stored.
+/// An image in native memory. `numpy.asarray(pixels)` is a read-only view as `[channels, height, width]`, RGB, without a
+/// copy, in any storage layout.
 #[pyclass(frozen, module = "opendr._opendr")]
 pub struct Pixels {
     image: Image,
 }
 
 impl Pixels {
-    /// A picture for Python. Opacity before the colours cannot be shown as RGBA without a copy, so it is copied.
+    /// Wraps an image. A BGRA image is converted to RGBA: no strides give an RGBA view of it.
     pub fn new(image: Image) -> opendr::Result<Self> {
         if image.format() != PixelFormat::Bgra {
             return Ok(Self { image });
@@ -52,13 +52,13 @@ impl Pixels {
         (self.image.channels(), self.image.height(), self.image.width())
     }
 
-    /// Nanoseconds, or `None`.
+    /// Time stamp in nanoseconds, or `None`.
     #[getter]
     fn timestamp(&self) -> Option<i64> {
         self.image.header.stamp_ns
     }
 
-    /// The coordinate frame; empty when unknown.
+    /// Name of the coordinate frame; empty when unknown.
     #[getter]
     fn frame_id(&self) -> &str {
         self.image.header.frame_id.as_deref().unwrap_or_default()
@@ -81,7 +81,7 @@ fn interface<'py, T: Element>(
     array_interface(py, start as usize, &shape, Some(&strides), T::TYPE_TEXT)
 }
 
-/// The picture that a Python `Image` is. `spare` becomes its memory where that is of bytes.
+/// Converts a Python `Image`. `spare` becomes the memory of an image of bytes.
 pub fn image_from_python(object: &Bound<'_, PyAny>, spare: Vec<u8>) -> PyResult<Image> {
     let native = object.getattr("_pixels")?;
     let header = header_from_python(object)?;
@@ -97,9 +97,7 @@ pub fn image_from_python(object: &Bound<'_, PyAny>, spare: Vec<u8>) -> PyResult<
         image_of::<f32>(object.py(), &memory, Vec::new())
     } else {
         let given = memory.type_text();
-        Err(PyTypeError::new_err(format!(
-            "a picture is of uint8, uint16 or float32, not {given}; use astype"
-        )))
+        Err(PyTypeError::new_err(format!("an image is of uint8, uint16 or float32, not {given}; use astype")))
     };
     Ok(image?.with_header(header))
 }
@@ -108,32 +106,32 @@ fn image_of<T: Element>(py: Python<'_>, memory: &ArrayMemory, mut samples: Vec<T
 where
     Samples: From<Vec<T>>,
 {
-    let (stored, [channels, height, width]) = memory.copy_picture(&mut samples)?;
-    let format = match (channels, stored) {
+    let (storage, [channels, height, width]) = memory.copy_image(&mut samples)?;
+    let format = match (channels, storage) {
         (1, _) => PixelFormat::Grey,
-        (3, Stored::TogetherReversed) => PixelFormat::Bgr,
+        (3, StorageLayout::HwcReversed) => PixelFormat::Bgr,
         (3, _) => PixelFormat::Rgb,
         (4, _) => PixelFormat::Rgba,
-        _ => return Err(PyValueError::new_err(format!("a picture has 1, 3 or 4 channels, not {channels}"))),
+        _ => return Err(PyValueError::new_err(format!("an image has 1, 3 or 4 channels, not {channels}"))),
     };
-    let layout = if stored == Stored::Planes { Layout::Chw } else { Layout::Hwc };
+    let layout = if storage == StorageLayout::Chw { Layout::Chw } else { Layout::Hwc };
     Image::new(samples, width, height, format, layout).to_python(py)
 }
 
-/// The Python `Image` of a picture.
+/// Converts an image to a Python `Image`.
 pub fn python_from_image(py: Python<'_>, image: Image) -> PyResult<Bound<'_, PyAny>> {
     let pixels = Pixels::new(image).to_python(py)?;
     py.import("opendr._schema")?.call_method1("image_from_pixels", (pixels,))
 }
 
-/// Writes a Python `Image` to a file; the extension says in which format.
+/// Writes a Python `Image` to a file in the format of the extension.
 #[pyfunction]
 pub fn save_image(py: Python<'_>, image: &Bound<'_, PyAny>, path: PathBuf) -> PyResult<()> {
     let image = image_from_python(image, Vec::new())?;
     py.detach(|| vision::save(&image, path)).to_python(py)
 }
 
-/// A Python `Image` with a target drawn on it; `class_names` replace those of the target.
+/// Returns a Python `Image` with a target drawn on it; `class_names` replace those of the target.
 #[pyfunction]
 #[pyo3(signature = (image, target, class_names=None))]
 pub fn draw<'py>(
@@ -142,7 +140,7 @@ pub fn draw<'py>(
     class_names: Option<Vec<String>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = image.py();
-    let mut picture = image_from_python(image, Vec::new())?;
+    let mut canvas = image_from_python(image, Vec::new())?;
     let mut target = target_from_python(target)?;
     if let Some(names) = class_names {
         let classes = Classes::from_iter(names);
@@ -153,6 +151,6 @@ pub fn draw<'py>(
             _ => {}
         }
     }
-    py.detach(|| vision::draw::draw(&mut picture, target.as_value_ref(), &Style::default()));
-    python_from_image(py, picture)
+    py.detach(|| vision::draw::draw(&mut canvas, target.as_value_ref(), &Style::default()));
+    python_from_image(py, canvas)
 }

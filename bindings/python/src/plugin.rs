@@ -1,4 +1,4 @@
-//! Learners written in Python, in the registry beside the compiled ones.
+//! Learners written in Python, in the same registry as the native ones.
 
 use std::path::{Path, PathBuf};
 
@@ -19,7 +19,7 @@ use crate::datum::{python_from_value, value_from_python};
 use crate::error::{ToPython, error_from_exception};
 use crate::param::{param_from_python, python_from_param, python_from_params};
 
-/// Adds a Python class to the registry; `tables` say what it takes and answers, as `entries()` lists them.
+/// Adds a Python class to the registry; `tables` are its parameters, ports and outputs in the form of `entries()`.
 #[pyfunction]
 pub fn register(py: Python<'_>, class: Py<PyAny>, tables: &Bound<'_, PyDict>) -> PyResult<()> {
     let tables = Tables(tables);
@@ -47,10 +47,10 @@ pub fn register(py: Python<'_>, class: Py<PyAny>, tables: &Bound<'_, PyDict>) ->
         let learner = PythonLearner { spec, params, ports, outputs, object, values, device, loaded: false };
         Ok(Box::new(learner) as Box<dyn AnyLearner>)
     };
-    opendr::registry().add(Entry::added(spec, params, ports, outputs, make)).to_python(py)
+    opendr::registry().add(Entry::dynamic(spec, params, ports, outputs, make)).to_python(py)
 }
 
-/// Runs the test that every learner passes. `calls` are the inputs of one stream by port, at least two and different.
+/// Runs the test that every learner passes. `calls` are the inputs of one stream by port: at least two, which differ.
 #[pyfunction]
 pub fn check_learner(
     py: Python<'_>,
@@ -74,7 +74,7 @@ pub fn check_learner(
     py.detach(|| opendr::learner::check_learner(entry, &options)).to_python(py)
 }
 
-/// The dictionary of a Python learner's tables.
+/// The tables of a Python learner.
 struct Tables<'a, 'py>(&'a Bound<'py, PyDict>);
 
 impl<'py> Tables<'_, 'py> {
@@ -97,7 +97,7 @@ impl<'py> Tables<'_, 'py> {
     }
 }
 
-/// A registered learner stays for the life of the process, and so do its tables.
+/// Leaks a table: a registered learner lives as long as the process.
 fn leak<T>(rows: Vec<T>) -> &'static [T] {
     Vec::leak(rows)
 }
@@ -113,7 +113,7 @@ fn field(row: &Tables<'_, '_>) -> PyResult<Field> {
         "bool" => ParamKind::Bool,
         "text" => ParamKind::Text,
         "list" => ParamKind::List,
-        other => return Err(PyValueError::new_err(format!("no kind of parameter {other:?}"))),
+        other => return Err(PyValueError::new_err(format!("unknown parameter kind {other:?}"))),
     };
     let choices: Vec<String> = row.get("choices")?.extract()?;
     let range: Option<(f64, f64)> = row.get("range")?.extract()?;
@@ -128,7 +128,8 @@ fn field(row: &Tables<'_, '_>) -> PyResult<Field> {
         log_scale: false,
         live: row.get("live")?.extract()?,
         aliases: &[],
-        default: FieldDefault::Given(Box::leak(Box::new(param_from_python(&row.get("default")?)?))),
+        former: &[],
+        default: FieldDefault::Value(Box::leak(Box::new(param_from_python(&row.get("default")?)?))),
     })
 }
 
@@ -148,7 +149,7 @@ fn output(row: &Tables<'_, '_>) -> PyResult<Output> {
     Ok(Output { name: name.map_or(value_type.port(), leak_text), doc: "", value_type })
 }
 
-/// An instance of a registered class as a teacher.
+/// Returns an instance of a registered class as a teacher.
 pub fn teacher(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Teacher> {
     let entry = opendr::registry().find(name).to_python(object.py())?;
     let classes = object.getattr("classes").and_then(|classes| classes.extract::<Vec<String>>());
@@ -162,12 +163,12 @@ pub fn teacher(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Teacher> {
     })
 }
 
-/// Calls Python; what it raises becomes the source of the error.
+/// Calls Python; an exception becomes the source of the error.
 fn attach<T>(call: impl FnOnce(Python<'_>) -> PyResult<T>) -> Result<T> {
     Python::attach(|py| call(py).map_err(|raised| error_from_exception(py, raised)))
 }
 
-/// An instance of a registered class.
+/// A learner that calls an instance of a registered class.
 struct PythonLearner {
     spec: Spec,
     params: &'static [Field],
@@ -179,7 +180,7 @@ struct PythonLearner {
     loaded: bool,
 }
 
-/// What `stream()` of the instance gave.
+/// A stream that calls the object returned by `stream()` of the instance.
 struct PythonStream {
     ports: &'static [Port],
     outputs: &'static [Output],
@@ -203,7 +204,7 @@ impl AnyLearner for PythonLearner {
     fn load(&mut self, path: &Path) -> Result<()> {
         if !path.exists() {
             return Err(Error::not_found(format!(
-                "loading {}: {} is not there",
+                "loading {}: {} does not exist",
                 self.spec.name,
                 path.display()
             )));
@@ -224,11 +225,11 @@ impl AnyLearner for PythonLearner {
 
     fn infer(&mut self, ports: &Ports<'_>) -> Result<Outputs> {
         self.check_loaded()?;
-        answer(&self.object, ports, self.ports, self.outputs)
+        call_infer(&self.object, ports, self.ports, self.outputs)
     }
 
     fn push(&mut self, _: Option<&Ports<'_>>, _: &mut dyn FnMut(Outputs)) -> Result<()> {
-        Err(self.cannot("take its input in pieces"))
+        Err(self.cannot("process its input in chunks"))
     }
 
     fn fit(
@@ -238,7 +239,7 @@ impl AnyLearner for PythonLearner {
         _: Option<DatasetRef<'_>>,
         _: &FitJob<'_>,
     ) -> Result<Statistics> {
-        Err(self.cannot("be trained from here; call its fit() in Python"))
+        Err(self.cannot("be trained outside Python; call its fit() in Python"))
     }
 
     fn reset(&mut self) {
@@ -256,11 +257,11 @@ impl AnyLearner for PythonLearner {
     }
 
     fn default_of(&self, name: &str) -> Option<ParamValue> {
-        self.params.iter().find(|field| field.name == name).map(|field| field.default.value())
+        self.params.iter().find(|field| field.is_called(name)).map(|field| field.default.value())
     }
 
     fn set(&mut self, name: &str, value: ParamValue) -> Result<()> {
-        let field = self.params.iter().find(|field| field.name == name);
+        let field = self.params.iter().find(|field| field.is_called(name));
         let field = field
             .ok_or_else(|| Error::invalid_param(format!("{} has no parameter {name:?}", self.spec.class)))?;
         field.check(&value)?;
@@ -289,11 +290,11 @@ impl AnyLearner for PythonLearner {
 
 impl AnyStream for PythonStream {
     fn infer(&mut self, ports: &Ports<'_>) -> Result<Outputs> {
-        answer(&self.object, ports, self.ports, self.outputs)
+        call_infer(&self.object, ports, self.ports, self.outputs)
     }
 
     fn push(&mut self, _: Option<&Ports<'_>>, _: &mut dyn FnMut(Outputs)) -> Result<()> {
-        Err(Error::unsupported("a learner written in Python takes no pieces"))
+        Err(Error::unsupported("a learner written in Python cannot process its input in chunks"))
     }
 
     fn reset(&mut self) {
@@ -301,7 +302,7 @@ impl AnyStream for PythonStream {
     }
 }
 
-/// Resets a Python object. A reset has no error to return; what it raises Python shows as unraisable.
+/// Resets a Python object. `reset` cannot return an error; Python reports an exception as unraisable.
 fn reset(object: &Py<PyAny>) {
     Python::attach(|py| {
         if let Err(raised) = object.call_method0(py, "reset") {
@@ -310,8 +311,8 @@ fn reset(object: &Py<PyAny>) {
     });
 }
 
-/// Calls `infer` of a Python object with the ports as keywords.
-fn answer(object: &Py<PyAny>, ports: &Ports<'_>, table: &[Port], outputs: &[Output]) -> Result<Outputs> {
+/// Calls `infer` of a Python object with the ports as keyword arguments.
+fn call_infer(object: &Py<PyAny>, ports: &Ports<'_>, table: &[Port], outputs: &[Output]) -> Result<Outputs> {
     check_ports(ports, table)?;
     let header =
         table.iter().find_map(|port| ports.get(port.name)).map(|value| value.to_value().header().clone());
@@ -322,18 +323,18 @@ fn answer(object: &Py<PyAny>, ports: &Ports<'_>, table: &[Port], outputs: &[Outp
                 keywords.set_item(port.name, python_from_value(py, value)?)?;
             }
         }
-        let found = object.call_method(py, "infer", (), Some(&keywords))?.into_bound(py);
-        let found = match found.cast::<PyTuple>() {
+        let returned = object.call_method(py, "infer", (), Some(&keywords))?.into_bound(py);
+        let returned = match returned.cast::<PyTuple>() {
             Ok(several) => several.iter().collect(),
-            Err(_) => vec![found],
+            Err(_) => vec![returned],
         };
-        if found.len() != outputs.len() {
-            let (count, wanted) = (found.len(), outputs.len());
-            return Err(PyValueError::new_err(format!("infer gave {count} outputs, not {wanted}")));
+        if returned.len() != outputs.len() {
+            let (count, expected) = (returned.len(), outputs.len());
+            return Err(PyValueError::new_err(format!("infer returned {count} outputs, not {expected}")));
         }
         outputs
             .iter()
-            .zip(&found)
+            .zip(&returned)
             .map(|(output, object)| {
                 let mut value = value_from_python(object, output.value_type)?;
                 check_output(&value, output)?;
@@ -346,7 +347,7 @@ fn answer(object: &Py<PyAny>, ports: &Ports<'_>, table: &[Port], outputs: &[Outp
     })
 }
 
-/// That every port is known and of its type, and none is missing.
+/// Checks that every given port is known and has its type, and that no required port is missing.
 fn check_ports(ports: &Ports<'_>, table: &[Port]) -> Result<()> {
     ports.check_names(table)?;
     for port in table {
@@ -357,8 +358,8 @@ fn check_ports(ports: &Ports<'_>, table: &[Port]) -> Result<()> {
             return Err(Error::invalid_input(format!("input {:?} is missing; give it", port.name)));
         };
         if value.value_type() != port.value_type {
-            let (wanted, given) = (port.value_type.name(), value.value_type().name());
-            return Err(Error::invalid_input(format!("input {:?} takes {wanted}, not {given}", port.name)));
+            let (expected, given) = (port.value_type.name(), value.value_type().name());
+            return Err(Error::invalid_input(format!("input {:?} takes {expected}, not {given}", port.name)));
         }
     }
     Ok(())
@@ -369,7 +370,7 @@ fn check_output(value: &Value, output: &Output) -> PyResult<()> {
     match given == output.value_type {
         true => Ok(()),
         false => Err(PyValueError::new_err(format!(
-            "infer gave a {} as {:?}, which is a {}",
+            "infer returned a {} as {:?}, which is a {}",
             given.name(),
             output.name,
             output.value_type.name()

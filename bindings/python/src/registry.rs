@@ -1,4 +1,4 @@
-//! The tables of the learners, for the classes, signatures, texts and stubs that Python makes of them.
+//! The tables of the learners, from which Python builds classes, signatures, docstrings and stubs.
 
 use opendr::learner::{Capabilities, Entry, Output, Port, Spec};
 use opendr::params::{Field, ParamKind, ParamRange};
@@ -7,7 +7,7 @@ use pyo3::types::{PyDict, PyList};
 
 use crate::param::python_from_param;
 
-/// The table of every learner, in order of registration.
+/// Returns the table of every learner, in order of registration.
 #[pyfunction]
 pub fn entries(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
     let tables: PyResult<Vec<_>> =
@@ -24,7 +24,7 @@ fn table<'py>(py: Python<'py>, entry: &Entry) -> PyResult<Bound<'py, PyDict>> {
     table.set_item("package", task.package())?;
     table.set_item("class_name", class)?;
     table.set_item("about", about)?;
-    // What trains in this build has its effect.
+    // A parameter of OpenDR has an effect if this build has a parameter of its name.
     let fields = || entry.params.iter().chain(entry.fit_params);
     let has = |name: &str| fields().any(|field| field.name == name || field.aliases.contains(&name));
     let idle: Vec<_> = without_effect.iter().filter(|(name, _)| !has(name)).copied().collect();
@@ -40,7 +40,7 @@ fn table<'py>(py: Python<'py>, entry: &Entry) -> PyResult<Bound<'py, PyDict>> {
     Ok(table)
 }
 
-/// A dictionary for each of `rows`.
+/// Returns a dictionary for each of `rows`.
 pub fn rows<'py, T>(
     py: Python<'py>,
     rows: &[T],
@@ -53,7 +53,7 @@ pub fn rows<'py, T>(
     rows.iter().map(dict).collect()
 }
 
-/// What there is to know of a parameter.
+/// Writes the description of a parameter into `row`.
 pub fn field(row: &Bound<'_, PyDict>, field: &Field) -> PyResult<()> {
     let kind = match field.kind {
         ParamKind::Float => "float",
@@ -71,6 +71,7 @@ pub fn field(row: &Bound<'_, PyDict>, field: &Field) -> PyResult<()> {
     row.set_item("unit", field.unit)?;
     row.set_item("live", field.live)?;
     row.set_item("aliases", field.aliases.to_vec())?;
+    row.set_item("former", field.former.to_vec())?;
     row.set_item("default", python_from_param(row.py(), &field.default.value())?)
 }
 

@@ -1,7 +1,7 @@
-//! Messages of rclpy and rospy, as bytes, to data and targets and back.
+//! Conversion between serialised messages of rclpy and rospy and data and targets.
 
 use opendr::ros::bridge::{RosBridge, message_types};
-use opendr::ros::messages::{Message, MessageType, Wire};
+use opendr::ros::messages::{Message, MessageType, WireFormat};
 use opendr::{Error, Result, ValueType};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -9,15 +9,15 @@ use pyo3::types::PyBytes;
 use crate::datum::{python_from_value, value_from_python};
 use crate::error::ToPython;
 
-/// The names of the messages of ROS 2 that stand for the type called `kind`; the first is the usual one.
+/// Returns the ROS 2 names of the messages that map to the type called `kind`; the first is the default.
 #[pyfunction]
 pub fn ros_message_types(py: Python<'_>, kind: &str) -> PyResult<Vec<&'static str>> {
     let kind: ValueType = kind.parse().to_python(py)?;
     Ok(message_types(kind).map(MessageType::ros2_name).collect())
 }
 
-/// The data or target in the bytes of a message; `kind` is the name of its type, the first that the message stands for when
-/// it is not given.
+/// Converts a serialised message to a datum or target; `kind` is the name of its type, by default the first type that the message
+/// maps to.
 #[pyfunction]
 pub fn value_from_ros<'py>(
     py: Python<'py>,
@@ -31,7 +31,7 @@ pub fn value_from_ros<'py>(
         let message: MessageType = message.parse()?;
         let kind = match kind {
             Some(kind) => kind.parse()?,
-            None => usual_type(message)?,
+            None => default_type(message)?,
         };
         RosBridge::default().value_from_message(kind, Message::from_bytes(message, wire(is_ros1), &bytes)?)
     };
@@ -39,7 +39,7 @@ pub fn value_from_ros<'py>(
     python_from_value(py, value.as_value_ref())
 }
 
-/// The bytes of the message for a datum or target of the type called `kind`.
+/// Converts a datum or target of the type called `kind` to a serialised message.
 #[pyfunction]
 pub fn ros_from_value<'py>(
     py: Python<'py>,
@@ -54,7 +54,7 @@ pub fn ros_from_value<'py>(
     let value = value_from_python(value, kind)?;
     let write = || -> Result<_> {
         let class_ids = opendr::params::Param::from_value(&class_ids.into()).ok_or_else(|| {
-            Error::invalid_param(format!("class_ids = {class_ids:?}: give names or numbers"))
+            Error::invalid_param(format!("class_ids = {class_ids:?}; give \"names\" or \"numbers\""))
         })?;
         let bridge = RosBridge { class_ids, jpeg_quality };
         bridge.message_from_value(value.as_value_ref(), message.parse()?)?.to_bytes(wire(is_ros1))
@@ -62,16 +62,16 @@ pub fn ros_from_value<'py>(
     Ok(PyBytes::new(py, &py.detach(write).to_python(py)?))
 }
 
-const fn wire(is_ros1: bool) -> Wire {
-    if is_ros1 { Wire::Ros1 } else { Wire::Cdr }
+const fn wire(is_ros1: bool) -> WireFormat {
+    if is_ros1 { WireFormat::Ros1 } else { WireFormat::Cdr }
 }
 
-fn usual_type(message: MessageType) -> Result<ValueType> {
-    let stands = |kind: &ValueType| message_types(*kind).next() == Some(message);
+fn default_type(message: MessageType) -> Result<ValueType> {
+    let is_default = |kind: &ValueType| message_types(*kind).next() == Some(message);
     let kinds = ValueType::ALL.iter().copied();
     kinds
         .clone()
-        .find(stands)
+        .find(is_default)
         .or_else(|| kinds.clone().find(|kind| message_types(*kind).any(|known| known == message)))
-        .ok_or_else(|| Error::unsupported(format!("{} stands for no data or target", message.ros2_name())))
+        .ok_or_else(|| Error::unsupported(format!("{} maps to no data or target type", message.ros2_name())))
 }

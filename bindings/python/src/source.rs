@@ -1,4 +1,4 @@
-//! Pictures, folders, videos and cameras as a Python iterator.
+//! Images, folders, videos and cameras as a Python iterator.
 
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
@@ -13,57 +13,58 @@ use pyo3::prelude::*;
 use crate::error::ToPython;
 use crate::pixels::python_from_image;
 
-/// How often a wait for a frame looks for Ctrl-C.
-const LOOK: Duration = Duration::from_millis(100);
+/// Interval at which a wait for a frame checks for Ctrl-C.
+const POLL_INTERVAL: Duration = Duration::from_millis(100);
 
-/// Frames of a source, read in a thread that answers one question at a time, so that a camera's frame is taken when
-/// it is asked for and a wait can be broken off.
+/// Iterator over the frames of a source. A thread reads one frame per request, so that a camera's frame is taken when it is
+/// requested and a wait can be interrupted.
 #[pyclass(frozen, module = "opendr._opendr")]
 pub struct Source {
-    thread: Mutex<Asked>,
+    reader: Mutex<Reader>,
     length: Option<u64>,
     live: bool,
 }
 
-struct Asked {
-    questions: SyncSender<()>,
-    answers: Receiver<Option<Result<Frame>>>,
-    /// Whether an answer is on its way that nobody has taken: the wait for it was broken off.
-    waiting: bool,
+/// Channels to the thread that reads frames.
+struct Reader {
+    requests: SyncSender<()>,
+    frames: Receiver<Option<Result<Frame>>>,
+    /// Whether a request is pending: the wait for its frame was interrupted.
+    pending: bool,
 }
 
 #[pymethods]
 impl Source {
     #[new]
     fn new(py: Python<'_>, inputs: Vec<PathBuf>) -> PyResult<Self> {
-        let (questions, asked) = sync_channel::<()>(1);
-        let (answer, answers) = sync_channel(1);
-        let (tell, mut told) = sync_channel(1);
-        // Opening may wait as well: for a pipe, a camera, a network's folder.
+        let (requests, requested) = sync_channel::<()>(1);
+        let (send_frame, frames) = sync_channel(1);
+        let (send_opened, mut opening) = sync_channel(1);
+        // Opening may block as well: on a pipe, a camera, a network folder.
         thread::spawn(move || match Frames::open_all(inputs, SourceOptions::default()) {
-            Err(error) => drop(tell.send(Err(error))),
+            Err(error) => drop(send_opened.send(Err(error))),
             Ok(mut source) => {
-                let known = tell.send(Ok((source.len_hint(), source.is_live())));
-                while known.is_ok() && asked.recv().is_ok() && answer.send(source.next()).is_ok() {}
+                let sent = send_opened.send(Ok((source.len_hint(), source.is_live())));
+                while sent.is_ok() && requested.recv().is_ok() && send_frame.send(source.next()).is_ok() {}
             }
         });
         let opened = loop {
             py.check_signals()?;
-            if let Some(opened) = py.detach(|| look(&mut told)).to_python(py)? {
+            if let Some(opened) = py.detach(|| poll(&mut opening)).to_python(py)? {
                 break opened;
             }
         };
         let (length, live) = opened.to_python(py)?;
-        Ok(Self { thread: Mutex::new(Asked { questions, answers, waiting: false }), length, live })
+        Ok(Self { reader: Mutex::new(Reader { requests, frames, pending: false }), length, live })
     }
 
-    /// How many frames there will be, or `None`.
+    /// Number of frames, or `None` when unknown.
     #[getter]
     fn length(&self) -> Option<u64> {
         self.length
     }
 
-    /// Whether frames are dropped that nobody has time for.
+    /// Whether frames are dropped when the caller is slower than the source.
     #[getter]
     fn live(&self) -> bool {
         self.live
@@ -73,18 +74,18 @@ impl Source {
         this
     }
 
-    /// The next frame: its picture, the file or device, its number there. An error is that of one frame; the next call
-    /// goes on.
+    /// Returns the next frame: its image, the file or device, its index there. An error concerns one frame; the next call
+    /// continues with the following one.
     fn __next__<'py>(&self, py: Python<'py>) -> PyResult<Option<(Bound<'py, PyAny>, PathBuf, u64)>> {
         loop {
             py.check_signals()?;
-            let answer = py.detach(|| self.thread.lock().unwrap_or_else(PoisonError::into_inner).wait());
-            match answer.to_python(py)? {
+            let next = py.detach(|| self.reader.lock().unwrap_or_else(PoisonError::into_inner).wait());
+            match next.to_python(py)? {
                 Some(None) => return Ok(None),
                 Some(Some(frame)) => {
                     let frame = frame.to_python(py)?;
                     let image = python_from_image(py, frame.image)?;
-                    return Ok(Some((image, frame.path.to_path_buf(), frame.number)));
+                    return Ok(Some((image, frame.path.to_path_buf(), frame.frame_index)));
                 }
                 None => {}
             }
@@ -92,28 +93,28 @@ impl Source {
     }
 }
 
-impl Asked {
-    /// The answer, or `None` when there is none yet.
+impl Reader {
+    /// Requests a frame and waits for it, for [`POLL_INTERVAL`]; `None` when it is not there yet.
     fn wait(&mut self) -> Result<Option<Option<Result<Frame>>>> {
-        if !self.waiting {
-            self.questions.send(()).map_err(|_| gone())?;
-            self.waiting = true;
+        if !self.pending {
+            self.requests.send(()).map_err(|_| thread_ended())?;
+            self.pending = true;
         }
-        let answer = look(&mut self.answers)?;
-        self.waiting = answer.is_none();
-        Ok(answer)
+        let frame = poll(&mut self.frames)?;
+        self.pending = frame.is_none();
+        Ok(frame)
     }
 }
 
-/// What the thread tells, or `None` when it has not told yet.
-fn look<T>(receiver: &mut Receiver<T>) -> Result<Option<T>> {
-    match receiver.recv_timeout(LOOK) {
-        Ok(told) => Ok(Some(told)),
+/// Receives from the thread, or returns `None` after [`POLL_INTERVAL`].
+fn poll<T>(receiver: &mut Receiver<T>) -> Result<Option<T>> {
+    match receiver.recv_timeout(POLL_INTERVAL) {
+        Ok(received) => Ok(Some(received)),
         Err(RecvTimeoutError::Timeout) => Ok(None),
-        Err(RecvTimeoutError::Disconnected) => Err(gone()),
+        Err(RecvTimeoutError::Disconnected) => Err(thread_ended()),
     }
 }
 
-fn gone() -> Error {
-    Error::internal("the thread that reads frames is gone")
+fn thread_ended() -> Error {
+    Error::internal("the thread that reads frames has ended")
 }

@@ -1,4 +1,4 @@
-//! Studies of hyper-parameters for Python.
+//! The class `Study` of Python: a search for hyperparameters.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -14,18 +14,18 @@ use serde_json::{Value, json};
 
 use crate::error::ToPython;
 
-/// A study of one value. Threads share it; processes share its journal.
+/// A study with one objective. Threads share the object; processes share its journal.
 #[pyclass(frozen, module = "opendr._opendr")]
 pub struct Study {
     study: opendr::tuning::Study,
 }
 
-/// How a study is carried out.
+/// Options of a study.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Options {
     maximize: bool,
-    /// The journal; in memory without.
+    /// File of the journal; in memory when `None`.
     storage: Option<PathBuf>,
     sampler: Sampler,
     seed: u64,
@@ -53,28 +53,30 @@ enum Pruner {
 impl Study {
     #[new]
     fn new(py: Python<'_>, name: &str, options: &str) -> PyResult<Self> {
-        let study = py.detach(|| open(name, &from_json(options, "the options of a study")?));
+        let study = py.detach(|| open(name, &from_json(options, "invalid options of a study")?));
         Ok(Self { study: study.to_python(py)? })
     }
 
-    /// The next trial, in the space of OpenDR's dictionaries: its number and its parameters.
+    /// Suggests the next trial, in the search space of OpenDR's dictionaries. Returns its number and its parameters.
     fn ask(&self, py: Python<'_>, dictionaries: &str) -> PyResult<(usize, String)> {
-        let asked = py.detach(|| {
-            let space =
-                SearchSpace::from_dictionaries(&from_json::<Vec<Value>>(dictionaries, "hyperparameters")?)?;
+        let suggested = py.detach(|| {
+            let space = SearchSpace::from_dictionaries(&from_json::<Vec<Value>>(
+                dictionaries,
+                "invalid hyperparameters",
+            )?)?;
             let trial = self.study.ask(&space)?;
             let params: BTreeMap<_, _> = trial.params().iter().map(|(name, it)| (name, it.value())).collect();
             Ok((trial.number(), json!(params).to_string()))
         });
-        asked.to_python(py)
+        suggested.to_python(py)
     }
 
-    /// Puts a trial with these parameters into the queue.
+    /// Enqueues a trial with these parameters.
     fn enqueue(&self, py: Python<'_>, params: &str) -> PyResult<()> {
-        py.detach(|| self.study.enqueue(&from_json(params, "parameters")?)).to_python(py)
+        py.detach(|| self.study.enqueue(&from_json(params, "invalid parameters")?)).to_python(py)
     }
 
-    /// Notes what a trial measured; what to do: `"continue"`, `"pause"` or `"stop"`.
+    /// Reports an intermediate value of a trial. Returns what to do: `"continue"`, `"pause"` or `"stop"`.
     fn report(&self, py: Python<'_>, number: usize, step: i64, value: f64) -> PyResult<&'static str> {
         let advice = py.detach(|| self.study.report(number, step, value)).to_python(py)?;
         Ok(match advice {
@@ -84,12 +86,13 @@ impl Study {
         })
     }
 
-    /// Notes something, given as JSON, about a trial.
+    /// Sets a user attribute, given as JSON, of a trial.
     fn note(&self, py: Python<'_>, number: usize, key: &str, value: &str) -> PyResult<()> {
-        py.detach(|| self.study.note(number, key, from_json(value, "a note")?)).to_python(py)
+        py.detach(|| self.study.set_user_attribute(number, key, from_json(value, "invalid user attribute")?))
+            .to_python(py)
     }
 
-    /// Ends a trial with its value, without one as pruned, or with the reason why it failed.
+    /// Finishes a trial: with its value, as pruned without one, or as failed with the reason.
     #[pyo3(signature = (number, value=None, failed=None))]
     fn tell(
         &self,
@@ -106,12 +109,12 @@ impl Study {
         py.detach(|| self.study.tell(number, outcome)).to_python(py)
     }
 
-    /// Reads what other processes have written.
+    /// Reads the entries that other processes have written to the journal.
     fn refresh(&self, py: Python<'_>) -> PyResult<()> {
         py.detach(|| self.study.refresh()).to_python(py)
     }
 
-    /// All trials as JSON.
+    /// Returns all trials as JSON.
     fn trials(&self, py: Python<'_>) -> String {
         py.detach(|| {
             self.study.inspect(|study| json!(study.trials.iter().map(trial_json).collect::<Vec<_>>()))
@@ -119,17 +122,17 @@ impl Study {
         .to_string()
     }
 
-    /// The best complete trial as JSON.
+    /// Returns the best complete trial as JSON.
     fn best(&self, py: Python<'_>) -> Option<String> {
         py.detach(|| self.study.best()).map(|trial| trial_json(&trial).to_string())
     }
 
-    /// A table for the terminal with the newest `rows`.
+    /// Returns a table for the terminal with the newest `rows` trials.
     fn table(&self, py: Python<'_>, rows: usize) -> String {
         py.detach(|| self.study.inspect(|study| table_from_study(study, rows)))
     }
 
-    /// How much each parameter had to do with good values.
+    /// Returns the importance of each parameter.
     fn importance(&self, py: Python<'_>) -> Vec<(String, f64)> {
         py.detach(|| self.study.inspect(importance_from_study))
     }

@@ -1,4 +1,4 @@
-//! Models of the zoo.
+//! Downloads from the zoo, and the runtime.
 
 use std::path::PathBuf;
 
@@ -9,17 +9,17 @@ use pyo3::prelude::*;
 use crate::bar::PythonBar;
 use crate::error::ToPython;
 
-/// The zoo as the environment sets it up.
+/// Opens the zoo that the environment variables configure.
 pub fn open() -> Result<Zoo> {
     Zoo::new(ZooOptions::from_env()?)
 }
 
-/// The name of a learner's model in the zoo.
+/// Returns the name of a learner's model in the zoo.
 pub fn spec(name: &str, variant: Option<&str>) -> String {
     variant.map_or_else(|| name.to_owned(), |variant| format!("{name}/{variant}"))
 }
 
-/// Gets a learner's pretrained model into the cache, and copies it to the folder `to` where one is given; its folder.
+/// Downloads a learner's pretrained model into the cache, and copies it to the folder `to` if given. Returns its folder.
 #[pyfunction]
 #[pyo3(signature = (name, variant=None, to=None, verbose=true))]
 pub fn download(
@@ -33,14 +33,14 @@ pub fn download(
     PythonBar::new(!verbose).run(py, |bar| open()?.download(&spec, to.as_deref(), bar))
 }
 
-/// Gets a sample picture into the cache; its file.
+/// Downloads a sample file into the cache. Returns its path.
 #[pyfunction]
 #[pyo3(signature = (name, verbose=true))]
 pub fn sample(py: Python<'_>, name: &str, verbose: bool) -> PyResult<PathBuf> {
     PythonBar::new(!verbose).run(py, |bar| open()?.sample(name, bar))
 }
 
-/// The names of the models of a learner, the default first.
+/// Returns the names of the variants of a learner's model, the default first.
 #[pyfunction]
 pub fn models(py: Python<'_>, name: &str) -> PyResult<Vec<String>> {
     let zoo = open().to_python(py)?;
@@ -49,7 +49,7 @@ pub fn models(py: Python<'_>, name: &str) -> PyResult<Vec<String>> {
     Ok(items.iter().map(|item| item.variant.name.clone()).collect())
 }
 
-/// One line about the runtime that networks run on.
+/// Returns a line that describes the runtime of networks on `device`.
 #[pyfunction]
 #[pyo3(signature = (device="auto"))]
 pub fn runtime(py: Python<'_>, device: &str) -> PyResult<String> {

@@ -14,7 +14,7 @@ from opendr.engine.target import BoundingBox, BoundingBoxList
 
 
 class BrightSpotsLearner(Learner):
-    """Finds the pixels that are brighter than a model says, and how often it was asked before."""
+    """Detects pixels that are brighter than the model's threshold, and counts the calls before."""
 
     name = "bright_spots"
     task = "object_detection_2d"

@@ -1,4 +1,4 @@
-"""Where models and pictures for tests are. The tests use the installed package."""
+"""Fixtures for models and images. The tests use the installed package."""
 
 import os
 from pathlib import Path
@@ -17,7 +17,7 @@ def test_data():
 
 @pytest.fixture(scope="session")
 def zoo(test_data):
-    """Models come from the test data, or from packages into a cache that tests keep; offline they must not fail."""
+    """Models are read from the test data, or downloaded into a cache that is kept between runs; tests must not fail offline."""
     cache = os.environ.get("OPENDR_TEST_CACHE")
     os.environ["OPENDR_MODEL_REPOSITORY"] = str(test_data / "models")
     if cache:

@@ -1,4 +1,4 @@
-"""Runs programs one after the other, each in a folder of its own; a line of JSON tells how each went.
+"""Runs programs in sequence, each in a folder of its own, and prints a line of JSON with the result of each.
 
 run_programs.py FOLDER PROGRAM...
 """

@@ -1,4 +1,4 @@
-"""OpenDR's call for the ambiguity of maps."""
+"""OpenDR's interface to the ambiguity of maps."""
 
 from __future__ import annotations
 

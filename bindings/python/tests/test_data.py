@@ -149,7 +149,7 @@ def test_image_guess_is_opendrs():
     rgba = pixels(8, 9, 4)
     assert np.array_equal(Image(rgba).data, rgba.transpose(2, 0, 1))
     assert np.array_equal(Image(rgba).opencv(), rgba[:, :, [2, 1, 0, 3]])
-    # A picture three pixels wide looks like OpenCV's.
+    # An image three pixels wide is taken for OpenCV's layout.
     assert Image(pixels(3, 8, 3)).data.shape == (3, 3, 8)
     assert Image(pixels(3, 8, 3), guess_format=False).data.shape == (3, 8, 3)
     grey = Image(pixels(1, 8, 9))
@@ -166,7 +166,7 @@ def test_image_types():
     for wrong in (np.full((1, 8, 9), 256), np.full((1, 8, 9), -1), np.full((1, 8, 9), np.nan)):
         with pytest.raises(ValueError, match="do not fit uint8"):
             Image(wrong)
-    with pytest.raises(ValueError, match="an Image of float64"):
+    with pytest.raises(ValueError, match="an Image cannot have samples of float64"):
         Image(metres, dtype=np.float64)
     same = Image(depth)
     assert (same == depth, same.dtype) == (True, np.uint16)
@@ -215,7 +215,7 @@ def test_image_files(tmp_path):
     (tmp_path / "text.png").write_text("no picture")
     with pytest.raises(ValueError):
         Image.open(tmp_path / "text.png")
-    with pytest.raises(opendr.Unsupported, match="end the name with"):
+    with pytest.raises(opendr.Unsupported, match="end the file name with"):
         image.save(tmp_path / "picture.unknown")
     with pytest.raises(OSError):
         image.save(tmp_path / "no_folder" / "picture.png")
@@ -261,7 +261,7 @@ def test_calibration():
     for p2 in (np.eye(3), np.ones((4, 4)), np.full((3, 4), np.nan), np.ones(12)):
         with pytest.raises(ValueError, match="P2"):
             Calibration(p2, np.eye(3), np.eye(4))
-    with pytest.raises(ValueError, match="no R0_rect, Tr_velo_to_cam"):
+    with pytest.raises(ValueError, match="R0_rect, Tr_velo_to_cam is missing"):
         Calibration.from_dict({"P2": np.eye(4)})
     with pytest.raises(TypeError, match="calib"):
         PointCloudWithCalibration(np.ones((2, 4)), [1])
@@ -273,7 +273,7 @@ def test_audio():
     audio = Audio(np.array([[0.0, 1.0], [0.5, 0.5]]), np.int32(2))
     assert (audio.channels, audio.duration_s, len(audio)) == (2, 1.0, 2)
     assert np.array_equal(audio.mono(), [0.5, 0.5])
-    with pytest.raises(TypeError, match="no PCM"):
+    with pytest.raises(TypeError, match="not PCM"):
         Audio([1, 2], 8000)
     with pytest.raises(ValueError, match="sample_rate is 0"):
         Audio([0.5], 0)

@@ -127,7 +127,7 @@ def test_headless_pictures_are_written(headless, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     for name in ("opendr.png", "opendr-1.png"):
         picture = draw_bounding_boxes(black(), BOXES, ["person"], show=True)
-        assert capsys.readouterr().out == f"picture written to {tmp_path / name}\n"
+        assert capsys.readouterr().out == f"image written to {tmp_path / name}\n"
         assert np.array_equal(Image.open(tmp_path / name).opencv(), picture)
     draw_bounding_boxes(Image(black()), BOXES, show=True)
     assert (tmp_path / "opendr-2.png").exists()
@@ -137,12 +137,12 @@ def test_a_folder_that_cannot_be_written(headless, tmp_path, monkeypatch):
     folder = tmp_path / "temporary"
     folder.mkdir()
     monkeypatch.setattr(_show.tempfile, "gettempdir", lambda: str(folder))
-    # Root may write anywhere, so the current folder is taken away instead.
+    # Root may write anywhere, so the current folder is removed instead.
     gone = tmp_path / "gone"
     gone.mkdir()
     monkeypatch.chdir(gone)
     gone.rmdir()
-    assert _show.write_picture(Image(black())) == str(folder / "opendr.png")
+    assert _show.write_image(Image(black())) == str(folder / "opendr.png")
     monkeypatch.chdir(tmp_path)
 
 

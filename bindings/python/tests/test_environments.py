@@ -1,4 +1,4 @@
-"""Environments both ways: ours under Gymnasium, Gymnasium's as the learners of the toolkit see them."""
+"""Environments: ours in Gymnasium, and Gymnasium's for the learners of the toolkit."""
 
 import json
 import subprocess
@@ -18,7 +18,7 @@ from opendr.simulation import Environment, VectorEnvironment
 from opendr.simulation._bridge import Bridge
 
 IDS = list(opendr.simulation.environments())
-#: What Gymnasium's checker says of its own CartPole, MountainCar and Pendulum too.
+#: Warnings of Gymnasium's checker that its own CartPole, MountainCar and Pendulum cause too.
 KNOWN_WARNINGS = ("-infinity", "infinity", "symmetric and normalized")
 
 
@@ -27,7 +27,7 @@ def script(text):
 
 
 def same(ours, theirs, tolerance=0.0):
-    """Whether two observations are of one structure, type and, but for a tolerance, value."""
+    """Returns whether two observations have the same structure, type and, within a tolerance, values."""
     if isinstance(theirs, dict):
         assert ours.keys() == theirs.keys()
         return all(same(ours[key], theirs[key], tolerance) for key in theirs)
@@ -71,7 +71,7 @@ def test_gymnasium_is_optional():
 
 
 def played(envs, mode, steps=300):
-    """Everything that environments answer to actions that follow from a seed."""
+    """Returns all results of environments for actions determined by a seed."""
     random, over = np.random.default_rng(7), np.zeros(envs.num_envs, bool)
     answers = [(*envs.reset(seed=3), over)]
     for _ in range(steps):
@@ -164,7 +164,7 @@ def test_a_snapshot_is_come_back_to():
         assert same(again[0], step[0]) and again[1:] == step[1:]
     with pytest.raises(ValueError, match="snapshot"):
         Environment("CartPole-v1").restore(snapshot)
-    with pytest.raises(ValueError, match="no snapshot"):
+    with pytest.raises(ValueError, match="not a snapshot"):
         other.restore("{}")
 
     envs = VectorEnvironment("CartPole-v1", 4)
@@ -206,7 +206,7 @@ def test_a_time_limit_can_be_shorter():
     env = gymnasium.make("opendr/Pendulum-v1", max_episode_steps=5)
     env.reset(seed=1)
     assert [env.step(np.zeros(1, np.float32))[3] for _ in range(5)] == [False] * 4 + [True]
-    with pytest.raises(opendr.InvalidParam, match="ends at 200"):
+    with pytest.raises(opendr.InvalidParam, match="its own limit, 200"):
         gymnasium.make_vec("opendr/Pendulum-v1", num_envs=2, max_episode_steps=5)
 
 
@@ -248,7 +248,7 @@ def test_wrong_calls_are_told():
 
 
 def act(native, *parts):
-    """Steps an environment of Python as the learners of the toolkit do."""
+    """Takes a step in an environment of Python, as the learners of the toolkit do."""
     for array, part in zip(native.action, parts):
         np.asarray(array)[...] = part
     return native.step()
@@ -284,7 +284,7 @@ def test_hopper_is_stepped_from_native_code():
 
 
 class Everything(gymnasium.Env):
-    """Has every kind of space, and answers with what it was asked."""
+    """Has every kind of space, and returns its inputs as results."""
 
     def __init__(self):
         self.action_space = spaces.Dict(
@@ -322,7 +322,7 @@ def test_every_kind_of_space_goes_through():
     native = _opendr.Environment.of_python(Bridge(env))
     assert native.reset(4, {"low": 0.5}) == {}
     assert env.asked == {"seed": 4, "options": {"low": 0.5}}
-    # Parts in the order of their names: a[0], a[1], m, z; choices count from 0 but for a Discrete.
+    # Parts in the order of their names: a[0], a[1], m, z; values count from 0 except those of Discrete.
     bound = np.float32(0.1)
     reward, terminated, truncated, info = act(native, [2, 0], [1, 0, 1], [[bound, -bound], [0, 0.05]], -1)
     assert (reward, terminated, truncated) == (0.5, False, False)
@@ -379,7 +379,7 @@ def test_what_no_learner_takes_is_refused():
     with pytest.raises(NotImplementedError, match="Text"):
         Bridge(env)
     env.action_space = spaces.Discrete(2**40)
-    with pytest.raises(NotImplementedError, match="choices"):
+    with pytest.raises(NotImplementedError, match="discrete space"):
         _opendr.Environment.of_python(Bridge(env))
     env = Everything()
     native = _opendr.Environment.of_python(Bridge(env))

@@ -1,4 +1,4 @@
-"""The wheel in an environment of its own: small, quick, and whole with nothing but NumPy beside it."""
+"""The wheel in an environment of its own with NumPy: size, import time, completeness."""
 
 import json
 import os
@@ -68,7 +68,7 @@ def models_wheel():
 
 
 class Environment:
-    """A virtual environment with the wheel and NumPy; its programs see nothing of the one that the tests run in."""
+    """A virtual environment with the wheel and NumPy, isolated from the environment of the tests."""
 
     def __init__(self, folder, wheel):
         self.programs = folder / "venv/bin"
@@ -82,7 +82,7 @@ class Environment:
         subprocess.run(pip, check=True, env={**os.environ, "PYTHONPATH": ""})
 
     def run(self, program, *arguments, fails=False, **variables):
-        """Returns what a program prints; of one that fails, what it says."""
+        """Returns the standard output of a program, or its error output if it fails."""
         kept = {name: value for name, value in os.environ.items() if name in ("OPENDR_CACHE", "OPENDR_MODEL_REPOSITORY")}
         kept = variables or kept
         done = subprocess.run(
@@ -115,7 +115,7 @@ def test_the_wheel_is_small(wheel, models_wheel):
 
 
 def test_models_of_our_own_come_with_their_package(wheel, models_wheel, tmp_path):
-    """Where nothing else can have them: outside of the sources, without a network, with an empty cache."""
+    """Runs outside the sources, without a network, with an empty cache, so that the models come from the package."""
     environment = Environment(tmp_path, wheel)
     kept = {"OPENDR_OFFLINE": "1"}
     refused = environment.run("python", "-c", GESTURE, fails=True, **kept)

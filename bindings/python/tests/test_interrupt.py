@@ -12,8 +12,8 @@ import pytest
 
 
 def interrupt(program, ready, env, seconds=1.0):
-    """Runs a program, sends SIGINT after it printed `ready`, and says how long it took to end and what it printed."""
-    # Shells start background jobs with SIGINT ignored, and Python leaves it so.
+    """Runs a program, sends SIGINT after it printed `ready`, and returns the time until its end and its output."""
+    # Shells start background jobs with SIGINT ignored, and Python keeps this.
     heed = "import signal\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n"
     command = [sys.executable, "-c", heed + textwrap.dedent(program)]
     child = subprocess.Popen(command, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -39,11 +39,11 @@ def test_infer_over_a_source(zoo, photo, tmp_path):
     """
     took, errors = interrupt(program, "begun", dict(os.environ))
     assert "KeyboardInterrupt" in errors
-    assert took < 3.0  # A second, and what a busy machine takes to end Python.
+    assert took < 3.0  # One second, plus the time to end Python on a busy machine.
 
 
 def test_waiting_for_a_video(tmp_path):
-    # A fixture in ffmpeg's place, which never answers.
+    # A replacement of ffmpeg that never responds.
     for name in ("ffmpeg", "ffprobe"):
         (tmp_path / name).write_text("#!/bin/sh\nexec sleep 20\n")
         (tmp_path / name).chmod(0o755)
@@ -62,7 +62,7 @@ def test_waiting_for_a_video(tmp_path):
 
 
 def test_download(tmp_path):
-    # A server that answers slowly.
+    # A server that responds slowly.
     server = socket.create_server(("127.0.0.1", 0))
     address = f"http://127.0.0.1:{server.getsockname()[1]}"
     program = """

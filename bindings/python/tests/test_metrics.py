@@ -1,4 +1,4 @@
-"""Metrics beside any learner, and `eval` of learners."""
+"""Metrics, and `eval` of learners."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def test_threads_may_share_a_metric():
 
 
 class Astronauts(DatasetIterator):
-    """One picture again and again; its second sample says something wrong."""
+    """Repeats one image; the annotation of its second sample is wrong."""
 
     classes = ["cat", "human"]
 
@@ -105,7 +105,7 @@ def test_eval_of_a_python_data_set_resumes(detector, picture, tmp_path):
     outcome = detector.eval(dataset, out=tmp_path)
     report = outcome["report"]
     assert (report["samples"], report["counted"], report["complete"], report["skipped"]) == (3, 3, True, 0)
-    # "person" is the data set's "human"; classes that it does not have do not count.
+    # "person" is the data set's "human"; classes that it does not have are ignored.
     assert outcome["map50"] == report["scalars"]["map50"] > 0.2
     assert report["worst"][0]["index"] == 1
     assert {"predictions.jsonl", "report.json", "worst.png", "answers.png"} <= {path.name for path in tmp_path.iterdir()}
@@ -120,7 +120,7 @@ def test_eval_of_a_python_data_set_resumes(detector, picture, tmp_path):
             self.read.append(idx)
             return super().__getitem__(idx)
 
-    # Broken off within the third sample.
+    # Interrupted within the third sample.
     (tmp_path / "predictions.jsonl").write_text("".join(lines[:3]) + lines[3][:20])
     again = Watched(picture)
     Watched.__name__ = "Astronauts"
@@ -151,7 +151,7 @@ def test_eval_leaves_out_what_is_broken(detector, picture):
 
 def test_eval_of_a_learner_in_python(picture):
     class Guess(Learner):
-        """Finds a person in every picture."""
+        """Detects a person in every image."""
 
         name = "guess"
         task = "object_detection_2d"
@@ -159,7 +159,7 @@ def test_eval_of_a_learner_in_python(picture):
         def infer(self, image: Image) -> BoundingBoxList:
             return BoundingBoxList([BoundingBox(name=1, left=20, top=10, width=450, height=500, score=0.5)])
 
-    # One of three pictures has no person, so half of what is found last is wrong; cats are not found.
+    # One of three images has no person, so half of the last detections are false positives; cats are not detected.
     numbers = Guess().eval(Astronauts(picture))
     assert 0.3 < numbers["map50"] < 0.5
 

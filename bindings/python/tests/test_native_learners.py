@@ -10,7 +10,8 @@ import numpy as np
 import opendr
 import pytest
 from opendr import Source, _opendr
-from opendr._native_learner import _value, native_class
+from opendr._native_class import native_class
+from opendr._native_learner import _value
 from opendr.engine.data import Audio, Image, PointCloud, SkeletonSequence, Timeseries, Vector, Video
 from opendr.engine.learners import BaseLearner, Init, Learner, LearnerRL
 from opendr.engine.target import BoundingBox, BoundingBox3D, BoundingBox3DList, BoundingBoxList, Heatmap
@@ -44,7 +45,7 @@ def test_class(entry):
 
 
 def inputs(entry, photo):
-    """Something for every input of a learner, by name."""
+    """Returns a value for every input of a learner, by name."""
     noise = np.random.default_rng(0).uniform(-1, 1, 16000)
     image = Image.open(photo)
     height, width = image.opencv().shape[:2]
@@ -67,13 +68,13 @@ def inputs(entry, photo):
 
 
 def json_of(entry, answer):
-    """The JSON of each output, which are of the types that the entry names."""
+    """Returns the JSON of each output, after checking its type."""
     answers = answer if len(entry["outputs"]) > 1 else (answer,)
     assert [type(target).__name__ for target in answers] == [output["type"] for output in entry["outputs"]]
     return [target.to_json() for target in answers]
 
 
-#: Policies act in environments, and some learners have to be trained first.
+#: Policies, and learners without pretrained models.
 PRETRAINED = [entry for entry in NATIVE if not entry["fit_in"] and _opendr.models(entry["name"])]
 
 
@@ -102,7 +103,7 @@ def test_life_cycle(entry, zoo, photo, tmp_path):
         learner.fit(None)
     with pytest.raises(NotImplementedError, match=entry["class_name"]):
         learner.optimize(target_device="cpu")
-    with pytest.raises(ValueError, match="give out"):
+    with pytest.raises(ValueError, match="give the folder"):
         learner.optimize()
 
 
@@ -114,7 +115,7 @@ def test_every_kind_of_input_gives_the_same(nanodet, photo):
     assert nanodet.infer(photo).to_json() == wanted
     assert nanodet.infer(frame).to_json() == wanted
     assert nanodet.infer(np.asfortranarray(frame)).to_json() == wanted
-    # Planes go through another kernel: the same but for rounding.
+    # Planar layouts use another kernel: results are equal except for rounding.
     for box, planes in zip(nanodet.infer(frame), nanodet.infer(image.numpy())):
         assert (box.left, box.confidence) == pytest.approx((planes.left, planes.confidence), rel=1e-4)
     assert nanodet.infer(image=image.convert("channels_last", "bgr")).to_json() == wanted
@@ -157,7 +158,7 @@ def test_parameters(zoo, photo):
         NanodetLearner(threshold="high")
     with pytest.raises(TypeError, match="no argument 'treshold'"):
         NanodetLearner(treshold=0.5)
-    with pytest.raises(TypeError, match="infer has no argument 'treshold'; there are image"):
+    with pytest.raises(TypeError, match="infer has no argument 'treshold'; its arguments are image"):
         learner.infer(photo, treshold=0.5)
     with pytest.raises(ValueError, match="suppression"):
         NanodetLearner(suppression="none")
@@ -270,12 +271,12 @@ def test_learners_are_not_pickled(nanodet):
 
 def test_learner_by_name(zoo):
     assert opendr.learner("yunet/320", device="cpu", verbose=False).is_ready
-    with pytest.raises(FileNotFoundError, match="there are .*nanodet"):
+    with pytest.raises(FileNotFoundError, match="the learners are .*nanodet"):
         opendr.learner("nanodett")
 
 
 def test_numbers_that_are_none(monkeypatch):
-    # What a network gives whose weights are damaged.
+    # The output of a network with damaged weights.
     found = '{"type": "BoundingBoxList", "boxes": [%s], "classes": ["null"]}'
     box = '{"name": 0, "left": %s, "top": 1.0, "width": 2.0, "height": 3.0, "confidence": 0.5}'
     right, wrong = found % (box % "4.0"), found % ", ".join((box % "4.0", box % "null"))
@@ -304,7 +305,7 @@ class PairOutputs(NamedTuple):
 
 
 class PairLearner(Learner):
-    """Gives its boxes back, and the sums of picture and vector."""
+    """Returns its boxes, and the sums of image and vector."""
 
     name = "pair"
     task = "object_detection_2d"
@@ -336,7 +337,7 @@ def test_several_inputs_and_outputs(pair):
     for answer in (pair.infer(picture, boxes, [1, 2]), pair.infer(boxes=boxes, image=picture, start=Vector([3]))):
         assert type(answer).__name__ == "PairLearnerOutputs" and answer._fields == ("boxes", "heatmap")
         assert (answer.boxes, answer.heatmap.data.tolist()) == (boxes, [60, 3])
-    # The vector goes with the first of a list; the same boxes, or one list each, with all.
+    # The vector is used for the first item of a list; boxes are used for all, or one list per item.
     given = [boxes, BoundingBoxList(classes=["cat"])]
     first, second = pair.infer([picture, picture], given, [4, 5])
     assert [first.heatmap.data[1], second.heatmap.data[1]] == [9, 9]
@@ -344,15 +345,15 @@ def test_several_inputs_and_outputs(pair):
     assert [answer.boxes for answer in pair.infer([picture, picture], given[1])] == [given[1]] * 2
     assert [answer.boxes for answer in pair.infer(iter([picture]), iter(given))] == given[:1]
     assert pair.stream().infer(picture, boxes, None).boxes == boxes
-    with pytest.raises(ValueError, match="differ in number.*'image': 2, 'boxes': 1"):
+    with pytest.raises(ValueError, match="different lengths.*'image': 2, 'boxes': 1"):
         pair.infer([picture, picture], given[:1])
     with pytest.raises(TypeError, match="boxes should be a BoundingBoxList, not list"):
         pair.infer(picture, given)
     with pytest.raises(ValueError, match='"boxes" is missing'):
         pair.infer(picture)
-    with pytest.raises(opendr.Unsupported, match="pieces"):
+    with pytest.raises(opendr.Unsupported, match="chunks"):
         pair.stream().push(picture, boxes)
-    with pytest.raises(opendr.Unsupported, match="pieces"):
+    with pytest.raises(opendr.Unsupported, match="chunks"):
         pair.stream().flush()
 
 
@@ -374,5 +375,5 @@ def test_paths_are_files_of_the_type(tmp_path):
 def test_lists_that_hold_themselves():
     endless = []
     endless.append(endless)
-    with pytest.raises(TypeError, match="lists in lists"):
+    with pytest.raises(TypeError, match="lists nested"):
         _opendr.Handle("nanodet", {"threshold": endless}, "cpu")

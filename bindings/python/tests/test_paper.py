@@ -32,7 +32,7 @@ poses = pose_estimator.infer(img)
 print(poses)
 '''
 
-#: What is found where: pictures with people in them, and the middles of these.
+#: Expected detections: images with people, and the centres of these.
 PEOPLE = {"bus.jpg": [(146, 650), (283, 630), (738, 640)], "zidane.jpg": [(430, 450), (930, 380)]}
 
 

@@ -1,4 +1,4 @@
-"""Learners one behind the other."""
+"""Pipelines of learners."""
 
 import threading
 from typing import Optional
@@ -13,19 +13,19 @@ from opendr.engine.target import BoundingBox, BoundingBoxList, Category, PoseLis
 
 
 class Detector(Learner):
-    """As many boxes as the first pixel says."""
+    """Returns as many boxes as the value of the first pixel."""
 
     name, task = "detector", "object_detection_2d"
 
     def infer(self, image: Image) -> BoundingBoxList:
         if int(image.numpy().flat[0]) == 99:
-            raise ValueError("a picture that cannot be read")
+            raise ValueError("an image that cannot be read")
         count = int(image.numpy().flat[0])
         return BoundingBoxList([BoundingBox(left=n, top=0, width=1, height=1, name=0, score=0.5) for n in range(count)])
 
 
 class Doubler(Learner):
-    """Each box twice; counts what it has seen."""
+    """Returns each box twice, and counts the calls."""
 
     name, task = "doubler", "object_detection_2d"
     seen = 0
@@ -39,7 +39,7 @@ class Doubler(Learner):
 
 
 class Judge(Learner):
-    """How many boxes there are."""
+    """Returns the number of boxes."""
 
     name, task = "judge", "image_classification"
 
@@ -48,7 +48,7 @@ class Judge(Learner):
 
 
 class Counted(DatasetIterator):
-    """Pictures, and how many boxes the detector finds in each, by the name of the number."""
+    """Images with the numbers of boxes in their annotations."""
 
     classes = ["two", "zero", "one", "three"]
 
@@ -115,7 +115,7 @@ def test_wrong_use_is_told():
     with pytest.raises(ValueError, match="Judge takes BoundingBoxList"):
 
         class Poses(Learner):
-            """No boxes."""
+            """Returns no boxes."""
 
             name, task = "poses", "pose_estimation"
 

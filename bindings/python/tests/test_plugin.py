@@ -1,4 +1,4 @@
-"""Learners written in Python are learners like all others."""
+"""Learners written in Python, in the registry."""
 
 import functools
 import json
@@ -50,7 +50,7 @@ def test_it_passes_the_test_of_all_learners(registered, model, tmp_path):
 
 def test_a_broken_promise_is_found(model, tmp_path):
     class ForgetfulLearner(BrightSpotsLearner):
-        """Cannot forget."""
+        """Fails at `reset`."""
 
         name = "forgetful"
 
@@ -100,7 +100,7 @@ def test_the_command_runs_it(model, tmp_path):
     )
     assert done.returncode == 0, done.stderr
     assert "bright 1.00 at left 1.0" in done.stdout
-    assert "'broken'" in done.stderr and "left out" in done.stderr
+    assert "'broken'" in done.stderr and "is skipped" in done.stderr
 
 
 CLOUD = np.arange(8, dtype=np.float32).reshape(2, 4)
@@ -132,7 +132,7 @@ def echo_of(kind):
     """A loaded learner that keeps what it was given, and its class."""
 
     class EchoLearner(Learner):
-        """Says what it was given."""
+        """Returns its input as text."""
 
         name = f"echo_{kind.__name__.lower()}"
         task = "object_detection_2d"
@@ -161,7 +161,7 @@ def test_every_datum_arrives_as_it_was(given):
     assert (answer["stamp_ns"], answer["frame_id"]) == (5, "camera")
     assert type(learner.given) is type(given) and learner.given is not given
     assert (learner.given.timestamp, learner.given.frame_id) == (5, "camera")
-    # NaN is no equal of itself.
+    # NaN is not equal to itself.
     assert str(learner.given) == str(given) if isinstance(given, target.Heatmap) else learner.given == given
 
 
@@ -175,5 +175,5 @@ def test_matrices_that_were_spoiled_are_refused():
     _, handle = echo_of(data.PointCloudWithCalibration)
     with pytest.raises(ValueError, match="no calibration; give calib"):
         handle.infer({"given": data.PointCloudWithCalibration(CLOUD)})
-    with pytest.raises(ValueError, match="no P2"):
+    with pytest.raises(ValueError, match="P2, Tr_velo_to_cam is missing"):
         handle.infer({"given": data.PointCloudWithCalibration(CLOUD, {"R0_rect": np.eye(3)})})

@@ -1,4 +1,4 @@
-"""Policies: trained in environments of both worlds, measured, saved; what goes wrong is told."""
+"""Policies: training in environments of the toolkit and of Python, evaluation, saving, errors."""
 
 import gymnasium
 import numpy as np
@@ -64,7 +64,7 @@ def test_eval_is_of_fixed_episodes(policy):
     assert numbers["episodes"] == 5 and numbers["mean_return"] == numbers["mean_length"] > 9
     same = policy.eval(lambda: gymnasium.make("opendr.simulation:opendr/CartPole-v1"), episodes=5)
     assert same["mean_return"] == numbers["mean_return"]
-    with pytest.raises(ValueError, match="the policy sees"):
+    with pytest.raises(ValueError, match="the policy needs"):
         policy.eval("Pendulum-v1", episodes=1)
 
 

@@ -1,4 +1,4 @@
-"""OpenDR's tuner: arguments, studies that go on, several seeds, pruning, failures."""
+"""OpenDR's tuner: arguments, resumed studies, several seeds, pruning, failures."""
 
 import math
 
@@ -16,7 +16,7 @@ SPACE = [
 
 
 class Bowl(Learner):
-    """Nothing is learnt; the loss is what the arguments are worth."""
+    """A learner without training, whose loss is a function of its arguments."""
 
     def __init__(self, lr, momentum=0.0, optimizer="sgd", size=8, offset=0.0, device="cpu"):
         super().__init__()
@@ -47,7 +47,7 @@ class Declared(Bowl):
 
 
 class Steps(Bowl):
-    """Tells how it stands while it trains."""
+    """Reports intermediate values during the training."""
 
     def fit(self, dataset, report=None):
         for step in range(1, 10):
@@ -91,7 +91,7 @@ def test_the_best_arguments_are_found_over_the_given_ones():
 
 def test_a_learner_may_declare_what_is_tuned():
     assert set(HyperparameterTuner(Declared).optimize(n_trials=3, **DATA)) == {entry["name"] for entry in SPACE}
-    with pytest.raises(ValueError, match="what to tune"):
+    with pytest.raises(ValueError, match="give hyperparameters and objective_function"):
         HyperparameterTuner(Bowl).optimize(n_trials=1)
     with pytest.raises(ValueError, match="class of a learner"):
         HyperparameterTuner(Bowl(0.1))
@@ -124,7 +124,7 @@ def test_agents_count_after_three_seeds():
     assert study.best()["value"] == pytest.approx(best["lr"] * 1000 + 1)
     HyperparameterTuner(Agent, Study(direction="maximize")).optimize(space, n_seeds=1, **arguments, **reward)
     assert len(seeds) == 20
-    with pytest.raises(ValueError, match="takes no seed"):
+    with pytest.raises(ValueError, match="has no argument seed"):
         HyperparameterTuner(Bowl).optimize(SPACE, objective_function=loss, n_trials=1, n_seeds=2)
 
 

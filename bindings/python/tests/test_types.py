@@ -1,4 +1,4 @@
-"""The package tells type checkers the truth: a right program passes them, in a wrong one they find every mistake."""
+"""Type annotations of the package: type checkers accept a correct program and report every error of a wrong one."""
 
 import json
 import re
@@ -11,15 +11,15 @@ import pytest
 
 TESTS = Path(__file__).parent
 PACKAGE = TESTS.parent
-#: Where mypy keeps what it learned of NumPy, from one test to the next.
+#: mypy's cache, shared by the tests.
 CACHE = "mypy-cache"
 
 
 def lines_of_mypy(*arguments, cwd, cache):
-    """The lines in which mypy finds errors, as `(file name, line)`; its whole output."""
+    """Returns the lines with errors of mypy, as `(file name, line)`, and its output."""
     command = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(cache), "--no-error-summary"]
     done = subprocess.run([*command, *map(str, arguments)], cwd=cwd, capture_output=True, text=True)
-    # 2 and above: it did not check.
+    # 2 and above: mypy failed to run.
     assert done.returncode in (0, 1), done.stdout + done.stderr
     found = re.findall(r"^([^:\n]+):(\d+): error: ", done.stdout, re.MULTILINE)
     assert bool(found) == (done.returncode == 1), done.stdout
@@ -27,7 +27,7 @@ def lines_of_mypy(*arguments, cwd, cache):
 
 
 def lines_of_pyright(*arguments, cwd, cache):
-    """As :func:`lines_of_mypy`, of pyright."""
+    """The same as :func:`lines_of_mypy`, for pyright."""
     command = [sys.executable, "-m", "pyright", "--pythonpath", sys.executable, "--outputjson"]
     done = subprocess.run([*command, *map(str, arguments)], cwd=cwd, capture_output=True, text=True)
     assert done.returncode in (0, 1), done.stdout + done.stderr
@@ -66,13 +66,13 @@ def test_every_mistake_is_found(check, cache, tmp_path):
 
 
 def test_mypy_accepts_the_package(cache, tmp_path):
-    # mypy checks nothing that lies among installed packages.
+    # mypy does not check installed packages.
     found, report = lines_of_mypy(PACKAGE / "python/opendr", cwd=tmp_path, cache=cache)
     assert not found, report
 
 
 def test_pyright_accepts_the_package(cache, tmp_path):
-    # pyright wants the native half beside its stub.
+    # pyright needs the native module next to its stub.
     found, report = lines_of_pyright(Path(opendr.__file__).parent, cwd=tmp_path, cache=cache)
     assert not found, report
 

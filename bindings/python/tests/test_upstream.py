@@ -1,4 +1,4 @@
-"""OpenDR 3.0's names, arguments and programs: the table of them is whole, and what it says is true."""
+"""OpenDR 3.0's names, arguments and programs: the table is complete and correct."""
 
 import ast
 import importlib
@@ -28,7 +28,7 @@ NAMES = [
     for name, home in names.items()
 ]
 LEARNERS = {name: (task, row) for task in TASKS for name, row in getattr(rows(task), "LEARNERS", {}).items()}
-#: Methods that are written by hand, so that the table has no order of theirs; the differences say how they are called.
+#: Hand-written methods, whose order of arguments is not in the table; `differs` describes their interface.
 BY_HAND = {
     "FacialEmotionLearner": {"fit", "eval", "load"},
     "ObjectTracking2DDeepSortLearner": {"infer"},
@@ -49,7 +49,7 @@ def test_every_name_is_there(module, name, home):
     exec(f"from {module} import {name}", namespace)
     assert namespace[name] is value
     if isinstance(home, Absent):
-        with pytest.raises(opendr.Unsupported, match=re.escape(f"{name} is not here yet; {home.use}")):
+        with pytest.raises(opendr.Unsupported, match=re.escape(f"{name} is not available yet; {home.use}")):
             value(1, device="cpu")
         for use in (iter, len, lambda value: value["x"], lambda value: value.download("x")):
             with pytest.raises(opendr.Unsupported):
@@ -166,7 +166,7 @@ def inventory(test_data):
 
 
 def test_the_table_is_the_inventory(inventory):
-    """Every class, method and argument by place of OpenDR's sources stands in the table, in order."""
+    """Every class, method and positional argument of OpenDR's sources is in the table, in order."""
     assert len(inventory) >= 50
     places = {name: (module, home) for module, name, home in NAMES}
     wrong = []
@@ -186,7 +186,7 @@ def test_the_table_is_the_inventory(inventory):
     assert not wrong, "\n".join(wrong)
 
 
-#: What OpenDR's constructors are given where they have no default.
+#: Arguments of OpenDR's constructors without defaults.
 REQUIRED = {
     "MultilinearCompressiveLearner": {
         "input_shape": (32, 32, 3),
@@ -221,7 +221,7 @@ def test_defaults_of_opendr_are_taken_by_place(inventory):
     assert not wrong, "\n".join(wrong)
 
 
-#: The constructors of the engine and of data sets, as OpenDR has them.
+#: OpenDR's constructors of the engine and of data sets.
 CONSTRUCTORS = {
     "engine.data": {
         **dict.fromkeys(("PointCloud", "SkeletonSequence", "Timeseries", "Vector", "Video"), "data"),
@@ -300,7 +300,7 @@ CONSTRUCTORS = {
     "utils.hyperparameter_tuner": {"HyperparameterTuner": "learner_class study"},
     "utils.ambiguity_measure": {"AmbiguityMeasure": "threshold temperature"},
 }
-#: Attributes and methods of classes, as OpenDR has them.
+#: OpenDR's attributes and methods of classes.
 ATTRIBUTES = {
     "engine.data": {"Image": "data numpy opencv convert open", "PointCloud": "data numpy", "Video": "data numpy"},
     "engine.target": {
@@ -361,7 +361,7 @@ def test_attributes_are_opendrs(module):
 
 
 def version(python):
-    """The version of an interpreter that has the lock; None where it does not run."""
+    """Returns the version of an interpreter with the GIL; None if it does not run."""
     program = (
         "import sys, sysconfig, json\n"
         "print(json.dumps(None if sysconfig.get_config_var('Py_GIL_DISABLED') else sys.version_info[:2]))"
@@ -374,7 +374,7 @@ def version(python):
 
 
 def found_interpreters():
-    """Interpreters of this machine by their version."""
+    """Returns the interpreters of this machine by version."""
     names = [f"python3.{minor}" for minor in range(9, 20)]
     paths = [path for path in map(shutil.which, names) if path]
     paths += map(str, sorted(Path.home().glob(".pyenv/versions/*/bin/python")))
@@ -382,7 +382,7 @@ def found_interpreters():
 
 
 def environment_of(python, folder):
-    """The program of an environment with NumPy beside `python`."""
+    """Returns the interpreter of an environment with NumPy, created with `python`."""
     program = folder / "bin/python"
     beside = Path(sys.executable).parents[2] / "uv/bin/uv"
     uv = shutil.which("uv") or (str(beside) if beside.is_file() else None)
@@ -404,7 +404,7 @@ def environment_of(python, folder):
 
 @pytest.fixture(scope="module", params=["this", "3.9", "newest"])
 def outcomes(request, zoo, tmp_path_factory):
-    """How the programs went under an interpreter, by name."""
+    """Returns the results of the programs with an interpreter, by name."""
     folder = tmp_path_factory.mktemp("programs")
     (folder / "package").mkdir()
     (folder / "package/opendr").symlink_to(Path(opendr.__file__).parent)

@@ -1,4 +1,4 @@
-"""Wrong input is an exception that says what to do; nothing crashes."""
+"""Invalid input raises exceptions with a helpful message; nothing crashes."""
 
 import os
 import sys
@@ -40,7 +40,7 @@ def test_wrong_pictures(nanodet, name):
 
 
 def test_huge_views_of_nothing_are_refused(nanodet):
-    # One byte seen as a terabyte.
+    # A view of one byte as a terabyte.
     huge = np.lib.stride_tricks.as_strided(np.zeros(1, np.uint8), (1 << 20, 1 << 20, 3), (0, 0, 0))
     with pytest.raises((ValueError, MemoryError)):
         nanodet.infer(Image(huge))
@@ -109,7 +109,7 @@ def test_many_threads_share_a_learner(faces, photo):
     for thread in threads:
         thread.start()
     for _ in range(50):
-        # Parameters and other answers in between: nobody waits for ever.
+        # Parameters and other calls in between: no deadlock.
         faces.threshold = faces.threshold
         faces.reset()
     for thread in threads:

@@ -1,4 +1,4 @@
-"""What a user writes, with types: the type checkers accept it, and it runs."""
+"""A user's program with types: the type checkers accept it, and it runs."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ class Found(NamedTuple):
 
 @opendr.register
 class DarkSpotLearner(Learner):
-    """Finds the darkest pixel."""
+    """Detects the darkest pixel."""
 
     name = "dark_spot"
     task = "object_detection_2d"

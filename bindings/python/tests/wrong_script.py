@@ -1,4 +1,4 @@
-"""Mistakes that type checkers find, one in each line that says so."""
+"""Errors that type checkers report, one in each marked line."""
 
 from opendr import Source, learner_by_name  # wrong: no such name
 from opendr.engine.data import Image

@@ -1,4 +1,4 @@
-//! Copies a recording into another format; what the format does not keep is told and left out.
+//! Copies a recording into another format, and prints which channels the format does not support.
 //!
 //! `cargo run -p opendr-bags --example bag_copy -- IN OUT --format bag1|bag2_sqlite|bag2_mcap|mcap [--lz4] [--overwrite]`
 
@@ -24,7 +24,7 @@ fn main() -> Result<()> {
     for channel in bag.channels() {
         let number = writer.add_channel(channel.clone());
         if let Err(error) = &number {
-            eprintln!("left out: {error}");
+            eprintln!("skipped: {error}");
         }
         numbers.push(number.ok());
     }

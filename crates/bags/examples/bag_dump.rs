@@ -1,8 +1,9 @@
-//! Prints a recording as lines of JSON: what it is, its channels, its messages.
+//! Prints a recording as lines of JSON: its format, channels and messages.
 //!
 //! `cargo run -p opendr-bags --example bag_dump -- RECORDING [--topic TOPIC]... [--start NS] [--end NS] [--count]`
 //!
-//! Bytes are told by their SHA-256; with `--count` messages are read but only their number and bytes are printed.
+//! The content of a message is printed as its SHA-256. With `--count`, all messages are read and only their number
+//! and size printed.
 
 use std::io::{BufWriter, Write, stdout};
 

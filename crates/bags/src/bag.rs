@@ -1,4 +1,4 @@
-//! Recordings of any format, read.
+//! Reading of recordings of any format.
 
 use std::fmt;
 use std::path::Path;
@@ -11,29 +11,30 @@ use crate::bag2::{Folder, SQLITE_MAGIC, Sqlite};
 use crate::channel::Channel;
 use crate::format::BagFormat;
 use crate::mcap;
-use crate::recorded::{Recorded, Stream};
-use crate::selection::{Selection, Wanted};
+use crate::recorded::{RecordedMessage, Stream};
+use crate::selection::{Filter, Selection};
 use crate::source::Source;
 use crate::storage::Storage;
 
 /// An opened recording.
 ///
-/// What is told of it comes from its index. A recording whose writer was cut off has none: its messages are then
-/// found by reading the file once, and [`Bag::is_complete`] tells so.
+/// Its properties come from the index of the file. A recording whose writer was interrupted has no index: its
+/// messages are found by reading the file once, and [`Bag::is_complete`] returns false.
 pub struct Bag {
     format: BagFormat,
     storage: Box<dyn Storage>,
 }
 
 impl Bag {
-    /// Opens the recording at `path`, whose format its content tells: a folder of rosbag2, or a `.bag`, `.mcap` or
-    /// `.db3` file.
+    /// Opens the recording at `path`: a folder of rosbag2, or a `.bag`, `.mcap` or `.db3` file. The content decides
+    /// the format, not the name.
     ///
     /// # Errors
     ///
-    /// [`NotFound`](opendr_engine::ErrorKind::NotFound) when there is nothing,
-    /// [`Format`](opendr_engine::ErrorKind::Format) when it is no recording or too damaged to read anything, and
-    /// [`Unsupported`](opendr_engine::ErrorKind::Unsupported) for encryption, older formats and unknown compression.
+    /// [`NotFound`](opendr_engine::ErrorKind::NotFound) if the path does not exist,
+    /// [`Format`](opendr_engine::ErrorKind::Format) if it is not a recording or too damaged to read anything, and
+    /// [`Unsupported`](opendr_engine::ErrorKind::Unsupported) for encryption, older formats and unknown
+    /// compression.
     pub fn open(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         if path.is_dir() {
@@ -50,7 +51,7 @@ impl Bag {
         Self::from_source(source).context(|| format!("reading {}", path.display()))
     }
 
-    /// Opens a `.bag` or `.mcap` file in memory.
+    /// Opens a `.bag` or `.mcap` file that is in memory.
     ///
     /// # Errors
     ///
@@ -67,58 +68,59 @@ impl Bag {
             Ok(Self { format: BagFormat::Mcap, storage: Box::new(mcap::open(source)?) })
         } else if start.starts_with(b"#ROS") {
             Err(Error::unsupported(
-                "an older format than rosbag 2.0: `rosbag fix` and `rosbag reindex` bring it up to date",
+                "a format older than rosbag 2.0: convert it with `rosbag fix` and `rosbag reindex`",
             ))
         } else {
-            Err(Error::format("no recording: it starts neither as rosbag 1, MCAP nor SQLite"))
+            Err(Error::format("not a recording: the file does not start like rosbag 1, MCAP or SQLite"))
         }
     }
 
-    /// Its format.
+    /// Returns the format of the recording.
     pub fn format(&self) -> BagFormat {
         self.format
     }
 
-    /// Its channels; [`Recorded::channel`] counts them.
+    /// Returns the channels; [`RecordedMessage::channel`] is an index into them.
     pub fn channels(&self) -> &[Channel] {
         &self.storage.summary().channels
     }
 
-    /// Messages of each channel, as the index tells.
+    /// Returns the number of messages of each channel, as stated by the index.
     pub fn message_counts(&self) -> &[u64] {
         &self.storage.summary().counts
     }
 
-    /// Messages of all channels, as the index tells: never allocate by it.
+    /// Returns the number of messages of all channels, as stated by the index. It may be wrong in a damaged file:
+    /// do not allocate by it.
     pub fn message_count(&self) -> u64 {
         self.message_counts().iter().fold(0, |sum, count| sum.saturating_add(*count))
     }
 
-    /// The log time of the first message, nanoseconds; `None` without messages.
+    /// Returns the log time of the first message in nanoseconds, or `None` without messages.
     pub fn start_ns(&self) -> Option<i64> {
         self.storage.summary().span.map(|(start, _)| start)
     }
 
-    /// The log time of the last message, nanoseconds; `None` without messages.
+    /// Returns the log time of the last message in nanoseconds, or `None` without messages.
     pub fn end_ns(&self) -> Option<i64> {
         self.storage.summary().span.map(|(_, end)| end)
     }
 
-    /// Whether the recording was finished by its writer: false after a crash or for a file cut short.
+    /// Returns whether the writer finished the recording: false after a crash or for a truncated file.
     pub fn is_complete(&self) -> bool {
         self.storage.summary().is_complete
     }
 
-    /// All messages in order of their log time; those of the same time in the order of the file.
+    /// Returns all messages in order of their log time; messages of the same time keep the order of the file.
     ///
     /// # Errors
     ///
-    /// [`Io`](opendr_engine::ErrorKind::Io) when the file cannot be opened again.
+    /// [`Io`](opendr_engine::ErrorKind::Io) if the file cannot be opened again.
     pub fn messages(&self) -> Result<Messages> {
         self.select(&Selection::default())
     }
 
-    /// The messages of `selection`. Parts of the file that hold none of them are not read.
+    /// Returns the messages of `selection`. Parts of the file without such messages are not read.
     ///
     /// # Errors
     ///
@@ -129,7 +131,7 @@ impl Bag {
         };
         let channels = self.channels().iter().map(wants).collect();
         let (times, in_file_order) = (selection.times(), selection.in_file_order);
-        let stream = self.storage.messages(Wanted { channels, times, in_file_order })?;
+        let stream = self.storage.messages(Filter { channels, times, in_file_order })?;
         Ok(Messages { stream: Some(stream) })
     }
 }
@@ -142,13 +144,13 @@ impl fmt::Debug for Bag {
     }
 }
 
-/// Messages one after the other; an error is the last item. Independent of the [`Bag`] that it came from.
+/// Iterator over the messages of a recording, independent of its [`Bag`]. It ends after the first error.
 pub struct Messages {
     stream: Option<Stream>,
 }
 
 impl Iterator for Messages {
-    type Item = Result<Recorded>;
+    type Item = Result<RecordedMessage>;
 
     fn next(&mut self) -> Option<Self::Item> {
         let item = self.stream.as_mut()?.next();

@@ -1,30 +1,30 @@
-//! What a recording says about one stream of messages.
+//! Channels of a recording.
 
 use std::fmt;
 
-/// One stream of messages of one type. Several may share a topic (several publishers in ROS 1).
+/// A sequence of messages of one type. Several channels may share a topic (several publishers in ROS 1).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Channel {
     /// Topic name, e.g. `/camera/image_raw`.
     pub topic: String,
-    /// `sensor_msgs/Image` with [`Encoding::Ros1`], `sensor_msgs/msg/Image` with [`Encoding::Cdr`].
+    /// Type name: `sensor_msgs/Image` with [`Encoding::Ros1`], `sensor_msgs/msg/Image` with [`Encoding::Cdr`].
     pub message_type: String,
-    /// How the bytes of its messages are to be read.
+    /// Encoding of the messages.
     pub encoding: Encoding,
-    /// The definition of the type and of all that it is made of, where the recording holds it.
+    /// Definition of the type and of the types it contains, if the recording has it.
     pub definition: Option<Definition>,
-    /// The MD5 sum of a ROS 1 type, `RIHS01_...` of a ROS 2 type.
+    /// MD5 sum of a ROS 1 type, `RIHS01_...` of a ROS 2 type.
     pub type_hash: Option<String>,
-    /// ROS 2: the publishers' quality of service as rosbag2 keeps it, a YAML list in text.
+    /// ROS 2: quality of service of the publishers, as the YAML text of rosbag2.
     pub qos: Option<String>,
-    /// ROS 1: the publisher sends its last message to new subscribers.
+    /// ROS 1: whether the publisher sends its last message to new subscribers.
     pub is_latching: bool,
-    /// ROS 1: the name of the publishing node.
+    /// ROS 1: name of the publishing node.
     pub caller_id: Option<String>,
 }
 
 impl Channel {
-    /// A channel without definition, hash and what only one format keeps; the type's name is normalised.
+    /// Creates a channel with a normalised type name; the other fields are empty.
     pub fn new(topic: impl Into<String>, message_type: impl AsRef<str>, encoding: Encoding) -> Self {
         Self {
             topic: topic.into(),
@@ -38,14 +38,14 @@ impl Channel {
         }
     }
 
-    /// With a definition in the style of concatenated `.msg` files.
+    /// Sets the definition, as concatenated `.msg` files.
     #[must_use]
     pub fn with_definition(mut self, text: impl Into<String>) -> Self {
         self.definition = Some(Definition { language: Language::Msg, text: text.into() });
         self
     }
 
-    /// With the MD5 sum (ROS 1) or `RIHS01_...` (ROS 2) of the type.
+    /// Sets the hash of the type: the MD5 sum (ROS 1) or `RIHS01_...` (ROS 2).
     #[must_use]
     pub fn with_type_hash(mut self, hash: impl Into<String>) -> Self {
         self.type_hash = Some(hash.into());
@@ -53,19 +53,20 @@ impl Channel {
     }
 }
 
-/// How the bytes of messages are to be read.
+/// Encoding of messages.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Encoding {
-    /// ROS 1's own serialisation.
+    /// The serialisation of ROS 1.
     Ros1,
-    /// ROS 2's: CDR with its four bytes of encapsulation header, as recordings keep it.
+    /// The serialisation of ROS 2: CDR with its four bytes of encapsulation header.
     Cdr,
-    /// Another one of an MCAP file by its name there, e.g. `json`: read as bytes, never written.
+    /// Another encoding of an MCAP file by its name, e.g. `json`. Its messages are read as bytes and cannot be
+    /// written.
     Other(String),
 }
 
 impl Encoding {
-    /// From MCAP's `message_encoding` or rosbag2's `serialization_format`.
+    /// Returns the encoding for MCAP's `message_encoding` or rosbag2's `serialization_format`.
     pub(crate) fn from_name(name: &str) -> Self {
         match name {
             "ros1" => Self::Ros1,
@@ -75,7 +76,7 @@ impl Encoding {
     }
 }
 
-/// The name that MCAP uses: `ros1`, `cdr` or the other one's.
+/// Writes the name of MCAP: `ros1`, `cdr` or the name of the other encoding.
 impl fmt::Display for Encoding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -86,25 +87,25 @@ impl fmt::Display for Encoding {
     }
 }
 
-/// A type's definition.
+/// Definition of a message type.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Definition {
-    /// What the text is written in.
+    /// Language of the text.
     pub language: Language,
-    /// The text; the types that the first one is made of follow it after lines of `=`.
+    /// Text of the definition; the contained types follow, separated by lines of `=`.
     pub text: String,
 }
 
-/// What definitions of types are written in.
+/// Language of a type definition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Language {
     /// ROS `.msg` files.
     Msg,
-    /// OMG IDL, which some ROS 2 packages have alone.
+    /// OMG IDL, the only definition that some packages of ROS 2 have.
     Idl,
 }
 
-/// `pkg/Type` for ROS 1 and `pkg/msg/Type` for ROS 2; names of other shapes are left as they are.
+/// Returns `pkg/Type` for ROS 1 and `pkg/msg/Type` for ROS 2; other names are returned unchanged.
 pub(crate) fn normal_type(name: &str, encoding: &Encoding) -> String {
     let parts: Vec<_> = name.split('/').collect();
     match (encoding, &parts[..]) {

@@ -1,4 +1,4 @@
-//! Files made of chunks: what rosbag 1 and MCAP have in common.
+//! Files made of chunks: the common part of rosbag 1 and MCAP.
 
 use std::sync::Arc;
 
@@ -7,38 +7,38 @@ use opendr_engine::{Result, ResultExt};
 
 use crate::in_order::{Chunks, InOrder, Loaded};
 use crate::recorded::Stream;
-use crate::selection::Wanted;
+use crate::selection::Filter;
 use crate::source::Source;
 use crate::storage::{Storage, Summary};
 
-/// Where messages are.
+/// Location of messages in the file.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Stretch {
-    /// A chunk's record.
+pub(crate) enum Extent {
+    /// The record of a chunk.
     Chunk { offset: u64 },
     /// Records outside of chunks.
     Loose { offset: u64, len: u64 },
 }
 
-/// A stretch with what is known of it.
+/// An extent with its times and channels.
 pub(crate) struct Part {
-    pub stretch: Stretch,
+    pub extent: Extent,
     pub span: (i64, i64),
-    /// The channels of its messages; none where the file does not tell.
+    /// Channels of the messages; empty if the file does not state them.
     pub channels: Vec<usize>,
 }
 
-/// How a format writes channels and chunks; holds the format's numbers of channels.
+/// Decoding of channels and chunks of a format, with its map from channel numbers to indices.
 pub(crate) trait Layout: Default + Send + Sync + 'static {
-    /// The records of the chunk at `offset`.
+    /// Returns the records of the chunk at `offset`.
     fn chunk(source: &Source, offset: u64) -> Result<Bytes>;
-    /// Takes in the channels among records.
-    fn learn(&mut self, records: &[u8], summary: &mut Summary) -> Result<()>;
-    /// The messages among records that `wanted` takes by channel and time.
-    fn load(&self, records: Bytes, wanted: impl Fn(usize, i64) -> bool) -> Result<Loaded>;
+    /// Adds the channels among `records` to the summary.
+    fn read_channels(&mut self, records: &[u8], summary: &mut Summary) -> Result<()>;
+    /// Returns the messages among records that `filter` accepts by channel and time.
+    fn load(&self, records: Bytes, filter: impl Fn(usize, i64) -> bool) -> Result<Loaded>;
 }
 
-/// Everything of a file but its messages.
+/// The content of a file without its messages.
 #[derive(Default)]
 pub(crate) struct Index<L> {
     pub summary: Summary,
@@ -47,21 +47,21 @@ pub(crate) struct Index<L> {
 }
 
 impl<L: Layout> Index<L> {
-    /// Takes in a stretch that no index tells of, by reading it. One that is damaged is left out: others may not be.
-    pub fn add(&mut self, source: &Source, stretch: Stretch) {
-        self.try_add(source, stretch).ok();
+    /// Adds an extent that is in no index, by reading it. A damaged extent is skipped, since others may be intact.
+    pub fn add(&mut self, source: &Source, extent: Extent) {
+        self.try_add(source, extent).ok();
     }
 
-    /// Likewise records outside of chunks, where there are some.
+    /// Adds records outside of chunks, if there are any.
     pub fn add_loose(&mut self, source: &Source, loose: Option<(u64, u64)>) {
         if let Some((offset, len)) = loose {
-            self.add(source, Stretch::Loose { offset, len });
+            self.add(source, Extent::Loose { offset, len });
         }
     }
 
-    fn try_add(&mut self, source: &Source, stretch: Stretch) -> Result<()> {
-        let records = read::<L>(source, stretch)?;
-        self.layout.learn(&records, &mut self.summary)?;
+    fn try_add(&mut self, source: &Source, extent: Extent) -> Result<()> {
+        let records = read::<L>(source, extent)?;
+        self.layout.read_channels(&records, &mut self.summary)?;
         let loaded = self.layout.load(records, |_, _| true)?;
         let times = || loaded.entries.iter().map(|entry| entry.log_time_ns);
         let (Some(start), Some(end)) = (times().min(), times().max()) else { return Ok(()) };
@@ -70,18 +70,18 @@ impl<L: Layout> Index<L> {
         channels.sort_unstable();
         channels.dedup();
         self.summary.cover(start, end);
-        self.parts.push(Part { stretch, span: (start, end), channels });
+        self.parts.push(Part { extent, span: (start, end), channels });
         Ok(())
     }
 }
 
-/// Loose records are taken together up to this many bytes.
-pub(crate) const TOGETHER: u64 = 1 << 20;
+/// Most bytes of consecutive records outside of chunks that form one extent.
+pub(crate) const MAX_LOOSE_BYTES: u64 = 1 << 20;
 
-fn read<L: Layout>(source: &Source, stretch: Stretch) -> Result<Bytes> {
-    match stretch {
-        Stretch::Chunk { offset } => L::chunk(source, offset),
-        Stretch::Loose { offset, len } => source.read(offset, len),
+fn read<L: Layout>(source: &Source, extent: Extent) -> Result<Bytes> {
+    match extent {
+        Extent::Chunk { offset } => L::chunk(source, offset),
+        Extent::Loose { offset, len } => source.read(offset, len),
     }
 }
 
@@ -104,8 +104,8 @@ impl<L: Layout> Storage for Chunked<L> {
         &self.0.index.summary
     }
 
-    fn messages(&self, wanted: Wanted) -> Result<Stream> {
-        Ok(Box::new(InOrder::new(self.0.clone(), wanted)))
+    fn messages(&self, filter: Filter) -> Result<Stream> {
+        Ok(Box::new(InOrder::new(self.0.clone(), filter)))
     }
 }
 
@@ -118,15 +118,15 @@ impl<L: Layout> Chunks for Opened<L> {
         self.index.parts.get(chunk).map_or((i64::MAX, i64::MIN), |part| part.span)
     }
 
-    fn may_hold(&self, chunk: usize, wanted: &Wanted) -> bool {
+    fn may_hold(&self, chunk: usize, filter: &Filter) -> bool {
         let channels = self.index.parts.get(chunk).map(|part| &part.channels[..]).unwrap_or_default();
-        channels.is_empty() || channels.iter().any(|channel| wanted.channel(*channel))
+        channels.is_empty() || channels.iter().any(|channel| filter.channel(*channel))
     }
 
-    fn load(&self, chunk: usize, wanted: &Wanted) -> Result<Loaded> {
+    fn load(&self, chunk: usize, filter: &Filter) -> Result<Loaded> {
         let Some(part) = self.index.parts.get(chunk) else { return Ok(Loaded::default()) };
-        let takes = |channel, time: i64| wanted.channel(channel) && wanted.times.contains(&time);
-        let load = || self.index.layout.load(read::<L>(&self.source, part.stretch)?, takes);
+        let takes = |channel, time: i64| filter.channel(channel) && filter.times.contains(&time);
+        let load = || self.index.layout.load(read::<L>(&self.source, part.extent)?, takes);
         load().context(|| format!("reading chunk {chunk} of the recording"))
     }
 }

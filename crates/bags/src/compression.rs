@@ -1,33 +1,37 @@
-//! Chunks out of and into their compressed form.
+//! Compression and decompression of chunks.
 
 use std::io::{Read, Write};
 
 use bytes::Bytes;
 use opendr_engine::{Error, Result};
 
-/// How chunks are compressed when a recording is written.
+/// Compression of chunks in a recording that is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Compression {
-    /// Not at all, as `rosbag record` and `ros2 bag record` do unless told otherwise.
+    /// No compression, the default of `rosbag record` and `ros2 bag record`.
     #[default]
     None,
-    /// LZ4 frames: fast; rosbag 1 and MCAP.
+    /// LZ4 frames, which are fast to decompress; for rosbag 1 and MCAP.
     Lz4,
 }
 
-/// No chunk and no message may be larger: 2 GiB.
-pub(crate) const LARGEST: u64 = 1 << 31;
+/// Largest size of a chunk or message: 2 GiB.
+pub(crate) const MAX_BYTES: u64 = 1 << 31;
 
-/// A compressed chunk larger than this has to hold a thousandth of its size.
-const PLAUSIBLE: u64 = 1 << 28;
+/// Decompressed size above which a compression ratio over 1000 is rejected, in bytes.
+const RATIO_CHECK_BYTES: u64 = 1 << 28;
 
-/// What `name` (rosbag 1's `none`, `bz2`, `lz4`; MCAP's empty one, `lz4`, `zstd`) made of `size` bytes.
+/// Decompresses `bytes` to `size` bytes by the method `name` (rosbag 1: `none`, `bz2`, `lz4`; MCAP: empty, `lz4`,
+/// `zstd`).
 pub(crate) fn decompress(name: &[u8], bytes: Bytes, size: u64) -> Result<Bytes> {
-    if size > LARGEST {
-        return Err(Error::format(format!("a chunk of {size} bytes: more than {LARGEST} are never read")));
+    if size > MAX_BYTES {
+        return Err(Error::format(format!("a chunk of {size} bytes: the limit is {MAX_BYTES}")));
     }
-    if size > PLAUSIBLE && bytes.len() as u64 * 1000 < size {
-        return Err(Error::format(format!("{size} bytes are told to be in {} compressed ones", bytes.len())));
+    if size > RATIO_CHECK_BYTES && bytes.len() as u64 * 1000 < size {
+        return Err(Error::format(format!(
+            "a chunk states {size} bytes, but has only {} compressed",
+            bytes.len()
+        )));
     }
     match name {
         b"" | b"none" => exact(bytes, size),
@@ -35,25 +39,25 @@ pub(crate) fn decompress(name: &[u8], bytes: Bytes, size: u64) -> Result<Bytes> 
         b"bz2" => read(bzip2::read::MultiBzDecoder::new(&bytes[..]), bytes.len(), size),
         b"zstd" => zstd(&bytes, Some(size)),
         other => Err(Error::unsupported(format!(
-            "chunks compressed with {:?}: lz4, bz2 and zstd are read; rewrite the recording with one of them",
+            "chunks are compressed with {:?}: lz4, bz2 and zstd are supported; rewrite the recording with one of them",
             String::from_utf8_lossy(other)
         ))),
     }
 }
 
-/// One Zstandard frame of a size that may only be found at its end.
+/// Decompresses a Zstandard frame, whose decompressed size may be unknown.
 pub(crate) fn zstd(bytes: &[u8], size: Option<u64>) -> Result<Bytes> {
     let broken = |error| Error::format("compressed bytes are damaged").with_source(error);
     let decoder = ruzstd::decoding::StreamingDecoder::new(bytes).map_err(broken)?;
     match size {
         Some(size) => read(decoder, bytes.len(), size),
         None => {
-            let limit = PLAUSIBLE.max(bytes.len() as u64 * 1000).min(LARGEST);
+            let limit = RATIO_CHECK_BYTES.max(bytes.len() as u64 * 1000).min(MAX_BYTES);
             let mut out = Vec::new();
             decoder.take(limit + 1).read_to_end(&mut out).map_err(damaged)?;
             if out.len() as u64 > limit {
                 return Err(Error::format(format!(
-                    "{} compressed bytes hold more than {limit}",
+                    "{} compressed bytes expand to more than {limit}",
                     bytes.len()
                 )));
             }
@@ -62,13 +66,13 @@ pub(crate) fn zstd(bytes: &[u8], size: Option<u64>) -> Result<Bytes> {
     }
 }
 
-/// The compressed form of a chunk.
+/// Compresses a chunk; `None` without compression.
 pub(crate) fn compress(compression: Compression, bytes: &[u8]) -> Result<Option<Vec<u8>>> {
     match compression {
         Compression::None => Ok(None),
         Compression::Lz4 => {
             let mut frame = lz4_flex::frame::FrameInfo::new();
-            // The reader of ROS 1 takes only blocks that do not depend on each other, and a checksum of all.
+            // The reader of ROS 1 accepts only independent blocks and a checksum of the content.
             frame.block_mode = lz4_flex::frame::BlockMode::Independent;
             frame.content_checksum = true;
             let mut encoder = lz4_flex::frame::FrameEncoder::with_frame_info(frame, Vec::new());
@@ -80,7 +84,7 @@ pub(crate) fn compress(compression: Compression, bytes: &[u8]) -> Result<Option<
 }
 
 fn read(decoder: impl Read, compressed: usize, size: u64) -> Result<Bytes> {
-    // A lie about the size costs no memory: what is believed at once is what plain data compresses to.
+    // A wrong size costs no memory: at first, only 16 times the compressed size is allocated.
     let mut out = Vec::with_capacity(size.min((compressed as u64).saturating_mul(16)) as usize);
     decoder.take(size + 1).read_to_end(&mut out).map_err(damaged)?;
     exact(out.into(), size)
@@ -95,7 +99,7 @@ fn exact(bytes: Bytes, size: u64) -> Result<Bytes> {
         return Ok(bytes);
     }
     let more = if bytes.len() as u64 > size { "more" } else { "fewer" };
-    Err(Error::format(format!("a chunk of {size} bytes has {more} than it tells of")))
+    Err(Error::format(format!("a chunk that states {size} bytes has {more}")))
 }
 
 #[cfg(test)]
@@ -119,7 +123,7 @@ mod tests {
     #[test]
     fn a_bomb_is_refused_before_it_is_opened() {
         for name in [&b"lz4"[..], b"bz2", b"zstd"] {
-            for size in [1 << 29, LARGEST + 1, u64::MAX] {
+            for size in [1 << 29, MAX_BYTES + 1, u64::MAX] {
                 let error = decompress(name, Bytes::from_static(&[0; 1000]), size).unwrap_err();
                 assert!(error.message().contains("bytes"), "{error}");
             }

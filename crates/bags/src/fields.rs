@@ -1,8 +1,8 @@
-//! Numbers and texts off the front of bytes from outside: all formats here are little endian.
+//! Parsing of little-endian numbers and texts from untrusted bytes.
 
 use opendr_engine::{Error, Result};
 
-/// What is left of bytes that are being taken apart.
+/// The bytes that are not yet parsed.
 #[derive(Clone, Copy)]
 pub(crate) struct Fields<'a>(pub &'a [u8]);
 
@@ -13,7 +13,7 @@ impl<'a> Fields<'a> {
 
     pub fn take(&mut self, len: usize) -> Result<&'a [u8]> {
         let (taken, rest) = self.0.split_at_checked(len).ok_or_else(|| {
-            Error::format(format!("a record ends early: {len} bytes are told, {} follow", self.0.len()))
+            Error::format(format!("a record is truncated: it states {len} bytes, {} follow", self.0.len()))
         })?;
         self.0 = rest;
         Ok(taken)
@@ -21,7 +21,7 @@ impl<'a> Fields<'a> {
 
     fn array<const N: usize>(&mut self) -> Result<[u8; N]> {
         let (taken, rest) = self.0.split_first_chunk().ok_or_else(|| {
-            Error::format(format!("a record ends early: {N} bytes are wanted, {} follow", self.0.len()))
+            Error::format(format!("a record is truncated: {N} bytes are needed, {} follow", self.0.len()))
         })?;
         self.0 = rest;
         Ok(*taken)
@@ -43,13 +43,13 @@ impl<'a> Fields<'a> {
         Ok(u64::from_le_bytes(self.array()?))
     }
 
-    /// Bytes after their length in 32 bits.
+    /// Reads bytes preceded by their length in 32 bits.
     pub fn sized(&mut self) -> Result<&'a [u8]> {
         let len = self.u32()?;
         self.take(len as usize)
     }
 
-    /// Text after its length in 32 bits; what is not UTF-8 becomes U+FFFD.
+    /// Reads text preceded by its length in 32 bits; invalid UTF-8 becomes U+FFFD.
     pub fn text(&mut self) -> Result<String> {
         Ok(String::from_utf8_lossy(self.sized()?).into_owned())
     }

@@ -1,11 +1,11 @@
-//! The formats of recordings.
+//! Formats of recordings.
 
 use std::fmt;
 use std::str::FromStr;
 
 use opendr_engine::Error;
 
-/// A format of recordings.
+/// Format of a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum BagFormat {
@@ -20,10 +20,10 @@ pub enum BagFormat {
 }
 
 impl BagFormat {
-    /// Every format.
+    /// All formats.
     pub const ALL: [Self; 4] = [Self::Bag1, Self::Bag2Sqlite, Self::Bag2Mcap, Self::Mcap];
 
-    /// The name as users type it.
+    /// Returns the name for the command line and parameters.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Bag1 => "bag1",
@@ -33,7 +33,7 @@ impl BagFormat {
         }
     }
 
-    /// Whether a recording is a folder.
+    /// Returns whether a recording of this format is a folder.
     pub const fn is_folder(self) -> bool {
         matches!(self, Self::Bag2Sqlite | Self::Bag2Mcap)
     }
@@ -50,7 +50,7 @@ impl FromStr for BagFormat {
 
     fn from_str(text: &str) -> Result<Self, Error> {
         let names = || Self::ALL.map(Self::name).join(", ");
-        let unknown = || Error::invalid_param(format!("unknown format {text:?}: take one of {}", names()));
+        let unknown = || Error::invalid_param(format!("unknown format {text:?}: use one of {}", names()));
         Self::ALL.into_iter().find(|format| format.name() == text).ok_or_else(unknown)
     }
 }

@@ -1,4 +1,4 @@
-//! Messages of many chunks in order of their log time, with as few chunks in memory as their times allow.
+//! Messages of many chunks in order of their log time, with as few chunks in memory as possible.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::binary_heap::{BinaryHeap, PeekMut};
@@ -7,10 +7,10 @@ use std::sync::Arc;
 use bytes::Bytes;
 use opendr_engine::{Error, Result};
 
-use crate::recorded::Recorded;
-use crate::selection::Wanted;
+use crate::recorded::RecordedMessage;
+use crate::selection::Filter;
 
-/// Where a message is in the bytes of its chunk.
+/// Location of a message in the bytes of its chunk.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Entry {
     pub log_time_ns: i64,
@@ -20,7 +20,7 @@ pub(crate) struct Entry {
     pub end: usize,
 }
 
-/// A chunk in memory with those of its messages that are wanted.
+/// A chunk in memory with its selected messages.
 #[derive(Default)]
 pub(crate) struct Loaded {
     pub bytes: Bytes,
@@ -30,20 +30,20 @@ pub(crate) struct Loaded {
 /// A file made of chunks.
 pub(crate) trait Chunks: Send + Sync {
     fn count(&self) -> usize;
-    /// The times of the first and last message, as the index tells them.
+    /// Returns the times of the first and last message, as stated by the index.
     fn span(&self, chunk: usize) -> (i64, i64);
-    /// False only when nothing in it can be wanted.
-    fn may_hold(&self, chunk: usize, wanted: &Wanted) -> bool;
-    fn load(&self, chunk: usize, wanted: &Wanted) -> Result<Loaded>;
+    /// Returns false only if no message of the chunk is selected.
+    fn may_hold(&self, chunk: usize, filter: &Filter) -> bool;
+    fn load(&self, chunk: usize, filter: &Filter) -> Result<Loaded>;
 }
 
-/// Chunks that overlap in time are in memory together, up to this many bytes.
-const TOGETHER: usize = 1 << 30;
+/// Most bytes of chunks that overlap in time and are in memory together.
+const MAX_OPEN_BYTES: usize = 1 << 30;
 
-/// The wanted messages of `chunks`.
+/// Iterator over the selected messages of `chunks`.
 pub(crate) struct InOrder<C> {
-    wanted: Wanted,
-    /// Chunks still to be loaded, the next one last.
+    filter: Filter,
+    /// Chunks to load, the next one last.
     upcoming: Vec<(i64, usize)>,
     open: BinaryHeap<Reverse<Open>>,
     open_bytes: usize,
@@ -51,42 +51,42 @@ pub(crate) struct InOrder<C> {
 }
 
 impl<C: Chunks> InOrder<C> {
-    pub fn new(chunks: Arc<C>, wanted: Wanted) -> Self {
-        let held = |chunk: &usize| {
+    pub fn new(chunks: Arc<C>, filter: Filter) -> Self {
+        let is_needed = |chunk: &usize| {
             let (start, end) = chunks.span(*chunk);
-            wanted.span(start, end) && chunks.may_hold(*chunk, &wanted)
+            filter.span(start, end) && chunks.may_hold(*chunk, &filter)
         };
         let mut upcoming: Vec<_> =
-            (0..chunks.count()).filter(held).map(|chunk| (chunks.span(chunk).0, chunk)).collect();
-        if !wanted.in_file_order {
+            (0..chunks.count()).filter(is_needed).map(|chunk| (chunks.span(chunk).0, chunk)).collect();
+        if !filter.in_file_order {
             upcoming.sort_unstable();
         }
         upcoming.reverse();
-        Self { wanted, upcoming, open: BinaryHeap::new(), open_bytes: 0, chunks }
+        Self { filter, upcoming, open: BinaryHeap::new(), open_bytes: 0, chunks }
     }
 
-    /// Loads every chunk that can hold the next message.
+    /// Loads every chunk that may contain the next message.
     fn load(&mut self) -> Result<()> {
         while let Some(&(start, chunk)) = self.upcoming.last() {
             match self.open.peek() {
-                Some(_) if self.wanted.in_file_order => break,
+                Some(_) if self.filter.in_file_order => break,
                 Some(Reverse(open)) if open.time() < start => break,
                 _ => {}
             }
             self.upcoming.pop();
-            let mut loaded = self.chunks.load(chunk, &self.wanted)?;
+            let mut loaded = self.chunks.load(chunk, &self.filter)?;
             if loaded.entries.is_empty() {
                 continue;
             }
-            if !self.wanted.in_file_order {
-                // Stable: messages of the same time stay in the order of the file.
+            if !self.filter.in_file_order {
+                // The sort is stable: messages of the same time keep the order of the file.
                 loaded.entries.sort_by_key(|entry| entry.log_time_ns);
             }
             self.open_bytes = self.open_bytes.saturating_add(loaded.bytes.len());
-            if !self.open.is_empty() && self.open_bytes > TOGETHER {
+            if !self.open.is_empty() && self.open_bytes > MAX_OPEN_BYTES {
                 return Err(Error::unsupported(format!(
-                    "{} chunks with {} MB overlap in time: read this recording in file order, or rewrite it \
-                     with its messages in order of their times",
+                    "{} chunks with {} MB overlap in time: read the recording in file order, or rewrite it \
+                    with its messages in order of time",
                     self.open.len() + 1,
                     self.open_bytes >> 20
                 )));
@@ -98,7 +98,7 @@ impl<C: Chunks> InOrder<C> {
 }
 
 impl<C: Chunks> Iterator for InOrder<C> {
-    type Item = Result<Recorded>;
+    type Item = Result<RecordedMessage>;
 
     fn next(&mut self) -> Option<Self::Item> {
         if let Err(error) = self.load() {
@@ -115,7 +115,7 @@ impl<C: Chunks> Iterator for InOrder<C> {
             let Reverse(done) = PeekMut::pop(top);
             self.open_bytes -= done.loaded.bytes.len();
         }
-        Some(Ok(Recorded {
+        Some(Ok(RecordedMessage {
             channel: entry.channel as usize,
             log_time_ns: entry.log_time_ns,
             publish_time_ns: entry.publish_time_ns,
@@ -124,7 +124,7 @@ impl<C: Chunks> Iterator for InOrder<C> {
     }
 }
 
-/// A chunk in memory of which messages are still to come.
+/// A chunk in memory with messages left to return.
 struct Open {
     loaded: Loaded,
     at: usize,

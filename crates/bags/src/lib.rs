@@ -1,8 +1,9 @@
-//! Recordings of robots as raw messages: rosbag 1, rosbag 2 (SQLite and MCAP) and MCAP files, read and written.
+//! Reading and writing of recordings: rosbag 1, rosbag 2 (SQLite and MCAP) and MCAP files.
 //!
-//! No type of message is known here: a message is bytes on a [`Channel`], which tells its type, its encoding and,
-//! where the recording has it, its definition. [`Bag`] reads messages in order of their log time in bounded memory,
-//! [`BagWriter`] writes recordings that the formats' own tools read.
+//! [`Bag`] reads the messages of a recording in order of their log time, in bounded memory. [`BagWriter`] writes
+//! recordings that the tools of ROS read. The crate does not decode messages: a message is bytes on a [`Channel`],
+//! which has the type, the encoding and, if the recording contains it, the definition. `opendr-messages` decodes
+//! messages, `opendr-recordings` reads them as inputs of learners and writes predictions.
 //!
 //! ```
 //! use opendr_bags::{Bag, BagFormat, BagWriter, Channel, Encoding};
@@ -44,6 +45,6 @@ pub use bag::{Bag, Messages};
 pub use channel::{Channel, Definition, Encoding, Language};
 pub use compression::Compression;
 pub use format::BagFormat;
-pub use recorded::Recorded;
+pub use recorded::RecordedMessage;
 pub use selection::Selection;
 pub use writer::{BagWriter, WriteOptions};

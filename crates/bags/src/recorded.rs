@@ -1,20 +1,20 @@
-//! One message of a recording.
+//! Messages of a recording.
 
 use bytes::Bytes;
 
-/// One message as it was recorded.
+/// A message as it was recorded.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Recorded {
+pub struct RecordedMessage {
     /// Index into [`Bag::channels`](crate::Bag::channels).
     pub channel: usize,
-    /// When it was recorded, nanoseconds since 1970 (or of the simulation's clock).
+    /// Time of recording, in nanoseconds since 1970 (or of the simulation's clock).
     pub log_time_ns: i64,
-    /// When it was published, where the format keeps it (MCAP).
+    /// Time of publication in nanoseconds, if the format has it (MCAP).
     pub publish_time_ns: Option<i64>,
-    /// The message in its channel's encoding. A view into the chunk that was read: it keeps the whole chunk
-    /// (about 1 MB, or the largest message) in memory, so copy what is kept for long.
+    /// The message in the encoding of its channel. The bytes are a view that keeps the whole chunk (about 1 MB, or
+    /// the largest message) in memory: copy messages that are kept for long.
     pub bytes: Bytes,
 }
 
-/// Messages one after the other, of any storage.
-pub(crate) type Stream = Box<dyn Iterator<Item = opendr_engine::Result<Recorded>> + Send>;
+/// Iterator over the messages of any storage.
+pub(crate) type Stream = Box<dyn Iterator<Item = opendr_engine::Result<RecordedMessage>> + Send>;

@@ -1,22 +1,22 @@
-//! Which messages of a recording are wanted.
+//! Selection of messages of a recording.
 
 use std::ops::RangeInclusive;
 
-/// Which messages are wanted and in which order; the default is all, in order of their log time.
+/// Selection of messages and their order. The default is all messages, in order of their log time.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Selection {
-    /// Only these topics; `None` is all of them. Names that the recording does not have are no error.
+    /// Topics to read; `None` for all. Unknown topics are ignored.
     pub topics: Option<Vec<String>>,
-    /// Only messages recorded at this time or later, nanoseconds.
+    /// Earliest log time, in nanoseconds.
     pub start_ns: Option<i64>,
-    /// Only messages recorded at this time or earlier, nanoseconds.
+    /// Latest log time, in nanoseconds.
     pub end_ns: Option<i64>,
-    /// In the order of the file: chunks are never held beside each other, whatever their times.
+    /// Whether to read in the order of the file, with one chunk in memory at a time, instead of in order of time.
     pub in_file_order: bool,
 }
 
 impl Selection {
-    /// Only these topics.
+    /// Selects these topics.
     pub fn topics<T: Into<String>>(topics: impl IntoIterator<Item = T>) -> Self {
         Self { topics: Some(topics.into_iter().map(Into::into).collect()), ..Self::default() }
     }
@@ -26,20 +26,20 @@ impl Selection {
     }
 }
 
-/// A selection with its topics as channels of one storage.
+/// A selection for one storage: topics are flags of its channels.
 #[derive(Debug, Clone)]
-pub(crate) struct Wanted {
+pub(crate) struct Filter {
     pub channels: Vec<bool>,
     pub times: RangeInclusive<i64>,
     pub in_file_order: bool,
 }
 
-impl Wanted {
+impl Filter {
     pub fn channel(&self, channel: usize) -> bool {
         self.channels.get(channel).copied().unwrap_or(false)
     }
 
-    /// Whether something of these times can be wanted.
+    /// Returns whether the selection overlaps the times from `start` to `end`.
     pub fn span(&self, start: i64, end: i64) -> bool {
         start <= *self.times.end() && *self.times.start() <= end
     }

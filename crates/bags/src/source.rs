@@ -1,4 +1,4 @@
-//! Where a recording's bytes are: a file or memory, read at any place.
+//! Bytes of a recording in a file or in memory, with random access.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -8,7 +8,7 @@ use std::sync::Arc;
 use bytes::Bytes;
 use opendr_engine::{Error, Result, ResultExt};
 
-/// Cheap to clone: readers of one recording share the open file.
+/// Source of bytes. It is cheap to clone: the readers of a recording share the open file.
 #[derive(Clone)]
 pub(crate) enum Source {
     File { file: Arc<File>, len: u64 },
@@ -32,11 +32,13 @@ impl Source {
         }
     }
 
-    /// The `len` bytes from `offset`; nothing is allocated for bytes that are not there.
+    /// Returns the `len` bytes from `offset`. Memory is allocated only for existing bytes.
     pub fn read(&self, offset: u64, len: u64) -> Result<Bytes> {
         let end = offset.checked_add(len).filter(|end| *end <= self.len()).ok_or_else(|| {
             let size = self.len();
-            Error::format(format!("{len} bytes at {offset} are told of, but the file ends at {size}"))
+            Error::format(format!(
+                "{len} bytes at {offset} are needed, but the file ends at {size}: it is truncated or damaged"
+            ))
         })?;
         match self {
             Self::Memory(bytes) => Ok(bytes.slice(offset as usize..end as usize)),
@@ -44,7 +46,7 @@ impl Source {
                 let mut bytes = Vec::with_capacity(len as usize);
                 At { file, offset }.take(len).read_to_end(&mut bytes)?;
                 if (bytes.len() as u64) < len {
-                    return Err(Error::io("the file became shorter while it was read"));
+                    return Err(Error::io("the file was truncated while it was read"));
                 }
                 Ok(bytes.into())
             }
@@ -52,7 +54,7 @@ impl Source {
     }
 }
 
-/// A file read from a place of its own, not the one that its other readers move.
+/// A file with a read position of its own, independent of other readers.
 struct At<'a> {
     file: &'a File,
     offset: u64,
@@ -69,7 +71,7 @@ impl Read for At<'_> {
     }
 }
 
-/// A source read mostly forwards in small pieces.
+/// A read-ahead buffer for mostly sequential small reads.
 pub(crate) struct Window<'a> {
     source: &'a Source,
     start: u64,

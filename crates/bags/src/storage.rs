@@ -1,24 +1,24 @@
-//! What every format gives its reader and takes from its writer.
+//! The interface between recordings and their formats.
 
 use opendr_engine::Result;
 
 use crate::channel::Channel;
 use crate::recorded::Stream;
-use crate::selection::Wanted;
+use crate::selection::Filter;
 
-/// One opened recording, or one file of it.
+/// An opened recording, or a file of it.
 pub(crate) trait Storage: Send + Sync {
     fn summary(&self) -> &Summary;
-    fn messages(&self, wanted: Wanted) -> Result<Stream>;
+    fn messages(&self, filter: Filter) -> Result<Stream>;
 }
 
-/// What is known of a recording without reading its messages.
+/// The properties of a recording that are available without reading its messages.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Summary {
     pub channels: Vec<Channel>,
     /// Messages per channel.
     pub counts: Vec<u64>,
-    /// The times of the first and last message.
+    /// Times of the first and last message.
     pub span: Option<(i64, i64)>,
     pub is_complete: bool,
 }
@@ -30,7 +30,7 @@ impl Summary {
         self.channels.len() - 1
     }
 
-    /// Widens the span.
+    /// Extends the time span.
     pub fn cover(&mut self, start: i64, end: i64) {
         let (first, last) = self.span.unwrap_or((start, end));
         self.span = Some((first.min(start), last.max(end)));
@@ -43,11 +43,11 @@ impl Summary {
     }
 }
 
-/// One recording being written. Channels come numbered from 0, messages only of channels that came.
+/// A recording being written. Channels are numbered from 0 in the order they are added.
 pub(crate) trait StorageWriter: Send {
     fn add_channel(&mut self, channel: &Channel) -> Result<()>;
     fn write(&mut self, channel: usize, log_time_ns: i64, publish_time_ns: i64, bytes: &[u8]) -> Result<()>;
-    /// Hands to the operating system what is still held back.
+    /// Passes buffered messages to the operating system.
     fn flush(&mut self) -> Result<()>;
     fn finish(&mut self) -> Result<()>;
 }

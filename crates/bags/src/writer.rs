@@ -1,4 +1,4 @@
-//! Recordings of any format, written.
+//! Writing of recordings of any format.
 
 use std::fmt;
 use std::fs::{self, File};
@@ -9,27 +9,27 @@ use opendr_engine::{Error, ErrorKind, Result, ResultExt};
 use crate::bag1::Bag1Writer;
 use crate::bag2::{Bag2Writer, remove};
 use crate::channel::{Channel, Encoding};
-use crate::compression::{Compression, LARGEST};
+use crate::compression::{Compression, MAX_BYTES};
 use crate::format::BagFormat;
 use crate::mcap::McapWriter;
-use crate::recorded::Recorded;
+use crate::recorded::RecordedMessage;
 use crate::storage::StorageWriter;
 
-/// How a recording is written.
+/// Options of a recording that is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WriteOptions {
-    /// The format.
+    /// Format of the recording.
     pub format: BagFormat,
-    /// An existing recording is replaced; otherwise it is an error that one is there.
+    /// Whether an existing recording is replaced; otherwise an existing one is an error.
     pub overwrite: bool,
-    /// How chunks are compressed; rosbag 2 with SQLite has no chunks and is never compressed.
+    /// Compression of chunks; rosbag 2 with SQLite does not support any.
     pub compression: Compression,
-    /// Messages of about so many bytes are held back and written together; what is held back is lost in a crash.
+    /// Bytes of messages that are buffered and written together. Buffered messages are lost in a crash.
     pub chunk_bytes: usize,
 }
 
 impl WriteOptions {
-    /// Of `format`: nothing is overwritten or compressed, chunks of 1 MiB.
+    /// Returns the options for `format`: no overwriting, no compression, chunks of 1 MiB.
     pub fn new(format: BagFormat) -> Self {
         Self { format, overwrite: false, compression: Compression::None, chunk_bytes: 1 << 20 }
     }
@@ -41,8 +41,8 @@ impl From<BagFormat> for WriteOptions {
     }
 }
 
-/// A recording being written. After an error of the system nothing more is written to it. Dropped without [`BagWriter::finish`], it is finished as far as that works, without
-/// a word of what did not.
+/// A recording being written. After a system error, every further write fails. A dropped writer finishes the
+/// recording, but ignores errors: use [`BagWriter::finish`].
 pub struct BagWriter {
     format: BagFormat,
     channels: Vec<Channel>,
@@ -50,25 +50,25 @@ pub struct BagWriter {
 }
 
 impl BagWriter {
-    /// Starts a recording at `path`: a file, or a folder for rosbag 2. Takes a [`BagFormat`] or [`WriteOptions`].
+    /// Creates a recording at `path`: a file, or a folder for rosbag 2. Takes a [`BagFormat`] or [`WriteOptions`].
     ///
     /// # Errors
     ///
-    /// [`InvalidInput`](opendr_engine::ErrorKind::InvalidInput) when something is there that may not be
-    /// overwritten, [`InvalidParam`](opendr_engine::ErrorKind::InvalidParam) for a compression that the format
-    /// does not have, and [`Io`](opendr_engine::ErrorKind::Io) when it cannot be written.
+    /// [`InvalidInput`](opendr_engine::ErrorKind::InvalidInput) if the path exists and may not be overwritten,
+    /// [`InvalidParam`](opendr_engine::ErrorKind::InvalidParam) for a compression that the format does not support,
+    /// and [`Io`](opendr_engine::ErrorKind::Io) if it cannot be written.
     pub fn create(path: impl AsRef<Path>, options: impl Into<WriteOptions>) -> Result<Self> {
         let (path, options) = (path.as_ref(), options.into());
         let storage = start(path, &options).context(|| format!("writing {}", path.display()))?;
         Ok(Self { format: options.format, channels: Vec::new(), storage: Some(storage) })
     }
 
-    /// Adds a channel; its number for [`BagWriter::write`], from 0 on.
+    /// Adds a channel and returns its number for [`BagWriter::write`], counted from 0.
     ///
     /// # Errors
     ///
-    /// [`Unsupported`](opendr_engine::ErrorKind::Unsupported) when the format does not keep messages of its
-    /// encoding: rosbag 1 keeps ROS 1's, rosbag 2 CDR, MCAP both.
+    /// [`Unsupported`](opendr_engine::ErrorKind::Unsupported) if the format does not support the encoding: rosbag 1
+    /// supports ROS 1's, rosbag 2 CDR, MCAP both.
     pub fn add_channel(&mut self, channel: Channel) -> Result<usize> {
         let is_kept = match channel.encoding {
             Encoding::Ros1 => !self.format.is_folder(),
@@ -78,7 +78,7 @@ impl BagWriter {
         if !is_kept {
             let Channel { topic, encoding, .. } = &channel;
             return Err(Error::unsupported(format!(
-                "{topic} has messages of encoding {encoding}, which {} does not keep: convert them or leave it out",
+                "{topic} has messages of encoding {encoding}, which {} does not support: convert or exclude them",
                 self.format
             )));
         }
@@ -87,28 +87,28 @@ impl BagWriter {
         Ok(self.channels.len() - 1)
     }
 
-    /// The channels so far.
+    /// Returns the channels added so far.
     pub fn channels(&self) -> &[Channel] {
         &self.channels
     }
 
-    /// Writes a message, published when it was logged.
+    /// Writes a message whose publish time is its log time, in nanoseconds.
     ///
     /// # Errors
     ///
-    /// [`InvalidInput`](opendr_engine::ErrorKind::InvalidInput) for a channel that was not added, a message of more
-    /// than 1 GiB and a time that the format does not keep (before 1970; rosbag 1: 0 and after 2106), and
-    /// [`Io`](opendr_engine::ErrorKind::Io) when the disk is full.
+    /// [`InvalidInput`](opendr_engine::ErrorKind::InvalidInput) for an unknown channel, a message of more than 1
+    /// GiB and a time that the format does not support (before 1970; rosbag 1: 0 and after 2106), and
+    /// [`Io`](opendr_engine::ErrorKind::Io) if the disk is full.
     pub fn write(&mut self, channel: usize, log_time_ns: i64, bytes: &[u8]) -> Result<()> {
         self.write_published(channel, log_time_ns, log_time_ns, bytes)
     }
 
-    /// Writes a message that was read, in `channel` of this recording.
+    /// Writes a message that was read from a recording, on `channel` of this one.
     ///
     /// # Errors
     ///
     /// As [`BagWriter::write`].
-    pub fn copy(&mut self, channel: usize, message: &Recorded) -> Result<()> {
+    pub fn copy(&mut self, channel: usize, message: &RecordedMessage) -> Result<()> {
         let log_time_ns = message.log_time_ns;
         self.write_published(
             channel,
@@ -121,28 +121,30 @@ impl BagWriter {
     fn write_published(&mut self, channel: usize, log: i64, publish: i64, bytes: &[u8]) -> Result<()> {
         let known = self.channels.len();
         if channel >= known {
-            return Err(Error::invalid_input(format!("channel {channel} of {known}: add it first")));
+            return Err(Error::invalid_input(format!(
+                "channel {channel} of {known} does not exist: add it first"
+            )));
         }
-        if bytes.len() as u64 > LARGEST / 2 {
+        if bytes.len() as u64 > MAX_BYTES / 2 {
             let len = bytes.len();
             return Err(Error::invalid_input(format!(
-                "a message of {len} bytes: at most {} are kept",
-                LARGEST / 2
+                "a message of {len} bytes: the limit is {}",
+                MAX_BYTES / 2
             )));
         }
         self.with_storage(|storage| storage.write(channel, log, publish, bytes))
     }
 
-    /// Hands to the operating system what was held back, so that a crash or another reader finds it.
+    /// Passes buffered messages to the operating system, so that they survive a crash and other readers see them.
     ///
     /// # Errors
     ///
-    /// [`Io`](opendr_engine::ErrorKind::Io) when the disk is full.
+    /// [`Io`](opendr_engine::ErrorKind::Io) if the disk is full.
     pub fn flush(&mut self) -> Result<()> {
         self.with_storage(|storage| storage.flush())
     }
 
-    /// Writes the rest and the index.
+    /// Writes the remaining messages and the index.
     ///
     /// # Errors
     ///
@@ -151,10 +153,11 @@ impl BagWriter {
         self.storage.take().map_or(Ok(()), |mut storage| storage.finish())
     }
 
-    /// A recording of which a part could not be written is left as one that was cut off.
+    /// Drops the storage after a write error, so that the recording is left as after an interruption.
     fn with_storage(&mut self, work: impl FnOnce(&mut dyn StorageWriter) -> Result<()>) -> Result<()> {
         let storage = self.storage.as_deref_mut();
-        let done = work(storage.ok_or_else(|| Error::io("nothing is written after the error before"))?);
+        let done =
+            work(storage.ok_or_else(|| Error::io("the recording cannot be written after an earlier error"))?);
         if done.as_ref().is_err_and(|error| error.kind() != ErrorKind::InvalidInput) {
             self.storage = None;
         }
@@ -180,12 +183,12 @@ impl fmt::Debug for BagWriter {
 fn start(path: &Path, options: &WriteOptions) -> Result<Box<dyn StorageWriter>> {
     let WriteOptions { format, overwrite, compression, chunk_bytes } = *options;
     if format == BagFormat::Bag2Sqlite && compression != Compression::None {
-        return Err(Error::invalid_param("rosbag 2 with SQLite is not compressed: take bag2_mcap"));
+        return Err(Error::invalid_param("rosbag 2 with SQLite does not support compression: use bag2_mcap"));
     }
-    // Chunks have to stay below what readers take.
+    // Readers limit the size of chunks.
     let chunk_bytes = chunk_bytes.min(1 << 28);
     if path.exists() && !overwrite {
-        return Err(Error::invalid_input("it is there already: choose another name, or overwrite"));
+        return Err(Error::invalid_input("the path exists already: choose another name, or overwrite"));
     }
     if format.is_folder() {
         if path.is_dir() {

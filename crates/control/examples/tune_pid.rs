@@ -6,7 +6,7 @@
 use opendr_control::{PidGains, TrackingLayout, TrackingPid};
 use opendr_engine::environment::{Controller as _, Environment as _, ResetOptions};
 use opendr_engine::{Error, Result};
-use opendr_simulation::Registered as _;
+use opendr_simulation::RegisteredEnvironment as _;
 use opendr_simulation::quad_track::{CONTROL_PERIOD, QuadTrack, QuadTrackParams};
 use opendr_tuning::{
     Budget, CmaEs, Direction, Distribution, Outcome, Progress, SearchSpace, Storage, Study, Trial,

@@ -1,4 +1,4 @@
-//! Checks, prints and converts data sets: what the Python tests drive.
+//! Checks, prints and converts data sets; used by the Python tests.
 //!
 //! ```console
 //! $ cargo run -p opendr-datasets --example data -- print coco set --target PoseList
@@ -7,7 +7,7 @@
 
 use std::path::Path;
 
-use opendr_datasets::{OpenOptions, Problems, WriteOptions, find, open};
+use opendr_datasets::{OpenOptions, Problems, WriteOptions, find_format, open};
 use opendr_engine::dataset::{DatasetIterator, ExternalDataset};
 use opendr_engine::{Error, Result, Silent, ValueType};
 
@@ -37,7 +37,7 @@ fn main() -> Result<()> {
         ["convert", format, path, to, out] => {
             let written =
                 WriteOptions { split: after("--to-split").or_else(|| options.split.clone()), link: false };
-            (find(to)?.write)(&*dataset(format, path)?, Path::new(out), &written, &problems, &Silent)?;
+            (find_format(to)?.write)(&*dataset(format, path)?, Path::new(out), &written, &problems, &Silent)?;
         }
         _ => return Err(Error::invalid_param(USAGE)),
     }
@@ -47,10 +47,10 @@ fn main() -> Result<()> {
 
 fn type_called(name: &str) -> Result<ValueType> {
     let found = ValueType::ALL.iter().find(|each| each.name() == name);
-    found.copied().ok_or_else(|| Error::invalid_param(format!("there is no type {name}")))
+    found.copied().ok_or_else(|| Error::invalid_param(format!("unknown type {name}")))
 }
 
-/// A line for each sample: its name, id and target.
+/// Prints a line for each sample: its name, id and target.
 fn print(dataset: &dyn DatasetIterator) -> Result<()> {
     let classes: Vec<_> = dataset.classes().iter().map(str::to_owned).collect();
     println!("{}", serde_json::json!({"classes": classes, "class_ids": dataset.class_ids()}));

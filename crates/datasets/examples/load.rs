@@ -1,7 +1,8 @@
-//! How many pictures a second come out of the loader, decoded and augmented: one side of `benches/loader.py`.
+//! Measures the images per second of the loader, decoded and augmented; one side of `benches/loader.py`.
 //!
-//! `load FOLDER [--crop resized|iou|none] [--hue RAD] [--threads N] [--batch N] [--epochs N]`: JPEGs of `FOLDER/images/*/`
-//! with YOLO labels in `FOLDER/object_detection/labels/*/`. Prints pictures a second of each epoch after the first.
+//! `load FOLDER [--crop resized|iou|none] [--hue RAD] [--threads N] [--batch N] [--epochs N]`: JPEGs of
+//! `FOLDER/images/*/` with YOLO labels in `FOLDER/object_detection/labels/*/`. Prints the images per second of each
+//! epoch after the first.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -13,10 +14,10 @@ use opendr_engine::target::{BoundingBox, BoundingBoxList};
 use opendr_engine::{Error, Result, ResultExt};
 use opendr_vision::Preprocess;
 
-/// Side of the pictures in a batch, pixels.
+/// Side of the images in a batch, in pixels.
 const SIDE: usize = 416;
 
-/// Pictures with the text of their labels.
+/// Images with the text of their labels.
 struct Pictures(Vec<(PathBuf, String)>);
 
 impl Pictures {

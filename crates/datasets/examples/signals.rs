@@ -1,4 +1,4 @@
-//! Reads and writes files of signals, tracks and clouds: what the Python tests drive.
+//! Reads and writes files of signals, tracks and point clouds; used by the Python tests.
 //!
 //! ```console
 //! $ cargo run -p opendr-datasets --example signals -- arrays wfdb ecg/100 out --limit 10
@@ -9,8 +9,8 @@ use std::fs;
 use std::path::Path;
 
 use opendr_datasets::{
-    NpyFile, OpenOptions, Problems, WavEncoding, WriteOptions, find, npy_from_f32, open, open_mot_results,
-    open_wav, open_wfdb_record, wav_from_audio, write_mot_results,
+    NpyFile, OpenOptions, Problems, WavEncoding, WriteOptions, find_format, npy_from_f32, open,
+    open_mot_results, open_wav, open_wfdb_record, wav_from_audio, write_mot_results,
 };
 use opendr_engine::data::{Image, Pixels};
 use opendr_engine::dataset::{DatasetIterator, ExternalDataset};
@@ -37,7 +37,7 @@ fn main() -> Result<()> {
         ["arrays", format, path, out] => arrays(&*dataset(format, path)?, Path::new(out), limit),
         ["convert", format, path, to, out] => {
             let written = WriteOptions { split, link: false };
-            (find(to)?.write)(&*dataset(format, path)?, Path::new(out), &written, &problems, &Silent)
+            (find_format(to)?.write)(&*dataset(format, path)?, Path::new(out), &written, &problems, &Silent)
         }
         ["recognise", path] => {
             println!("{}", opendr_datasets::recognise(Path::new(path))?.name);
@@ -48,7 +48,7 @@ fn main() -> Result<()> {
             let all = encodings.into_iter().chain([WavEncoding::Float32, WavEncoding::Float64]);
             let encoding = all.into_iter().find(|each| format!("{each:?}") == encoding);
             let encoding =
-                encoding.ok_or_else(|| Error::invalid_param("no such encoding; give e.g. Pcm16"))?;
+                encoding.ok_or_else(|| Error::invalid_param("unknown encoding; use e.g. Pcm16"))?;
             let audio = open_wav(from)?;
             fs::write(format!("{to}.npy"), npy_from_f32(audio.array().as_slice(), &audio.array().shape())?)?;
             Ok(fs::write(to, wav_from_audio(&audio, encoding)?)?)
@@ -77,7 +77,7 @@ fn main() -> Result<()> {
     }
 }
 
-/// A line for each sample, and `OUT/SAMPLE_DATUM.npy` for each datum that is an array.
+/// Prints a line for each sample, and writes `OUT/SAMPLE_DATUM.npy` for each datum that is an array.
 fn arrays(dataset: &dyn DatasetIterator, out: &Path, limit: usize) -> Result<()> {
     fs::create_dir_all(out)?;
     let classes: Vec<_> = dataset.classes().iter().map(str::to_owned).collect();

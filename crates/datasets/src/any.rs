@@ -1,37 +1,26 @@
-//! Formats without their types: what surfaces hold.
+//! Entries of the format registry.
 
 use std::path::Path;
 
 use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::{Progress, Result, ValueType};
 
-use crate::{Format, OpenOptions, Problems, WriteOptions};
-
-/// Whether a path is a data set of some format.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Recognition {
-    /// By files that no other format has.
-    Certain,
-    /// By files that other formats may have, too.
-    Possible,
-    /// It is not; what is missing.
-    No(String),
-}
+use crate::{Format, OpenOptions, Problems, Recognition, WriteOptions};
 
 type Open = fn(&Path, &OpenOptions, &Problems) -> Result<Box<dyn DatasetIterator>>;
 type Write = fn(&dyn DatasetIterator, &Path, &WriteOptions, &Problems, &dyn Progress) -> Result<()>;
 
-/// One format: its tables and functions.
+/// A format of the registry: its descriptions and functions.
 pub struct FormatEntry {
-    /// As users write it.
+    /// Name of the format on the command line.
     pub name: &'static str,
     /// Other names.
     pub aliases: &'static [&'static str],
-    /// In one line.
+    /// Description in one line.
     pub about: &'static str,
-    /// Which files lie where.
+    /// Files and folders of the format.
     pub layout: &'static str,
-    /// What its annotations can be read as.
+    /// Types as which its annotations can be read.
     pub targets: &'static [ValueType],
     /// As [`Format::recognise`].
     pub recognise: fn(&Path) -> Recognition,
@@ -42,7 +31,7 @@ pub struct FormatEntry {
 }
 
 impl FormatEntry {
-    /// The entry of a format.
+    /// Returns the entry of a format.
     pub(crate) const fn of<F: Format>() -> Self {
         Self {
             name: F::NAME,

@@ -1,4 +1,4 @@
-//! CamVid: road scenes with masks of classes, in colours or as numbers.
+//! CamVid: road scenes with semantic masks, as colours or class indices.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -16,14 +16,14 @@ use crate::{Format, OpenOptions, Problem, Problems, Recognition, WriteOptions};
 
 const SPLITS: [&str; 3] = ["val", "test", "train"];
 
-/// Folders of pictures and of masks without parts.
+/// Folders of images and masks of a data set without parts.
 const WHOLE: [[&str; 2]; 3] = [
     ["images", "labels"],
     ["701_StillsRaw_full", "LabeledApproved_full"],
     ["701_StillsRaw_full", "701_StillsLabeled"],
 ];
 
-/// The classes of masks of numbers (SegNet's selection); 11 does not count.
+/// Classes of masks with class indices (SegNet's selection); 11 is ignored.
 const NUMBERED: [&str; 11] = [
     "Sky",
     "Building",
@@ -38,7 +38,7 @@ const NUMBERED: [&str; 11] = [
     "Bicyclist",
 ];
 
-/// CamVid's own colours (`label_colors.txt`); `Void` does not count.
+/// Colours of CamVid (`label_colors.txt`); `Void` is ignored.
 const COLOURS: &str = "64 128 64 Animal\n192 0 128 Archway\n0 128 192 Bicyclist\n0 128 64 Bridge\n128 0 0 Building\n\
     64 0 128 Car\n64 0 192 CartLuggagePram\n192 128 64 Child\n192 192 128 Column_Pole\n64 64 128 Fence\n\
     128 0 192 LaneMkgsDriv\n192 0 64 LaneMkgsNonDriv\n128 128 64 Misc_Text\n192 0 192 MotorcycleScooter\n\
@@ -50,19 +50,19 @@ const COLOURS: &str = "64 128 64 Animal\n192 0 128 Archway\n0 128 192 Bicyclist\
 /// The class of each colour.
 type ColourTable = HashMap<[u8; 3], u32>;
 
-/// A CamVid data set: masks of classes, 255 where nothing counts.
+/// A CamVid data set: semantic masks, 255 for ignored pixels.
 #[derive(Debug)]
 pub struct CamVid {
     pictures: PathBuf,
     masks: PathBuf,
-    /// Names of pictures and masks.
+    /// Names of images and masks.
     samples: Vec<(String, String)>,
     classes: Classes,
-    /// `None` for masks of numbers.
+    /// Classes by colour; `None` for masks with class indices.
     colours: Option<ColourTable>,
 }
 
-/// Reads `red green blue name` and `name,red,green,blue`; the class of each colour, and the names.
+/// Reads lines `red green blue name` or `name,red,green,blue` into classes by colour, and their names.
 fn colour_table(file: &Path, text: &str, problems: &Problems) -> Result<(ColourTable, Vec<String>)> {
     let (mut table, mut names) = (HashMap::new(), Vec::new());
     for (number, line) in lines(text) {
@@ -82,17 +82,19 @@ fn colour_table(file: &Path, text: &str, problems: &Problems) -> Result<(ColourT
                 table.insert(colour, names.len() as u32);
                 names.push(name.to_owned());
             }
-            // The head of a table.
+            // The header of a table.
             _ if number == 1 && line.contains("name") => {}
-            _ => {
-                problems.report(Problem::at_line(file, number, "no name and red, green, blue of 0 to 255"))?
-            }
+            _ => problems.report(Problem::at_line(
+                file,
+                number,
+                "the line is not a name and red, green, blue of 0 to 255",
+            ))?,
         }
     }
     Ok((table, names))
 }
 
-/// The folders of pictures and masks of a part.
+/// Returns the folders of images and masks of a part.
 fn folders(path: &Path, split: Option<&str>) -> Option<[PathBuf; 2]> {
     let parts = split.map_or_else(|| SPLITS.to_vec(), |split| vec![split]);
     let of_part = parts.iter().flat_map(|part| {
@@ -120,7 +122,7 @@ impl CamVid {
                 let image = opendr_vision::open(&path)?;
                 let rgb = image.hwc_u8(PixelFormat::Rgb);
                 let pixels = rgb.as_chunks().0;
-                let wrong = |colour: &[u8; 3]| Error::format(format!("the colour {colour:?} is of no class"));
+                let wrong = |colour: &[u8; 3]| Error::format(format!("no class has the colour {colour:?}"));
                 let class = |colour| table.get(colour).copied().ok_or_else(|| wrong(colour));
                 let size = [image.width() as u32, image.height() as u32];
                 Ok(LabelMap { size, labels: pixels.iter().map(class).collect::<Result<_>>()? })
@@ -164,8 +166,9 @@ impl DatasetIterator for CamVid {
 
 impl Format for CamVid {
     const NAME: &'static str = "camvid";
-    const ABOUT: &'static str = "CamVid: masks of road scenes, by numbers (11 classes) or colours (31)";
-    const LAYOUT: &'static str = "val/*.png and valannot/*.png (numbers), val_labels/*_L.png (colours, class_dict.csv), \
+    const ABOUT: &'static str =
+        "CamVid: semantic masks of road scenes, as class indices (11 classes) or colours (31)";
+    const LAYOUT: &'static str = "val/*.png and valannot/*.png (class indices), val_labels/*_L.png (colours, class_dict.csv), \
                                   or 701_StillsRaw_full and LabeledApproved_full";
     const TARGETS: &'static [ValueType] = &[ValueType::Heatmap];
 
@@ -217,7 +220,7 @@ impl Format for CamVid {
         Ok(Self { pictures, masks, samples, classes: names.into(), colours })
     }
 
-    /// Masks are written as numbers, and the names of the classes to `codes.txt`.
+    /// Writes masks with class indices, and the names of the classes to `codes.txt`.
     fn write(
         dataset: &dyn DatasetIterator,
         path: &Path,
@@ -290,9 +293,14 @@ mod tests {
         assert_eq!((labels(&dataset).to_string(), dataset.classes().len()), ("[[  0 255  30]]".into(), 31));
         folder.write("class_dict.csv", "name,r,g,b\nAnimal,64,128,64\nVoid,0,0,0\n");
         let error = open(folder.path()).unwrap().get(0).unwrap_err().to_string();
-        assert!(error.contains("a_L.png: the colour [64, 192, 0] is of no class"), "{error}");
+        assert!(error.contains("a_L.png: no class has the colour [64, 192, 0]"), "{error}");
         folder.write("class_dict.csv", "name,r,g,b\nAnimal,64,128,640\n");
-        assert!(open(folder.path()).unwrap_err().to_string().contains("class_dict.csv:2: no name and red"));
+        assert!(
+            open(folder.path())
+                .unwrap_err()
+                .to_string()
+                .contains("class_dict.csv:2: the line is not a name and red")
+        );
     }
 
     proptest! {

@@ -1,4 +1,4 @@
-//! Everything of a data set, read once: what is broken, whatever the format.
+//! Checks of a data set of any format: every sample is read once.
 
 use opendr_engine::dataset::{DatasetIterator, Sample};
 use opendr_engine::target::{BoundingBox, Name, PoseList};
@@ -7,11 +7,12 @@ use opendr_engine::{Progress, Result, Unit, Value, map_in_order};
 use crate::problems::file_of;
 use crate::{Problem, Problems};
 
-/// Pixels by which an annotation may leave its picture: those of COCO itself do by fractions.
+/// Tolerated distance of an annotation beyond its image, in pixels: annotations of COCO itself exceed it by
+/// fractions.
 const MARGIN: f32 = 1.0;
 
-/// Reads every sample on `threads` threads, data included, and tells of those that cannot be read and of annotations
-/// that cannot be right: not finite, outside the picture, of a class that there is none of.
+/// Reads every sample on `threads` threads, with its data, and reports samples that cannot be read and invalid
+/// annotations: not finite, outside of the image, of an unknown class.
 ///
 /// # Errors
 /// The first problem, unless `problems` skips them.
@@ -26,60 +27,60 @@ pub fn check(
     let indices = (0..dataset.len()).take_while(|_| !progress.stopped());
     let mut workers = vec![(); threads.max(1)];
     let read = |(): &mut (), at: usize| {
-        let wrong = match dataset.get(at) {
-            Ok(sample) => wrong_with(&sample, classes),
+        let faults = match dataset.get(at) {
+            Ok(sample) => faults_of(&sample, classes),
             Err(error) => return vec![Problem::of(&error, dataset, at)],
         };
         let problem = |(key, message)| Problem::at_key(file_of(dataset, at), key, message);
-        wrong.into_iter().map(problem).collect()
+        faults.into_iter().map(problem).collect()
     };
-    let done = map_in_order(&mut workers, indices, read, |wrong: Vec<Problem>| {
+    let done = map_in_order(&mut workers, indices, read, |problems_of_sample: Vec<Problem>| {
         progress.advance(1);
-        wrong.into_iter().try_for_each(|problem| problems.report(problem))
+        problems_of_sample.into_iter().try_for_each(|problem| problems.report(problem))
     });
     progress.end();
     done
 }
 
-type Wrong = Vec<(String, String)>;
+type Faults = Vec<(String, String)>;
 
-fn wrong_with(sample: &Sample, classes: usize) -> Wrong {
-    let mut wrong = Wrong::new();
+fn faults_of(sample: &Sample, classes: usize) -> Faults {
+    let mut faults = Faults::new();
     let size = sample.data.iter().find_map(|datum| match datum {
         Value::Image(image) => Some([image.width() as f32, image.height() as f32]),
         _ => None,
     });
-    let mut tell = |key: String, message: Option<String>| {
+    let mut report = |key: String, message: Option<String>| {
         if let Some(message) = message {
-            wrong.push((key, message));
+            faults.push((key, message));
         }
     };
     match &sample.target {
         Some(Value::BoundingBoxList(list)) => {
             for (at, found) in list.boxes.iter().enumerate() {
-                tell(format!("box {at}"), wrong_box(found, size, classes));
+                report(format!("box {at}"), wrong_box(found, size, classes));
             }
         }
         Some(Value::TrackingAnnotationList(list)) => {
             for (at, track) in list.annotations.iter().enumerate() {
-                // Who walks out of the picture is followed whole.
-                tell(format!("track {at}"), wrong_box(&track.bounding_box, None, classes));
+                // A person who leaves the image is tracked whole.
+                report(format!("track {at}"), wrong_box(&track.bounding_box, None, classes));
             }
         }
-        Some(Value::PoseList(list)) => wrong_poses(list, size, &mut tell),
+        Some(Value::PoseList(list)) => wrong_poses(list, size, &mut report),
         Some(Value::Category(category)) => {
-            tell("class".to_owned(), wrong_class(category.class, classes));
+            report("class".to_owned(), wrong_class(category.class, classes));
         }
         Some(Value::BoundingBox3DList(list)) => {
             for (at, found) in list.boxes.iter().enumerate() {
                 let numbers = found.dimensions.iter().chain(&found.location).chain([&found.rotation_y]);
                 let finite = numbers.copied().all(f32::is_finite);
-                tell(format!("box {at}"), (!finite).then(|| "a number is NaN or infinite".to_owned()));
+                report(format!("box {at}"), (!finite).then(|| "a number is NaN or infinite".to_owned()));
             }
         }
         _ => {}
     }
-    wrong
+    faults
 }
 
 fn wrong_box(found: &BoundingBox, size: Option<[f32; 2]>, classes: usize) -> Option<String> {
@@ -95,7 +96,7 @@ fn wrong_box(found: &BoundingBox, size: Option<[f32; 2]>, classes: usize) -> Opt
     if let Some([across, down]) = size
         && (x0 < -MARGIN || y0 < -MARGIN || x1 > across + MARGIN || y1 > down + MARGIN)
     {
-        return Some(format!("the box leaves its {across}x{down} picture ({text})"));
+        return Some(format!("the box exceeds its {across}x{down} image ({text})"));
     }
     match &found.name {
         Name::Index(index) => wrong_class(*index, classes),
@@ -105,16 +106,16 @@ fn wrong_box(found: &BoundingBox, size: Option<[f32; 2]>, classes: usize) -> Opt
 
 fn wrong_class(class: i64, classes: usize) -> Option<String> {
     let known = classes == 0 || usize::try_from(class).is_ok_and(|class| class < classes);
-    (!known).then(|| format!("class {class} of 0 to {}", classes - 1))
+    (!known).then(|| format!("class {class} is not within 0 to {}", classes - 1))
 }
 
-fn wrong_poses(list: &PoseList, size: Option<[f32; 2]>, tell: &mut impl FnMut(String, Option<String>)) {
+fn wrong_poses(list: &PoseList, size: Option<[f32; 2]>, report: &mut impl FnMut(String, Option<String>)) {
     for (at, pose) in list.poses.iter().enumerate() {
-        for (joint, point) in pose.keypoints.iter().enumerate().filter(|(_, point)| point.is_found()) {
+        for (joint, point) in pose.keypoints.iter().enumerate().filter(|(_, point)| point.is_detected()) {
             let outside = size.filter(|[across, down]| point.x > across + MARGIN || point.y > down + MARGIN);
-            tell(
+            report(
                 format!("person {at} joint {joint}"),
-                outside.map(|[across, down]| format!("{point} leaves the {across}x{down} picture")),
+                outside.map(|[across, down]| format!("{point} exceeds the {across}x{down} image")),
             );
         }
     }

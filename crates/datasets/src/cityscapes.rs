@@ -1,4 +1,4 @@
-//! Cityscapes: street scenes and masks of classes, a folder for each city.
+//! Cityscapes: street scenes with semantic masks, a folder for each city.
 
 use std::path::{Path, PathBuf};
 
@@ -13,7 +13,7 @@ use crate::{Format, OpenOptions, Problem, Problems, Recognition, WriteOptions};
 
 const SPLITS: [&str; 3] = ["val", "test", "train"];
 
-/// The classes that are evaluated, by their label ids (`labelIds`); their positions are the `labelTrainIds`.
+/// The evaluated classes by their label ids (`labelIds`); their positions are the `labelTrainIds`.
 const CLASSES: [(i64, &str); 19] = [
     (7, "road"),
     (8, "sidewalk"),
@@ -36,10 +36,10 @@ const CLASSES: [(i64, &str); 19] = [
     (33, "bicycle"),
 ];
 
-/// The highest label id.
+/// Highest label id.
 const LAST_LABEL: u32 = 33;
 
-/// A Cityscapes data set: masks of the 19 classes that are evaluated, 255 elsewhere.
+/// A Cityscapes data set: masks of the 19 evaluated classes, 255 for other pixels.
 #[derive(Debug)]
 pub struct Cityscapes {
     root: PathBuf,
@@ -48,7 +48,8 @@ pub struct Cityscapes {
     samples: Vec<(String, String)>,
 }
 
-/// The class of a label id: what is not evaluated is 255, as is the licence plate, whose id is -1.
+/// Returns the class of a label id; 255 for classes that are not evaluated, such as the licence plate, whose id is
+/// -1.
 fn class_from_label(label: u32) -> Option<u32> {
     let class = CLASSES.iter().position(|(id, _)| *id == i64::from(label));
     class.map(|class| class as u32).or((label <= LAST_LABEL || label == IGNORED).then_some(IGNORED))
@@ -117,7 +118,7 @@ impl DatasetIterator for Cityscapes {
 
 impl Format for Cityscapes {
     const NAME: &'static str = "cityscapes";
-    const ABOUT: &'static str = "Cityscapes: masks of street scenes, 19 classes";
+    const ABOUT: &'static str = "Cityscapes: semantic masks of street scenes, 19 classes";
     const LAYOUT: &'static str =
         "leftImg8bit/val/CITY/*_leftImg8bit.png, gtFine/val/CITY/*_gtFine_labelIds.png";
     const TARGETS: &'static [ValueType] = &[ValueType::Heatmap];
@@ -136,7 +137,7 @@ impl Format for Cityscapes {
         let split = options.split.as_deref().or(usual).unwrap_or("val");
         if !there.iter().any(|name| name == split) {
             let (path, there) = (pictures.display(), there.join(", "));
-            return Err(Error::not_found(format!("no part {split:?} in {path}; there are: {there}")));
+            return Err(Error::not_found(format!("no part {split:?} in {path}; the parts are: {there}")));
         }
         let mut dataset = Self { root: path.to_owned(), split: split.to_owned(), samples: Vec::new() };
         for city in folders_in(&pictures.join(split)) {
@@ -146,7 +147,7 @@ impl Format for Cityscapes {
                     Some(name) => dataset.samples.push((city.clone(), name.to_owned())),
                     None => problems.report(Problem::new(
                         folder.join(file),
-                        "no name of Cityscapes (*_leftImg8bit.png)",
+                        "the file name is not of the form *_leftImg8bit.png",
                     ))?,
                 }
             }
@@ -154,7 +155,7 @@ impl Format for Cityscapes {
         Ok(dataset)
     }
 
-    /// Classes are written as their label ids where the data set's classes are Cityscapes' own, else as they are, for
+    /// Writes label ids if the classes of the data set are those of Cityscapes, otherwise the class indices for
     /// training (`labelTrainIds`).
     fn write(
         dataset: &dyn DatasetIterator,
@@ -180,7 +181,7 @@ impl Format for Cityscapes {
             let mask =
                 path_inside(&masks, &format!("{stem}_gtFine_{kind}.png")).map_err(Error::invalid_input)?;
             save_labels(&map.of_size(placed.size)?, &mask, false)?;
-            // Cityscapes names only PNG files.
+            // Cityscapes uses PNG files only.
             let to = folder.join(format!("{stem}_leftImg8bit.png"));
             if placed.name.ends_with(".png") {
                 return Ok(std::fs::rename(folder.join(&placed.name), to)?);
@@ -225,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn broken_masks_are_told() {
+    fn broken_masks_are_reported() {
         let folder = small();
         let mask = folder.path().join("gtFine/val/ulm/ulm_0_gtFine_labelIds.png");
         save_labels(&LabelMap { size: [3, 2], labels: vec![0, 0, 0, 0, 77, 0] }, &mask, false).unwrap();

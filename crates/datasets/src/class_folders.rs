@@ -1,4 +1,4 @@
-//! Samples that lie in a folder for each class.
+//! Samples in a folder for each class.
 
 use std::path::{Path, PathBuf};
 
@@ -7,21 +7,21 @@ use opendr_engine::{Result, Value};
 
 use crate::folder::{folders_in, past_end};
 
-/// Names of parts, the first that is there is taken.
+/// Names of parts; the first existing one is used.
 pub(crate) const SPLITS: [&str; 4] = ["val", "validation", "test", "train"];
 
-/// Samples with the number of their class.
+/// Samples with their class index.
 #[derive(Debug)]
 pub(crate) struct ClassFolders {
     pub root: PathBuf,
     pub classes: Classes,
-    /// Class and path within the root.
+    /// Class index and path within the root.
     pub samples: Vec<(u32, String)>,
 }
 
 impl ClassFolders {
-    /// Classes are the folders in `root` in which there is something, in the order of their names; `things_in` tells what, and
-    /// `meaning` what a folder's name stands for.
+    /// Lists the folders in `root` as classes, in the order of their names. `things_in` returns the files of a
+    /// folder, and folders without any are skipped; `meaning` returns the class name of a folder.
     pub fn new(
         root: PathBuf,
         things_in: impl Fn(&Path) -> Vec<String>,
@@ -39,7 +39,7 @@ impl ClassFolders {
         Self { root, classes: names.into(), samples }
     }
 
-    /// Where a sample lies.
+    /// Returns the path of a sample.
     ///
     /// # Errors
     /// `NotFound` past the end.
@@ -47,7 +47,7 @@ impl ClassFolders {
         Ok(self.root.join(&self.sample(index)?.1))
     }
 
-    /// The class of a sample.
+    /// Returns the class of a sample.
     ///
     /// # Errors
     /// `NotFound` past the end.
@@ -57,7 +57,7 @@ impl ClassFolders {
         Ok(Some(Category { description, ..Category::new(class, None) }.into()))
     }
 
-    /// The path of a sample within the root, or its number past the end.
+    /// Returns the path of a sample within the root, or its index past the end.
     pub fn name(&self, index: usize) -> String {
         self.sample(index).map_or_else(|_| index.to_string(), |(_, name)| name.clone())
     }

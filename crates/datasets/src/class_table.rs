@@ -1,4 +1,4 @@
-//! Classes of a data set that is written, as they come up.
+//! Classes of a data set that is written, collected from its targets.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -9,41 +9,41 @@ use opendr_engine::{Error, Result, Value};
 
 use crate::folder::path_inside;
 
-/// More classes than any data set has: a number above is a mistake.
-const MOST: usize = 1 << 16;
+/// Largest number of classes; a larger class index is an error in the data.
+const MAX_CLASSES: usize = 1 << 16;
 
-/// The names of classes by number; labels that no class is called are given the next number.
+/// Class names by index; unknown labels get the next index.
 #[derive(Debug, Default)]
 pub(crate) struct ClassTable {
     names: Vec<String>,
     numbers: HashMap<String, usize>,
-    /// Whether the data set names its classes, so that other numbers are mistakes.
+    /// Whether the data set names its classes, so that other indices are errors.
     named: bool,
 }
 
 impl ClassTable {
-    /// Begins with the classes that a data set names.
+    /// Starts with the classes of a data set.
     pub fn new(classes: &Classes) -> Self {
         let mut table = Self { named: !classes.is_empty(), ..Self::default() };
         classes.iter().for_each(|name| table.push(name));
         table
     }
 
-    /// The number of a class; `own` are the names that its target gives, which count where the data set gives none.
+    /// Returns the index of a class; `own` are the class names of its target, used if the data set has none.
     ///
     /// # Errors
-    /// `InvalidInput` for a number that is no class.
+    /// `InvalidInput` for an index that is not a class.
     pub fn number(&mut self, name: &Name, own: &Classes) -> Result<usize> {
         match (name, own.label(name)) {
             (Name::Label(_), Some(label)) => Ok(self.labelled(label)),
             (Name::Index(_), Some(label)) if !self.named => Ok(self.labelled(label)),
             (Name::Label(label), None) => Ok(self.labelled(label)),
             (Name::Index(index), _) => {
-                let most = if self.named { self.names.len() } else { MOST };
+                let most = if self.named { self.names.len() } else { MAX_CLASSES };
                 let number = usize::try_from(*index).ok().filter(|number| *number < most);
                 let number = number.ok_or_else(|| {
                     Error::invalid_input(format!(
-                        "class {index} is none of the {most} classes, numbered from 0"
+                        "class {index} is not one of the {most} classes, numbered from 0"
                     ))
                 })?;
                 while self.names.len() <= number {
@@ -54,10 +54,11 @@ impl ClassTable {
         }
     }
 
-    /// The number of the class of sample `index`, and the folder in `root` that is called like it.
+    /// Returns the class index of sample `index`, and the folder of its class in `root`.
     ///
     /// # Errors
-    /// `InvalidInput` when its target is no category, or no folder can have the name; whatever its target cannot be had for.
+    /// `InvalidInput` if its target is not a category or the name is not valid for a folder; errors of reading the
+    /// target.
     pub fn folder(
         &mut self,
         dataset: &dyn DatasetIterator,
@@ -65,7 +66,7 @@ impl ClassTable {
         root: &Path,
     ) -> Result<(usize, PathBuf)> {
         let Some(Value::Category(category)) = dataset.target(index)? else {
-            return Err(Error::invalid_input("class folders hold categories, no other targets"));
+            return Err(Error::invalid_input("class folders support categories only, no other targets"));
         };
         let own = match &category.description {
             Some(description) if dataset.classes().is_empty() => description.as_ref().into(),
@@ -76,7 +77,7 @@ impl ClassTable {
         Ok((class, path_inside(root, &folder).map_err(Error::invalid_input)?))
     }
 
-    /// The names in the order of their numbers.
+    /// Returns the names in the order of their indices.
     pub fn names(&self) -> &[String] {
         &self.names
     }
@@ -100,7 +101,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn labels_are_added_and_wrong_numbers_refused() {
+    fn labels_are_added_and_wrong_indices_are_errors() {
         let classes: Classes = ["cat", "dog"].into_iter().collect();
         let mut table = ClassTable::new(&classes);
         let number = |table: &mut ClassTable, name: Name| table.number(&name, &Classes::default());

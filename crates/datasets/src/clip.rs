@@ -1,4 +1,4 @@
-//! Clips for learners that look at many pictures at once: from a video file, a folder of pictures, or numbers.
+//! Clips for learners of image sequences, from a video file, a folder of images or an array.
 
 use std::path::Path;
 
@@ -9,29 +9,32 @@ use opendr_vision::{Source, SourceOptions, resize};
 use crate::array_from_npy;
 use crate::folder::{has_extension, read_bytes};
 
-/// Extensions of clips in one file.
+/// File extensions of clips.
 pub(crate) const CLIPS: &[&str] =
     &["npy", "mp4", "m4v", "mov", "mkv", "webm", "avi", "mpg", "mpeg", "ts", "flv", "wmv", "ogv", "gif"];
 
-/// Pixels of the longer side: larger frames are made smaller. Networks of clips take far fewer.
+/// Longer side of frames in pixels; larger frames are resized. Networks for clips use far smaller inputs.
 const MAX_SIDE: usize = 640;
-/// Bytes that the levels of a clip may take; of longer ones every second frame is kept, or every fourth, and so on.
+/// Largest size of a clip in bytes; of longer clips every second frame is kept, or every fourth, and so on.
 const MAX_BYTES: usize = 256 << 20;
 
-/// Reads the clip at `path`: a `.npy` of `[channels, frames, height, width]`, a video file, or a folder with its frames as
-/// pictures, in the order of their names. Levels of videos and pictures are within 0 and 1. Frames of more than 640 pixels
-/// a side are made smaller, and a clip that would take over 256 MB is thinned evenly.
+/// Reads the clip at `path`: a `.npy` of `[channels, frames, height, width]`, a video file, or a folder of images
+/// as frames, in the order of their names. Levels of videos and images are within 0 and 1. Frames of more than 640
+/// pixels a side are resized, and a clip of more than 256 MB is subsampled evenly.
 ///
 /// # Errors
-/// `NotFound`, `Io`, `Unsupported` when it cannot be read, `Format` when it is no clip or its frames differ in size; all
-/// name the path.
+/// `NotFound`, `Io` or `Unsupported` if it cannot be read, `Format` if it is not a clip or its frames differ in
+/// size; all with the path.
 pub(crate) fn open_clip(path: &Path) -> Result<Video> {
     let opening = || format!("opening {}", path.display());
     if has_extension(&path.to_string_lossy(), &["npy"]) {
         let (shape, numbers) = array_from_npy(&read_bytes(path, 2 * MAX_BYTES as u64)?).context(opening)?;
         let shape = <[usize; 4]>::try_from(&shape[..]).map_err(|_| {
-            Error::format(format!("{} axes; a clip has channels, frames, height and width", shape.len()))
-                .context(opening())
+            Error::format(format!(
+                "the array has {} axes; a clip needs channels, frames, height and width",
+                shape.len()
+            ))
+            .context(opening())
         })?;
         let numbers: Vec<_> = numbers.into_iter().map(|number| number as f32).collect();
         return Video::new(numbers, shape).context(opening);
@@ -41,10 +44,10 @@ pub(crate) fn open_clip(path: &Path) -> Result<Video> {
         .context(opening)
 }
 
-/// The clip of all frames, evenly thinned where they would take more than `limit` bytes.
+/// Collects all frames, subsampled evenly if they would take more than `limit` bytes.
 fn thinned(pictures: impl Iterator<Item = Result<Image>>, limit: usize) -> Result<Video> {
     let (mut frames, mut size): (Vec<Vec<u8>>, _) = (Vec::new(), None);
-    // Only every so manyth frame is kept.
+    // Every `step`th frame is kept.
     let mut step = 1;
     for (number, picture) in pictures.enumerate() {
         let picture = picture?;
@@ -53,7 +56,7 @@ fn thinned(pictures: impl Iterator<Item = Result<Image>>, limit: usize) -> Resul
         if given != [width, height] {
             let [wide, high] = given;
             return Err(Error::format(format!(
-                "frame {number} is of {wide}x{high} pixels, the first is of {width}x{height}; give frames of one size"
+                "frame {number} is of {wide}x{high} pixels, the first is of {width}x{height}; all frames must have one size"
             )));
         }
         if number % step != 0 {
@@ -73,7 +76,7 @@ fn thinned(pictures: impl Iterator<Item = Result<Image>>, limit: usize) -> Resul
         }
         frames.push(pixels);
     }
-    let [width, height] = small(size.ok_or_else(|| Error::format("no frames"))?);
+    let [width, height] = small(size.ok_or_else(|| Error::format("the clip has no frames"))?);
     let levels = (0..3).flat_map(|channel| {
         let planes = frames.iter().map(move |frame| frame.iter().skip(channel).step_by(3));
         planes.flatten().map(|level| f32::from(*level) / 255.0)
@@ -83,21 +86,21 @@ fn thinned(pictures: impl Iterator<Item = Result<Image>>, limit: usize) -> Resul
     Video::new(numbers, [3, frames.len(), height, width])
 }
 
-/// One picture of a clip whose levels are within 0 and 1.
+/// Returns a frame of a clip with levels within 0 and 1, as an image.
 ///
 /// # Errors
-/// `Unsupported` when it has not three channels.
+/// `Unsupported` if it does not have three channels.
 pub(crate) fn frame_of(clip: &Video, number: usize) -> Result<Image> {
     let [channels, frames, height, width] = clip.shape();
     if channels != 3 {
-        return Err(Error::unsupported(format!("a clip of {channels} channels; pictures take three")));
+        return Err(Error::unsupported(format!("the clip has {channels} channels; images need three")));
     }
     let planes = clip.as_slice().chunks_exact(height * width).skip(number).step_by(frames);
     let levels = planes.flatten().map(|level| (level * 255.0).round() as u8).collect::<Vec<_>>();
     Image::new(levels, width, height, PixelFormat::Rgb, Layout::Chw)
 }
 
-/// The size that frames of a size are kept in.
+/// Returns the size to which frames are resized.
 fn small([width, height]: [usize; 2]) -> [usize; 2] {
     let longer = width.max(height);
     let shrunk = |side: usize| if longer > MAX_SIDE { (side * MAX_SIDE / longer).max(1) } else { side };
@@ -110,7 +113,7 @@ mod tests {
     use crate::folder::TemporaryFolder;
     use crate::npy_from_f32;
 
-    /// Frame number `at` has the level `at` all over.
+    /// Returns frames; frame `at` has the constant level `at`.
     fn frames(count: usize, width: usize, height: usize) -> impl Iterator<Item = Result<Image>> {
         (0..count).map(move |at| {
             let data = vec![at as u8; width * height];
@@ -118,7 +121,7 @@ mod tests {
         })
     }
 
-    /// The level of each frame of a clip.
+    /// Returns the level of each frame of a clip.
     fn levels(clip: &Video) -> Vec<u8> {
         let [_, frames, height, width] = clip.shape();
         let of_frame = clip.as_slice().chunks(height * width).take(frames);
@@ -126,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn long_clips_are_thinned_evenly() {
+    fn long_clips_are_subsampled_evenly() {
         let clip = |count| thinned(frames(count, 4, 2), 10 * 3 * 8 * 4).unwrap();
         assert_eq!(levels(&clip(10)), [0, 1, 2, 3, 4, 5, 6, 7, 8, 9]);
         assert_eq!(levels(&clip(11)), [0, 2, 4, 6, 8, 10]);
@@ -136,15 +139,15 @@ mod tests {
     }
 
     #[test]
-    fn large_frames_are_made_smaller() {
+    fn large_frames_are_resized() {
         let clip = thinned(frames(2, 1280, 300), MAX_BYTES).unwrap();
         assert_eq!((clip.shape(), levels(&clip)), ([3, 2, 150, 640], vec![0, 1]));
-        // However large a frame is, two are kept.
+        // Two frames are kept for any frame size.
         assert_eq!(thinned(frames(9, 4, 2), 1).unwrap().shape()[1], 2);
     }
 
     #[test]
-    fn what_is_no_clip_is_refused() {
+    fn what_is_no_clip_is_an_error() {
         let other = Image::new(vec![0u8; 6], 3, 2, PixelFormat::Grey, Layout::Hwc);
         let error = thinned(frames(2, 4, 2).chain([other]), MAX_BYTES).unwrap_err().to_string();
         assert!(error.contains("frame 2 is of 3x2"), "{error}");

@@ -1,4 +1,4 @@
-//! What a data set looks like: pictures with their annotations.
+//! Contact sheets: images of a data set with their annotations.
 
 use opendr_engine::data::Image;
 use opendr_engine::dataset::{DatasetIterator, Sample};
@@ -10,20 +10,19 @@ use crate::curve::curve;
 use crate::from_above::from_above;
 use crate::{Problem, Problems};
 
-/// Side of a picture, pixels.
+/// Side of an image on the sheet, in pixels.
 const SIDE: usize = 300;
 
-/// Every sample of a data set that can be looked at, drawn with its annotation and named; some six in a row.
+/// Draws the samples of a data set with their annotations and names on one image, up to six in a row.
 ///
 /// # Errors
-/// `Unsupported` when no sample has a picture; the first sample that cannot be read, unless `problems` skips them.
+/// `Unsupported` if no sample can be drawn; the error of the first sample that cannot be read, unless `problems`
+/// skips it.
 pub fn contact_sheet(dataset: &dyn DatasetIterator, problems: &Problems) -> Result<Image> {
     let mut pictures = Vec::new();
     for at in 0..dataset.len() {
         match dataset.get(at) {
-            Ok(sample) => {
-                pictures.extend(picture_with_target(&sample).map(|picture| (picture, dataset.name(at))))
-            }
+            Ok(sample) => pictures.extend(draw_sample(&sample).map(|picture| (picture, dataset.name(at)))),
             Err(error) => {
                 problems.report(Problem::of(&error, dataset, at))?;
             }
@@ -31,19 +30,19 @@ pub fn contact_sheet(dataset: &dyn DatasetIterator, problems: &Problems) -> Resu
     }
     if pictures.is_empty() {
         return Err(Error::unsupported(
-            "there is no picture to look at; \"opendr data stats\" tells what there is",
+            "no sample can be drawn; \"opendr data stats\" lists the types of the data set",
         ));
     }
     let columns = pictures.len().min(6);
     draw::contact_sheet(&pictures, columns, SIDE)
 }
 
-/// The first datum of a sample that can be looked at, with its target drawn onto it: a picture as it is, a clip as
-/// the frame in its middle, sound and time series as curves, a point cloud as seen from above; `None` where there is none of these.
-pub fn picture_with_target(sample: &Sample) -> Option<Image> {
+/// Draws the first datum of a sample that can be drawn, with the target: an image as it is, the middle frame of a
+/// clip, audio and time series as curves, a point cloud in bird's eye view; `None` without such a datum.
+pub fn draw_sample(sample: &Sample) -> Option<Image> {
     let mut picture = sample.data.iter().find_map(|datum| picture_of(datum, sample.target.as_ref()))?;
-    // Twice as thick: the picture is made smaller after.
-    let style = Style { confidences: false, scale: 2.0, ..Style::default() };
+    // Lines are twice as thick, since the image is scaled down afterwards.
+    let style = Style { show_confidences: false, scale: 2.0, ..Style::default() };
     for datum in &sample.data {
         if let Value::ImageWithDetections(both) = datum {
             draw(&mut picture, &both.boxes, &style);
@@ -97,14 +96,14 @@ mod tests {
     }
 
     #[test]
-    fn whatever_can_be_seen_is_on_the_sheet() {
+    fn all_types_that_can_be_drawn_are_on_the_sheet() {
         let sample = Mixed.get(0).unwrap();
-        let drawn = picture_with_target(&sample).unwrap();
+        let drawn = draw_sample(&sample).unwrap();
         assert!(drawn.chw_u8().iter().any(|level| *level > 100));
         let problems = Problems::skipping();
         let sheet = contact_sheet(&Mixed, &problems).unwrap();
         assert!(sheet.width() > 3 * SIDE && sheet.width() < 4 * SIDE && problems.count() == 1);
         assert!(contact_sheet(&Mixed, &Problems::strict()).is_err());
-        assert!(picture_with_target(&Sample { data: vec![], target: None }).is_none());
+        assert!(draw_sample(&Sample { data: vec![], target: None }).is_none());
     }
 }

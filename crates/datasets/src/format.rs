@@ -1,4 +1,4 @@
-//! What a format is.
+//! The trait of data set formats.
 
 use std::path::Path;
 
@@ -7,36 +7,38 @@ use opendr_engine::{Error, Progress, Result, ValueType};
 
 use crate::{Problems, Recognition};
 
-/// A data set format: how to recognise, read and write it.
+/// A data set format, which can be recognised, read and written.
 ///
-/// Opening reads what is needed to know the samples (indices, lists), never bulk data; those are read by
-/// [`DatasetIterator::get`], which fails for a broken sample alone.
+/// Opening reads indices and lists, never bulk data. Bulk data is read by [`DatasetIterator::get`], which fails
+/// only for broken samples.
 pub trait Format: DatasetIterator + Sized + 'static {
-    /// The name, as users write it, e.g. `"coco"`.
+    /// Name of the format on the command line, e.g. `"coco"`.
     const NAME: &'static str;
-    /// Other names that OpenDR or its peers use for it.
+    /// Other names of the format in OpenDR and other toolkits.
     const ALIASES: &'static [&'static str] = &[];
-    /// In one line.
+    /// Description in one line.
     const ABOUT: &'static str;
-    /// Which files lie where, for the help and for the error when they do not.
+    /// Files and folders of the format, for help texts and errors.
     const LAYOUT: &'static str;
-    /// The targets that its annotations can be read as, the usual one first.
+    /// Target types as which the annotations can be read, the default one first.
     const TARGETS: &'static [ValueType];
 
-    /// Whether `path` is such a data set, by names and the beginnings of files; what is missing when it is not.
+    /// Checks whether `path` is such a data set, by names and the first bytes of files; otherwise returns what is
+    /// missing.
     fn recognise(path: &Path) -> Recognition;
 
     /// Opens the data set.
     ///
     /// # Errors
-    /// `NotFound` when `path` is no such data set, with what is missing; `Format` for broken files, unless `problems`
-    /// skips them.
+    /// `NotFound` if `path` is not such a data set, with what is missing; `Format` for broken files, unless
+    /// `problems` skips them.
     fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self>;
 
     /// Writes any data set in this format.
     ///
     /// # Errors
-    /// `Unsupported` when there is no writer; `InvalidInput` for targets that the format cannot hold; `Io`.
+    /// `Unsupported` if the format has no writer, `InvalidInput` for targets that the format does not support, and
+    /// `Io`.
     fn write(
         _dataset: &dyn DatasetIterator,
         _path: &Path,
@@ -45,27 +47,27 @@ pub trait Format: DatasetIterator + Sized + 'static {
         _progress: &dyn Progress,
     ) -> Result<()> {
         Err(Error::unsupported(format!(
-            "there is no writer of {}; \"opendr data formats\" lists those",
+            "the format {} cannot be written; \"opendr data formats\" lists the formats that can",
             Self::NAME
         )))
     }
 }
 
-/// Which part of a data set is read.
+/// Options of reading a data set.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct OpenOptions {
-    /// The part, as the data set calls it: `"val2017"`, `"train"`, `"testing"`; by default the only one, or the one that
-    /// is there of val, test, train.
+    /// Name of the part in the data set: `"val2017"`, `"train"`, `"testing"`. By default the only one, or the first
+    /// existing one of val, test, train.
     pub split: Option<String>,
-    /// What targets are wanted, where annotations can be read as several; by default the first that is there.
+    /// Target type, for annotations that can be read as several; by default the first available one.
     pub target: Option<ValueType>,
 }
 
-/// How a data set is written.
+/// Options of writing a data set.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct WriteOptions {
-    /// What to call the part; by default `"train"`, or what the format calls it.
+    /// Name of the part; by default `"train"`, or the name that the format uses.
     pub split: Option<String>,
-    /// Hard links to files that are taken over as they are, instead of copies, where the file system can.
+    /// Whether unchanged files are hard-linked instead of copied, if the file system supports it.
     pub link: bool,
 }

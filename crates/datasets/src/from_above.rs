@@ -1,4 +1,4 @@
-//! Point clouds as seen from above, as a picture.
+//! Point clouds in bird's eye view, as an image.
 
 use opendr_engine::data::{Image, PointCloud};
 use opendr_engine::target::BoundingBox3D;
@@ -7,25 +7,25 @@ use opendr_vision::draw::{Canvas, Colour, colour_of_name};
 
 use crate::augment::cloud::{Frame, corners};
 
-/// Side of the picture, pixels.
+/// Side of the image in pixels.
 const SIDE: usize = 480;
-/// What half of it shows, metres.
+/// Distance from the centre to the edge of the image in metres.
 const REACH: f32 = 48.0;
-const GROUND: u8 = 24;
+const BACKGROUND: u8 = 24;
 const POINT: Colour = [150, 200, 230];
 
-/// The cloud that `datum` is or has, with the floors of the boxes of `target`: ahead is up, and the lidar in the middle;
-/// `None` where there is no cloud.
+/// Draws the cloud of `datum` with the outlines of the boxes of `target`. The lidar is in the centre and ahead is
+/// up; `None` without a cloud.
 ///
 /// # Errors
-/// `InvalidInput` for a calibration that cannot be inverted.
+/// `InvalidInput` for a calibration that is not invertible.
 pub(crate) fn from_above(datum: &Value, target: Option<&Value>) -> Result<Option<Image>> {
     let cloud = match datum {
         Value::PointCloud(cloud) => cloud,
         Value::PointCloudWithCalibration(both) => &both.cloud,
         _ => return Ok(None),
     };
-    let mut image = Image::from_rgb8(vec![GROUND; SIDE * SIDE * 3], SIDE, SIDE)?;
+    let mut image = Image::from_rgb8(vec![BACKGROUND; SIDE * SIDE * 3], SIDE, SIDE)?;
     let mut canvas = Canvas::over(&mut image);
     draw_points(&mut canvas, cloud);
     let frame = Frame::of(datum)?;
@@ -42,7 +42,7 @@ pub(crate) fn from_above(datum: &Value, target: Option<&Value>) -> Result<Option
     Ok(Some(image))
 }
 
-/// Where a place of the lidar's frame (x ahead, y left) is in the picture.
+/// Returns the pixel of a point of the lidar frame (x ahead, y left).
 fn pixel([x, y]: [f32; 2]) -> [f32; 2] {
     [y, x].map(|part| SIDE as f32 / 2.0 * (1.0 - part / REACH))
 }
@@ -83,7 +83,7 @@ mod tests {
         };
         let target = BoundingBox3DList::from(vec![found]).into();
         let image = from_above(&cloud.into(), Some(&target)).unwrap().unwrap();
-        let lit = |x: usize, y: usize| image.view().sample_u8(x, y, 1) > GROUND;
+        let lit = |x: usize, y: usize| image.view().sample_u8(x, y, 1) > BACKGROUND;
         assert!(lit(180, 120) && !lit(120, 180));
         // The box is behind and to the right: 15 to 25 metres each.
         assert!(lit(340, 315) && lit(315, 340) && lit(365, 340) && !lit(340, 340) && !lit(140, 140));

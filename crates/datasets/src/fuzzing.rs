@@ -1,21 +1,21 @@
-//! The text parsers of this crate, for the fuzzers: each may refuse what it is given, none may panic.
+//! Entry points for the fuzzers: parsers may return errors, but must not panic.
 
 use std::path::Path;
 
 use crate::voc::annotation::Annotation;
 use crate::yolo::{label, yaml};
 
-/// COCO's annotation files.
+/// Parses a COCO annotation file.
 pub fn coco_json(bytes: &[u8]) {
     crate::coco::index_bytes(bytes);
 }
 
-/// Pascal VOC's annotation file.
+/// Parses a Pascal VOC annotation file.
 pub fn voc_xml(text: &str) {
     let _ = Annotation::new(Path::new("a.xml"), text);
 }
 
-/// YOLO's label file and `data.yaml`.
+/// Parses a YOLO label file and `data.yaml`.
 pub fn yolo_text(text: &str) {
     let _ = yaml::Keys::new(Path::new("data.yaml"), text);
     for line in text.lines() {
@@ -29,28 +29,28 @@ pub fn yolo_text(text: &str) {
     }
 }
 
-/// WAVE files.
+/// Parses a WAVE file.
 pub fn wav(bytes: &[u8]) {
     if let Ok(audio) = crate::audio_from_wav(bytes) {
         assert!(audio.array().as_slice().iter().all(|sample| sample.is_finite()));
     }
 }
 
-/// NumPy's `.npy` files.
+/// Parses a NumPy `.npy` file.
 pub fn npy(bytes: &[u8]) {
     if let Ok((shape, numbers)) = crate::array_from_npy(bytes) {
         assert_eq!(shape.iter().product::<usize>(), numbers.len());
     }
 }
 
-/// Python's pickles.
+/// Parses a Python pickle.
 pub fn pickle(bytes: &[u8]) {
     if let Ok(pickle) = crate::pickle::Pickle::parse(bytes) {
         let _ = pickle.root().get("pose").and_then(|pose| pose.list()?.first()?.array());
     }
 }
 
-/// WFDB's header, up to the first zero byte, with its signals, and its annotations.
+/// Parses a WFDB header, up to the first zero byte, with its signals, and annotations.
 pub fn wfdb(bytes: &[u8]) {
     let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
     let (text, rest) = bytes.split_at(end);
@@ -60,19 +60,19 @@ pub fn wfdb(bytes: &[u8]) {
     }
 }
 
-/// Labels of MOT and KITTI, and KITTI's calibration.
+/// Parses labels of MOT and KITTI, and KITTI's calibration.
 pub fn track_text(text: &str) {
     crate::mot::parse_any(text);
     crate::kitti::parse_any(text);
     let _ = crate::calibration_from_kitti(text, Path::new("calib.txt"));
 }
 
-/// Series of the UCR and UEA archives.
+/// Parses series of the UCR and UEA archives.
 pub fn series_text(text: &str) {
     crate::ucr::parse_any(text);
 }
 
-/// NTU RGB+D's skeletons.
+/// Parses skeletons of NTU RGB+D.
 pub fn skeleton_text(text: &str) {
     let _ = crate::skeleton_from_ntu(text);
 }

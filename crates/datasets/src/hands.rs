@@ -1,4 +1,4 @@
-//! Gestures in colour and depth: the HANDS data set, and pairs of pictures in folders of classes.
+//! Gestures in colour and depth: the HANDS data set, and image pairs in folders of classes.
 //!
 //! Source: C. Nuzzi et al., HANDS: an RGB-D dataset of static hand-gestures for human-robot interaction, Data in Brief 2021.
 
@@ -15,25 +15,20 @@ use crate::{Format, OpenOptions, Problem, Problems, Recognition, WriteOptions};
 
 mod annotation;
 
-/// The first subjects are for training, the last for testing, as OpenDR divides them.
+use annotation::Gesture;
+
+/// Subjects of the test part, as in OpenDR; the others are for training.
 const TEST_SUBJECTS: [&str; 2] = ["Subject4", "Subject5"];
 const COLOURS: [&str; 2] = ["rgb", "color"];
 
-/// Gestures in colour and depth: a sample has a colour picture, a depth picture (16 bits) and the gesture.
+/// Gestures in colour and depth: a sample has a colour image, a depth image (16 bits) and the gesture as class.
 ///
-/// HANDS has a folder a subject; `train` is of subjects 1 to 3, `test` of 4 and 5; two gestures at once are a class of
-/// their own (`A_AND_B`). Otherwise `rgb/CLASS/` and `depth/CLASS/` have pictures of the same names.
+/// HANDS has a folder for each subject; `train` has subjects 1 to 3, `test` 4 and 5. Two gestures at once are a
+/// class of their own (`A_AND_B`). Otherwise `rgb/CLASS/` and `depth/CLASS/` have images of the same names.
 #[derive(Debug)]
 pub struct Hands {
     gestures: Vec<Gesture>,
     classes: Classes,
-}
-
-#[derive(Debug, Clone)]
-struct Gesture {
-    colour: PathBuf,
-    depth: PathBuf,
-    class: String,
 }
 
 impl Hands {
@@ -41,7 +36,7 @@ impl Hands {
         self.gestures.get(index).ok_or_else(|| past_end(index, self.gestures.len()))
     }
 
-    /// The file of the depth picture of sample `index`.
+    /// Returns the file of the depth image of sample `index`.
     pub fn depth_path(&self, index: usize) -> Option<&Path> {
         self.gestures.get(index).map(|gesture| gesture.depth.as_path())
     }
@@ -60,8 +55,11 @@ impl DatasetIterator for Hands {
         let depth = Decoder::default().open_depth(&gesture.depth)?;
         if (colour.width(), colour.height()) != (depth.width(), depth.height()) {
             let (width, height) = (colour.width(), colour.height());
-            let message =
-                format!("is of {}x{} pixels, its colours of {width}x{height}", depth.width(), depth.height());
+            let message = format!(
+                "has {}x{} pixels, its colour image has {width}x{height}",
+                depth.width(),
+                depth.height()
+            );
             return Err(Problem::new(&gesture.depth, message).into());
         }
         Ok(Sample { data: vec![Value::Image(colour), Value::Image(depth)], target: self.target(index)? })
@@ -92,7 +90,7 @@ impl Format for Hands {
     const ALIASES: &'static [&'static str] = &["rgbd", "rgbd_gestures"];
     const ABOUT: &'static str = "HANDS: gestures in colour and depth";
     const LAYOUT: &'static str = "SubjectN/ with SubjectN.txt, SubjectN/ and SubjectN_Depth/; or [PART/]rgb/CLASS/ and depth/CLASS/ with \
-                                  pictures of the same names";
+                                  images of the same names";
     const TARGETS: &'static [ValueType] = &[ValueType::Category];
 
     fn recognise(path: &Path) -> Recognition {
@@ -108,7 +106,7 @@ impl Format for Hands {
 
     fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         if let Some(other) = options.target.filter(|target| !Self::TARGETS.contains(target)) {
-            let message = format!("gestures have a Category, no {}", other.name());
+            let message = format!("gestures are read as Category, not as {}", other.name());
             return Err(Error::unsupported(message));
         }
         let split = options.split.as_deref();
@@ -120,13 +118,13 @@ impl Format for Hands {
         if gestures.is_empty() {
             let (path, layout) = (path.display(), Self::LAYOUT);
             return Err(Error::not_found(format!(
-                "no gesture of that part in {path}; it should have {layout}"
+                "no gesture of that part in {path}; the layout is {layout}"
             )));
         }
         Ok(Self { gestures, classes })
     }
 
-    /// As `rgb/CLASS/` and `depth/CLASS/`, in a folder of the part if one is named.
+    /// Writes `rgb/CLASS/` and `depth/CLASS/`, in a folder of the part if one is named.
     fn write(
         dataset: &dyn DatasetIterator,
         path: &Path,
@@ -143,7 +141,7 @@ impl Format for Hands {
                 (sample.data.first(), sample.data.get(1), &sample.target)
             else {
                 return Err(Error::invalid_input(
-                    "no colour, depth and class; this format holds two Image and a Category",
+                    "the sample needs a colour image, a depth image and a Category",
                 ));
             };
             let named = category.description.clone().or_else(|| classes.name(category.class).cloned());
@@ -158,7 +156,7 @@ impl Format for Hands {
     }
 }
 
-/// Folders that have the label file of a subject.
+/// Returns the folders with the label file of a subject.
 fn subjects(path: &Path) -> Vec<String> {
     let mut names = folders_in(path);
     names.retain(|name| path.join(name).join(format!("{name}.txt")).is_file());
@@ -175,15 +173,15 @@ fn of_subjects(
     let (mut gestures, mut names) = (Vec::new(), Vec::new());
     for subject in subjects {
         let is_test = TEST_SUBJECTS.contains(&subject.as_str());
-        let wanted = match split {
+        let is_selected = match split {
             None => true,
             Some("train") => !is_test,
             Some("test" | "val") => is_test,
             Some(other) => other == subject,
         };
-        let found = annotation::read(path, subject, wanted, problems)?;
+        let found = annotation::read(path, subject, is_selected, problems)?;
         names.extend(found.iter().map(|gesture| gesture.class.clone()));
-        if wanted {
+        if is_selected {
             gestures.extend(found);
         }
     }
@@ -192,7 +190,7 @@ fn of_subjects(
     Ok((gestures, names.into_iter().collect()))
 }
 
-/// The folder of colours, where there is one of depth beside it.
+/// Returns the folder of colour images, if there is one of depth images beside it.
 fn colours(path: &Path) -> Option<PathBuf> {
     let colour = COLOURS.iter().map(|name| path.join(name)).find(|folder| folder.is_dir())?;
     (path.join("depth").is_dir() && !folders_in(&colour).is_empty()).then_some(colour)
@@ -218,7 +216,7 @@ fn of_folders(path: &Path, split: Option<&str>, problems: &Problems) -> Result<(
                     class: class.clone(),
                 });
             } else {
-                problems.report(Problem::new(depth, "is missing beside its colours; add it"))?;
+                problems.report(Problem::new(depth, "is missing beside its colour image; add it"))?;
             }
         }
     }

@@ -1,4 +1,4 @@
-//! ImageNet's layout: a folder of pictures for each class.
+//! ImageNet: a folder of images for each class.
 
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap};
@@ -15,19 +15,19 @@ use crate::folder::{PICTURES, files_in, folders_in, part_folder, path_inside, re
 use crate::picture_files::{PictureWriter, split_name, write_each};
 use crate::{Format, OpenOptions, Problem, Problems, Recognition, WriteOptions};
 
-/// Files that tell what the names of class folders mean: `n01440764 tench, Tinca tinca`.
+/// Files with the class names of folders: `n01440764 tench, Tinca tinca`.
 const WORDS: [&str; 4] = ["LOC_synset_mapping.txt", "synset_words.txt", "words.txt", "synsets.txt"];
 
-/// A data set of pictures in class folders, numbered in the order of the folders' names.
+/// A data set of images in class folders. Class indices follow the order of the folders' names.
 #[derive(Debug)]
 pub struct ImageNet(ClassFolders);
 
-/// The folder of a part: one of the usual names, or the folder itself.
+/// Returns the folder of a part: one of the usual names, or the folder itself.
 fn part(path: &Path, split: Option<&str>) -> Result<PathBuf> {
     Ok(part_folder(path, split, &SPLITS)?.unwrap_or_else(|| path.to_owned()))
 }
 
-/// A file that names the class of each picture of a flat folder: `ILSVRC2012_val_00000001.JPEG 65`.
+/// Returns the file with the class of each image of a flat folder: `ILSVRC2012_val_00000001.JPEG 65`.
 fn map_file(folder: &Path) -> Option<PathBuf> {
     let name = folder.file_name()?.to_str()?;
     let above = folder.parent()?;
@@ -35,7 +35,7 @@ fn map_file(folder: &Path) -> Option<PathBuf> {
     names.into_iter().flat_map(|name| [folder.join(&name), above.join(&name)]).find(|file| file.is_file())
 }
 
-/// What class folders mean, where a file tells.
+/// Returns the class names of folders, if a file defines them.
 fn words(path: &Path, root: &Path) -> Result<BTreeMap<String, String>> {
     let folders = [path, root, root.parent().unwrap_or(root)];
     let file =
@@ -65,13 +65,13 @@ impl ImageNet {
         for (number, line) in lines(&read_text(map)?) {
             let read = || {
                 let (name, class) =
-                    line.trim().rsplit_once([' ', '\t', ',']).ok_or("has no class behind a name")?;
+                    line.trim().rsplit_once([' ', '\t', ',']).ok_or("has no class after the name")?;
                 path_inside(&root, name.trim())?;
                 let class = numbers.get(class).copied().map_or_else(|| class.parse(), Ok);
                 let class: u32 =
-                    class.map_err(|_| "has neither a class number nor a synset behind the name")?;
+                    class.map_err(|_| "has neither a class index nor a synset after the name")?;
                 if !words.is_empty() && class as usize >= words.len() {
-                    return Err(format!("has class {class} of {}", words.len()));
+                    return Err(format!("has class {class}, but there are {} classes", words.len()));
                 }
                 Ok::<_, String>((class, name.trim().to_owned()))
             };
@@ -116,7 +116,7 @@ impl DatasetIterator for ImageNet {
 impl Format for ImageNet {
     const NAME: &'static str = "imagenet";
     const ALIASES: &'static [&'static str] = &["image_folder", "imagefolder"];
-    const ABOUT: &'static str = "pictures in a folder for each class";
+    const ABOUT: &'static str = "images in a folder for each class";
     const LAYOUT: &'static str = "val/CLASS/*.JPEG (or CLASS/*.JPEG); synset_words.txt or LOC_synset_mapping.txt where \
                                   folders are synsets; val.txt (\"NAME CLASS\") for a flat folder";
     const TARGETS: &'static [ValueType] = &[ValueType::Category];
@@ -139,7 +139,7 @@ impl Format for ImageNet {
         {
             return Recognition::Possible;
         }
-        Recognition::No("two or more folders with pictures, one for each class".into())
+        Recognition::No("two or more folders with images, one for each class".into())
     }
 
     fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
@@ -153,7 +153,7 @@ impl Format for ImageNet {
         };
         if dataset.is_empty() {
             let path = dataset.0.root.display();
-            return Err(Error::not_found(format!("no pictures in folders for classes in {path}")));
+            return Err(Error::not_found(format!("no class folders with images in {path}")));
         }
         Ok(dataset)
     }
@@ -208,14 +208,14 @@ mod tests {
         let options = WriteOptions { split: Some("val".into()), link: true };
         ImageNet::write(&dataset, other.path(), &options, &Problems::strict(), &Silent).unwrap();
         let again = open(other.path(), None).unwrap();
-        // Folders are in the order of their new names.
+        // The classes of the copy follow the order of its folder names.
         assert_eq!(again.classes().iter().collect::<Vec<_>>(), ["cock", "tench, Tinca tinca"]);
         assert_eq!((again.len(), again.get(2).unwrap().data), (3, dataset.get(0).unwrap().data));
         assert!(open(folder.path(), Some("test")).unwrap_err().to_string().contains("train, val"));
     }
 
     #[test]
-    fn flat_folders_have_a_map() {
+    fn flat_folders_have_a_file_of_classes() {
         let folder = TemporaryFolder::new();
         folder.picture("val/a.png", 4, 4);
         folder.write("val.txt", "a.png 1\n../b.png 0\nc.png x\nd.png 2\n");
@@ -225,7 +225,9 @@ mod tests {
         assert_eq!((dataset.len(), problems.count()), (1, 3));
         let told: Vec<_> = problems.list().iter().map(|problem| problem.to_string()).collect();
         assert!(
-            told[0].contains("val.txt:2") && told[1].contains("synset") && told[2].contains("class 2 of 2"),
+            told[0].contains("val.txt:2")
+                && told[1].contains("synset")
+                && told[2].contains("class 2, but there are 2 classes"),
             "{told:?}"
         );
         assert!(matches!(dataset.target(0).unwrap(), Some(Value::Category(category)) if category.class == 1));

@@ -1,4 +1,4 @@
-//! Clips in a folder for each class, as Kinetics, UCF101 and HMDB51 have them.
+//! Clips in a folder for each class, the layout of Kinetics, UCF101 and HMDB51.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,12 +14,12 @@ use crate::folder::{PICTURES, files_in, folders_in, has_extension, names_in, par
 use crate::picture_files::{split_name, write_each};
 use crate::{Format, OpenOptions, Problems, Recognition, WriteOptions};
 
-/// Clips in class folders, numbered in the order of the folders' names. A clip is a video file, a `.npy`, or a folder with its
-/// frames as pictures.
+/// Clips in class folders. Class indices follow the order of the folders' names. A clip is a video file, a `.npy`,
+/// or a folder of images as frames.
 #[derive(Debug)]
 pub struct Kinetics(ClassFolders);
 
-/// The clips in a folder.
+/// Returns the clips in a folder.
 fn clips_in(folder: &Path) -> Vec<String> {
     let mut names = names_in(folder).unwrap_or_default();
     names.retain(|name| {
@@ -81,12 +81,12 @@ impl Format for Kinetics {
         let clips = ClassFolders::new(root, clips_in, |folder| folder);
         if clips.samples.is_empty() {
             let (root, layout) = (clips.root.display(), Self::LAYOUT);
-            return Err(Error::not_found(format!("no clips in {root}; it should have {layout}")));
+            return Err(Error::not_found(format!("no clips in {root}; the layout is {layout}")));
         }
         Ok(Self(clips))
     }
 
-    /// Videos are copied or linked; other clips become folders of pictures.
+    /// Videos are copied or linked; other clips become folders of images.
     fn write(
         dataset: &dyn DatasetIterator,
         path: &Path,
@@ -118,7 +118,7 @@ impl Format for Kinetics {
     }
 }
 
-/// The frames of a clip as pictures in `folder`.
+/// Writes the frames of a clip as images into `folder`.
 fn write_frames(dataset: &dyn DatasetIterator, index: usize, folder: &Path) -> Result<()> {
     let sample = dataset.get(index)?;
     let clip = sample.data.iter().find_map(|datum| match datum {

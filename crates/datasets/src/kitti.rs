@@ -1,4 +1,4 @@
-//! KITTI's benchmarks: boxes in space over lidar and pictures, of single scenes and of recordings.
+//! KITTI's benchmarks: 3D boxes in lidar scans and images, of single scenes and of sequences.
 
 use std::path::{Path, PathBuf};
 
@@ -19,10 +19,10 @@ pub use object::Kitti;
 pub use tracking::KittiTracking;
 pub use velodyne::{open_velodyne, velodyne_from_cloud};
 
-/// Parts with labels come first.
+/// Names of the parts; the one with labels comes first.
 const PARTS: [&str; 2] = ["training", "testing"];
 
-/// What lies in KITTI's folders for one instant.
+/// The files of one frame.
 #[derive(Debug, Clone, Default)]
 struct Scene {
     picture: Option<PathBuf>,
@@ -31,8 +31,8 @@ struct Scene {
 }
 
 impl Scene {
-    /// The data that go with `target`: for boxes in space the cloud (with its calibration, when there is one), for
-    /// boxes in the picture that picture; the other where there is only that.
+    /// Reads the data that belong to `target`: the cloud for 3D boxes (with its calibration, if there is one), the
+    /// image for boxes in the image; the other if only that exists.
     fn data(&self, target: ValueType, header: &Header) -> Result<Vec<Value>> {
         Ok(match (&self.cloud, &self.picture) {
             (Some(cloud), picture) if !is_flat(target) || picture.is_none() => {
@@ -46,7 +46,7 @@ impl Scene {
         })
     }
 
-    /// The file of the datum that goes with `target`.
+    /// Returns the file of the datum that belongs to `target`.
     fn path(&self, target: ValueType) -> Option<PathBuf> {
         match is_flat(target) {
             true => self.picture.clone().or_else(|| self.cloud.clone()),
@@ -62,12 +62,12 @@ impl Scene {
     }
 }
 
-/// Whether the target lies in the picture.
+/// Returns whether the target lies in the image.
 fn is_flat(target: ValueType) -> bool {
     matches!(target, ValueType::BoundingBoxList | ValueType::TrackingAnnotationList)
 }
 
-/// `[height, width]` of a PNG picture by its first bytes.
+/// Reads `[height, width]` of a PNG image from its first bytes.
 fn png_shape(path: &Path) -> Option<[usize; 2]> {
     use std::io::Read;
     let mut head = [0; 24];
@@ -77,7 +77,7 @@ fn png_shape(path: &Path) -> Option<[usize; 2]> {
     Some([side(20)?, side(16)?])
 }
 
-/// The target asked for, which must be one of `targets`.
+/// Returns the selected target type, which must be one of `targets`, or the first of them.
 fn wanted_target(wanted: Option<ValueType>, targets: &[ValueType]) -> Result<ValueType> {
     let first = targets.first().copied().unwrap_or(ValueType::BoundingBox3DList);
     match wanted {
@@ -86,12 +86,12 @@ fn wanted_target(wanted: Option<ValueType>, targets: &[ValueType]) -> Result<Val
         Some(other) => {
             let names: Vec<_> = targets.iter().map(|target| target.name()).collect();
             let (other, names) = (other.name(), names.join(" and "));
-            Err(Error::unsupported(format!("these labels can be read as {names}, not as {other}")))
+            Err(Error::unsupported(format!("the labels can be read as {names}, not as {other}")))
         }
     }
 }
 
-/// The folder that has `folders`: `path` itself or its part.
+/// Returns the folder that contains `folders`: `path` itself or its part.
 fn folder_with(path: &Path, wanted: Option<&str>, folders: &[&str]) -> Result<Option<PathBuf>> {
     let has = |folder: &Path| folders.iter().any(|name| folder.join(name).is_dir());
     let wanted = match wanted {
@@ -106,14 +106,14 @@ fn folder_with(path: &Path, wanted: Option<&str>, folders: &[&str]) -> Result<Op
             Err(Error::not_found(format!("no part {part} in {}; there are {there}", path.display())))
         }
         Some(part) if PARTS.contains(&part) => Ok(Some(path.join(part)).filter(|folder| has(folder))),
-        Some(part) => {
-            Err(Error::not_found(format!("KITTI has training, testing, train and val, no part {part:.40?}")))
-        }
+        Some(part) => Err(Error::not_found(format!(
+            "KITTI has the parts training, testing, train and val, not {part:.40?}"
+        ))),
         None => Ok(PARTS.iter().map(|part| path.join(part)).find(|folder| has(folder))),
     }
 }
 
-/// Feeds every parser of lines, for the fuzzers.
+/// Runs every parser of lines, for the fuzzers.
 pub(crate) fn parse_any(text: &str) {
     for line in text.lines() {
         let _ = labels::object_from_line(line);

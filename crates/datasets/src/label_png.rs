@@ -1,4 +1,4 @@
-//! PNG files whose pixels are numbers: palette indices or grey values, never resolved to colours.
+//! PNG files of class indices: palette indices or grey values, which are not resolved to colours.
 
 use std::fs::File;
 use std::io::{BufReader, BufWriter};
@@ -8,13 +8,13 @@ use opendr_engine::target::{Classes, Heatmap, HeatmapValues};
 use opendr_engine::{Error, Result, ResultExt, Value};
 use png::{BitDepth, ColorType, Transformations};
 
-/// The number of a place that does not count.
+/// Label of ignored pixels.
 pub(crate) const IGNORED: u32 = 255;
 
-/// The largest map that is read, in pixels.
-const MOST_PIXELS: u64 = 1 << 28;
+/// Largest map that is read, in pixels.
+const MAX_PIXELS: u64 = 1 << 28;
 
-/// Numbers, row by row.
+/// A map of labels, row by row.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct LabelMap {
     /// Width and height in pixels.
@@ -23,7 +23,7 @@ pub(crate) struct LabelMap {
 }
 
 impl LabelMap {
-    /// As the target of a picture.
+    /// Converts to a target.
     pub fn into_heatmap(self, classes: Classes) -> Result<Heatmap> {
         let [width, height] = self.size.map(|side| side as usize);
         let mut map = Heatmap::from_labels(self.labels, &[height, width])?;
@@ -31,74 +31,77 @@ impl LabelMap {
         Ok(map)
     }
 
-    /// From a target of class numbers.
+    /// Converts a target of class indices.
     ///
     /// # Errors
-    /// `InvalidInput` for other targets, and for numbers over 255.
+    /// `InvalidInput` for other targets, and for indices over 255.
     pub fn from_target(target: Option<&Value>) -> Result<Self> {
         let Some(Value::Heatmap(map)) = target else {
-            let found = target.map_or("nothing", |target| target.as_value_ref().value_type().name());
-            return Err(Error::invalid_input(format!("label maps are written, no {found}")));
+            let other = target.map_or("nothing", |target| target.as_value_ref().value_type().name());
+            return Err(Error::invalid_input(format!("label maps are needed, not {other}")));
         };
         let (HeatmapValues::Labels(labels), [height, width]) = (map.values(), map.shape()) else {
             let shape = map.shape();
             return Err(Error::invalid_input(format!(
-                "a map of scores of shape {shape:?}; give class numbers"
+                "a map of scores of shape {shape:?}; class indices are needed"
             )));
         };
         if let Some(label) = labels.iter().find(|label| **label > 255) {
-            return Err(Error::invalid_input(format!("class {label} does not fit a mask of 8 bits")));
+            return Err(Error::invalid_input(format!("class {label} does not fit into a mask of 8 bits")));
         }
         Ok(Self { size: [*width as u32, *height as u32], labels: labels.to_vec() })
     }
 
-    /// Every number through `table`; the first that has no entry is an error.
+    /// Maps every label by `table`; a label without an entry is an error.
     pub fn mapped(mut self, table: impl Fn(u32) -> Option<u32>) -> Result<Self> {
         for (at, label) in self.labels.iter_mut().enumerate() {
             *label = table(*label).ok_or_else(|| {
                 let (x, y) = (at as u32 % self.size[0], at as u32 / self.size[0]);
-                Error::format(format!("label {label} at column {x}, row {y} is none of the format's"))
+                Error::format(format!("label {label} at column {x}, row {y} is not a class of the format"))
             })?;
         }
         Ok(self)
     }
 
-    /// Checks that it is of a picture's size.
+    /// Checks that the map has the size of its image.
     pub fn of_size(self, size: [u32; 2]) -> Result<Self> {
         if self.size == size {
             return Ok(self);
         }
-        let ([width, height], [wanted, high]) = (self.size, size);
-        Err(Error::format(format!("the mask is of {width}x{height} pixels, its picture of {wanted}x{high}")))
+        let ([width, height], [image_width, image_height]) = (self.size, size);
+        Err(Error::format(format!(
+            "the mask has {width}x{height} pixels, its image has {image_width}x{image_height}"
+        )))
     }
 }
 
 /// Reads a PNG of palette indices or grey values.
 ///
 /// # Errors
-/// `NotFound`, `Io`, or `Format` for other files, naming the path.
+/// `NotFound`, `Io`, or `Format` for other files, with the path.
 pub(crate) fn open_labels(path: &Path) -> Result<LabelMap> {
     read(path).context(|| format!("opening {}", path.display()))
 }
 
 fn read(path: &Path) -> Result<LabelMap> {
-    let damaged = |error: png::DecodingError| Error::format("no PNG, or a damaged one").with_source(error);
+    let damaged =
+        |error: png::DecodingError| Error::format("the file is not a PNG, or damaged").with_source(error);
     let mut decoder = png::Decoder::new(BufReader::new(File::open(path)?));
     decoder.set_transformations(Transformations::IDENTITY);
     let mut reader = decoder.read_info().map_err(damaged)?;
     let (width, height) = reader.info().size();
-    if u64::from(width) * u64::from(height) > MOST_PIXELS {
+    if u64::from(width) * u64::from(height) > MAX_PIXELS {
         return Err(Error::format(format!(
-            "the header claims {width}x{height} pixels, over {MOST_PIXELS} in all"
+            "the header states {width}x{height} pixels; the limit is {MAX_PIXELS} in all"
         )));
     }
     let (colour, depth) = reader.output_color_type();
     if !matches!(colour, ColorType::Indexed | ColorType::Grayscale) {
         return Err(Error::format(format!(
-            "a picture in colours ({colour:?}); masks hold one number a pixel"
+            "an image in colours ({colour:?}); masks need one value per pixel"
         )));
     }
-    let size = reader.output_buffer_size().ok_or_else(|| Error::format("too large a picture"))?;
+    let size = reader.output_buffer_size().ok_or_else(|| Error::format("the image is too large"))?;
     let mut bytes = vec![0; size];
     let frame = reader.next_frame(&mut bytes).map_err(damaged)?;
     let mut labels = Vec::with_capacity(width as usize * height as usize);
@@ -120,7 +123,7 @@ fn read(path: &Path) -> Result<LabelMap> {
     Ok(LabelMap { size: [width, height], labels })
 }
 
-/// Writes numbers up to 255 as a PNG of indices into the colours of Pascal VOC, or as a grey one.
+/// Writes labels up to 255 as a PNG with the palette of Pascal VOC, or in grey.
 ///
 /// # Errors
 /// `Io`, or `InvalidInput` for a map without pixels.
@@ -129,7 +132,7 @@ pub(crate) fn save_labels(map: &LabelMap, path: &Path, in_colours: bool) -> Resu
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder)?;
         }
-        let refused = |error| Error::io("the PNG cannot be written").with_source(error);
+        let failed = |error| Error::io("the PNG cannot be written").with_source(error);
         let [width, height] = map.size;
         let mut encoder = png::Encoder::new(BufWriter::new(File::create(path)?), width, height);
         encoder.set_depth(BitDepth::Eight);
@@ -138,14 +141,14 @@ pub(crate) fn save_labels(map: &LabelMap, path: &Path, in_colours: bool) -> Resu
             encoder.set_palette((0..=255u8).flat_map(voc_colour).collect::<Vec<_>>());
         }
         let bytes: Vec<u8> = map.labels.iter().map(|label| *label as u8).collect();
-        let mut writer = encoder.write_header().map_err(refused)?;
-        writer.write_image_data(&bytes).map_err(refused)?;
-        writer.finish().map_err(refused)
+        let mut writer = encoder.write_header().map_err(failed)?;
+        writer.write_image_data(&bytes).map_err(failed)?;
+        writer.finish().map_err(failed)
     };
     write().context(|| format!("writing {}", path.display()))
 }
 
-/// The colour of a class in Pascal VOC's masks: its bits, spread over the high bits of red, green and blue.
+/// Returns the colour of a class in Pascal VOC's masks: its bits, spread over the high bits of red, green and blue.
 pub(crate) fn voc_colour(class: u8) -> [u8; 3] {
     let mut colour = [0; 3];
     for bit in 0..8 {
@@ -176,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_come_back() {
+    fn labels_are_read_as_written() {
         let folder = TemporaryFolder::new();
         let path = folder.path().join("a/mask.png");
         let map = LabelMap { size: [3, 2], labels: vec![0, 1, 2, 20, 254, 255] };

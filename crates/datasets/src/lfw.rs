@@ -1,4 +1,4 @@
-//! Pairs of faces, as LFW has them: the same person or not.
+//! LFW: pairs of faces of the same person or of different persons.
 
 use std::path::{Path, PathBuf};
 
@@ -13,12 +13,12 @@ use crate::folder::{
 use crate::picture_files::write_each;
 use crate::{Format, OpenOptions, Problem, Problems, Recognition, WriteOptions};
 
-/// By class number.
+/// Names by class index.
 const CLASSES: [&str; 2] = ["different", "same"];
 
-/// Pairs of pictures with class 1 when they show the same person and 0 when not.
+/// Pairs of face images, of class 1 for the same person and 0 for different ones.
 ///
-/// Parts are the folds of `pairs.txt`, from `1`, or `dev_train` and `dev_test` where their lists are there.
+/// Parts are the folds of `pairs.txt`, from `1`, or `dev_train` and `dev_test` if their lists exist.
 #[derive(Debug)]
 pub struct Lfw {
     pairs: Vec<Pair>,
@@ -32,12 +32,12 @@ struct Pair {
 }
 
 impl Lfw {
-    /// The files of pair `index`.
+    /// Returns the files of pair `index`.
     pub fn files(&self, index: usize) -> Option<&[PathBuf; 2]> {
         self.pairs.get(index).map(|pair| &pair.files)
     }
 
-    /// The fold of pair `index`, from 0: LFW's protocol trains on nine of ten.
+    /// Returns the fold of pair `index`, from 0; LFW's protocol trains on nine of ten.
     pub fn fold(&self, index: usize) -> Option<u32> {
         self.pairs.get(index).map(|pair| pair.fold)
     }
@@ -85,8 +85,8 @@ impl DatasetIterator for Lfw {
 impl Format for Lfw {
     const NAME: &'static str = "lfw";
     const ALIASES: &'static [&'static str] = &["face_pairs"];
-    const ABOUT: &'static str = "pairs of faces, the same person or not, as LFW has them";
-    const LAYOUT: &'static str = "pairs.txt with NAME/NAME_0001.jpg (also in lfw/); or a .csv of two files and Yes or No, beside the pictures";
+    const ABOUT: &'static str = "LFW: pairs of faces, of the same person or not";
+    const LAYOUT: &'static str = "pairs.txt with NAME/NAME_0001.jpg (also in lfw/); or a .csv of two files and Yes or No, beside the images";
     const TARGETS: &'static [ValueType] = &[ValueType::Category];
 
     fn recognise(path: &Path) -> Recognition {
@@ -98,21 +98,21 @@ impl Format for Lfw {
                 true => Recognition::Possible,
                 false => Recognition::No("a .csv of two files and Yes or No".into()),
             },
-            None => Recognition::No("pairs.txt, or a .csv of two files and Yes or No beside pictures".into()),
+            None => Recognition::No("pairs.txt, or a .csv of two files and Yes or No beside images".into()),
         }
     }
 
     fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         if let Some(other) = options.target.filter(|target| !Self::TARGETS.contains(target)) {
-            let message = format!("pairs have a Category, no {}", other.name());
+            let message = format!("pairs are read as Category, not as {}", other.name());
             return Err(Error::unsupported(message));
         }
         let lists = lists(path);
         let split = options.split.as_deref();
         let fold = split.and_then(|split| split.parse::<u32>().ok());
-        let named = |wanted: &str| {
-            let wanted = wanted.to_lowercase().replace(['_', ' '], "");
-            lists.iter().find(|list| name_of(list).to_lowercase().contains(&wanted))
+        let named = |split: &str| {
+            let split = split.to_lowercase().replace(['_', ' '], "");
+            lists.iter().find(|list| name_of(list).to_lowercase().contains(&split))
         };
         let list = match split {
             Some(split) if fold.is_none() => named(split),
@@ -120,12 +120,12 @@ impl Format for Lfw {
         };
         let list = list.ok_or_else(|| {
             let (path, layout) = (path.display(), Self::LAYOUT);
-            Error::not_found(format!("no list of pairs in {path}; it should have {layout}"))
+            Error::not_found(format!("no list of pairs in {path}; the layout is {layout}"))
         })?;
         let mut pairs = read_list(list, problems)?;
         pairs.retain(|pair| fold.is_none_or(|fold| pair.fold + 1 == fold));
         if pairs.is_empty() {
-            return Err(Problem::new(list, "has no pair of that part; give another").into());
+            return Err(Problem::new(list, "has no pair of that part; choose another part").into());
         }
         Ok(Self { pairs })
     }
@@ -146,7 +146,7 @@ impl Format for Lfw {
     }
 }
 
-/// Lists of pairs at `path`, those of LFW's names first.
+/// Returns the lists of pairs at `path`, those of LFW's names first.
 fn lists(path: &Path) -> Vec<PathBuf> {
     if !path.is_dir() {
         let fits = path.is_file() && path.to_str().is_some_and(|name| has_extension(name, &["txt", "csv"]));
@@ -164,28 +164,29 @@ fn read_list(list: &Path, problems: &Problems) -> Result<Vec<Pair>> {
     let is_csv = list.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
     let (mut pairs, mut size) = (Vec::new(), 0usize);
     for (at, (number, line)) in lines(&text).enumerate() {
-        let found = match is_csv {
+        let pair = match is_csv {
             true if at == 0 => continue,
             true => csv_pair(folder, line),
             false if at == 0 && line.split_whitespace().count() <= 2 => {
-                // Folds and pairs of each kind in a fold; without folds the pairs alone.
+                // Number of folds and of pairs of each kind in a fold; without folds, the number of pairs alone.
                 let numbers: Option<Vec<usize>> =
                     line.split_whitespace().map(|word| word.parse().ok()).collect();
-                let numbers = numbers
-                    .ok_or_else(|| Problem::at_line(list, number, "is neither a pair nor their number"))?;
+                let numbers = numbers.ok_or_else(|| {
+                    Problem::at_line(list, number, "is neither a pair nor a number of pairs")
+                })?;
                 size = if numbers.len() == 2 { numbers[1].saturating_mul(2) } else { 0 };
                 continue;
             }
             false => lfw_pair(folder, line),
         };
-        let found = found.and_then(|pair| {
+        let pair = pair.and_then(|pair| {
             let missing = pair.files.iter().find(|file| !file.is_file());
-            missing.map_or(Ok(()), |file| Err(format!("names {}, which is missing", file.display())))?;
+            missing.map_or(Ok(()), |file| Err(format!("refers to {}, which is missing", file.display())))?;
             Ok(pair)
         });
-        match found {
+        match pair {
             Ok(pair) => {
-                // By place in the list, so that what is left out moves no other pair to another fold.
+                // The fold follows from the line, so that a skipped pair does not shift the others.
                 let fold = (at - 1).checked_div(size).unwrap_or(0) as u32;
                 pairs.push(Pair { fold, ..pair });
             }
@@ -195,7 +196,7 @@ fn read_list(list: &Path, problems: &Problems) -> Result<Vec<Pair>> {
     Ok(pairs)
 }
 
-/// `file,file,Yes`.
+/// Parses `file,file,Yes`.
 fn csv_pair(folder: &Path, line: &str) -> Result<Pair, String> {
     let fields = Fields::between_commas(line);
     fields.expect(3..=3)?;
@@ -209,7 +210,7 @@ fn csv_pair(folder: &Path, line: &str) -> Result<Pair, String> {
     Ok(Pair { files, same, fold: 0 })
 }
 
-/// `NAME 1 2` or `NAME 1 OTHER 2`.
+/// Parses `NAME 1 2` or `NAME 1 OTHER 2`.
 fn lfw_pair(folder: &Path, line: &str) -> Result<Pair, String> {
     let words: Vec<&str> = line.split_whitespace().collect();
     let (first, second) = match words[..] {
@@ -219,31 +220,29 @@ fn lfw_pair(folder: &Path, line: &str) -> Result<Pair, String> {
     };
     let file = |(name, number): (&str, &str)| {
         let parsed: u32 =
-            number.parse().map_err(|_| format!("has {number:.40?} instead of the number of a picture"))?;
+            number.parse().map_err(|_| format!("has {number:.40?} instead of an image number"))?;
         let stem = format!("{name}/{name}_{parsed:04}");
         let plain = path_inside(folder, &format!("{stem}.jpg"))?;
-        let found = ["", "lfw", "lfw_funneled", "lfw-deepfunneled"]
+        let candidates = ["", "lfw", "lfw_funneled", "lfw-deepfunneled"]
             .iter()
             .flat_map(|inner| PICTURES.iter().map(move |extension| (inner, extension)));
-        let mut found =
-            found.map(|(inner, extension)| folder.join(inner).join(format!("{stem}.{extension}")));
-        Ok::<_, String>(found.find(|file| file.is_file()).unwrap_or(plain))
+        let mut candidates =
+            candidates.map(|(inner, extension)| folder.join(inner).join(format!("{stem}.{extension}")));
+        Ok::<_, String>(candidates.find(|file| file.is_file()).unwrap_or(plain))
     };
     Ok(Pair { files: [file(first)?, file(second)?], same: words.len() == 3, fold: 0 })
 }
 
-/// Pictures are called by the number of their pair.
+/// Writes the images of a pair, named by its index, and returns its line.
 fn write_pair(dataset: &dyn DatasetIterator, index: usize, path: &Path, link: bool) -> Result<String> {
     let sample = dataset.get(index)?;
     let (Some(Value::Image(first)), Some(Value::Image(second)), Some(Value::Category(category))) =
         (sample.data.first(), sample.data.get(1), &sample.target)
     else {
-        return Err(Error::invalid_input(
-            "no pair of pictures with a class; this format holds two Image and a Category",
-        ));
+        return Err(Error::invalid_input("the sample needs two images and a Category"));
     };
     let from = dataset.path(index);
-    // The first keeps its file's format; only its path is known.
+    // The first image keeps the format of its file; the path of the second is unknown.
     let kept = from.as_deref().and_then(|path| path.extension()?.to_str()).map(str::to_lowercase);
     let kept =
         kept.filter(|extension| PICTURES.contains(&extension.as_str())).unwrap_or_else(|| "png".to_owned());

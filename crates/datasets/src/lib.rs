@@ -1,7 +1,27 @@
-//! Data set formats, one file each, lazy and readable from several threads; augmentation and the parallel loader.
+//! Data set formats, augmentation and the parallel loader.
 //!
-//! [`open`] recognises a data set; [`formats`] lists what there is. Nothing on disk is trusted: what is broken is told
-//! with its file and line or key, through [`Problems`].
+//! [`open`] opens a data set, whose format it can recognise, and [`formats`] lists the formats (COCO, YOLO, Pascal
+//! VOC, KITTI, MOT and more). Samples are read when they are needed, from any thread. Nothing on disk is trusted:
+//! problems are reported with file and line or key, through [`Problems`]. Module [`augment`] has augmentations of
+//! images, point clouds, audio and time series; module [`loader`] reads, augments and batches samples on several
+//! threads. The types of samples and targets are in `opendr-engine`, metrics in `opendr-metrics`, and evaluation in
+//! `opendr-evaluation`.
+//!
+//! ```
+//! use opendr_datasets::augment::{Augment, Flip, OtherSamples};
+//! use opendr_engine::data::Image;
+//! use opendr_engine::dataset::Sample;
+//! use opendr_engine::target::{BoundingBox, BoundingBoxList};
+//! use opendr_engine::{Random, Value};
+//!
+//! let image = Image::from_rgb8(vec![0; 100 * 80 * 3], 100, 80)?;
+//! let boxes = BoundingBoxList::from(vec![BoundingBox::new(0_i64, 10.0, 20.0, 30.0, 40.0, 1.0)]);
+//! let mut sample = Sample { data: vec![image.into()], target: Some(boxes.into()) };
+//! Flip::default().apply(&mut sample, &mut Random::new(0), &OtherSamples::none())?;
+//! let Some(Value::BoundingBoxList(boxes)) = sample.target else { unreachable!() };
+//! assert_eq!(boxes.boxes[0].left, 60.0);
+//! # Ok::<_, opendr_engine::Error>(())
+//! ```
 
 mod any;
 pub mod augment;
@@ -36,6 +56,7 @@ mod picture_box;
 mod picture_files;
 mod pictures;
 mod problems;
+mod recognition;
 #[cfg(feature = "recordings")]
 mod recording;
 mod registry;
@@ -50,12 +71,12 @@ mod wfdb;
 mod wider_face;
 mod yolo;
 
-pub use any::{FormatEntry, Recognition};
+pub use any::FormatEntry;
 pub use camvid::CamVid;
 pub use check::check;
 pub use cityscapes::Cityscapes;
 pub use coco::{Coco, CocoInfrared, CocoPanoptic, coco_results};
-pub use contact_sheet::{contact_sheet, picture_with_target};
+pub use contact_sheet::{contact_sheet, draw_sample};
 pub use format::{Format, OpenOptions, WriteOptions};
 pub use hands::Hands;
 pub use imagenet::ImageNet;
@@ -69,11 +90,12 @@ pub use market1501::{Market1501, MarketPerson};
 pub use mnist::Mnist;
 pub use mot::{Mot, MotRow, MotSequence, open_mot_results, write_mot_results};
 pub use npy::{NpyFile, NpyHeader, NpyType, array_from_npy, npy_from_f32, npy_from_i64};
-pub use pictures::Pictures;
-pub use problems::{Place, Problem, Problems};
+pub use pictures::UnlabelledImages;
+pub use problems::{Location, Problem, Problems};
+pub use recognition::Recognition;
 #[cfg(feature = "recordings")]
 pub use recording::AnnotatedRecording;
-pub use registry::{find, format_of, formats, open, recognise};
+pub use registry::{find_format, format_of, formats, open, recognise};
 pub use skeleton::{NtuFile, Skeletons, open_ntu, skeleton_from_ntu};
 pub use speech_commands::{SpeechCommands, SpeechSplit, speaker_of_clip, split_of_clip};
 pub use stats::{ClassCount, DatasetStats, Spread};

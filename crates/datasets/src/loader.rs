@@ -1,13 +1,15 @@
-//! The parallel loader: a data set's samples in batches, in an order that is the same whatever the number of threads.
+//! Parallel loader: the samples of a data set in batches, in an order that does not depend on the number of
+//! threads.
 //!
-//! Threads read samples, augment them and fill batches ahead of whoever trains; never more than [`LoaderOptions::ahead`]
-//! batches, so that memory is bounded however slow training is. The order and every random number follow from seed,
-//! epoch and sample alone.
+//! Threads read samples, augment them and fill batches ahead of the training, at most [`LoaderOptions::prefetch`]
+//! batches, which bounds memory. The order and every random number depend on seed, epoch and sample index only.
 
 mod collate;
-mod desk;
 mod epoch;
 mod image_batch;
+mod options;
+mod queue;
+mod skipped;
 
 #[cfg(test)]
 mod tests;
@@ -20,37 +22,15 @@ use opendr_engine::params::Params;
 use opendr_engine::{Error, Random, Result};
 
 use crate::augment::Pipeline;
-pub use collate::{Collate, Samples};
-use desk::Job;
+pub use collate::{Collate, SampleBatches};
 use epoch::each_batch;
-pub use epoch::{Batch, Epoch, Skipped};
+pub use epoch::{Batch, Epoch};
 pub use image_batch::{ImageBatch, ImageBatches};
+pub use options::LoaderOptions;
+use queue::Job;
+pub use skipped::Skipped;
 
-/// How a data set is gone through.
-#[derive(Debug, Clone, PartialEq, Eq, Params)]
-pub struct LoaderOptions {
-    /// Samples a batch.
-    #[param(default = 16, range = 1..=1_000_000)]
-    pub batch_size: usize,
-    /// Threads that read and augment samples; with 0, whoever asks for a batch does it.
-    #[param(default = 2, range = 0..=1024)]
-    pub threads: usize,
-    /// Batches that are ready or under way before they are asked for, at most.
-    #[param(default = 4, range = 1..=100_000)]
-    pub ahead: usize,
-    /// Whether samples come in a random order, another one each epoch.
-    #[param(default = true)]
-    pub shuffle: bool,
-    /// What the order and all augmentation follow from.
-    #[param(default = 0)]
-    pub seed: u64,
-    /// Whether the last batch is left out when it is not full.
-    pub drop_last: bool,
-    /// Whether samples that cannot be read or augmented are left out and listed, instead of being errors.
-    pub skip_broken: bool,
-}
-
-/// A data set, how its samples are changed, and how they become batches.
+/// A loader: a data set, the augmentation of its samples, and how they become batches.
 ///
 /// ```no_run
 /// use opendr_datasets::augment::{Flip, Pipeline, RandomResizedCrop};
@@ -70,64 +50,64 @@ pub struct LoaderOptions {
 /// }
 /// # Ok::<(), opendr_engine::Error>(())
 /// ```
-pub struct Loader<'d, C = Samples> {
+pub struct Loader<'d, C = SampleBatches> {
     dataset: Arc<dyn DatasetIterator + 'd>,
     pipeline: Arc<Pipeline>,
     collate: Arc<C>,
     options: LoaderOptions,
 }
 
-/// What separates the stream of random numbers that orders an epoch from those of its samples.
+/// Stream of the random numbers that order an epoch; the streams of samples are their indices.
 const ORDER: u64 = u64::MAX;
 
 impl<'d> Loader<'d> {
-    /// The samples of `dataset`, which may be borrowed, as they are, in batches.
+    /// Creates a loader of the samples of `dataset`, which may be borrowed, without augmentation.
     ///
     /// # Errors
     /// `InvalidParam` for an option out of its range.
     pub fn new(dataset: impl DatasetIterator + 'd, options: LoaderOptions) -> Result<Self> {
         options.check()?;
         let pipeline = Arc::default();
-        Ok(Self { dataset: Arc::new(dataset), pipeline, collate: Arc::new(Samples), options })
+        Ok(Self { dataset: Arc::new(dataset), pipeline, collate: Arc::new(SampleBatches), options })
     }
 }
 
 impl<'d, C: Collate> Loader<'d, C> {
-    /// The same with samples changed by `pipeline`.
+    /// Sets the augmentation of samples.
     #[must_use]
     pub fn augment(self, pipeline: Pipeline) -> Self {
         Self { pipeline: Arc::new(pipeline), ..self }
     }
 
-    /// The same with batches made by `collate`.
+    /// Sets how samples become batches.
     #[must_use]
     pub fn collate<D: Collate>(self, collate: D) -> Loader<'d, D> {
         let Self { dataset, pipeline, options, .. } = self;
         Loader { dataset, pipeline, collate: Arc::new(collate), options }
     }
 
-    /// How it goes through the data set.
+    /// Returns the options.
     pub fn options(&self) -> &LoaderOptions {
         &self.options
     }
 
-    /// Samples of an epoch.
+    /// Returns the number of samples of an epoch.
     pub fn samples(&self) -> usize {
         let (count, size) = (self.dataset.len(), self.options.batch_size);
         if self.options.drop_last { count - count % size } else { count }
     }
 
-    /// Batches of an epoch; fewer come when a whole batch is skipped.
+    /// Returns the number of batches of an epoch. Fewer are returned if all samples of a batch are skipped.
     pub fn batches(&self) -> usize {
         self.samples().div_ceil(self.options.batch_size)
     }
 
-    /// Hands the batches of an epoch from `position` on (0 for all) to `each`, on this thread, until it breaks off, and
-    /// tells what was left out: for data sets that are borrowed.
+    /// Calls `each` with the batches of an epoch from `position` on (0 for all), on this thread, until it breaks,
+    /// and returns the skipped samples. It supports borrowed data sets, unlike [`Loader::epoch`].
     ///
     /// # Errors
-    /// `InvalidInput` for a position past the end; the first error of a sample (unless broken ones are skipped) or of
-    /// `each`, which ends it.
+    /// `InvalidInput` for a position past the end; the first error of a sample (unless broken samples are skipped)
+    /// or of `each`, which ends the loop.
     pub fn for_each(
         &self,
         epoch: u64,
@@ -137,17 +117,17 @@ impl<'d, C: Collate> Loader<'d, C> {
         each_batch(self.job_from(epoch, position)?, each)
     }
 
-    /// The numbers of the samples of an epoch, in its order.
+    /// Returns the sample indices of an epoch, in its order.
     fn order(&self, epoch: u64) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.dataset.len()).collect();
         if self.options.shuffle {
-            Random::at([self.options.seed, epoch, ORDER]).shuffle(&mut order);
+            Random::from_key([self.options.seed, epoch, ORDER]).shuffle(&mut order);
         }
         order.truncate(self.samples());
         order
     }
 
-    /// A whole epoch.
+    /// Returns the job of a whole epoch.
     fn job(&self, epoch: u64) -> Job<'d, C> {
         Job {
             dataset: Arc::clone(&self.dataset),
@@ -160,11 +140,11 @@ impl<'d, C: Collate> Loader<'d, C> {
         }
     }
 
-    /// The rest of an epoch from `position` on.
+    /// Returns the job of an epoch from `position` on.
     fn job_from(&self, epoch: u64, position: usize) -> Result<Job<'d, C>> {
         match self.samples() {
             count if position > count => Err(Error::invalid_input(format!(
-                "an epoch of {count} samples cannot go on at {position}; is this the data set that was left?"
+                "an epoch of {count} samples cannot resume at {position}; check that the data set is the same"
             ))),
             _ => Ok(Job { position, ..self.job(epoch) }),
         }
@@ -172,12 +152,12 @@ impl<'d, C: Collate> Loader<'d, C> {
 }
 
 impl<C: Collate> Loader<'static, C> {
-    /// All batches of epoch number `epoch`, for a loop to pull; threads start to work on them right away.
+    /// Starts epoch `epoch` and returns an iterator over its batches; its threads start immediately.
     pub fn epoch(&self, epoch: u64) -> Epoch<C> {
         Epoch::start(self.job(epoch))
     }
 
-    /// The rest of an epoch that was broken off: what it would give after [`Batch::next_position`].
+    /// Resumes an epoch at `position`, a [`Batch::next_position`], and returns its remaining batches.
     ///
     /// # Errors
     /// `InvalidInput` for a position past the end.

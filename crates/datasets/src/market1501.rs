@@ -1,4 +1,4 @@
-//! Market-1501: persons seen by several cameras, told apart by the names of their pictures.
+//! Market-1501: persons observed by several cameras, identified by the names of their images.
 //!
 //! Source: L. Zheng et al., Scalable Person Re-identification: A Benchmark, ICCV 2015.
 
@@ -12,45 +12,46 @@ use crate::folder::{PICTURES, files_in, name_of, part_folder, past_end, path_ins
 use crate::picture_files::write_each;
 use crate::{Format, OpenOptions, Problem, Problems, Recognition, WriteOptions};
 
-/// By default what is searched for.
+/// Names of the parts; the default is the query part.
 const PARTS: [&str; 3] = ["query", "bounding_box_test", "bounding_box_train"];
-/// Junk: a part of a person, to be ignored.
+/// Identity of junk: a part of a person, which is ignored.
 const JUNK: i64 = -1;
-/// No person at all, or one that is in no query.
+/// Identity of distractors: no person, or one that is in no query.
 const DISTRACTOR: i64 = 0;
 
-/// Cut-out persons with their identity: the class is the number in the name, 0 for distractors; junk (-1) is left out.
+/// Crops of persons with their identity. The class is the identity in the file name, 0 for distractors; junk (-1)
+/// is skipped.
 ///
-/// The header of the picture has the camera as frame id, e.g. `c3`. Parts are `query`, `bounding_box_test` (the gallery,
-/// also called `test` or `gallery`) and `bounding_box_train` (`train`).
+/// The header of the image has the camera as frame id, e.g. `c3`. Parts are `query`, `bounding_box_test` (the
+/// gallery, also called `test` or `gallery`) and `bounding_box_train` (`train`).
 #[derive(Debug)]
 pub struct Market1501 {
     root: PathBuf,
     persons: Vec<MarketPerson>,
 }
 
-/// What the name of a picture tells, e.g. `0002_c1s1_000451_03.jpg`.
+/// The fields of a file name, e.g. `0002_c1s1_000451_03.jpg`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MarketPerson {
-    /// The file in the folder of the part.
+    /// File name in the folder of the part.
     pub file: String,
-    /// Number of the person; 0 for distractors.
+    /// Identity of the person; 0 for distractors.
     pub identity: i64,
-    /// Number of the camera, from 1.
+    /// Camera number, from 1.
     pub camera: u32,
-    /// Number of the recording of that camera, from 1, where it is told.
+    /// Sequence number of the camera, from 1, if the name has it.
     pub sequence: Option<u32>,
-    /// Number of the picture in the recording, where it is told.
+    /// Frame number in the sequence, if the name has it.
     pub frame: Option<u32>,
 }
 
 impl MarketPerson {
-    /// Reads a name; what is wrong with it otherwise.
+    /// Parses a file name.
     ///
     /// # Errors
-    /// What is wrong with the name.
+    /// A message if the name is invalid.
     pub fn from_name(name: &str) -> Result<Self, String> {
-        let wrong = || format!("{name:.80?} is not of the kind 0002_c1s1_000451_03.jpg; rename it");
+        let wrong = || format!("{name:.80?} is not of the form 0002_c1s1_000451_03.jpg; rename it");
         let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
         let mut words = stem.split('_');
         let identity: i64 = words.next().and_then(|word| word.parse().ok()).ok_or_else(wrong)?;
@@ -61,7 +62,7 @@ impl MarketPerson {
         let camera = number(camera)?;
         if identity < JUNK || camera == 0 {
             return Err(format!(
-                "{name:.80?} tells person {identity} and camera {camera}, which cannot be; rename it"
+                "{name:.80?} has person {identity} and camera {camera}, which are invalid; rename it"
             ));
         }
         let frame = words.next().and_then(|word| word.parse().ok());
@@ -76,7 +77,7 @@ impl MarketPerson {
 }
 
 impl Market1501 {
-    /// Who is on each picture, and from which camera.
+    /// Returns the fields of each image's file name.
     pub fn persons(&self) -> &[MarketPerson] {
         &self.persons
     }
@@ -121,7 +122,7 @@ impl DatasetIterator for Market1501 {
 impl Format for Market1501 {
     const NAME: &'static str = "market1501";
     const ALIASES: &'static [&'static str] = &["market", "market-1501", "dukemtmc"];
-    const ABOUT: &'static str = "Market-1501: persons seen by several cameras";
+    const ABOUT: &'static str = "Market-1501: person re-identification with several cameras";
     const LAYOUT: &'static str =
         "query/, bounding_box_test/ and bounding_box_train/ with 0002_c1s1_000451_03.jpg; or one such folder";
     const TARGETS: &'static [ValueType] = &[ValueType::Category];
@@ -134,14 +135,14 @@ impl Format for Market1501 {
         match names.first().is_some_and(|name| MarketPerson::from_name(name).is_ok()) {
             true => Recognition::Certain,
             false => Recognition::No(
-                "bounding_box_train/, query/, or pictures called as 0002_c1s1_000451_03.jpg".into(),
+                "bounding_box_train/, query/, or images named like 0002_c1s1_000451_03.jpg".into(),
             ),
         }
     }
 
     fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         if let Some(other) = options.target.filter(|target| !Self::TARGETS.contains(target)) {
-            let message = format!("persons have a Category, no {}", other.name());
+            let message = format!("persons are read as Category, not as {}", other.name());
             return Err(Error::unsupported(message));
         }
         let wanted = match options.split.as_deref() {
@@ -161,7 +162,7 @@ impl Format for Market1501 {
         }
         if persons.is_empty() {
             let (root, layout) = (root.display(), Self::LAYOUT);
-            return Err(Error::not_found(format!("no person in {root}; it should have {layout}")));
+            return Err(Error::not_found(format!("no person in {root}; the layout is {layout}")));
         }
         Ok(Self { root, persons })
     }
@@ -183,12 +184,12 @@ impl Format for Market1501 {
     }
 }
 
-/// A picture keeps its name, where that tells what it has to.
+/// Writes an image, under its own name if that has the identity.
 fn write_person(dataset: &dyn DatasetIterator, index: usize, folder: &Path, link: bool) -> Result<()> {
     let sample = dataset.get(index)?;
     let (Some(Value::Image(image)), Some(Value::Category(category))) = (sample.data.first(), &sample.target)
     else {
-        return Err(Error::invalid_input("no picture with a class; this format holds Image and Category"));
+        return Err(Error::invalid_input("the sample needs an Image and a Category"));
     };
     let from = dataset.path(index);
     let kept = from
@@ -223,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn names_tell_persons() {
+    fn names_have_identities() {
         let folder = persons();
         assert_eq!(Market1501::recognise(folder.path()), Recognition::Certain);
         assert_eq!(open(&folder, None).unwrap().name(0), "0002_c1s1_000451_00.jpg");
@@ -238,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_names_are_told() {
+    fn wrong_names_are_reported() {
         for name in
             ["a.jpg", "0002.jpg", "0002_x1.jpg", "0002_c0s1_1.jpg", "-2_c1s1_1.jpg", "0002_c1sx_1.jpg"]
         {

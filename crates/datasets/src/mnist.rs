@@ -1,4 +1,4 @@
-//! Pictures in IDX files, as MNIST, Fashion-MNIST, KMNIST and EMNIST come.
+//! Images in IDX files: MNIST, Fashion-MNIST, KMNIST and EMNIST.
 
 use std::fs::File;
 use std::io::Read;
@@ -13,27 +13,27 @@ use opendr_engine::{Error, Result, ResultExt, Value, ValueType};
 use crate::folder::{past_end, read_text};
 use crate::{Format, OpenOptions, Problem, Problems, Recognition};
 
-/// More bytes than any such file has, unpacked: EMNIST's 814,255 pictures are 638 MB.
+/// Largest size of a decompressed file in bytes: EMNIST's 814,255 images take 638 MB.
 const MAX_BYTES: usize = 1 << 30;
-/// The third byte of an IDX file of bytes; the fourth is the number of axes.
+/// Third byte of an IDX file of bytes; the fourth is the number of axes.
 const UNSIGNED_BYTES: u8 = 8;
 const CLASS_NAMES: &str = "classes.txt";
-/// Parts and what their files begin with.
+/// Parts and the first word of their file names.
 const PARTS: [(&str, &str); 2] = [("test", "t10k"), ("train", "train")];
 const FASHION: [&str; 10] =
     ["t-shirt", "trouser", "pullover", "dress", "coat", "sandal", "shirt", "sneaker", "bag", "ankle boot"];
 
-/// Grey pictures with their class.
+/// Grey images with their class.
 ///
-/// Classes are called as `classes.txt` beside the files says, a line each; else by Fashion-MNIST's names where the folder's
-/// name has "fashion" in it, else by their numbers. Parts are `train` and `test`.
+/// Class names are the lines of `classes.txt` beside the files. Without it, they are Fashion-MNIST's if the folder
+/// name contains "fashion", otherwise numbers. Parts are `train` and `test`.
 pub struct Mnist {
     pictures: Idx<3>,
     labels: Idx<1>,
     classes: Classes,
 }
 
-/// An array of bytes that was read from an IDX file.
+/// An array of bytes from an IDX file.
 struct Idx<const AXES: usize> {
     path: PathBuf,
     shape: [usize; AXES],
@@ -51,7 +51,7 @@ impl<const AXES: usize> Idx<AXES> {
             let mut head = [0; 4];
             reader.read_exact(&mut head)?;
             if head != [0, 0, UNSIGNED_BYTES, AXES as u8] {
-                return Err(Error::format(format!("it is no IDX file of bytes with {AXES} axes")));
+                return Err(Error::format(format!("not an IDX file of bytes with {AXES} axes")));
             }
             let mut shape = [0; AXES];
             for size in &mut shape {
@@ -62,14 +62,14 @@ impl<const AXES: usize> Idx<AXES> {
             let count = shape.iter().try_fold(1usize, |count, size| count.checked_mul(*size));
             let count = count.filter(|count| *count <= MAX_BYTES).ok_or_else(|| {
                 Error::format(format!(
-                    "it promises an array of {shape:?}; {MAX_BYTES} bytes are read at most"
+                    "the header states an array of {shape:?}; the limit is {MAX_BYTES} bytes"
                 ))
             })?;
             let mut bytes = Vec::new();
             reader.take(count as u64).read_to_end(&mut bytes)?;
             if bytes.len() < count {
                 return Err(Error::format(format!(
-                    "it is cut off: {} of {count} bytes are there",
+                    "the file is truncated: it has {} of {count} bytes",
                     bytes.len()
                 )));
             }
@@ -79,7 +79,7 @@ impl<const AXES: usize> Idx<AXES> {
         Ok(Self { path, shape, bytes })
     }
 
-    /// Part `index` along the first axis.
+    /// Returns the part `index` along the first axis.
     fn part(&self, index: usize) -> Option<&[u8]> {
         let size = self.shape[1..].iter().product::<usize>();
         (index < self.shape[0]).then(|| self.bytes.get(index * size..(index + 1) * size)).flatten()
@@ -108,7 +108,7 @@ impl DatasetIterator for Mnist {
         Ok(Some(Value::Category(Category { description, ..Category::new(i64::from(*class), Some(1.0)) })))
     }
 
-    fn picture_size(&self, _: usize) -> Option<[u32; 2]> {
+    fn image_size(&self, _: usize) -> Option<[u32; 2]> {
         let [_, height, width] = self.pictures.shape;
         Some([u32::try_from(width).ok()?, u32::try_from(height).ok()?])
     }
@@ -121,31 +121,35 @@ impl DatasetIterator for Mnist {
 impl Format for Mnist {
     const NAME: &'static str = "mnist";
     const ALIASES: &'static [&'static str] = &["fashion_mnist", "kmnist", "emnist", "idx"];
-    const ABOUT: &'static str =
-        "grey pictures with classes in IDX files, as MNIST and Fashion-MNIST have them";
-    const LAYOUT: &'static str = "train-images-idx3-ubyte, train-labels-idx1-ubyte, the same with t10k for test, each also as .gz; maybe classes.txt";
+    const ABOUT: &'static str = "MNIST: grey images with classes in IDX files, as in Fashion-MNIST";
+    const LAYOUT: &'static str = "train-images-idx3-ubyte, train-labels-idx1-ubyte, the same with t10k for test, each also as .gz; optionally classes.txt";
     const TARGETS: &'static [ValueType] = &[ValueType::Category];
 
     fn recognise(path: &Path) -> Recognition {
         match PARTS.iter().any(|(_, start)| file(path, start, "images-idx3").is_some()) {
             true => Recognition::Certain,
-            false => Recognition::No("train-images-idx3-ubyte or t10k-images-idx3-ubyte, maybe .gz".into()),
+            false => {
+                Recognition::No("train-images-idx3-ubyte or t10k-images-idx3-ubyte, optionally .gz".into())
+            }
         }
     }
 
     fn open(path: &Path, options: &OpenOptions, _: &Problems) -> Result<Self> {
         if let Some(other) = options.target.filter(|target| !Self::TARGETS.contains(target)) {
-            return Err(Error::unsupported(format!("the pictures have a Category, no {}", other.name())));
+            return Err(Error::unsupported(format!(
+                "the images are read as Category, not as {}",
+                other.name()
+            )));
         }
-        let wanted = options.split.as_deref();
+        let split = options.split.as_deref();
         let mut parts =
-            PARTS.iter().filter(|(name, start)| wanted.is_none_or(|split| [*name, *start].contains(&split)));
-        let found = parts
+            PARTS.iter().filter(|(name, start)| split.is_none_or(|split| [*name, *start].contains(&split)));
+        let files = parts
             .find_map(|(_, start)| file(path, start, "images-idx3").zip(file(path, start, "labels-idx1")));
-        let (pictures, labels) = found.ok_or_else(|| {
-            let part = wanted.map(|split| format!(" of part {split:?}")).unwrap_or_default();
+        let (pictures, labels) = files.ok_or_else(|| {
+            let part = split.map(|split| format!(" of part {split:?}")).unwrap_or_default();
             Error::not_found(format!(
-                "no pictures and labels{part} in {}; it should have {}",
+                "no images and labels{part} in {}; the layout is {}",
                 path.display(),
                 Self::LAYOUT
             ))
@@ -153,7 +157,7 @@ impl Format for Mnist {
         let (pictures, labels) = (Idx::<3>::read(pictures)?, Idx::<1>::read(labels)?);
         if pictures.shape[0] != labels.shape[0] {
             let message =
-                format!("has {} pictures, but there are {} labels", pictures.shape[0], labels.shape[0]);
+                format!("has {} images, but there are {} labels", pictures.shape[0], labels.shape[0]);
             return Err(Problem::new(pictures.path, message).into());
         }
         let classes = class_names(path, labels.bytes.iter().copied().max().unwrap_or(0))?;
@@ -161,7 +165,7 @@ impl Format for Mnist {
     }
 }
 
-/// The file whose name begins with the part and goes on with `kind`.
+/// Returns the file of a part and kind.
 fn file(folder: &Path, part: &str, kind: &str) -> Option<PathBuf> {
     let names = ["-ubyte.gz", "-ubyte"].map(|end| folder.join(format!("{part}-{kind}{end}")));
     names.into_iter().find(|path| path.is_file())
@@ -179,7 +183,7 @@ fn class_names(folder: &Path, highest: u8) -> Result<Classes> {
     match classes.len() > usize::from(highest) {
         true => Ok(classes),
         false => {
-            Err(Problem::new(named, format!("names {} classes, but a label is {highest}", classes.len()))
+            Err(Problem::new(named, format!("has {} classes, but a label is {highest}", classes.len()))
                 .into())
         }
     }
@@ -211,7 +215,7 @@ mod tests {
         write(&folder, &[9, 0]);
         assert!(matches!(Mnist::recognise(&folder), Recognition::Certain));
         let dataset = Mnist::open(&folder, &OpenOptions::default(), &Problems::strict()).unwrap();
-        assert_eq!((dataset.len(), dataset.picture_size(0)), (2, Some([3, 2])));
+        assert_eq!((dataset.len(), dataset.image_size(0)), (2, Some([3, 2])));
         let Some(Value::Category(category)) = dataset.target(0).unwrap() else { panic!() };
         assert_eq!(category.description.as_deref(), Some("ankle boot"));
         let Value::Image(image) = &dataset.get(1).unwrap().data[0] else { panic!() };
@@ -221,19 +225,19 @@ mod tests {
     }
 
     #[test]
-    fn broken_files_are_told() {
+    fn broken_files_are_reported() {
         let folder = folder("broken");
         let open = || Mnist::open(&folder, &OpenOptions::default(), &Problems::strict());
         write(&folder, &[1, 2, 3]);
-        assert!(open().err().unwrap().to_string().contains("cut off"));
+        assert!(open().err().unwrap().to_string().contains("truncated"));
         write(&folder, &[1, 2]);
         fs::write(folder.join("classes.txt"), "no\nyes\n").unwrap();
         assert!(open().err().unwrap().to_string().contains("a label is 2"));
         let huge = [&[0, 0, 8, 3][..], &[255; 12]].concat();
         fs::write(folder.join("train-images-idx3-ubyte"), huge).unwrap();
-        assert!(open().err().unwrap().to_string().contains("at most"));
+        assert!(open().err().unwrap().to_string().contains("the limit is"));
         fs::write(folder.join("train-images-idx3-ubyte"), b"GIF89a").unwrap();
-        assert!(open().err().unwrap().to_string().contains("no IDX file"));
+        assert!(open().err().unwrap().to_string().contains("not an IDX file"));
         fs::remove_dir_all(folder).unwrap();
     }
 }

@@ -1,4 +1,4 @@
-//! The MOT Challenge: videos with boxes that keep their identity, and results as its tools read them.
+//! MOT Challenge: videos with tracks, and files of results.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -17,21 +17,21 @@ mod write;
 pub use row::MotRow;
 pub use sequence::MotSequence;
 
-/// Parts that have truth come first.
+/// Names of the parts, those with ground truth first.
 const PARTS: [&str; 3] = ["val", "train", "test"];
-/// Bytes of a text file that tell whether it has rows.
+/// Bytes of a text file that are read to check whether it has rows.
 const HEAD: usize = 4096;
 
-/// A data set of the MOT Challenge, of motmetrics, or a bare `gt.txt`: a sample is a picture with its objects.
+/// A data set of the MOT Challenge, of motmetrics, or a bare `gt.txt`: a sample is a frame with its objects.
 ///
-/// The samples are the pictures of one sequence after the other; the header of picture and target has the name of the
-/// sequence as frame id, and the time since its begin. The data of a sample are its picture, where there are pictures, and, read as
-/// tracks, what `det.txt` has found in it, where it has found anything in the sequence: what trackers take. In the truth, objects
-/// that are not to be considered have confidence 0; read as boxes, they are left out.
+/// The samples are the frames of one sequence after the other. The header of image and target has the name of the
+/// sequence as frame id, and the time since its start. The data of a sample are its image, if there are images,
+/// and, if the target type is tracks and the sequence has detections, the detections of `det.txt`, the input of
+/// trackers. Ignored objects have confidence 0 in the ground truth; they are dropped if the target type is boxes.
 #[derive(Debug)]
 pub struct Mot {
     sequences: Vec<MotSequence>,
-    /// Number of the first sample of each sequence.
+    /// Index of the first sample of each sequence.
     starts: Vec<usize>,
     len: usize,
     target: ValueType,
@@ -39,20 +39,20 @@ pub struct Mot {
 }
 
 impl Mot {
-    /// The videos in order.
+    /// Returns the sequences in order.
     pub fn sequences(&self) -> &[MotSequence] {
         &self.sequences
     }
 
-    /// Which sequence sample `index` is of, and which picture of it, both from 0.
-    pub fn place(&self, index: usize) -> Option<(usize, usize)> {
+    /// Returns the indices of the sequence and of the frame in it for sample `index`, both from 0.
+    pub fn sequence_and_frame(&self, index: usize) -> Option<(usize, usize)> {
         let sequence = self.starts.partition_point(|start| *start <= index).checked_sub(1)?;
         (index < self.len).then(|| (sequence, index - self.starts[sequence]))
     }
 
-    /// What `det.txt` has found in the picture of sample `index`: the input of trackers.
+    /// Returns the detections of `det.txt` for sample `index`, the input of trackers.
     pub fn detections(&self, index: usize) -> Option<BoundingBoxList> {
-        let (at, picture) = self.place(index)?;
+        let (at, picture) = self.sequence_and_frame(index)?;
         let sequence = self.sequences.get(at)?;
         let (frame, _) = sequence.frame(picture)?;
         let boxes = sequence.detections(frame).iter().map(|row| row.annotation().bounding_box);
@@ -60,13 +60,13 @@ impl Mot {
         Some(BoundingBoxList { header, classes: self.classes.clone(), ..boxes.collect::<Vec<_>>().into() })
     }
 
-    /// Sequence, picture number and picture of sample `index`.
+    /// Returns the sequence, frame number and image of sample `index`.
     fn frame(&self, index: usize) -> Result<(&MotSequence, i64, Option<&Path>)> {
-        let found = self.place(index).and_then(|(at, picture)| {
+        let frame = self.sequence_and_frame(index).and_then(|(at, picture)| {
             let sequence = self.sequences.get(at)?;
             sequence.frame(picture).map(|(frame, path)| (sequence, frame, path))
         });
-        found.ok_or_else(|| past_end(index, self.len))
+        frame.ok_or_else(|| past_end(index, self.len))
     }
 
     fn of_sequences(sequences: Vec<MotSequence>, target: ValueType) -> Self {
@@ -91,15 +91,15 @@ impl DatasetIterator for Mot {
         let image = path.map(opendr_vision::open).transpose()?;
         let image = image.map(|image| Value::Image(image.with_header(header(sequence, frame))));
         let is_tracked = self.target != ValueType::BoundingBoxList && sequence.has_detections();
-        let found = self.detections(index).filter(|_| is_tracked).map(Value::BoundingBoxList);
-        let data = image.into_iter().chain(found).collect();
+        let detections = self.detections(index).filter(|_| is_tracked).map(Value::BoundingBoxList);
+        let data = image.into_iter().chain(detections).collect();
         Ok(Sample { data, target: self.target(index)? })
     }
 
     fn target(&self, index: usize) -> Result<Option<Value>> {
         let (sequence, frame, _) = self.frame(index)?;
         let (header, classes) = (header(sequence, frame), self.classes.clone());
-        let annotations = sequence.truth(frame).iter().map(MotRow::annotation).collect();
+        let annotations = sequence.ground_truth(frame).iter().map(MotRow::annotation).collect();
         let tracks = TrackingAnnotationList { header, annotations, classes, action: None };
         Ok(Some(match self.target {
             ValueType::BoundingBoxList => {
@@ -122,12 +122,12 @@ impl DatasetIterator for Mot {
         self.frame(index).ok()?.2.map(Path::to_owned)
     }
 
-    fn picture_size(&self, index: usize) -> Option<[u32; 2]> {
-        self.sequences.get(self.place(index)?.0)?.image_size()
+    fn image_size(&self, index: usize) -> Option<[u32; 2]> {
+        self.sequences.get(self.sequence_and_frame(index)?.0)?.image_size()
     }
 
     fn sequence(&self, index: usize) -> Option<usize> {
-        self.place(index).map(|(sequence, _)| sequence)
+        self.sequence_and_frame(index).map(|(sequence, _)| sequence)
     }
 
     fn classes(&self) -> Classes {
@@ -143,8 +143,8 @@ fn header(sequence: &MotSequence, frame: i64) -> Header {
 impl Format for Mot {
     const NAME: &'static str = "mot";
     const ALIASES: &'static [&'static str] = &["mot15", "mot16", "mot17", "mot20", "motchallenge"];
-    const ABOUT: &'static str = "MOT Challenge: videos with boxes that keep their identity";
-    const LAYOUT: &'static str = "[PART/]SEQUENCE/ with img1/000001.jpg, gt/gt.txt, det/det.txt and seqinfo.ini, as far as they are there; or \
+    const ABOUT: &'static str = "MOT Challenge: videos with tracked boxes";
+    const LAYOUT: &'static str = "[PART/]SEQUENCE/ with img1/000001.jpg, gt/gt.txt, det/det.txt and seqinfo.ini, as far as they exist; or \
                                   SEQUENCE/gt.txt; or SEQUENCE.txt files";
     const TARGETS: &'static [ValueType] = &[ValueType::TrackingAnnotationList, ValueType::BoundingBoxList];
 
@@ -164,7 +164,8 @@ impl Format for Mot {
             None => ValueType::TrackingAnnotationList,
             Some(target) if Self::TARGETS.contains(&target) => target,
             Some(other) => {
-                let message = format!("MOT has tracks and boxes, no {}; ask for one of these", other.name());
+                let message =
+                    format!("MOT is read as tracks or boxes, not as {}; choose one of these", other.name());
                 return Err(Error::unsupported(message));
             }
         };
@@ -177,7 +178,7 @@ impl Format for Mot {
         };
         let sequences = sequences?;
         if sequences.is_empty() {
-            let message = format!("no sequence in {}; it should have {}", root.display(), Self::LAYOUT);
+            let message = format!("no sequence in {}; the layout is {}", root.display(), Self::LAYOUT);
             return Err(Error::not_found(message));
         }
         Ok(Self::of_sequences(sequences, target))
@@ -194,7 +195,7 @@ impl Format for Mot {
     }
 }
 
-/// Folders that may be sequences: `path`, those in it, and those in its usual parts.
+/// Returns the folders that may be sequences: `path`, its folders, and those of its usual parts.
 fn candidates(path: &Path) -> Vec<PathBuf> {
     let mut found = vec![path.to_owned()];
     let within =
@@ -208,7 +209,7 @@ fn is_sequence(folder: &Path) -> bool {
     ["gt/gt.txt", "det/det.txt", "gt.txt", "seqinfo.ini"].iter().any(|name| folder.join(name).is_file())
 }
 
-/// Texts of rows: `path` itself, or the files in it, when the first has rows.
+/// Returns text files of rows: `path` itself, or the files in it, if the first has rows.
 fn bare_files(path: &Path) -> Vec<PathBuf> {
     let files = match path.is_dir() {
         true => files_in(path, &["txt"]).into_iter().map(|name| path.join(name)).collect(),
@@ -227,34 +228,34 @@ fn bare_files(path: &Path) -> Vec<PathBuf> {
     if files.first().is_some_and(|file| has_rows(file).is_some()) { files } else { Vec::new() }
 }
 
-/// Reads a file of results, or of truth without class and visibility, as one list over all pictures.
+/// Reads a file of results, or of ground truth without class and visibility, as one list over all frames.
 ///
 /// # Errors
-/// `NotFound` or `Io` when it cannot be read; `Format` with the number of the line.
+/// `NotFound` or `Io` if it cannot be read; `Format` with the line number.
 pub fn open_mot_results(path: impl AsRef<Path>) -> Result<TrackingAnnotationList> {
     let path = path.as_ref();
     let text = read_text(path)?;
     TrackingAnnotationList::from_mot_text(&text).context(|| path.display().to_string())
 }
 
-/// Writes the tracks of one video as motmetrics and TrackEval read them: ten fields a line.
+/// Writes the tracks of one video for motmetrics and TrackEval: ten fields per line.
 ///
 /// # Errors
-/// `InvalidInput` for a track without picture number or identity, or with a number that is not finite; `Io`.
+/// `InvalidInput` for a track without frame number or identity, or with a value that is not finite; `Io`.
 pub fn write_mot_results(path: impl AsRef<Path>, tracks: &TrackingAnnotationList) -> Result<()> {
     for (index, track) in tracks.annotations.iter().enumerate() {
         let numbers = track.mot();
         if track.frame.is_none_or(|frame| frame < 1) || track.id < 0 || !numbers.iter().all(|n| n.is_finite())
         {
             return Err(Error::invalid_input(format!(
-                "track {index} is {numbers:?}; give a picture number from 1, an identity from 0 and finite numbers"
+                "track {index} is {numbers:?}; it needs a frame number from 1, an identity from 0 and finite values"
             )));
         }
     }
     write_file(path.as_ref(), tracks.mot_text().as_bytes())
 }
 
-/// Feeds every parser of lines, for the fuzzers.
+/// Runs every parser of lines, for the fuzzers.
 pub(crate) fn parse_any(text: &str) {
     let _ = sequence::SequenceInfo::parse(text, |_, _| Ok(()));
     for line in text.lines() {

@@ -1,4 +1,4 @@
-//! Arrays in NumPy's `.npy` files, read part by part: a data set of gigabytes is opened by its header alone.
+//! Arrays in NumPy's `.npy` files, read in parts: only the header is read when a file is opened.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -10,10 +10,10 @@ mod header;
 
 pub use header::{NpyHeader, NpyType};
 
-/// The largest part that is read at once: numbers of one byte become eight times as large.
+/// Largest part that is read at once, in bytes; values of one byte become eight times as large.
 const MAX_PART_BYTES: u64 = 256 << 20;
 
-/// An `.npy` file of which parts along the first axis are read on demand; several threads may do so.
+/// An `.npy` file whose parts along the first axis are read on demand, from any thread.
 #[derive(Debug, Clone)]
 pub struct NpyFile {
     path: PathBuf,
@@ -21,11 +21,11 @@ pub struct NpyFile {
 }
 
 impl NpyFile {
-    /// Reads the header of the file at `path`, and compares what it promises with the file's size.
+    /// Reads the header of the file at `path`, and compares it with the file's size.
     ///
     /// # Errors
-    /// `NotFound` or `Io` when it cannot be read; `Format` when it is no `.npy` file or is cut off; `Unsupported` for
-    /// arrays of Python objects or of structures. All name the path.
+    /// `NotFound` or `Io` if it cannot be read; `Format` if it is not an `.npy` file or truncated; `Unsupported`
+    /// for arrays of Python objects or structures. All have the path.
     pub fn open(path: impl Into<PathBuf>) -> Result<Self> {
         let path = path.into();
         let read = || -> Result<NpyHeader> {
@@ -41,25 +41,25 @@ impl NpyFile {
         Ok(Self { path, header })
     }
 
-    /// Where it lies.
+    /// Returns the path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// What it holds.
+    /// Returns the header.
     pub fn header(&self) -> &NpyHeader {
         &self.header
     }
 
-    /// Size of each axis.
+    /// Returns the size of each axis.
     pub fn shape(&self) -> &[usize] {
         self.header.shape()
     }
 
-    /// The numbers at `index` of the first axis, the other axes in order, last fastest.
+    /// Reads the values at `index` of the first axis; of the other axes, the last varies fastest.
     ///
     /// # Errors
-    /// `NotFound` past the end, `Unsupported` for Fortran order with several axes (no part lies together),
+    /// `NotFound` past the end, `Unsupported` for Fortran order with several axes (parts are not contiguous),
     /// `InvalidInput` for a part over 256 MB, `Io`.
     pub fn part(&self, index: usize) -> Result<Vec<f64>> {
         let shape = self.shape();
@@ -72,14 +72,14 @@ impl NpyFile {
         let side: usize = rest.iter().product();
         if self.header.fortran_order() && *count > 1 && side > 1 {
             return Err(Error::unsupported(format!(
-                "{} is in Fortran order; save numpy.ascontiguousarray of it",
+                "{} is in Fortran order; save it with numpy.ascontiguousarray",
                 self.path.display()
             )));
         }
         self.read(index * side, side)
     }
 
-    /// All numbers, last axis fastest.
+    /// Reads all values; the last axis varies fastest.
     ///
     /// # Errors
     /// `InvalidInput` for over 256 MB, `Io`.
@@ -91,14 +91,14 @@ impl NpyFile {
         Ok(numbers)
     }
 
-    /// `count` numbers from number `first` on, as they lie. The header has been checked, so nothing overflows.
+    /// Reads `count` values from `first` on, in the order of the file. The header is checked, so nothing overflows.
     fn read(&self, first: usize, count: usize) -> Result<Vec<f64>> {
         let width = self.header.number().bytes();
         let (offset, bytes) = ((first * width) as u64, (count * width) as u64);
         let read = || {
             if bytes > MAX_PART_BYTES {
                 return Err(Error::invalid_input(format!(
-                    "a part of {bytes} bytes; save it in pieces of at most {MAX_PART_BYTES}"
+                    "a part has {bytes} bytes; save the array in parts of at most {MAX_PART_BYTES}"
                 )));
             }
             let mut file = File::open(&self.path)?;
@@ -106,7 +106,10 @@ impl NpyFile {
             let mut data = Vec::with_capacity(bytes as usize);
             file.take(bytes).read_to_end(&mut data)?;
             if data.len() as u64 != bytes {
-                return Err(Error::format(format!("{} bytes of {bytes}; the file is cut off", data.len())));
+                return Err(Error::format(format!(
+                    "the part has {} of {bytes} bytes; the file is truncated",
+                    data.len()
+                )));
             }
             Ok(self.header.number().numbers(&data))
         };
@@ -114,7 +117,7 @@ impl NpyFile {
     }
 }
 
-/// The array in the bytes of an `.npy` file: its shape, and its numbers with the last axis fastest.
+/// Parses the bytes of an `.npy` file; returns the shape, and the values with the last axis varying fastest.
 ///
 /// # Errors
 /// As [`NpyFile::open`].
@@ -129,47 +132,44 @@ pub fn array_from_npy(bytes: &[u8]) -> Result<(Vec<usize>, Vec<f64>)> {
     Ok((header.shape().to_vec(), numbers))
 }
 
-/// The bytes of an `.npy` file (version 1.0) of 32-bit floats, last axis fastest.
+/// Returns the bytes of an `.npy` file (version 1.0) of 32-bit floats; the last axis varies fastest.
 ///
 /// # Errors
-/// `InvalidInput` when `shape` does not ask for exactly as many numbers.
+/// `InvalidInput` if `shape` does not match the number of values.
 pub fn npy_from_f32(numbers: &[f32], shape: &[usize]) -> Result<Vec<u8>> {
     let mut bytes = header_bytes("<f4", numbers.len(), shape)?;
     bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
     Ok(bytes)
 }
 
-/// The bytes of an `.npy` file (version 1.0) of 64-bit integers, last axis fastest.
+/// Returns the bytes of an `.npy` file (version 1.0) of 64-bit integers; the last axis varies fastest.
 ///
 /// # Errors
-/// `InvalidInput` when `shape` does not ask for exactly as many numbers.
+/// `InvalidInput` if `shape` does not match the number of values.
 pub fn npy_from_i64(numbers: &[i64], shape: &[usize]) -> Result<Vec<u8>> {
     let mut bytes = header_bytes("<i8", numbers.len(), shape)?;
     bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
     Ok(bytes)
 }
 
-/// Magic, version and dictionary, filled up with blanks to a multiple of 64 bytes.
+/// Returns magic, version and dictionary, padded with blanks to a multiple of 64 bytes.
 fn header_bytes(number: &str, count: usize, shape: &[usize]) -> Result<Vec<u8>> {
     if shape.iter().try_fold(1usize, |product, side| product.checked_mul(*side)) != Some(count) {
-        return Err(Error::invalid_input(format!(
-            "an array of shape {shape:?} cannot have {count} numbers; give one per place"
-        )));
+        return Err(Error::invalid_input(format!("an array of shape {shape:?} cannot have {count} values")));
     }
     let sides: String = shape.iter().map(|side| format!("{side}, ")).collect();
     let sides = if shape.len() == 1 { sides.trim_end() } else { sides.trim_end_matches(", ") };
     let text = format!("{{'descr': '{number}', 'fortran_order': False, 'shape': ({sides}), }}");
     let padded = (10 + text.len() + 1).next_multiple_of(64) - 10;
-    let length = u16::try_from(padded).map_err(|_| {
-        Error::invalid_input(format!("{} axes do not fit the header; give fewer", shape.len()))
-    })?;
+    let length = u16::try_from(padded)
+        .map_err(|_| Error::invalid_input(format!("{} axes do not fit into the header", shape.len())))?;
     let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
     bytes.extend(length.to_le_bytes());
     bytes.extend(format!("{text:<width$}\n", width = padded - 1).into_bytes());
     Ok(bytes)
 }
 
-/// The numbers of an array whose first axis ran fastest, now with the last axis fastest.
+/// Converts the values of an array from Fortran order to C order.
 pub(crate) fn c_from_fortran(numbers: &[f64], shape: &[usize]) -> Vec<f64> {
     let mut at = vec![0usize; shape.len()];
     let mut ordered = Vec::with_capacity(numbers.len());

@@ -1,41 +1,18 @@
-//! Python's pickles as far as they are data: numbers, texts, lists, dictionaries and NumPy arrays.
+//! Python's pickles of data: numbers, texts, lists, dictionaries and NumPy arrays.
 //!
-//! Nothing is run: what names any other function or class is refused. Data sets of skeletons are handed around so.
+//! Nothing is executed: a pickle that refers to any other function or class is an error. Skeleton data sets come as
+//! pickles.
 
 use std::cell::Cell;
 use std::collections::HashMap;
 
-use opendr_engine::{Error, Result};
+use opendr_engine::Result;
 
-use crate::npy::NpyType;
-
+mod item;
 mod machine;
 
+use item::{Id, Item};
 use machine::Machine;
-
-/// How deep a value may be asked for within another.
-const MAX_AXES: usize = 32;
-
-/// Number of a value of a [`Pickle`].
-type Id = usize;
-
-/// A value; those within others are told by their numbers, so that sharing and cycles cost nothing.
-#[derive(Debug, Clone)]
-enum Item {
-    None,
-    Whole(i64),
-    Float(f64),
-    Text(String),
-    Bytes(Vec<u8>),
-    List(Vec<Id>),
-    Dictionary(Vec<(Id, Id)>),
-    /// Module and name.
-    Global(String, String),
-    Type(NpyType, String),
-    Array(Vec<usize>, NpyType, bool, Vec<u8>),
-    /// An array that is still to be filled.
-    Unfilled,
-}
 
 /// The values of a pickle.
 #[derive(Debug)]
@@ -52,10 +29,10 @@ pub(crate) struct Pickled<'a> {
 }
 
 impl Pickle {
-    /// Reads the bytes of a pickle of protocol 2 to 5.
+    /// Parses a pickle of protocol 2 to 5.
     ///
     /// # Errors
-    /// `Format` with the byte for what is no pickle or is cut off; `Unsupported` for code.
+    /// `Format` with the byte offset for an invalid or truncated pickle; `Unsupported` for code.
     pub(crate) fn parse(bytes: &[u8]) -> Result<Self> {
         let mut machine = Machine {
             bytes,
@@ -70,7 +47,7 @@ impl Pickle {
         Ok(Self { items: machine.items, root })
     }
 
-    /// The whole.
+    /// Returns the outermost value.
     pub(crate) fn root(&self) -> Pickled<'_> {
         Pickled { pickle: self, id: self.root }
     }
@@ -85,20 +62,20 @@ impl<'a> Pickled<'a> {
         Self { id, ..self }
     }
 
-    /// The value of `key`.
+    /// Returns the value of `key`.
     pub(crate) fn get(self, key: &str) -> Option<Self> {
         let Item::Dictionary(entries) = self.item() else { return None };
         let found = entries.iter().rev().find(|(name, _)| self.of(*name).text() == Some(key));
         found.map(|(_, value)| self.of(*value))
     }
 
-    /// The values of a list or tuple.
+    /// Returns the values of a list or tuple.
     pub(crate) fn list(self) -> Option<Vec<Self>> {
         let Item::List(values) = self.item() else { return None };
         Some(values.iter().map(|id| self.of(*id)).collect())
     }
 
-    /// A text.
+    /// Returns a text.
     pub(crate) fn text(self) -> Option<&'a str> {
         match self.item() {
             Item::Text(text) => Some(text),
@@ -107,7 +84,7 @@ impl<'a> Pickled<'a> {
         }
     }
 
-    /// A whole number.
+    /// Returns an integer.
     pub(crate) fn whole(self) -> Option<i64> {
         match self.item() {
             Item::Whole(number) => Some(*number),
@@ -119,18 +96,13 @@ impl<'a> Pickled<'a> {
         }
     }
 
-    /// Shape and numbers of an array, last axis fastest.
+    /// Returns shape and values of an array; the last axis varies fastest.
     pub(crate) fn array(self) -> Option<(Vec<usize>, Vec<f64>)> {
         let Item::Array(shape, number, fortran_order, bytes) = self.item() else { return None };
         let numbers = number.numbers(bytes);
         let numbers = if *fortran_order { crate::npy::c_from_fortran(&numbers, shape) } else { numbers };
         Some((shape.clone(), numbers))
     }
-}
-
-#[cold]
-fn refused(what: &str) -> Error {
-    Error::unsupported(format!("the pickle names {what:.80?}, which is code; save its data as .npy"))
 }
 
 #[cfg(test)]

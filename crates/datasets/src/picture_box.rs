@@ -1,9 +1,10 @@
-//! Boxes and the borders of their picture.
+//! Check of boxes against the borders of their image.
 
-/// Whether less than half of a box (`[left, top, width, height]`, pixels) lies in a picture of `[width, height]`.
+/// Returns whether less than half of a box (`[left, top, width, height]`, pixels) lies in an image of `[width,
+/// height]`.
 ///
-/// Annotators draw objects that the border cuts off beyond it, and round; a box that is mostly elsewhere belongs to
-/// another picture, or is in other units. Unknown sizes (0) and empty boxes at the border pass.
+/// Annotated boxes may exceed the border a little, by rounding or for truncated objects. A box that is mostly
+/// outside belongs to another image or has other units. Unknown sizes (0) and empty boxes at the border pass.
 pub(crate) fn leaves_picture([left, top, width, height]: [f32; 4], size: [u32; 2]) -> bool {
     if size.contains(&0) {
         return false;
@@ -24,7 +25,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn boxes_may_stick_out_but_not_be_elsewhere() {
+    fn boxes_may_exceed_the_border_but_not_lie_outside() {
         let leaves = |bbox| leaves_picture(bbox, [640, 480]);
         assert!(!leaves([0.0, 0.0, 640.5, 480.5]));
         assert!(!leaves([-40.0, 10.0, 100.0, 100.0]));

@@ -1,4 +1,4 @@
-//! Picture files of a data set: read, and taken over into another one.
+//! Image files of a data set: reading, and copying into another data set.
 
 use std::fs::{self, File};
 use std::io;
@@ -13,27 +13,26 @@ use opendr_vision::Decoder;
 use crate::folder::{PICTURES, has_extension};
 use crate::{Problem, Problems, WriteOptions};
 
-/// Whether a file is a picture, by its ending.
+/// Returns whether a file is an image, by its extension.
 pub(crate) fn is_picture(path: &Path) -> bool {
     has_extension(&path.to_string_lossy(), PICTURES)
 }
 
-/// Reads the picture at `path`, which annotations say is of `size` (0 when they do not).
+/// Reads the image at `path` and checks it against the size in the annotations (0 if unknown).
 pub(crate) fn open_picture(path: &Path, size: [u32; 2]) -> Result<Image> {
     let image = opendr_vision::open(path)?;
-    let found = [image.width() as u32, image.height() as u32];
-    if !size.contains(&0) && found != size {
-        let ([width, height], [wanted, high]) = (found, size);
+    let actual = [image.width() as u32, image.height() as u32];
+    if !size.contains(&0) && actual != size {
+        let ([width, height], [annotated_width, annotated_height]) = (actual, size);
         let path = path.display();
         return Err(Error::format(format!(
-            "{path} is of {width}x{height} pixels, its annotation is for {wanted}x{high}"
+            "{path} has {width}x{height} pixels, its annotation is for {annotated_width}x{annotated_height}"
         )));
     }
     Ok(image)
 }
 
-/// The samples of `dataset` that can be written: `each` is given one after the other; what fails is reported, and left
-/// out.
+/// Calls `each` with the samples of `dataset` to write them; samples that fail are reported and skipped.
 pub(crate) fn write_each(
     dataset: &dyn DatasetIterator,
     problems: &Problems,
@@ -52,24 +51,26 @@ pub(crate) fn write_each(
     written
 }
 
-/// A part's name as a folder.
+/// Returns the name of the part, checked to be a folder name.
 pub(crate) fn split_name(options: &WriteOptions) -> Result<&str> {
     let split = options.split.as_deref().unwrap_or("train");
     if split.contains('/') || member_path(split).is_err() {
-        return Err(Error::invalid_param(format!("{split:?} is no name of a part; use one like \"train\"")));
+        return Err(Error::invalid_param(format!(
+            "{split:?} is not a valid name of a part; use one like \"train\""
+        )));
     }
     Ok(split)
 }
 
-/// A picture in its new place.
+/// An image written into a data set.
 pub(crate) struct Placed {
-    /// Name in its folder.
+    /// File name in its folder.
     pub name: String,
     /// Width and height in pixels.
     pub size: [u32; 2],
 }
 
-/// Takes the pictures of a data set over into a folder.
+/// Copies the images of a data set into a folder.
 pub(crate) struct PictureWriter<'a> {
     dataset: &'a dyn DatasetIterator,
     folder: PathBuf,
@@ -77,26 +78,26 @@ pub(crate) struct PictureWriter<'a> {
 }
 
 impl<'a> PictureWriter<'a> {
-    /// Into `folder`, which is made.
+    /// Creates `folder`.
     pub fn new(dataset: &'a dyn DatasetIterator, folder: PathBuf, options: &WriteOptions) -> Result<Self> {
         fs::create_dir_all(&folder).context(|| format!("making {}", folder.display()))?;
         Ok(Self { dataset, folder, link: options.link })
     }
 
-    /// Copies or links the file of a sample; encodes its picture when it has none.
+    /// Copies or links the file of a sample; without a file, encodes its image.
     ///
     /// # Errors
-    /// When the picture cannot be had, or a file of its name is there already.
+    /// If the image cannot be read, or a file of its name exists.
     pub fn place(&self, index: usize) -> Result<Placed> {
         match self.dataset.path(index).filter(|path| is_picture(path)) {
             Some(source) => {
-                let size = match self.dataset.picture_size(index) {
+                let size = match self.dataset.image_size(index) {
                     Some(size) => size,
                     None => Decoder::default().size(&source)?,
                 };
                 let name = self.name(index, source.extension().and_then(|end| end.to_str()).unwrap_or("jpg"));
                 let target = self.folder.join(&name);
-                self.take_over(&source, &target).context(|| format!("writing {}", target.display()))?;
+                self.copy_or_link(&source, &target).context(|| format!("writing {}", target.display()))?;
                 Ok(Placed { name, size })
             }
             None => self.encode(index),
@@ -109,13 +110,13 @@ impl<'a> PictureWriter<'a> {
             Value::Image(image) => Some(image),
             _ => None,
         });
-        let image = image.ok_or_else(|| Error::invalid_input("the sample has no picture"))?;
+        let image = image.ok_or_else(|| Error::invalid_input("the sample has no image"))?;
         let name = self.name(index, "png");
         opendr_vision::save(image, self.folder.join(&name))?;
         Ok(Placed { name, size: [image.width() as u32, image.height() as u32] })
     }
 
-    /// The sample's name, flat: `"a/b.jpg"` becomes `"a_b.jpg"`.
+    /// Returns the name of the sample without folders: `"a/b.jpg"` becomes `"a_b.jpg"`.
     fn name(&self, index: usize, extension: &str) -> String {
         let name = self.dataset.name(index);
         let path = Path::new(&name);
@@ -128,15 +129,15 @@ impl<'a> PictureWriter<'a> {
         format!("{}.{extension}", if flat.is_empty() { index.to_string() } else { flat })
     }
 
-    fn take_over(&self, source: &Path, target: &Path) -> Result<()> {
-        // A link to a link would break when the first is moved.
+    fn copy_or_link(&self, source: &Path, target: &Path) -> Result<()> {
+        // A link to a link would break if the first is moved.
         let source = fs::canonicalize(source).context(|| format!("opening {}", source.display()))?;
         if self.link && fs::hard_link(&source, target).is_ok() {
             return Ok(());
         }
         let mut from = File::open(&source)?;
         if target.exists() {
-            return Err(Error::io("there is such a file already; write into an empty folder"));
+            return Err(Error::io("the file exists already; write into an empty folder"));
         }
         let copied = File::create_new(target).and_then(|mut to| io::copy(&mut from, &mut to));
         copied.map(drop).map_err(Error::from)

@@ -1,4 +1,4 @@
-//! Pictures without annotations, for a teacher to make them.
+//! Images without annotations, e.g. for distillation, in which a teacher labels them.
 
 use std::path::{Path, PathBuf};
 
@@ -7,33 +7,33 @@ use opendr_engine::{Error, Result, Value};
 
 use crate::folder::{PICTURES, files_in, folders_in, past_end};
 
-/// Folders in folders that are looked into.
+/// Largest depth of nested folders.
 const MAX_DEPTH: usize = 8;
 
-/// The pictures in a folder and the folders in it, in the order of their names, without targets.
+/// The images in a folder and in the folders inside it, sorted by name, without targets.
 #[derive(Debug, Clone)]
-pub struct Pictures {
+pub struct UnlabelledImages {
     root: PathBuf,
-    /// Relative to the root.
+    /// File names relative to the root.
     names: Vec<String>,
 }
 
-impl Pictures {
-    /// Whether there are any in `path`.
+impl UnlabelledImages {
+    /// Returns whether `path` contains images.
     pub fn are_in(path: &Path) -> bool {
         path.is_dir() && Self::open(path).is_ok()
     }
 
-    /// Those in the folder `path`.
+    /// Opens the folder `path`.
     ///
     /// # Errors
-    /// `NotFound` when there are none.
+    /// `NotFound` if it contains no images.
     pub fn open(path: &Path) -> Result<Self> {
         let mut names = Vec::new();
         collect(path, "", 0, &mut names);
         if names.is_empty() {
             let (path, kinds) = (path.display(), PICTURES.join(", "));
-            return Err(Error::not_found(format!("there are no pictures ({kinds}) in {path}")));
+            return Err(Error::not_found(format!("no images ({kinds}) in {path}")));
         }
         Ok(Self { root: path.to_owned(), names })
     }
@@ -41,7 +41,7 @@ impl Pictures {
 
 fn collect(folder: &Path, prefix: &str, depth: usize, names: &mut Vec<String>) {
     names.extend(files_in(folder, PICTURES).into_iter().map(|name| format!("{prefix}{name}")));
-    // A link may lead back.
+    // A symbolic link may form a cycle.
     if depth < MAX_DEPTH {
         for name in folders_in(folder) {
             collect(&folder.join(&name), &format!("{prefix}{name}/"), depth + 1, names);
@@ -49,9 +49,9 @@ fn collect(folder: &Path, prefix: &str, depth: usize, names: &mut Vec<String>) {
     }
 }
 
-impl Dataset for Pictures {}
+impl Dataset for UnlabelledImages {}
 
-impl DatasetIterator for Pictures {
+impl DatasetIterator for UnlabelledImages {
     fn len(&self) -> usize {
         self.names.len()
     }
@@ -80,14 +80,14 @@ mod tests {
     use crate::folder::TemporaryFolder;
 
     #[test]
-    fn pictures_of_all_folders_in_order() {
+    fn images_of_all_folders_are_in_order() {
         let folder = TemporaryFolder::new();
-        assert!(!Pictures::are_in(folder.path()));
+        assert!(!UnlabelledImages::are_in(folder.path()));
         for name in ["b.png", "a/2.png", "a/1.bmp"] {
             folder.picture(name, 3, 2);
         }
         std::fs::write(folder.path().join("notes.txt"), "").unwrap();
-        let pictures = Pictures::open(folder.path()).unwrap();
+        let pictures = UnlabelledImages::open(folder.path()).unwrap();
         assert_eq!((0..3).map(|at| pictures.name(at)).collect::<Vec<_>>(), ["b.png", "a/1.bmp", "a/2.png"]);
         assert!(matches!(&pictures.get(2).unwrap().data[..], [Value::Image(image)] if image.width() == 3));
         assert!(pictures.get(3).is_err());

@@ -1,4 +1,4 @@
-//! What is broken in a data set, and where.
+//! Problems of a data set with their location.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -8,62 +8,63 @@ use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::{Error, Result};
 use serde::{Deserialize, Serialize};
 
-/// Problems that are kept word by word; more are counted.
-const MOST_KEPT: usize = 10_000;
+/// Largest number of problems that are kept; further ones are only counted.
+const MAX_KEPT: usize = 10_000;
 
-/// Where in a file.
+/// Location in a file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Place {
-    /// Line, from 1.
+pub enum Location {
+    /// Line number, from 1.
     Line(u64),
-    /// Byte, from 0.
+    /// Byte offset, from 0.
     Byte(u64),
-    /// A key of JSON or XML, a field, the number of an annotation.
+    /// Key of JSON or XML, a field, or the index of an annotation.
     Key(String),
 }
 
-/// One broken thing.
+/// A problem of a data set.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Problem {
-    /// The file it is in.
+    /// File of the problem.
     pub file: PathBuf,
-    /// Where in the file.
+    /// Location in the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub place: Option<Place>,
-    /// What is wrong, the values, what to do.
+    #[serde(alias = "place")]
+    pub location: Option<Location>,
+    /// Description with the values, and what to do.
     pub message: String,
 }
 
 impl Problem {
-    /// A problem of a whole file.
+    /// Creates a problem of a whole file.
     pub fn new(file: impl Into<PathBuf>, message: impl Into<String>) -> Self {
-        Self { file: file.into(), place: None, message: message.into() }
+        Self { file: file.into(), location: None, message: message.into() }
     }
 
-    /// The problem that an error tells of; an error that names no place is one of the file of sample number `at`.
+    /// Converts an error to a problem; an error without a location is a problem of the file of sample `at`.
     pub fn of(error: &Error, dataset: &dyn DatasetIterator, at: usize) -> Self {
         let source = std::error::Error::source(error).and_then(|source| source.downcast_ref::<Self>());
         source.cloned().unwrap_or_else(|| Self::new(file_of(dataset, at), error.to_string()))
     }
 
-    /// A problem of one line, from 1.
+    /// Creates a problem of a line, from 1.
     pub fn at_line(file: impl Into<PathBuf>, line: u64, message: impl Into<String>) -> Self {
-        Self { place: Some(Place::Line(line)), ..Self::new(file, message) }
+        Self { location: Some(Location::Line(line)), ..Self::new(file, message) }
     }
 
-    /// A problem at one byte, from 0.
+    /// Creates a problem at a byte offset, from 0.
     pub fn at_byte(file: impl Into<PathBuf>, byte: u64, message: impl Into<String>) -> Self {
-        Self { place: Some(Place::Byte(byte)), ..Self::new(file, message) }
+        Self { location: Some(Location::Byte(byte)), ..Self::new(file, message) }
     }
 
-    /// A problem of one key or field.
+    /// Creates a problem of a key or field.
     pub fn at_key(file: impl Into<PathBuf>, key: impl Into<String>, message: impl Into<String>) -> Self {
-        Self { place: Some(Place::Key(key.into())), ..Self::new(file, message) }
+        Self { location: Some(Location::Key(key.into())), ..Self::new(file, message) }
     }
 }
 
-/// The file of a sample, or what the data set calls the sample.
+/// Returns the file of a sample, or the name of the sample.
 pub(crate) fn file_of(dataset: &dyn DatasetIterator, at: usize) -> PathBuf {
     dataset.path(at).unwrap_or_else(|| dataset.name(at).into())
 }
@@ -71,10 +72,10 @@ pub(crate) fn file_of(dataset: &dyn DatasetIterator, at: usize) -> PathBuf {
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.file.display())?;
-        match &self.place {
-            Some(Place::Line(line)) => write!(f, ":{line}")?,
-            Some(Place::Byte(byte)) => write!(f, " at byte {byte}")?,
-            Some(Place::Key(key)) => write!(f, " at {key}")?,
+        match &self.location {
+            Some(Location::Line(line)) => write!(f, ":{line}")?,
+            Some(Location::Byte(byte)) => write!(f, " at byte {byte}")?,
+            Some(Location::Key(key)) => write!(f, " at {key}")?,
             None => {}
         }
         write!(f, ": {}", self.message)
@@ -83,14 +84,14 @@ impl fmt::Display for Problem {
 
 impl std::error::Error for Problem {}
 
-/// With the problem as its source, so that [`Problem::of`] finds it again.
+/// The problem is the source of the error, so that [`Problem::of`] can return it.
 impl From<Problem> for Error {
     fn from(problem: Problem) -> Self {
         Self::format(problem.to_string()).with_source(problem)
     }
 }
 
-/// Collects what is broken; or lets the first end the work.
+/// Collects problems, or fails with the first one.
 #[derive(Debug, Default)]
 pub struct Problems {
     skip: bool,
@@ -98,43 +99,43 @@ pub struct Problems {
 }
 
 impl Problems {
-    /// The first problem is an error.
+    /// Makes the first problem an error.
     pub fn strict() -> Self {
         Self::default()
     }
 
-    /// What is broken is left out, counted and listed.
+    /// Skips broken parts, which are counted and listed.
     pub fn skipping() -> Self {
         Self { skip: true, ..Self::default() }
     }
 
-    /// Whether what is broken is left out.
+    /// Returns whether broken parts are skipped.
     pub fn skips(&self) -> bool {
         self.skip
     }
 
-    /// Notes a problem; the caller leaves the broken thing out and goes on, unless this is an error.
+    /// Reports a problem; the caller skips the broken part and continues, unless this fails.
     ///
     /// # Errors
-    /// The problem, in strict mode.
+    /// The problem in strict mode.
     pub fn report(&self, problem: Problem) -> Result<()> {
         if !self.skip {
             return Err(problem.into());
         }
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         kept.1 += 1;
-        if kept.0.len() < MOST_KEPT {
+        if kept.0.len() < MAX_KEPT {
             kept.0.push(problem);
         }
         Ok(())
     }
 
-    /// How many there were.
+    /// Returns the number of problems.
     pub fn count(&self) -> u64 {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner).1
     }
 
-    /// Those that were kept word by word: the first ten thousand.
+    /// Returns the first ten thousand problems.
     pub fn list(&self) -> Vec<Problem> {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner).0.clone()
     }
@@ -152,9 +153,9 @@ mod tests {
         assert_eq!(source.downcast_ref::<Problem>(), Some(&problem()));
         assert_eq!(error.to_string(), "gt.txt:7: 10 columns, not 9");
         let problems = Problems::skipping();
-        for _ in 0..MOST_KEPT + 5 {
+        for _ in 0..MAX_KEPT + 5 {
             problems.report(problem()).unwrap();
         }
-        assert_eq!((problems.count(), problems.list().len()), (MOST_KEPT as u64 + 5, MOST_KEPT));
+        assert_eq!((problems.count(), problems.list().len()), (MAX_KEPT as u64 + 5, MAX_KEPT));
     }
 }

@@ -1,4 +1,4 @@
-//! Recordings of robots with annotations among their topics: rosbag 1, rosbag 2, MCAP.
+//! Recordings of robots (rosbag 1, rosbag 2, MCAP) with a topic of annotations, as data sets.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -12,11 +12,11 @@ use opendr_recordings::{Recording, Selection, Topic, is_recording, stamp_of, val
 use crate::folder::past_end;
 use crate::{Format, OpenOptions, Problem, Problems, Recognition};
 
-/// How far the stamps of a datum and its annotation may lie apart, as in nodes.
+/// Largest difference between the stamps of a datum and its annotation in nanoseconds; the value of the ROS node.
 const SLOP_NS: i64 = 20_000_000;
 
-/// A recording: a sample is a message of the annotations' topic and the datum with the nearest stamp within 20 ms. What
-/// nobody annotated is no sample.
+/// A recording: a sample is a message of the annotation topic and the datum with the nearest stamp within 20 ms.
+/// Data without annotation are not samples.
 #[derive(Debug)]
 pub struct AnnotatedRecording {
     recording: Recording,
@@ -32,16 +32,16 @@ struct Pair {
     truth: At,
 }
 
-/// Where a message is in its topic.
+/// Location of a message in its topic.
 #[derive(Debug, Clone, Copy)]
 struct At {
     stamp_ns: i64,
     log_time_ns: i64,
-    /// Among those of the same log time.
+    /// Index among the messages of the same log time.
     nth: u32,
 }
 
-/// What a target is usually found in, the likeliest first.
+/// Returns the data types for a target type, the most likely first.
 fn data_types(target: ValueType) -> &'static [ValueType] {
     match target {
         ValueType::BoundingBox3DList | ValueType::TrackingAnnotation3DList => {
@@ -54,7 +54,7 @@ fn data_types(target: ValueType) -> &'static [ValueType] {
     }
 }
 
-/// The topic for one of `types`: the one that is named and fits, else the only one that fits.
+/// Returns the topic for one of `types`: a named topic of a fitting type, otherwise the only fitting one.
 fn topic_of(recording: &Recording, types: &[ValueType], named: &[&str]) -> Result<(Topic, ValueType)> {
     let mut first_error = None;
     for value_type in types {
@@ -64,8 +64,9 @@ fn topic_of(recording: &Recording, types: &[ValueType], named: &[&str]) -> Resul
             Err(error) => first_error = first_error.or(Some(error)),
         }
     }
-    let error = first_error.unwrap_or_else(|| Error::internal("no type is wanted"));
-    Err(error.context("the part to read (--split TOPIC,TOPIC) names the topics of data and annotations"))
+    let error = first_error.unwrap_or_else(|| Error::internal("no type is given"));
+    Err(error
+        .context("select the topics of data and annotations with the part to read (--split TOPIC,TOPIC)"))
 }
 
 impl AnnotatedRecording {
@@ -100,10 +101,11 @@ impl AnnotatedRecording {
     fn message(&self, topic: &Topic, at: At) -> Result<Message> {
         let time = Some(at.log_time_ns);
         let selection = Selection { start_ns: time, end_ns: time, ..Selection::topics([&topic.name]) };
-        let found = self.recording.bag().select(&selection)?.nth(at.nth as usize);
-        let found =
-            found.ok_or_else(|| Error::format("a message that was there is not there any more"))??;
-        self.recording.decode(&found)
+        let message = self.recording.bag().select(&selection)?.nth(at.nth as usize);
+        let message = message.ok_or_else(|| {
+            Error::format("a message is missing: the file was modified while it was in use")
+        })??;
+        self.recording.decode(&message)
     }
 
     fn value(&self, (topic, value_type): &(Topic, ValueType), at: At) -> Result<Value> {
@@ -118,7 +120,8 @@ impl AnnotatedRecording {
         self.samples.get(index).copied().ok_or_else(|| past_end(index, self.samples.len()))
     }
 
-    /// What the only message about class numbers says, and labels of annotations besides, in order.
+    /// Returns the class names of the only LabelInfo message, followed by the labels of annotations that it lacks,
+    /// sorted.
     fn find_classes(&self) -> Result<Classes> {
         let mut names = Vec::new();
         let topics = self.recording.topics();
@@ -140,7 +143,7 @@ impl AnnotatedRecording {
         }
         let mut labels = BTreeSet::new();
         for pair in &self.samples {
-            // What cannot be read is told when it is asked for.
+            // Errors of reading are reported when the sample is read.
             match self.value(&self.truth, pair.truth) {
                 Ok(mut value) => for_each_name(&mut value, |name| {
                     if let Name::Label(label) = name {
@@ -155,7 +158,7 @@ impl AnnotatedRecording {
     }
 }
 
-/// Shows every class name in a target.
+/// Calls `each` with every class name of a target.
 fn for_each_name(value: &mut Value, mut each: impl FnMut(&mut Name)) {
     match value {
         Value::BoundingBoxList(list) => list.boxes.iter_mut().for_each(|one| each(&mut one.name)),
@@ -207,7 +210,7 @@ impl DatasetIterator for AnnotatedRecording {
         Ok(Some(value))
     }
 
-    /// The datum's stamp, nanoseconds.
+    /// Returns the stamp of the datum in nanoseconds.
     fn name(&self, index: usize) -> String {
         self.pair(index).map_or_else(|_| index.to_string(), |pair| pair.data.stamp_ns.to_string())
     }
@@ -228,8 +231,8 @@ impl DatasetIterator for AnnotatedRecording {
 impl Format for AnnotatedRecording {
     const NAME: &'static str = "recording";
     const ALIASES: &'static [&'static str] = &["rosbag", "rosbag2", "mcap"];
-    const ABOUT: &'static str = "recordings of robots with annotations among their topics";
-    const LAYOUT: &'static str = "a .bag, .mcap or .db3 file, or a folder with metadata.yaml; annotations as vision_msgs Detection2DArray, Detection3DArray or Classification, or opendr_msgs Pose2DArray, stamped as what they annotate; where several topics fit, a part is TOPIC,TOPIC";
+    const ABOUT: &'static str = "recordings of robots with a topic of annotations";
+    const LAYOUT: &'static str = "a .bag, .mcap or .db3 file, or a folder with metadata.yaml; annotations as vision_msgs Detection2DArray, Detection3DArray or Classification, or opendr_msgs Pose2DArray, with the stamps of their data; if several topics fit, a part is TOPIC,TOPIC";
     const TARGETS: &'static [ValueType] = &[
         ValueType::BoundingBoxList,
         ValueType::TrackingAnnotationList,
@@ -249,23 +252,23 @@ impl Format for AnnotatedRecording {
     fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         let recording = Recording::open(path)?;
         let named: Vec<&str> = options.split.iter().flat_map(|split| split.split(',')).collect();
-        let wanted = options.target.as_ref().map_or(Self::TARGETS, std::slice::from_ref);
-        let truth = topic_of(&recording, wanted, &named)?;
+        let types = options.target.as_ref().map_or(Self::TARGETS, std::slice::from_ref);
+        let truth = topic_of(&recording, types, &named)?;
         let data = topic_of(&recording, data_types(truth.1), &named)?;
-        let chosen = |name: &&&str| {
+        let is_unused = |name: &&&str| {
             [&data.0, &truth.0]
                 .iter()
                 .all(|topic| topic.name.trim_start_matches('/') != name.trim_start_matches('/'))
         };
-        if let Some(name) = named.iter().find(chosen) {
-            // Its own words say why.
+        if let Some(name) = named.iter().find(is_unused) {
+            // The error of `topic_for` states the reason.
             recording.topic_for(truth.1, Some(name))?;
             return Err(Error::invalid_param(format!(
-                "{name:?} is one topic too many: name one of data and one of annotations"
+                "{name:?} is one topic too many: select one of data and one of annotations"
             )));
         }
         if !recording.bag().is_complete() {
-            let message = "was cut off or is damaged; it is read as far as it goes";
+            let message = "is truncated or damaged; its readable part is used";
             problems.report(Problem::new(path, message))?;
         }
         let classes = Classes::default();
@@ -276,12 +279,12 @@ impl Format for AnnotatedRecording {
             let after = data.partition_point(|at| at.stamp_ns < truth.stamp_ns);
             let near =
                 [after.checked_sub(1), Some(after)].into_iter().flatten().filter_map(|at| data.get(at));
-            let apart = |at: &&At| at.stamp_ns.saturating_sub(truth.stamp_ns).saturating_abs();
-            if let Some(nearest) = near.min_by_key(apart).filter(|at| apart(at) <= SLOP_NS) {
+            let distance = |at: &&At| at.stamp_ns.saturating_sub(truth.stamp_ns).saturating_abs();
+            if let Some(nearest) = near.min_by_key(distance).filter(|at| distance(at) <= SLOP_NS) {
                 opened.samples.push(Pair { data: *nearest, truth });
             } else {
                 let message = Error::invalid_input(format!(
-                    "{} has nothing within 20 ms of its stamp",
+                    "{} has no message within 20 ms of the stamp",
                     opened.data.0.name
                 ));
                 opened.problem(&opened.truth.0, truth.log_time_ns, &message, problems)?;

@@ -1,4 +1,4 @@
-//! Which formats there are: one line each.
+//! The list of formats.
 
 use std::path::Path;
 
@@ -7,12 +7,12 @@ use opendr_engine::{Error, Result};
 
 use crate::{FormatEntry, OpenOptions, Problems, Recognition};
 
-/// Every format; of several that may be meant, the first is taken.
+/// Returns all formats. If several recognise a path, the first one is used.
 pub const fn formats() -> &'static [FormatEntry] {
     FORMATS
 }
 
-#[rustfmt::skip] // One line a format.
+#[rustfmt::skip] // One line per format.
 const FORMATS: &[FormatEntry] = &[
     FormatEntry::of::<crate::CocoPanoptic>(),
     FormatEntry::of::<crate::CocoInfrared>(),
@@ -38,25 +38,25 @@ const FORMATS: &[FormatEntry] = &[
     #[cfg(feature = "recordings")] FormatEntry::of::<crate::AnnotatedRecording>(),
 ];
 
-/// The format called `name`, by its name or another that is used for it; upper and lower case are the same.
+/// Returns the format `name`, by its name or an alias, in upper or lower case.
 ///
 /// # Errors
-/// `NotFound`, with the names that there are.
-pub fn find(name: &str) -> Result<&'static FormatEntry> {
+/// `NotFound`, with the list of names.
+pub fn find_format(name: &str) -> Result<&'static FormatEntry> {
     let name = name.to_lowercase();
     formats().iter().find(|entry| entry.name == name || entry.aliases.contains(&&*name)).ok_or_else(|| {
         let names: Vec<_> = formats().iter().map(|entry| entry.name).collect();
-        Error::not_found(format!("no data set format {name:?}; there are {}", names.join(", ")))
+        Error::not_found(format!("no data set format {name:?}; choose one of {}", names.join(", ")))
     })
 }
 
-/// The format of the data set at `path`.
+/// Recognises the format of the data set at `path`.
 ///
 /// # Errors
-/// `NotFound` when there is nothing; `InvalidInput` when it is of no format, with what each misses.
+/// `NotFound` if the path does not exist; `InvalidInput` if no format recognises it, with what each of them misses.
 pub fn recognise(path: &Path) -> Result<&'static FormatEntry> {
     if !path.exists() {
-        return Err(Error::not_found(format!("there is no data set at {}", path.display())));
+        return Err(Error::not_found(format!("no data set at {}: the path does not exist", path.display())));
     }
     let (mut possible, mut missing) = (None, String::new());
     for entry in formats() {
@@ -69,23 +69,23 @@ pub fn recognise(path: &Path) -> Result<&'static FormatEntry> {
     possible.ok_or_else(|| {
         let path = path.display();
         Error::invalid_input(format!(
-            "{path} is no data set of a known format; name the format if it should be one. Missing for{missing}"
+            "{path} is not a data set of a known format; name the format if it should be one. Missing for{missing}"
         ))
     })
 }
 
-/// The format of a data set: the one that it names or, for `""` and `"auto"`, what is recognised.
+/// Returns the format of a data set: the named one or, for `""` and `"auto"`, the recognised one.
 ///
 /// # Errors
-/// As [`find`] and [`recognise`].
+/// As [`find_format`] and [`recognise`].
 pub fn format_of(dataset: &ExternalDataset) -> Result<&'static FormatEntry> {
     match dataset.dataset_type() {
         "" | "auto" => recognise(dataset.path()),
-        name => find(name),
+        name => find_format(name),
     }
 }
 
-/// Opens a data set of the format that [`format_of`] tells.
+/// Opens a data set with the format of [`format_of`].
 ///
 /// # Errors
 /// As [`format_of`] and [`Format::open`](crate::Format::open).

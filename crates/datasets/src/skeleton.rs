@@ -1,8 +1,7 @@
-//! Moving skeletons: NTU RGB+D's text files, NumPy arrays, and pickles of JHMDB and MMAction2.
+//! Skeleton sequences: NTU RGB+D's text files, NumPy arrays, and pickles of JHMDB and MMAction2.
 
 use std::path::{Path, PathBuf};
 
-use opendr_engine::data::SkeletonSequence;
 use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Error, Progress, Result, ResultExt, Value, ValueType};
@@ -13,16 +12,17 @@ use crate::{Format, NpyFile, OpenOptions, Problems, Recognition, WriteOptions};
 mod arrays;
 mod ntu;
 mod pickled;
+mod sequence;
 mod write;
 
 pub use ntu::{NtuFile, open_ntu, skeleton_from_ntu};
 
 use pickled::PickledPoses;
 
-/// Moving skeletons with the action that they show: a sample is one recording, `[1, channels, frames, joints, persons]`.
+/// Skeleton sequences with their action: a sample is one recording, `[1, channels, frames, joints, persons]`.
 ///
-/// NTU RGB+D has metres and two persons, filled up with zeros; its parts are `xsub_train`, `xsub_val`, `xview_train` and
-/// `xview_val`. Of arrays the parts are the names before `_data.npy`, of pickles those before `.pkl`.
+/// NTU RGB+D has metres and two persons, padded with zeros; its parts are `xsub_train`, `xsub_val`, `xview_train`
+/// and `xview_val`. The parts of arrays are the names before `_data.npy`, of pickles those before `.pkl`.
 #[derive(Debug)]
 pub struct Skeletons {
     source: Source,
@@ -31,11 +31,11 @@ pub struct Skeletons {
 
 #[derive(Debug)]
 enum Source {
-    /// Of NTU RGB+D, one by one.
+    /// Files of NTU RGB+D.
     Ntu(Vec<NtuFile>),
-    /// `[samples, channels, frames, joints, persons]` and the classes.
+    /// An array `[samples, channels, frames, joints, persons]` and the classes.
     Arrays(NpyFile, Vec<i64>),
-    /// All in one pickle.
+    /// All samples in one pickle.
     Pickle(PathBuf, PickledPoses),
 }
 
@@ -104,7 +104,7 @@ impl DatasetIterator for Skeletons {
 impl Format for Skeletons {
     const NAME: &'static str = "skeleton";
     const ALIASES: &'static [&'static str] = &["nturgbd", "ntu", "kinetics_skeleton", "jhmdb"];
-    const ABOUT: &'static str = "moving skeletons: NTU RGB+D, NumPy arrays, pickles of JHMDB and MMAction2";
+    const ABOUT: &'static str = "skeleton sequences: NTU RGB+D, NumPy arrays, pickles of JHMDB and MMAction2";
     const LAYOUT: &'static str = "S001C001P001R001A001.skeleton files; or PART_data.npy [samples, channels, frames, joints, persons] \
                                   with PART_label.npy or PART_label.pkl; or a .pkl file of poses; label_map.txt may name the classes";
     const TARGETS: &'static [ValueType] = &[ValueType::Category];
@@ -123,7 +123,7 @@ impl Format for Skeletons {
 
     fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         if let Some(other) = options.target.filter(|target| !Self::TARGETS.contains(target)) {
-            let message = format!("skeletons have a Category, no {}", other.name());
+            let message = format!("skeletons are read as Category, not as {}", other.name());
             return Err(Error::unsupported(message));
         }
         let names = class_names(path);
@@ -133,20 +133,20 @@ impl Format for Skeletons {
             let files = ntu::part(path, files, split, problems)?;
             return Ok(Self { source: Source::Ntu(files), classes: names.unwrap_or_else(ntu::classes) });
         }
-        if let Some(part) = chosen(&arrays::parts(path), split)? {
+        if let Some(part) = select_part(&arrays::parts(path), split)? {
             let (file, labels) = arrays::open(path, &part, names.as_ref().map(Classes::len), problems)?;
             return Ok(Self { source: Source::Arrays(file, labels), classes: names.unwrap_or_default() });
         }
-        if let Some(part) = chosen(&pickled::parts(path), split)? {
+        if let Some(part) = select_part(&pickled::parts(path), split)? {
             let file = if path.is_dir() { path.join(format!("{part}.pkl")) } else { path.to_owned() };
-            let (poses, found) = PickledPoses::open(&file, names.as_ref())?;
+            let (poses, own_classes) = PickledPoses::open(&file, names.as_ref())?;
             return Ok(Self {
                 source: Source::Pickle(file, poses),
-                classes: if found.is_empty() { names.unwrap_or_default() } else { found },
+                classes: if own_classes.is_empty() { names.unwrap_or_default() } else { own_classes },
             });
         }
         let (path, layout) = (path.display(), Self::LAYOUT);
-        Err(Error::not_found(format!("no skeletons in {path}; they should be {layout}")))
+        Err(Error::not_found(format!("no skeletons in {path}; the layout is {layout}")))
     }
 
     fn write(
@@ -160,37 +160,29 @@ impl Format for Skeletons {
     }
 }
 
-/// The part asked for, or the one that is there of val, test, train; `None` when there is no part at all.
-fn chosen(parts: &[String], wanted: Option<&str>) -> Result<Option<String>> {
+/// Returns the selected part, or the first existing one of val, test, train; `None` if there are no parts.
+fn select_part(parts: &[String], selected: Option<&str>) -> Result<Option<String>> {
     let Some(first) = parts.first() else { return Ok(None) };
-    let Some(wanted) = wanted else {
+    let Some(selected) = selected else {
         let usual =
             ["val", "test", "train"].iter().find_map(|usual| parts.iter().find(|part| part.contains(usual)));
         return Ok(Some(usual.unwrap_or(first).clone()));
     };
-    // Upstream calls files such as GT_train_1.
-    let exact = parts.iter().find(|part| *part == wanted);
-    let found = exact.or_else(|| parts.iter().find(|part| part.split('_').any(|word| word == wanted)));
+    // OpenDR names files such as GT_train_1.
+    let exact = parts.iter().find(|part| *part == selected);
+    let found = exact.or_else(|| parts.iter().find(|part| part.split('_').any(|word| word == selected)));
     found
         .cloned()
         .map(Some)
-        .ok_or_else(|| Error::not_found(format!("no part {wanted:.40?}; there are {}", parts.join(", "))))
+        .ok_or_else(|| Error::not_found(format!("no part {selected:.40?}; there are {}", parts.join(", "))))
 }
 
-/// Names of classes, one a line, in `label_map*.txt` beside the data.
+/// Reads the class names, one per line, of `label_map*.txt` beside the data.
 fn class_names(path: &Path) -> Option<Classes> {
     let folder = if path.is_dir() { path } else { path.parent()? };
     let name = files_in(folder, &["txt"]).into_iter().find(|name| name.starts_with("label_map"))?;
     let text = crate::folder::read_text(&folder.join(name)).ok()?;
     Some(text.lines().map(str::trim).filter(|line| !line.is_empty()).map(str::to_owned).collect())
-}
-
-/// A sequence of finite numbers.
-fn sequence(numbers: &[f64], shape: [usize; 5]) -> Result<SkeletonSequence> {
-    if let Some(at) = numbers.iter().position(|number| !number.is_finite()) {
-        return Err(Error::format(format!("number {at} is NaN or infinite; mend or drop the recording")));
-    }
-    SkeletonSequence::new(numbers.iter().map(|number| *number as f32).collect::<Vec<_>>(), shape)
 }
 
 #[cfg(test)]

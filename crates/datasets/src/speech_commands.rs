@@ -1,4 +1,4 @@
-//! Speech Commands: spoken words as WAVE files, a folder a word.
+//! Speech Commands: spoken words as WAVE files, a folder for each word.
 //!
 //! Source: P. Warden, Speech Commands: A Dataset for Limited-Vocabulary Speech Recognition, arXiv 1804.03209.
 
@@ -18,25 +18,25 @@ mod write;
 
 pub use split::{SpeechSplit, speaker_of_clip, split_of_clip};
 
-/// Noise to be mixed in: no word.
+/// Folder of background noise, which is not a word.
 const NOISE: &str = "_background_noise_";
 
 /// Spoken words: a sample is a clip with its word.
 ///
-/// Parts are those of `validation_list.txt` and `testing_list.txt`, the rest is training; without these lists they are
-/// found by the rule of the paper, which keeps a speaker in one part. Without lists and without a part that is asked for,
-/// all clips are read.
+/// Parts are those of `validation_list.txt` and `testing_list.txt`; the rest is training. Without these lists, the
+/// rule of the paper assigns clips to parts, which keeps a speaker in one part. Without lists and without a
+/// selected part, all clips are read.
 #[derive(Debug)]
 pub struct SpeechCommands {
     classes: Classes,
-    /// Class and path of each clip.
+    /// Class index and path of each clip.
     clips: Vec<(usize, PathBuf)>,
     noises: Vec<PathBuf>,
     target: ValueType,
 }
 
 impl SpeechCommands {
-    /// The recordings of noise, to be mixed in when training; [`open_wav`] reads them.
+    /// Returns the recordings of background noise, which training can mix in; [`open_wav`] reads them.
     pub fn noises(&self) -> &[PathBuf] {
         &self.noises
     }
@@ -91,7 +91,7 @@ impl DatasetIterator for SpeechCommands {
 impl Format for SpeechCommands {
     const NAME: &'static str = "speech_commands";
     const ALIASES: &'static [&'static str] = &["speechcommands", "google_speech_commands"];
-    const ABOUT: &'static str = "Speech Commands: spoken words as WAVE files, a folder a word";
+    const ABOUT: &'static str = "Speech Commands: spoken words as WAVE files, a folder for each word";
     const LAYOUT: &'static str = "WORD/SPEAKER_nohash_0.wav; validation_list.txt and testing_list.txt for these parts; \
                                   _background_noise_/ for noise";
     const TARGETS: &'static [ValueType] = &[ValueType::Category, ValueType::SpeechCommand];
@@ -101,13 +101,13 @@ impl Format for SpeechCommands {
         if path.join("testing_list.txt").is_file() && path.join("validation_list.txt").is_file() {
             return Recognition::Certain;
         }
-        let spoken =
+        let has_speakers =
             |word: &String| files_in(&path.join(word), &["wav"]).iter().any(|name| name.contains("_nohash_"));
         let words = folders_in(path);
         match words.iter().any(with_clips) {
-            true if words.iter().any(spoken) => Recognition::Certain,
+            true if words.iter().any(has_speakers) => Recognition::Certain,
             true => Recognition::Possible,
-            false => Recognition::No("a folder a word, with .wav files".into()),
+            false => Recognition::No("a folder for each word, with .wav files".into()),
         }
     }
 
@@ -141,7 +141,7 @@ impl Format for SpeechCommands {
         let noises: Vec<_> = noises.into_iter().map(|name| path.join(NOISE).join(name)).collect();
         if clips.is_empty() {
             let (path, layout) = (path.display(), Self::LAYOUT);
-            return Err(Error::not_found(format!("no clip of that part in {path}; it should have {layout}")));
+            return Err(Error::not_found(format!("no clip of that part in {path}; the layout is {layout}")));
         }
         Ok(Self { classes: words.into_iter().collect(), clips, noises, target })
     }
@@ -164,7 +164,7 @@ struct Lists {
 }
 
 impl Lists {
-    /// Reads the lists, when there is one; tells of lines that name no clip.
+    /// Reads the lists, if one exists, and reports lines that are not clips.
     fn open(root: &Path, problems: &Problems) -> Result<Option<Self>> {
         let read = |name: &str| -> Result<Option<HashSet<String>>> {
             let path = root.join(name);
@@ -177,7 +177,8 @@ impl Lists {
                 match path_inside(root, clip) {
                     Ok(file) if file.is_file() => drop(clips.insert(clip.to_owned())),
                     Ok(_) => {
-                        let message = format!("names {clip:.80?}, which is missing; add it or drop the line");
+                        let message =
+                            format!("refers to {clip:.80?}, which is missing; add it or remove the line");
                         problems.report(Problem::at_line(&path, number, message))?;
                     }
                     Err(message) => problems.report(Problem::at_line(&path, number, message))?,

@@ -1,4 +1,4 @@
-//! What is in a data set.
+//! Statistics of a data set.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -10,23 +10,23 @@ use serde::Serialize;
 
 use crate::{Problem, Problems};
 
-/// Annotations of one class.
+/// Counts of one class.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct ClassCount {
-    /// Annotations.
+    /// Number of annotations.
     pub annotations: u64,
-    /// Samples that have any.
+    /// Number of samples with annotations of the class.
     pub samples: u64,
 }
 
-/// Smallest, mean and largest of something.
+/// Minimum, mean and maximum of a quantity.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Spread {
-    /// Smallest.
+    /// Minimum.
     pub min: f64,
     /// Mean.
     pub mean: f64,
-    /// Largest.
+    /// Maximum.
     pub max: f64,
     #[serde(skip)]
     count: u64,
@@ -53,37 +53,37 @@ impl Spread {
     }
 }
 
-/// What is in a data set. Printed, it is a table.
+/// Statistics of a data set. `Display` prints a table.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct DatasetStats {
-    /// Samples.
+    /// Number of samples.
     pub samples: u64,
-    /// Samples without any annotation.
+    /// Number of samples without annotation.
     pub without_annotation: u64,
-    /// Annotations.
+    /// Number of annotations.
     pub annotations: u64,
-    /// Sequences (videos, drives), where samples are frames.
+    /// Number of sequences (videos, drives), if samples are frames.
     pub sequences: u64,
-    /// By class.
+    /// Counts by class.
     pub classes: BTreeMap<String, ClassCount>,
-    /// Width of pictures in pixels.
+    /// Image width in pixels.
     #[serde(skip_serializing_if = "Spread::is_empty")]
-    pub picture_width: Spread,
-    /// Height of pictures in pixels.
+    pub image_width: Spread,
+    /// Image height in pixels.
     #[serde(skip_serializing_if = "Spread::is_empty")]
-    pub picture_height: Spread,
+    pub image_height: Spread,
     /// Square root of the area of boxes in pixels.
     #[serde(skip_serializing_if = "Spread::is_empty")]
     pub box_side: Spread,
-    /// Boxes by COCO's size: below 32x32, below 96x96, larger.
+    /// Number of boxes by COCO's sizes: below 32x32, below 96x96, larger.
     pub small_medium_large: [u64; 3],
 }
 
 impl DatasetStats {
-    /// Counts a data set without reading its pictures, where its format can spare that.
+    /// Counts a data set; images are read only if the format requires it.
     ///
     /// # Errors
-    /// The first sample that cannot be read, unless `problems` skips them.
+    /// The error of the first sample that cannot be read, unless `problems` skips it.
     pub fn of(dataset: &dyn DatasetIterator, problems: &Problems, progress: &dyn Progress) -> Result<Self> {
         let mut stats = Self::default();
         let names = dataset.classes();
@@ -96,9 +96,9 @@ impl DatasetStats {
                 sequence = dataset.sequence(at);
                 stats.sequences += 1;
             }
-            if let Some([width, height]) = dataset.picture_size(at) {
-                stats.picture_width.add(width.into());
-                stats.picture_height.add(height.into());
+            if let Some([width, height]) = dataset.image_size(at) {
+                stats.image_width.add(width.into());
+                stats.image_height.add(height.into());
             }
             match dataset.target(at) {
                 Ok(target) => stats.count(target.as_ref(), &|name| label(name, &names)),
@@ -161,8 +161,8 @@ impl fmt::Display for DatasetStats {
         }
         writeln!(f, ", {} samples without any", self.without_annotation)?;
         for (what, spread) in [
-            ("picture width", &self.picture_width),
-            ("picture height", &self.picture_height),
+            ("image width", &self.image_width),
+            ("image height", &self.image_height),
             ("box side", &self.box_side),
         ] {
             if !spread.is_empty() {

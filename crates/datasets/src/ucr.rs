@@ -1,4 +1,4 @@
-//! Time series of the UCR and UEA archives: a line a series, as `.tsv`, `.csv` or `.txt`, or as `.ts` of sktime.
+//! Time series of the UCR and UEA archives: a series per line, as `.tsv`, `.csv` or `.txt`, or as `.ts` of sktime.
 
 use std::collections::HashMap;
 use std::fs::File;
@@ -18,14 +18,14 @@ mod write;
 
 pub use line::{TsHeader, series_from_line, series_from_ts_line};
 
-/// The longest line that is read: four million numbers of 16 letters.
+/// Largest length of a line in bytes: four million numbers of 16 characters.
 const MAX_LINE_BYTES: u64 = 64 << 20;
 const EXTENSIONS: &[&str] = &["ts", "tsv", "csv", "txt"];
 
 /// Time series with their class: a sample is `[time, features]`.
 ///
-/// Missing values are NaN, except at the end, where UCR fills up shorter series with them. Classes are numbered in order:
-/// that of the header of a `.ts` file, else by their value.
+/// Missing values are NaN. Those at the end are dropped, since UCR pads shorter series with them. Classes have the
+/// order of the header of a `.ts` file, otherwise of their values.
 #[derive(Debug)]
 pub struct Ucr {
     path: PathBuf,
@@ -34,7 +34,7 @@ pub struct Ucr {
     classes: Classes,
 }
 
-/// Where a series lies in its file.
+/// Location of a series in its file.
 #[derive(Debug, Clone, Copy)]
 struct Line {
     byte: u64,
@@ -44,12 +44,12 @@ struct Line {
 }
 
 impl Ucr {
-    /// The file that the series are read from.
+    /// Returns the file of the series.
     pub fn file(&self) -> &Path {
         &self.path
     }
 
-    /// What a `.ts` file says about its series.
+    /// Returns the header of a `.ts` file.
     pub fn header(&self) -> Option<&TsHeader> {
         self.header.as_ref()
     }
@@ -131,7 +131,7 @@ impl Format for Ucr {
         if read.is_ok() && is_ts(file) && first.trim_start().starts_with('@') {
             return Recognition::Certain;
         }
-        // A cut line ends in half a number, which still is one.
+        // A truncated line ends in a truncated number, which still parses.
         match !is_ts(file) && line::looks_like_series(first) {
             true => Recognition::Possible,
             false => Recognition::No(format!(
@@ -143,21 +143,21 @@ impl Format for Ucr {
 
     fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         if let Some(other) = options.target.filter(|target| !Self::TARGETS.contains(target)) {
-            let message = format!("time series have a Category, no {}", other.name());
+            let message = format!("time series are read as Category, not as {}", other.name());
             return Err(Error::unsupported(message));
         }
         let files = candidates(path);
         let part_of = |file: &PathBuf| name_of(file).to_lowercase();
         let with = |part: &str| files.iter().find(|file| part_of(file).contains(&format!("_{part}.")));
-        let chosen = match options.split.as_deref() {
+        let selected = match options.split.as_deref() {
             Some(part) => with(&part.to_lowercase()),
             None => with("test").or_else(|| with("train")).or(files.first()),
         };
-        let file = chosen.ok_or_else(|| {
+        let file = selected.ok_or_else(|| {
             let there: Vec<_> = files.iter().map(|file| name_of(file)).collect();
             let (path, layout) = (path.display(), Self::LAYOUT);
             let message =
-                format!("no such series in {path} (files: {}); it should have {layout}", there.join(", "));
+                format!("no such series in {path} (files: {}); the layout is {layout}", there.join(", "));
             Error::not_found(message)
         })?;
         Self::index(file, problems)
@@ -174,25 +174,25 @@ impl Format for Ucr {
     }
 }
 
-/// Files that may hold series: `path` itself, or those in it that are called so.
+/// Returns the files that may contain series: `path` itself, or those in it with a usual name.
 fn candidates(path: &Path) -> Vec<PathBuf> {
     if !path.is_dir() {
         let fits = path.to_str().is_some_and(|name| crate::folder::has_extension(name, EXTENSIONS));
         return if fits && path.is_file() { vec![path.to_owned()] } else { Vec::new() };
     }
-    let called = |name: &String| {
+    let has_usual_name = |name: &String| {
         let stem = name.rsplit_once('.').map_or("", |(stem, _)| stem).to_uppercase();
         name.ends_with(".ts") || stem.ends_with("_TRAIN") || stem.ends_with("_TEST")
     };
     let mut names = files_in(path, EXTENSIONS);
-    names.retain(called);
-    // Of a series in several forms that which tells most.
+    names.retain(has_usual_name);
+    // Of a series in several formats, the one with the most information comes first.
     names.sort_by_key(|name| EXTENSIONS.iter().position(|extension| name.ends_with(extension)));
     names.into_iter().map(|name| path.join(name)).collect()
 }
 
 impl Ucr {
-    /// Finds the lines of a file and their classes, without reading the numbers.
+    /// Reads the offsets of the lines of a file and their classes, without parsing the values.
     fn index(path: &Path, problems: &Problems) -> Result<Self> {
         let mut reader = BufReader::new(File::open(path).context(|| format!("opening {}", path.display()))?);
         let is_ts = path.extension().is_some_and(|extension| extension == "ts");
@@ -214,7 +214,7 @@ impl Ucr {
                 return Err(Problem::at_line(path, number, format!("is over {MAX_LINE_BYTES} bytes")).into());
             }
             let Ok(text) = std::str::from_utf8(&bytes) else {
-                problems.report(Problem::at_line(path, number, "is no UTF-8 text"))?;
+                problems.report(Problem::at_line(path, number, "is not UTF-8 text"))?;
                 continue;
             };
             let text = text.trim();
@@ -230,7 +230,7 @@ impl Ucr {
             }
             match line::label(text, header.as_ref()) {
                 Ok(label) => {
-                    // The place of the label among those that there are, until all are known.
+                    // Index of the label in the order of appearance, until all labels are known.
                     let next = labels.len() as u32;
                     let class = label.map(|label| *labels.entry(label).or_insert(next));
                     lines.push(Line { byte: start, bytes: read, number, class });
@@ -239,7 +239,7 @@ impl Ucr {
             }
         }
         if !in_data {
-            return Err(Problem::new(path, "has no line @data; the file is cut off").into());
+            return Err(Problem::new(path, "has no line @data; the file is truncated").into());
         }
         let classes = line::classes(labels.keys().map(String::as_str), header.as_ref());
         let number: HashMap<&str, u32> = classes.iter().zip(0..).collect();
@@ -254,7 +254,7 @@ impl Ucr {
     }
 }
 
-/// Feeds the parsers of heads and lines, for the fuzzers.
+/// Runs the parsers of headers and lines, for the fuzzers.
 pub(crate) fn parse_any(text: &str) {
     let mut header = TsHeader::default();
     for line in text.lines() {

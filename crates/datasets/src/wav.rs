@@ -1,4 +1,4 @@
-//! Sound in RIFF WAVE files: PCM of 8 to 32 bits, floats, A-law and mu-law.
+//! Audio in RIFF WAVE files: PCM of 8 to 32 bits, floats, A-law and mu-law.
 
 use std::fs::File;
 use std::io::Read;
@@ -7,23 +7,23 @@ use std::path::Path;
 use opendr_engine::data::Audio;
 use opendr_engine::{Error, Result, ResultExt};
 
-/// The largest file that is read: an hour of stereo at 44.1 kHz and 16 bits is 635 MB.
+/// Largest size of a file in bytes: an hour of stereo at 44.1 kHz and 16 bits takes 635 MB.
 const MAX_BYTES: u64 = 1 << 30;
 const PCM: u16 = 1;
 const FLOAT: u16 = 3;
 const A_LAW: u16 = 6;
 const MU_LAW: u16 = 7;
 const EXTENSIBLE: u16 = 0xfffe;
-/// What a writer puts that does not know the length, being at the head of a pipe.
+/// Length that a writer to a pipe states, since the length is unknown in advance.
 const UNKNOWN_LENGTH: u32 = u32::MAX;
 
-/// How the samples of a WAVE file are written.
+/// Encoding of the samples of a WAVE file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum WavEncoding {
     /// Unsigned 8-bit integers.
     Pcm8,
-    /// Signed 16-bit integers: what most data sets have.
+    /// Signed 16-bit integers, the most common encoding of data sets.
     Pcm16,
     /// Signed 24-bit integers.
     Pcm24,
@@ -71,18 +71,18 @@ impl WavEncoding {
             (MU_LAW, 8) => Self::MuLaw,
             _ => {
                 return Err(Error::unsupported(format!(
-                    "a sound of format {tag} with {bits} bits is not read; convert it to 16-bit PCM"
+                    "format {tag} with {bits} bits is not supported; convert the audio to 16-bit PCM"
                 )));
             }
         })
     }
 
-    /// One sample of as many bytes as the encoding has, in [-1, 1].
+    /// Decodes one sample to [-1, 1].
     fn sample(self, bytes: &[u8]) -> f32 {
         match (self, bytes) {
             (Self::Pcm8, [byte]) => (f32::from(*byte) - 128.0) / 128.0,
             (Self::Pcm16, [a, b]) => f32::from(i16::from_le_bytes([*a, *b])) / 32768.0,
-            // In the upper three bytes, so that the sign is in its place.
+            // The bytes are placed in the upper three bytes, so that the sign is in its place.
             (Self::Pcm24, [a, b, c]) => (i32::from_le_bytes([0, *a, *b, *c]) >> 8) as f32 / 8_388_608.0,
             (Self::Pcm32, [a, b, c, d]) => {
                 (f64::from(i32::from_le_bytes([*a, *b, *c, *d])) / 2_147_483_648.0) as f32
@@ -109,33 +109,35 @@ fn pcm_from_mu_law(byte: u8) -> i16 {
     if byte & 0x80 == 0 { size } else { -size }
 }
 
-/// Reads the sound file at `path`.
+/// Reads the audio file at `path`.
 ///
 /// # Errors
-/// `NotFound` or `Io` when it cannot be read, and those of [`audio_from_wav`]; all name the path.
+/// `NotFound` or `Io` if it cannot be read, and those of [`audio_from_wav`]; all with the path.
 pub fn open_wav(path: impl AsRef<Path>) -> Result<Audio> {
     let path = path.as_ref();
     let read = || -> Result<Audio> {
         let mut bytes = Vec::new();
         File::open(path)?.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
         if bytes.len() as u64 > MAX_BYTES {
-            return Err(Error::invalid_input(format!("over {MAX_BYTES} bytes; cut the sound into pieces")));
+            return Err(Error::invalid_input(format!(
+                "the file has over {MAX_BYTES} bytes; split the audio"
+            )));
         }
         audio_from_wav(&bytes)
     };
     read().context(|| format!("opening {}", path.display()))
 }
 
-/// Reads a WAVE file: samples in [-1, 1], channels interleaved.
+/// Parses a WAVE file: samples in [-1, 1], channels interleaved.
 ///
-/// A data chunk of unknown length (written to a pipe) reaches to the end of the file.
+/// A data chunk of unknown length (written to a pipe) extends to the end of the file.
 ///
 /// # Errors
-/// `Format` with the byte where a file is no WAVE file, is cut off, contradicts itself, or has a sample that is no
-/// number; `Unsupported` for compressed sound.
+/// `Format` with the byte offset if a file is not a WAVE file, truncated or inconsistent, or has a sample that is
+/// not finite; `Unsupported` for compressed audio.
 pub fn audio_from_wav(bytes: &[u8]) -> Result<Audio> {
     if bytes.get(..4) != Some(b"RIFF") || bytes.get(8..12) != Some(b"WAVE") {
-        return Err(Error::format("does not begin with RIFF and WAVE; give a WAVE file"));
+        return Err(Error::format("the file does not start with RIFF and WAVE; use a WAVE file"));
     }
     let mut format = None;
     let mut at = 12usize;
@@ -146,22 +148,25 @@ pub fn audio_from_wav(bytes: &[u8]) -> Result<Audio> {
         match (name, whole) {
             (b"data", whole) => {
                 let known = whole.or((length == UNKNOWN_LENGTH).then_some(body));
-                let body = known.ok_or_else(|| cut_off("data", at, length, body.len()))?;
+                let body = known.ok_or_else(|| truncated("data", at, length, body.len()))?;
                 let format: WavFormat = format.ok_or_else(|| {
                     Error::format(format!(
-                        "byte {at}: samples before a chunk \"fmt \" that says what they are"
+                        "byte {at}: samples come before the chunk \"fmt \" with their format"
                     ))
                 })?;
                 return format.audio(body, start);
             }
             (b"fmt ", Some(body)) => format = Some(WavFormat::read(body, at)?),
             (_, Some(_)) => {}
-            (name, None) => return Err(cut_off(&name.escape_ascii().to_string(), at, length, body.len())),
+            (name, None) => return Err(truncated(&name.escape_ascii().to_string(), at, length, body.len())),
         }
-        // Chunks begin at even bytes.
+        // Chunks start at even offsets.
         at = start.saturating_add(length as usize).saturating_add(length as usize & 1);
     }
-    Err(Error::format(format!("ends at byte {} without a chunk \"data\"; the file is cut off", bytes.len())))
+    Err(Error::format(format!(
+        "ends at byte {} without a chunk \"data\"; the file is truncated",
+        bytes.len()
+    )))
 }
 
 fn chunk_head(bytes: &[u8], at: usize) -> Option<(&[u8; 4], u32)> {
@@ -170,8 +175,10 @@ fn chunk_head(bytes: &[u8], at: usize) -> Option<(&[u8; 4], u32)> {
 }
 
 #[cold]
-fn cut_off(name: &str, at: usize, length: u32, there: usize) -> Error {
-    Error::format(format!("byte {at}: chunk \"{name}\" of {length} bytes has {there}; the file is cut off"))
+fn truncated(name: &str, at: usize, length: u32, available: usize) -> Error {
+    Error::format(format!(
+        "byte {at}: chunk \"{name}\" of {length} bytes has {available}; the file is truncated"
+    ))
 }
 
 /// The chunk `fmt `.
@@ -192,14 +199,14 @@ impl WavFormat {
         let (tag, channels, sample_rate, block, bits) = fields().ok_or_else(|| {
             Error::format(format!("byte {at}: chunk \"fmt \" has {} bytes instead of 16", body.len()))
         })?;
-        // The tag proper is the head of a GUID in the longer form.
+        // In the extensible format, the format tag is the start of a GUID.
         let tag = if tag == EXTENSIBLE { word(24).unwrap_or(tag) } else { tag };
         let encoding = WavEncoding::from_tag(tag, bits).context(|| format!("byte {at}"))?;
         let channels = usize::from(channels);
         if channels == 0 || sample_rate == 0 || usize::from(block) != channels * encoding.bytes() {
             return Err(Error::format(format!(
-                "byte {at}: {channels} channels of {bits} bits at {sample_rate} Hz in blocks of {block} bytes is no \
-                 sound; mend the header"
+                "byte {at}: {channels} channels of {bits} bits at {sample_rate} Hz in blocks of {block} bytes are \
+                inconsistent; fix the header"
             )));
         }
         Ok(Self { encoding, channels, sample_rate })
@@ -209,7 +216,7 @@ impl WavFormat {
         let width = self.encoding.bytes();
         if !body.len().is_multiple_of(width * self.channels) {
             return Err(Error::format(format!(
-                "byte {start}: {} bytes are no whole number of {}-byte instants; the file is cut off",
+                "byte {start}: {} bytes are not a multiple of {}, the size of a frame; the file is truncated",
                 body.len(),
                 width * self.channels
             )));
@@ -218,20 +225,21 @@ impl WavFormat {
         if let Some(wrong) = samples.iter().position(|sample| !sample.is_finite()) {
             let at = start + wrong * width;
             return Err(Error::format(format!(
-                "byte {at}: sample {wrong} is no finite number; mend the file"
+                "byte {at}: sample {wrong} is not a finite number; fix the file"
             )));
         }
         Audio::new(samples, self.channels, self.sample_rate)
     }
 }
 
-/// Writes a WAVE file. Samples outside [-1, 1] are cut to it, except in floats.
+/// Returns the bytes of a WAVE file. Samples outside [-1, 1] are clipped, except in floats.
 ///
 /// # Errors
-/// `InvalidInput` for a sound of over 4 GB or 65535 channels; `Unsupported` for A-law and mu-law, which are only read.
+/// `InvalidInput` for audio of over 4 GB or 65535 channels; `Unsupported` for A-law and mu-law, which are read
+/// only.
 pub fn wav_from_audio(audio: &Audio, encoding: WavEncoding) -> Result<Vec<u8>> {
     if matches!(encoding, WavEncoding::ALaw | WavEncoding::MuLaw) {
-        return Err(Error::unsupported("A-law and mu-law are read, not written; write 16-bit PCM"));
+        return Err(Error::unsupported("A-law and mu-law cannot be written; write 16-bit PCM"));
     }
     let (width, rate) = (encoding.bytes(), audio.sample_rate());
     let [_, channels] = audio.array().shape();
@@ -244,7 +252,7 @@ pub fn wav_from_audio(audio: &Audio, encoding: WavEncoding) -> Result<Vec<u8>> {
     };
     let (length, block, bytes_per_second) = sizes().ok_or_else(|| {
         Error::invalid_input(format!(
-            "{} samples of {channels} channels do not fit a WAVE file",
+            "{} samples of {channels} channels do not fit into a WAVE file",
             samples.len()
         ))
     })?;
@@ -267,7 +275,7 @@ pub fn wav_from_audio(audio: &Audio, encoding: WavEncoding) -> Result<Vec<u8>> {
 }
 
 fn write_sample(encoding: WavEncoding, sample: f32, bytes: &mut Vec<u8>) {
-    // A cast cuts to the range of the integer.
+    // A cast saturates at the range of the integer.
     let scaled = |scale: f64| (f64::from(sample) * scale).round();
     match encoding {
         WavEncoding::Pcm8 => bytes.push((scaled(128.0) + 128.0) as u8),

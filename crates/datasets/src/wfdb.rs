@@ -1,4 +1,4 @@
-//! WFDB records: biomedical signals with annotated beats, as PhysioNet has them.
+//! WFDB records of PhysioNet: biomedical signals with annotated beats.
 //!
 //! Format: <https://physionet.org/physiotools/wag/>, sections header(5), signal(5), annot(5).
 
@@ -11,156 +11,66 @@ use opendr_engine::target::Classes;
 use opendr_engine::{Error, Header, Progress, Result, Value, ValueType};
 
 use crate::fields::lines;
-use crate::folder::{files_in, past_end, path_inside, read_bytes, read_text};
+use crate::folder::{files_in, past_end, path_inside, read_text};
 use crate::{Format, OpenOptions, Problem, Problems, Recognition, WriteOptions};
 
 mod annotation;
 mod beats;
 mod header;
+mod record;
 mod signal;
 mod write;
 
 pub use annotation::{WfdbAnnotation, annotations_from_atr, atr_from_annotations};
 pub use header::{WfdbHeader, WfdbSignal};
+pub use record::{WfdbRecord, open_wfdb_header, open_wfdb_record};
 pub use signal::{wfdb_from_timeseries, wfdb_samples};
 
 use beats::Beats;
+use record::{header_path, read_annotations, read_signals};
 
-/// The longest signal file that is read: a day of three signals at 500 Hz and 16 bits is 259 MB.
-const MAX_BYTES: u64 = 260 << 20;
-/// Records that are kept when samples are beats.
-const MOST_KEPT: usize = 4;
+/// Number of records in the cache, if samples are beats.
+const MAX_CACHED: usize = 4;
 
-/// A signal with its annotations.
-#[derive(Debug, Clone, PartialEq)]
-pub struct WfdbRecord {
-    /// What the header file says.
-    pub header: WfdbHeader,
-    /// `[time, signals]` in physical units; NaN where a sample is marked as invalid.
-    pub signals: Timeseries,
-    /// What is annotated, in the order of time.
-    pub annotations: Vec<WfdbAnnotation>,
-}
-
-/// Reads the header file of a record; `path` may lack its ending `.hea`.
-///
-/// # Errors
-/// `NotFound` or `Io` when it cannot be read; `Format` with the number of the line.
-pub fn open_wfdb_header(path: impl AsRef<Path>) -> Result<WfdbHeader> {
-    let path = header_path(path.as_ref());
-    WfdbHeader::parse(&read_text(&path)?)
-        .map_err(|(line, message)| Problem::at_line(&path, line, message).into())
-}
-
-/// Reads a record with the annotations beside it (`.atr`), if there are any.
-///
-/// # Errors
-/// `NotFound` or `Io` when a file cannot be read; `Format` with file and line or byte; `Unsupported` for formats of
-/// signals other than 8, 16, 24, 32, 61, 80 and 212, and for records in several segments.
-pub fn open_wfdb_record(path: impl AsRef<Path>) -> Result<WfdbRecord> {
-    let path = header_path(path.as_ref());
-    let header = open_wfdb_header(&path)?;
-    let signals = read_signals(&path, &header)?;
-    let annotations = read_annotations(&path, header.length)?;
-    Ok(WfdbRecord { header, signals, annotations })
-}
-
-fn header_path(path: &Path) -> PathBuf {
-    if path.extension().is_some_and(|extension| extension == "hea") {
-        return path.to_owned();
-    }
-    let mut name = path.as_os_str().to_owned();
-    name.push(".hea");
-    PathBuf::from(name)
-}
-
-fn read_signals(path: &Path, header: &WfdbHeader) -> Result<Timeseries> {
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let count = header.signals.len();
-    let mut columns: Vec<Vec<f32>> = Vec::with_capacity(count);
-    let mut first = 0;
-    while let Some(signal) = header.signals.get(first) {
-        // Signals of one file lie one after the other and share it.
-        let shared = header.signals.iter().skip(first).take_while(|other| other.file == signal.file).count();
-        let group = header.signals.get(first..first + shared).unwrap_or_default();
-        let file = path_inside(folder, &signal.file)
-            .map_err(|message| Problem::at_line(path, signal.line, message))?;
-        let bytes = read_bytes(&file, MAX_BYTES)?;
-        let (samples, length) = wfdb_samples(group, header.length, &bytes)
-            .map_err(|(byte, message)| Error::from(Problem::at_byte(&file, byte, message)))?;
-        if columns.first().is_some_and(|column| column.len() != length) {
-            let message =
-                format!("{length} samples where the file before it has another number; the file is cut off");
-            return Err(Problem::new(file, message).into());
-        }
-        columns.extend(samples);
-        first += shared;
-    }
-    let length = columns.first().map_or(0, Vec::len);
-    let mut data = Vec::with_capacity(length * count);
-    for time in 0..length {
-        data.extend(columns.iter().filter_map(|column| column.get(time)));
-    }
-    Timeseries::new(data, [length, count])
-}
-
-fn read_annotations(path: &Path, length: Option<usize>) -> Result<Vec<WfdbAnnotation>> {
-    let path = path.with_extension("atr");
-    if !path.is_file() {
-        return Ok(Vec::new());
-    }
-    let annotations = annotations_from_atr(&read_bytes(&path, MAX_BYTES)?)
-        .map_err(|(byte, message)| Error::from(Problem::at_byte(&path, byte, message)))?;
-    let outside = |annotation: &&WfdbAnnotation| {
-        length.is_some_and(|length| annotation.sample < 0 || annotation.sample as u64 >= length as u64)
-    };
-    if let Some(annotation) = annotations.iter().find(outside) {
-        let message =
-            format!("an annotation at sample {} of {}", annotation.sample, length.unwrap_or_default());
-        return Err(Problem::new(path, message).into());
-    }
-    Ok(annotations)
-}
-
-/// A record that was read.
+/// A record in the cache.
 type ReadRecord = Arc<(WfdbHeader, Timeseries)>;
 
-/// WFDB records: a sample is a whole record without target, or, where beats are annotated and the target is a
-/// `Category` (the default), one beat with its kind by the classes of AAMI EC57 (N, S, V, F, Q).
+/// WFDB records: a sample is a whole record without target, or, if beats are annotated and the target is a
+/// `Category` (the default), one beat with its class of AAMI EC57 (N, S, V, F, Q).
 ///
-/// A beat is cut from a quarter of a second before its annotation to half a second after it; those too near to the ends
-/// of their record are left out.
+/// A beat extends from a quarter of a second before its annotation to half a second after it; beats too close to
+/// the ends of their record are skipped.
 #[derive(Debug)]
 pub struct Wfdb {
     records: Vec<PathBuf>,
     beats: Option<Beats>,
-    /// The records that beats were cut from last.
+    /// Cache of the records used last.
     kept: Mutex<Vec<(usize, ReadRecord)>>,
 }
 
 impl Wfdb {
-    /// The header files of the records.
+    /// Returns the header files of the records.
     pub fn records(&self) -> &[PathBuf] {
         &self.records
     }
 
-    /// Record number `record`, which is kept for the next beat.
+    /// Returns record `record`, and keeps it in the cache for the next beat.
     fn record(&self, record: usize) -> Result<ReadRecord> {
         let lock = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, found)) = lock().iter().find(|(number, _)| *number == record) {
-            return Ok(Arc::clone(found));
+        if let Some((_, cached)) = lock().iter().find(|(number, _)| *number == record) {
+            return Ok(Arc::clone(cached));
         }
         let path = self.records.get(record).ok_or_else(|| past_end(record, self.records.len()))?;
         let header = open_wfdb_header(path)?;
         let signals = read_signals(path, &header)?;
         let read = Arc::new((header, signals));
         let mut kept = lock();
-        kept.truncate(MOST_KEPT - 1);
+        kept.truncate(MAX_CACHED - 1);
         kept.insert(0, (record, Arc::clone(&read)));
         Ok(read)
     }
 
-    /// Record and sample in it at which beat `index` is annotated; `None` when samples are records.
+    /// Returns the record and the annotation of beat `index`; `None` if samples are records.
     fn beat(&self, index: usize) -> Option<(usize, beats::Beat)> {
         self.beats.as_ref()?.get(index)
     }
@@ -230,10 +140,10 @@ impl Format for Wfdb {
         }
     }
 
-    /// `split` names a list of records in place of `RECORDS`.
+    /// Opens records; `split` is the name of a list of records, instead of `RECORDS`.
     fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         if let Some(other) = options.target.filter(|target| !Self::TARGETS.contains(target)) {
-            let message = format!("beats can be read as Category, not as {}", other.name());
+            let message = format!("beats are read as Category, not as {}", other.name());
             return Err(Error::unsupported(message));
         }
         let mut records = list(path, options.split.as_deref(), problems)?;
@@ -243,10 +153,10 @@ impl Format for Wfdb {
             match header.and_then(|header| Ok((read_annotations(record, header.length)?, header))) {
                 Ok((annotations, header)) => known.push(Some((annotations, header))),
                 Err(error) => {
-                    let told =
+                    let problem =
                         std::error::Error::source(&error).and_then(|source| source.downcast_ref::<Problem>());
-                    let told = told.cloned();
-                    problems.report(told.unwrap_or_else(|| Problem::new(record, error.to_string())))?;
+                    let problem = problem.cloned();
+                    problems.report(problem.unwrap_or_else(|| Problem::new(record, error.to_string())))?;
                     known.push(None);
                 }
             }
@@ -255,7 +165,7 @@ impl Format for Wfdb {
         records.retain(|_| whole.next().unwrap_or(false));
         if records.is_empty() {
             let (path, layout) = (path.display(), Self::LAYOUT);
-            return Err(Error::not_found(format!("no WFDB record in {path}; it should have {layout}")));
+            return Err(Error::not_found(format!("no WFDB record in {path}; the layout is {layout}")));
         }
         Ok(Self { records, beats: Beats::of(known.into_iter().flatten()), kept: Mutex::default() })
     }
@@ -271,7 +181,7 @@ impl Format for Wfdb {
     }
 }
 
-/// The header files at `path`: itself, those of the list, or all in the folder.
+/// Returns the header files at `path`: itself, those of the list, or all in the folder.
 fn list(path: &Path, part: Option<&str>, problems: &Problems) -> Result<Vec<PathBuf>> {
     if !path.is_dir() {
         return Ok(vec![header_path(path)]);

@@ -1,4 +1,4 @@
-//! WIDER FACE: faces of a picture below its name, all pictures in one text file.
+//! WIDER FACE: a text file with each image's name and faces.
 
 use std::fmt::Write;
 use std::ops::Range;
@@ -15,12 +15,11 @@ use crate::{Format, OpenOptions, Problem, Problems, Recognition, WriteOptions};
 
 const SPLITS: [&str; 3] = ["val", "test", "train"];
 
-/// A WIDER FACE data set; faces that it calls invalid, or that have no size, are crowds: they count neither as right nor
-/// as wrong.
+/// A WIDER FACE data set. Faces that are marked as invalid, or have no size, are crowds, which metrics ignore.
 #[derive(Debug)]
 pub struct WiderFace {
     pictures: PathBuf,
-    /// Path of each picture and its faces.
+    /// Path of each image and the range of its faces.
     samples: Vec<(String, Range<usize>)>,
     faces: Vec<Face>,
 }
@@ -36,13 +35,13 @@ fn list_of(path: &Path, split: &str) -> PathBuf {
     path.join("wider_face_split").join(format!("wider_face_{split}_bbx_gt.txt"))
 }
 
-/// Reads `left top width height [blur expression illumination invalid occlusion pose]`.
+/// Parses `left top width height [blur expression illumination invalid occlusion pose]`.
 fn face_from_line(line: &str) -> Result<Face, String> {
     let fields = Fields::of(line);
     fields.expect(4..=10)?;
     let place: [f32; 4] = fields.numbers(0)?;
     if place[2] < 0.0 || place[3] < 0.0 {
-        return Err(format!("has a face of {} x {} pixels", place[2], place[3]));
+        return Err(format!("has a face of {} x {} pixels; sizes must be positive", place[2], place[3]));
     }
     let invalid = fields.len() > 7 && fields.whole(7)? != 0;
     Ok(Face { place, ignored: invalid || place[2] == 0.0 || place[3] == 0.0 })
@@ -54,17 +53,17 @@ impl WiderFace {
         let mut lines = (1..).zip(text.lines().map(str::trim)).filter(|(_, line)| !line.is_empty());
         let (mut samples, mut faces) = (Vec::new(), Vec::new());
         while let Some((number, name)) = lines.next() {
-            let wrong = |line, message: String| problems.report(Problem::at_line(list, line, message));
+            let report = |line, message: String| problems.report(Problem::at_line(list, line, message));
             let counted = lines.next().and_then(|(line, text)| Some((line, text.parse::<usize>().ok()?)));
             let Some((line, count)) = counted else {
-                // Where the next picture begins cannot be told.
+                // The start of the next image is unknown.
                 let message =
-                    format!("no number of faces after {name:.80?}; the rest of the file is left out");
-                wrong(number + 1, message)?;
+                    format!("no number of faces after {name:.80?}; the rest of the file is skipped");
+                report(number + 1, message)?;
                 break;
             };
             let (start, mut broken) = (faces.len(), None);
-            // A picture without faces has a line of zeros all the same.
+            // An image without faces has a line of zeros.
             for at in 0..count.max(1) {
                 let Some((line, text)) = lines.next() else {
                     broken = Some((line, format!("the file ends after {at} of {count} faces")));
@@ -80,7 +79,7 @@ impl WiderFace {
                 broken.or_else(|| path_inside(&pictures, name).err().map(|message| (number, message)));
             if let Some((line, message)) = broken {
                 faces.truncate(start);
-                wrong(line, message)?;
+                report(line, message)?;
                 continue;
             }
             samples.push((name.to_owned(), start..faces.len()));
@@ -153,7 +152,7 @@ impl Format for WiderFace {
         let list = list_of(path, split);
         if path_inside(path, split).is_err() || !list.is_file() {
             return Err(Error::not_found(format!(
-                "no list of faces {}; get wider_face_split.zip",
+                "the list of faces {} is missing; download wider_face_split.zip",
                 list.display()
             )));
         }
@@ -173,7 +172,7 @@ impl Format for WiderFace {
         let (pictures, mut text) = (PictureWriter::new(dataset, folder, options)?, String::new());
         write_each(dataset, problems, progress, |index| {
             let Some(Value::BoundingBoxList(list)) = dataset.target(index)? else {
-                return Err(Error::invalid_input("WIDER FACE holds boxes, no other targets"));
+                return Err(Error::invalid_input("WIDER FACE supports boxes, no other targets"));
             };
             let placed = pictures.place(index)?;
             let _ = writeln!(text, "{}\n{}", placed.name, list.boxes.len());
@@ -223,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn faces_follow_their_picture() {
+    fn images_have_their_faces() {
         let (folder, other) = (small(TEXT), TemporaryFolder::new());
         let dataset = open(folder.path(), &Problems::strict()).unwrap();
         assert_eq!((dataset.len(), dataset.name(2)), (3, "1--Dance/c.png".into()));
@@ -239,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn broken_lines_are_told_and_passed() {
+    fn broken_lines_are_reported_and_skipped() {
         let text = TEXT.replace("5 6 7 8", "5 6 NaN 8").replace("1--Dance/c", "../../c");
         let folder = small(&text);
         assert!(

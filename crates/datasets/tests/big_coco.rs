@@ -1,4 +1,4 @@
-//! A COCO file that is far bigger than what checking and converting it may take of memory.
+//! A COCO file that is much larger than the memory allowed for checking and converting it.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
@@ -13,13 +13,13 @@ use opendr_engine::Silent;
 use opendr_engine::data::Image;
 use opendr_engine::dataset::DatasetIterator;
 
-/// Names the folder to the process that is measured.
+/// Variable with the folder, for the measured process.
 const FOLDER: &str = "OPENDR_BIG_COCO";
 
 const PICTURES: usize = 500;
 
-/// Writes a file of about `megabytes` on a single line. Annotations go round the pictures, so that those of one lie
-/// everywhere, and come before what they depend on; three are broken. How many there are.
+/// Writes a file of about `megabytes` on a single line and returns the number of annotations. The annotations of an
+/// image are spread over the file and precede what they depend on; three are broken.
 fn generate(folder: &Path, megabytes: usize) -> usize {
     fs::create_dir_all(folder.join("annotations")).unwrap();
     fs::create_dir_all(folder.join("val")).unwrap();
@@ -64,7 +64,7 @@ fn generate(folder: &Path, megabytes: usize) -> usize {
     count
 }
 
-/// What the measured process does: checks the file, and converts it to YOLO and to COCO.
+/// Body of the measured process: checks the file, and converts it to YOLO and to COCO.
 #[test]
 fn measured_process() {
     let Some(folder) = std::env::var_os(FOLDER).map(PathBuf::from) else { return };

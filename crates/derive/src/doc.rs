@@ -3,12 +3,12 @@
 use syn::punctuated::Punctuated;
 use syn::{Attribute, Data, DeriveInput, Error, Expr, ExprLit, Field, Fields, Lit, Meta, Result, Token};
 
-/// The text of a field's doc comment; a field without one is refused.
+/// Returns the text of a field's doc comment; a field without one is an error.
 pub fn doc_of(field: &Field) -> Result<String> {
     let lines: Vec<String> = field.attrs.iter().filter_map(doc_line).collect();
     let text = lines.iter().map(|line| line.strip_prefix(' ').unwrap_or(line)).collect::<Vec<_>>().join("\n");
     match text.trim() {
-        "" => Err(Error::new_spanned(field, "a doc comment is wanted: surfaces show it")),
+        "" => Err(Error::new_spanned(field, "missing doc comment; it is the documentation on every surface")),
         text => Ok(text.to_owned()),
     }
 }
@@ -19,13 +19,13 @@ fn doc_line(attribute: &Attribute) -> Option<String> {
     pair.path.is_ident("doc").then(|| text.value())
 }
 
-/// The fields of a struct with names.
+/// Returns the fields of a struct with named fields.
 pub fn named_fields(input: &DeriveInput) -> Result<&Punctuated<Field, Token![,]>> {
     match &input.data {
         Data::Struct(data) => match &data.fields {
             Fields::Named(fields) => Ok(&fields.named),
-            _ => Err(Error::new_spanned(input, "a struct with named fields is wanted")),
+            _ => Err(Error::new_spanned(input, "expected a struct with named fields")),
         },
-        _ => Err(Error::new_spanned(input, "a struct is wanted")),
+        _ => Err(Error::new_spanned(input, "expected a struct")),
     }
 }

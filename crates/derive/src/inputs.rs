@@ -6,7 +6,7 @@ use syn::{DeriveInput, Error, Field, GenericArgument, PathArguments, Result, Typ
 
 use crate::doc::{doc_of, named_fields};
 
-/// The `T` of `&'a T` or `Option<&'a T>`, and whether it was optional.
+/// Returns the `T` of `&'a T` or `Option<&'a T>`, and whether the type is an `Option`.
 fn datum_of(kind: &Type) -> Option<(&Type, bool)> {
     match kind {
         Type::Reference(reference) => Some((&reference.elem, false)),
@@ -29,7 +29,7 @@ fn is_init(field: &Field) -> Result<bool> {
     for attribute in field.attrs.iter().filter(|attribute| attribute.path().is_ident("port")) {
         attribute.parse_nested_meta(|meta| {
             init = meta.path.is_ident("init");
-            if init { Ok(()) } else { Err(meta.error("init is wanted")) }
+            if init { Ok(()) } else { Err(meta.error("expected init")) }
         })?;
     }
     Ok(init)
@@ -38,22 +38,25 @@ fn is_init(field: &Field) -> Result<bool> {
 pub fn expand(input: &DeriveInput) -> Result<TokenStream> {
     let name = &input.ident;
     let Some(lifetime) = input.generics.lifetimes().next().map(|parameter| &parameter.lifetime) else {
-        return Err(Error::new_spanned(input, "a struct with one lifetime is wanted: ports are references"));
+        return Err(Error::new_spanned(input, "expected a struct with one lifetime; ports are references"));
     };
     let (mut ports, mut reads, mut header) = (Vec::new(), Vec::new(), None);
     for field in named_fields(input)? {
         let (ident, doc, init) = (&field.ident, doc_of(field)?, is_init(field)?);
         let Some((datum, optional)) = datum_of(&field.ty) else {
-            return Err(Error::new_spanned(&field.ty, "&'a T or Option<&'a T> is wanted"));
+            return Err(Error::new_spanned(&field.ty, "expected &'a T or Option<&'a T>"));
         };
         if init && !optional {
-            return Err(Error::new_spanned(&field.ty, "an init port is an Option: it is given once"));
+            return Err(Error::new_spanned(
+                &field.ty,
+                "an init port must be an Option; it is passed once per stream",
+            ));
         }
         if header.is_none() {
             if optional {
                 return Err(Error::new_spanned(
                     &field.ty,
-                    "the first port gives the time stamp: it is no Option",
+                    "the first port must not be an Option; it has the time stamp",
                 ));
             }
             header = Some(quote!(::opendr_engine::Datum::header(self.#ident)));

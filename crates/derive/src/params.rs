@@ -14,47 +14,50 @@ struct Attributes {
     log: bool,
     live: bool,
     aliases: Vec<LitStr>,
+    former: Vec<LitStr>,
     flatten: bool,
     defaults: Vec<(Ident, Expr)>,
 }
 
 fn attributes_of(field: &Field) -> Result<Attributes> {
-    let mut found = Attributes::default();
+    let mut attributes = Attributes::default();
     for attribute in field.attrs.iter().filter(|attribute| attribute.path().is_ident("param")) {
         attribute.parse_nested_meta(|meta| {
             if meta.path.is_ident("default") {
-                found.default = Some(meta.value()?.parse()?);
+                attributes.default = Some(meta.value()?.parse()?);
             } else if meta.path.is_ident("range") {
-                found.range = Some(meta.value()?.parse()?);
+                attributes.range = Some(meta.value()?.parse()?);
             } else if meta.path.is_ident("unit") {
-                found.unit = Some(meta.value()?.parse()?);
+                attributes.unit = Some(meta.value()?.parse()?);
             } else if meta.path.is_ident("log") {
-                found.log = true;
+                attributes.log = true;
             } else if meta.path.is_ident("live") {
-                found.live = true;
+                attributes.live = true;
             } else if meta.path.is_ident("alias") {
-                found.aliases.push(meta.value()?.parse()?);
+                attributes.aliases.push(meta.value()?.parse()?);
+            } else if meta.path.is_ident("former") {
+                attributes.former.push(meta.value()?.parse()?);
             } else if meta.path.is_ident("flatten") {
-                found.flatten = true;
-            } else if let (true, Some(name)) = (found.flatten, meta.path.get_ident()) {
-                found.defaults.push((name.clone(), meta.value()?.parse()?));
+                attributes.flatten = true;
+            } else if let (true, Some(name)) = (attributes.flatten, meta.path.get_ident()) {
+                attributes.defaults.push((name.clone(), meta.value()?.parse()?));
             } else {
-                return Err(meta.error("default, range, unit, log, live, alias or flatten is wanted"));
+                return Err(meta.error("expected default, range, unit, log, live, alias, former or flatten"));
             }
             Ok(())
         })?;
     }
-    Ok(found)
+    Ok(attributes)
 }
 
-/// The parts of what is derived, for a run of fields.
+/// Parts of the generated code, for a sequence of fields.
 #[derive(Default)]
 struct Parts {
     /// Tables, each an expression of type `&[Field]`.
     tables: Vec<TokenStream>,
-    /// `field: its default`.
+    /// Initialisers `field: default`.
     defaults: Vec<TokenStream>,
-    /// Defaults that this struct gives to fields of an inner one.
+    /// Defaults of this struct for fields of an inner struct.
     changes: Vec<((Option<Ident>, Ident), TokenStream)>,
     gets: Vec<TokenStream>,
     sets: Vec<TokenStream>,
@@ -69,7 +72,7 @@ impl Parts {
         }
     }
 
-    /// A struct of parameters whose fields stand among those of the outer one.
+    /// Adds a struct of parameters, whose fields are flattened into the outer one.
     fn add_struct(&mut self, field: &Field, defaults: &[(Ident, Expr)]) -> Result<()> {
         let (ident, kind) = (&field.ident, &field.ty);
         let inner = quote!(<#kind as ::opendr_engine::params::Params>);
@@ -91,7 +94,7 @@ impl Parts {
 
     fn add_field(&mut self, field: &Field, attributes: Attributes) -> Result<()> {
         let (ident, kind, doc) = (&field.ident, &field.ty, doc_of(field)?);
-        let Attributes { default, range, unit, log, live, aliases, .. } = attributes;
+        let Attributes { default, range, unit, log, live, aliases, former, .. } = attributes;
         let default = match &default {
             Some(default) => converted(default),
             None => quote!(::core::default::Default::default()),
@@ -100,7 +103,7 @@ impl Parts {
             Some(ExprRange { start: Some(low), end: Some(high), .. }) => quote! {
                 ::core::option::Option::Some(::opendr_engine::params::ParamRange { low: #low as f64, high: #high as f64 })
             },
-            Some(range) => return Err(syn::Error::new_spanned(range, "LOW..=HIGH is wanted")),
+            Some(range) => return Err(syn::Error::new_spanned(range, "expected LOW..=HIGH")),
             None => quote!(::core::option::Option::None),
         };
         let unit = unit.map_or_else(String::new, |unit| unit.value());
@@ -117,7 +120,8 @@ impl Parts {
                 log_scale: #log,
                 live: #live,
                 aliases: &[#(#aliases),*],
-                default: ::opendr_engine::params::FieldDefault::Made(|| {
+                former: &[#(#former),*],
+                default: ::opendr_engine::params::FieldDefault::Function(|| {
                     let default: #kind = #default;
                     #param::to_value(&default)
                 }),
@@ -140,7 +144,7 @@ impl Parts {
         Ok(())
     }
 }
-/// A default as it is written, text turned into the field's type.
+/// Returns a default expression; text is converted to the type of the field.
 fn converted(default: &Expr) -> TokenStream {
     match default {
         Expr::Lit(literal) if matches!(literal.lit, syn::Lit::Str(_)) => {
@@ -157,7 +161,7 @@ pub fn expand(input: &DeriveInput) -> Result<TokenStream> {
     let Parts { tables, defaults, changes, gets, sets } = parts;
     let changed = changes.iter().map(|((outer, field), _)| {
         quote! {
-            (::core::stringify!(#field), ::opendr_engine::params::FieldDefault::Made(|| {
+            (::core::stringify!(#field), ::opendr_engine::params::FieldDefault::Function(|| {
                 ::opendr_engine::params::Param::to_value(&<#name as ::core::default::Default>::default().#outer.#field)
             }))
         }

@@ -1,22 +1,22 @@
-//! Linear assignment: pairing rows with columns at the least total cost.
+//! Linear assignment: the pairing of rows with columns that has the least total cost.
 //!
-//! Trackers pair tracks with detections by it, metrics pair what was found with what is true. Shortest augmenting
+//! Trackers pair tracks with detections by it, metrics pair predictions with ground truth. Shortest augmenting
 //! paths on a rectangular matrix: D. F. Crouse, "On implementing 2D rectangular assignment algorithms", IEEE
 //! Transactions on Aerospace and Electronic Systems 52(4), 2016. Among equally good pairings it picks the one that
 //! SciPy's `linear_sum_assignment` picks, because published tracking scores depend on that choice.
 
-/// Beyond this magnitude a cost forbids its pair; sums of costs below it stay finite.
+/// Largest magnitude of a cost; a larger one forbids its pair. Sums of allowed costs stay finite.
 const LARGEST_COST: f64 = 1e200;
 
 fn is_allowed(cost: f64) -> bool {
     cost.abs() <= LARGEST_COST
 }
 
-/// The cheapest pairs `(row, column)` in rising order of rows; no row and no column occurs twice.
+/// Returns the pairs `(row, column)` with the least total cost, in rising order of rows.
 ///
-/// `costs` holds rows of `columns` costs each, one after the other. As many pairs are made as can be, and among all
-/// ways of making that many the cheapest is chosen. A pair whose cost is infinite, NaN or beyond 1e200 in magnitude is
-/// never made. Time grows with `min(rows, columns)² · max(rows, columns)`.
+/// `costs` is a matrix in row-major order with `columns` columns. No row and no column occurs twice. The number of pairs
+/// is the largest possible, and among all pairings of that number the cheapest is chosen. A pair whose cost is infinite,
+/// NaN or above 1e200 in magnitude is never chosen. Time grows with `min(rows, columns)² · max(rows, columns)`.
 ///
 /// ```
 /// use opendr_engine::assignment::cheapest_pairs;
@@ -30,7 +30,7 @@ pub fn cheapest_pairs(costs: &[f64], columns: usize) -> Vec<(usize, usize)> {
     assignment.pairs
 }
 
-/// [`cheapest_pairs`] with memory that is used again: after the first calls nothing is allocated.
+/// [`cheapest_pairs`] with reusable buffers: nothing is allocated after the first calls.
 #[derive(Debug, Clone, Default)]
 pub struct Assignment {
     paths: AugmentingPaths,
@@ -38,12 +38,12 @@ pub struct Assignment {
 }
 
 impl Assignment {
-    /// As the function of this name.
+    /// Returns the same as the function [`cheapest_pairs`].
     pub fn cheapest_pairs(&mut self, costs: &[f64], columns: usize) -> &[(usize, usize)] {
         let Self { paths, pairs } = self;
         pairs.clear();
         let rows = costs.len().checked_div(columns).unwrap_or(0);
-        debug_assert_eq!(costs.len(), rows * columns, "the last row is not whole");
+        debug_assert_eq!(costs.len(), rows * columns, "the last row is incomplete");
         let allowed = costs.iter().filter(|cost| is_allowed(**cost)).map(|cost| cost.abs());
         let Some(largest) = allowed.reduce(f64::max) else { return pairs };
 
@@ -63,15 +63,15 @@ impl Assignment {
             }));
         }
         (0..short).for_each(|row| paths.add(row));
-        let found = (0..short).filter_map(|row| Some((row, paths.column_of[row]?)));
-        let found = found.filter(|&(row, column)| is_allowed(costs[position(row, column)]));
-        pairs.extend(found.map(|(row, column)| if is_tall { (column, row) } else { (row, column) }));
+        let assigned = (0..short).filter_map(|row| Some((row, paths.column_of[row]?)));
+        let assigned = assigned.filter(|&(row, column)| is_allowed(costs[position(row, column)]));
+        pairs.extend(assigned.map(|(row, column)| if is_tall { (column, row) } else { (row, column) }));
         pairs.sort_unstable();
         pairs
     }
 }
 
-/// A cheapest pairing of the rows added so far, with the prices (dual variables) that prove it.
+/// A cheapest pairing of the rows added so far, with its dual variables (prices).
 #[derive(Debug, Clone, Default)]
 struct AugmentingPaths {
     costs: Vec<f64>,
@@ -84,14 +84,14 @@ struct AugmentingPaths {
     distance: Vec<f64>,
     /// The row before each column on that path.
     before: Vec<usize>,
-    /// Columns whose shortest path is not settled.
+    /// Columns whose shortest path is not final.
     open: Vec<usize>,
     settled: Vec<usize>,
     reached: Vec<usize>,
 }
 
 impl AugmentingPaths {
-    /// Forgets all rows; the costs are yet to come.
+    /// Removes all rows and costs, for a matrix of this size.
     fn begin(&mut self, rows: usize, columns: usize) {
         fn fill<T: Copy>(list: &mut Vec<T>, length: usize, value: T) {
             list.clear();
@@ -130,9 +130,9 @@ impl AugmentingPaths {
         }
     }
 
-    /// The nearest free column from `row` and the length of the way there (Dijkstra on reduced costs).
+    /// Returns the nearest free column from `row` and the length of the path to it (Dijkstra on reduced costs).
     fn shortest_path(&mut self, row: usize) -> Option<(usize, f64)> {
-        // Backwards, so that a constant matrix gives the diagonal.
+        // In reverse order, so that a constant matrix gives the diagonal.
         self.open.clear();
         self.open.extend((0..self.columns).rev());
         self.distance.fill(f64::INFINITY);

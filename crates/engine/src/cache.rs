@@ -1,14 +1,14 @@
-//! Where OpenDR keeps what it downloaded.
+//! The folder of downloaded files.
 
 use std::env;
 use std::path::PathBuf;
 
 use crate::{Error, Result};
 
-/// The cache folder: `OPENDR_CACHE`, or `opendr` in the user's cache folder. It need not exist yet.
+/// Returns the cache folder: `OPENDR_CACHE`, or `opendr` in the user's cache folder. It may not exist yet.
 ///
 /// # Errors
-/// `NotFound` when neither is known.
+/// Returns `NotFound` if neither is known.
 pub fn cache_dir() -> Result<PathBuf> {
     if let Some(folder) = variable("OPENDR_CACHE") {
         return Ok(folder);

@@ -1,22 +1,23 @@
-//! Where a learner runs, by name.
+//! The device a learner runs on.
 
 use std::fmt;
 use std::str::FromStr;
 
 use crate::{Error, Result};
 
-/// A device as users write it: `"auto"`, `"cpu"`, `"cuda"`, `"cuda:1"`, `"tensorrt"`, `"openvino"`, `"coreml"`, `"vulkan"`.
+/// A device. Users write its name: `"auto"`, `"cpu"`, `"cuda"`, `"cuda:1"`, `"tensorrt"`, `"openvino"`, `"coreml"`,
+/// `"vulkan"`.
 ///
-/// The name only says what is wanted; whether it is there, the runtime decides when a model is opened.
-/// The environment variable `OPENDR_DEVICE` overrides every device that a program asks for, so that a
-/// listing written for `"cuda"` runs on a machine without one.
+/// A value is a request: the runtime checks that the device exists when it opens a model. The environment variable
+/// `OPENDR_DEVICE` overrides every device that a program requests, so that an example written for `"cuda"` runs on a
+/// machine without a GPU.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Device {
-    /// The best device that is there.
+    /// The best available device.
     #[default]
     Auto,
-    /// The processor.
+    /// The CPU.
     Cpu,
     /// An NVIDIA GPU, by its index.
     Cuda(u32),
@@ -31,14 +32,14 @@ pub enum Device {
 }
 
 impl Device {
-    /// The names that [`Device::from_str`] takes.
+    /// The names that [`Device::from_str`] accepts.
     pub const NAMES: [&str; 7] =
         ["auto", "cpu", "cuda[:N]", "tensorrt[:N]", "openvino", "coreml", "vulkan[:N]"];
 
-    /// This device, or the one that `OPENDR_DEVICE` names.
+    /// Returns the device that `OPENDR_DEVICE` names, or `self` where the variable is unset or empty.
     ///
     /// # Errors
-    /// `InvalidParam` when the variable holds no device.
+    /// Returns `InvalidParam` if the variable names no device.
     pub fn or_environment(self) -> Result<Self> {
         match std::env::var("OPENDR_DEVICE") {
             Ok(name) if !name.is_empty() => {
@@ -53,10 +54,10 @@ impl FromStr for Device {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        let refuse =
+        let invalid =
             || Error::invalid_param(format!("no device {text:?}; give one of {}", Self::NAMES.join(", ")));
         let (name, index) = match text.split_once(':') {
-            Some((name, index)) => (name, Some(index.parse::<u32>().map_err(|_| refuse())?)),
+            Some((name, index)) => (name, Some(index.parse::<u32>().map_err(|_| invalid())?)),
             None => (text, None),
         };
         match (name, index) {
@@ -67,7 +68,7 @@ impl FromStr for Device {
             ("openvino", None) => Ok(Self::OpenVino),
             ("coreml", None) => Ok(Self::CoreMl),
             ("vulkan", index) => Ok(Self::Vulkan(index.unwrap_or(0))),
-            _ => Err(refuse()),
+            _ => Err(invalid()),
         }
     }
 }

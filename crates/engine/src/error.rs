@@ -1,7 +1,7 @@
-//! The one public error of the toolkit.
+//! The error type of OpenDR.
 //!
-//! One type, because finer ones compose badly across crates; what a caller can act on is the [`ErrorKind`],
-//! which has the same names and numbers on every surface (Python exception, C status, exit code).
+//! There is one type, because finer ones compose badly across crates. Its [`ErrorKind`] is what callers act on; it has
+//! the same names and numbers on every surface (Python exception, C status, exit code).
 
 use std::error::Error as StdError;
 use std::fmt;
@@ -9,12 +9,12 @@ use std::fmt;
 /// `Result` with the toolkit's [`Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// What went wrong, as far as a caller can act on it. C's `opendr_status` and the command's exit codes are 10 more.
+/// Category of an error, for callers to act on. C's `opendr_status` and the exit codes of the command line are 10 more.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 #[repr(i32)]
 pub enum ErrorKind {
-    /// A datum, target or file handed in does not fit: wrong shape, empty, NaN, undecodable picture.
+    /// A datum, target or file passed in does not fit: wrong shape, empty, NaN, undecodable image.
     InvalidInput = 1,
     /// A parameter is unknown, of the wrong type or out of range.
     InvalidParam = 2,
@@ -22,22 +22,22 @@ pub enum ErrorKind {
     NotFound = 3,
     /// The operating system refused to read or write.
     Io = 4,
-    /// A server or package client could not be reached or broke off.
+    /// A server or package client is unreachable or closed the connection.
     Network = 5,
     /// Bytes differ from their checksum or stated size, or an archive member leaves its folder.
     Integrity = 6,
     /// A file or message does not follow its format.
     Format = 7,
-    /// This learner, runtime or build cannot do what was asked.
+    /// This learner, runtime or build does not support the request.
     Unsupported = 8,
-    /// The device asked for is not there or failed.
+    /// The requested device does not exist or failed.
     Device = 9,
-    /// A fault of OpenDR itself: please report it.
+    /// A bug of OpenDR: please report it.
     Internal = 10,
 }
 
 impl ErrorKind {
-    /// The name as written on every surface, e.g. `"InvalidInput"`.
+    /// Returns the name, the same on every surface, e.g. `"InvalidInput"`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::InvalidInput => "InvalidInput",
@@ -60,9 +60,9 @@ impl fmt::Display for ErrorKind {
     }
 }
 
-/// An error: a kind, a message (what, the values, what to do next), context added on the way up, and a source.
+/// An error: a kind, a message (what, the values, what to do), context added by callers, and a source.
 ///
-/// The size of a pointer, so that `Result<T>` stays small.
+/// It has the size of a pointer, so that `Result<T>` stays small.
 pub struct Error(Box<Inner>);
 
 struct Inner {
@@ -81,46 +81,46 @@ macro_rules! constructors {
 }
 
 impl Error {
-    /// An error of `kind`. The message is lower case, without a full stop, and tells what to do next.
+    /// Creates an error of `kind`. The message is lower case, has no full stop, and says what to do.
     #[cold]
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
         Self(Box::new(Inner { kind, message: message.into(), context: Vec::new(), source: None }))
     }
 
     constructors! {
-        /// [`ErrorKind::InvalidInput`].
+        /// Creates an error of kind [`ErrorKind::InvalidInput`].
         invalid_input => InvalidInput;
-        /// [`ErrorKind::InvalidParam`].
+        /// Creates an error of kind [`ErrorKind::InvalidParam`].
         invalid_param => InvalidParam;
-        /// [`ErrorKind::NotFound`].
+        /// Creates an error of kind [`ErrorKind::NotFound`].
         not_found => NotFound;
-        /// [`ErrorKind::Io`].
+        /// Creates an error of kind [`ErrorKind::Io`].
         io => Io;
-        /// [`ErrorKind::Network`].
+        /// Creates an error of kind [`ErrorKind::Network`].
         network => Network;
-        /// [`ErrorKind::Integrity`].
+        /// Creates an error of kind [`ErrorKind::Integrity`].
         integrity => Integrity;
-        /// [`ErrorKind::Format`].
+        /// Creates an error of kind [`ErrorKind::Format`].
         format => Format;
-        /// [`ErrorKind::Unsupported`].
+        /// Creates an error of kind [`ErrorKind::Unsupported`].
         unsupported => Unsupported;
-        /// [`ErrorKind::Device`].
+        /// Creates an error of kind [`ErrorKind::Device`].
         device => Device;
-        /// [`ErrorKind::Internal`].
+        /// Creates an error of kind [`ErrorKind::Internal`].
         internal => Internal;
     }
 
-    /// What a caller can act on.
+    /// Returns the kind of the error.
     pub fn kind(&self) -> ErrorKind {
         self.0.kind
     }
 
-    /// The message without its context and source.
+    /// Returns the message without context and source.
     pub fn message(&self) -> &str {
         &self.0.message
     }
 
-    /// Adds what was being done, outermost last: `reading model.json: ...`.
+    /// Adds the operation that failed. The text puts the last one added first: `reading model.json: ...`.
     #[cold]
     #[must_use]
     pub fn context(mut self, what: impl Into<String>) -> Self {
@@ -146,7 +146,7 @@ impl fmt::Display for Error {
         let source = self.0.source.as_ref().map(ToString::to_string).unwrap_or_default();
         // Some libraries end their messages with a line break; some messages quote their source.
         match source.trim_end() {
-            told if self.0.message.contains(told) => Ok(()),
+            source if self.0.message.contains(source) => Ok(()),
             source => write!(f, " ({source})"),
         }
     }
@@ -164,7 +164,7 @@ impl StdError for Error {
     }
 }
 
-/// A missing file becomes [`ErrorKind::NotFound`], everything else [`ErrorKind::Io`].
+/// Maps a missing file to [`ErrorKind::NotFound`], everything else to [`ErrorKind::Io`].
 impl From<std::io::Error> for Error {
     fn from(error: std::io::Error) -> Self {
         let kind = match error.kind() {
@@ -175,9 +175,9 @@ impl From<std::io::Error> for Error {
     }
 }
 
-/// Adds context to the error of a `Result`.
+/// Extension of `Result` that adds context to an error.
 pub trait ResultExt<T> {
-    /// Adds what was being done; the text is only made when there is an error.
+    /// Adds the operation that failed; `what` is called only for an error.
     fn context<S: Into<String>>(self, what: impl FnOnce() -> S) -> Result<T>;
 }
 
@@ -192,7 +192,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn message_reads_from_the_outside_in() {
+    fn context_added_last_comes_first() {
         let error =
             Error::format("no key \"files\"").context("reading model.json").context("loading nanodet");
         assert_eq!(error.to_string(), "loading nanodet: reading model.json: no key \"files\"");
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn a_source_is_told_once() {
+    fn a_source_is_written_once() {
         let of = |source: &str| Error::io("disk full: 3 bytes").with_source(source).to_string();
         assert_eq!(of("errno 28\n"), "disk full: 3 bytes (errno 28)");
         assert_eq!(of("disk full"), "disk full: 3 bytes");

@@ -1,30 +1,30 @@
-//! Where and when a datum was taken.
+//! Time stamp and coordinate frame of a datum.
 
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-/// Time stamp and coordinate frame of a datum; they travel from the input to every target made of it.
+/// Time stamp and coordinate frame of a datum. Every target computed from an input has the header of that input.
 ///
 /// Cloning copies no text and allocates nothing.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Header {
-    /// Nanoseconds since the Unix epoch, or since the start of a recording; `None` when unknown.
+    /// Time stamp: nanoseconds since the Unix epoch, or since the start of a recording; `None` when unknown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stamp_ns: Option<i64>,
-    /// The coordinate frame (ROS's `frame_id`, e.g. `"camera_link"`); `None` when unknown.
+    /// Coordinate frame (ROS's `frame_id`, e.g. `"camera_link"`); `None` when unknown.
     #[serde(default, skip_serializing_if = "Option::is_none", with = "optional_text")]
     pub frame_id: Option<Arc<str>>,
 }
 
 impl Header {
-    /// A header with both stamp (nanoseconds) and frame id.
+    /// Creates a header with a time stamp in nanoseconds and a frame id.
     pub fn new(stamp_ns: i64, frame_id: impl Into<Arc<str>>) -> Self {
         Self { stamp_ns: Some(stamp_ns), frame_id: Some(frame_id.into()) }
     }
 }
 
-/// Shared text that may be absent, in JSON.
+/// Serde functions for shared, optional text.
 pub(crate) mod optional_text {
     use super::Arc;
     use serde::{Deserialize, Deserializer, Serializer};

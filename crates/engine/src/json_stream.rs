@@ -1,8 +1,8 @@
-//! JSON files of any size, read piece by piece: what is in memory is one value at a time.
+//! Reading of JSON files of any size, one value in memory at a time.
 //!
-//! The reader walks down to where the big arrays are ([`JsonStream::key`], [`JsonStream::more`]) and hands out the
-//! values there as bytes with their place in the file, for `serde_json` to parse or for later. COCO's files are read
-//! this way, by the data set (which keeps places only) and by whoever wants the whole file.
+//! The caller descends to the large arrays ([`JsonStream::key`], [`JsonStream::more`]) and receives their values as bytes
+//! with their position in the file, to parse with `serde_json` at once or later. The COCO reader of the data sets keeps
+//! the positions only; others read the whole file this way.
 
 mod extent;
 mod piece;
@@ -16,7 +16,7 @@ pub use piece::JsonPiece;
 use crate::{Error, Result};
 use extent::Extent;
 
-/// Bytes that are read at once.
+/// Bytes per read.
 const BLOCK: usize = 1 << 18;
 
 /// A cursor in a JSON text.
@@ -44,41 +44,41 @@ const BLOCK: usize = 1 << 18;
 pub struct JsonStream<R> {
     reader: R,
     buffer: Vec<u8>,
-    /// Bytes of `buffer` that hold text.
+    /// Number of valid bytes in `buffer`.
     filled: usize,
-    /// The next byte.
+    /// Index of the next byte in `buffer`.
     at: usize,
-    /// Where in the file `buffer` begins.
+    /// Position of the start of `buffer` in the file.
     base: u64,
     /// Line of the next byte, from 1.
     line: u64,
-    /// Closing bracket of each open object or array, and whether something has been read in it.
+    /// Closing bracket of each open object or array, and whether an element of it has been read.
     open: Vec<(u8, bool)>,
 }
 
 impl<R: Read> JsonStream<R> {
-    /// The longest value that [`JsonStream::value`] hands out, in bytes.
+    /// Maximum length of a value of [`JsonStream::value`], in bytes.
     pub const MAX_VALUE: usize = (1 << 24) - 1;
 
-    /// A cursor at the start of a JSON text.
+    /// Creates a cursor at the start of a JSON text.
     pub fn new(reader: R) -> Self {
         Self { reader, buffer: vec![0; BLOCK], filled: 0, at: 0, base: 0, line: 1, open: Vec::new() }
     }
 
-    /// A cursor inside a JSON text whose next byte, `offset` and on `line`, `reader` will give.
+    /// Creates a cursor inside a JSON text. The first byte of `reader` is at byte `offset` and on line `line`.
     pub fn at(reader: R, offset: u64, line: u64) -> Self {
         Self { base: offset, line, ..Self::new(reader) }
     }
 
-    /// Enters the object that comes next.
+    /// Enters the next value, an object.
     ///
     /// # Errors
-    /// `Format` when something else comes, or the text ends; `Io`.
+    /// Returns `Format` if the next value is something else or the text ends, `Io` if reading fails.
     pub fn begin_object(&mut self) -> Result<()> {
         self.begin(b'{', b'}', "an object")
     }
 
-    /// Enters the array that comes next.
+    /// Enters the next value, an array.
     ///
     /// # Errors
     /// As [`JsonStream::begin_object`].
@@ -86,7 +86,7 @@ impl<R: Read> JsonStream<R> {
         self.begin(b'[', b']', "an array")
     }
 
-    /// The next key of the object that was entered last; its value comes next. `None` leaves the object.
+    /// Returns the next key of the current object; its value is next. `None` leaves the object.
     ///
     /// # Errors
     /// As [`JsonStream::begin_object`].
@@ -105,7 +105,7 @@ impl<R: Read> JsonStream<R> {
         Ok(Some(key))
     }
 
-    /// Whether a value of the array that was entered last comes next; otherwise the array is left.
+    /// Returns whether the current array has another value; `false` leaves the array.
     ///
     /// # Errors
     /// As [`JsonStream::begin_object`].
@@ -120,8 +120,8 @@ impl<R: Read> JsonStream<R> {
             Some(b',') if begun => self.advance(1),
             Some(_) if !begun => {}
             _ => {
-                let wanted = format!("\",\" or {:?}", char::from(closing));
-                return Err(self.unexpected(&wanted));
+                let expected = format!("\",\" or {:?}", char::from(closing));
+                return Err(self.unexpected(&expected));
             }
         }
         if let Some((_, begun)) = self.open.last_mut() {
@@ -130,7 +130,7 @@ impl<R: Read> JsonStream<R> {
         Ok(true)
     }
 
-    /// The value that comes next, whole. Its brackets are balanced, but only parsing tells whether it is JSON.
+    /// Returns the next value. Its brackets are balanced; other errors appear when it is parsed.
     ///
     /// # Errors
     /// As [`JsonStream::begin_object`], and for a value of more than [`JsonStream::MAX_VALUE`] bytes.
@@ -152,7 +152,9 @@ impl<R: Read> JsonStream<R> {
                 if extent.may_end() {
                     break;
                 }
-                return Err(self.error("the file ends inside the value that begins here; get it again"));
+                return Err(
+                    self.error("the file ends inside the value that begins here; copy or download it again")
+                );
             }
         }
         let (start, offset, line) = (self.at, self.base + self.at as u64, self.line);
@@ -160,7 +162,7 @@ impl<R: Read> JsonStream<R> {
         Ok(JsonPiece { bytes: &self.buffer[start..start + length], offset, line })
     }
 
-    /// Passes over the value that comes next, however long.
+    /// Skips the next value, of any length.
     ///
     /// # Errors
     /// As [`JsonStream::begin_object`].
@@ -177,13 +179,13 @@ impl<R: Read> JsonStream<R> {
             if !self.fill()? {
                 return match extent.may_end() {
                     true => Ok(()),
-                    false => Err(self.error("the file ends inside a value; get it again")),
+                    false => Err(self.error("the file ends inside a value; copy or download it again")),
                 };
             }
         }
     }
 
-    /// Makes sure that nothing follows.
+    /// Checks that the text ends here.
     ///
     /// # Errors
     /// As [`JsonStream::begin_object`].
@@ -194,17 +196,17 @@ impl<R: Read> JsonStream<R> {
         }
     }
 
-    /// The byte that is read next, counted from the start of the file.
+    /// Returns the position of the next byte in the file.
     pub fn offset(&self) -> u64 {
         self.base + self.at as u64
     }
 
-    /// The line of the next byte, from 1.
+    /// Returns the line of the next byte, from 1.
     pub fn line(&self) -> u64 {
         self.line
     }
 
-    /// An error at the cursor: `line 3, byte 120: ...`.
+    /// Creates an error at the cursor: `line 3, byte 120: ...`.
     pub fn error(&self, what: &str) -> Error {
         Error::format(format!("line {}, byte {}: {what}", self.line, self.offset()))
     }
@@ -225,7 +227,7 @@ impl<R: Read> JsonStream<R> {
         }
     }
 
-    /// The next byte that is no white space.
+    /// Returns the next byte that is not white space.
     fn peek(&mut self) -> Result<Option<u8>> {
         loop {
             let rest = &self.buffer[self.at..self.filled];
@@ -250,7 +252,7 @@ impl<R: Read> JsonStream<R> {
         match self.buffer[self.at..self.filled] {
             [0xef, 0xbb, 0xbf, ..] => self.at += 3,
             [0xff, 0xfe, ..] | [0xfe, 0xff, ..] | [0, _, ..] | [_, 0, ..] => {
-                return Err(self.error("no UTF-8 text (UTF-16 or binary); save the file as UTF-8"));
+                return Err(self.error("not UTF-8 text (UTF-16 or binary); save the file as UTF-8"));
             }
             _ => {}
         }
@@ -263,7 +265,7 @@ impl<R: Read> JsonStream<R> {
         self.at += bytes;
     }
 
-    /// Reads more behind what is there; what lies before the cursor is dropped. False at the end of the file.
+    /// Reads more bytes into the buffer and drops those before the cursor. Returns `false` at the end of the file.
     fn fill(&mut self) -> Result<bool> {
         self.buffer.copy_within(self.at..self.filled, 0);
         self.base += self.at as u64;
@@ -284,10 +286,12 @@ impl<R: Read> JsonStream<R> {
         }
     }
 
-    fn unexpected(&mut self, wanted: &str) -> Error {
+    fn unexpected(&mut self, expected: &str) -> Error {
         match self.buffer[self.at..self.filled].first() {
-            None => self.error(&format!("the file ends where {wanted} is expected; get it again")),
-            Some(byte) => self.error(&format!("expected {wanted}, found {:?}", char::from(*byte))),
+            None => {
+                self.error(&format!("the file ends where {expected} is expected; copy or download it again"))
+            }
+            Some(byte) => self.error(&format!("expected {expected}, found {:?}", char::from(*byte))),
         }
     }
 }

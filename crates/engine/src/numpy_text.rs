@@ -1,26 +1,26 @@
-//! Arrays as NumPy prints them: the texts of OpenDR's data and targets are NumPy's.
+//! Text of arrays as NumPy prints them, for the `Display` of OpenDR's data and targets.
 //!
-//! NumPy 1.14 to 2.1, that is. Later ones differ in two places: `repr` of more than 1000 elements names the shape
-//! (2.2), and `float32` turns scientific from 1e6 on instead of 1e8 (2.3).
+//! It follows NumPy 1.14 to 2.1. Later versions differ in two places: `repr` of more than 1000 elements names the shape
+//! (2.2), and `float32` becomes scientific from 1e6 instead of 1e8 (2.3).
 
 use std::fmt::Write as _;
 
-/// Characters a line, as NumPy's default.
+/// Characters per line, NumPy's default.
 const LINE: usize = 75;
-/// Arrays with more elements are shown by their edges.
+/// Arrays with more elements are printed by their edges only.
 const SUMMARY: usize = 1000;
 const EDGE: usize = 3;
-/// Digits after the point.
+/// Digits after the decimal point.
 const PRECISION: usize = 8;
 
-/// A number in an array; the type decides how many digits are its own.
+/// A number in an array; its type determines the digits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Number {
     /// `float32`.
     F32(f32),
     /// `float64`.
     F64(f64),
-    /// Any whole number.
+    /// Any integer type.
     Int(i64),
 }
 
@@ -33,7 +33,7 @@ impl Number {
         }
     }
 
-    /// The shortest digits that name the number, at most [`PRECISION`] of them after the point; always with a point.
+    /// Returns the shortest digits that identify the number, at most [`PRECISION`] after the point; always with a point.
     fn positional(self) -> String {
         let shortest = match self {
             Self::F32(value) => value.to_string(),
@@ -41,7 +41,7 @@ impl Number {
             Self::Int(value) => value.to_string(),
         };
         let Some((_, digits)) = shortest.split_once('.') else { return shortest + "." };
-        // Of two shortest texts at the same distance, NumPy takes the even one; so does exact rounding.
+        // Of two shortest texts at the same distance, NumPy takes the even one, as exact rounding does.
         let exact = format!("{:.*}", digits.len().min(PRECISION), self.value());
         let same = match self {
             Self::F32(value) => exact.parse() == Ok(value),
@@ -50,7 +50,7 @@ impl Number {
         if same || digits.len() > PRECISION { exact.trim_end_matches('0').to_owned() } else { shortest }
     }
 
-    /// Mantissa digits after the point, and exponent.
+    /// Returns integer digits, digits after the point, and exponent of the scientific form.
     fn scientific(self) -> (String, String, i32) {
         let text = match self {
             Self::F32(value) => format!("{value:e}"),
@@ -66,12 +66,12 @@ impl Number {
     }
 }
 
-/// `str(array)`.
+/// Returns `str(array)`.
 pub(crate) fn array_str(shape: &[usize], number: &dyn Fn(usize) -> Number) -> String {
     Printer::new(shape, number, " ", 0).print()
 }
 
-/// `repr(array)` of a float array, with `prefix` characters before it on its line.
+/// Returns `repr(array)` of a float array.
 pub(crate) fn array_repr(shape: &[usize], number: &dyn Fn(usize) -> Number) -> String {
     let mut text = format!("array({}", Printer::new(shape, number, ", ", "array(".len()).print());
     if shape.contains(&0) {
@@ -104,22 +104,24 @@ impl<'a> Printer<'a> {
     ) -> Self {
         let summary = shape.iter().product::<usize>() > SUMMARY;
         let mut printer = Self { shape, number, separator, indent, style: Style::Int { width: 0 }, summary };
-        let mut shown = Vec::new();
-        printer.visit(0, 0, &mut |at| shown.push(number(at)));
-        printer.style = Style::of(&shown);
+        let mut printed = Vec::new();
+        printer.visit(0, 0, &mut |at| printed.push(number(at)));
+        printer.style = Style::of(&printed);
         printer
     }
 
-    /// Every element that is shown.
-    fn visit(&self, axis: usize, at: usize, see: &mut dyn FnMut(usize)) {
+    /// Calls `each` with the index of every printed element.
+    fn visit(&self, axis: usize, at: usize, each: &mut dyn FnMut(usize)) {
         match self.shape.get(axis) {
-            None => see(at),
-            Some(&count) => self.shown(count).for_each(|index| self.visit(axis + 1, at * count + index, see)),
+            None => each(at),
+            Some(&count) => {
+                self.printed(count).for_each(|index| self.visit(axis + 1, at * count + index, each))
+            }
         }
     }
 
-    /// Indices along an axis, the middle left out in a summary.
-    fn shown(&self, count: usize) -> impl Iterator<Item = usize> {
+    /// Returns the printed indices along an axis; a summary leaves out the middle.
+    fn printed(&self, count: usize) -> impl Iterator<Item = usize> {
         let cut = self.summary && count > 2 * EDGE;
         (0..count).filter(move |index| !cut || *index < EDGE || *index >= count - EDGE)
     }
@@ -128,7 +130,7 @@ impl<'a> Printer<'a> {
         if self.shape.contains(&0) {
             return "[]".to_owned();
         }
-        // The bracket that ends `repr` takes a place.
+        // The closing parenthesis of `repr` takes one character.
         let width = LINE - usize::from(self.indent > 0);
         self.nested(0, 0, &" ".repeat(self.indent + 1), width)
     }
@@ -136,7 +138,7 @@ impl<'a> Printer<'a> {
     fn nested(&self, axis: usize, at: usize, hanging: &str, width: usize) -> String {
         let Some(&count) = self.shape.get(axis) else { return self.style.text((self.number)(at)) };
         let cut = self.summary && count > 2 * EDGE;
-        let parts = self.shown(count).map(|index| {
+        let parts = self.printed(count).map(|index| {
             let text = self.nested(axis + 1, at * count + index, &format!("{hanging} "), width - 1);
             (cut && index == count - EDGE, text)
         });
@@ -200,7 +202,7 @@ impl Style {
         let (most, least) = (sizes().fold(0.0, f64::max), sizes().fold(f64::INFINITY, f64::min));
         let special = numbers.iter().filter(|number| !number.value().is_finite());
         let special = special.map(|number| special_text(number.value()).len()).max().unwrap_or(0);
-        // NumPy compares in the array's own type.
+        // NumPy compares in the element type of the array.
         let wide = match numbers.first() {
             Some(Number::F32(_)) => {
                 let (most, least) = (most as f32, least as f32);
@@ -248,7 +250,7 @@ impl Style {
                 format!("{whole:>left$}.{digits:<right$}")
             }
             Self::Scientific { left, digits, exponent } => {
-                // NumPy fills up with the digits of the exact value, not with zeros.
+                // NumPy pads with the digits of the exact value, not with zeros.
                 let exact = format!("{value:.digits$e}");
                 let (mantissa, power) = exact.split_once('e').unwrap_or((&exact, "0"));
                 let power: i32 = power.parse().unwrap_or(0);
@@ -273,7 +275,7 @@ fn special_text(value: f64) -> &'static str {
     }
 }
 
-/// `str(list)` of numbers: what Python prints of each, between commas.
+/// Returns the text of a number as Python prints it in a list.
 pub(crate) fn python_float(value: f32) -> String {
     if value != 0.0 && value.is_finite() && !(1e-4..1e16).contains(&value.abs()) {
         let text = format!("{value:e}");

@@ -1,4 +1,4 @@
-//! Work on many items at once whose results come in the items' order.
+//! Parallel map with ordered results and bounded memory.
 
 use std::any::Any;
 use std::collections::BTreeMap;
@@ -7,20 +7,20 @@ use std::sync::mpsc::{Receiver, sync_channel};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-/// Items under way for each worker: one in work, one waiting for it.
+/// Items in flight per worker: one in work, one queued.
 const AHEAD: usize = 2;
 
-/// Maps `items` with `work`, one thread for each of `workers`, and hands the results in the order of the items to
-/// `each`, on the calling thread. A single worker works on the calling thread itself.
+/// Maps `items` with `work`, with a thread per worker of `workers`, and passes the results in the order of the items to
+/// `each` on the calling thread. A single worker runs on the calling thread itself.
 ///
-/// At most two items for each worker are taken from `items` and not yet handed to `each`, so memory is bounded however
-/// long the sequence is and however slow `each`.
+/// At most two items per worker are taken from `items` and not yet passed to `each`. Memory is therefore bounded for
+/// long sequences and a slow `each`.
 ///
 /// # Errors
-/// The first error of `each` ends the work; items under way are finished and dropped.
+/// Returns the first error of `each`; items in flight are finished and dropped.
 ///
 /// # Panics
-/// Goes on with a panic of `work`.
+/// Propagates a panic of `work`.
 ///
 /// ```
 /// let mut squares = Vec::new();
@@ -45,33 +45,33 @@ pub fn map_in_order<W: Send, T: Send, R: Send, E>(
     let (jobs, queue) = sync_channel::<(u64, T)>(ahead);
     let (queue, work) = (&Mutex::new(queue), &work);
     thread::scope(move |scope| {
-        let (answers, done) = sync_channel::<(u64, Answer<R>)>(ahead);
+        let (results, done) = sync_channel::<(u64, Outcome<R>)>(ahead);
         for worker in workers {
-            let answers = answers.clone();
+            let results = results.clone();
             scope.spawn(move || {
                 while let Some((index, item)) = next_of(queue) {
-                    let answer = catch_unwind(AssertUnwindSafe(|| work(worker, item)));
-                    if answers.send((index, answer)).is_err() {
+                    let outcome = catch_unwind(AssertUnwindSafe(|| work(worker, item)));
+                    if results.send((index, outcome)).is_err() {
                         break;
                     }
                 }
             });
         }
-        drop(answers);
+        drop(results);
         let (mut sent, mut handed) = (0, 0);
         let mut early = BTreeMap::new();
         loop {
             while sent - handed < ahead as u64 {
                 let Some(item) = items.next() else { break };
-                // The workers live as long as `jobs`, and the queue has room for all that are ahead.
+                // The workers live as long as `jobs`, and the queue has room for all items in flight.
                 jobs.send((sent, item)).ok();
                 sent += 1;
             }
             if sent == handed {
                 return Ok(());
             }
-            let Ok((index, answer)) = done.recv() else { return Ok(()) };
-            early.insert(index, answer.unwrap_or_else(|panic| resume_unwind(panic)));
+            let Ok((index, outcome)) = done.recv() else { return Ok(()) };
+            early.insert(index, outcome.unwrap_or_else(|panic| resume_unwind(panic)));
             while let Some(result) = early.remove(&handed) {
                 handed += 1;
                 each(result)?;
@@ -80,10 +80,10 @@ pub fn map_in_order<W: Send, T: Send, R: Send, E>(
     })
 }
 
-/// A result, or what `work` panicked with.
-type Answer<R> = Result<R, Box<dyn Any + Send>>;
+/// A result, or the payload of a panic of `work`.
+type Outcome<R> = Result<R, Box<dyn Any + Send>>;
 
-/// The next job; the lock is held while waiting for it, never while working.
+/// Returns the next job; the lock is held while waiting for it, never while working.
 fn next_of<T>(queue: &Mutex<Receiver<T>>) -> Option<T> {
     queue.lock().unwrap_or_else(PoisonError::into_inner).recv().ok()
 }
@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn workers_keep_what_is_theirs() {
+    fn workers_keep_their_state() {
         let mut counts = [0; 4];
         let work = |count: &mut i32, _: i32| *count += 1;
         map_in_order(&mut counts, 0..100, work, |()| Ok::<_, ()>(())).unwrap();
@@ -136,7 +136,7 @@ mod tests {
 
     #[test]
     #[should_panic(expected = "seven")]
-    fn panic_of_a_worker_goes_on() {
+    fn panic_of_a_worker_is_propagated() {
         let work = |(): &mut (), n: i32| assert!(n != 7, "seven");
         map_in_order(&mut [(); 2], 0..100, work, |()| Ok::<_, ()>(())).unwrap();
     }

@@ -1,24 +1,24 @@
-//! Work memory that is used again from frame to frame.
+//! Buffers that are reused from frame to frame.
 
 use std::ops::{Deref, DerefMut};
 use std::sync::{Mutex, PoisonError};
 
-/// A stack of work memories shared by the threads that use one learner: each call takes one and gives it back, so
-/// that after the first frames nothing is allocated.
+/// A stack of buffers that the threads of one learner share. Each call takes one and returns it, so that nothing is
+/// allocated after the first frames.
 #[derive(Debug, Default)]
 pub struct Pool<T> {
     free: Mutex<Vec<T>>,
 }
 
 impl<T: Default> Pool<T> {
-    /// Takes a free memory, or makes a new one.
+    /// Takes a free buffer, or creates a new one.
     pub fn take(&self) -> Pooled<'_, T> {
         let free = self.free.lock().unwrap_or_else(PoisonError::into_inner).pop();
         Pooled { pool: self, value: free.unwrap_or_default() }
     }
 }
 
-/// A memory on loan; dropping it gives it back.
+/// A borrowed buffer; dropping it returns it to the pool.
 #[derive(Debug)]
 pub struct Pooled<'a, T: Default> {
     pool: &'a Pool<T>,
@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn memory_comes_back() {
+    fn buffers_are_reused() {
         let pool = Pool::<Vec<u8>>::default();
         pool.take().reserve(100);
         assert!(pool.take().capacity() >= 100);

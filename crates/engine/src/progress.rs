@@ -1,38 +1,38 @@
-//! How long work tells what it is doing.
+//! Progress of long operations.
 
-/// What the numbers of a [`Progress`] count.
+/// Unit of the amounts of a [`Progress`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Unit {
     /// Bytes of a download or file.
     Bytes,
-    /// Pictures, frames, records.
+    /// Images, frames, records.
     Items,
     /// Optimiser or environment steps.
     Steps,
 }
 
-/// Receives the progress of one piece of work at a time; surfaces draw a bar with it.
+/// Receives the progress of one operation at a time; surfaces show it as a progress bar.
 ///
-/// Library code never prints: whatever takes over two seconds takes a `&dyn Progress`.
+/// Library code never prints: functions that take more than about two seconds take a `&dyn Progress`.
 pub trait Progress: Send + Sync {
-    /// Work begins: `what` in a few words, `total` when it is known.
+    /// Starts an operation: `what` in a few words, `total` if it is known.
     fn begin(&self, what: &str, total: Option<u64>, unit: Unit);
-    /// `amount` more is done.
+    /// Adds `amount` to the work done.
     fn advance(&self, amount: u64);
-    /// The work is over, done or not.
+    /// Ends the operation, complete or not.
     fn end(&self);
-    /// How the work goes right now, e.g. "loss 0.31, 42 images/s"; shown beside the bar until the next one.
+    /// Sets a short status, e.g. "loss 0.31, 42 images/s"; surfaces show it beside the bar until the next one.
     fn status(&self, _text: &str) {}
-    /// A line worth reading in between.
+    /// Reports a line of text, such as a warning.
     fn note(&self, _line: &str) {}
-    /// Whether the user asked to stop (Ctrl-C); long work asks it between pieces and returns early.
+    /// Returns whether the user requested a stop (Ctrl-C). Long operations check it between steps and return early.
     fn stopped(&self) -> bool {
         false
     }
 }
 
-/// Tells nobody.
+/// A [`Progress`] that discards everything.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Silent;
 

@@ -1,11 +1,11 @@
-//! Random numbers that are the same on every machine.
+//! A random number generator with the same numbers on every machine.
 
 use crate::{Error, Result};
 
-/// A stream of random numbers: xoshiro256++ (Blackman and Vigna, Scrambled linear pseudorandom number generators, 2021).
+/// A random number generator: xoshiro256++ (Blackman and Vigna, Scrambled linear pseudorandom number generators, 2021).
 ///
-/// Only operations that IEEE 754 rounds exactly are used, so a stream is the same, bit for bit, on every machine and
-/// in every build. It is no source of secrets.
+/// It uses only operations that IEEE 754 rounds exactly, so its numbers are the same, bit for bit, on every machine and
+/// in every build. It is not cryptographically secure.
 ///
 /// ```
 /// use opendr_engine::Random;
@@ -21,14 +21,14 @@ pub struct Random {
 }
 
 impl Random {
-    /// The stream that belongs to `seed`.
+    /// Creates the generator of `seed`.
     pub fn new(seed: u64) -> Self {
-        Self::at([seed])
+        Self::from_key([seed])
     }
 
-    /// The stream that belongs to a place, such as `[seed, epoch, sample]`: streams of different places have nothing
-    /// to do with each other, so that it does not matter which thread works on which sample, and when.
-    pub fn at<const N: usize>(place: [u64; N]) -> Self {
+    /// Creates the generator of a key such as `[seed, epoch, sample]`. Generators of different keys are independent, so
+    /// the numbers for a sample do not depend on which thread processes it, and when.
+    pub fn from_key<const N: usize>(place: [u64; N]) -> Self {
         let mut hash = N as u64;
         for part in place {
             hash = mixed(hash.wrapping_add(STEP) ^ mixed(part.wrapping_add(STEP)));
@@ -41,23 +41,25 @@ impl Random {
         }
     }
 
-    /// The stream that goes on from a state.
+    /// Creates a generator that resumes from `state`.
     ///
     /// # Errors
-    /// `Format` for a state of zeros, which no stream reaches.
+    /// Returns `Format` if the state is all zeros, which no generator reaches.
     pub fn from_state(state: [u64; 4]) -> Result<Self> {
         match state {
-            [0, 0, 0, 0] => Err(Error::format("random numbers cannot go on from a state of zeros")),
+            [0, 0, 0, 0] => {
+                Err(Error::format("the state of a random number generator must not be all zeros"))
+            }
             state => Ok(Self { state }),
         }
     }
 
-    /// Where the stream is: what to keep in a checkpoint.
+    /// Returns the state, e.g. for a checkpoint.
     pub fn state(&self) -> [u64; 4] {
         self.state
     }
 
-    /// 64 random bits.
+    /// Returns 64 random bits.
     #[inline]
     pub fn bits(&mut self) -> u64 {
         let [a, b, c, d] = self.state;
@@ -67,37 +69,37 @@ impl Random {
         result
     }
 
-    /// A number in [0, 1), in steps of 2^-53.
+    /// Returns a number in [0, 1), in steps of 2^-53.
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
     }
 
-    /// A number from `low` to `high`, `high` left out; `low` where there is nothing between.
+    /// Returns a number in [`low`, `high`); `low` if the interval is empty.
     pub fn uniform(&mut self, low: f32, high: f32) -> f32 {
         let (start, end) = (f64::from(low), f64::from(high));
         let value = (start + (end - start) * self.unit()) as f32;
         if value < high { value.max(low) } else { low }
     }
 
-    /// A whole number below `end`, each as likely as the others (Lemire, 2019); 0 when `end` is 0.
+    /// Returns an integer in [0, `end`), uniformly distributed (Lemire, 2019); 0 if `end` is 0.
     pub fn below(&mut self, end: usize) -> usize {
         let end = end as u64;
-        // The lowest 2^64 mod `end` products are refused, or some numbers would come more often.
-        let refused = end.wrapping_neg().checked_rem(end).unwrap_or(0);
+        // The lowest 2^64 mod `end` products are rejected; otherwise some numbers would be more frequent.
+        let rejected = end.wrapping_neg().checked_rem(end).unwrap_or(0);
         loop {
             let product = u128::from(self.bits()) * u128::from(end);
-            if product as u64 >= refused {
+            if product as u64 >= rejected {
                 return (product >> 64) as usize;
             }
         }
     }
 
-    /// `true` with this probability.
+    /// Returns `true` with this probability.
     pub fn chance(&mut self, probability: f32) -> bool {
         self.unit() < f64::from(probability)
     }
 
-    /// A number of the normal distribution with mean 0 and deviation 1 (Marsaglia's polar method).
+    /// Returns a number of the normal distribution with mean 0 and standard deviation 1 (Marsaglia's polar method).
     pub fn normal(&mut self) -> f64 {
         loop {
             let (x, y) = (2.0 * self.unit() - 1.0, 2.0 * self.unit() - 1.0);
@@ -108,7 +110,7 @@ impl Random {
         }
     }
 
-    /// Brings `items` into a random order, each as likely as the others (Fisher and Yates).
+    /// Shuffles `items`; every order is equally likely (Fisher and Yates).
     pub fn shuffle<T>(&mut self, items: &mut [T]) {
         for end in (2..=items.len()).rev() {
             items.swap(end - 1, self.below(end));
@@ -116,18 +118,18 @@ impl Random {
     }
 }
 
-/// The golden ratio's fraction, 64 bits.
+/// 64 bits of the fractional part of the golden ratio.
 const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// SplitMix64's mixing (Steele, Lea and Flood, 2014).
+/// Mixes bits as SplitMix64 does (Steele, Lea and Flood, 2014).
 fn mixed(mut bits: u64) -> u64 {
     bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     bits ^ (bits >> 31)
 }
 
-/// The logarithm of a positive, normal number to about 1e-15. That of the standard library differs from system to
-/// system in the last bit.
+/// Returns the logarithm of a positive, normal number to about 1e-15. The standard library's differs in the last bit
+/// from system to system.
 fn natural_logarithm(number: f64) -> f64 {
     const MANTISSA: u32 = 52;
     let bits = number.to_bits();
@@ -153,12 +155,12 @@ mod tests {
     #[test]
     fn bits_are_xoshiros() {
         let mut random = Random { state: [1, 2, 3, 4] };
-        let wanted = [41_943_041, 58_720_359, 3_588_806_011_781_223, 3_591_011_842_654_386];
-        assert_eq!([(); 4].map(|()| random.bits()), wanted);
+        let expected = [41_943_041, 58_720_359, 3_588_806_011_781_223, 3_591_011_842_654_386];
+        assert_eq!([(); 4].map(|()| random.bits()), expected);
     }
 
     #[test]
-    fn goes_on_from_a_state() {
+    fn resumes_from_a_state() {
         let mut random = Random::new(5);
         random.bits();
         let mut same = Random::from_state(random.state()).unwrap();
@@ -167,21 +169,23 @@ mod tests {
     }
 
     #[test]
-    fn places_have_streams_of_their_own() {
-        let mut first: Vec<u64> =
-            (0..1000).flat_map(|i| [Random::at([0, i]), Random::at([i, 1])]).map(|mut r| r.bits()).collect();
-        first.push(Random::at([0]).bits());
-        first.push(Random::at([0, 0, 0]).bits());
+    fn keys_have_independent_generators() {
+        let mut first: Vec<u64> = (0..1000)
+            .flat_map(|i| [Random::from_key([0, i]), Random::from_key([i, 1])])
+            .map(|mut r| r.bits())
+            .collect();
+        first.push(Random::from_key([0]).bits());
+        first.push(Random::from_key([0, 0, 0]).bits());
         first.sort_unstable();
-        // [0, 1] stands in both families.
+        // [0, 1] is in both sequences.
         assert_eq!(first.windows(2).filter(|pair| pair[0] == pair[1]).count(), 1);
     }
 
     #[test]
     fn logarithm_is_exact_enough() {
         for number in [1e-300, 1e-9, 0.1, 0.5, 0.999_999, 1.0, 1.414, 1.415, 2.0, 123.456] {
-            let (got, wanted) = (natural_logarithm(number), number.ln());
-            assert!((got - wanted).abs() <= 2e-15 * wanted.abs().max(0.1), "{number}: {got} {wanted}");
+            let (got, expected) = (natural_logarithm(number), number.ln());
+            assert!((got - expected).abs() <= 2e-15 * expected.abs().max(0.1), "{number}: {got} {expected}");
         }
     }
 
@@ -203,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn shuffled_items_are_all_there() {
+    fn shuffle_is_a_permutation() {
         let mut items: Vec<usize> = (0..100).collect();
         Random::new(1).shuffle(&mut items);
         assert_ne!(items, (0..100).collect::<Vec<_>>());

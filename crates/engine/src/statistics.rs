@@ -1,32 +1,32 @@
-//! The one type that `fit` and `eval` return.
+//! The results of `fit` and `eval`.
 
 use std::collections::BTreeMap;
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// Named numbers and named curves, the same on every surface.
+/// Named scalars and named curves, the same on every surface.
 ///
 /// Keys are `snake_case`. `fit` writes the curves `loss` and, with validation data, `val_<metric>` (one value per
 /// epoch) and the scalars `steps`, `epochs`, `seconds`; `eval` writes one scalar per metric of the task, e.g.
 /// `map`, `map50`, `map75`. A key that could not be computed is absent, never NaN.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Statistics {
-    /// Single numbers.
+    /// Scalars by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub scalars: BTreeMap<String, f64>,
-    /// One value per epoch, step or class.
+    /// Curves by name: one value per epoch, step or class.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub curves: BTreeMap<String, Vec<f64>>,
 }
 
 impl Statistics {
-    /// The number under `key`.
+    /// Returns the scalar `key`.
     pub fn get(&self, key: &str) -> Option<f64> {
         self.scalars.get(key).copied()
     }
 
-    /// Sets a number; one that is not finite is left out.
+    /// Sets a scalar; a value that is not finite removes the key.
     pub fn set(&mut self, key: impl Into<String>, value: f64) {
         let key = key.into();
         if value.is_finite() {
@@ -36,7 +36,7 @@ impl Statistics {
         }
     }
 
-    /// Appends to a curve.
+    /// Appends a value to a curve.
     pub fn push(&mut self, key: impl Into<String>, value: f64) {
         self.curves.entry(key.into()).or_default().push(value);
     }
@@ -62,7 +62,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_but_finite_numbers() {
+    fn scalars_are_finite() {
         let mut statistics = Statistics::default();
         statistics.set("map50", 0.5);
         statistics.set("map75", f64::NAN);

@@ -1,4 +1,4 @@
-//! What a learner is for.
+//! The tasks of learners.
 
 use std::fmt;
 use std::str::FromStr;
@@ -9,7 +9,7 @@ use crate::{Error, Result};
 
 macro_rules! tasks {
     ($($(#[$doc:meta])* $variant:ident = $name:literal;)*) => {
-        /// A task fixes the target type and the metric of its learners; `eval` belongs to it.
+        /// The task of a learner. It determines target type, metric and `eval`.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
         #[serde(rename_all = "snake_case")]
         #[non_exhaustive]
@@ -18,10 +18,10 @@ macro_rules! tasks {
         }
 
         impl Task {
-            /// Every task that has a learner.
+            /// All tasks.
             pub const ALL: &[Self] = &[$(Self::$variant),*];
 
-            /// The name as OpenDR's package has it, e.g. `"object_detection_2d"`.
+            /// Returns the name, as in OpenDR's package, e.g. `"object_detection_2d"`.
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$variant => $name,)* }
             }
@@ -30,7 +30,7 @@ macro_rules! tasks {
 }
 
 impl Task {
-    /// Which of OpenDR's packages its learners are in.
+    /// Returns the OpenDR package of its learners.
     pub const fn package(self) -> &'static str {
         match self {
             Self::ReinforcementLearning => "control",
@@ -41,65 +41,65 @@ impl Task {
 }
 
 tasks! {
-    /// Boxes with classes in a picture.
+    /// Detection of objects in an image, as boxes with classes.
     ObjectDetection2d = "object_detection_2d";
-    /// Boxes with classes in space.
+    /// Detection of objects in space, as 3D boxes with classes.
     ObjectDetection3d = "object_detection_3d";
-    /// Objects that keep their number from frame to frame.
+    /// Tracking of objects in a video: boxes with an identity.
     ObjectTracking2d = "object_tracking_2d";
-    /// Objects that keep their number from moment to moment, in space.
+    /// Tracking of objects in space: 3D boxes with an identity.
     ObjectTracking3d = "object_tracking_3d";
-    /// Boxes of faces in a picture.
+    /// Detection of faces in an image, as boxes.
     FaceDetection = "face_detection";
-    /// Whose faces are in a picture.
+    /// Recognition of persons by their faces.
     FaceRecognition = "face_recognition";
-    /// Points of faces in a picture.
+    /// Landmarks of faces in an image.
     FacialLandmarks = "facial_landmarks";
-    /// What a face expresses.
+    /// Classification of facial expressions.
     FacialExpressionRecognition = "facial_expression_recognition";
-    /// The class that a whole picture belongs to.
+    /// Classification of whole images.
     ImageClassification = "image_classification";
-    /// The class of every pixel.
+    /// Class of every pixel.
     SemanticSegmentation = "semantic_segmentation";
-    /// The class and the object of every pixel.
+    /// Class and object instance of every pixel.
     PanopticSegmentation = "panoptic_segmentation";
-    /// The pixels of each object.
+    /// Mask of each object.
     InstanceSegmentation = "instance_segmentation";
-    /// How far away everything is that two cameras see.
+    /// Disparity or depth from the images of two cameras.
     StereoMatching = "stereo_matching";
-    /// Whether a map of values leaves a doubt where the best place is.
+    /// Ambiguity of the best position in a map of scores.
     AmbiguityMeasure = "ambiguity_measure";
-    /// Which parts of a large picture show what is looked for.
+    /// Binary classification of the regions of a high-resolution image.
     BinaryHighResolution = "binary_high_resolution";
-    /// Where a gripper can take hold.
+    /// Detection of grasps for a gripper.
     GraspDetection = "grasp_detection";
-    /// The class of a picture that was measured with few numbers.
+    /// Classification of images from compressed measurements.
     CompressiveLearning = "compressive_learning";
-    /// Key points of persons in a picture.
+    /// Keypoints of persons in an image.
     PoseEstimation = "pose_estimation";
-    /// Key points of hands in a picture.
+    /// Keypoints of hands in an image.
     HandPoseEstimation = "hand_pose_estimation";
-    /// What hands say.
+    /// Classification of hand gestures.
     GestureRecognition = "gesture_recognition";
-    /// Whether persons have fallen.
+    /// Detection of fallen persons.
     FallDetection = "fall_detection";
-    /// What persons do, told by their moving skeletons.
+    /// Classification of actions from sequences of skeletons.
     SkeletonBasedActionRecognition = "skeleton_based_action_recognition";
-    /// What persons do in a video.
+    /// Classification of actions in a video.
     ActivityRecognition = "activity_recognition";
-    /// What persons feel or say, told by two senses at a time.
+    /// Recognition of emotion or speech from two modalities.
     MultimodalHumanCentric = "multimodal_human_centric";
-    /// Whether a heart signal is normal.
+    /// Detection of anomalies in heart signals.
     HeartAnomalyDetection = "heart_anomaly_detection";
-    /// Which word was spoken.
+    /// Recognition of single spoken words.
     SpeechRecognition = "speech_recognition";
-    /// Whether somebody speaks.
+    /// Detection of speech in audio.
     VoiceActivityDetection = "voice_activity_detection";
-    /// What was said.
+    /// Transcription of speech to text.
     SpeechTranscription = "speech_transcription";
-    /// What a robot does, learnt by acting.
+    /// Control policies trained by reinforcement learning.
     ReinforcementLearning = "reinforcement_learning";
-    /// Where a robot goes, from its camera to its motion.
+    /// Motion planning from camera images to motion in one network.
     EndToEndPlanning = "end_to_end_planning";
 }
 

@@ -1,4 +1,4 @@
-//! The one list of data and target types: what surfaces convert, and all they know.
+//! The list of data and target types, and [`Value`], a datum of any of them.
 
 use std::fmt;
 use std::str::FromStr;
@@ -11,62 +11,61 @@ use crate::data::{
 };
 use crate::target::{
     Action, BaseTranscription, BoundingBox3DList, BoundingBoxList, Category, Heatmap, PoseList, RlTarget,
-    SpeechCommand, Target, TrackingAnnotation3DList, TrackingAnnotationList, VoskTranscription,
-    WhisperTranscription,
+    SpeechCommand, TrackingAnnotation3DList, TrackingAnnotationList, VoskTranscription, WhisperTranscription,
 };
 use crate::{Error, Header, Result};
 
 /// A data or target type.
 pub trait Datum: Clone + Send + Sync + 'static {
-    /// Which one.
+    /// The type as a value.
     const TYPE: ValueType;
 
-    /// Time stamp and frame id.
+    /// Returns time stamp and frame id.
     fn header(&self) -> &Header;
 
-    /// Time stamp and frame id, to set them.
+    /// Returns time stamp and frame id for modification.
     fn header_mut(&mut self) -> &mut Header;
 
-    /// This datum without its type.
+    /// Returns a type-erased reference to the datum.
     fn as_value_ref(&self) -> ValueRef<'_>;
 
-    /// The datum, when it is of this type.
+    /// Returns the datum if it is of this type.
     fn from_value_ref(value: ValueRef<'_>) -> Option<&Self>;
 }
 
 macro_rules! values {
     (data { $($data:ident = $data_port:literal),* $(,)? } targets { $($target:ident = $target_port:literal),* $(,)? }) => {
-        /// The data and target types.
+        /// A data or target type, as a value.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         #[non_exhaustive]
         pub enum ValueType { $(#[doc = concat!("[`", stringify!($data), "`]")] $data,)* $(#[doc = concat!("[`", stringify!($target), "`]")] $target,)* }
 
         impl ValueType {
-            /// Every type.
+            /// All types.
             pub const ALL: &'static [Self] = &[$(Self::$data,)* $(Self::$target,)*];
 
-            /// The name of the type, e.g. `"BoundingBoxList"`.
+            /// Returns the name of the type, e.g. `"BoundingBoxList"`.
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$data => stringify!($data),)* $(Self::$target => stringify!($target),)* }
             }
 
-            /// The usual name of a port of the type, e.g. `"image"`.
+            /// Returns the default name of a port of the type, e.g. `"image"`.
             pub const fn port(self) -> &'static str {
                 match self { $(Self::$data => $data_port,)* $(Self::$target => $target_port,)* }
             }
 
-            /// Whether learners answer it (it then has a JSON form).
+            /// Returns whether the type is a target. Targets have a JSON form, data have none.
             pub const fn is_target(self) -> bool {
                 match self { $(Self::$data => false,)* $(Self::$target => true,)* }
             }
         }
 
-        /// The type of a name.
+        /// Parses the name of a type.
         impl FromStr for ValueType {
             type Err = Error;
 
             /// # Errors
-            /// `NotFound`, with the types that there are.
+            /// Returns `NotFound` with the list of types for an unknown name.
             fn from_str(name: &str) -> Result<Self> {
                 Self::ALL.iter().copied().find(|known| known.name() == name).ok_or_else(|| {
                     let names: Vec<_> = Self::ALL.iter().map(|known| known.name()).collect();
@@ -88,40 +87,40 @@ macro_rules! values {
         pub enum ValueRef<'a> { $($data(&'a $data),)* $($target(&'a $target),)* }
 
         impl Value {
-            /// A borrow of it.
+            /// Returns a reference to the value.
             pub fn as_value_ref(&self) -> ValueRef<'_> {
                 match self { $(Self::$data(value) => ValueRef::$data(value),)* $(Self::$target(value) => ValueRef::$target(value),)* }
             }
 
-            /// Time stamp and frame id.
+            /// Returns time stamp and frame id.
             pub fn header(&self) -> &Header {
                 match self { $(Self::$data(value) => value.header(),)* $(Self::$target(value) => value.header(),)* }
             }
 
-            /// Time stamp and frame id, to set them.
+            /// Returns time stamp and frame id for modification.
             pub fn header_mut(&mut self) -> &mut Header {
                 match self { $(Self::$data(value) => value.header_mut(),)* $(Self::$target(value) => value.header_mut(),)* }
             }
         }
 
         impl<'a> ValueRef<'a> {
-            /// Which type it is of.
+            /// Returns the type of the value.
             pub fn value_type(&self) -> ValueType {
                 match self { $(Self::$data(_) => ValueType::$data,)* $(Self::$target(_) => ValueType::$target,)* }
             }
 
-            /// How to move to see better, where a target says so.
+            /// Returns the camera motion that a target proposes for a better view, if any.
             pub fn action(self) -> Option<&'a Action> {
-                match self { $(Self::$data(_) => None,)* $(Self::$target(value) => Target::action(value),)* }
+                match self { $(Self::$data(_) => None,)* $(Self::$target(value) => value.action.as_ref(),)* }
             }
 
-            /// A copy of its own; bulky payloads stay shared.
+            /// Clones the value; large payloads stay shared.
             pub fn to_value(self) -> Value {
                 match self { $(Self::$data(value) => Value::$data(value.clone()),)* $(Self::$target(value) => Value::$target(value.clone()),)* }
             }
         }
 
-        /// OpenDR's text; with `{:#}`, a readable line per item.
+        /// Writes OpenDR's text; with `{:#}`, a readable line per item.
         impl fmt::Display for ValueRef<'_> {
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 match self { $(Self::$data(value) => value.fmt(f),)* $(Self::$target(value) => value.fmt(f),)* }
@@ -139,7 +138,7 @@ macro_rules! values {
         #[serde(tag = "type")]
         enum OwnedTargetJson { $($target($target),)* }
 
-        /// Targets only: data have no JSON form.
+        /// Serialises targets only; data have no JSON form.
         impl Serialize for ValueRef<'_> {
             fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
                 match self {
@@ -264,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn pictures_have_no_json_form() {
+    fn images_have_no_json_form() {
         let image = Image::from_rgb8(vec![0; 3], 1, 1).unwrap();
         assert!(serde_json::to_string(&Value::from(image)).is_err());
     }

@@ -1,4 +1,4 @@
-//! Answers that somebody wrote into files, by sample.
+//! Predictions read from files, by sample.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
@@ -12,22 +12,22 @@ use opendr_engine::{Error, Result, ResultExt, Value, ValueType};
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
-use crate::predictor::nothing_of;
+use crate::predictor::empty_list;
 use crate::sample_names::SampleNames;
 
-/// Longer lines are no answer.
+/// Maximum length of a line.
 const MAX_LINE: u64 = 1 << 30;
 
-/// Answers by the number of the sample in a data set.
-pub enum Answers {
-    /// Lines of JSON, as `opendr infer --json` and `opendr eval --out` write them; where each sample's line lies.
+/// Predictions by the index of the sample in a data set.
+pub enum FilePredictions {
+    /// Lines of JSON as written by `opendr infer --json` and `opendr eval --out`, with the position of each sample's line.
     Lines(Lines),
-    /// The annotations of a data set of any format; which of its samples answers.
+    /// Annotations of a data set of any format, with the index of the annotation of each sample.
     Dataset(Box<dyn DatasetIterator>, Vec<Option<usize>>),
 }
 
-impl Answers {
-    /// The annotations of `answers` for the samples of `dataset`, by their names.
+impl FilePredictions {
+    /// Uses the annotations of `answers` as predictions for the samples of `dataset` of the same names.
     pub fn from_dataset(answers: Box<dyn DatasetIterator>, dataset: &dyn DatasetIterator) -> Self {
         let names = SampleNames::of(dataset);
         let mut of_sample = vec![None; dataset.len()];
@@ -40,7 +40,7 @@ impl Answers {
         Self::Dataset(answers, of_sample)
     }
 
-    /// What class numbers mean, where the answers say it for all of them.
+    /// Returns the classes of the predictions, if they are the same for all of them.
     pub fn classes(&self) -> Classes {
         match self {
             Self::Lines(_) => Classes::default(),
@@ -48,10 +48,10 @@ impl Answers {
         }
     }
 
-    /// What is answered to a sample, as `wanted`; nothing found when a file of objects says nothing of it.
+    /// Returns the prediction for a sample, of the type `wanted`; an empty list when a file of detections has none for it.
     ///
     /// # Errors
-    /// `InvalidInput` when there must be an answer and is none; `Format` for a line that is no target.
+    /// `InvalidInput` for a missing prediction that cannot be empty; `Format` for a line that is not a target.
     pub fn get(&self, at: usize, wanted: ValueType) -> Result<Value> {
         let answer = match self {
             Self::Lines(lines) => lines.get(at, wanted)?,
@@ -60,19 +60,21 @@ impl Answers {
                 None => None,
             },
         };
-        answer.or_else(|| nothing_of(wanted)).ok_or_else(|| Error::invalid_input("it is not answered"))
+        answer
+            .or_else(|| empty_list(wanted))
+            .ok_or_else(|| Error::invalid_input("the sample has no prediction"))
     }
 }
 
-/// A file of lines of JSON, of which only the places are kept.
+/// A file of JSON lines, of which only the positions are kept in memory.
 pub struct Lines {
     path: PathBuf,
     file: Mutex<File>,
-    /// Number, first byte and length of each sample's line.
+    /// Line number, first byte and length of each sample's line.
     places: Vec<Option<(u64, u64, usize)>>,
 }
 
-/// A line, of which only the name is looked at.
+/// A line of which only the names are parsed.
 #[derive(Deserialize)]
 struct Line<'a> {
     #[serde(alias = "input")]
@@ -86,10 +88,10 @@ struct Line<'a> {
 }
 
 impl Lines {
-    /// Reads where the answers to the samples of `dataset` lie.
+    /// Indexes the lines of the samples of `dataset`.
     ///
     /// # Errors
-    /// `Io`; `Format` for a line that is no JSON, unless `problems` skips it.
+    /// `Io`; `Format` for a line that is not JSON, unless `problems` skips it.
     pub fn open(path: &Path, dataset: &dyn DatasetIterator, problems: &Problems) -> Result<Self> {
         let context = || format!("opening {}", path.display());
         let file = File::open(path).context(context)?;
@@ -113,7 +115,7 @@ impl Lines {
                         *place = Some((number, begin, length));
                     }
                 }
-                // A heading, or a failure.
+                // A heading, or a sample that failed.
                 Ok(_) => {}
                 Err(error) => problems.report(Problem::at_line(path, number, error.to_string()))?,
             }

@@ -1,4 +1,4 @@
-//! How certain a number is: intervals by the bootstrap over the samples of a data set.
+//! Confidence intervals by the bootstrap over the samples of a data set.
 //!
 //! Source: B. Efron, R. Tibshirani, An Introduction to the Bootstrap, 1993, chapters 8 and 13.
 
@@ -7,65 +7,68 @@ use opendr_engine::{Progress, Random, Result, Unit};
 use opendr_metrics::{AnyMetric, Report};
 use serde::Serialize;
 
-/// Most groups of samples that are drawn from. With fewer samples, each is drawn by itself.
-const MOST_GROUPS: usize = 50;
-/// With fewer samples or sequences, an interval would say nothing.
-const LEAST_UNITS: usize = 5;
-/// Share of the resamples that lie in the interval.
+/// Maximum number of groups that are resampled. With fewer samples, each is a group.
+const MAX_GROUPS: usize = 50;
+/// Minimum number of samples or sequences for an interval.
+const MIN_UNITS: usize = 5;
+/// Confidence level.
 const LEVEL: f64 = 0.95;
 const SEED: u64 = 0;
 
-/// An interval for the headline of a report.
+/// A confidence interval of the headline number of a report.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Interval {
     /// Lower end.
     pub low: f64,
     /// Upper end.
     pub high: f64,
-    /// Share of the resamples that lie in it.
+    /// Confidence level: the fraction of the resamples in the interval.
     pub level: f64,
     /// Number of resamples.
     pub resamples: usize,
-    /// Number of independent samples, or of sequences, that they were drawn from.
+    /// Number of independent samples, or of sequences, that were resampled.
     pub units: usize,
 }
 
-/// A metric over groups of samples, or of whole sequences, so that they can be drawn again. Which group a sample belongs to is drawn,
-/// too: data sets are sorted, and every n-th sample would make groups that are more alike than chance makes them.
+/// A metric over groups of samples, or of whole sequences, for resampling. Units are assigned to groups at random,
+/// since data sets are sorted, and groups of every n-th sample would be too similar.
 pub(crate) struct Groups {
     groups: Vec<Box<dyn AnyMetric>>,
     units: usize,
 }
 
 impl Groups {
-    /// Groups for so many independent `units`, of a metric that has counted nothing.
+    /// Creates groups for a number of independent `units`, of an empty metric.
     pub fn new(metric: Box<dyn AnyMetric>, units: usize) -> Self {
-        let count = units.clamp(1, MOST_GROUPS);
+        let count = units.clamp(1, MAX_GROUPS);
         Self { groups: (0..count).map(|_| metric.boxed_clone()).collect(), units }
     }
 
-    /// Names the classes of the data set.
+    /// Sets the class names of the data set.
     pub fn name_classes(&mut self, classes: &Classes) {
         self.groups.iter_mut().for_each(|group| group.name_classes(classes));
     }
 
-    /// The group of unit number `unit`.
+    /// Returns the group of a unit.
     pub fn of(&mut self, unit: usize) -> &mut dyn AnyMetric {
         let count = self.groups.len();
-        let group =
-            if self.units <= count { unit % count } else { Random::at([SEED, unit as u64]).below(count) };
+        let group = if self.units <= count {
+            unit % count
+        } else {
+            Random::from_key([SEED, unit as u64]).below(count)
+        };
         self.groups[group].as_mut()
     }
 
-    /// The report over all groups.
+    /// Returns the report over all groups.
     ///
     /// # Errors
-    /// None: groups are of one metric.
+    /// None: all groups have the same metric.
     pub fn report(&self) -> Result<Report> {
         merged(self.groups.iter())
     }
 
-    /// An interval for the headline of `report` out of so many `resamples`; `None` with too few units, and where the user stops it.
+    /// Returns an interval for the headline of `report` from `resamples`; `None` with too few units, or when the user stops it.
     ///
     /// # Errors
     /// As [`Groups::report`].
@@ -76,7 +79,7 @@ impl Groups {
         progress: &dyn Progress,
     ) -> Result<Option<Interval>> {
         let is_number = report.statistics.get(&report.headline).is_some_and(f64::is_finite);
-        if self.units < LEAST_UNITS || resamples == 0 || !is_number {
+        if self.units < MIN_UNITS || resamples == 0 || !is_number {
             return Ok(None);
         }
         progress.begin("resampling", Some(resamples as u64), Unit::Items);
@@ -108,7 +111,7 @@ fn merged<'a>(mut groups: impl Iterator<Item = &'a Box<dyn AnyMetric>>) -> Resul
     Ok(all.finish())
 }
 
-/// The value below which a share of the sorted `values` lies, between the nearest two.
+/// Returns the quantile of sorted `values`, interpolated linearly.
 fn quantile(values: &[f64], share: f64) -> f64 {
     let place = share * (values.len() - 1) as f64;
     let (low, high) = (place.floor() as usize, place.ceil() as usize);
@@ -143,7 +146,7 @@ mod tests {
             assert_eq!(report.statistics.get("accuracy"), Some(0.75));
             let interval = groups.interval(&report, 2000, &Silent).unwrap().unwrap();
             let half = 1.96 * (0.75_f64 * 0.25 / samples as f64).sqrt();
-            // 50 groups estimate the spread to a tenth.
+            // With 50 groups, the estimated spread is accurate to about a tenth.
             let [low, high] = [interval.low - (0.75 - half), interval.high - (0.75 + half)];
             assert!(low.abs() < 0.25 * half && high.abs() < 0.25 * half, "{interval:?} +- {half}");
             assert_eq!((interval.units, interval.resamples), (samples, 2000));

@@ -1,4 +1,4 @@
-//! Files of results as COCO's server takes them.
+//! Files of results in COCO's format.
 
 use std::fs::File;
 use std::io::Read;
@@ -13,14 +13,14 @@ use opendr_metrics::coco::files::{CocoFiles, CocoKind};
 
 use crate::{ClassReport, Outcome};
 
-/// Bytes that tell what a file is.
+/// Bytes read to recognise the format.
 const HEAD: u64 = 4096;
 
-/// Compares a file of COCO's results with the annotations of a COCO data set, number for number as they stand in the files,
-/// on `threads` threads: the way that is as fast as reading them.
+/// Evaluates a file of COCO results against a COCO data set on `threads` threads, directly on the numbers in the files. This is
+/// about as fast as reading them.
 ///
 /// # Errors
-/// `Unsupported` for a metric that is none of COCO's; `NotFound` without annotations; `Format` with the place in the file.
+/// `Unsupported` for a metric that is not COCO's; `NotFound` without annotations; `Format` with the position in the file.
 pub fn score_coco_results(
     metric: &MetricEntry,
     params: &ParamMap,
@@ -36,7 +36,7 @@ pub fn score_coco_results(
         "coco_keypoints" => CocoKind::Keypoints,
         other => {
             return Err(Error::unsupported(format!(
-                "a file of COCO's results is measured by coco_detection, coco_segmentation or coco_keypoints, not by {other}"
+                "a file of COCO results needs the metric coco_detection, coco_segmentation or coco_keypoints, not {other}"
             )));
         }
     };
@@ -52,7 +52,7 @@ pub fn score_coco_results(
         files.max_detections = u32::try_from(most).unwrap_or(u32::MAX);
     }
     let found = files.compare(&annotations, results)?;
-    let pictures = usize::try_from(found.pictures).unwrap_or(usize::MAX);
+    let pictures = usize::try_from(found.images).unwrap_or(usize::MAX);
     Ok(Outcome {
         learner: results.display().to_string(),
         dataset: annotations.display().to_string(),
@@ -75,7 +75,7 @@ pub fn score_coco_results(
     })
 }
 
-/// Whether a file is a list in JSON, as COCO's results are.
+/// Returns whether a file is a JSON list, as COCO's results are.
 ///
 /// # Errors
 /// `Io` when it cannot be read.

@@ -1,4 +1,4 @@
-//! A learner over a data set.
+//! Evaluation of a learner on a data set.
 
 use std::fs;
 use std::path::Path;
@@ -11,64 +11,51 @@ use opendr_engine::params::{ParamMap, ParamValue};
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Progress, Result, ResultExt, Silent, Unit, Value};
 use opendr_metrics::MetricEntry;
-use serde::{Deserialize, Serialize};
 
 use crate::bootstrap::Groups;
 use crate::classes::{AnnotatedClasses, MapLabels, annotated_classes};
-use crate::journal::{Answer, Heading, Journal, Line};
+use crate::journal::{Heading, Journal, Line, SampleResult};
 use crate::predictor::predict_samples;
-use crate::shown::{AnsweredSample, Shown};
-use crate::{Answers, ClassMap, ClassMatching, Outcome, Predictor};
+use crate::shown::{ContactSheetSamples, ScoredSample};
+use crate::{ClassMap, ClassMatching, FilePredictions, Outcome, Predictor, Subject};
 
-/// The worst samples that are listed, and as many evenly over the data set.
-const SHOWN: usize = 24;
-/// The parameter below which learners drop answers, and what it is made where answers are ranked.
+/// Number of samples with the lowest scores that are listed, and of those spaced evenly over the data set.
+const LISTED: usize = 24;
+/// Name of the score threshold of learners, and its value for metrics that rank predictions.
 const THRESHOLD: &str = "threshold";
 const LOW_THRESHOLD: f64 = 0.01;
-/// Resamples for the interval of the headline.
+/// Bootstrap resamples for the interval of the headline.
 pub(crate) const RESAMPLES: usize = 200;
-/// What to do about classes that do not match.
+/// Advice for classes that do not match.
 const REMEDY: &str = "Map them with classes (--classes LEARNER=DATASET,...), or compare their numbers with by_number (--by-number)";
-/// The file of the answers.
+/// File of the predictions.
 const JOURNAL: &str = "predictions.jsonl";
 
-/// What is evaluated: journals and outcomes name it.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Subject {
-    /// The learner, with its variant.
-    pub learner: String,
-    /// The model container, where it is the user's own.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub model: Option<String>,
-    /// The learner's parameters.
-    pub params: ParamMap,
-}
-
-/// How an evaluation is done.
+/// Settings of an evaluation.
 pub struct Evaluation<'a> {
-    /// What is evaluated.
+    /// The evaluated learner.
     pub subject: Subject,
-    /// What the data set is called in the outcome.
+    /// Name of the data set in the outcome.
     pub dataset: String,
-    /// By what.
+    /// Metric.
     pub metric: &'static MetricEntry,
-    /// The parameters of the metric.
+    /// Parameters of the metric.
     pub metric_params: ParamMap,
     /// How classes are matched.
     pub classes: ClassMatching,
-    /// Number of bootstrap resamples for the interval of the headline; 0 leaves it out.
+    /// Number of bootstrap resamples for the interval of the headline; 0 for no interval.
     pub resamples: usize,
-    /// The folder where every answer is written as it comes, and in the end the report and its pictures; an evaluation
-    /// that was broken off goes on from there.
+    /// Folder to which every prediction is written at once, and at the end the report and its images. An interrupted
+    /// evaluation resumes from it.
     pub folder: Option<&'a Path>,
-    /// What is broken is left out and listed, or ends the evaluation.
+    /// Whether broken samples are skipped and listed, or end the evaluation.
     pub problems: &'a Problems,
-    /// To whom to report; asked whether to stop.
+    /// Receives the progress, and may stop the evaluation.
     pub progress: &'a dyn Progress,
 }
 
 impl<'a> Evaluation<'a> {
-    /// A silent evaluation that writes nothing.
+    /// Creates an evaluation without progress output and without a folder.
     pub fn new(subject: Subject, metric: &'static MetricEntry, problems: &'a Problems) -> Self {
         Self {
             subject,
@@ -83,13 +70,13 @@ impl<'a> Evaluation<'a> {
         }
     }
 
-    /// Runs loaded `learners` of one kind over the data set: as many samples at once as there
-    /// are learners, sequences by the first alone.
+    /// Evaluates loaded `learners` of one kind on the data set. As many samples run in parallel as there are learners;
+    /// sequences run on the first only.
     ///
-    /// When the user stops it, the outcome is of what was done, and says so.
+    /// If the user stops it, the outcome covers the samples so far and is marked as incomplete.
     ///
     /// # Errors
-    /// `InvalidInput` when data set, learner and metric do not fit together; for a broken sample, unless problems are
+    /// `InvalidInput` when data set, learner and metric are incompatible, and for a broken sample unless problems are
     /// skipped; `Io` when the journal cannot be written.
     pub fn run(
         &self,
@@ -110,8 +97,8 @@ impl<'a> Evaluation<'a> {
         outcome
     }
 
-    /// Runs predictors that take `ports`, as [`Evaluation::run`] runs learners; `classes` are what their class numbers mean, as far
-    /// as their predictions do not say it. Thresholds stay as they are.
+    /// Evaluates predictors with the inputs `ports`, as [`Evaluation::run`] evaluates learners. `classes` are the classes of their
+    /// predictions, where these do not name them. Thresholds are not changed.
     ///
     /// # Errors
     /// As [`Evaluation::run`].
@@ -143,10 +130,10 @@ impl<'a> Evaluation<'a> {
         self.finish(tally, begun, describe)
     }
 
-    /// Where answers are ranked, those of a low score belong into the ranking, too: a threshold that the user left as it
-    /// is made low for the evaluation. What it was.
+    /// Lowers the threshold for metrics that rank predictions of all scores, if it has its default value. Returns the
+    /// original value.
     fn lower_threshold(&self, learners: &mut [Box<dyn AnyLearner>]) -> Result<Option<ParamValue>> {
-        let Some(first) = learners.first().filter(|_| self.metric.ranks) else { return Ok(None) };
+        let Some(first) = learners.first().filter(|_| self.metric.is_ranking) else { return Ok(None) };
         let Some(was) = first.params().remove(THRESHOLD) else { return Ok(None) };
         if first.default_of(THRESHOLD).as_ref() != Some(&was)
             || was.as_float().is_none_or(|was| was <= LOW_THRESHOLD)
@@ -156,28 +143,32 @@ impl<'a> Evaluation<'a> {
         let low = ParamValue::Float(LOW_THRESHOLD);
         learners.iter_mut().try_for_each(|learner| learner.set(THRESHOLD, low.clone()))?;
         self.progress.note(&format!(
-            "threshold {LOW_THRESHOLD} instead of {was}: {} ranks answers of every score",
+            "threshold {LOW_THRESHOLD} instead of {was}: {} ranks predictions of all scores",
             self.metric.name
         ));
         Ok(Some(was))
     }
 
-    /// Counts answers that somebody wrote down.
+    /// Evaluates predictions from files.
     ///
     /// # Errors
     /// As [`Evaluation::run`].
-    pub fn score(&self, answers: &Answers, dataset: &dyn DatasetIterator) -> Result<Outcome> {
+    pub fn score(&self, answers: &FilePredictions, dataset: &dyn DatasetIterator) -> Result<Outcome> {
         let begun = Instant::now();
         let mut tally = self.begin(dataset, answers.classes())?;
         let done = (0..dataset.len()).take_while(|_| !self.progress.stopped()).try_for_each(|at| {
-            let answer = answers.get(at, self.metric.prediction);
+            let prediction = answers.get(at, self.metric.prediction);
             self.progress.advance(1);
-            tally.count(Line { at, name: dataset.name(at), answer: Answer::of(answer, dataset, at) })
+            tally.count(Line {
+                at,
+                name: dataset.name(at),
+                result: SampleResult::of(prediction, dataset, at),
+            })
         });
         self.progress.end();
         done?;
         if let Some(folder) = self.folder {
-            fs::create_dir_all(folder).context(|| format!("making {}", folder.display()))?;
+            fs::create_dir_all(folder).context(|| format!("creating {}", folder.display()))?;
         }
         self.finish(tally, begun, |_| 0.0)
     }
@@ -200,7 +191,7 @@ impl<'a> Evaluation<'a> {
             in_sequences,
             occurring,
             classes: map,
-            shown: Shown::new(SHOWN, dataset.len()),
+            listed: ContactSheetSamples::new(LISTED, dataset.len()),
             next: 0,
             counted: 0,
             dataset,
@@ -218,7 +209,7 @@ impl<'a> Evaluation<'a> {
         let complete = tally.next == tally.dataset.len();
         let report = tally.groups.report()?;
         let interval = tally.groups.interval(&report, self.resamples, self.progress)?;
-        let (worst, evenly) = tally.shown.into_samples();
+        let (worst, evenly) = tally.listed.into_samples();
         let mut outcome = Outcome {
             learner: self.subject.learner.clone(),
             dataset: self.dataset.clone(),
@@ -245,16 +236,16 @@ impl<'a> Evaluation<'a> {
         Ok(outcome)
     }
 
-    /// Every parameter of the metric as it was used.
+    /// Returns all parameters of the metric with their values.
     fn metric_settings(&self) -> ParamMap {
         let defaults = self.metric.params.iter().map(|field| (field.name.to_owned(), field.default.value()));
         defaults.chain(self.metric_params.clone()).collect()
     }
 
-    /// Counts what the journal tells of.
+    /// Counts the predictions in the journal.
     fn resume(&self, tally: &mut Tally<'_>) -> Result<Option<Journal>> {
         let Some(folder) = self.folder else { return Ok(None) };
-        fs::create_dir_all(folder).context(|| format!("making {}", folder.display()))?;
+        fs::create_dir_all(folder).context(|| format!("creating {}", folder.display()))?;
         let dataset = tally.dataset;
         let heading = Heading::new(self.subject.clone(), self.dataset.clone(), dataset);
         let journal = Journal::resume(&folder.join(JOURNAL), &heading, dataset, |line| {
@@ -262,12 +253,12 @@ impl<'a> Evaluation<'a> {
             tally.count(line)
         })?;
         if tally.next > 0 && tally.next < dataset.len() {
-            self.progress.note(&format!("going on after {} of {} samples", tally.next, dataset.len()));
+            self.progress.note(&format!("resuming after {} of {} samples", tally.next, dataset.len()));
         }
         Ok(Some(journal))
     }
 
-    /// Predicts the samples that are left.
+    /// Predicts the remaining samples.
     fn predict<P: Predictor>(
         &self,
         predictors: &mut [P],
@@ -286,17 +277,17 @@ impl<'a> Evaluation<'a> {
     }
 }
 
-/// What was counted so far.
+/// State of an evaluation.
 struct Tally<'a> {
     groups: Groups,
-    /// The sample or sequence that is counted.
+    /// Index of the current sample or sequence.
     unit: usize,
     in_sequences: bool,
-    /// Classes of the data set that are annotated.
+    /// Indices of the data set's classes that are annotated.
     occurring: Option<Vec<usize>>,
     classes: ClassMap,
-    shown: Shown,
-    /// The sample that comes next.
+    listed: ContactSheetSamples,
+    /// Index of the next sample.
     next: usize,
     counted: usize,
     dataset: &'a dyn DatasetIterator,
@@ -310,7 +301,7 @@ impl Tally<'_> {
         match self.score(line) {
             Ok((score, prediction)) => {
                 self.counted += 1;
-                self.shown.add(&AnsweredSample { index: at, name: dataset.name(at), score, prediction });
+                self.listed.add(&ScoredSample { index: at, name: dataset.name(at), score, prediction });
             }
             Err(problem) => self.problems.report(problem)?,
         }
@@ -324,9 +315,9 @@ impl Tally<'_> {
 
     fn score(&mut self, line: Line) -> std::result::Result<(f64, Value), Problem> {
         let (at, dataset) = (line.at, self.dataset);
-        let mut prediction = match line.answer {
-            Answer::Prediction(prediction) => *prediction,
-            Answer::Error(problem) => return Err(problem),
+        let mut prediction = match line.result {
+            SampleResult::Prediction(prediction) => *prediction,
+            SampleResult::Error(problem) => return Err(problem),
         };
         let mapped = self.classes.apply(&mut prediction);
         let counted = mapped.and_then(|()| dataset.target(at)).and_then(|truth| {
@@ -341,7 +332,7 @@ impl Tally<'_> {
     }
 }
 
-/// The number of independent samples: sequences where samples are frames of some; and whether they are.
+/// Returns the number of independent units, and whether they are sequences instead of samples.
 fn units_of(dataset: &dyn DatasetIterator) -> (usize, bool) {
     if dataset.is_empty() || dataset.sequence(0).is_none() {
         return (dataset.len(), false);

@@ -1,7 +1,7 @@
-//! What was answered so far, on disk, so that an evaluation goes on where it ended.
+//! The journal: the predictions of an evaluation on disk, from which it resumes.
 //!
-//! The first line tells what is evaluated; then a line of JSON a sample, in their order. A line that was cut off when
-//! the process died is dropped.
+//! The first line describes the evaluation; each further line is the JSON of a sample, in order. An incomplete last line, left by a
+//! killed process, is dropped.
 
 use std::fs::{File, OpenOptions};
 use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
@@ -24,7 +24,7 @@ pub struct Heading {
     subject: Subject,
     dataset: String,
     samples: usize,
-    /// Of the names of the samples.
+    /// Hash of the names of the samples.
     fingerprint: String,
 }
 
@@ -40,7 +40,7 @@ impl Heading {
     }
 }
 
-/// FNV-1a over the names, which tells data sets apart; nobody gains by forging it.
+/// FNV-1a hash of the names, to distinguish data sets; it need not resist forgery.
 fn fingerprint(names: impl Iterator<Item = String>) -> String {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     for name in names {
@@ -51,45 +51,45 @@ fn fingerprint(names: impl Iterator<Item = String>) -> String {
     format!("{hash:016x}")
 }
 
-/// What became of one sample.
+/// The result of one sample.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Line {
     pub at: usize,
     pub name: String,
     #[serde(flatten)]
-    pub answer: Answer,
+    pub result: SampleResult,
 }
 
-/// The answer, or why there is none.
+/// A prediction, or why there is none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Answer {
+pub enum SampleResult {
     Prediction(Box<Value>),
     Error(Problem),
 }
 
-impl Answer {
-    /// Of sample number `at`.
-    pub fn of(answer: Result<Value>, dataset: &dyn DatasetIterator, at: usize) -> Self {
-        match answer {
+impl SampleResult {
+    /// Converts the result for the sample `at`.
+    pub fn of(result: Result<Value>, dataset: &dyn DatasetIterator, at: usize) -> Self {
+        match result {
             Ok(value) => Self::Prediction(Box::new(value)),
             Err(error) => Self::Error(Problem::of(&error, dataset, at)),
         }
     }
 }
 
-/// A journal that is being written.
+/// A journal open for writing.
 pub struct Journal {
     path: PathBuf,
     file: File,
 }
 
 impl Journal {
-    /// Opens the journal at `path`, or begins it, and hands every sample that it tells of to `each`, in order. What `each`
-    /// answers `false` to, and all that follows, is dropped.
+    /// Opens or creates the journal at `path` and passes every sample in it to `each`, in order. The first sample for which `each`
+    /// returns `false` and all later ones are dropped.
     ///
     /// # Errors
-    /// `InvalidInput` when the journal is of another evaluation; `Format` when it is no journal; `Io`.
+    /// `InvalidInput` when the journal belongs to another evaluation; `Format` when it is not a journal; `Io`.
     pub fn open(path: &Path, heading: &Heading, mut each: impl FnMut(Line) -> Result<bool>) -> Result<Self> {
         let context = || format!("opening {}", path.display());
         let mut file = OpenOptions::new().read(true).append(true).create(true).open(path).context(context)?;
@@ -120,11 +120,11 @@ impl Journal {
         Ok(Self { path: path.to_owned(), file })
     }
 
-    /// Opens the journal of answers to the samples of `dataset` and hands what it tells to `each`. A learner that remembers
-    /// has to see a sequence from its first frame: one that was broken off is dropped.
+    /// Opens the journal of predictions for the samples of `dataset` and passes its samples to `each`. An incomplete sequence is
+    /// dropped, since a learner with state needs it from its first frame.
     ///
     /// # Errors
-    /// As [`Journal::open`], and those of `each`.
+    /// As [`Journal::open`], and the errors of `each`.
     pub fn resume(
         path: &Path,
         heading: &Heading,
@@ -152,13 +152,13 @@ impl Journal {
     /// `Io` when the disk is full.
     pub fn write(&mut self, line: &impl Serialize) -> Result<()> {
         let mut text = serde_json::to_vec(line)
-            .map_err(|error| Error::internal("an answer has no JSON form").with_source(error))?;
+            .map_err(|error| Error::internal("a prediction cannot be written as JSON").with_source(error))?;
         text.push(b'\n');
         self.file.write_all(&text).context(|| format!("writing {}", self.path.display()))
     }
 }
 
-/// How many of the first `count` samples belong to sequences that are over.
+/// Returns how many of the first `count` samples belong to complete sequences.
 fn whole_sequences(dataset: &dyn DatasetIterator, count: usize) -> usize {
     let over = |at: usize| at == 0 || at >= dataset.len() || dataset.sequence(at) != dataset.sequence(at - 1);
     (0..=count.min(dataset.len())).rev().find(|at| over(*at)).unwrap_or(0)
@@ -167,7 +167,8 @@ fn whole_sequences(dataset: &dyn DatasetIterator, count: usize) -> usize {
 fn check_heading(path: &Path, text: &str, heading: &Heading) -> Result<()> {
     let path = path.display();
     let found: Heading = serde_json::from_str(text).map_err(|error| {
-        Error::format(format!("{path} is no journal of answers; name another folder")).with_source(error)
+        Error::format(format!("{path} is not a journal of predictions; use another folder"))
+            .with_source(error)
     })?;
     if found == *heading {
         return Ok(());
@@ -180,7 +181,7 @@ fn check_heading(path: &Path, text: &str, heading: &Heading) -> Result<()> {
     ];
     let differs: Vec<_> = differs.iter().filter(|(_, differs)| *differs).map(|(what, _)| *what).collect();
     Err(Error::invalid_input(format!(
-        "{path} is of another evaluation ({} differs); name another folder, or delete it to begin anew",
+        "{path} belongs to another evaluation ({} differs); use another folder, or delete it to start again",
         differs.join(", ")
     )))
 }
@@ -196,8 +197,8 @@ mod tests {
     }
 
     fn line(at: usize) -> Line {
-        let answer = Answer::Prediction(Box::new(Category::new(at as i64, None).into()));
-        Line { at, name: at.to_string(), answer }
+        let result = SampleResult::Prediction(Box::new(Category::new(at as i64, None).into()));
+        Line { at, name: at.to_string(), result }
     }
 
     fn read(path: &Path, heading: &Heading) -> Result<(Vec<Line>, Journal)> {
@@ -210,14 +211,17 @@ mod tests {
     }
 
     #[test]
-    fn goes_on_after_a_line_that_was_cut_off() {
+    fn resumes_after_an_incomplete_line() {
         let folder = std::env::temp_dir().join(format!("opendr-journal-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
         let path = folder.join("predictions.jsonl");
         let (none, mut journal) = read(&path, &heading("a")).unwrap();
         assert!(none.is_empty());
-        let failed =
-            Line { at: 1, name: "1".to_owned(), answer: Answer::Error(Problem::new("1.jpg", "broken")) };
+        let failed = Line {
+            at: 1,
+            name: "1".to_owned(),
+            result: SampleResult::Error(Problem::new("1.jpg", "broken")),
+        };
         journal.write(&line(0)).unwrap();
         journal.write(&failed).unwrap();
         journal.file.write_all(b"{\"at\":2,\"name\":\"2\",\"predic").unwrap();

@@ -1,7 +1,23 @@
-//! `eval` of every task: a learner over a data set, counted by the task's metric.
+//! Evaluation of any learner on any data set, with the metric of its task.
 //!
-//! [`Evaluation`] runs it, resumes it from its journal, and ends in an [`Outcome`]: numbers, tables, figures, the worst
-//! samples. It takes a learner's [`Answers`] from files as well. Nothing here knows a learner or a format.
+//! An [`Evaluation`] predicts the samples of a data set, writes every prediction to a journal from which it resumes, matches classes by
+//! name ([`ClassMap`]) and ends in an [`Outcome`]: numbers with a confidence interval, tables, figures, and the samples with the lowest
+//! scores. [`FilePredictions`] are predictions read from files instead of a learner, and [`score_coco_results`] evaluates files of COCO
+//! results. A [`Teacher`] annotates samples for the training of another learner.
+//!
+//! Nothing here depends on a single learner or format: metrics are in `opendr-metrics`, data sets in `opendr-datasets`, learners in
+//! the families under `crates/perception`, and the evaluation of a learner by name in `opendr`.
+//!
+//! Begin with [`Evaluation`]. Its matching of classes can be used on its own:
+//!
+//! ```
+//! use opendr_evaluation::{ClassMap, ClassMatching};
+//!
+//! let (learner, dataset) = (["cat", "tv"].into_iter().collect(), ["tv monitor", "Cat"].into_iter().collect());
+//! let map = ClassMap::new(learner, dataset, &ClassMatching::default())?;
+//! assert!(map.report().pairs.len() == 2 && map.report().dataset_only.is_empty());
+//! # Ok::<_, opendr_engine::Error>(())
+//! ```
 
 mod answers;
 mod bootstrap;
@@ -15,20 +31,22 @@ mod outcome;
 mod predictor;
 mod sample_names;
 mod shown;
+mod subject;
 mod task;
 mod taught;
 mod teacher;
 
-pub use answers::{Answers, Lines};
+pub use answers::{FilePredictions, Lines};
 pub use bootstrap::Interval;
 pub use classes::{ByNumber, ClassMap, ClassMatching, ClassPair, ClassReport, MapLabels, MatchedBy};
 pub use coco_results::{is_coco_results, score_coco_results};
-pub use evaluation::{Evaluation, Subject};
-pub use open::open_for;
+pub use evaluation::Evaluation;
+pub use open::open_for_metric;
 pub use options::{EvalJob, EvalOptions};
 pub use outcome::Outcome;
 pub use predictor::Predictor;
-pub use shown::AnsweredSample;
+pub use shown::ScoredSample;
+pub use subject::Subject;
 pub use task::metric_of;
-pub use taught::Taught;
-pub use teacher::{Lesson, Teacher};
+pub use taught::LabelledDataset;
+pub use teacher::{Distillation, Teacher};

@@ -1,15 +1,15 @@
-//! The data set that a metric needs.
+//! Opening of data sets for a metric.
 
 use opendr_datasets::{OpenOptions, Problems, format_of};
 use opendr_engine::dataset::{DatasetIterator, ExternalDataset};
 use opendr_engine::{Error, Result};
 use opendr_metrics::MetricEntry;
 
-/// Opens a data set with annotations as `metric` compares them.
+/// Opens a data set with the annotations that `metric` needs.
 ///
 /// # Errors
-/// `InvalidInput` when the format has no such annotations, else as [`open`](fn@opendr_datasets::open).
-pub fn open_for(
+/// `InvalidInput` when the format has no such annotations; else as [`open`](fn@opendr_datasets::open).
+pub fn open_for_metric(
     metric: &MetricEntry,
     dataset: &ExternalDataset,
     split: Option<String>,
@@ -19,7 +19,7 @@ pub fn open_for(
     if !format.targets.contains(&metric.truth) {
         let has: Vec<_> = format.targets.iter().map(|target| target.name()).collect();
         return Err(Error::invalid_input(format!(
-            "{} compares with {}, but a data set of format {} has {}; name another metric, or another format",
+            "{} needs the annotations {}, but a data set of format {} has {}; choose another metric, or another format",
             metric.name,
             metric.truth.name(),
             format.name,

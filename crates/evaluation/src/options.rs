@@ -1,4 +1,4 @@
-//! What a surface may say about an evaluation, in JSON.
+//! Options of an evaluation, as JSON.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -13,40 +13,40 @@ use opendr_metrics::{MetricEntry, find};
 use serde::Deserialize;
 
 use crate::evaluation::RESAMPLES;
-use crate::{ClassMatching, Evaluation, Outcome, Predictor, Subject, metric_of, open_for};
+use crate::{ClassMatching, Evaluation, Outcome, Predictor, Subject, metric_of, open_for_metric};
 
-/// Everything that can be chosen; all of it may be left out.
+/// All options; each may be omitted.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct EvalOptions {
-    /// What to measure by; by default the task's own metric.
+    /// Name of the metric; by default that of the task.
     pub metric: Option<String>,
     /// Parameters of the metric.
     pub metric_params: ParamMap,
-    /// The part of the data set.
+    /// Split of the data set, such as `val`.
     pub split: Option<String>,
-    /// Only the first so many samples.
+    /// Maximum number of samples, from the first.
     pub limit: Option<usize>,
-    /// The folder for answers, report and pictures.
+    /// Folder for predictions, report and images.
     #[serde(alias = "folder")]
     pub out: Option<PathBuf>,
-    /// Whether what is broken is left out and listed.
+    /// Whether broken samples are skipped and listed.
     pub skip_broken: bool,
-    /// Classes of the data set by classes of the learner, where their names do not match.
+    /// Maps classes of the learner to classes of the data set, where their names do not match.
     pub classes: BTreeMap<String, String>,
-    /// Whether class numbers are compared, whatever the names are.
+    /// Whether classes are compared by number, regardless of their names.
     pub by_number: bool,
-    /// Number of bootstrap resamples for the interval of the headline, by default 200; 0 leaves it out.
+    /// Number of bootstrap resamples for the interval of the headline, 200 by default; 0 for no interval.
     pub resamples: Option<usize>,
-    /// What the outcome calls the data set; by default its path.
+    /// Name of the data set in the outcome; by default its path.
     pub name: Option<String>,
 }
 
-/// A data set opened as the options of an evaluation want it.
+/// A data set opened for an evaluation.
 pub struct EvalJob<'a> {
-    /// Its samples.
+    /// The samples.
     pub dataset: Subset<Box<dyn DatasetIterator + 'a>>,
-    /// What is broken in it.
+    /// The problems found in them.
     pub problems: Problems,
     metric: &'static MetricEntry,
     name: String,
@@ -54,10 +54,10 @@ pub struct EvalJob<'a> {
 }
 
 impl EvalOptions {
-    /// What a learner is measured by.
+    /// Returns the metric of an evaluation.
     ///
     /// # Errors
-    /// `NotFound` for a metric that there is not; as [`metric_of`] where none is named.
+    /// `NotFound` for an unknown metric; as [`metric_of`] when none is named.
     pub fn metric_for(&self, entry: &Entry) -> Result<&'static MetricEntry> {
         find(match &self.metric {
             Some(name) => name,
@@ -65,23 +65,23 @@ impl EvalOptions {
         })
     }
 
-    /// How classes are matched.
+    /// Returns how classes are matched.
     pub fn class_matching(&self) -> ClassMatching {
         ClassMatching { pairs: self.classes.clone(), by_number: self.by_number }
     }
 
-    /// Opens the data set that a learner is measured on.
+    /// Opens the data set for the metric of a learner.
     ///
     /// # Errors
-    /// As [`EvalOptions::metric_for`] and [`open_for`].
+    /// As [`EvalOptions::metric_for`] and [`open_for_metric`].
     pub fn open<'a>(&'a self, entry: &Entry, dataset: DatasetRef<'a>) -> Result<EvalJob<'a>> {
         self.open_by(self.metric_for(entry)?, dataset)
     }
 
-    /// Opens the data set as `metric` compares it.
+    /// Opens the data set for a metric.
     ///
     /// # Errors
-    /// As [`open_for`].
+    /// As [`open_for_metric`].
     pub fn open_by<'a>(
         &'a self,
         metric: &'static MetricEntry,
@@ -91,7 +91,7 @@ impl EvalOptions {
         let (name, dataset): (_, Box<dyn DatasetIterator + 'a>) = match dataset {
             DatasetRef::External(external) => {
                 let name = external.path().display().to_string();
-                (name, open_for(metric, external, self.split.clone(), &problems)?)
+                (name, open_for_metric(metric, external, self.split.clone(), &problems)?)
             }
             DatasetRef::Iterator(samples) => (String::new(), Box::new(samples)),
         };
@@ -100,7 +100,7 @@ impl EvalOptions {
         Ok(EvalJob { dataset, problems, metric, name, options: self })
     }
 
-    /// Measures a loaded learner on a data set.
+    /// Evaluates a loaded learner on a data set.
     ///
     /// # Errors
     /// As [`EvalOptions::open`] and [`Evaluation::run`].
@@ -117,7 +117,7 @@ impl EvalOptions {
 }
 
 impl EvalJob<'_> {
-    /// Measures loaded `learners` of one kind, as many samples at once as there are learners.
+    /// Evaluates loaded `learners` of one kind, with as many samples in parallel.
     ///
     /// # Errors
     /// As [`Evaluation::run`].
@@ -131,8 +131,8 @@ impl EvalJob<'_> {
         self.evaluation(subject, progress).run(learners, entry, &self.dataset)
     }
 
-    /// Measures learners behind each other that take `ports`, as many samples at once as there are of them; `classes` are what the
-    /// class numbers of their predictions mean, as far as these do not say it.
+    /// Evaluates pipelines with the inputs `ports`, with as many samples in parallel; `classes` are the classes of their predictions,
+    /// where these do not name them.
     ///
     /// # Errors
     /// As [`Evaluation::run`].

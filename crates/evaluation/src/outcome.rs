@@ -1,4 +1,4 @@
-//! What an evaluation ends in.
+//! Results of an evaluation.
 
 use std::fmt;
 use std::fs;
@@ -12,65 +12,65 @@ use opendr_metrics::{Report, Table};
 use opendr_runlog::svg_from_figure;
 use serde::Serialize;
 
-use crate::shown::{AnsweredSample, sheet};
+use crate::shown::{ScoredSample, contact_sheet};
 use crate::{ClassReport, Interval};
 
-/// Rows of a table that are printed; all of them are in the JSON.
+/// Maximum rows of a printed table; the JSON has all.
 const ROWS: usize = 40;
 
-/// The numbers of an evaluation and what there is to say about them. Printed, it is a table.
+/// Results of an evaluation. `Display` prints a table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Outcome {
-    /// What was evaluated.
+    /// Name of the learner.
     pub learner: String,
-    /// On what.
+    /// Name of the data set.
     pub dataset: String,
-    /// By what.
+    /// Name of the metric.
     pub metric: String,
-    /// Every parameter of the metric.
+    /// All parameters of the metric.
     pub metric_params: ParamMap,
-    /// The threshold below which the learner dropped predictions, where it has one.
+    /// Threshold of the learner, if it has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub threshold: Option<f64>,
-    /// Which classes were compared with which.
+    /// How classes were matched.
     #[serde(skip_serializing_if = "ClassReport::is_empty")]
     pub classes: ClassReport,
-    /// Samples of the data set.
+    /// Number of samples of the data set.
     pub samples: usize,
-    /// Samples that were answered and counted.
+    /// Number of samples with a prediction that the metric counted.
     pub counted: usize,
-    /// Samples and annotations that were left out because they are broken.
+    /// Number of broken samples and annotations that were skipped.
     pub skipped: u64,
-    /// Whether every sample was reached.
+    /// Whether all samples were processed.
     pub complete: bool,
-    /// How long it took, seconds; of the last run where it was resumed.
+    /// Wall-clock time in seconds; that of the last run if it was resumed.
     pub seconds: f64,
-    /// The numbers, tables and figures.
+    /// Numbers, tables and figures of the metric.
     #[serde(flatten)]
     pub report: Report,
-    /// An interval for the headline.
+    /// Confidence interval of the headline.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub interval: Option<Interval>,
-    /// The samples that were answered worst, worst first.
-    pub worst: Vec<AnsweredSample>,
-    /// Samples evenly over the data set.
+    /// Samples with the lowest scores, lowest first.
+    pub worst: Vec<ScoredSample>,
+    /// Samples spaced evenly over the data set.
     #[serde(skip)]
-    pub evenly: Vec<AnsweredSample>,
-    /// What was left out.
+    pub evenly: Vec<ScoredSample>,
+    /// Skipped samples and annotations.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub problems: Vec<Problem>,
-    /// The files that were written.
+    /// Files that were written.
     #[serde(skip)]
     pub written: Vec<PathBuf>,
 }
 
 impl Outcome {
-    /// Writes `report.json`, an SVG file for each figure, and two sheets of samples into a folder. On them, answers of a
-    /// confidence below `least` are left out.
+    /// Writes `report.json`, an SVG file per figure, and two contact sheets into a folder. Predictions with a confidence below
+    /// `least` are not drawn.
     pub(crate) fn write(&mut self, dataset: &dyn DatasetIterator, folder: &Path, least: f32) -> Result<()> {
         self.write_report(folder)?;
         for (name, samples) in [("worst.png", &self.worst), ("answers.png", &self.evenly)] {
-            if let Some(sheet) = sheet(samples, dataset, least)? {
+            if let Some(sheet) = contact_sheet(samples, dataset, least)? {
                 let path = folder.join(name);
                 opendr_vision::save(&sheet, &path)?;
                 self.written.push(path);
@@ -79,14 +79,14 @@ impl Outcome {
         Ok(())
     }
 
-    /// Writes `report.json` and an SVG file for each figure into a folder, which is made where it is not there.
+    /// Writes `report.json` and an SVG file per figure into a folder, which is created if missing.
     ///
     /// # Errors
     /// `Io` when a file cannot be written.
     pub fn write_report(&mut self, folder: &Path) -> Result<()> {
-        fs::create_dir_all(folder).context(|| format!("making {}", folder.display()))?;
+        fs::create_dir_all(folder).context(|| format!("creating {}", folder.display()))?;
         let json = serde_json::to_string_pretty(self)
-            .map_err(|error| Error::internal("the report has no JSON form").with_source(error))?;
+            .map_err(|error| Error::internal("the report cannot be written as JSON").with_source(error))?;
         let mut files = vec![("report.json".to_owned(), json + "\n")];
         files.extend(self.report.figures.iter().map(|figure| {
             let (name, svg) = svg_from_figure(figure);
@@ -110,10 +110,10 @@ impl fmt::Display for Outcome {
         }
         writeln!(f)?;
         if !self.complete {
-            writeln!(f, "not complete: the numbers are of what was done")?;
+            writeln!(f, "not complete: the numbers cover the samples so far")?;
         }
         if self.skipped > 0 {
-            writeln!(f, "{} left out as broken", self.skipped)?;
+            writeln!(f, "{} skipped as broken", self.skipped)?;
         }
         self.write_comparison(f)?;
         let scalars = &self.report.statistics.scalars;
@@ -139,7 +139,7 @@ impl fmt::Display for Outcome {
 }
 
 impl Outcome {
-    /// What was compared: threshold, parameters of the metric, classes.
+    /// Writes the settings of the comparison: threshold, parameters of the metric, classes.
     fn write_comparison(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let threshold = self.threshold.map(|threshold| format!("threshold {threshold}"));
         let params = self.metric_params.iter().map(|(name, value)| format!("{name} {value}"));
@@ -179,14 +179,14 @@ fn write_table(table: &Table, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     }
 }
 
-/// Whether a column has whole numbers, and not zeros and ones alone.
+/// Returns whether a column has whole numbers, other than only zeros and ones.
 fn is_of_counts(table: &Table, column: usize) -> bool {
     let numbers = || table.rows.iter().filter_map(|(_, numbers)| numbers.get(column).copied().flatten());
     numbers().all(|number| number.fract() == 0.0 && number.abs() < 1e15)
         && numbers().any(|number| number > 1.0)
 }
 
-/// Counts as they are, everything else with four places.
+/// Formats whole numbers as they are, others with four decimals.
 fn number(value: f64) -> String {
     if value.fract() == 0.0 && value.abs() >= 2.0 && value.abs() < 1e15 {
         format!("{value}")

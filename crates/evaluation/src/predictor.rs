@@ -1,4 +1,4 @@
-//! Predictions of the samples of a data set, several at once, in their order.
+//! Predictions for the samples of a data set, in parallel and in order.
 
 use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::learner::{AnyLearner, AnyStream, Outputs, Port, Ports};
@@ -7,17 +7,17 @@ use opendr_engine::target::{
 };
 use opendr_engine::{Error, Progress, Result, Value, ValueType, map_in_order};
 
-use crate::journal::{Answer, Line};
+use crate::journal::{Line, SampleResult};
 
-/// What predicts a sample: a learner, a stream of one, or several learners behind each other.
+/// Anything that predicts samples: a learner, a stream of one, or a pipeline.
 pub trait Predictor: Send {
-    /// Forgets the samples before.
+    /// Resets the state, before another sequence.
     fn reset(&mut self);
 
-    /// Predicts one set of named inputs.
+    /// Predicts from one set of named inputs.
     ///
     /// # Errors
-    /// Those of the learner.
+    /// The errors of the learner.
     fn infer(&mut self, ports: &Ports<'_>) -> Result<Outputs>;
 }
 
@@ -41,11 +41,11 @@ impl Predictor for Box<dyn AnyStream> {
     }
 }
 
-/// Has the samples from `first` on predicted as `wanted`: as many at once as there are `predictors`, sequences by the first
-/// alone, which forgets between them. Each prediction goes to `each`; the user may stop it.
+/// Predicts the samples from `first` on, with as many in parallel as there are `predictors`; sequences run on the first
+/// only, with a reset between them. Each result is passed to `each`; the user may stop it.
 ///
 /// # Errors
-/// Those of `each`.
+/// The errors of `each`.
 pub(crate) fn predict_samples<P: Predictor>(
     predictors: &mut [P],
     ports: &[Port],
@@ -66,13 +66,13 @@ pub(crate) fn predict_samples<P: Predictor>(
         (at, predict_sample(predictor, ports, dataset, at, wanted))
     };
     map_in_order(&mut predictors[..at_once], indices, work, |(at, prediction)| {
-        each(Line { at, name: dataset.name(at), answer: Answer::of(prediction, dataset, at) })?;
+        each(Line { at, name: dataset.name(at), result: SampleResult::of(prediction, dataset, at) })?;
         progress.advance(1);
         Ok(())
     })
 }
 
-/// The prediction of the wanted type of one sample; of another type where there is none, which the metric may read.
+/// Returns the prediction of the type `wanted` for one sample; else one of another type, which the metric may accept.
 fn predict_sample(
     predictor: &mut impl Predictor,
     ports: &[Port],
@@ -82,14 +82,14 @@ fn predict_sample(
 ) -> Result<Value> {
     let sample = dataset.get(at)?;
     let outputs = predictor.infer(&Ports::of_sample(ports, &sample.data))?;
-    let found = outputs.iter().find(|(_, value)| value.as_value_ref().value_type() == wanted);
-    let found = found.or_else(|| outputs.iter().next()).map(|(_, value)| value.clone());
-    // A learner behind a detector that found nothing has nothing to look at.
-    found.or_else(|| nothing_of(wanted)).ok_or_else(|| Error::invalid_input("there is no prediction"))
+    let prediction = outputs.iter().find(|(_, value)| value.as_value_ref().value_type() == wanted);
+    let prediction = prediction.or_else(|| outputs.iter().next()).map(|(_, value)| value.clone());
+    // A learner after a detector without detections has no input.
+    prediction.or_else(|| empty_list(wanted)).ok_or_else(|| Error::invalid_input("there is no prediction"))
 }
 
-/// A list of nothing.
-pub(crate) fn nothing_of(wanted: ValueType) -> Option<Value> {
+/// Returns an empty list of a type, if it is a list.
+pub(crate) fn empty_list(wanted: ValueType) -> Option<Value> {
     match wanted {
         ValueType::BoundingBoxList => Some(BoundingBoxList::default().into()),
         ValueType::BoundingBox3DList => Some(BoundingBox3DList::default().into()),

@@ -1,16 +1,16 @@
-//! Which sample a file of answers means.
+//! Matching of samples by name.
 
 use std::collections::HashMap;
 
 use opendr_engine::dataset::DatasetIterator;
 
-/// The samples of a data set by their names, as far as these tell them apart.
+/// The samples of a data set by their names, as far as these are unique.
 pub struct SampleNames {
     by_name: HashMap<String, Option<usize>>,
 }
 
 impl SampleNames {
-    /// Of a data set: each sample by its name, the last parts of it, and its file's name without extension.
+    /// Indexes a data set: each sample by its name, by suffixes of it, and by its file name without extension.
     pub fn of(dataset: &dyn DatasetIterator) -> Self {
         let mut by_name = HashMap::new();
         let mut add = |name: &str, at: usize| {
@@ -33,7 +33,7 @@ impl SampleNames {
         Self { by_name }
     }
 
-    /// The sample that a path means: the longest end of it that only one sample has.
+    /// Returns the sample of a path: that of its longest suffix that is unique to a sample.
     pub fn find(&self, path: &str) -> Option<usize> {
         let path = path.replace('\\', "/");
         let known = |name: &str| self.by_name.get(name).copied().flatten();
@@ -41,14 +41,14 @@ impl SampleNames {
     }
 }
 
-/// A path, and what follows each of its slashes.
+/// Returns a path, and what follows each of its slashes.
 fn endings(path: &str) -> impl Iterator<Item = &str> {
     std::iter::once(path)
         .chain(path.match_indices('/').map(|(at, _)| &path[at + 1..]))
         .filter(|end| !end.is_empty())
 }
 
-/// The file's name without its extension.
+/// Returns the file name without its extension.
 fn stem(path: &str) -> &str {
     let file = path.rsplit('/').next().unwrap_or(path);
     file.rsplit_once('.').map_or(file, |(stem, _)| if stem.is_empty() { file } else { stem })
@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn by_the_end_that_tells_samples_apart() {
+    fn samples_are_matched_by_unique_suffixes() {
         let names = SampleNames::of(&Named(&["train/1.jpg", "val/1.jpg", "val/2.jpg", ".hidden"]));
         let find = |path: &str| names.find(path);
         assert_eq!([find("/data/val/1.jpg"), find("train/1.jpg"), find("1.jpg")], [Some(1), Some(0), None]);

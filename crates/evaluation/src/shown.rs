@@ -1,97 +1,100 @@
-//! The samples of an evaluation that people look at: those answered worst, and some evenly over the data set.
+//! Selection of samples for contact sheets: those with the lowest scores, and some spaced evenly over the data set.
 
 use std::cmp::Ordering;
 
-use opendr_datasets::picture_with_target;
+use opendr_datasets::draw_sample;
 use opendr_engine::data::Image;
 use opendr_engine::dataset::{DatasetIterator, Sample};
 use opendr_engine::{Result, Value};
 use opendr_vision::draw;
 use serde::Serialize;
 
-/// Pictures in a row: pairs of truth and answer.
+/// Images per row: pairs of ground truth and prediction.
 const COLUMNS: usize = 6;
-/// Side of a picture, pixels.
+/// Side of an image, in pixels.
 const SIDE: usize = 300;
 
-/// A sample and how good its answer was.
+/// A sample with its prediction and score.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct AnsweredSample {
-    /// Its number in the data set.
+pub struct ScoredSample {
+    /// Index in the data set.
     pub index: usize,
-    /// What the data set calls it.
+    /// Name in the data set.
     pub name: String,
-    /// 0 (worst) to 1.
+    /// Score of the prediction, 0 (worst) to 1.
     pub score: f64,
-    /// What the learner answered, in the classes of the data set.
+    /// Prediction, in the classes of the data set.
     #[serde(skip)]
     pub prediction: Value,
 }
 
-/// Keeps `most` samples of either kind.
-pub struct Shown {
-    most: usize,
+/// Collects at most `limit` samples of each kind.
+pub struct ContactSheetSamples {
+    limit: usize,
     samples: usize,
-    worst: Vec<AnsweredSample>,
-    evenly: Vec<AnsweredSample>,
+    worst: Vec<ScoredSample>,
+    evenly: Vec<ScoredSample>,
 }
 
-impl Shown {
-    /// Of a data set of so many `samples`.
-    pub fn new(most: usize, samples: usize) -> Self {
-        Self { most, samples, worst: Vec::new(), evenly: Vec::new() }
+impl ContactSheetSamples {
+    /// Creates a collector for a data set of `samples` samples.
+    pub fn new(limit: usize, samples: usize) -> Self {
+        Self { limit, samples, worst: Vec::new(), evenly: Vec::new() }
     }
 
-    /// Takes a sample, and keeps a copy where it belongs to the worst or to those that lie evenly.
-    pub fn add(&mut self, answered: &AnsweredSample) {
-        let order = |other: &AnsweredSample| {
-            other.score.total_cmp(&answered.score).then(other.index.cmp(&answered.index))
-        };
+    /// Adds a sample; keeps a copy if it is among the lowest scores or evenly spaced.
+    pub fn add(&mut self, sample: &ScoredSample) {
+        let order =
+            |other: &ScoredSample| other.score.total_cmp(&sample.score).then(other.index.cmp(&sample.index));
         let at = self.worst.partition_point(|other| order(other) == Ordering::Less);
-        if at < self.most {
-            self.worst.insert(at, answered.clone());
-            self.worst.truncate(self.most);
+        if at < self.limit {
+            self.worst.insert(at, sample.clone());
+            self.worst.truncate(self.limit);
         }
-        let share = |index: usize| index * self.most.min(self.samples) / self.samples.max(1);
-        if share(answered.index) < share(answered.index + 1) {
-            self.evenly.push(answered.clone());
+        let share = |index: usize| index * self.limit.min(self.samples) / self.samples.max(1);
+        if share(sample.index) < share(sample.index + 1) {
+            self.evenly.push(sample.clone());
         }
     }
 
-    /// The worst, worst first, and those that lie evenly.
-    pub fn into_samples(self) -> (Vec<AnsweredSample>, Vec<AnsweredSample>) {
+    /// Returns the samples with the lowest scores, lowest first, and the evenly spaced ones.
+    pub fn into_samples(self) -> (Vec<ScoredSample>, Vec<ScoredSample>) {
         (self.worst, self.evenly)
     }
 }
 
-/// Samples, each as it should be and as it was answered; `None` when they have no pictures. Answers of a confidence below
-/// `least` are not drawn.
-pub fn sheet(samples: &[AnsweredSample], dataset: &dyn DatasetIterator, least: f32) -> Result<Option<Image>> {
-    let mut pictures = Vec::new();
-    for AnsweredSample { index, name, score, prediction } in samples {
+/// Draws a contact sheet of samples, each with its ground truth and its prediction; `None` when they have no images. Predictions
+/// with a confidence below `least` are not drawn.
+pub fn contact_sheet(
+    samples: &[ScoredSample],
+    dataset: &dyn DatasetIterator,
+    least: f32,
+) -> Result<Option<Image>> {
+    let mut images = Vec::new();
+    for ScoredSample { index, name, score, prediction } in samples {
         let sample = dataset.get(*index)?;
-        let answer = Sample { target: Some(confident(prediction, least)), ..sample.clone() };
-        if let (Some(truth), Some(answer)) = (picture_with_target(&sample), picture_with_target(&answer)) {
-            pictures.push((truth, name.clone()));
-            pictures.push((answer, format!("answered, {score:.2}")));
+        let predicted = Sample { target: Some(confident(prediction, least)), ..sample.clone() };
+        if let (Some(truth), Some(predicted)) = (draw_sample(&sample), draw_sample(&predicted)) {
+            images.push((truth, name.clone()));
+            images.push((predicted, format!("predicted, {score:.2}")));
         }
     }
-    if pictures.is_empty() {
+    if images.is_empty() {
         return Ok(None);
     }
-    draw::contact_sheet(&pictures, COLUMNS, SIDE).map(Some)
+    draw::contact_sheet(&images, COLUMNS, SIDE).map(Some)
 }
 
-/// What of an answer has at least this confidence.
-fn confident(answer: &Value, least: f32) -> Value {
-    let mut answer = answer.clone();
-    match &mut answer {
+/// Returns a prediction without the objects below a confidence.
+fn confident(prediction: &Value, least: f32) -> Value {
+    let mut prediction = prediction.clone();
+    match &mut prediction {
         Value::BoundingBoxList(list) => list.boxes.retain(|found| found.confidence >= least),
         Value::BoundingBox3DList(list) => list.boxes.retain(|found| found.confidence >= least),
         Value::PoseList(list) => list.poses.retain(|pose| pose.confidence >= least),
         _ => {}
     }
-    answer
+    prediction
 }
 
 #[cfg(test)]
@@ -100,33 +103,33 @@ mod tests {
 
     use super::*;
 
-    fn shown(most: usize, scores: &[f64]) -> (Vec<usize>, Vec<usize>) {
-        let mut shown = Shown::new(most, scores.len());
+    fn selected(limit: usize, scores: &[f64]) -> (Vec<usize>, Vec<usize>) {
+        let mut selected = ContactSheetSamples::new(limit, scores.len());
         for (index, &score) in scores.iter().enumerate() {
             let prediction = Category::default().into();
-            shown.add(&AnsweredSample { index, name: index.to_string(), score, prediction });
+            selected.add(&ScoredSample { index, name: index.to_string(), score, prediction });
         }
-        let indices = |samples: Vec<AnsweredSample>| samples.iter().map(|sample| sample.index).collect();
-        let (worst, evenly) = shown.into_samples();
+        let indices = |samples: Vec<ScoredSample>| samples.iter().map(|sample| sample.index).collect();
+        let (worst, evenly) = selected.into_samples();
         (indices(worst), indices(evenly))
     }
 
     #[test]
-    fn the_worst_come_first() {
-        assert_eq!(shown(2, &[0.5, 1.0, 0.25, 0.5]).0, [2, 0]);
+    fn the_lowest_scores_come_first() {
+        assert_eq!(selected(2, &[0.5, 1.0, 0.25, 0.5]).0, [2, 0]);
     }
 
     #[test]
-    fn some_lie_evenly() {
-        assert_eq!(shown(3, &[1.0; 7]).1, [2, 4, 6]);
-        assert_eq!(shown(3, &[1.0; 2]).1, [0, 1]);
+    fn some_are_evenly_spaced() {
+        assert_eq!(selected(3, &[1.0; 7]).1, [2, 4, 6]);
+        assert_eq!(selected(3, &[1.0; 2]).1, [0, 1]);
     }
 
     #[test]
-    fn what_nobody_would_see_is_not_drawn() {
+    fn predictions_of_low_confidence_are_not_drawn() {
         let boxes = [0.2, 0.6].map(|confidence| BoundingBox { confidence, ..BoundingBox::default() });
-        let answer = BoundingBoxList::from(boxes.to_vec()).into();
-        let Value::BoundingBoxList(left) = confident(&answer, 0.5) else { panic!("another type") };
+        let prediction = BoundingBoxList::from(boxes.to_vec()).into();
+        let Value::BoundingBoxList(left) = confident(&prediction, 0.5) else { panic!("another type") };
         assert_eq!(left.boxes.len(), 1);
     }
 }

@@ -1,11 +1,11 @@
-//! What a task is measured by.
+//! Metrics of tasks.
 
 use opendr_engine::{Error, Result, Task};
 
-/// The name of a task's metric: the one that papers rank its learners by.
+/// Returns the name of a task's metric: the one by which papers rank its learners.
 ///
 /// # Errors
-/// `Unsupported` for a task that has none yet.
+/// `Unsupported` for a task without one.
 pub fn metric_of(task: Task) -> Result<&'static str> {
     match task {
         Task::ObjectDetection2d => Ok("coco_detection"),
@@ -32,8 +32,6 @@ pub fn metric_of(task: Task) -> Result<&'static str> {
         | Task::SpeechRecognition
         | Task::VoiceActivityDetection => Ok("classification"),
         Task::SpeechTranscription => Ok("transcription"),
-        other => {
-            Err(Error::unsupported(format!("{other} has no metric of its own yet; name one with metric")))
-        }
+        other => Err(Error::unsupported(format!("{other} has no default metric; choose one with metric"))),
     }
 }

@@ -1,4 +1,4 @@
-//! A data set whose annotations a teacher made.
+//! A data set annotated by a teacher.
 
 use std::path::PathBuf;
 
@@ -6,45 +6,45 @@ use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, Value};
 
-/// The samples that a teacher found something in, with its answers as their targets.
-pub struct Taught<'a> {
+/// The samples in which a teacher detected something, with its predictions as targets.
+pub struct LabelledDataset<'a> {
     samples: Box<dyn DatasetIterator + 'a>,
-    /// Which sample, and its target.
+    /// Index and target of each sample.
     labels: Vec<(usize, Value)>,
     classes: Classes,
-    asked: usize,
+    processed: usize,
 }
 
-impl<'a> Taught<'a> {
+impl<'a> LabelledDataset<'a> {
     pub(crate) fn new(
         samples: Box<dyn DatasetIterator + 'a>,
         labels: Vec<(usize, Value)>,
         classes: Classes,
-        asked: usize,
+        processed: usize,
     ) -> Self {
-        Self { samples, labels, classes, asked }
+        Self { samples, labels, classes, processed }
     }
 
-    /// Whether the teacher was asked about every sample.
+    /// Returns whether the teacher processed all samples.
     pub fn is_complete(&self) -> bool {
-        self.asked == self.samples.len()
+        self.processed == self.samples.len()
     }
 
     fn label(&self, index: usize) -> Result<&(usize, Value)> {
         let count = self.labels.len();
         let label = self.labels.get(index);
-        label.ok_or_else(|| Error::not_found(format!("there is no sample {index} among {count}")))
+        label.ok_or_else(|| Error::not_found(format!("no sample {index}; the data set has {count}")))
     }
 
-    /// The number that `samples` gives the sample; past the end, where there is none.
+    /// Returns the index of a sample in `samples`; past the end for an invalid index.
     fn at(&self, index: usize) -> usize {
         self.labels.get(index).map_or(usize::MAX, |(at, _)| *at)
     }
 }
 
-impl Dataset for Taught<'_> {}
+impl Dataset for LabelledDataset<'_> {}
 
-impl DatasetIterator for Taught<'_> {
+impl DatasetIterator for LabelledDataset<'_> {
     fn len(&self) -> usize {
         self.labels.len()
     }
@@ -66,8 +66,8 @@ impl DatasetIterator for Taught<'_> {
         self.samples.path(self.at(index))
     }
 
-    fn picture_size(&self, index: usize) -> Option<[u32; 2]> {
-        self.samples.picture_size(self.at(index))
+    fn image_size(&self, index: usize) -> Option<[u32; 2]> {
+        self.samples.image_size(self.at(index))
     }
 
     fn sequence(&self, index: usize) -> Option<usize> {

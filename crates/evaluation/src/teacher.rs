@@ -1,4 +1,4 @@
-//! A learner whose answers stand in for annotations (distillation, pseudo-labels).
+//! Teachers: learners whose predictions replace annotations (distillation, pseudo-labels).
 
 use std::fs;
 use std::path::Path;
@@ -9,35 +9,35 @@ use opendr_engine::learner::{AnyLearner, AnyStream, Entry};
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Progress, Result, ResultExt, Unit, Value, ValueType};
 
-use crate::journal::{Answer, Heading, Journal, Line};
+use crate::journal::{Heading, Journal, Line, SampleResult};
 use crate::predictor::predict_samples;
-use crate::{ClassMap, ClassMatching, Subject, Taught};
+use crate::{ClassMap, ClassMatching, LabelledDataset, Subject};
 
-/// What to do about classes that do not match.
+/// Advice for classes that do not match.
 const REMEDY: &str = "Map them with teacher_map (--teacher-map TEACHER=CLASS,...), or take their numbers as they are with \
                       teacher_by_number (--teacher-by-number)";
-/// The label of pixels from which nothing is learned.
+/// Label of pixels that are ignored in training.
 const IGNORED: u32 = 255;
-/// The file of the teacher's answers.
+/// File of the teacher's predictions.
 const JOURNAL: &str = "teacher.jsonl";
 
-/// A loaded learner that labels samples for another one.
+/// A loaded learner that annotates samples for another one.
 pub struct Teacher {
-    /// What it is: its journal names it.
+    /// The learner, as named in the journal.
     pub subject: Subject,
-    /// Its tables.
+    /// Its registry entry.
     pub entry: &'static Entry,
-    /// What its class numbers mean.
+    /// Classes of its predictions.
     pub classes: Classes,
-    /// As many samples are answered at once.
+    /// Streams, one per sample in parallel.
     pub streams: Vec<Box<dyn AnyStream>>,
 }
 
 impl Teacher {
-    /// A loaded learner of `entry`, called `name`; it answers `at_once` samples at once, unless it remembers.
+    /// Creates a teacher from a loaded learner of `entry`, called `name`, with `at_once` streams, or one if it keeps state.
     ///
     /// # Errors
-    /// `NotFound` when nothing is loaded.
+    /// `NotFound` when no model is loaded.
     pub fn new(
         name: impl Into<String>,
         learner: &dyn AnyLearner,
@@ -53,66 +53,66 @@ impl Teacher {
         })
     }
 
-    /// That it answers what is wanted.
+    /// Checks that the teacher predicts the type `wanted`.
     fn check(&self, wanted: ValueType) -> Result<()> {
-        let answers: Vec<_> = self.entry.outputs.iter().map(|output| output.value_type).collect();
-        if answers.contains(&wanted) {
+        let outputs: Vec<_> = self.entry.outputs.iter().map(|output| output.value_type).collect();
+        if outputs.contains(&wanted) {
             return Ok(());
         }
-        let answers: Vec<_> = answers.into_iter().map(ValueType::name).collect();
+        let outputs: Vec<_> = outputs.into_iter().map(ValueType::name).collect();
         Err(Error::invalid_input(format!(
-            "{} answers {}, but what learns from it needs {}; name another teacher",
+            "{} predicts {}, but the student needs {}; choose another teacher",
             self.subject.learner,
-            answers.join(" and "),
+            outputs.join(" and "),
             wanted.name()
         )))
     }
 }
 
-/// How a teacher's answers become annotations.
-pub struct Lesson<'a> {
-    /// What the data set is called in the journal.
+/// Settings of a distillation: how a teacher's predictions become annotations.
+pub struct Distillation<'a> {
+    /// Name of the data set in the journal.
     pub dataset: String,
-    /// The type of the annotations.
-    pub wanted: ValueType,
-    /// Answers below this score are dropped.
+    /// Type of the annotations.
+    pub annotation_type: ValueType,
+    /// Predictions below this score are dropped.
     pub threshold: f32,
-    /// The classes of the annotations; when empty those of the data set, or else the teacher's.
+    /// Classes of the annotations; if empty, those of the data set, or else the teacher's.
     pub classes: Classes,
     /// How the teacher's classes are matched with these.
     pub class_matching: ClassMatching,
-    /// Whether samples in which nothing was found are kept, as examples of nothing.
+    /// Whether samples without detections are kept, as negative examples.
     pub keep_empty: bool,
-    /// Where every answer is written as it comes; a lesson that was broken off goes on from there.
+    /// Folder to which every prediction is written at once; an interrupted run resumes from it.
     pub folder: &'a Path,
-    /// What becomes of samples that cannot be answered.
+    /// How samples without a prediction are handled.
     pub problems: &'a Problems,
-    /// To whom to report; asked whether to stop.
+    /// Receives the progress, and may stop the run.
     pub progress: &'a dyn Progress,
 }
 
-impl Lesson<'_> {
-    /// Has the samples labelled. When the user stops it, the rest is left out.
+impl Distillation<'_> {
+    /// Annotates samples with a teacher. If the user stops it, the remaining samples are left out.
     ///
     /// # Errors
-    /// `InvalidInput` when the teacher answers something else; for a sample that cannot be answered, unless problems are
+    /// `InvalidInput` when the teacher predicts another type, and for a sample without a prediction unless problems are
     /// skipped; `Io` when the journal cannot be written.
-    pub fn teach<'d>(
+    pub fn label<'d>(
         &self,
         mut teacher: Teacher,
         samples: Box<dyn DatasetIterator + 'd>,
-    ) -> Result<Taught<'d>> {
-        teacher.check(self.wanted)?;
-        fs::create_dir_all(self.folder).context(|| format!("making {}", self.folder.display()))?;
+    ) -> Result<LabelledDataset<'d>> {
+        teacher.check(self.annotation_type)?;
+        fs::create_dir_all(self.folder).context(|| format!("creating {}", self.folder.display()))?;
         let known = [self.classes.clone(), samples.classes(), teacher.classes.clone()];
         let classes = known.into_iter().find(|classes| !classes.is_empty()).unwrap_or_default();
         let map = ClassMap::new(teacher.classes.clone(), classes.clone(), &self.class_matching)?;
         map.check(None, REMEDY)?;
         let map = map.with_no_class(IGNORED);
         let mut labels = Labels { lesson: self, map, next: 0, kept: Vec::new() };
-        let what = format!("asking {}", teacher.subject.learner);
+        let what = format!("annotating with {}", teacher.subject.learner);
         self.progress.begin(&what, Some(samples.len() as u64), Unit::Items);
-        let done = self.ask(&mut teacher, samples.as_ref(), &mut labels);
+        let done = self.predict(&mut teacher, samples.as_ref(), &mut labels);
         self.progress.end();
         done?;
         let Labels { next, kept, map, .. } = labels;
@@ -120,10 +120,10 @@ impl Lesson<'_> {
         if !matched.is_empty() {
             self.progress.note(matched.to_string().trim_end());
         }
-        Ok(Taught::new(samples, kept, classes, next))
+        Ok(LabelledDataset::new(samples, kept, classes, next))
     }
 
-    fn ask(
+    fn predict(
         &self,
         teacher: &mut Teacher,
         samples: &dyn DatasetIterator,
@@ -135,7 +135,7 @@ impl Lesson<'_> {
             labels.add(line)
         })?;
         let (streams, ports, first) = (&mut teacher.streams, teacher.entry.ports, labels.next);
-        predict_samples(streams, ports, samples, first, self.wanted, self.progress, |line| {
+        predict_samples(streams, ports, samples, first, self.annotation_type, self.progress, |line| {
             journal.write(&line)?;
             labels.add(line)
         })
@@ -144,7 +144,7 @@ impl Lesson<'_> {
 
 /// The annotations so far.
 struct Labels<'a> {
-    lesson: &'a Lesson<'a>,
+    lesson: &'a Distillation<'a>,
     map: ClassMap,
     next: usize,
     kept: Vec<(usize, Value)>,
@@ -153,42 +153,42 @@ struct Labels<'a> {
 impl Labels<'_> {
     fn add(&mut self, line: Line) -> Result<()> {
         self.next = line.at + 1;
-        match line.answer {
-            Answer::Prediction(answer) => {
-                let label = self.label(*answer)?;
+        match line.result {
+            SampleResult::Prediction(prediction) => {
+                let label = self.label(*prediction)?;
                 self.kept.extend(label.map(|label| (line.at, label)));
                 Ok(())
             }
-            Answer::Error(problem) => self.lesson.problems.report(problem),
+            SampleResult::Error(problem) => self.lesson.problems.report(problem),
         }
     }
 
-    /// What is left of a prediction; `None` when nothing is to be learned from it.
-    fn label(&mut self, mut answer: Value) -> Result<Option<Value>> {
-        let sure = |confidence: f32| confidence >= self.lesson.threshold;
-        match &mut answer {
-            Value::BoundingBoxList(list) => list.boxes.retain(|found| sure(found.confidence)),
-            Value::BoundingBox3DList(list) => list.boxes.retain(|found| sure(found.confidence)),
-            Value::PoseList(list) => list.poses.retain(|pose| sure(pose.confidence)),
+    /// Converts a prediction into an annotation; `None` when it has no information for training.
+    fn label(&mut self, mut prediction: Value) -> Result<Option<Value>> {
+        let is_confident = |confidence: f32| confidence >= self.lesson.threshold;
+        match &mut prediction {
+            Value::BoundingBoxList(list) => list.boxes.retain(|found| is_confident(found.confidence)),
+            Value::BoundingBox3DList(list) => list.boxes.retain(|found| is_confident(found.confidence)),
+            Value::PoseList(list) => list.poses.retain(|pose| is_confident(pose.confidence)),
             Value::Category(category) => {
                 category.probabilities.clear();
-                if !category.confidence.is_none_or(sure) {
+                if !category.confidence.is_none_or(is_confident) {
                     return Ok(None);
                 }
             }
             _ => {}
         }
-        self.map.apply(&mut answer)?;
-        if matches!(&answer, Value::Category(category) if self.map.is_beyond(category.class)) {
+        self.map.apply(&mut prediction)?;
+        if matches!(&prediction, Value::Category(category) if self.map.is_beyond(category.class)) {
             return Ok(None);
         }
-        let is_empty = match &answer {
+        let is_empty = match &prediction {
             Value::BoundingBoxList(list) => list.boxes.is_empty(),
             Value::BoundingBox3DList(list) => list.boxes.is_empty(),
             Value::PoseList(list) => list.poses.is_empty(),
             _ => false,
         };
-        Ok((self.lesson.keep_empty || !is_empty).then_some(answer))
+        Ok((self.lesson.keep_empty || !is_empty).then_some(prediction))
     }
 }
 

@@ -1,4 +1,4 @@
-//! `ncnn_to_onnx model.param model.bin out.onnx`: turns a model of ncnn's into ONNX.
+//! `ncnn_to_onnx model.param model.bin out.onnx`: converts an ncnn model to ONNX.
 
 use std::path::Path;
 use std::process::ExitCode;

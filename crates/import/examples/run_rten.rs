@@ -1,5 +1,6 @@
-//! `run_rten model.onnx input.bin 1,3,512,512 out`: runs a model with one float input in the pure-Rust runtime. Files
-//! hold raw little-endian float32; `out.json` lists the outputs' names and shapes, `out.bin` holds them in a row.
+//! `run_rten model.onnx input.bin 1,3,512,512 out`: runs a model with one float input on the pure-Rust runtime. Files
+//! contain raw little-endian float32; `out.json` lists the outputs' names and shapes, `out.bin` contains them one
+//! after the other.
 
 use std::error::Error;
 
@@ -26,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             Value::Int32Tensor(tensor) => {
                 (tensor.shape().to_vec(), tensor.iter().map(|&value| value as f32).collect())
             }
-            other => return Err(format!("output {name} is of type {:?}", other.dtype()).into()),
+            other => return Err(format!("output {name} has the unsupported type {:?}", other.dtype()).into()),
         };
         listed.push(serde_json::json!({"name": name, "dims": dims}));
         raw.extend(values.iter().flat_map(|value| value.to_le_bytes()));

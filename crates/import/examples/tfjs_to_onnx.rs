@@ -1,4 +1,4 @@
-//! `tfjs_to_onnx model.json out.onnx [HEIGHTxWIDTH]`: turns a TensorFlow.js graph model into ONNX.
+//! `tfjs_to_onnx model.json out.onnx [HEIGHTxWIDTH]`: converts a TensorFlow.js graph model to ONNX.
 
 use std::path::Path;
 use std::process::ExitCode;

@@ -1,4 +1,4 @@
-//! `tflite_to_onnx model.tflite out.onnx`: turns a TensorFlow Lite model into ONNX.
+//! `tflite_to_onnx model.tflite out.onnx`: converts a TensorFlow Lite model to ONNX.
 
 use std::path::Path;
 use std::process::ExitCode;

@@ -1,5 +1,5 @@
-//! `whisper_to_onnx model.bin|model.safetensors|ENCODER.onnx [DECODER.onnx] FOLDER`: turns a Whisper that CTranslate2 converted,
-//! transformers saved or PyTorch exported into `encoder.onnx` and `decoder.onnx`.
+//! `whisper_to_onnx model.bin|model.safetensors|ENCODER.onnx [DECODER.onnx] FOLDER`: converts a Whisper from
+//! CTranslate2, transformers or a PyTorch export to `encoder.onnx` and `decoder.onnx`.
 
 use std::process::ExitCode;
 

@@ -1,16 +1,25 @@
-//! Turns models of other formats into ONNX.
+//! Import of TensorFlow.js, TensorFlow Lite, ncnn and Whisper models into ONNX.
 //!
-//! [`onnx_from_tfjs`] takes the files of a TensorFlow.js graph model as packages carry them, [`onnx_from_tflite`] a
-//! `.tflite` file. Both give an ONNX model that runs in ONNX Runtime and in the built-in runtime: channels-first, with
-//! the transpositions, identities and shape arithmetic of the original evaluated or folded away. How images are laid
-//! out at its inputs and outputs is one rule, written there.
+//! Contents:
+//! * [`onnx_from_tfjs`] and [`onnx_from_tflite`]: TensorFlow models, converted to channels-first, with the
+//!   transpositions and shape arithmetic of the original folded away. The functions document the layout of inputs and
+//!   outputs.
+//! * [`onnx_from_ncnn`]: ncnn's layers and weights.
+//! * [`onnx_from_whisper`]: the two networks of a Whisper from a [`WhisperWeights`]. [`whisper_from_ctranslate2`],
+//!   [`whisper_from_safetensors`] and [`whisper_from_onnx`] read weight files.
+//! * [`SafetensorsFile`]: reading of safetensors. [`ImportOptions`]: image size and choice of outputs.
 //!
-//! [`onnx_from_ncnn`] takes the two files of a model of ncnn's, which has pictures channels-first already.
+//! The ONNX models run in `opendr-inference` on ONNX Runtime and on the built-in runtime. PyTorch weights for
+//! training are imported in `opendr-training`.
 //!
-//! [`onnx_from_whisper`] builds the two networks of a Whisper around weights from anywhere; those of CTranslate2 are read by
-//! [`whisper_from_ctranslate2`], those of transformers by [`whisper_from_safetensors`], those of ONNX files by
-//! [`whisper_from_onnx`]. [`SafetensorsFile`] serves weights of any
-//! network.
+//! ```
+//! use opendr_import::{ImportOptions, onnx_from_ncnn};
+//!
+//! let param = b"7767517\n2 2\nInput in 0 1 in 0=4 1=4 2=3\nReLU act 1 1 in out\n";
+//! let onnx = onnx_from_ncnn(param, &[], &ImportOptions::default())?;
+//! assert!(!onnx.is_empty());
+//! # Ok::<(), opendr_engine::Error>(())
+//! ```
 
 mod bounded;
 mod ctranslate2;

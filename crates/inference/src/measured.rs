@@ -1,5 +1,5 @@
-//! Figures that were measured and that programs say: `benches/builtin.py --write` puts them here.
+//! Measured figures that appear in messages; `benches/builtin.py --write` writes them here.
 
-/// How many times as long as ONNX Runtime the built-in runtime takes for a session, from the best to the worst of NanoDet, CenterNet,
+/// Session time of the built-in runtime divided by that of ONNX Runtime, minimum and maximum over NanoDet, CenterNet,
 /// PoseNet and YuNet at 640 pixels; 2 threads.
 pub(crate) const SLOWER_THAN_ONNX_RUNTIME: [f32; 2] = [2.0, 4.0];

@@ -1,7 +1,8 @@
-//! What has to be known of an ONNX model before a runtime gets to see it.
+//! Validation of an ONNX model before a runtime opens it.
 //!
-//! Runtimes answer a damaged or hostile file with anything from a vague message to an aborted process, so its outline
-//! is checked here: whole fields, weights as long as their shape says, nothing taken from other files.
+//! Runtimes respond to a damaged or hostile file with anything from a vague message to an aborted process. The
+//! structure is therefore checked here: complete fields, weights with as many elements as their shape, no references
+//! to other files.
 
 use std::collections::HashSet;
 
@@ -10,21 +11,21 @@ use opendr_engine::{Error, Result};
 use crate::protobuf::{Fields, Value};
 use crate::tensor::{ElementType, MAX_RANK, TensorInfo};
 
-/// Deepest nesting of graphs within a model (branches and loop bodies).
+/// Maximum nesting depth of graphs within a model (branches and loop bodies).
 const MAX_DEPTH: usize = 16;
 
-/// What a model takes and gives.
+/// Declared inputs and outputs of a model.
 pub(crate) struct OnnxHeader {
     pub(crate) inputs: Vec<TensorInfo>,
     pub(crate) outputs: Vec<TensorInfo>,
 }
 
 impl OnnxHeader {
-    /// Reads and checks the outline of a model.
+    /// Reads and checks the structure of a model.
     ///
     /// # Errors
-    /// `Format` when the bytes are no whole ONNX model, `Unsupported` when it keeps weights in other files or when
-    /// an input or output is of a type that [`ElementType`] lacks.
+    /// `Format` when the bytes are not a complete ONNX model, `Unsupported` when it keeps weights in other files or
+    /// when an input or output has a type that [`ElementType`] lacks.
     pub(crate) fn read(model: &[u8]) -> Result<Self> {
         let mut graph = None;
         for field in Fields::new(model) {
@@ -33,7 +34,7 @@ impl OnnxHeader {
                 graph = Some(bytes);
             }
         }
-        let graph = graph.ok_or_else(|| Error::format("not an ONNX model: no graph in it"))?;
+        let graph = graph.ok_or_else(|| Error::format("not an ONNX model: it has no graph"))?;
         let mut initialised = HashSet::new();
         let (mut inputs, mut outputs) = (Vec::new(), Vec::new());
         for field in Fields::new(graph) {
@@ -66,7 +67,7 @@ impl OnnxHeader {
 
 fn check_graph(graph: &[u8], depth: usize) -> Result<()> {
     if depth > MAX_DEPTH {
-        return Err(Error::format(format!("the ONNX model nests graphs more than {MAX_DEPTH} deep")));
+        return Err(Error::format(format!("the ONNX model nests graphs deeper than {MAX_DEPTH} levels")));
     }
     for field in Fields::new(graph) {
         let field = field?;
@@ -95,7 +96,7 @@ fn check_node(node: &[u8], depth: usize) -> Result<()> {
     Ok(())
 }
 
-/// Checks that a tensor brings its elements with it, and gives its name.
+/// Checks that a tensor contains its elements, and returns its name.
 fn check_tensor(tensor: &[u8]) -> Result<&str> {
     let (mut name, mut data_type, mut raw) = ("", 0, None);
     let mut count = Some(1_u64);
@@ -127,18 +128,18 @@ fn check_tensor(tensor: &[u8]) -> Result<&str> {
     let fits = match (raw, element_bytes(data_type)) {
         (Some(raw), Some(_)) => wanted == u64::try_from(raw.len()).ok(),
         (Some(_), None) => true,
-        // Elements that are spelt out take at least a byte each.
+        // Elements in typed fields take at least a byte each.
         (None, _) => count.is_some_and(|count| count <= tensor.len() as u64),
     };
     if !fits {
         return Err(Error::format(format!(
-            "damaged ONNX model: the weights {name:?} are not as long as their shape says; get the file anew"
+            "damaged ONNX model: the size of the weights {name:?} does not match their shape; copy or download the file again"
         )));
     }
     Ok(name)
 }
 
-/// Bytes of one element in a tensor's raw data, for the types that are whole bytes.
+/// Returns the bytes per element in a tensor's raw data, for types of whole bytes.
 fn element_bytes(data_type: u64) -> Option<u64> {
     match data_type {
         2 | 3 | 9 => Some(1),
@@ -153,7 +154,7 @@ fn text(bytes: &[u8]) -> Result<&str> {
     std::str::from_utf8(bytes).map_err(|_| Error::format("damaged ONNX model: a name is not UTF-8"))
 }
 
-/// A declared input or output, its type still to be judged (an initialised one need not be of a type we take).
+/// A declared input or output whose type is not yet checked (one with an initializer may have any type).
 struct ValueInfo<'a> {
     name: &'a str,
     data_type: u64,
@@ -198,7 +199,7 @@ impl<'a> ValueInfo<'a> {
             for field in Fields::new(dim) {
                 let field = field?;
                 if let (1, Value::Varint(value)) = (field.number, field.value) {
-                    // A size below zero stands for "unknown" in files of old exporters.
+                    // A negative size means "unknown" in files of old exporters.
                     size = usize::try_from(value.cast_signed()).ok();
                 }
             }
@@ -218,7 +219,7 @@ impl<'a> ValueInfo<'a> {
             9 => ElementType::Bool,
             other => {
                 return Err(Error::unsupported(format!(
-                    "{name:?} of the ONNX model is of ONNX type {other}; a session takes tensors of f32, i32, i64, \
+                    "{name:?} of the ONNX model has ONNX type {other}; a session supports tensors of f32, i32, i64, \
                      u8, i8 and bool"
                 )));
             }

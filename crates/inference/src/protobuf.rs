@@ -1,27 +1,27 @@
-//! Walks the fields of a protocol buffer where it lies, and writes some.
+//! Reading of protocol buffer fields in place, and writing of some.
 
 use opendr_engine::{Error, Result};
 
-/// One field of a message: its number and what it holds.
+/// A field of a message: its number and value.
 pub(crate) struct Field<'a> {
     pub(crate) number: u64,
     pub(crate) value: Value<'a>,
-    /// The field with its key, as it lies in the message.
+    /// The field with its key, as encoded in the message.
     pub(crate) raw: &'a [u8],
 }
 
-/// The content of a field, by wire type.
+/// Value of a field, by wire type.
 #[derive(Clone, Copy)]
 pub(crate) enum Value<'a> {
-    /// An integer, truth value or enumeration.
+    /// An integer, boolean or enumeration.
     Varint(u64),
     /// A string, message or packed array.
     Bytes(&'a [u8]),
-    /// A 4- or 8-byte number, of which an ONNX model's outline has none.
+    /// A 4- or 8-byte number; the checked parts of an ONNX model have none.
     Fixed,
 }
 
-/// The fields of the message in `bytes`, in the order in which they lie.
+/// An iterator over the fields of the message in `bytes`, in encoded order.
 pub(crate) struct Fields<'a> {
     rest: &'a [u8],
 }
@@ -54,7 +54,7 @@ impl<'a> Fields<'a> {
         Some(taken)
     }
 
-    /// The next bare integer, as packed lists have them.
+    /// Reads the next varint, as in packed lists.
     pub(crate) fn varint(&mut self) -> Option<u64> {
         let mut value = 0_u64;
         for shift in (0..64).step_by(7) {
@@ -81,7 +81,7 @@ impl<'a> Iterator for Fields<'a> {
             self.rest = &[];
         }
         Some(field.ok_or_else(|| {
-            Error::format("not an ONNX model, or cut off: a field is incomplete; get the file anew")
+            Error::format("not an ONNX model, or a truncated one: a field is incomplete; copy or download the file again")
         }))
     }
 }
@@ -95,7 +95,7 @@ pub(crate) fn put_varint(out: &mut Vec<u8>, mut value: u64) {
     out.push(value as u8);
 }
 
-/// Writes a field that holds bytes, text or a message.
+/// Writes a field with bytes, text or a message.
 pub(crate) fn put_bytes(out: &mut Vec<u8>, number: u64, bytes: &[u8]) {
     put_varint(out, number << 3 | 2);
     put_varint(out, bytes.len() as u64);

@@ -1,8 +1,8 @@
-//! What sessions are given, whatever learner runs them: how a network is calibrated or watched without a line in the
-//! learner.
+//! Recording of the tensors of all sessions of a thread, so that a network can be calibrated or inspected without
+//! changes to the learner.
 //!
-//! Call [`start`], run the learner on the same thread, and [`take`] what its sessions were given. Nothing is recorded
-//! outside that.
+//! Call [`start`] (inputs) or [`start_with_outputs`], run the learner on the same thread, and [`take`] the recorded runs.
+//! Nothing is recorded otherwise.
 
 use std::cell::RefCell;
 
@@ -10,15 +10,17 @@ use opendr_engine::Result;
 
 use crate::tensor::{ElementType, TensorData, TensorInfo, TensorView};
 
-/// One run of a session.
+/// A recorded run of a session.
 #[derive(Debug, Clone)]
 pub struct Recording {
-    /// What the session takes.
+    /// Declared inputs of the session.
     pub inputs: Vec<TensorInfo>,
-    /// What the session gives.
+    /// Declared outputs of the session.
     pub outputs: Vec<TensorInfo>,
-    /// What it was given, in the order of the inputs.
-    pub given: Vec<RecordedTensor>,
+    /// Input tensors of the run, in the order of the inputs.
+    pub tensors: Vec<RecordedTensor>,
+    /// Output tensors of the run, in the order of the outputs; empty after [`start`], and where the run failed.
+    pub output_tensors: Vec<RecordedTensor>,
 }
 
 /// A copy of a tensor.
@@ -38,32 +40,60 @@ enum Elements {
     Bool(Vec<bool>),
 }
 
+/// The recording of a thread.
+struct Record {
+    runs: Vec<Recording>,
+    with_outputs: bool,
+}
+
 thread_local! {
-    static RECORD: RefCell<Option<Vec<Recording>>> = const { RefCell::new(None) };
+    static RECORD: RefCell<Option<Record>> = const { RefCell::new(None) };
 }
 
-/// Begins to record on this thread, dropping what was recorded before.
+/// Starts recording inputs on this thread; earlier recordings are dropped.
 pub fn start() {
-    RECORD.set(Some(Vec::new()));
+    RECORD.set(Some(Record { runs: Vec::new(), with_outputs: false }));
 }
 
-/// Ends recording on this thread; the runs since [`start`], in order.
+/// Starts recording inputs and outputs on this thread; earlier recordings are dropped.
+pub fn start_with_outputs() {
+    RECORD.set(Some(Record { runs: Vec::new(), with_outputs: true }));
+}
+
+/// Stops recording on this thread and returns the runs since it started, in order.
 pub fn take() -> Vec<Recording> {
-    RECORD.take().unwrap_or_default()
+    RECORD.take().map(|record| record.runs).unwrap_or_default()
 }
 
-/// Adds a run.
-pub(crate) fn add(inputs: &[TensorInfo], outputs: &[TensorInfo], given: &[TensorView<'_>]) {
+/// Adds a run; returns its index where its outputs are to be recorded, too.
+pub(crate) fn add(
+    inputs: &[TensorInfo],
+    outputs: &[TensorInfo],
+    tensors: &[TensorView<'_>],
+) -> Option<usize> {
     RECORD.with_borrow_mut(|record| {
-        if let Some(runs) = record {
-            let given = given.iter().map(RecordedTensor::from).collect();
-            runs.push(Recording { inputs: inputs.to_vec(), outputs: outputs.to_vec(), given });
+        let record = record.as_mut()?;
+        record.runs.push(Recording {
+            inputs: inputs.to_vec(),
+            outputs: outputs.to_vec(),
+            tensors: tensors.iter().map(RecordedTensor::from).collect(),
+            output_tensors: Vec::new(),
+        });
+        record.with_outputs.then_some(record.runs.len() - 1)
+    })
+}
+
+/// Adds the outputs of the run of that index.
+pub(crate) fn add_outputs(run: usize, tensors: &[TensorView<'_>]) {
+    RECORD.with_borrow_mut(|record| {
+        if let Some(run) = record.as_mut().and_then(|record| record.runs.get_mut(run)) {
+            run.output_tensors = tensors.iter().map(RecordedTensor::from).collect();
         }
     });
 }
 
 impl Recording {
-    /// How much memory it takes, about.
+    /// Returns the approximate memory use in bytes.
     pub fn bytes(&self) -> usize {
         let width = |info: &TensorInfo| match info.element_type {
             ElementType::I64 => 8,
@@ -71,7 +101,7 @@ impl Recording {
             _ => 1,
         };
         let elements = |tensor: &RecordedTensor| tensor.shape.iter().product::<usize>();
-        self.inputs.iter().zip(&self.given).map(|(info, tensor)| width(info) * elements(tensor)).sum()
+        self.inputs.iter().zip(&self.tensors).map(|(info, tensor)| width(info) * elements(tensor)).sum()
     }
 }
 
@@ -90,10 +120,10 @@ impl From<&TensorView<'_>> for RecordedTensor {
 }
 
 impl RecordedTensor {
-    /// The tensor, to be given to a session.
+    /// Returns a view of the tensor, as input of a session.
     ///
     /// # Errors
-    /// None for a tensor that was recorded.
+    /// None for a recorded tensor.
     pub fn view(&self) -> Result<TensorView<'_>> {
         match &self.elements {
             Elements::F32(data) => TensorView::new(&self.shape, data),
@@ -117,14 +147,31 @@ mod tests {
         add(&[], &[], &given);
         assert!(take().is_empty());
         start();
-        add(&[], &[], &given);
+        assert_eq!(add(&[], &[], &given), None);
         add(&[], &[], &given[..1]);
         let runs = take();
-        assert_eq!(runs.iter().map(|run| run.given.len()).collect::<Vec<_>>(), [2, 1]);
-        let view = runs[0].given[0].view().unwrap();
+        assert!(runs.iter().all(|run| run.output_tensors.is_empty()));
+        assert_eq!(runs.iter().map(|run| run.tensors.len()).collect::<Vec<_>>(), [2, 1]);
+        let view = runs[0].tensors[0].view().unwrap();
         assert_eq!((view.shape(), view.values::<f32>().unwrap()), (&[1, 2][..], &data[..]));
-        assert_eq!(runs[0].given[1].view().unwrap().values::<i64>().unwrap(), [3, 4]);
+        assert_eq!(runs[0].tensors[1].view().unwrap().values::<i64>().unwrap(), [3, 4]);
         add(&[], &[], &given);
+        assert!(take().is_empty());
+    }
+
+    #[test]
+    fn outputs_belong_to_their_run() {
+        let given = [TensorView::new(&[1], &[1.0_f32]).unwrap()];
+        start_with_outputs();
+        // The second run is inside the sink of the first.
+        let [outer, inner] = [(); 2].map(|()| add(&[], &[], &given).unwrap());
+        add_outputs(inner, &given);
+        add_outputs(outer, &[TensorView::new(&[2], &[5_i64, 6]).unwrap()]);
+        let runs = take();
+        assert_eq!(runs[0].output_tensors[0].view().unwrap().values::<i64>().unwrap(), [5, 6]);
+        assert_eq!(runs[1].output_tensors[0].view().unwrap().values::<f32>().unwrap(), [1.0]);
+        // A run that ends after the recording changes nothing.
+        add_outputs(inner, &given);
         assert!(take().is_empty());
     }
 }

@@ -1,4 +1,4 @@
-//! Which runtime opens a model.
+//! Selection of the runtime of a model.
 
 use std::sync::Arc;
 
@@ -9,61 +9,61 @@ use crate::measured::SLOWER_THAN_ONNX_RUNTIME;
 use crate::onnx_runtime::OnnxRuntime;
 use crate::runtime::{Runtime, SessionOptions};
 
-/// What `OPENDR_RUNTIME` asks for.
+/// Value of `OPENDR_RUNTIME`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Wish {
+enum RuntimeChoice {
     Auto,
     OnnxRuntime,
     Builtin,
 }
 
-impl Wish {
+impl RuntimeChoice {
     fn from_environment() -> Result<Self> {
         match std::env::var("OPENDR_RUNTIME").as_deref() {
             Err(_) | Ok("" | "auto") => Ok(Self::Auto),
             Ok("onnxruntime") => Ok(Self::OnnxRuntime),
             Ok("builtin") => Ok(Self::Builtin),
             Ok(other) => Err(Error::invalid_param(format!(
-                "environment variable OPENDR_RUNTIME is {other:?}; give one of auto, onnxruntime, builtin"
+                "environment variable OPENDR_RUNTIME is {other:?}; set it to one of auto, onnxruntime, builtin"
             ))),
         }
     }
 }
 
-/// The runtimes that are there, best first.
+/// Returns the available runtimes, best first.
 pub fn runtimes() -> Vec<Arc<dyn Runtime>> {
     let onnx_runtime = OnnxRuntime::find().ok().map(|runtime| runtime as Arc<dyn Runtime>);
     onnx_runtime.into_iter().chain([Arc::new(Builtin) as Arc<dyn Runtime>]).collect()
 }
 
-/// The runtime that [`crate::Session::open`] takes for `device`: ONNX Runtime where its library is found, else the
-/// built-in one. `OPENDR_RUNTIME` (`auto`, `onnxruntime`, `builtin`) overrides that.
+/// Returns the runtime that [`crate::Session::open`] uses for `device`: ONNX Runtime where its library is found, else
+/// the built-in one. `OPENDR_RUNTIME` (`auto`, `onnxruntime`, `builtin`) overrides the choice.
 ///
 /// # Errors
-/// `NotFound` when ONNX Runtime is demanded and not there, `Device` when only ONNX Runtime could have the device and
-/// it is not there, `InvalidParam` when `OPENDR_RUNTIME` names no runtime.
+/// `NotFound` when ONNX Runtime is requested and missing, `Device` when the device needs ONNX Runtime and it is
+/// missing, `InvalidParam` when `OPENDR_RUNTIME` has an unknown value.
 pub fn default_runtime(device: Device) -> Result<Arc<dyn Runtime>> {
-    let found = match Wish::from_environment()? {
-        Wish::Builtin => return Ok(Arc::new(Builtin)),
-        Wish::OnnxRuntime => return Ok(OnnxRuntime::find()?),
-        Wish::Auto => OnnxRuntime::find(),
+    let found = match RuntimeChoice::from_environment()? {
+        RuntimeChoice::Builtin => return Ok(Arc::new(Builtin)),
+        RuntimeChoice::OnnxRuntime => return Ok(OnnxRuntime::find()?),
+        RuntimeChoice::Auto => OnnxRuntime::find(),
     };
     match found {
         Ok(runtime) => Ok(runtime),
         Err(_) if matches!(device, Device::Auto | Device::Cpu) => Ok(Arc::new(Builtin)),
         Err(error) => Err(Error::device(format!(
-            "device {device} needs ONNX Runtime; the built-in runtime has: {}",
+            "device {device} needs ONNX Runtime; the built-in runtime supports: {}",
             Device::Cpu
         ))
         .with_source(error)),
     }
 }
 
-/// The device that [`crate::Session::open`] takes for `device`: itself, or the best one there is for `Auto`.
+/// Returns the device that [`crate::Session::open`] uses for `device`: itself, or the best available one for `Auto`.
 /// `OPENDR_DEVICE` overrides it.
 ///
 /// # Errors
-/// As [`default_runtime`].
+/// Those of [`default_runtime`].
 pub fn device(device: Device) -> Result<Device> {
     let wanted = device.or_environment()?;
     Ok(resolved(&*default_runtime(wanted)?, wanted))
@@ -74,10 +74,11 @@ fn resolved(runtime: &dyn Runtime, wanted: Device) -> Device {
     if wanted == Device::Auto { best() } else { wanted }
 }
 
-/// One line for people about the runtime in use: `ONNX Runtime 1.31.1 (/path/libonnxruntime.so), cpu, 2 threads`.
+/// Returns a one-line description of the runtime in use:
+/// `ONNX Runtime 1.31.1 (/path/libonnxruntime.so), cpu, 2 threads`.
 ///
 /// # Errors
-/// As [`default_runtime`].
+/// Those of [`default_runtime`].
 pub fn describe(options: impl Into<SessionOptions>) -> Result<String> {
     let options = options.into();
     let wanted = options.device.or_environment()?;
@@ -86,12 +87,12 @@ pub fn describe(options: impl Into<SessionOptions>) -> Result<String> {
     let threads = options.thread_count()?;
     let plural = if threads == 1 { "" } else { "s" };
     let mut line = format!("{}, {device}, {threads} thread{plural}", runtime.describe());
-    if runtime.name() == Builtin.name() && Wish::from_environment()? == Wish::Auto {
+    if runtime.name() == Builtin.name() && RuntimeChoice::from_environment()? == RuntimeChoice::Auto {
         let [least, most] = SLOWER_THAN_ONNX_RUNTIME;
         line.push_str(&format!(
-            "; ONNX Runtime was {least} to {most} times faster on detectors, measured: run \"opendr runtime install\""
+            "; ONNX Runtime is {least} to {most} times faster (measured on detectors): run \"opendr runtime install\""
         ));
-        line.extend(OnnxRuntime::skipped().iter().flat_map(|skipped| ["; passed over: ", skipped]));
+        line.extend(OnnxRuntime::skipped().iter().flat_map(|skipped| ["; skipped: ", skipped]));
     }
     Ok(line)
 }

@@ -1,4 +1,4 @@
-//! An opened model: the one door between learners and runtimes.
+//! Opened models: the interface between learners and runtimes.
 
 use std::fmt;
 use std::sync::{Mutex, PoisonError};
@@ -10,7 +10,7 @@ use crate::runtime::{Engine, Runtime, SessionOptions};
 use crate::tensor::{TensorInfo, TensorView};
 use crate::{recording, selection, timing};
 
-/// An opened model. One session serves many threads, one run at a time.
+/// An opened model. Threads can share a session; runs are serialised.
 ///
 /// ```no_run
 /// # fn main() -> opendr_engine::Result<()> {
@@ -35,13 +35,13 @@ pub struct Session {
 }
 
 impl Session {
-    /// Opens an ONNX model with the best runtime there is for the device ([`crate::default_runtime`]).
+    /// Opens an ONNX model with the best available runtime for the device ([`crate::default_runtime`]).
     ///
-    /// `options` is a [`Device`], or [`SessionOptions`] to say more. `OPENDR_DEVICE` overrides the device.
+    /// `options` is a [`Device`] or [`SessionOptions`]. `OPENDR_DEVICE` overrides the device.
     ///
     /// # Errors
-    /// `Format` when the bytes are no ONNX model, `Unsupported` when no runtime has what it needs, `Device` when
-    /// the device is not there.
+    /// `Format` when the bytes are not an ONNX model, `Unsupported` when the runtime lacks an operator or type of the
+    /// model, `Device` when the device is not available.
     pub fn open(model: &[u8], options: impl Into<SessionOptions>) -> Result<Self> {
         let mut options = options.into();
         options.device = options.device.or_environment()?;
@@ -51,7 +51,7 @@ impl Session {
     /// Opens an ONNX model with `runtime`.
     ///
     /// # Errors
-    /// As [`Session::open`].
+    /// Those of [`Session::open`].
     pub fn open_with(
         runtime: &dyn Runtime,
         model: &[u8],
@@ -60,7 +60,7 @@ impl Session {
         Ok(Self::with_name(runtime.open(model, &options.into())?, runtime.name()))
     }
 
-    /// A session over an engine of the caller's own: a recording in a test, an accelerator's library.
+    /// Creates a session over a custom engine, such as a mock in a test or the library of an accelerator.
     pub fn from_engine(engine: Box<dyn Engine>) -> Self {
         Self::with_name(engine, "custom")
     }
@@ -75,45 +75,45 @@ impl Session {
         }
     }
 
-    /// What [`Session::run`] takes, in order.
+    /// Returns the declared inputs of [`Session::run`], in order.
     pub fn inputs(&self) -> &[TensorInfo] {
         &self.inputs
     }
 
-    /// What [`Session::run`] gives, in order.
+    /// Returns the declared outputs of [`Session::run`], in order.
     pub fn outputs(&self) -> &[TensorInfo] {
         &self.outputs
     }
 
-    /// Where the output called `name` stands among [`Session::outputs`].
+    /// Returns the index of the output called `name` in [`Session::outputs`].
     ///
     /// # Errors
-    /// `Format` that lists the outputs there are: a learner met another model than it was written for.
+    /// `Format` with the existing outputs, when the model has no such output.
     pub fn output_index(&self, name: &str) -> Result<usize> {
         self.outputs.iter().position(|output| output.name == name).ok_or_else(|| {
             let names: Vec<_> = self.outputs.iter().map(|output| output.name.as_str()).collect();
-            Error::format(format!("the model has no output {name:?}, only {}", names.join(", ")))
+            Error::format(format!("the model has no output {name:?}; its outputs are {}", names.join(", ")))
         })
     }
 
-    /// The name of the runtime that opened it, or `"custom"`.
+    /// Returns the name of the runtime of the session, or `"custom"`.
     pub fn runtime(&self) -> &'static str {
         self.runtime
     }
 
-    /// The device it runs on.
+    /// Returns the device of the session.
     pub fn device(&self) -> Device {
         self.device
     }
 
-    /// Runs the model on `inputs`, in the order of [`Session::inputs`], and hands the outputs, in the order of
-    /// [`Session::outputs`], to `sink`, where they lie and only while it runs.
+    /// Runs the model on `inputs`, in the order of [`Session::inputs`], and calls `sink` with the outputs, in the
+    /// order of [`Session::outputs`]. The outputs are borrowed and valid only during the call.
     ///
-    /// Allocates nothing beyond what the engine does. Other threads wait until `sink` has returned; `sink` must not
-    /// run this session again.
+    /// Allocates nothing beyond the allocations of the engine. Other threads wait until `sink` has returned; `sink`
+    /// must not run this session again.
     ///
     /// # Errors
-    /// `InvalidInput` when an input does not fit, else what the engine or `sink` return.
+    /// `InvalidInput` when an input does not match its declaration, and the errors of the engine and of `sink`.
     pub fn run(
         &self,
         inputs: &[TensorView<'_>],
@@ -121,24 +121,27 @@ impl Session {
     ) -> Result<()> {
         if inputs.len() != self.inputs.len() {
             return Err(Error::invalid_input(format!(
-                "the model takes {} inputs, was given {}",
+                "the model has {} inputs, but received {}",
                 self.inputs.len(),
                 inputs.len()
             )));
         }
         self.inputs.iter().zip(inputs).try_for_each(|(info, input)| info.check(input))?;
-        recording::add(&self.inputs, &self.outputs, inputs);
-        // A panic in an earlier sink leaves the engine whole.
+        let recorded = recording::add(&self.inputs, &self.outputs, inputs);
+        // A panic in an earlier sink does not affect the engine.
         let mut engine = self.engine.lock().unwrap_or_else(PoisonError::into_inner);
         let start = Instant::now();
         engine.run(inputs, &mut |outputs| {
             timing::add(start, Instant::now());
             if outputs.len() != self.outputs.len() {
                 return Err(Error::internal(format!(
-                    "the engine gave {} outputs instead of {}",
+                    "the engine returned {} outputs instead of {}",
                     outputs.len(),
                     self.outputs.len()
                 )));
+            }
+            if let Some(run) = recorded {
+                recording::add_outputs(run, outputs);
             }
             sink(outputs)
         })

@@ -1,13 +1,13 @@
-//! Borrowed tensors, as they go into and come out of a session.
+//! Borrowed tensors, the inputs and outputs of a session.
 
 use std::fmt;
 
 use opendr_engine::{Error, Result};
 
-/// The most dimensions a tensor may have.
+/// Maximum number of dimensions of a tensor.
 pub const MAX_RANK: usize = 8;
 
-/// What a tensor is made of.
+/// Element type of a tensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ElementType {
@@ -21,12 +21,12 @@ pub enum ElementType {
     U8,
     /// Signed byte.
     I8,
-    /// Truth value, one byte each.
+    /// Boolean, one byte each.
     Bool,
 }
 
 impl ElementType {
-    /// The name as Rust writes it, e.g. `"f32"`.
+    /// Returns the Rust name, e.g. `"f32"`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::F32 => "f32",
@@ -45,7 +45,7 @@ impl fmt::Display for ElementType {
     }
 }
 
-/// Borrowed elements of one type, row by row (the last dimension varies fastest).
+/// Borrowed elements of one type in row-major order (the last dimension varies fastest).
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub enum TensorData<'a> {
@@ -59,12 +59,12 @@ pub enum TensorData<'a> {
     U8(&'a [u8]),
     /// Signed bytes.
     I8(&'a [i8]),
-    /// Truth values.
+    /// Booleans.
     Bool(&'a [bool]),
 }
 
 impl TensorData<'_> {
-    /// The type of the elements.
+    /// Returns the element type.
     pub fn element_type(&self) -> ElementType {
         match self {
             Self::F32(_) => ElementType::F32,
@@ -76,7 +76,7 @@ impl TensorData<'_> {
         }
     }
 
-    /// How many elements there are.
+    /// Returns the number of elements.
     pub fn len(&self) -> usize {
         match self {
             Self::F32(data) => data.len(),
@@ -88,21 +88,21 @@ impl TensorData<'_> {
         }
     }
 
-    /// Whether there are no elements.
+    /// Returns whether there are no elements.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 }
 
-/// A Rust type that tensors are made of.
+/// A Rust type of tensor elements.
 pub trait Element: Copy + sealed::Sealed + 'static {
     /// The type as a value.
     const TYPE: ElementType;
 
-    /// Names the type of `elements`.
+    /// Wraps `elements` with their type.
     fn data_from_slice(elements: &[Self]) -> TensorData<'_>;
 
-    /// The elements, when they are of this type.
+    /// Returns the elements when they have this type.
     fn slice_from_data(data: TensorData<'_>) -> Option<&[Self]>;
 }
 
@@ -133,7 +133,7 @@ macro_rules! elements {
 
 elements!(f32 => F32, i32 => I32, i64 => I64, u8 => U8, i8 => I8, bool => Bool);
 
-/// A borrowed tensor: elements and their shape. Made and copied without allocating.
+/// A borrowed tensor: elements and their shape. Creating and copying a view does not allocate.
 #[derive(Clone, Copy)]
 pub struct TensorView<'a> {
     data: TensorData<'a>,
@@ -142,10 +142,10 @@ pub struct TensorView<'a> {
 }
 
 impl<'a> TensorView<'a> {
-    /// `elements`, row by row, seen as a tensor of `shape` (empty for a scalar).
+    /// Creates a view of `elements`, in row-major order, with the shape `shape` (empty for a scalar).
     ///
     /// # Errors
-    /// `InvalidInput` when the shape has more than [`MAX_RANK`] dimensions or another number of elements.
+    /// `InvalidInput` when the shape has more than [`MAX_RANK`] dimensions or does not match the number of elements.
     pub fn new<T: Element>(shape: &[usize], elements: &'a [T]) -> Result<Self> {
         let count = shape.iter().try_fold(1_usize, |count, &dim| count.checked_mul(dim));
         let rank = shape.len();
@@ -154,7 +154,7 @@ impl<'a> TensorView<'a> {
             Some(dims) if count == Some(elements.len()) => dims.copy_from_slice(shape),
             Some(_) => {
                 return Err(Error::invalid_input(format!(
-                    "{} elements given for a tensor of shape {shape:?}",
+                    "{} elements do not match a tensor of shape {shape:?}",
                     elements.len()
                 )));
             }
@@ -167,28 +167,32 @@ impl<'a> TensorView<'a> {
         Ok(Self { data: T::data_from_slice(elements), dims, rank })
     }
 
-    /// Elements in each dimension, outermost first.
+    /// Returns the number of elements in each dimension, outermost first.
     pub fn shape(&self) -> &[usize] {
         &self.dims[..self.rank]
     }
 
-    /// The type of the elements.
+    /// Returns the element type.
     pub fn element_type(&self) -> ElementType {
         self.data.element_type()
     }
 
-    /// The elements, whatever their type.
+    /// Returns the elements of any type.
     pub fn data(&self) -> TensorData<'a> {
         self.data
     }
 
-    /// The elements as `T`.
+    /// Returns the elements as `T`.
     ///
     /// # Errors
-    /// `InvalidInput` when the tensor holds another type.
+    /// `InvalidInput` when the tensor has another element type.
     pub fn values<T: Element>(&self) -> Result<&'a [T]> {
         T::slice_from_data(self.data).ok_or_else(|| {
-            Error::invalid_input(format!("the tensor holds {}, not {}", self.element_type(), T::TYPE))
+            Error::invalid_input(format!(
+                "the tensor has elements of type {}, not {}",
+                self.element_type(),
+                T::TYPE
+            ))
         })
     }
 }
@@ -199,23 +203,23 @@ impl fmt::Debug for TensorView<'_> {
     }
 }
 
-/// What a model declares about one of its inputs or outputs.
+/// Declaration of an input or output of a model.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TensorInfo {
-    /// The name within the model.
+    /// Name in the model.
     pub name: String,
-    /// The type of its elements.
+    /// Element type.
     pub element_type: ElementType,
-    /// Elements in each dimension, `None` where any number will do. Empty for a scalar, and where the model does
-    /// not say how many dimensions there are.
+    /// Size of each dimension, `None` where it is open. Empty for a scalar, and where the model does not declare the
+    /// number of dimensions.
     pub dims: Vec<Option<usize>>,
 }
 
 impl TensorInfo {
-    /// Checks a tensor against what is declared here.
+    /// Checks a tensor against this declaration.
     ///
     /// # Errors
-    /// `InvalidInput` that names the tensor, what it has to be and what it is.
+    /// `InvalidInput` with the name of the tensor, its declaration and its actual shape and type.
     pub fn check(&self, tensor: &TensorView<'_>) -> Result<()> {
         let shape = tensor.shape();
         let dims_fit = || {
@@ -230,12 +234,12 @@ impl TensorInfo {
             return Ok(());
         }
         Err(Error::invalid_input(format!(
-            "model input {self} was given {tensor:?}; change the input's shape or type"
+            "model input {self} received {tensor:?}; change the shape or type of the tensor"
         )))
     }
 }
 
-/// `images: f32[1, 3, ?, ?]`.
+/// Writes the declaration, e.g. `images: f32[1, 3, ?, ?]`.
 impl fmt::Display for TensorInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: {}[", self.name, self.element_type)?;
@@ -260,7 +264,7 @@ mod tests {
         let view = TensorView::new(&[1, 3, 2, 2], &data).unwrap();
         assert_eq!(view.shape(), [1, 3, 2, 2]);
         assert_eq!(view.values::<f32>().unwrap().len(), 12);
-        assert!(view.values::<u8>().unwrap_err().to_string().contains("holds f32, not u8"));
+        assert!(view.values::<u8>().unwrap_err().to_string().contains("type f32, not u8"));
         assert!(TensorView::new(&[13], &data).is_err());
         assert!(TensorView::new(&[usize::MAX, usize::MAX], &data).is_err());
         assert!(TensorView::new(&[1; 9], &data[..1]).is_err());

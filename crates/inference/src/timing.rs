@@ -1,20 +1,20 @@
-//! How much of a stretch of work was spent inside sessions, whatever learner did it.
+//! Measurement of the time spent inside all sessions of a thread.
 //!
-//! A benchmark calls [`start`], runs the learner on the same thread, and [`take`]s the record: what came before
-//! [`RunTimes::first_start`] is pre-processing, what came after [`RunTimes::last_end`] post-processing. Nothing is
-//! recorded outside that, and recording does not allocate.
+//! A benchmark calls [`start`], runs the learner on the same thread, and [`take`]s the record: the time before
+//! [`RunTimes::first_start`] is pre-processing, the time after [`RunTimes::last_end`] post-processing. Nothing is
+//! recorded otherwise, and recording does not allocate.
 
 use std::cell::Cell;
 use std::time::{Duration, Instant};
 
-/// The session time of one stretch of work on one thread.
+/// Session times between [`start`] and [`take`] on one thread.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RunTimes {
-    /// When the first run began.
+    /// Start of the first run.
     pub first_start: Instant,
-    /// When the last run had its outputs ready.
+    /// Time at which the outputs of the last run were ready.
     pub last_end: Instant,
-    /// Time inside all runs, from the inputs handed in to the outputs ready.
+    /// Total time of all runs, from the call to the outputs being ready.
     pub session: Duration,
     /// Number of runs.
     pub runs: u32,
@@ -31,12 +31,12 @@ thread_local! {
     static RECORD: Cell<Record> = const { Cell::new(Record::Off) };
 }
 
-/// Begins to record on this thread, dropping what was recorded before.
+/// Starts recording on this thread; an earlier record is dropped.
 pub fn start() {
     RECORD.set(Record::Empty);
 }
 
-/// Ends recording on this thread; `None` when no session ran since [`start`].
+/// Stops recording on this thread and returns the record; `None` when no session ran since [`start`].
 pub fn take() -> Option<RunTimes> {
     match RECORD.replace(Record::Off) {
         Record::Runs(times) => Some(times),
@@ -44,7 +44,7 @@ pub fn take() -> Option<RunTimes> {
     }
 }
 
-/// Adds a run that began at `start` and had its outputs ready at `end`.
+/// Adds a run from `start` until its outputs were ready at `end`.
 pub(crate) fn add(start: Instant, end: Instant) {
     let session = end - start;
     RECORD.set(match RECORD.get() {

@@ -1,4 +1,4 @@
-//! Products and the steps of small networks: `cargo bench -p opendr-kernels`.
+//! Matrix products and training steps of small networks: `cargo bench -p opendr-kernels`.
 
 use std::hint::black_box;
 use std::time::Duration;

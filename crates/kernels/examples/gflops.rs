@@ -1,6 +1,7 @@
-//! Prints how fast products and a small network's step are on one thread: `cargo run --release -p opendr-kernels --example gflops`.
+//! Prints the speed of products and of a small network's step on one thread:
+//! `cargo run --release -p opendr-kernels --example gflops`.
 //!
-//! One line for each case: its name, microseconds, billions of operations a second. benches/gemm.py reads them.
+//! One line for each case: name, microseconds, GFLOPS. `benches/gemm.py` reads them.
 
 use std::time::Instant;
 
@@ -64,7 +65,8 @@ fn random(length: usize, seed: u64) -> Vec<f32> {
     (0..length).map(|_| random.uniform(-1.0, 1.0)).collect()
 }
 
-/// Seconds of one call: the fastest of twenty rounds of some milliseconds each, since other programs only slow it down.
+/// Returns the seconds of one call: the fastest of twenty rounds of some milliseconds each, because other programs
+/// only add time.
 fn fastest(operations: f64, mut call: impl FnMut()) -> f64 {
     let calls = (1e8 / operations).clamp(1.0, 20_000.0) as usize;
     let round = |_| {

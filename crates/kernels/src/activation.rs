@@ -2,13 +2,13 @@ use crate::elementary::{sigmoid, tanh};
 use crate::isa::{Isa, for_every_isa};
 use crate::lanes::Lanes;
 
-/// What is done to every output of a layer.
+/// Activation function of a layer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Activation {
-    /// Nothing.
+    /// The identity.
     #[default]
     Identity,
-    /// The larger of 0 and x; NaN stays NaN.
+    /// `max(0, x)`; NaN stays NaN.
     Relu,
     /// The hyperbolic tangent.
     Tanh,
@@ -17,18 +17,18 @@ pub enum Activation {
 }
 
 impl Activation {
-    /// Changes every value in place.
+    /// Applies the function to every value in place.
     pub fn apply(self, isa: Isa, values: &mut [f32]) {
         // SAFETY: the pointer and the length are those of a slice.
         unsafe { dispatch_apply(isa, self, values.as_mut_ptr(), values.len()) }
     }
 
-    /// The gradient before the activation from the gradient `dy` after it, in place, where `y` is what it gave.
+    /// Computes the gradient before the activation from the gradient `dy` after it, in place; `y` is the output.
     ///
     /// # Panics
-    /// Where the lengths differ.
+    /// When the lengths differ.
     pub fn backward_in_place(self, isa: Isa, y: &[f32], dy: &mut [f32]) {
-        assert_eq!(y.len(), dy.len(), "outputs and their gradients differ in number");
+        assert_eq!(y.len(), dy.len(), "`y` and `dy` must have equal lengths");
         // SAFETY: both slices have this length.
         unsafe { dispatch_backward(isa, self, y.as_ptr(), dy.as_mut_ptr(), y.len()) }
     }
@@ -46,7 +46,7 @@ impl Activation {
         }
     }
 
-    /// The gradient before, from the output and the gradient after.
+    /// Returns the gradient before the activation, from the output and the gradient after it.
     #[inline(always)]
     pub(crate) unsafe fn gradient<V: Lanes>(self, y: V, dy: V) -> V {
         // SAFETY: the contract of `Lanes`, passed on.

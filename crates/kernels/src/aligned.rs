@@ -1,7 +1,7 @@
 use std::cell::RefCell;
 use std::thread::LocalKey;
 
-/// Memory for panels: grows, never shrinks, starts on a cache line.
+/// Memory for panels, aligned to a cache line; it grows and never shrinks.
 #[derive(Default)]
 pub(crate) struct AlignedBuffer {
     lines: Vec<CacheLine>,
@@ -11,7 +11,7 @@ pub(crate) struct AlignedBuffer {
 #[repr(align(64))]
 struct CacheLine(#[expect(dead_code, reason = "read through a pointer to all lines")] [f32; 16]);
 
-/// A buffer of each thread.
+/// A thread-local buffer.
 pub(crate) type ThreadBuffer = LocalKey<RefCell<AlignedBuffer>>;
 
 thread_local! {
@@ -22,7 +22,7 @@ thread_local! {
 }
 
 impl AlignedBuffer {
-    /// `length` numbers with whatever the last user left in them.
+    /// Returns `length` numbers with unspecified content.
     fn take(&mut self, length: usize) -> &mut [f32] {
         let lines = length.div_ceil(16);
         if self.lines.len() < lines {
@@ -34,7 +34,7 @@ impl AlignedBuffer {
     }
 }
 
-/// Works with `length` numbers of this thread's buffer; of a new one where it is in use.
+/// Calls a function with `length` numbers of this thread's buffer, or of a new one while that is in use.
 pub(crate) fn with_buffer<R>(
     buffer: &'static ThreadBuffer,
     length: usize,

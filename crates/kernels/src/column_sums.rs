@@ -2,21 +2,21 @@ use crate::Activation;
 use crate::isa::{Isa, for_every_isa};
 use crate::lanes::Lanes;
 
-/// Adds the columns of `values`, whose rows have as many numbers as `sums`, row after row.
+/// Adds the column sums of `values`, whose rows have as many numbers as `sums`, to `sums`.
 ///
 /// # Panics
-/// Where `values` is no whole number of rows.
+/// When the length of `values` is not a multiple of the row length.
 pub fn add_column_sums(isa: Isa, values: &[f32], sums: &mut [f32]) {
     let rows = rows_of(values.len(), sums.len());
     // SAFETY: `values` has `rows` rows of as many numbers as `sums`.
     unsafe { dispatch_sum(isa, values.as_ptr(), rows, sums.len(), sums.as_mut_ptr()) }
 }
 
-/// [`Activation::backward_in_place`] and [`add_column_sums`] in one pass: `dy` becomes the gradient before the
-/// activation, and its columns, the gradient of a bias, are added to `sums`.
+/// Computes [`Activation::backward_in_place`] and [`add_column_sums`] in one pass: `dy` becomes the gradient before
+/// the activation, and its column sums, the gradient of a bias, are added to `sums`.
 ///
 /// # Panics
-/// Where the lengths do not fit.
+/// When the lengths do not match.
 pub(crate) fn backward_with_column_sums(
     isa: Isa,
     activation: Activation,
@@ -24,7 +24,7 @@ pub(crate) fn backward_with_column_sums(
     dy: &mut [f32],
     sums: &mut [f32],
 ) {
-    assert_eq!(y.len(), dy.len(), "outputs and their gradients differ in number");
+    assert_eq!(y.len(), dy.len(), "`y` and `dy` must have equal lengths");
     let rows = rows_of(y.len(), sums.len());
     // SAFETY: both have `rows` rows of as many numbers as `sums`.
     unsafe {
@@ -34,7 +34,7 @@ pub(crate) fn backward_with_column_sums(
 
 fn rows_of(length: usize, columns: usize) -> usize {
     let rows = length.checked_div(columns).unwrap_or(0);
-    assert_eq!(rows * columns, length, "{length} numbers are no rows of {columns}");
+    assert_eq!(rows * columns, length, "{length} numbers are not divisible into rows of {columns}");
     rows
 }
 
@@ -68,7 +68,7 @@ for_every_isa!(
     )
 );
 
-/// Rows that are taken together: they share what is read and written of the sums.
+/// Rows that are summed together, so that `sums` is read and written once for them.
 const TOGETHER: usize = 4;
 
 #[inline(always)]

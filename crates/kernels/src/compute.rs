@@ -3,7 +3,7 @@ use std::sync::Arc;
 use crate::isa::Isa;
 use crate::pool::WorkerPool;
 
-/// Where kernels run: an instruction set and a pool of threads. Clones share the pool.
+/// Execution context of the kernels: an instruction set and a thread pool. Clones share the pool.
 #[derive(Debug, Clone)]
 pub struct Compute {
     isa: Isa,
@@ -11,27 +11,27 @@ pub struct Compute {
 }
 
 impl Compute {
-    /// The fastest instructions, on the calling thread alone.
+    /// Uses the fastest instruction set, on the calling thread only.
     pub fn single() -> Self {
         Self::with_threads(1)
     }
 
-    /// The fastest instructions, on this many threads, the caller among them; at least one.
+    /// Uses the fastest instruction set, on `threads` threads, the calling one included; at least one.
     pub fn with_threads(threads: usize) -> Self {
         Self::new(Isa::best(), Arc::new(WorkerPool::new(threads)))
     }
 
-    /// These instructions, on this pool.
+    /// Uses the given instruction set and pool.
     pub fn new(isa: Isa, pool: Arc<WorkerPool>) -> Self {
         Self { isa, pool }
     }
 
-    /// The instruction set.
+    /// Returns the instruction set.
     pub fn isa(&self) -> Isa {
         self.isa
     }
 
-    /// The threads.
+    /// Returns the thread pool.
     pub fn pool(&self) -> &WorkerPool {
         &self.pool
     }

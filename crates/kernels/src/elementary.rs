@@ -1,14 +1,14 @@
-//! exp, tanh and the logistic function on registers.
+//! Vectorised exp, tanh and logistic function.
 //!
-//! All three rest on `exp(r) - 1` for |r| <= ln(2) / 2 by its series, so that they agree with each other and need no table.
+//! All three use the series of `exp(r) - 1` for |r| <= ln(2) / 2, so that they are consistent and need no table.
 
 use crate::isa::{Isa, for_every_isa};
 use crate::lanes::Lanes;
 
-/// ln 2 in two parts; products of the first with whole numbers below 2^15 are exact.
+/// ln 2 in two parts; products of the first with integers below 2^15 are exact.
 const LN_2: [f32; 2] = [355.0 / 512.0, -2.121_944_4e-4];
 
-/// Splits `x` into n ln 2 + r and gives n and exp(r) - 1.
+/// Splits `x` into n ln 2 + r and returns n and exp(r) - 1.
 #[inline(always)]
 unsafe fn reduced_expm1<V: Lanes>(x: V) -> (V, V) {
     // SAFETY: the contract of `Lanes`, passed on.
@@ -31,7 +31,7 @@ pub(crate) unsafe fn exp<V: Lanes>(x: V) -> V {
     unsafe {
         let x = V::splat(89.0).min(V::splat(-104.0).max(x));
         let (n, expm1) = reduced_expm1(x);
-        // Two steps, for 2^n alone may be too large or too small for a normal number.
+        // Two steps, because 2^n alone may be too large or too small for a normal number.
         let half = n.mul(V::splat(0.5)).round();
         let scaled = expm1.add(V::splat(1.0)).mul(half.power_of_two());
         scaled.mul(n.sub(half).power_of_two())
@@ -89,16 +89,17 @@ macro_rules! in_place {
 }
 
 in_place! {
-    /// exp of every value: within 2 units in the last place, denormal results and infinity included; NaN stays NaN.
+    /// Computes exp of every value: within 2 units in the last place, denormal results and infinity included; NaN
+    /// stays NaN.
     exp_in_place, dispatch_exp, exp_all, exp
 }
 in_place! {
-    /// tanh of every value: within 4 units in the last place, odd, never beyond 1; NaN stays NaN.
+    /// Computes tanh of every value: within 4 units in the last place, odd, absolute value at most 1; NaN stays NaN.
     tanh_in_place, dispatch_tanh, tanh_all, tanh
 }
 in_place! {
-    /// The logistic function 1 / (1 + exp(-x)) of every value: within 4 units in the last place above -87, zero below
-    /// -89; NaN stays NaN.
+    /// Computes the logistic function 1 / (1 + exp(-x)) of every value: within 4 units in the last place above -87,
+    /// zero below -89; NaN stays NaN.
     sigmoid_in_place, dispatch_sigmoid, sigmoid_all, sigmoid
 }
 
@@ -106,7 +107,7 @@ in_place! {
 mod tests {
     use super::*;
 
-    /// Distance in units in the last place of the exact value.
+    /// Returns the distance from the exact value in units in the last place.
     fn ulp(value: f32, exact: f64) -> f64 {
         let rounded = exact as f32;
         if value == rounded {
@@ -116,7 +117,7 @@ mod tests {
         (f64::from(value) - exact).abs() / 2f64.powi(exponent - 23)
     }
 
-    /// Values of every sign and exponent: each 4093rd bit pattern.
+    /// Returns values of every sign and exponent: each 4093rd bit pattern.
     fn sweep() -> Vec<f32> {
         (0..=u32::MAX).step_by(4093).map(f32::from_bits).filter(|x| x.is_finite()).collect()
     }

@@ -1,41 +1,41 @@
-//! The Fourier transform of real samples, of any even size, of many frames at a time.
+//! Fourier transform of real samples, of any even size, for several frames at once.
 //!
-//! A register holds the same number of every frame, so that none has to change its place within a register. Stockham's form:
-//! every stage reads one array and writes the other, without reordering. Factors of four and two have butterflies of their own
-//! (a window of 40 ms at 16 kHz has 640 samples, 2^7 * 5).
+//! A register contains the same sample of several frames, so that no values move within a register. Stockham's form:
+//! every stage reads one array and writes the other, without reordering. Radix 4 and 2 have their own butterflies (a
+//! window of 40 ms at 16 kHz has 640 samples, 2^7 * 5).
 
 use std::f64::consts::TAU;
 
 use crate::isa::{Isa, for_every_isa};
 use crate::lanes::Lanes;
 
-/// Frames that [`RealFourier`] transforms at a time.
+/// Number of frames that [`RealFourier`] transforms at once.
 pub const FOURIER_FRAMES: usize = 16;
 
-/// A number of each frame.
+/// The same number of each frame.
 type Frames = [f32; FOURIER_FRAMES];
 
-/// A complex number that all frames share.
+/// A complex number shared by all frames.
 type Complex = [f32; 2];
 
-/// What [`RealFourier`] tells of a frequency.
+/// Output of [`RealFourier`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Spectrum {
-    /// Its absolute value.
+    /// Absolute value of each frequency.
     Magnitude,
-    /// The square of its absolute value.
+    /// Squared absolute value of each frequency.
     Power,
 }
 
-/// A transform of one size, of [`FOURIER_FRAMES`] frames at a time.
+/// A transform of one size, of [`FOURIER_FRAMES`] frames at once.
 ///
 /// ```
-/// use opendr_kernels::{FOURIER_FRAMES, FourierWork, Isa, RealFourier, Spectrum};
+/// use opendr_kernels::{FOURIER_FRAMES, FourierScratch, Isa, RealFourier, Spectrum};
 ///
 /// let fourier = RealFourier::new(8);
 /// let samples = [[1.0; FOURIER_FRAMES]; 8];
 /// let mut power = Vec::new();
-/// fourier.run(Isa::best(), Spectrum::Power, &samples, &mut FourierWork::default(), &mut power);
+/// fourier.run(Isa::best(), Spectrum::Power, &samples, &mut FourierScratch::default(), &mut power);
 /// assert_eq!(power.len(), 5);
 /// assert!(power[0][0] == 64.0 && power[1..].iter().all(|frames| frames[0] < 1e-6));
 /// ```
@@ -47,14 +47,14 @@ pub struct RealFourier {
     turns: Vec<Complex>,
 }
 
-/// Memory for [`RealFourier::run`], which allocates nothing when it is used again.
+/// Work memory of [`RealFourier::run`]; reusing it avoids allocations.
 #[derive(Debug, Default)]
-pub struct FourierWork {
+pub struct FourierScratch {
     from: Vec<Frames>,
     to: Vec<Frames>,
 }
 
-/// One stage: `count` transforms of `radix` points for each of `stride` interleaved series.
+/// A stage: `count` transforms of `radix` points for each of `stride` interleaved series.
 #[derive(Debug)]
 struct Stage {
     radix: usize,
@@ -66,18 +66,21 @@ struct Stage {
     roots: Vec<Complex>,
 }
 
-/// `exp(-i angle(at))` for each place.
+/// Returns `exp(-i angle(k))` for each index `k` below `count`.
 fn turns(count: usize, angle: impl Fn(usize) -> f64) -> Vec<Complex> {
     (0..count).map(|at| [angle(at).cos() as f32, -angle(at).sin() as f32]).collect()
 }
 
 impl RealFourier {
-    /// For `size` samples.
+    /// Creates a transform of `size` samples.
     ///
     /// # Panics
-    /// Where `size` is zero or odd.
+    /// When `size` is zero or odd.
     pub fn new(size: usize) -> Self {
-        assert!(size > 0 && size.is_multiple_of(2), "a transform of {size} samples; give an even number");
+        assert!(
+            size > 0 && size.is_multiple_of(2),
+            "a transform of {size} samples is not supported; use an even number"
+        );
         let (mut rest, mut stride, mut stages) = (size / 2, 1, Vec::new());
         while rest > 1 {
             let factors = [4, 2].into_iter().chain((3..).step_by(2));
@@ -97,29 +100,30 @@ impl RealFourier {
         Self { size, stages, turns }
     }
 
-    /// Samples of a transform.
+    /// Returns the number of samples of the transform.
     pub fn size(&self) -> usize {
         self.size
     }
 
-    /// Replaces `values` by the absolute value of each of the `size / 2 + 1` frequencies, or by its square.
+    /// Replaces `values` by the magnitude or the power of each of the `size / 2 + 1` frequencies.
     ///
     /// # Panics
-    /// Where `samples` are not `size`.
+    /// When the number of `samples` is not `size`.
     pub fn run(
         &self,
         isa: Isa,
         kind: Spectrum,
         samples: &[[f32; FOURIER_FRAMES]],
-        work: &mut FourierWork,
+        work: &mut FourierScratch,
         values: &mut Vec<[f32; FOURIER_FRAMES]>,
     ) {
-        assert_eq!(samples.len(), self.size, "the transform has another size");
-        let FourierWork { from, to } = work;
+        assert_eq!(samples.len(), self.size, "`samples` must have the size of the transform");
+        let FourierScratch { from, to } = work;
         from.resize(self.size, Frames::default());
         to.resize(self.size, Frames::default());
         values.resize(self.size / 2 + 1, Frames::default());
-        // Even samples as real, odd samples as imaginary parts: one transform of half the size serves both.
+        // Even samples are the real parts, odd samples the imaginary parts: one transform of half the size computes
+        // both.
         let mut given = samples.as_ptr();
         for stage in &self.stages {
             // SAFETY: both are `size` numbers of each frame, half as many complex ones, and do not overlap.
@@ -139,7 +143,7 @@ for_every_isa!(
     fn dispatch_spectrum = spectrum_of_pairs(kind: Spectrum, pairs: *const f32, turns: &[Complex], values: *mut f32)
 );
 
-/// A complex number of as many frames as a register has numbers.
+/// Complex numbers of as many frames as a register has lanes.
 #[derive(Clone, Copy)]
 struct Pair<V> {
     re: V,
@@ -181,7 +185,7 @@ impl<V: Lanes> Pair<V> {
         unsafe { Self { re: self.re.sub(other.re), im: self.im.sub(other.im) } }
     }
 
-    /// The product with -i.
+    /// Returns the product with -i.
     #[inline(always)]
     unsafe fn turned_back(self) -> Self {
         // SAFETY: the contract.
@@ -229,7 +233,7 @@ unsafe fn run_stage<V: Lanes>(stage: &Stage, from: *const f32, to: *mut f32) {
                             even.sub(odd).turned(turns[1]).store(to, place(2), frame);
                             away.sub(across).turned(turns[2]).store(to, place(3), frame);
                         }
-                        // By its definition.
+                        // By the definition of the transform.
                         _ => {
                             for part in 0..radix {
                                 let mut sum = input(0);
@@ -246,7 +250,7 @@ unsafe fn run_stage<V: Lanes>(stage: &Stage, from: *const f32, to: *mut f32) {
     }
 }
 
-/// The spectrum of all samples from the transform of their pairs.
+/// Computes the spectrum of all samples from the transform of their pairs.
 ///
 /// # Safety
 /// That of [`Lanes`]; `pairs` has one complex number less than `turns`, `values` as many numbers of all frames.
@@ -265,7 +269,7 @@ unsafe fn spectrum_of_pairs<V: Lanes>(
             unsafe {
                 let (value, mirrored) =
                     (Pair::<V>::load(pairs, at, frame), Pair::<V>::load(pairs, mirrored, frame));
-                // What the even samples give, and the odd ones, each twice.
+                // Spectra of the even and the odd samples, times two.
                 let even = Pair { re: value.re.add(mirrored.re), im: value.im.sub(mirrored.im) };
                 let odd = Pair { re: value.re.sub(mirrored.re), im: value.im.add(mirrored.im) };
                 let sum = even.add(odd.turned_back().turned(*turn));
@@ -283,7 +287,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn power_is_that_of_the_definition() {
+    fn power_equals_the_definition() {
         for size in [2, 4, 6, 8, 10, 14, 22, 32, 60, 98, 128, 400, 512, 640, 1102] {
             let sample = |frame: usize, at: usize| ((at * at + (3 + frame) * at) as f32 * 0.37).sin();
             let frames = |at: usize| std::array::from_fn(|frame| sample(frame, at));
@@ -295,7 +299,8 @@ mod tests {
                 };
                 part(f64::cos).powi(2) + part(f64::sin).powi(2)
             };
-            let (fourier, mut work, mut power) = (RealFourier::new(size), FourierWork::default(), Vec::new());
+            let (fourier, mut work, mut power) =
+                (RealFourier::new(size), FourierScratch::default(), Vec::new());
             for isa in Isa::available() {
                 fourier.run(isa, Spectrum::Power, &samples, &mut work, &mut power);
                 let mut magnitude = Vec::new();

@@ -1,14 +1,18 @@
-//! Gaussian distributions with a standard deviation for each axis.
+//! Gaussian distributions with a diagonal covariance.
 
 /// ln(2 pi) / 2.
 const HALF_LOG_TAU: f32 = 0.918_938_5;
 
-/// The logarithm of the density of `value`; `log_std` are logarithms of the standard deviations.
+/// Returns the log density of `value`; `log_std` are the logarithms of the standard deviations.
 ///
 /// # Panics
-/// Where the lengths differ.
+/// When the lengths differ.
 pub fn gaussian_log_density(mean: &[f32], log_std: &[f32], value: &[f32]) -> f32 {
-    assert_eq!([log_std.len(), value.len()], [mean.len(); 2], "axes differ in number");
+    assert_eq!(
+        [log_std.len(), value.len()],
+        [mean.len(); 2],
+        "`log_std` and `value` must have the length of `mean`"
+    );
     let axes = mean.iter().zip(log_std).zip(value);
     axes.map(|((&mean, &log_std), &value)| {
         let z = (value - mean) * (-log_std).exp();
@@ -17,10 +21,11 @@ pub fn gaussian_log_density(mean: &[f32], log_std: &[f32], value: &[f32]) -> f32
     .sum()
 }
 
-/// Writes to `dmean`, and adds to `dlog_std`, the gradient where the loss has the gradient `dlog` by the logarithm of the density.
+/// Computes the gradients of `mean` and `log_std` for the gradient `dlog` of the log density; overwrites `dmean` and
+/// adds to `dlog_std`.
 ///
 /// # Panics
-/// Where the lengths differ.
+/// When the lengths differ.
 pub fn gaussian_backward(
     [mean, log_std, value]: [&[f32]; 3],
     dlog: f32,
@@ -28,7 +33,7 @@ pub fn gaussian_backward(
     dlog_std: &mut [f32],
 ) {
     let lengths = [log_std.len(), value.len(), dmean.len(), dlog_std.len()];
-    assert_eq!(lengths, [mean.len(); 4], "axes differ in number");
+    assert_eq!(lengths, [mean.len(); 4], "all slices must have the length of `mean`");
     for i in 0..mean.len() {
         let inverse = (-log_std[i]).exp();
         let z = (value[i] - mean[i]) * inverse;
@@ -37,7 +42,7 @@ pub fn gaussian_backward(
     }
 }
 
-/// The entropy, in nats.
+/// Returns the entropy, in nats.
 pub fn gaussian_entropy(log_std: &[f32]) -> f32 {
     log_std.iter().map(|&log_std| log_std + 0.5 + HALF_LOG_TAU).sum()
 }

@@ -1,33 +1,37 @@
-//! How the parameters of a network begin.
+//! Initialisation of network parameters.
 
 use opendr_engine::Random;
 
 use crate::{Layer, Network};
 
-/// How the weights of a network begin; scales of a normalisation begin with 1, its shifts with 0.
+/// Initialisation of the weights of a network; scales of a normalisation start at 1, its shifts at 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Initialisation {
-    /// Orthogonal weights (Saxe, McClelland and Ganguli, 2014), and biases of 0: as policies like it.
+    /// Orthogonal weights (Saxe, McClelland and Ganguli, 2014), and biases of 0; usual for policies.
     Orthogonal {
-        /// The factor of all layers but the last; the square root of 2 for ReLU, and in Stable-Baselines3 for tanh too.
+        /// Gain of all layers but the last; the square root of 2 for ReLU, and in Stable-Baselines3 for tanh too.
         hidden: f32,
-        /// The factor of the last layer.
+        /// Gain of the last layer.
         output: f32,
     },
-    /// Weights and biases uniform within one over the square root of a neuron's inputs: PyTorch's default.
+    /// Weights and biases uniform within 1 / sqrt(fan-in): PyTorch's default.
     Uniform,
 }
 
 impl Network {
-    /// Writes first parameters.
+    /// Writes initial parameters.
     ///
     /// # Panics
-    /// Where `parameters` are those of another network.
+    /// When the length of `parameters` is not that of the network.
     pub fn initialise(&self, how: Initialisation, random: &mut Random, parameters: &mut [f32]) {
-        assert_eq!(parameters.len(), self.parameters(), "parameters of another network");
+        assert_eq!(
+            parameters.len(),
+            self.parameters(),
+            "`parameters` must have the length of the network's parameters"
+        );
         let last = self.layers().iter().rposition(|layer| layer.neurons().is_some());
         for (index, layer) in self.layers().iter().enumerate() {
-            let own = &mut parameters[self.parameters_of(index)];
+            let own = &mut parameters[self.parameter_range(index)];
             match (layer.neurons(), how) {
                 (None, _) => {
                     let (scale, shift) = own.split_at_mut(own.len() / 2);
@@ -50,7 +54,7 @@ impl Network {
 }
 
 impl Layer {
-    /// How many numbers a neuron takes, and how many neurons share weights with nobody.
+    /// Returns the fan-in of a neuron, and the number of neurons without shared weights.
     fn neurons(&self) -> Option<[usize; 2]> {
         match self {
             Self::Dense(layer) => Some([layer.inputs(), layer.outputs()]),
@@ -62,14 +66,15 @@ impl Layer {
         }
     }
 
-    /// Whether weights lie input after input, not neuron after neuron.
+    /// Returns whether weights are stored by input, not by neuron.
     fn keeps_inputs_in_rows(&self) -> bool {
         matches!(self, Self::Dense(_))
     }
 }
 
-/// Writes weights whose rows, or columns where those are fewer, are orthogonal and `gain` long: uniform among all such,
-/// for the directions of independent normal vectors are, and each is made orthogonal to those before it.
+/// Writes weights whose rows, or columns where those are fewer, are orthogonal with norm `gain`: uniformly
+/// distributed, because the directions of independent normal vectors are, and each is orthogonalised against those
+/// before it.
 fn orthogonal(
     inputs: usize,
     outputs: usize,
@@ -94,10 +99,11 @@ fn orthogonal(
     }
 }
 
-/// A random unit vector orthogonal to those before; `false` in the improbable case that nothing of it is left.
+/// Makes a random vector a unit vector orthogonal to those before; returns `false` in the improbable case that
+/// nothing remains.
 fn is_made_orthogonal(before: &[f64], vector: &mut [f64], random: &mut Random) -> bool {
     vector.iter_mut().for_each(|number| *number = random.normal());
-    // What rounding leaves of the others after the first pass, the second one takes away.
+    // The second pass removes the rounding errors of the first.
     for _ in 0..2 {
         for other in before.chunks_exact(vector.len()) {
             let along: f64 = vector.iter().zip(other).map(|(number, other)| number * other).sum();
@@ -126,7 +132,7 @@ mod tests {
         .unwrap()
     }
 
-    /// The products of all pairs among `count` vectors; (vector, axis) tells where a number lies.
+    /// Checks the products of all pairs among `count` vectors; `at(vector, axis)` is an element.
     fn assert_orthogonal(count: usize, length: usize, gain: f64, at: impl Fn(usize, usize) -> f32) {
         for (i, j) in (0..count).flat_map(|i| (0..count).map(move |j| (i, j))) {
             let product: f64 = (0..length).map(|axis| f64::from(at(i, axis)) * f64::from(at(j, axis))).sum();
@@ -141,7 +147,7 @@ mod tests {
         let mut parameters = vec![9.0; network.parameters()];
         let how = Initialisation::Orthogonal { hidden: 1.5, output: 0.01 };
         network.initialise(how, &mut random, &mut parameters);
-        let own = |index: usize| &parameters[network.parameters_of(index)];
+        let own = |index: usize| &parameters[network.parameter_range(index)];
         let (kernels, scales, dense, last) = (own(0), own(1), own(2), own(4));
         assert_orthogonal(5, 18, 1.5, |kernel, axis| kernels[kernel * 18 + axis]);
         assert_eq!(&kernels[5 * 18..], [0.0; 5]);
@@ -158,7 +164,7 @@ mod tests {
         let largest = |range: std::ops::Range<usize>| {
             parameters[range].iter().fold(0.0f32, |most, parameter| most.max(parameter.abs()))
         };
-        let (first, second) = (largest(network.parameters_of(0)), largest(network.parameters_of(1)));
+        let (first, second) = (largest(network.parameter_range(0)), largest(network.parameter_range(1)));
         assert!((0.099..0.1).contains(&first) && (0.13..0.1415).contains(&second), "{first} {second}");
     }
 }

@@ -1,7 +1,7 @@
 use std::fmt;
 use std::sync::OnceLock;
 
-/// An instruction set that this machine has: there is no way to make one that it lacks.
+/// An instruction set that this machine supports; unsupported ones cannot be constructed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Isa(Set);
 
@@ -17,13 +17,13 @@ pub(crate) enum Set {
 }
 
 impl Isa {
-    /// The fastest one; found out on the first call.
+    /// Returns the fastest instruction set; detected on the first call.
     pub fn best() -> Self {
         static BEST: OnceLock<Isa> = OnceLock::new();
         *BEST.get_or_init(|| Self::available().last().copied().unwrap_or(Self(Set::Portable)))
     }
 
-    /// All that this machine has, the slowest (plain Rust, no special instructions) first.
+    /// Returns all instruction sets of this machine, the slowest (plain Rust, no special instructions) first.
     pub fn available() -> Vec<Self> {
         let mut sets = vec![Self(Set::Portable)];
         #[cfg(target_arch = "x86_64")]
@@ -61,14 +61,14 @@ impl fmt::Display for Isa {
     }
 }
 
-/// Makes `unsafe fn name(isa, arguments)` out of `#[inline(always)] unsafe fn body<V: Lanes>(arguments)`: the body is compiled once
-/// for every instruction set, and the call picks one.
+/// Defines `unsafe fn name(isa, arguments)` from `#[inline(always)] unsafe fn body<V: Lanes>(arguments)`: the body is
+/// compiled once per instruction set, and the call selects one.
 macro_rules! for_every_isa {
     ($(#[$doc:meta])* $visibility:vis fn $name:ident = $body:ident($($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)?) => {
         $(#[$doc])*
         ///
         /// # Safety
-        /// What the body asks for; that the machine has the instructions follows from `isa`.
+        /// Those of the body; `isa` guarantees that the machine supports the instructions.
         $visibility unsafe fn $name(isa: $crate::isa::Isa, $($argument: $type),*) $(-> $result)? {
             #[cfg(target_arch = "x86_64")]
             #[target_feature(enable = "avx2,fma")]

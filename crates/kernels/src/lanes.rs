@@ -1,4 +1,4 @@
-//! One vector register, whatever its width: kernels are written once, over [`Lanes`].
+//! SIMD registers of any width; the kernels are generic over [`Lanes`].
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -16,7 +16,7 @@ pub(crate) use avx512::Avx512;
 pub(crate) use neon::Neon;
 pub(crate) use portable::Portable;
 
-/// The widest register, in numbers.
+/// Width of the widest register, in numbers.
 pub(crate) const MAX_WIDTH: usize = 16;
 
 /// A register of single-precision numbers.
@@ -27,7 +27,7 @@ pub(crate) const MAX_WIDTH: usize = 16;
 pub(crate) trait Lanes: Copy {
     /// Numbers in a register.
     const WIDTH: usize;
-    /// Rows of a tile of the product: as many as keep the units busy with the registers there are.
+    /// Rows of a tile of the product; a tile uses most of the available registers.
     const ROWS: usize;
 
     unsafe fn splat(value: f32) -> Self;
@@ -37,24 +37,24 @@ pub(crate) trait Lanes: Copy {
     unsafe fn sub(self, other: Self) -> Self;
     unsafe fn mul(self, other: Self) -> Self;
     unsafe fn div(self, other: Self) -> Self;
-    /// `self * factor + term`, rounded once where the machine can.
+    /// Returns `self * factor + term`, rounded once where the machine supports it.
     unsafe fn mul_add(self, factor: Self, term: Self) -> Self;
-    /// The larger one; `other` where one of them is NaN.
+    /// Returns the larger one; `other` where one of them is NaN.
     unsafe fn max(self, other: Self) -> Self;
-    /// The smaller one; `other` where one of them is NaN.
+    /// Returns the smaller one; `other` where one of them is NaN.
     unsafe fn min(self, other: Self) -> Self;
     unsafe fn sqrt(self) -> Self;
     unsafe fn abs(self) -> Self;
-    /// `self`, which is not negative, with the sign of `sign`.
+    /// Returns `self`, which is not negative, with the sign of `sign`.
     unsafe fn with_sign(self, sign: Self) -> Self;
-    /// The nearest whole number, for magnitudes below 2^22.
+    /// Rounds to the nearest integer, for magnitudes below 2^22.
     unsafe fn round(self) -> Self;
-    /// 2 to the power of `self`, a whole number from -126 to 127.
+    /// Returns 2 to the power of `self`, an integer from -126 to 127.
     unsafe fn power_of_two(self) -> Self;
-    /// `self` where `gate` is positive, else zero.
+    /// Returns `self` where `gate` is positive, else zero.
     unsafe fn where_positive(self, gate: Self) -> Self;
 
-    /// The first `count` numbers, at most a register, then zeros.
+    /// Loads the first `count` numbers, at most a register, and fills up with zeros.
     #[inline(always)]
     unsafe fn load_some(from: *const f32, count: usize) -> Self {
         let mut numbers = [0.0; MAX_WIDTH];
@@ -77,7 +77,7 @@ pub(crate) trait Lanes: Copy {
     }
 }
 
-/// Implements [`Lanes`] by one expression for each function.
+/// Implements [`Lanes`] from one expression per function.
 macro_rules! implement_lanes {
     ($type:ty, width: $width:literal, rows: $rows:literal,
      $($name:ident($($argument:ident),*) = $body:expr;)*) => {

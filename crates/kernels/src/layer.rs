@@ -1,7 +1,7 @@
-//! Layers: what stands between numbers in and numbers out, with the gradients written out.
+//! Layers with explicit gradients.
 //!
-//! A layer knows shapes; its parameters are a slice of the caller's. Batches are rows. Gradients of parameters are
-//! added to what is there, so that a caller who wants those of one batch starts from zeros.
+//! A layer stores shapes only; its parameters are a slice of the caller's. Batches are rows. Parameter gradients are
+//! added to the existing values, so that the caller starts a batch with zeros.
 
 mod conv2d;
 mod dense;
@@ -18,10 +18,10 @@ pub use layer_norm::LayerNorm;
 
 use opendr_engine::{Error, Result};
 
-/// No layer has more numbers in a sample, or parameters, than this.
+/// Maximum number of values per sample, and of parameters, of a layer.
 const LARGEST: usize = 1 << 28;
 
-/// The product of sizes that a user may have chosen: each at least one, all together at most 2^28.
+/// Returns the product of sizes from the user: each must be at least one, their product at most 2^28.
 fn checked_size(what: &str, sizes: &[usize]) -> Result<usize> {
     let product = sizes.iter().try_fold(1usize, |product, &size| product.checked_mul(size));
     product.filter(|&product| (1..=LARGEST).contains(&product)).ok_or_else(|| {

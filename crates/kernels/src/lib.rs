@@ -1,8 +1,16 @@
-//! Matrix products and small network layers for policies: packed single-precision products with run-time dispatch, layers with
-//! explicit gradients on flat parameters, optimisers; and the Fourier transform for sound.
+//! CPU kernels for small networks: matrix products, layers with gradients, optimisers, FFT.
 //!
-//! Everything runs on a [`Compute`]: an instruction set, chosen once, and a pool of threads. The number of threads
-//! never changes a result, not by a bit; the instruction set does, in the last places.
+//! Contents:
+//! * [`Compute`]: an instruction set, chosen at run time, and a thread pool; every kernel runs on one. Begin here.
+//! * [`Product`]: single-precision matrix products with bias and activation, over [`Matrix`] and [`MatrixMut`].
+//! * [`Network`], with [`Dense`], [`Conv2d`] and [`LayerNorm`], and [`Gru`]: layers with explicit gradients on flat
+//!   parameters.
+//! * [`Adam`], [`Momentum`], [`clip_gradient_norm`]: optimisers. [`RealFourier`]: the Fourier transform for audio.
+//!
+//! The number of threads never changes a result; the instruction set changes the last bits.
+//!
+//! The policies of `opendr-rl` train on these kernels. Larger networks train in `opendr-training` (Burn) and run in
+//! `opendr-inference` (ONNX).
 //!
 //! ```
 //! use opendr_kernels::{Compute, Matrix, MatrixMut, Product};
@@ -14,8 +22,8 @@
 //! assert_eq!(c, [3.0, 7.0]);
 //! ```
 //!
-//! Shapes that do not fit are mistakes of the program, and panic as an index out of range would; sizes that a user may
-//! choose are checked where a layer is made, and give an error.
+//! Shapes that do not match are programming errors and panic; sizes that a user chooses are checked when a layer is
+//! created and return an error.
 
 mod activation;
 mod aligned;
@@ -39,7 +47,7 @@ pub use activation::Activation;
 pub use column_sums::add_column_sums;
 pub use compute::Compute;
 pub use elementary::{exp_in_place, sigmoid_in_place, tanh_in_place};
-pub use fourier::{FOURIER_FRAMES, FourierWork, RealFourier, Spectrum};
+pub use fourier::{FOURIER_FRAMES, FourierScratch, RealFourier, Spectrum};
 pub use gaussian::{gaussian_backward, gaussian_entropy, gaussian_log_density};
 pub use initialise::Initialisation;
 pub use isa::Isa;
@@ -47,7 +55,7 @@ pub use layer::{Conv2d, Dense, Gru, GruTape, LayerNorm};
 pub use matrix::{Matrix, MatrixMut};
 pub use network::{Layer, Network, Tape};
 pub use optimizer::{
-    Adam, AdamOptions, Momentum, WeightDecay, clip_gradient_norm, gradient_norm, move_towards,
+    Adam, AdamOptions, Momentum, WeightDecay, clip_gradient_norm, gradient_norm, polyak_update,
 };
 pub use pool::WorkerPool;
 pub use product::{Bias, Product};

@@ -1,11 +1,11 @@
-/// A matrix to read: a slice, a shape, and the distances between rows and between columns.
+/// A read-only matrix: a slice, a shape, and the strides of rows and columns.
 #[derive(Debug, Clone, Copy)]
 pub struct Matrix<'a> {
     pub(crate) data: &'a [f32],
     pub(crate) shape: Shape,
 }
 
-/// A matrix to write.
+/// A mutable matrix.
 #[derive(Debug)]
 pub struct MatrixMut<'a> {
     pub(crate) data: &'a mut [f32],
@@ -34,7 +34,7 @@ impl Shape {
         }
     }
 
-    /// How long a slice must be; `None` where that is no `usize`.
+    /// Returns the required length of the slice; `None` when it overflows.
     fn extent(self) -> Option<usize> {
         if self.rows == 0 || self.columns == 0 {
             return Some(0);
@@ -48,7 +48,7 @@ impl Shape {
         self.extent().is_some_and(|extent| extent <= length)
     }
 
-    /// Whether no two elements share a place. Rows that interleave in other ways are not told apart, and refused.
+    /// Returns whether no two elements overlap. Other ways of interleaving rows are not recognised, and rejected.
     fn is_injective(self) -> bool {
         let Self { rows, columns, row_stride, column_stride } = self;
         let apart = |outer: usize, outer_stride: usize, inner: usize, inner_stride: usize| {
@@ -63,18 +63,18 @@ impl Shape {
 }
 
 impl<'a> Matrix<'a> {
-    /// A matrix whose rows lie one after the other.
+    /// Creates a row-major matrix.
     ///
     /// # Panics
-    /// Where `data` is too short.
+    /// When `data` is too short.
     pub fn new(data: &'a [f32], rows: usize, columns: usize) -> Self {
         Self::of(data, Shape::row_major(rows, columns))
     }
 
-    /// A matrix whose element (i, j) is `data[i * row_stride + j * column_stride]`; strides may be 0.
+    /// Creates a matrix whose element (i, j) is `data[i * row_stride + j * column_stride]`; strides may be 0.
     ///
     /// # Panics
-    /// Where `data` is too short.
+    /// When `data` is too short.
     pub fn with_strides(
         data: &'a [f32],
         [rows, columns]: [usize; 2],
@@ -84,11 +84,11 @@ impl<'a> Matrix<'a> {
     }
 
     fn of(data: &'a [f32], shape: Shape) -> Self {
-        assert!(shape.fits(data.len()), "{} numbers are too few for {shape:?}", data.len());
+        assert!(shape.fits(data.len()), "a slice of {} numbers is too short for {shape:?}", data.len());
         Self { data, shape }
     }
 
-    /// The same numbers with rows and columns exchanged; nothing moves.
+    /// Returns the transpose, without moving elements.
     #[must_use]
     pub fn transposed(self) -> Self {
         Self { data: self.data, shape: self.shape.transposed() }
@@ -96,18 +96,18 @@ impl<'a> Matrix<'a> {
 }
 
 impl<'a> MatrixMut<'a> {
-    /// A matrix whose rows lie one after the other.
+    /// Creates a row-major matrix.
     ///
     /// # Panics
-    /// Where `data` is too short.
+    /// When `data` is too short.
     pub fn new(data: &'a mut [f32], rows: usize, columns: usize) -> Self {
         Self::of(data, Shape::row_major(rows, columns))
     }
 
-    /// A matrix whose element (i, j) is `data[i * row_stride + j * column_stride]`.
+    /// Creates a matrix whose element (i, j) is `data[i * row_stride + j * column_stride]`.
     ///
     /// # Panics
-    /// Where `data` is too short, or two elements share a place.
+    /// When `data` is too short, or elements overlap.
     pub fn with_strides(
         data: &'a mut [f32],
         [rows, columns]: [usize; 2],
@@ -117,12 +117,12 @@ impl<'a> MatrixMut<'a> {
     }
 
     fn of(data: &'a mut [f32], shape: Shape) -> Self {
-        assert!(shape.fits(data.len()), "{} numbers are too few for {shape:?}", data.len());
-        assert!(shape.is_injective(), "elements of {shape:?} share places");
+        assert!(shape.fits(data.len()), "a slice of {} numbers is too short for {shape:?}", data.len());
+        assert!(shape.is_injective(), "elements of {shape:?} overlap");
         Self { data, shape }
     }
 
-    /// The same numbers with rows and columns exchanged; nothing moves.
+    /// Returns the transpose, without moving elements.
     #[must_use]
     pub fn transposed(self) -> Self {
         Self { shape: self.shape.transposed(), data: self.data }

@@ -5,17 +5,17 @@ use crate::{Activation, Compute, Conv2d, Dense, LayerNorm};
 /// A layer of a [`Network`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Layer {
-    /// Fully connected.
+    /// Fully connected layer.
     Dense(Dense),
-    /// Convolution. Flattening what comes out is doing nothing.
+    /// Convolution. Flattening its output needs no work.
     Conv2d(Conv2d),
-    /// Normalisation of each sample.
+    /// Layer normalisation of each sample.
     LayerNorm(LayerNorm),
-    /// An activation by itself, of this many numbers a sample: where one stands behind a normalisation.
+    /// An activation of its own, of this many values per sample, e.g. after a normalisation.
     Activation(Activation, usize),
 }
 
-/// Layers one after the other, with all their parameters in one slice, first layer first.
+/// A sequence of layers, with all parameters in one slice, first layer first.
 ///
 /// ```
 /// use opendr_kernels::{Activation, Compute, Network, Tape};
@@ -31,16 +31,16 @@ pub enum Layer {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Network {
     layers: Vec<Layer>,
-    /// Where the parameters of each layer start, and where the last ones end.
+    /// Start of the parameters of each layer, and the end of the last ones.
     offsets: Vec<usize>,
     inputs: usize,
 }
 
-/// What a pass forward leaves for the pass back: memory that is used again, so that only the first passes allocate.
+/// Values of a forward pass for the backward pass; the memory is reused, so that only the first passes allocate.
 #[derive(Debug, Clone, Default)]
 pub struct Tape {
     batch: usize,
-    /// The input, then what each layer gave.
+    /// The input, then the output of each layer.
     values: Vec<Vec<f32>>,
     /// The gradients of those.
     gradients: Vec<Vec<f32>>,
@@ -87,7 +87,7 @@ impl Layer {
         }
     }
 
-    #[expect(clippy::too_many_arguments, reason = "what goes in and out of a backward pass")]
+    #[expect(clippy::too_many_arguments, reason = "inputs and outputs of a backward pass")]
     fn backward(
         &self,
         compute: &Compute,
@@ -113,12 +113,12 @@ impl Layer {
 }
 
 impl Tape {
-    /// What the last [`Network::forward`] gave; empty before one.
+    /// Returns the output of the last [`Network::forward`]; empty before one.
     pub fn output(&self) -> &[f32] {
         self.values.last().map_or(&[], |values| values)
     }
 
-    /// The input of a layer in the last [`Network::forward`].
+    /// Returns the input of a layer in the last [`Network::forward`].
     ///
     /// # Panics
     /// Where there is no such layer, or before a pass.
@@ -126,11 +126,11 @@ impl Tape {
         &self.values[layer]
     }
 
-    /// Forgets all but some rows of the batch of the last [`Network::forward`], given in rising order: the way back is then
-    /// only gone for them, as if they had come alone.
+    /// Keeps only some rows of the batch of the last [`Network::forward`], given in ascending order; the backward
+    /// pass then runs for these, as if the batch had contained only them.
     ///
     /// # Panics
-    /// Where there is no such row.
+    /// When there is no such row.
     pub fn keep_rows(&mut self, rows: &[usize]) {
         if rows.len() == self.batch {
             return;
@@ -138,7 +138,7 @@ impl Tape {
         self.gradients.resize_with(self.values.len(), Vec::new);
         for (values, gradients) in self.values.iter_mut().zip(&mut self.gradients) {
             let width = values.len().checked_div(self.batch).unwrap_or(0);
-            // The next time other rows may be kept, or more: there is room for all of them, once and for all.
+            // The buffers stay large enough for all rows, so that later calls do not allocate.
             gradients.clear();
             gradients.reserve(values.len());
             for (to, &from) in rows.iter().enumerate() {
@@ -151,19 +151,19 @@ impl Tape {
 }
 
 impl Network {
-    /// A network of these layers.
+    /// Creates a network of these layers.
     ///
     /// # Errors
-    /// Where there is no layer, or one does not take what the one before gives.
+    /// When there is no layer, or the sizes of consecutive layers differ.
     pub fn new(layers: Vec<Layer>) -> Result<Self> {
         let Some(first) = layers.first() else {
-            return Err(Error::invalid_param("a network of no layers; give at least one"));
+            return Err(Error::invalid_param("a network needs at least one layer"));
         };
         for (index, pair) in layers.windows(2).enumerate() {
             let (given, taken) = (pair[0].outputs(), pair[1].inputs());
             if given != taken {
                 return Err(Error::invalid_param(format!(
-                    "layer {index} gives {given} numbers, but layer {} takes {taken}; make them equal",
+                    "layer {index} has {given} outputs, but layer {} has {taken} inputs; make them equal",
                     index + 1
                 )));
             }
@@ -176,10 +176,11 @@ impl Network {
         Ok(Self { inputs: first.inputs(), layers, offsets })
     }
 
-    /// Dense layers of these sizes, from the input to the output, with an activation behind each but the last.
+    /// Creates a network of dense layers of these sizes, from the input to the output, with an activation after each
+    /// but the last.
     ///
     /// # Errors
-    /// Where there are fewer than two sizes, one is zero, or the whole is too large.
+    /// When there are fewer than two sizes, one is zero, or the whole is too large.
     pub fn dense(sizes: &[usize], hidden: Activation) -> Result<Self> {
         let last = sizes.len().saturating_sub(2);
         let layer = |(index, pair): (usize, &[usize])| {
@@ -189,38 +190,38 @@ impl Network {
         Self::new(sizes.windows(2).enumerate().map(layer).collect::<Result<_>>()?)
     }
 
-    /// Numbers of a sample that come in.
+    /// Returns the number of input values per sample.
     pub fn inputs(&self) -> usize {
         self.inputs
     }
 
-    /// Numbers of a sample that go out.
+    /// Returns the number of output values per sample.
     pub fn outputs(&self) -> usize {
         self.layers.last().map_or(0, Layer::outputs)
     }
 
-    /// Numbers of all parameters.
+    /// Returns the number of all parameters.
     pub fn parameters(&self) -> usize {
         self.offsets.last().copied().unwrap_or(0)
     }
 
-    /// The layers.
+    /// Returns the layers.
     pub fn layers(&self) -> &[Layer] {
         &self.layers
     }
 
-    /// The parameters of a layer among all.
+    /// Returns the range of a layer's parameters among all.
     ///
     /// # Panics
-    /// Where there is no such layer.
-    pub fn parameters_of(&self, layer: usize) -> std::ops::Range<usize> {
+    /// When there is no such layer.
+    pub fn parameter_range(&self, layer: usize) -> std::ops::Range<usize> {
         self.offsets[layer]..self.offsets[layer + 1]
     }
 
-    /// Computes the output, `[batch, outputs]`, of `x`, `[batch, inputs]`.
+    /// Computes the output, `[batch, outputs]`, for `x`, `[batch, inputs]`.
     ///
     /// # Panics
-    /// Where a length does not fit.
+    /// When a length does not match.
     pub fn forward<'t>(
         &self,
         compute: &Compute,
@@ -229,8 +230,12 @@ impl Network {
         tape: &'t mut Tape,
     ) -> &'t [f32] {
         let batch = x.len() / self.inputs;
-        assert_eq!(x.len(), batch * self.inputs, "no batch of {} numbers each", self.inputs);
-        assert_eq!(parameters.len(), self.parameters(), "parameters of another network");
+        assert_eq!(x.len(), batch * self.inputs, "`x` must be a batch of {} numbers each", self.inputs);
+        assert_eq!(
+            parameters.len(),
+            self.parameters(),
+            "`parameters` must have the length of the network's parameters"
+        );
         tape.batch = batch;
         tape.values.resize_with(self.layers.len() + 1, Vec::new);
         tape.values[0].clear();
@@ -238,18 +243,18 @@ impl Network {
         for (index, layer) in self.layers.iter().enumerate() {
             let (before, after) = tape.values.split_at_mut(index + 1);
             after[0].resize(batch * layer.outputs(), 0.0);
-            layer.forward(compute, &parameters[self.parameters_of(index)], &before[index], &mut after[0]);
+            layer.forward(compute, &parameters[self.parameter_range(index)], &before[index], &mut after[0]);
         }
         &tape.values[self.layers.len()]
     }
 
-    /// The way back of the last [`Network::forward`] on this tape, from `dy`, the gradient of its output.
+    /// Computes the backward pass of the last [`Network::forward`] on this tape, from `dy`, the gradient of its
+    /// output.
     ///
-    /// Adds to `gradients`, unless they are not wanted; gives the gradient of the input where `wants_input`, else
-    /// nothing.
+    /// Adds to `gradients`, if given; returns the gradient of the input where `wants_input`, else an empty slice.
     ///
     /// # Panics
-    /// Where a length does not fit.
+    /// When a length does not match.
     pub fn backward<'t>(
         &self,
         compute: &Compute,
@@ -260,8 +265,8 @@ impl Network {
         wants_input: bool,
     ) -> &'t [f32] {
         let Tape { values, gradients: flow, scratch, .. } = tape;
-        assert_eq!(values.len(), self.layers.len() + 1, "no forward pass before");
-        assert_eq!(dy.len(), values[self.layers.len()].len(), "not the gradient of the output");
+        assert_eq!(values.len(), self.layers.len() + 1, "a backward pass needs a forward pass before it");
+        assert_eq!(dy.len(), values[self.layers.len()].len(), "`dy` must have the length of the output");
         flow.resize_with(values.len(), Vec::new);
         flow[self.layers.len()].clear();
         flow[self.layers.len()].extend_from_slice(dy);
@@ -271,7 +276,7 @@ impl Network {
                 before[index].resize(values[index].len(), 0.0);
                 &mut *before[index]
             });
-            let range = self.parameters_of(index);
+            let range = self.parameter_range(index);
             let own = gradients.as_deref_mut().map(|all| &mut all[range.clone()]);
             let ends = [&*values[index], &*values[index + 1]];
             layer.backward(compute, &parameters[range], ends, &mut after[0], own, dx, scratch);

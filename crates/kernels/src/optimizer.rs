@@ -1,4 +1,4 @@
-//! Optimisers on flat parameters: one slice holds all numbers of a network, another their gradients.
+//! Optimisers on flat parameters: one slice for all parameters of a network, another for their gradients.
 
 mod adam;
 mod gradient_norm;
@@ -8,4 +8,4 @@ mod polyak;
 pub use adam::{Adam, AdamOptions, WeightDecay};
 pub use gradient_norm::{clip_gradient_norm, gradient_norm};
 pub use momentum::Momentum;
-pub use polyak::move_towards;
+pub use polyak::polyak_update;

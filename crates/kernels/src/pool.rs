@@ -11,13 +11,13 @@ use std::thread::{Builder, JoinHandle};
 #[cfg(test)]
 mod tests;
 
-/// Threads that wait for work in pieces.
+/// A pool of threads that process work in pieces.
 ///
-/// How work is cut is the caller's, never the pool's: cut it by its size, let each piece write its own part, and put
-/// the parts together in their order, and the result is the same, bit for bit, on any number of threads.
+/// The caller divides the work, never the pool: with pieces that depend on the size only, each writing its own part,
+/// and the parts combined in order, the result is bit-identical on any number of threads.
 ///
-/// A thread without work spins for some microseconds, then sleeps. Work that starts from within a piece, or while
-/// another thread uses the pool, runs on the thread that asks. Dropping the pool ends its threads.
+/// An idle thread spins for some microseconds, then sleeps. Work that starts from within a piece, or while another
+/// thread uses the pool, runs on the calling thread. Dropping the pool ends its threads.
 pub struct WorkerPool {
     shared: Arc<Shared>,
     workers: Vec<JoinHandle<()>>,
@@ -26,11 +26,11 @@ pub struct WorkerPool {
 
 struct Shared {
     state: Mutex<State>,
-    /// Work came, or the end.
+    /// Signals new work, or the end.
     wake: Condvar,
-    /// The last worker has left the work.
+    /// Signals that the last worker has finished.
     left: Condvar,
-    /// Counts works; a copy of it outside of the lock is what spinning threads watch.
+    /// Number of works so far; spinning threads watch it without the lock.
     works: AtomicU64,
     inside: AtomicUsize,
 }
@@ -41,14 +41,14 @@ struct State {
     stop: bool,
 }
 
-/// What is to be done. The pointers are good until the last worker has left, which [`WorkerPool::run`] waits for.
+/// The current work. The pointers are valid until the last worker has finished, which [`WorkerPool::run`] waits for.
 #[derive(Clone, Copy)]
 struct Work {
     piece: *const (dyn Fn(usize) + Sync),
     progress: *const Progress,
 }
 
-// SAFETY: both point at things that are `Sync`.
+// SAFETY: both pointers are to values that are `Sync`.
 unsafe impl Send for Work {}
 
 struct Progress {
@@ -58,7 +58,7 @@ struct Progress {
     panic: Mutex<Option<Box<dyn Any + Send>>>,
 }
 
-/// How often a thread looks before it sleeps: tens of microseconds.
+/// Iterations that a thread spins before it sleeps: tens of microseconds.
 const SPINS: u32 = 2000;
 
 thread_local! {
@@ -66,8 +66,8 @@ thread_local! {
 }
 
 impl WorkerPool {
-    /// A pool in which `threads` work, the caller among them; at least one. Threads that the system refuses are done
-    /// without.
+    /// Creates a pool in which `threads` threads work, the calling one included; at least one. If the system cannot
+    /// create a thread, the pool has fewer.
     pub fn new(threads: usize) -> Self {
         let shared = Arc::new(Shared {
             state: Mutex::new(State { work: None, works: 0, stop: false }),
@@ -84,15 +84,15 @@ impl WorkerPool {
         Self { shared, workers, turn: Mutex::new(()) }
     }
 
-    /// Threads that work, the caller among them.
+    /// Returns the number of threads that work, the calling one included.
     pub fn threads(&self) -> usize {
         self.workers.len() + 1
     }
 
-    /// Calls `piece` once with each number below `pieces`, in any order, and returns when all are done.
+    /// Calls `piece` once with each index below `pieces`, in any order, and returns when all are finished.
     ///
     /// # Panics
-    /// Where a piece panics: with what the first one to do so said. Pieces that have not begun by then are left out.
+    /// When a piece panics, with the payload of the first panic. Pieces that have not started by then are skipped.
     pub fn run(&self, pieces: usize, piece: impl Fn(usize) + Sync) {
         if pieces <= 1 || self.workers.is_empty() || WORKING.get() {
             return (0..pieces).for_each(piece);
@@ -105,7 +105,7 @@ impl WorkerPool {
             panic: Mutex::new(None),
         };
         let erased: &(dyn Fn(usize) + Sync) = &piece;
-        // SAFETY: only the lifetime changes; `close` below returns when nobody holds the pointer any more.
+        // SAFETY: only the lifetime changes; `close` below returns when no worker holds the pointer any more.
         let erased: &'static (dyn Fn(usize) + Sync) = unsafe { std::mem::transmute(erased) };
         self.shared.open(Work { piece: erased, progress: &progress });
         WORKING.set(true);
@@ -119,7 +119,7 @@ impl WorkerPool {
         }
     }
 
-    /// Calls both, side by side where there are threads, and returns when both are done.
+    /// Calls both functions, in parallel where there are threads, and returns when both have finished.
     ///
     /// # Panics
     /// As [`WorkerPool::run`].
@@ -131,7 +131,8 @@ impl WorkerPool {
         });
     }
 
-    /// Cuts `data` into pieces of `length`, the last one shorter, and calls `piece` with the number and the content of each.
+    /// Divides `data` into pieces of `length`, the last one shorter, and calls `piece` with the index and the content
+    /// of each.
     ///
     /// # Panics
     /// Where `length` is 0, and as [`WorkerPool::run`].
@@ -141,15 +142,15 @@ impl WorkerPool {
         length: usize,
         piece: impl Fn(usize, &mut [T]) + Sync,
     ) {
-        assert!(length > 0, "pieces of no length");
+        assert!(length > 0, "the length of pieces must be at least 1");
         let pieces = data.len().div_ceil(length);
         let data = Pieces::new(data, length);
-        // SAFETY: each number comes once.
+        // SAFETY: each index is used once.
         self.run(pieces, |index| piece(index, unsafe { data.get(index) }));
     }
 }
 
-/// A slice that threads write in pieces.
+/// A slice that several threads write in pieces.
 pub(crate) struct Pieces<'a, T> {
     start: *mut T,
     total: usize,
@@ -157,22 +158,22 @@ pub(crate) struct Pieces<'a, T> {
     slice: PhantomData<&'a mut [T]>,
 }
 
-// SAFETY: `get` is unsafe, and whoever calls it sees to it that threads do not meet.
+// SAFETY: `get` is unsafe; its callers guarantee that threads use different pieces.
 unsafe impl<T: Send> Sync for Pieces<'_, T> {}
 
 impl<'a, T> Pieces<'a, T> {
-    /// Pieces of `length`, the last one shorter.
+    /// Divides into pieces of `length`, the last one shorter.
     pub(crate) fn new(slice: &'a mut [T], length: usize) -> Self {
         Self { start: slice.as_mut_ptr(), total: slice.len(), length, slice: PhantomData }
     }
 
-    /// Piece number `index`; empty beyond the end.
+    /// Returns piece `index`; empty beyond the end.
     ///
     /// # Safety
     /// No piece is taken twice at the same time.
     pub(crate) unsafe fn get(&self, index: usize) -> &'a mut [T] {
         let from = (index * self.length).min(self.total);
-        // SAFETY: pieces lie within the slice and apart from each other.
+        // SAFETY: pieces lie within the slice and do not overlap.
         unsafe { std::slice::from_raw_parts_mut(self.start.add(from), self.length.min(self.total - from)) }
     }
 }
@@ -187,7 +188,7 @@ impl Shared {
         self.wake.notify_all();
     }
 
-    /// Lets nobody begin any more, and waits for those who are at it.
+    /// Prevents workers from starting, and waits for those at work.
     fn close(&self) {
         lock(&self.state).work = None;
         for _ in 0..SPINS {
@@ -206,7 +207,8 @@ impl Shared {
         WORKING.set(true);
         let mut seen = 0;
         while let Some(work) = self.next(&mut seen) {
-            // SAFETY: `inside` was counted up under the lock while the work was open, so `close` waits for us.
+            // SAFETY: `inside` was incremented under the lock while the work was open, so `close` waits for this
+            // worker.
             unsafe { (*work.progress).work_on(&*work.piece) };
             if self.inside.fetch_sub(1, Ordering::AcqRel) == 1 {
                 drop(lock(&self.state));
@@ -215,7 +217,7 @@ impl Shared {
         }
     }
 
-    /// The next work that is still open; `None` at the end.
+    /// Returns the next open work; `None` at the end.
     fn next(&self, seen: &mut u64) -> Option<Work> {
         for _ in 0..SPINS {
             if self.works.load(Ordering::Acquire) != *seen {
@@ -255,7 +257,7 @@ impl Progress {
     }
 }
 
-/// A panic of a piece is caught before it reaches a lock, so what a lock guards is always whole.
+/// Panics of pieces are caught before they reach a lock, so the guarded values are always consistent.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -263,11 +265,11 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 impl Drop for WorkerPool {
     fn drop(&mut self) {
         lock(&self.shared.state).stop = true;
-        // Spinning threads look at this number.
+        // Spinning threads watch this counter.
         self.shared.works.fetch_add(1, Ordering::Release);
         self.shared.wake.notify_all();
         for worker in self.workers.drain(..) {
-            // A worker catches the panics of its work, so there is nothing to hear from it.
+            // A worker catches the panics of its work, so `join` reports nothing.
             let _ = worker.join();
         }
     }

@@ -15,11 +15,11 @@ use dots::{MOST_COLUMNS, compute_dots};
 use pack::{Source, pack};
 use tile::{BiasAt, Block, Finish, VECTORS, compute_block};
 
-/// A matrix product and what is done to it in the same pass: `C = activation(alpha A B + beta C + bias)`.
+/// A matrix product with bias and activation in the same pass: `C = activation(alpha A B + beta C + bias)`.
 ///
-/// Each element is summed from the first to the last of its products, in blocks of 256; where there are at most four
-/// columns and the rows of A lie each in one piece, in the lanes of a register. Neither the number of rows nor that of
-/// threads changes that order. Where `beta` is 0, C is not read, so that it may hold anything; where `alpha` is 0, A and B are not.
+/// Each element is summed in the order of its products, in blocks of 256; with at most four columns and contiguous
+/// rows of A, in the lanes of a register. Neither the number of rows nor that of threads changes the order. Where
+/// `beta` is 0, C is not read and may hold anything, NaN included; where `alpha` is 0, A and B are not read.
 ///
 /// ```
 /// use opendr_kernels::{Activation, Bias, Compute, Matrix, MatrixMut, Product};
@@ -42,22 +42,22 @@ pub struct Product<'a> {
     activation: Activation,
 }
 
-/// What is added to a product.
+/// The bias of a product.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Bias<'a> {
-    /// Nothing.
+    /// No bias.
     None,
-    /// One number for each row.
+    /// One value per row.
     Rows(&'a [f32]),
-    /// One number for each column.
+    /// One value per column.
     Columns(&'a [f32]),
 }
 
-/// Steps of the depth that are summed in registers: a panel of B then stays in the first cache.
+/// Steps of the depth that are summed in registers: a panel of B then stays in the L1 cache.
 const DEPTH_BLOCK: usize = 256;
 /// Columns of B that are packed at a time: they stay in the outer caches.
 const COLUMN_BLOCK: usize = 1024;
-/// Multiplications from which on threads are worth waking.
+/// Number of multiplications from which on several threads are used.
 const PARALLEL_FROM: usize = 1 << 19;
 
 impl Default for Product<'_> {
@@ -67,30 +67,30 @@ impl Default for Product<'_> {
 }
 
 impl<'a> Product<'a> {
-    /// `C = A B`.
+    /// Creates the product `C = A B`.
     pub const fn new() -> Self {
         Self { alpha: 1.0, beta: 0.0, bias: Bias::None, activation: Activation::Identity }
     }
 
-    /// The factor of the product.
+    /// Sets the factor of the product.
     #[must_use]
     pub const fn alpha(self, alpha: f32) -> Self {
         Self { alpha, ..self }
     }
 
-    /// The factor of what C held before.
+    /// Sets the factor of the previous content of C.
     #[must_use]
     pub const fn beta(self, beta: f32) -> Self {
         Self { beta, ..self }
     }
 
-    /// What is added.
+    /// Sets the bias.
     #[must_use]
     pub const fn bias(self, bias: Bias<'a>) -> Self {
         Self { bias, ..self }
     }
 
-    /// What is done to the result.
+    /// Sets the activation function.
     #[must_use]
     pub const fn activation(self, activation: Activation) -> Self {
         Self { activation, ..self }
@@ -99,18 +99,22 @@ impl<'a> Product<'a> {
     /// Computes the product.
     ///
     /// # Panics
-    /// Where the shapes of A, B, C and the bias do not fit each other.
+    /// When the shapes of A, B, C and the bias do not match.
     pub fn run(&self, compute: &Compute, a: Matrix<'_>, b: Matrix<'_>, c: MatrixMut<'_>) {
         let (rows, columns, depth) = (c.shape.rows, c.shape.columns, a.shape.columns);
-        assert_eq!((a.shape.rows, b.shape.rows, b.shape.columns), (rows, depth, columns), "shapes differ");
+        assert_eq!(
+            (a.shape.rows, b.shape.rows, b.shape.columns),
+            (rows, depth, columns),
+            "the shapes of A, B and C do not match"
+        );
         let bias = match self.bias {
             Bias::None => BiasAt::None,
             Bias::Rows(bias) => {
-                assert_eq!(bias.len(), rows, "a bias of rows has one number for each row");
+                assert_eq!(bias.len(), rows, "a row bias needs one value per row");
                 BiasAt::Rows(bias.as_ptr())
             }
             Bias::Columns(bias) => {
-                assert_eq!(bias.len(), columns, "a bias of columns has one number for each column");
+                assert_eq!(bias.len(), columns, "a column bias needs one value per column");
                 BiasAt::Columns(bias.as_ptr())
             }
         };
@@ -162,7 +166,7 @@ impl Tile {
     }
 }
 
-/// A product whose shapes are known to fit.
+/// A product of matching shapes.
 #[derive(Clone, Copy)]
 struct Job {
     rows: usize,
@@ -175,12 +179,12 @@ struct Job {
     finish: Finish,
 }
 
-// SAFETY: threads only read A, B and the bias, and each writes rows of C of its own.
+// SAFETY: threads only read A, B and the bias, and write disjoint rows of C.
 unsafe impl Sync for Job {}
 
 impl Job {
-    /// Registers lie along the columns. Where those are few, the rows serve better, if A need not be turned for
-    /// it; so they do where they are few, and B would have to be turned.
+    /// Returns whether the transposed product is faster. Registers span columns of C; with few columns they better
+    /// span rows, unless A then needs transposing, and also where rows are few and B would need transposing.
     fn is_better_transposed(&self, tile: Tile) -> bool {
         let side_by_side = self.c_strides[1] == 1;
         (!side_by_side && self.c_strides[0] == 1)
@@ -188,8 +192,8 @@ impl Job {
             || (self.rows <= 2 && self.columns > tile.rows && self.b.across != 1)
     }
 
-    /// Few columns leave most of a tile unused; registers then lie along the depth. This must not depend on the number of rows,
-    /// as the order of a sum does on this.
+    /// Returns whether registers span the depth, because few columns leave most of a tile unused. This must not
+    /// depend on the number of rows, because it determines the order of a sum.
     fn is_dots(&self) -> bool {
         self.columns <= MOST_COLUMNS && self.depth > 1 && self.a.along == 1
     }
@@ -204,13 +208,13 @@ impl Job {
             }
             let right = Right { data: columns.as_ptr(), strides: [1, self.depth] };
             self.run_rows(compute, tile, |rows| {
-                // SAFETY: the block lies within the matrices; the columns of B lie one after the other.
+                // SAFETY: the block lies within the matrices; the columns of B are contiguous.
                 unsafe { compute_dots(compute.isa(), &self.block(tile, rows, &right)) }
             });
         });
     }
 
-    /// The same product as `C' = B' A'`.
+    /// Returns the same product as `C' = B' A'`.
     fn transposed(self) -> Self {
         let bias = match self.finish.bias {
             BiasAt::None => BiasAt::None,
@@ -245,8 +249,8 @@ impl Job {
         }
     }
 
-    /// Some columns, and some steps of the depth. What C held counts in the first part of the depth only, bias and
-    /// activation in the last.
+    /// Returns the part of some columns and some steps of the depth. The previous content of C counts in the first
+    /// part of the depth only, bias and activation in the last.
     fn part(&self, [first_column, columns]: [usize; 2], [first_step, depth]: [usize; 2]) -> Self {
         let mut finish = self.finish;
         // SAFETY: the part lies within the matrices.
@@ -278,7 +282,7 @@ impl Job {
         }
     }
 
-    /// Packs B, unless so few rows read it that it is better read where it lies, and computes.
+    /// Packs B, unless it is read by so few rows that packing does not pay, and computes.
     fn run_packed(&self, compute: &Compute, tile: Tile) {
         let whole = self.columns / tile.columns * tile.columns;
         let in_place = self.b.across == 1 && self.rows <= 4 * tile.rows;
@@ -306,9 +310,10 @@ impl Job {
         self.run_rows(compute, tile, |rows| self.run_piece(compute.isa(), tile, rows, &right));
     }
 
-    /// All rows in pieces, first one and number, each on the thread that comes first.
+    /// Runs all rows in pieces, given by first row and count, on the threads of the pool.
     fn run_rows(&self, compute: &Compute, tile: Tile, run: impl Fn([usize; 2]) + Sync) {
-        // Every piece reads all of B once: many rows pay for that, few spread better.
+        // Every piece reads all of B once: with many rows pieces are large, with few they are small for an even
+        // distribution.
         let piece = tile.rows * if self.rows > 384 { 24 } else { 8 };
         let work = |index: usize| {
             let first = index * piece;
@@ -322,7 +327,7 @@ impl Job {
         }
     }
 
-    /// Some rows, with A where it lies.
+    /// Returns the block of some rows, with A unpacked.
     fn block(&self, tile: Tile, [first, rows]: [usize; 2], b: &Right) -> Block {
         let mut finish = self.finish;
         // SAFETY: the piece lies within C and within the bias.
@@ -346,8 +351,8 @@ impl Job {
         }
     }
 
-    /// Packs A, unless its numbers lie side by side along the depth, or down the rows where so few columns read them that
-    /// packing does not pay.
+    /// Packs A, unless its rows are contiguous, or its columns are and so few columns of B read them that packing
+    /// does not pay.
     fn run_piece(&self, isa: Isa, tile: Tile, [first, rows]: [usize; 2], b: &Right) {
         let block = self.block(tile, [first, rows], b);
         let is_read_often = self.columns > 4 * tile.columns;
@@ -367,7 +372,7 @@ impl Job {
     }
 }
 
-/// B as the inner loop reads it.
+/// B in the form that the inner loop reads.
 struct Right {
     data: *const f32,
     strides: [usize; 2],

@@ -1,12 +1,12 @@
-//! Categorical distributions from scores, row by row.
+//! Softmax, categorical distributions and cross-entropy, row by row.
 
 use crate::elementary::exp_in_place;
 use crate::isa::Isa;
 
-/// Writes logarithms of probabilities, and probabilities, of rows of `columns` scores.
+/// Writes log-probabilities and probabilities of rows of `columns` scores.
 ///
 /// # Panics
-/// Where the lengths differ, or are no whole number of rows.
+/// When the lengths differ, or are not a multiple of `columns`.
 pub fn log_softmax(
     isa: Isa,
     scores: &[f32],
@@ -33,10 +33,10 @@ pub fn log_softmax(
     }
 }
 
-/// The gradient of the scores from that of the logarithms of probabilities: `dx = d - p sum(d)`.
+/// Computes the gradient of the scores from that of the log-probabilities: `dx = d - p sum(d)`.
 ///
 /// # Panics
-/// Where the lengths differ, or are no whole number of rows.
+/// When the lengths differ, or are not a multiple of `columns`.
 pub fn log_softmax_backward(probabilities: &[f32], columns: usize, dlogs: &[f32], dscores: &mut [f32]) {
     check(columns, [probabilities.len(), dlogs.len(), dscores.len()]);
     let rows = probabilities.chunks_exact(columns).zip(dlogs.chunks_exact(columns));
@@ -48,17 +48,17 @@ pub fn log_softmax_backward(probabilities: &[f32], columns: usize, dlogs: &[f32]
     }
 }
 
-/// The entropy of a row, in nats: impossible outcomes count nothing.
+/// Returns the entropy of a row, in nats; outcomes of probability 0 contribute 0.
 pub fn entropy(log_probabilities: &[f32], probabilities: &[f32]) -> f32 {
     let terms = log_probabilities.iter().zip(probabilities);
     -terms.map(|(&log, &p)| if p > 0.0 { p * log } else { 0.0 }).sum::<f32>()
 }
 
-/// The gradient of the scores of a row where the loss has the gradient `dlog` by the logarithm of the probability of `chosen`,
-/// and `dentropy` by the entropy: what a policy gradient needs.
+/// Computes the gradient of the scores of a row, for the gradient `dlog` of the log-probability of `chosen` and
+/// `dentropy` of the entropy, as in a policy gradient.
 ///
 /// # Panics
-/// Where the lengths differ, or `chosen` is no outcome.
+/// When the lengths differ, or `chosen` is not a column.
 pub fn categorical_backward(
     log_probabilities: &[f32],
     probabilities: &[f32],
@@ -75,10 +75,10 @@ pub fn categorical_backward(
     dscores[chosen] += dlog;
 }
 
-/// The mean cross-entropy of rows of scores against the true outcomes, and its gradient by the scores.
+/// Returns the mean cross-entropy of rows of scores and target classes, and computes its gradient by the scores.
 ///
 /// # Panics
-/// Where the lengths do not fit, or a target is no outcome.
+/// When the lengths do not match, or a target is not a column.
 pub fn cross_entropy(
     isa: Isa,
     scores: &[f32],
@@ -87,7 +87,7 @@ pub fn cross_entropy(
     log_probabilities: &mut [f32],
     dscores: &mut [f32],
 ) -> f32 {
-    assert_eq!(targets.len() * columns, scores.len(), "one target for each row");
+    assert_eq!(targets.len() * columns, scores.len(), "there must be one target per row");
     log_softmax(isa, scores, columns, log_probabilities, dscores);
     let scale = 1.0 / targets.len().max(1) as f32;
     let mut loss = 0.0;
@@ -101,8 +101,11 @@ pub fn cross_entropy(
 }
 
 fn check<const N: usize>(columns: usize, lengths: [usize; N]) {
-    assert_eq!(lengths, [lengths[0]; N], "lengths differ");
-    assert!(columns > 0 && lengths[0].is_multiple_of(columns), "no rows of {columns}: {lengths:?}");
+    assert_eq!(lengths, [lengths[0]; N], "all slices must have equal lengths");
+    assert!(
+        columns > 0 && lengths[0].is_multiple_of(columns),
+        "the lengths must be multiples of {columns} columns: {lengths:?}"
+    );
 }
 
 #[cfg(test)]

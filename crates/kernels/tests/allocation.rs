@@ -1,13 +1,13 @@
-//! After the first step, training allocates nothing.
+//! Training allocates nothing after the first step.
 
 use opendr_kernels::{
     Activation, Adam, AdamOptions, Compute, Conv2d, Dense, Gru, GruTape, Layer, Network, Tape,
     clip_gradient_norm,
 };
-use opendr_test_allocator::{Counting, allocations};
+use opendr_test_allocator::{CountingAllocator, allocations};
 
 #[global_allocator]
-static ALLOCATOR: Counting = Counting;
+static ALLOCATOR: CountingAllocator = CountingAllocator;
 
 #[test]
 fn steps_after_the_first_allocate_nothing() {

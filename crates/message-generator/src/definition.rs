@@ -1,36 +1,36 @@
-//! What a `.msg` or `.srv` file says.
+//! Parsed `.msg` and `.srv` files.
 
 use std::fmt;
 
-/// A message type by package and name, e.g. `sensor_msgs` and `Image`.
+/// Package and name of a message type, such as `sensor_msgs` and `Image`.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct TypeName {
-    /// The package.
+    /// Package.
     pub package: String,
-    /// The name within the package.
+    /// Name within the package.
     pub name: String,
 }
 
 impl TypeName {
-    /// A name from its two parts.
+    /// Creates a name from package and name.
     pub fn new(package: impl Into<String>, name: impl Into<String>) -> Self {
         Self { package: package.into(), name: name.into() }
     }
 
-    /// ROS 2's spelling, e.g. `sensor_msgs/msg/Image`.
+    /// Returns the name in ROS 2, such as `sensor_msgs/msg/Image`.
     pub fn ros2(&self) -> String {
         format!("{}/msg/{}", self.package, self.name)
     }
 }
 
-/// ROS 1's spelling, e.g. `sensor_msgs/Image`.
+/// Writes the name in ROS 1, such as `sensor_msgs/Image`.
 impl fmt::Display for TypeName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}/{}", self.package, self.name)
     }
 }
 
-/// A type of the language itself.
+/// A primitive type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub enum Primitive {
@@ -51,7 +51,7 @@ pub enum Primitive {
 }
 
 impl Primitive {
-    /// Every one with its keyword, its Rust type and its number in a type description (REP 2016).
+    /// All primitives with keyword, Rust type and id in type descriptions (REP 2016).
     pub const ALL: [(Self, &'static str, &'static str, u8); 14] = [
         (Self::Bool, "bool", "bool", 15),
         (Self::Byte, "byte", "u8", 16),
@@ -69,7 +69,7 @@ impl Primitive {
         (Self::String, "string", "String", 17),
     ];
 
-    /// The type of a keyword.
+    /// Returns the type of a keyword.
     pub fn from_keyword(keyword: &str) -> Option<Self> {
         Self::ALL.iter().find(|row| row.1 == keyword).map(|row| row.0)
     }
@@ -78,97 +78,97 @@ impl Primitive {
         Self::ALL.iter().find(|row| row.0 == self).unwrap_or(&Self::ALL[0])
     }
 
-    /// Its keyword in definitions.
+    /// Returns the keyword in definitions.
     pub fn keyword(self) -> &'static str {
         self.row().1
     }
 
-    /// Its type in Rust.
+    /// Returns the type in Rust.
     pub fn rust(self) -> &'static str {
         self.row().2
     }
 
-    /// Its number in a type description.
+    /// Returns the id in type descriptions.
     pub fn type_id(self) -> u8 {
         self.row().3
     }
 }
 
-/// What a field holds, one or many of it.
+/// Type of a field, or of its elements.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum BaseType {
-    /// A type of the language.
+    /// A primitive type.
     Primitive(Primitive),
     /// Another message.
     Message(TypeName),
 }
 
-/// How many of it.
+/// Number of elements of a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Array {
-    /// One.
+    /// A single value.
     None,
-    /// Always so many.
+    /// An array of fixed length.
     Fixed(usize),
-    /// Any number up to this one.
+    /// An array of at most this length.
     Bounded(usize),
-    /// Any number.
+    /// An array of any length.
     Unbounded,
 }
 
-/// The type of a field.
+/// Type of a field.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FieldType {
-    /// Of what.
+    /// Type of the value or elements.
     pub base: BaseType,
-    /// How many.
+    /// Number of elements.
     pub array: Array,
 }
 
 /// A field of a message.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Field {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its type.
+    /// Type.
     pub field_type: FieldType,
-    /// Its value where nobody sets it, as written (ROS 2).
+    /// Default value as written (ROS 2).
     pub default: Option<String>,
-    /// The comment lines above it.
+    /// Comment lines above the field.
     pub doc: String,
 }
 
 /// A constant of a message.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Constant {
-    /// Its type.
+    /// Type.
     pub primitive: Primitive,
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its value, as written.
+    /// Value as written.
     pub value: String,
 }
 
 /// A message.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Definition {
-    /// What it is called.
+    /// Name.
     pub name: TypeName,
-    /// Its fields in order.
+    /// Fields in order.
     pub fields: Vec<Field>,
-    /// Its constants in order.
+    /// Constants in order.
     pub constants: Vec<Constant>,
-    /// The comment lines that it begins with.
+    /// Comment lines at the beginning.
     pub doc: String,
 }
 
-/// A service: two messages.
+/// A service of two messages.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Service {
-    /// What it is called.
+    /// Name.
     pub name: TypeName,
-    /// What is asked; called `NAME_Request`.
+    /// Request, named `NAME_Request`.
     pub request: Definition,
-    /// What is answered; called `NAME_Response`.
+    /// Response, named `NAME_Response`.
     pub response: Definition,
 }

@@ -1,4 +1,4 @@
-//! All definitions of a folder, and the names that they have in ROS 1.
+//! All definitions of a folder.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use opendr_engine::{Error, Result, ResultExt};
 
 use crate::{BaseType, Definition, Service, TypeName};
 
-/// The definitions of a folder `PACKAGE/msg/NAME.msg`, `PACKAGE/srv/NAME.srv`.
+/// Definitions of a folder with files `PACKAGE/msg/NAME.msg` and `PACKAGE/srv/NAME.srv`.
 #[derive(Debug, Clone, Default)]
 pub struct Library {
     messages: BTreeMap<TypeName, Definition>,
@@ -18,7 +18,7 @@ impl Library {
     /// Reads every definition below `folder`.
     ///
     /// # Errors
-    /// `Io`, `Format` as [`Definition::parse`], `NotFound` for a type that is used and not defined.
+    /// `Io`, `Format` as [`Definition::parse`], `NotFound` for an undefined type.
     pub fn open(folder: &Path) -> Result<Self> {
         let mut library = Self::default();
         library.read(folder)?;
@@ -26,7 +26,7 @@ impl Library {
         Ok(library)
     }
 
-    /// These definitions with those below `folder` in their place: what ROS 1 says differently.
+    /// Returns a copy in which the definitions below `folder` replace these, for the differences of ROS 1.
     ///
     /// # Errors
     /// As [`Library::open`].
@@ -37,17 +37,17 @@ impl Library {
         Ok(library)
     }
 
-    /// Every message, by name.
+    /// Returns all messages, by name.
     pub fn messages(&self) -> impl Iterator<Item = &Definition> {
         self.messages.values()
     }
 
-    /// Every service, by name.
+    /// Returns all services, by name.
     pub fn services(&self) -> impl Iterator<Item = &Service> {
         self.services.values()
     }
 
-    /// The definition of a name.
+    /// Returns the definition of a name.
     ///
     /// # Errors
     /// `NotFound`.
@@ -57,7 +57,7 @@ impl Library {
         })
     }
 
-    /// The messages that `definition` uses, directly or not, by name; not itself.
+    /// Returns the messages that `definition` contains, directly or indirectly, by name and without itself.
     ///
     /// # Errors
     /// `NotFound`.

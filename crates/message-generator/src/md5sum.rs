@@ -1,4 +1,4 @@
-//! ROS 1's md5 sums of messages and services, as genmsg's `gentools` makes them.
+//! ROS 1's md5 sums of messages and services, as in genmsg's `gentools`.
 
 use md5::{Digest, Md5};
 use opendr_engine::Result;
@@ -6,15 +6,15 @@ use opendr_engine::Result;
 use crate::text::{array_suffix, ros1_keyword};
 use crate::{BaseType, Definition, Library, Service};
 
-/// The sum that two ROS 1 nodes compare before they talk.
+/// Returns the md5 sum of a message, which two ROS 1 nodes compare at the connection.
 ///
 /// # Errors
-/// `NotFound` for a type that is used and not defined.
+/// `NotFound` for an undefined type.
 pub fn md5sum(library: &Library, definition: &Definition) -> Result<String> {
     Ok(hex(&md5_text(library, definition)?))
 }
 
-/// The sum of a service: of request and response in a row.
+/// Returns the md5 sum of a service: that of the texts of request and response.
 ///
 /// # Errors
 /// As [`md5sum`].

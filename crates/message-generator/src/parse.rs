@@ -1,14 +1,14 @@
-//! Reading of `.msg` and `.srv` texts.
+//! Parsing of `.msg` and `.srv` files.
 
 use opendr_engine::{Error, Result};
 
 use crate::{Array, BaseType, Constant, Definition, Field, FieldType, Primitive, Service, TypeName};
 
 impl Definition {
-    /// Reads the text of a `.msg` file.
+    /// Parses the text of a `.msg` file.
     ///
     /// # Errors
-    /// `Format` with the number of the line.
+    /// `Format` with the line number.
     pub fn parse(name: TypeName, text: &str) -> Result<Self> {
         let mut definition = Self { name, fields: Vec::new(), constants: Vec::new(), doc: String::new() };
         let mut doc = String::new();
@@ -20,7 +20,7 @@ impl Definition {
                 continue;
             }
             if index > 0 && definition.is_empty() && definition.doc.is_empty() && doc.lines().count() > 0 {
-                // The first comment is the message's; what follows belongs to the first field.
+                // The first comment line documents the message; the others belong to the first field.
                 let (first, rest) = doc.split_once('\n').unwrap_or((doc.as_str(), ""));
                 definition.doc = first.to_owned();
                 doc = rest.to_owned();
@@ -51,7 +51,7 @@ impl Definition {
         let after = after.trim_start();
         if let Some(value) = after.strip_prefix('=') {
             let primitive = Primitive::from_keyword(written_type).ok_or("constants are of simple types")?;
-            // A '#' belongs to the value of a text.
+            // In a string constant, '#' is part of the value.
             let value = if primitive == Primitive::String { value } else { without_comment(value) };
             self.constants.push(Constant {
                 primitive,
@@ -72,7 +72,7 @@ impl Definition {
 }
 
 impl Service {
-    /// Reads the text of a `.srv` file.
+    /// Parses the text of a `.srv` file.
     ///
     /// # Errors
     /// As [`Definition::parse`]; `Format` when the line `---` is missing.
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn broken_lines_are_told_by_number() {
+    fn broken_lines_are_reported_by_number() {
         for (text, part) in [
             ("int32", "line 1: a type needs a name"),
             ("int32 a\nint32 9", "line 2: a name begins"),

@@ -1,24 +1,24 @@
-//! ROS 2's hashes of types (REP 2016): SHA-256 of the type description as JSON.
+//! ROS 2's type hashes (REP 2016): SHA-256 of the type description as JSON.
 
 use opendr_engine::Result;
 use sha2::{Digest, Sha256};
 
 use crate::{Array, BaseType, Definition, Field, FieldType, Library, Primitive, Service, TypeName};
 
-/// The field that a message without fields has on the wire.
+/// Dummy field of messages without fields.
 pub(crate) const EMPTY_FIELD: &str = "structure_needs_at_least_one_member";
 
-/// The hash of a message, `RIHS01_` and 64 digits.
+/// Returns the hash of a message, `RIHS01_` and 64 digits.
 ///
 /// # Errors
-/// `NotFound` for a type that is used and not defined.
+/// `NotFound` for an undefined type.
 pub fn rihs01(library: &Library, definition: &Definition) -> Result<String> {
     let used = library.dependencies(definition)?;
     let used: Vec<_> = used.into_iter().map(|used| (used.name.ros2(), used.fields.as_slice())).collect();
     Ok(hash((definition.name.ros2(), definition.fields.as_slice()), &used))
 }
 
-/// The hash of a service: of its request, response and event.
+/// Returns the hash of a service: of its request, response and event.
 ///
 /// # Errors
 /// As [`rihs01`].

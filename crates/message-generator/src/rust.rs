@@ -1,4 +1,4 @@
-//! Definitions as Rust: structs, and the table of all messages that the crate `opendr-messages` is made from.
+//! Generation of the Rust source of `opendr-messages`: structs, and the table of all messages.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -15,17 +15,16 @@ use crate::{
 const HEAD: &str =
     "// Made by `cargo xtask generate` from the definitions in `msg/` and `ros1/`: not edited by hand.\n";
 
-/// The longest array that serde and `Default` know by themselves.
+/// Maximum length of arrays with `Default` and serde's traits.
 const LONGEST_KNOWN_ARRAY: usize = 32;
 
-/// What a message is called in ROS 1, where the name differs; `None` where ROS 1 has none.
+/// Names of messages in ROS 1, where they differ; `None` for a message that ROS 1 does not have.
 pub type Ros1Names = BTreeMap<TypeName, Option<TypeName>>;
 
-/// Paths and texts of the source files that stand for the messages of `ros2`, and for those of `ros1` whose fields
-/// differ.
+/// Returns paths and contents of the source files for the messages of `ros2`, and for those of `ros1` with other fields.
 ///
 /// # Errors
-/// `NotFound` for a type that is used and not defined.
+/// `NotFound` for an undefined type.
 pub fn rust_files(ros2: &Library, ros1: &Library, names: &Ros1Names) -> Result<BTreeMap<String, String>> {
     let writer = Writer { ros2, ros1, names };
     let mut files = BTreeMap::new();
@@ -91,7 +90,7 @@ fn modules(paths: &[String]) -> String {
     text
 }
 
-/// `sensor_msgs`, `Image`: `SensorMsgsImage`.
+/// Returns the enum variant of a type: `SensorMsgsImage` for `sensor_msgs` and `Image`.
 fn variant(TypeName { package, name }: &TypeName) -> String {
     let mut text = String::new();
     for word in package.split('_') {
@@ -102,7 +101,7 @@ fn variant(TypeName { package, name }: &TypeName) -> String {
     text + name
 }
 
-/// `Trigger_Request`: `TriggerRequest`.
+/// Returns the struct name: `TriggerRequest` for `Trigger_Request`.
 fn struct_name(name: &TypeName) -> String {
     name.name.replace('_', "")
 }
@@ -114,7 +113,7 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// What stands for a message in ROS 1.
+    /// Returns the ROS 1 definition of a message, if there is one.
     fn ros1_form(&self, definition: &Definition) -> Result<Option<&Definition>> {
         match self.names.get(&definition.name) {
             Some(None) => Ok(None),
@@ -123,7 +122,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Whether two forms of a message differ on the wire, but for the header's `seq`, which the format itself writes.
+    /// Returns whether two forms of a message differ in the wire format, apart from the header's `seq`, which the format adds.
     fn differs(&self, ros2: &Definition, ros1: &Definition) -> Result<bool> {
         if ros2.name == TypeName::new("std_msgs", "Header") {
             return Ok(false);
@@ -147,7 +146,7 @@ impl Writer<'_> {
         Ok(false)
     }
 
-    /// The Rust path of a message as a file of `package` writes it.
+    /// Returns the Rust path of a message within the file of `package`.
     fn path(&self, name: &TypeName, package: &str, prefix: &str) -> Result<String> {
         let own = !prefix.is_empty()
             && match self.ros2.get(name) {
@@ -231,10 +230,10 @@ impl Writer<'_> {
         Ok(text)
     }
 
-    /// The Rust type of a field and serde's attribute for it.
+    /// Returns the Rust type of a field and its serde attribute.
     fn field_type(&self, field: &Field, package: &str, prefix: &str) -> Result<(String, &'static str)> {
         let base = match &field.field_type.base {
-            // There is a message of this name in the package.
+            // The package has a message of the name String.
             BaseType::Primitive(Primitive::String) if package == "std_msgs" => {
                 "std::string::String".to_owned()
             }
@@ -276,7 +275,7 @@ impl Writer<'_> {
                 "same()".to_owned()
             };
             let mut used = self.ros1.dependencies(form)?;
-            // ROS 1 knows times and durations by themselves.
+            // Time and duration are primitives in ROS 1.
             used.retain(|used| self.names.get(&used.name) != Some(&None));
             let _ = writeln!(
                 table,
@@ -292,7 +291,7 @@ impl Writer<'_> {
     }
 }
 
-/// Whether a message begins with stamp and frame.
+/// Returns whether a message begins with a header.
 fn has_header(definition: &Definition) -> bool {
     let base = definition.fields.first().map(|field| &field.field_type.base);
     base == Some(&BaseType::Message(TypeName::new("std_msgs", "Header")))

@@ -1,10 +1,10 @@
-//! Definitions as text again: what recordings and ROS 1 connections carry.
+//! Definitions as text, for recordings and ROS 1 connections.
 
 use std::fmt::Write as _;
 
 use crate::{Array, BaseType, Definition};
 
-/// The keyword of a type that ROS 1 has built in.
+/// Returns the keyword of a primitive type of ROS 1.
 pub(crate) fn ros1_keyword(base: &BaseType) -> Option<&'static str> {
     match base {
         BaseType::Primitive(primitive) => Some(primitive.keyword()),
@@ -26,7 +26,7 @@ pub(crate) fn array_suffix(array: Array) -> String {
     }
 }
 
-/// The lines of a definition, without comments; `ros1` writes ROS 1's built-in times and no default values.
+/// Returns the lines of a definition without comments; with `ros1`, in ROS 1's syntax of times and without default values.
 pub fn definition_text(definition: &Definition, ros1: bool) -> String {
     let mut text = String::new();
     for constant in &definition.constants {

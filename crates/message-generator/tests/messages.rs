@@ -1,4 +1,4 @@
-//! The checked-in sources are what the generator makes of the definitions.
+//! The generated sources in the repository are up to date.
 #![allow(clippy::unwrap_used)]
 
 use std::collections::BTreeMap;
@@ -22,7 +22,7 @@ fn names(text: &str) -> Ros1Names {
         .collect()
 }
 
-/// Asked for when the test runs: a build folder that clones share holds programs of another clone.
+/// Read at run time, since a build folder shared by several clones may contain programs of another clone.
 fn crate_folder() -> PathBuf {
     PathBuf::from(std::env::var_os("CARGO_MANIFEST_DIR").unwrap())
 }
@@ -50,7 +50,7 @@ fn formatted(files: BTreeMap<String, String>, folder: &Path) -> BTreeMap<String,
 }
 
 #[test]
-fn the_sources_are_what_the_generator_makes() {
+fn generated_sources_are_up_to_date() {
     let root = crate_folder().join("../messages");
     let ros2 = Library::open(&root.join("msg")).unwrap();
     let ros1 = ros2.with_overrides(&root.join("ros1")).unwrap();

@@ -1,4 +1,4 @@
-//! Reads messages and writes them again: for every line `TYPE WIRE HEX` a line of hexadecimal digits, or `error: ...`.
+//! Reads and rewrites messages: for every line `TYPE WIRE HEX` prints a line of hexadecimal digits, or `error: ...`.
 //!
 //! WIRE is `cdr` or `ros1`, or two of them with `>` between to read the one and write the other. Requests and responses
 //! of services are types too (`std_srvs/srv/SetBool_Request`).
@@ -13,8 +13,8 @@ use std::io::{BufRead, Write, stdin, stdout};
 
 use opendr_engine::{Error, Result};
 use opendr_messages::{
-    Message, MessageType, RosService, StdSrvsEmpty, StdSrvsSetBool, StdSrvsTrigger, Wire, cdr_from_message,
-    message_from_cdr, message_from_ros1, ros1_from_message,
+    Message, MessageType, RosService, StdSrvsEmpty, StdSrvsSetBool, StdSrvsTrigger, WireFormat,
+    cdr_from_message, message_from_cdr, message_from_ros1, ros1_from_message,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -34,7 +34,7 @@ fn main() -> std::io::Result<()> {
 fn echo(line: &str) -> Result<Vec<u8>> {
     let mut words = line.splitn(3, ' ');
     let (Some(name), Some(wires), Some(digits)) = (words.next(), words.next(), words.next()) else {
-        return Err(Error::invalid_input("a line is TYPE WIRE HEX"));
+        return Err(Error::invalid_input("a line must be TYPE WIRE HEX"));
     };
     let (from, to) = wires.split_once('>').unwrap_or((wires, wires));
     let (from, to) = (wire(from)?, wire(to)?);
@@ -54,21 +54,21 @@ fn echo(line: &str) -> Result<Vec<u8>> {
     }
 }
 
-fn again<M: Serialize + DeserializeOwned>(from: Wire, to: Wire, bytes: &[u8]) -> Result<Vec<u8>> {
+fn again<M: Serialize + DeserializeOwned>(from: WireFormat, to: WireFormat, bytes: &[u8]) -> Result<Vec<u8>> {
     let message: M = match from {
-        Wire::Cdr => message_from_cdr(bytes)?,
-        Wire::Ros1 => message_from_ros1(bytes)?,
+        WireFormat::Cdr => message_from_cdr(bytes)?,
+        WireFormat::Ros1 => message_from_ros1(bytes)?,
     };
     match to {
-        Wire::Cdr => cdr_from_message(&message),
-        Wire::Ros1 => ros1_from_message(&message),
+        WireFormat::Cdr => cdr_from_message(&message),
+        WireFormat::Ros1 => ros1_from_message(&message),
     }
 }
 
-fn wire(name: &str) -> Result<Wire> {
+fn wire(name: &str) -> Result<WireFormat> {
     match name {
-        "cdr" => Ok(Wire::Cdr),
-        "ros1" => Ok(Wire::Ros1),
+        "cdr" => Ok(WireFormat::Cdr),
+        "ros1" => Ok(WireFormat::Ros1),
         _ => Err(Error::invalid_input(format!("no wire {name:?}; there are cdr and ros1"))),
     }
 }
@@ -79,7 +79,9 @@ fn bytes(digits: &str) -> Result<Vec<u8>> {
         [high, low] => Some(digit(high)? << 4 | digit(low)?),
         _ => None,
     });
-    pairs.collect::<Option<_>>().ok_or_else(|| Error::invalid_input("odd digits, or none of hexadecimal"))
+    pairs
+        .collect::<Option<_>>()
+        .ok_or_else(|| Error::invalid_input("an odd number of digits, or not hexadecimal"))
 }
 
 fn hex(bytes: &[u8]) -> String {

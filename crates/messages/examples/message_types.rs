@@ -4,7 +4,7 @@
 //! $ cargo run -p opendr-messages --example message_types
 //! ```
 
-use opendr_messages::{MessageType, SERVICE_TYPES, Wire};
+use opendr_messages::{MessageType, SERVICE_TYPES, WireFormat};
 use serde_json::json;
 
 fn main() -> opendr_engine::Result<()> {
@@ -15,10 +15,10 @@ fn main() -> opendr_engine::Result<()> {
             json!({
                 "message": message.ros2_name(),
                 "rihs01": message.rihs01(),
-                "definition": message.definition(Wire::Cdr)?,
+                "definition": message.definition(WireFormat::Cdr)?,
                 "ros1": ros1.map(|known| known.name),
                 "md5sum": ros1.map(|known| known.md5sum),
-                "ros1_definition": message.definition(Wire::Ros1).ok(),
+                "ros1_definition": message.definition(WireFormat::Ros1).ok(),
             })
         );
     }

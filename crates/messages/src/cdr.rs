@@ -1,5 +1,5 @@
-//! CDR, as ROS 2 sends messages over DDS and writes them into recordings: a header of 4 bytes, then the fields, each
-//! aligned to its size (OMG DDSI-RTPS 2.5, section 10; plain CDR, version 1).
+//! CDR, the format of ROS 2 messages in DDS and recordings: a header of 4 bytes, then the fields, each aligned to its size (OMG
+//! DDSI-RTPS 2.5, section 10; plain CDR, version 1).
 
 use byteorder::{BigEndian, LittleEndian};
 use cdr_encoding::CdrDeserializer;
@@ -9,10 +9,10 @@ use serde::de::{DeserializeOwned, DeserializeSeed};
 
 use crate::{Message, MessageType};
 
-/// Plain CDR, little-endian; the last two bytes are options and unused.
+/// Header of plain CDR, little-endian; the last two bytes are unused options.
 const LITTLE_ENDIAN: [u8; 4] = [0, 1, 0, 0];
 
-/// A message as CDR, little-endian, with its header.
+/// Writes a message as little-endian CDR with its header.
 ///
 /// # Errors
 /// `Internal` for a field that CDR cannot hold: more than 2^32 - 1 elements.
@@ -23,10 +23,10 @@ pub fn cdr_from_message(message: &impl Serialize) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Reads CDR with its header, of either byte order. Bytes after the message are padding.
+/// Reads CDR with its header, in either byte order. Bytes after the message are padding.
 ///
 /// # Errors
-/// `Format` for bytes that end early, a length that is larger than what there is, or text that is not UTF-8.
+/// `Format` for incomplete bytes, a length beyond the end, or text that is not UTF-8.
 pub fn message_from_cdr<M: DeserializeOwned>(bytes: &[u8]) -> Result<M> {
     let (order, body) = split_header(bytes)?;
     let read = match order {
@@ -36,7 +36,7 @@ pub fn message_from_cdr<M: DeserializeOwned>(bytes: &[u8]) -> Result<M> {
     read.map(|(message, _)| message).map_err(|error| unreadable(std::any::type_name::<M>(), bytes, &error))
 }
 
-/// As [`message_from_cdr`], of a type that is known at run time.
+/// As [`message_from_cdr`], for a type known at run time.
 pub(crate) fn seeded_message_from_cdr(message_type: MessageType, bytes: &[u8]) -> Result<Message> {
     let (order, body) = split_header(bytes)?;
     let read = match order {
@@ -56,7 +56,7 @@ fn split_header(bytes: &[u8]) -> Result<(Order, &[u8])> {
         [0, 1, _, _, body @ ..] => Ok((Order::Little, body)),
         [0, 0, _, _, body @ ..] => Ok((Order::Big, body)),
         [a, b, _, _, ..] => Err(Error::unsupported(format!(
-            "a message in the representation {a:#04x} {b:#04x}; OpenDR reads plain CDR (0x00 0x00 and 0x00 0x01)"
+            "the message has the representation {a:#04x} {b:#04x}; OpenDR reads plain CDR (0x00 0x00 and 0x00 0x01)"
         ))),
         _ => Err(Error::format(format!("{} bytes are too few for a message in CDR", bytes.len()))),
     }
@@ -64,5 +64,5 @@ fn split_header(bytes: &[u8]) -> Result<(Order, &[u8])> {
 
 #[cold]
 fn unreadable(name: &str, bytes: &[u8], error: &cdr_encoding::Error) -> Error {
-    Error::format(format!("{} bytes are no {name} in CDR: {error}", bytes.len()))
+    Error::format(format!("{} bytes cannot be read as {name} in CDR: {error}", bytes.len()))
 }

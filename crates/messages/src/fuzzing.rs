@@ -1,15 +1,15 @@
-//! The parsers of this crate, for the fuzzers: they may refuse what they are given, they may not panic.
+//! Entry points of the fuzzers: the parsers may refuse their input, but must not panic.
 
-use crate::{Message, MessageType, Wire};
+use crate::{Message, MessageType, WireFormat};
 
-/// A message: its type's number, the wire, its bytes. What was read is written again and read back the same.
+/// Parses a message from the index of its type, the wire format and its bytes, and checks the round trip.
 pub fn ros_message(bytes: &[u8]) {
     let [number, wire, bytes @ ..] = bytes else { return };
     let known = MessageType::ALL.iter().cycle().nth(usize::from(*number));
-    let wire = if wire % 2 == 0 { Wire::Cdr } else { Wire::Ros1 };
+    let wire = if wire % 2 == 0 { WireFormat::Cdr } else { WireFormat::Ros1 };
     let Some(message) = known.and_then(|known| Message::from_bytes(*known, wire, bytes).ok()) else { return };
-    for wire in [Wire::Cdr, Wire::Ros1] {
-        // NaN is no message's equal, so bytes are compared.
+    for wire in [WireFormat::Cdr, WireFormat::Ros1] {
+        // NaN differs from itself, so bytes are compared.
         if let Ok(written) = message.to_bytes(wire) {
             let again = Message::from_bytes(message.message_type(), wire, &written);
             assert_eq!(again.and_then(|again| again.to_bytes(wire)).ok(), Some(written));

@@ -1,4 +1,4 @@
-//! Arrays longer than serde knows by itself: a 6 x 6 covariance.
+//! Serialisation of arrays longer than serde supports, such as a 6 x 6 covariance.
 
 use std::fmt;
 use std::marker::PhantomData;

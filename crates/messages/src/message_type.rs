@@ -1,4 +1,4 @@
-//! What messages know of themselves.
+//! Message types, and their names, hashes and definitions.
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
@@ -10,56 +10,55 @@ use serde::de::DeserializeOwned;
 
 use crate::{Message, MessageType, cdr};
 
-/// How messages are written as bytes.
+/// Wire format of messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Wire {
-    /// ROS 1's format: little-endian, without gaps.
+pub enum WireFormat {
+    /// ROS 1's format: little-endian, without padding.
     Ros1,
-    /// ROS 2's: CDR with its header of 4 bytes, as DDS sends it and recordings hold it.
+    /// ROS 2's format: CDR with its header of 4 bytes, as in DDS and recordings.
     Cdr,
 }
 
-/// A message type as ROS 1 knows it.
+/// A message type in ROS 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Ros1Type {
-    /// Its name, e.g. `"sensor_msgs/Image"`.
+    /// Name, such as `"sensor_msgs/Image"`.
     pub name: &'static str,
-    /// The sum that nodes compare before they talk.
+    /// md5 sum, which nodes compare at the connection.
     pub md5sum: &'static str,
     pub(crate) text: &'static str,
     pub(crate) uses: &'static [&'static str],
 }
 
-/// A struct that is a message.
+/// A message struct.
 pub trait RosMessage:
     Clone + Default + PartialEq + Serialize + DeserializeOwned + Into<Message> + Send + Sync + 'static
 {
-    /// Which one.
+    /// Type of the message.
     const TYPE: MessageType;
 
-    /// The message in ROS 1's format.
+    /// Writes the message in ROS 1's format.
     ///
     /// # Errors
-    /// `Unsupported` when ROS 1 has no such message.
+    /// `Unsupported` when ROS 1 does not have the message.
     fn to_ros1(&self) -> Result<Vec<u8>>;
 
-    /// Reads ROS 1's format.
+    /// Reads a message in ROS 1's format.
     ///
     /// # Errors
-    /// `Format` for bytes that are no such message; `Unsupported` when ROS 1 has none.
+    /// `Format` for bytes of another form; `Unsupported` when ROS 1 does not have the message.
     fn from_ros1(bytes: &[u8]) -> Result<Self>;
 }
 
 impl MessageType {
-    /// The type's name and all definitions that it needs in the spelling of `wire`, as recordings and ROS 1
-    /// connections carry them.
+    /// Returns the definition with those of all contained types, in the syntax of `wire`, as in recordings and ROS 1 connections.
     ///
     /// # Errors
-    /// `Unsupported` when ROS 1 has no such message.
-    pub fn definition(self, wire: Wire) -> Result<String> {
+    /// `Unsupported` when ROS 1 does not have the message.
+    pub fn definition(self, wire: WireFormat) -> Result<String> {
         let (text, uses) = match wire {
-            Wire::Cdr => self.ros2_text(),
-            Wire::Ros1 => {
+            WireFormat::Cdr => self.ros2_text(),
+            WireFormat::Ros1 => {
                 let known = self.ros1().ok_or_else(|| not_in_ros1(self))?;
                 (known.text, known.uses)
             }
@@ -67,11 +66,11 @@ impl MessageType {
         let mut whole = text.to_owned();
         for name in uses {
             let used = Self::ALL.iter().find_map(|used| match wire {
-                Wire::Cdr => {
+                WireFormat::Cdr => {
                     let (package, short) = used.package_and_name();
                     (name.split_once('/') == Some((package, short))).then(|| used.ros2_text().0)
                 }
-                Wire::Ros1 => used.ros1().filter(|known| known.name == *name).map(|known| known.text),
+                WireFormat::Ros1 => used.ros1().filter(|known| known.name == *name).map(|known| known.text),
             });
             let _ = write!(whole, "{}\nMSG: {name}\n{}", "=".repeat(80), used.unwrap_or_default());
         }
@@ -80,35 +79,35 @@ impl MessageType {
 }
 
 impl Message {
-    /// The message as bytes.
+    /// Writes the message as bytes.
     ///
     /// # Errors
-    /// `Unsupported` when ROS 1 has no such message.
-    pub fn to_bytes(&self, wire: Wire) -> Result<Vec<u8>> {
+    /// `Unsupported` when ROS 1 does not have the message.
+    pub fn to_bytes(&self, wire: WireFormat) -> Result<Vec<u8>> {
         match wire {
-            Wire::Cdr => cdr::cdr_from_message(self),
-            Wire::Ros1 => self.to_ros1(),
+            WireFormat::Cdr => cdr::cdr_from_message(self),
+            WireFormat::Ros1 => self.to_ros1(),
         }
     }
 
     /// Reads a message of a type.
     ///
     /// # Errors
-    /// `Format` for bytes that are no such message; `Unsupported` when ROS 1 has none.
-    pub fn from_bytes(message_type: MessageType, wire: Wire, bytes: &[u8]) -> Result<Self> {
+    /// `Format` for bytes of another form; `Unsupported` when ROS 1 does not have the message.
+    pub fn from_bytes(message_type: MessageType, wire: WireFormat, bytes: &[u8]) -> Result<Self> {
         match wire {
-            Wire::Cdr => cdr::seeded_message_from_cdr(message_type, bytes),
-            Wire::Ros1 => Self::from_ros1(message_type, bytes),
+            WireFormat::Cdr => cdr::seeded_message_from_cdr(message_type, bytes),
+            WireFormat::Ros1 => Self::from_ros1(message_type, bytes),
         }
     }
 }
 
-/// A type by ROS 2's name (`sensor_msgs/msg/Image`) or ROS 1's (`sensor_msgs/Image`).
+/// Parses the name of a type in ROS 2 (`sensor_msgs/msg/Image`) or ROS 1 (`sensor_msgs/Image`).
 impl FromStr for MessageType {
     type Err = Error;
 
     /// # Errors
-    /// `NotFound` for a message that OpenDR does not know.
+    /// `NotFound` for an unknown message type.
     fn from_str(name: &str) -> Result<Self> {
         let ros1_name: Cow<'_, str> = name.replacen("/msg/", "/", 1).into();
         Self::ALL
@@ -119,13 +118,13 @@ impl FromStr for MessageType {
                     || known.ros1().is_some_and(|known| known.name == ros1_name)
                     || ros1_name.split_once('/') == Some(known.package_and_name())
             })
-            .ok_or_else(|| Error::not_found(format!("OpenDR does not know the message {name:?}")))
+            .ok_or_else(|| Error::not_found(format!("OpenDR does not support the message type {name:?}")))
     }
 }
 
 #[cold]
 pub(crate) fn wrong_type(given: MessageType, wanted: MessageType) -> Error {
-    Error::invalid_input(format!("a message of type {}, not {}", given.ros2_name(), wanted.ros2_name()))
+    Error::invalid_input(format!("the message has type {}, not {}", given.ros2_name(), wanted.ros2_name()))
 }
 
 #[cold]

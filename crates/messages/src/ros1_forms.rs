@@ -1,11 +1,11 @@
-//! Messages that ROS 1 has with other fields, from ROS 2's and back.
+//! Conversion of messages whose fields differ between ROS 1 and ROS 2.
 //!
-//! vision_msgs 0.0.2 tells classes by whole numbers where 4.x has texts: a text that is no number becomes -1, as there is
-//! nothing else to say it with. What ROS 2 alone has (textures of markers) is left out.
+//! vision_msgs 0.0.2 has integer class ids where 4.x has strings; a string that is not a number becomes -1. Fields that only ROS 2
+//! has (textures of markers) are omitted.
 
 use crate::{opendr_msgs, ros1, vision_msgs, visualization_msgs};
 
-/// The class number of a text; -1 for a text that is none.
+/// Returns the class id of a string; -1 if it is not a number.
 fn id_from_class(class: &str) -> i64 {
     class.parse().unwrap_or(-1)
 }
@@ -121,7 +121,7 @@ macro_rules! detections {
 
 detections!(Detection2D Detection2DArray source_img, Detection3D Detection3DArray source_cloud);
 
-/// The box itself is the same in both.
+/// 3D boxes are equal in both versions.
 impl From<&Self> for vision_msgs::BoundingBox3D {
     fn from(bbox: &Self) -> Self {
         bbox.clone()

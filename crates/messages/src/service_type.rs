@@ -1,27 +1,27 @@
-//! What services know of themselves.
+//! Service types, and their names and hashes.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// A service: what is asked and what is answered.
+/// A service with its request and response.
 pub trait RosService {
-    /// What is asked.
+    /// Request.
     type Request: Clone + Default + Serialize + DeserializeOwned + Send + Sync + 'static;
-    /// What is answered.
+    /// Response.
     type Response: Clone + Default + Serialize + DeserializeOwned + Send + Sync + 'static;
-    /// Its names and sums.
+    /// Names and hashes.
     const TYPE: ServiceType;
 }
 
-/// What two nodes compare before one serves the other.
+/// Names and hashes of a service, which client and server compare.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ServiceType {
-    /// The package, e.g. `"std_srvs"`.
+    /// Package, such as `"std_srvs"`.
     pub package: &'static str,
-    /// The name, e.g. `"Trigger"`.
+    /// Name, such as `"Trigger"`.
     pub name: &'static str,
-    /// ROS 1's sum.
+    /// md5 sum of ROS 1.
     pub md5sum: &'static str,
-    /// ROS 2's hash.
+    /// RIHS01 hash of ROS 2.
     pub rihs01: &'static str,
 }

@@ -1,36 +1,36 @@
-//! What the generated tables of messages and services become.
+//! Macros of the generated tables of messages and services.
 
-/// Messages: the enums over them, and what each knows of itself.
+/// Generates the enums over all messages and the implementations of each.
 macro_rules! messages {
     ($($variant:ident($package:ident::$name:ident) = $package_text:literal, $name_text:literal $($header:ident)? {
         ros2: $hash:literal, $text:literal, [$($uses:literal),*];
         $(ros1: $kind:ident($($own:path)?) $ros1_name:literal, $md5:literal, $ros1_text:literal, [$($ros1_uses:literal),*];)?
     })*) => {
-        /// The message types.
+        /// Message types.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         #[non_exhaustive]
         pub enum MessageType { $(#[doc = concat!("[`", $package_text, "::", $name_text, "`](", stringify!($package), "::", stringify!($name), ")")] $variant,)* }
 
         impl MessageType {
-            /// Every type.
+            /// All types.
             pub const ALL: &'static [Self] = &[$(Self::$variant,)*];
 
-            /// Package and name, e.g. `"sensor_msgs"` and `"Image"`.
+            /// Returns package and name, such as `"sensor_msgs"` and `"Image"`.
             pub const fn package_and_name(self) -> (&'static str, &'static str) {
                 match self { $(Self::$variant => ($package_text, $name_text),)* }
             }
 
-            /// ROS 2's spelling, e.g. `"sensor_msgs/msg/Image"`.
+            /// Returns the name in ROS 2, such as `"sensor_msgs/msg/Image"`.
             pub const fn ros2_name(self) -> &'static str {
                 match self { $(Self::$variant => concat!($package_text, "/msg/", $name_text),)* }
             }
 
-            /// ROS 2's hash of the type (REP 2016), `RIHS01_` and 64 digits.
+            /// Returns ROS 2's hash of the type (REP 2016), `RIHS01_` and 64 digits.
             pub const fn rihs01(self) -> &'static str {
                 match self { $(Self::$variant => $hash,)* }
             }
 
-            /// The type in ROS 1; `None` when ROS 1 has none.
+            /// Returns the type in ROS 1; `None` when ROS 1 does not have it.
             pub const fn ros1(self) -> Option<crate::Ros1Type> {
                 match self { $(Self::$variant => messages!(@ros1_type $($ros1_name, $md5, $ros1_text, [$($ros1_uses),*])?),)* }
             }
@@ -43,22 +43,22 @@ macro_rules! messages {
         /// A message of any type.
         #[derive(Debug, Clone, PartialEq)]
         #[non_exhaustive]
-        // Few are held at a time, and moved less often than looked at.
+        // Only a few values exist at a time, and they are rarely moved.
         #[allow(missing_docs, clippy::large_enum_variant)]
         pub enum Message { $($variant($package::$name),)* }
 
         impl Message {
-            /// Which type it is of.
+            /// Returns the type of the message.
             pub const fn message_type(&self) -> MessageType {
                 match self { $(Self::$variant(_) => MessageType::$variant,)* }
             }
 
-            /// Stamp and frame, of a message that begins with them.
+            /// Returns the header of a message that has one.
             pub fn header(&self) -> Option<&std_msgs::Header> {
                 match self { $(messages!(@pattern $variant message $($header)?) => messages!(@header message $($header)?),)* }
             }
 
-            /// Stamp and frame, to set them.
+            /// Returns the mutable header of a message that has one.
             pub fn header_mut(&mut self) -> Option<&mut std_msgs::Header> {
                 match self { $(messages!(@pattern $variant message $($header)?) => messages!(@header_mut message $($header)?),)* }
             }
@@ -72,7 +72,7 @@ macro_rules! messages {
             }
         }
 
-        /// As the message itself.
+        /// Serialised as the message itself.
         impl serde::Serialize for Message {
             fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
                 match self { $(Self::$variant(message) => message.serialize(serializer),)* }
@@ -152,10 +152,10 @@ macro_rules! messages {
     };
 }
 
-/// Services: a marker type each, with its names, sums and hashes.
+/// Generates a marker type for each service, with its names and hashes.
 macro_rules! services {
     ($($variant:ident($request:path, $response:path) = $package:literal, $name:literal, $md5:literal, $hash:literal;)*) => {
-        /// Every service.
+        /// All services.
         pub const SERVICE_TYPES: &[crate::ServiceType] = &[$(<$variant as crate::RosService>::TYPE,)*];
 
         $(

@@ -1,4 +1,4 @@
-//! From COCO's JSON files to its numbers, a line of JSON for each pair of files:
+//! Evaluates COCO results files; prints a line of JSON for each pair of files:
 //! `coco_files bbox|segm|keypoints [--threads N] ANNOTATIONS RESULTS ...`.
 
 use std::error::Error;

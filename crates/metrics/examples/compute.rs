@@ -1,10 +1,11 @@
-//! Computes metrics from lines of JSON on standard input, a line of JSON each on standard output: how tests in other
-//! languages compare them with the reference tools.
+//! Computes metrics from lines of JSON on standard input and writes a line of JSON each to standard output. Tests in
+//! other languages compare the metrics with the reference tools by it.
 //!
-//! A line is `{"metric": NAME, "params": {..}, "samples": [{"prediction": TARGET, "truth": TARGET}, ..], "parts": N}`;
-//! `"end_sequence": true` in a sample ends a sequence after it; with `parts`, samples are spread over so many
-//! accumulators, sequence by sequence where there are sequences, that are then merged. The answer is the report, or
-//! `{"error": TEXT}`. Targets are written as docs/json.md has them.
+//! An input line is
+//! `{"metric": NAME, "params": {..}, "samples": [{"prediction": TARGET, "truth": TARGET}, ..], "parts": N}`.
+//! `"end_sequence": true` in a sample ends a sequence after it. `parts` is the number of accumulators that share the
+//! samples (whole sequences, if there are any) and are then merged. The output line is the report, or
+//! `{"error": TEXT}`. Targets are in the form of docs/json.md.
 
 use std::error::Error;
 use std::io::{self, BufRead, Write};
@@ -32,19 +33,19 @@ struct Sample {
 }
 
 fn main() -> std::result::Result<(), Box<dyn Error>> {
-    let mut answers = io::stdout().lock();
+    let mut output = io::stdout().lock();
     for line in io::stdin().lock().lines() {
         let line = line?;
         match serde_json::from_str::<Case>(&line).map_err(|error| error.to_string()) {
             Ok(case) => match compute(&case) {
-                Ok(report) => serde_json::to_writer(&mut answers, &report)?,
+                Ok(report) => serde_json::to_writer(&mut output, &report)?,
                 Err(error) => {
-                    serde_json::to_writer(&mut answers, &serde_json::json!({"error": error.to_string()}))?
+                    serde_json::to_writer(&mut output, &serde_json::json!({"error": error.to_string()}))?
                 }
             },
-            Err(error) => serde_json::to_writer(&mut answers, &serde_json::json!({"error": error}))?,
+            Err(error) => serde_json::to_writer(&mut output, &serde_json::json!({"error": error}))?,
         }
-        writeln!(answers)?;
+        writeln!(output)?;
     }
     Ok(())
 }
@@ -63,7 +64,7 @@ fn compute(case: &Case) -> Result<Report> {
             sequence += 1;
         }
     }
-    // Last first: the order of merging must not matter.
+    // In reverse order: the order of merging must not matter.
     let mut whole = entry.make(&case.params)?;
     for part in parts.into_iter().rev() {
         whole.merge(part)?;

@@ -1,7 +1,8 @@
-//! Computes the statistics of episodes from lines of JSON on standard input, a line of JSON each on standard output.
+//! Computes the statistics of episodes from lines of JSON on standard input and writes a line of JSON each to standard
+//! output.
 //!
-//! A line is `{"params": {..}, "episodes": [{"task": "reach", "seed": 1, "return": 2.5, "success": true}, ..]}`; the
-//! answer is the report, or `{"error": TEXT}`.
+//! An input line is `{"params": {..}, "episodes": [{"task": "reach", "seed": 1, "return": 2.5, "success": true}, ..]}`;
+//! the output line is the report, or `{"error": TEXT}`.
 
 use std::io::{self, BufRead, Write};
 
@@ -18,14 +19,14 @@ struct Case {
 }
 
 fn main() -> io::Result<()> {
-    let mut answers = io::stdout().lock();
+    let mut output = io::stdout().lock();
     for line in io::stdin().lock().lines() {
-        let answer = serde_json::from_str(&line?).map_err(|error| error.to_string());
-        match answer.and_then(|case| compute(&case).map_err(|error| error.to_string())) {
-            Ok(report) => serde_json::to_writer(&mut answers, &report)?,
-            Err(error) => serde_json::to_writer(&mut answers, &serde_json::json!({"error": error}))?,
+        let case = serde_json::from_str(&line?).map_err(|error| error.to_string());
+        match case.and_then(|case| compute(&case).map_err(|error| error.to_string())) {
+            Ok(report) => serde_json::to_writer(&mut output, &report)?,
+            Err(error) => serde_json::to_writer(&mut output, &serde_json::json!({"error": error}))?,
         }
-        writeln!(answers)?;
+        writeln!(output)?;
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! Metrics without their types: what surfaces hold.
+//! Type-erased metrics, for the surfaces.
 
 use std::any::Any;
 
@@ -13,13 +13,13 @@ pub trait AnyMetric: Send {
     /// As [`Metric::name_classes`].
     fn name_classes(&mut self, classes: &Classes);
 
-    /// Returns a copy that has counted the same.
+    /// Returns a clone.
     fn boxed_clone(&self) -> Box<dyn AnyMetric>;
 
     /// As [`Metric::update`].
     ///
     /// # Errors
-    /// `InvalidInput` for a value of another type than the metric's, else as [`Metric::update`].
+    /// Returns `InvalidInput` for a value of another type than that of the metric; otherwise as [`Metric::update`].
     fn update(&mut self, at: usize, prediction: ValueRef<'_>, truth: ValueRef<'_>) -> Result<f64>;
 
     /// As [`Metric::end_sequence`].
@@ -28,7 +28,7 @@ pub trait AnyMetric: Send {
     /// As [`Metric::merge`].
     ///
     /// # Errors
-    /// `InvalidInput` when `other` is another metric.
+    /// Returns `InvalidInput` if `other` is another metric.
     fn merge(&mut self, other: Box<dyn AnyMetric>) -> Result<()>;
 
     /// As [`Metric::finish`].
@@ -50,13 +50,13 @@ impl<M: Metric> AnyMetric for Typed<M> {
     }
 
     fn update(&mut self, at: usize, prediction: ValueRef<'_>, truth: ValueRef<'_>) -> Result<f64> {
-        let refused = |what: &str, wanted: ValueType, got: ValueRef<'_>| {
-            let (wanted, got) = (wanted.name(), got.value_type().name());
-            Error::invalid_input(format!("the {what} of {} is a {wanted}, not a {got}", M::NAME))
+        let invalid = |what: &str, expected: ValueType, given: ValueRef<'_>| {
+            let (expected, given) = (expected.name(), given.value_type().name());
+            Error::invalid_input(format!("the {what} of {} must be a {expected}, not a {given}", M::NAME))
         };
         let prediction = M::prediction(prediction)
-            .ok_or_else(|| refused("prediction", M::Prediction::TYPE, prediction))?;
-        let truth = M::truth(truth).ok_or_else(|| refused("truth", M::Truth::TYPE, truth))?;
+            .ok_or_else(|| invalid("prediction", M::Prediction::TYPE, prediction))?;
+        let truth = M::truth(truth).ok_or_else(|| invalid("ground truth", M::Truth::TYPE, truth))?;
         self.0.update(at, &prediction, &truth)
     }
 
@@ -82,39 +82,39 @@ impl<M: Metric> AnyMetric for Typed<M> {
     }
 }
 
-/// One metric: its tables, and how to make one.
+/// A metric: its tables and its constructor.
 pub struct MetricEntry {
-    /// As users write it.
+    /// Name, e.g. `"coco_detection"`.
     pub name: &'static str,
-    /// In one line.
+    /// Description in one line.
     pub about: &'static str,
     /// As [`Metric::NUMBERS`].
     pub numbers: &'static [(&'static str, &'static str)],
-    /// As [`Metric::ERRORS`].
-    pub errors: &'static [&'static str],
-    /// Its parameters.
+    /// As [`Metric::LOWER_IS_BETTER`].
+    pub lower_is_better: &'static [&'static str],
+    /// Parameters.
     pub params: &'static [Field],
-    /// As [`Metric::RANKS`].
-    pub ranks: bool,
+    /// As [`Metric::IS_RANKING`].
+    pub is_ranking: bool,
     /// As [`Metric::SEGMENTS`].
     pub segments: bool,
-    /// What learners answer.
+    /// Type of the predictions.
     pub prediction: ValueType,
-    /// What they should answer.
+    /// Type of the ground truth.
     pub truth: ValueType,
     make: fn(&ParamMap) -> Result<Box<dyn AnyMetric>>,
 }
 
 impl MetricEntry {
-    /// The entry of a metric.
+    /// Creates the entry of a metric.
     pub(crate) const fn of<M: Metric>() -> Self {
         Self {
             name: M::NAME,
             about: M::ABOUT,
             numbers: M::NUMBERS,
-            errors: M::ERRORS,
+            lower_is_better: M::LOWER_IS_BETTER,
             params: M::Params::FIELDS,
-            ranks: M::RANKS,
+            is_ranking: M::IS_RANKING,
             segments: M::SEGMENTS,
             prediction: M::Prediction::TYPE,
             truth: M::Truth::TYPE,
@@ -122,15 +122,15 @@ impl MetricEntry {
         }
     }
 
-    /// Whether less is better of its number called `name`.
-    pub fn is_error(&self, name: &str) -> bool {
-        self.errors.contains(&name)
+    /// Returns whether lower values of the number `name` are better.
+    pub fn is_lower_better(&self, name: &str) -> bool {
+        self.lower_is_better.contains(&name)
     }
 
-    /// An accumulator that has counted nothing, with `params` over the defaults.
+    /// Creates an empty accumulator; `params` override the defaults.
     ///
     /// # Errors
-    /// `InvalidParam` for an unknown or wrong parameter.
+    /// Returns `InvalidParam` for an unknown parameter or an invalid value.
     pub fn make(&self, params: &ParamMap) -> Result<Box<dyn AnyMetric>> {
         (self.make)(params)
     }

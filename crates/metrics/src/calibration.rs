@@ -4,47 +4,46 @@ use opendr_engine::{Error, Result};
 
 use crate::{Curves, Figure, Line};
 
-/// Equal bins over 0..=1.
+/// Number of bins of equal width over 0..=1.
 const BINS: usize = 15;
 
-/// What fell into one bin of a [`Calibration`].
+/// One bin of a [`Calibration`].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct CalibrationBin {
-    /// Answers.
+    /// Number of predictions.
     pub count: u64,
-    /// Right answers.
+    /// Number of correct predictions.
     pub correct: u64,
     /// Sum of the confidences.
     pub confidence: f64,
 }
 
-/// Compares how sure answers were with how often they were right, in 15 bins `(i/15, (i+1)/15]` of confidence; a
-/// confidence of 0 falls into the first.
+/// Compares confidence and accuracy in 15 bins `(i/15, (i+1)/15]` of confidence; a confidence of 0 is in the first bin.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Calibration {
     bins: [CalibrationBin; BINS],
 }
 
 impl Calibration {
-    /// Counts one answer.
+    /// Adds a prediction.
     ///
     /// # Errors
-    /// `InvalidInput` when `confidence` is not in 0..=1.
+    /// Returns `InvalidInput` if `confidence` is not in 0..=1.
     pub fn add(&mut self, correct: bool, confidence: f64) -> Result<()> {
         if !(0.0..=1.0).contains(&confidence) {
             return Err(Error::invalid_input(format!(
                 "confidence {confidence} is not in 0..=1; give a probability"
             )));
         }
-        let place = (1..BINS).take_while(|edge| confidence > *edge as f64 / BINS as f64).count();
-        let bin = &mut self.bins[place];
+        let index = (1..BINS).take_while(|edge| confidence > *edge as f64 / BINS as f64).count();
+        let bin = &mut self.bins[index];
         bin.count += 1;
         bin.correct += u64::from(correct);
         bin.confidence += confidence;
         Ok(())
     }
 
-    /// Adds what another accumulator counted.
+    /// Adds the predictions of another accumulator.
     pub fn merge(&mut self, other: &Self) {
         for (bin, more) in self.bins.iter_mut().zip(&other.bins) {
             bin.count += more.count;
@@ -53,26 +52,26 @@ impl Calibration {
         }
     }
 
-    /// The bins, lowest confidence first.
+    /// Returns the bins, lowest confidence first.
     pub fn bins(&self) -> &[CalibrationBin] {
         &self.bins
     }
 
-    /// Mean distance between confidence and accuracy over the bins, weighted by their answers (Eq. 3); `None` without
-    /// answers.
+    /// Returns the mean difference of confidence and accuracy over the bins, weighted by their predictions (Eq. 3); `None`
+    /// without predictions.
     pub fn expected_error(&self) -> Option<f64> {
         let total: u64 = self.bins.iter().map(|bin| bin.count).sum();
         let gaps = self.bins.iter().map(|bin| (bin.correct as f64 - bin.confidence).abs());
         (total > 0).then(|| gaps.sum::<f64>() / total as f64)
     }
 
-    /// The largest distance between confidence and accuracy in a bin (Eq. 5); `None` without answers.
+    /// Returns the largest difference of confidence and accuracy of a bin (Eq. 5); `None` without predictions.
     pub fn maximum_error(&self) -> Option<f64> {
         let filled = self.bins.iter().filter(|bin| bin.count > 0);
         filled.map(|bin| (bin.correct as f64 - bin.confidence).abs() / bin.count as f64).reduce(f64::max)
     }
 
-    /// The reliability diagram; `None` without answers.
+    /// Returns the reliability diagram; `None` without predictions.
     pub(crate) fn figure(&self) -> Option<Figure> {
         let filled = self.bins.iter().filter(|bin| bin.count > 0);
         let mean = |sum: f64, bin: &CalibrationBin| sum / bin.count as f64;
@@ -85,7 +84,7 @@ impl Calibration {
                 title: "Reliability diagram".to_owned(),
                 x: "confidence".to_owned(),
                 y: "accuracy".to_owned(),
-                lines: vec![perfect, Line { label: "answers".to_owned(), points }],
+                lines: vec![perfect, Line { label: "predictions".to_owned(), points }],
             })
         })
     }
@@ -121,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn no_probability_is_refused() {
+    fn invalid_confidences_are_rejected() {
         let mut calibration = Calibration::default();
         for confidence in [f64::NAN, -0.1, 1.1, f64::INFINITY] {
             assert!(calibration.add(true, confidence).is_err());

@@ -1,23 +1,23 @@
-//! What tells classes apart.
+//! Keys of classes.
 
 use std::fmt;
 use std::sync::Arc;
 
 use opendr_engine::target::{Classes, Name};
 
-/// A class, by its number in the data set, or by its label where the data set numbers none.
+/// A class: its index in the data set, or its label if the data set has no index for it.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum ClassKey {
-    /// All classes as one.
+    /// All classes together.
     Any,
-    /// Number.
+    /// Index.
     Number(i64),
     /// Label.
     Label(Arc<str>),
 }
 
 impl ClassKey {
-    /// The class that `name` means beside `own` labels, numbered as in a data set that has the classes `known`.
+    /// Creates the key of `name` with the class names `own`, as an index into the classes `known` of the data set.
     pub(crate) fn new(name: &Name, own: &Classes, known: &Classes) -> Self {
         let label = match name {
             Name::Label(label) => Some(label),
@@ -31,7 +31,7 @@ impl ClassKey {
         }
     }
 
-    /// For people, with the data set's classes at hand.
+    /// Returns the name of the class, from the classes `known` of the data set.
     pub(crate) fn label(&self, known: &Classes) -> String {
         match self {
             Self::Number(index) => {
@@ -57,7 +57,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn by_number_of_the_data_set() {
+    fn keys_are_indices_of_the_data_set() {
         let known: Classes = ["cat", "dog"].into_iter().collect();
         let own: Classes = ["dog", "kite"].into_iter().collect();
         let key = |name: Name, own: &Classes| ClassKey::new(&name, own, &known);

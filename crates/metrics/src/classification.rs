@@ -14,51 +14,51 @@ use crate::{
     ZeroDivision,
 };
 
-/// Most classes of which a confusion matrix is drawn.
+/// Maximum number of classes of a confusion matrix that is drawn.
 const MATRIX_CLASSES: usize = 1000;
 
-/// Most scores of one sample: what the histogram of ranks can grow to.
+/// Maximum number of scores of a sample, which bounds the histogram of ranks.
 const MAX_SCORES: usize = 1 << 20;
 
-/// What a user may set.
+/// Parameters of [`Classification`].
 #[derive(Debug, Clone, Params)]
 pub struct ClassificationParams {
-    /// Classes to average over; none: those that occur as truth or answer.
+    /// Classes to average over; if empty, all that occur as ground truth or prediction.
     pub labels: Vec<i64>,
-    /// What precision, recall and F1 are where their denominator is zero.
+    /// Value of precision, recall and F1 where the denominator is zero.
     pub zero_division: ZeroDivision,
-    /// How many of the best scores may hold the true class for the top-k accuracies.
+    /// Values of k for the top-k accuracies.
     #[param(default = vec![5], range = 1..=1_048_576)]
     pub top_k: Vec<usize>,
 }
 
-/// Counts what was taken for what. Memory grows with the pairs of classes that occur, not with the samples.
+/// Accumulates the confusion matrix. Memory grows with the pairs of classes that occur, not with the samples.
 #[derive(Debug, Clone, Default)]
 pub struct Classification {
     params: ClassificationParams,
-    /// What classes are called.
+    /// Class names by index.
     names: BTreeMap<i64, Arc<str>>,
-    /// The place of each class of the data set in the order of their names; empty where it names none.
+    /// Rank of each class of the data set in the order of class names; empty without names.
     order: Vec<usize>,
-    /// Samples by (truth, answer).
+    /// Number of samples by (ground truth, prediction).
     pairs: BTreeMap<(i64, i64), u64>,
-    /// Samples by the rank of their class among the scores.
+    /// Number of samples by the rank of their class among the scores.
     ranks: Vec<u64>,
     calibration: Calibration,
 }
 
 impl Classification {
-    /// Counts one sample.
+    /// Adds a sample.
     pub fn add(&mut self, truth: i64, predicted: i64) {
         *self.pairs.entry((truth, predicted)).or_default() += 1;
     }
 
-    /// Counts for top-k where the true class ranks among the scores of all classes, beginning with class 0. Of equal
-    /// scores the higher class number ranks first, or where classes are named, the later name: as in scikit-learn's
+    /// Adds the rank of the true class among the scores of all classes, from class 0 on, for the top-k accuracies. Of equal
+    /// scores the higher class index ranks first, or, if classes have names, the later name, as in scikit-learn's
     /// `top_k_accuracy_score` of numbers and of names.
     ///
     /// # Errors
-    /// `InvalidInput` when `truth` has no score, a score is NaN or there are more than 2^20.
+    /// Returns `InvalidInput` if `truth` has no score, a score is NaN, or there are more than 2^20 scores.
     pub fn add_scores(&mut self, truth: i64, scores: &[f32]) -> Result<()> {
         let rank = rank_of_class(truth, scores, &self.order)?;
         self.add_rank(rank);
@@ -72,7 +72,7 @@ impl Classification {
         self.ranks[rank] += 1;
     }
 
-    /// Counts for the calibration how sure one answer was.
+    /// Adds the confidence of a prediction, for the calibration.
     ///
     /// # Errors
     /// As [`Calibration::add`].
@@ -80,41 +80,42 @@ impl Classification {
         self.calibration.add(correct, confidence)
     }
 
-    /// Samples counted.
+    /// Returns the number of samples.
     pub fn samples(&self) -> u64 {
         self.pairs.values().sum()
     }
 
-    /// The classes that occur as truth or answer, ascending.
+    /// Returns the classes that occur as ground truth or prediction, ascending.
     pub fn labels(&self) -> Vec<i64> {
-        let labels: BTreeSet<i64> = self.pairs.keys().flat_map(|(truth, answer)| [*truth, *answer]).collect();
+        let labels: BTreeSet<i64> =
+            self.pairs.keys().flat_map(|(truth, predicted)| [*truth, *predicted]).collect();
         labels.into_iter().collect()
     }
 
-    /// Share of right answers; `None` without samples.
+    /// Returns the fraction of correct predictions; `None` without samples.
     pub fn accuracy(&self) -> Option<f64> {
-        let hits = self.pairs.iter().filter(|((truth, answer), _)| truth == answer);
+        let hits = self.pairs.iter().filter(|((truth, predicted), _)| truth == predicted);
         ratio(hits.map(|(_, count)| count).sum(), self.samples())
     }
 
-    /// Mean recall of the classes that have samples; `None` without samples.
+    /// Returns the mean recall of the classes that have samples; `None` without samples.
     pub fn balanced_accuracy(&self) -> Option<f64> {
         let counts = self.counts();
         mean(counts.values().filter_map(|class| ratio(class.hits, class.support)))
     }
 
-    /// Share of the samples with scores whose class is among the `k` best; `None` without scores. 1 where `k` is at
-    /// least the number of classes.
+    /// Returns the fraction of samples whose class is among the `k` highest scores; `None` without scores. It is 1 if `k` is
+    /// at least the number of classes.
     pub fn top_k(&self, k: usize) -> Option<f64> {
         ratio(self.ranks.iter().take(k).sum(), self.ranks.iter().sum())
     }
 
-    /// How well confidences meet accuracy.
+    /// Returns the calibration of the confidences.
     pub fn calibration(&self) -> &Calibration {
         &self.calibration
     }
 
-    /// Precision, recall and F1 of the classes of [`ClassificationParams::labels`], or of those that occur.
+    /// Returns precision, recall and F1 of the classes of [`ClassificationParams::labels`], or of those that occur.
     pub fn scores(&self) -> ClassScores {
         let counts = self.counts();
         let zero = self.params.zero_division;
@@ -125,12 +126,13 @@ impl Classification {
         ClassScores::new(self.params.labels.iter().map(count), zero)
     }
 
-    /// Counts of truth (row) by answer (column) over `labels`, which ascend; others are left out.
+    /// Returns the confusion matrix over `labels` in ascending order: ground truth by row, prediction by column. Other
+    /// classes are left out.
     pub fn confusion(&self, labels: &[i64]) -> Vec<u64> {
         let side = labels.len();
         let mut counts = vec![0; side * side];
-        for ((truth, answer), count) in &self.pairs {
-            if let (Ok(row), Ok(column)) = (labels.binary_search(truth), labels.binary_search(answer)) {
+        for ((truth, predicted), count) in &self.pairs {
+            if let (Ok(row), Ok(column)) = (labels.binary_search(truth), labels.binary_search(predicted)) {
                 counts[row * side + column] = *count;
             }
         }
@@ -139,11 +141,11 @@ impl Classification {
 
     fn counts(&self) -> BTreeMap<i64, ClassCounts> {
         let mut counts = BTreeMap::<i64, ClassCounts>::new();
-        for ((truth, answer), count) in &self.pairs {
-            counts.entry(*answer).or_default().predicted += count;
+        for ((truth, predicted), count) in &self.pairs {
+            counts.entry(*predicted).or_default().predicted += count;
             let class = counts.entry(*truth).or_default();
             class.support += count;
-            if truth == answer {
+            if truth == predicted {
                 class.hits += count;
             }
         }
@@ -167,31 +169,32 @@ impl Classification {
 impl Metric for Classification {
     const NAME: &'static str = "classification";
     const ABOUT: &'static str =
-        "accuracy, top-k, precision, recall, F1 and confusion matrix as scikit-learn, calibration error";
+        "accuracy, top-k, precision, recall, F1 and confusion matrix as scikit-learn; calibration error";
     const NUMBERS: &'static [(&'static str, &'static str)] = &[
-        ("accuracy", "Share of right answers."),
+        ("accuracy", "Fraction of correct predictions."),
         ("balanced_accuracy", "Mean recall over the classes that occur."),
-        ("top_<k>_accuracy", "Share of samples whose class is among the k best."),
-        ("precision_<average>", "Precision by `micro`, `macro` or `weighted` average over classes."),
-        ("recall_<average>", "Recall, averaged the same way."),
-        ("f1_<average>", "F1, averaged the same way."),
+        ("top_<k>_accuracy", "Fraction of samples whose class is among the k highest scores."),
+        ("precision_<average>", "Precision, `micro`, `macro` or `weighted` average over classes."),
+        ("recall_<average>", "Recall with the same averages."),
+        ("f1_<average>", "F1 with the same averages."),
         (
             "expected_calibration_error",
-            "Mean distance of confidence and accuracy over 15 bins of confidence, weighted by samples.",
+            "Mean difference of confidence and accuracy over 15 bins of confidence, weighted by samples.",
         ),
-        ("maximum_calibration_error", "The largest of these distances."),
-        ("samples", "How many were counted."),
+        ("maximum_calibration_error", "Largest of these differences."),
+        ("samples", "Number of samples."),
     ];
-    const ERRORS: &'static [&'static str] = &["expected_calibration_error", "maximum_calibration_error"];
+    const LOWER_IS_BETTER: &'static [&'static str] =
+        &["expected_calibration_error", "maximum_calibration_error"];
     type Params = ClassificationParams;
     type Prediction = Category;
     type Truth = Category;
 
     fn new(params: &ClassificationParams) -> Result<Self> {
-        let mut seen = BTreeSet::new();
-        if let Some(label) = params.labels.iter().find(|label| !seen.insert(**label)) {
+        let mut unique = BTreeSet::new();
+        if let Some(label) = params.labels.iter().find(|label| !unique.insert(**label)) {
             return Err(Error::invalid_param(format!(
-                "labels name class {label} twice; give each class once"
+                "labels contain class {label} twice; give each class once"
             )));
         }
         Ok(Self { params: params.clone(), ..Self::default() })
@@ -229,19 +232,20 @@ impl Metric for Classification {
         Ok(f64::from(u8::from(correct)))
     }
 
-    /// A list of boxes stands for its surest one's class (recognised faces), and an empty one for class -1.
+    /// Accepts a list of boxes (recognised faces) as the class of its box with the highest score, and an empty one as class
+    /// -1.
     fn prediction(value: ValueRef<'_>) -> Option<Cow<'_, Category>> {
         let ValueRef::BoundingBoxList(list) = value else {
             return Category::from_value_ref(value).map(Cow::Borrowed);
         };
-        let surest = list.boxes.iter().max_by(|one, other| one.confidence.total_cmp(&other.confidence));
-        let Some(surest) = surest else { return Some(Cow::Owned(Category::new(-1, None))) };
-        let class = match &surest.name {
+        let best = list.boxes.iter().max_by(|one, other| one.confidence.total_cmp(&other.confidence));
+        let Some(best) = best else { return Some(Cow::Owned(Category::new(-1, None))) };
+        let class = match &best.name {
             Name::Index(class) => *class,
             Name::Label(label) => list.classes.index(label).unwrap_or(-1),
         };
-        let description = list.label(surest).map(Arc::from);
-        Some(Cow::Owned(Category { description, ..Category::new(class, Some(surest.confidence)) }))
+        let description = list.label(best).map(Arc::from);
+        Some(Cow::Owned(Category { description, ..Category::new(class, Some(best.confidence)) }))
     }
 
     fn merge(&mut self, other: Self) {
@@ -292,7 +296,7 @@ impl Metric for Classification {
     }
 }
 
-/// How many classes rank before class `truth`; see [`Classification::add_scores`].
+/// Returns the number of classes that rank before class `truth`; see [`Classification::add_scores`].
 fn rank_of_class(truth: i64, scores: &[f32], order: &[usize]) -> Result<usize> {
     let class =
         usize::try_from(truth).ok().filter(|class| *class < scores.len() && scores.len() <= MAX_SCORES);
@@ -306,7 +310,7 @@ fn rank_of_class(truth: i64, scores: &[f32], order: &[usize]) -> Result<usize> {
         return Err(Error::invalid_input(format!("score of class {place} is NaN; give numbers")));
     }
     let own = scores[class];
-    // Classes that the data set does not name stand behind those that it does.
+    // Classes without a name in the data set rank after those with one.
     let place = |class: usize| order.get(class).copied().unwrap_or(class);
     let before =
         |(other, score): &(usize, &f32)| **score > own || (**score == own && place(*other) > place(class));

@@ -1,4 +1,4 @@
-//! CLEAR MOT: MOTA, MOTP, switches, fragmentations.
+//! CLEAR MOT: MOTA, MOTP, identity switches, fragmentations.
 //!
 //! K. Bernardin, R. Stiefelhagen, "Evaluating multiple object tracking performance: the CLEAR MOT metrics", EURASIP
 //! Journal on Image and Video Processing 2008; Y. Li, C. Huang, R. Nevatia, CVPR 2009 (mostly tracked and lost).
@@ -11,21 +11,22 @@ use opendr_engine::assignment::cheapest_pairs;
 use opendr_engine::params::Params;
 use opendr_engine::target::TrackingAnnotationList;
 
+use crate::sequences::{SequenceState, Sequences};
 use crate::{Metric, MotRules, Report, TrackingFrame};
 
-/// What [`ClearMot`] and [`Identity`](crate::Identity) are set by.
+/// Parameters of [`ClearMot`] and [`Identity`](crate::Identity).
 #[derive(Debug, Clone, Params)]
 pub struct TrackMatchingParams {
-    /// Boxes match from this intersection over union on.
+    /// Minimum intersection over union of matching boxes.
     #[param(default = 0.5, range = 0.0..=1.0)]
     pub overlap: f64,
-    /// Which rows of truth and answer count: "all", or those that a MOT Challenge counts.
+    /// Rows of ground truth and predictions that count: "all", or those of a MOT Challenge.
     #[param(default = MotRules::All)]
     pub rules: MotRules,
 }
 
 impl TrackMatchingParams {
-    /// The distance of a matching pair, 1 - overlap; infinite for boxes that do not match.
+    /// Returns the distance of a matching pair, 1 - overlap; infinite for boxes that do not match.
     pub(crate) fn distance(&self, overlap: f64) -> f64 {
         match 1.0 - overlap {
             distance if distance <= 1.0 - self.overlap => distance,
@@ -34,45 +35,45 @@ impl TrackMatchingParams {
     }
 }
 
-/// What was counted over whole sequences.
+/// Counts over whole sequences.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ClearMotCounts {
-    /// Pictures.
+    /// Frames.
     pub frames: u64,
-    /// True boxes.
+    /// Ground-truth boxes.
     pub objects: u64,
-    /// Found boxes.
+    /// Predicted boxes.
     pub predictions: u64,
-    /// Different true objects.
+    /// Ground-truth objects.
     pub unique_objects: u64,
-    /// True boxes matched with the track that the object had before, or with its first.
+    /// Ground-truth boxes matched with the previous track of the object, or with its first.
     pub matches: u64,
-    /// True boxes matched with another track than the object had before.
+    /// Ground-truth boxes matched with another track than the previous one of the object (identity switches).
     pub switches: u64,
-    /// Found boxes matched with another object than the track had before.
+    /// Predicted boxes matched with another object than the previous one of the track.
     pub transfers: u64,
-    /// Switches to a track that had matched nothing before.
+    /// Switches to a track without earlier matches.
     pub ascends: u64,
-    /// Transfers to an object that had matched nothing before.
+    /// Transfers to an object without earlier matches.
     pub migrates: u64,
-    /// Found boxes that match nothing.
+    /// Unmatched predicted boxes.
     pub false_positives: u64,
-    /// True boxes that match nothing.
+    /// Unmatched ground-truth boxes.
     pub misses: u64,
-    /// How often an object was lost and found again.
+    /// Number of times that an object is lost and matched again.
     pub fragmentations: u64,
-    /// Objects matched in at least 80 % of their pictures.
+    /// Objects matched in at least 80 % of their frames.
     pub mostly_tracked: u64,
-    /// Objects matched in 20 to 80 % of their pictures.
+    /// Objects matched in 20 to 80 % of their frames.
     pub partially_tracked: u64,
-    /// Objects matched in less than 20 % of their pictures.
+    /// Objects matched in less than 20 % of their frames.
     pub mostly_lost: u64,
-    /// Sum of 1 - intersection over union over matched boxes.
+    /// Sum of 1 - intersection over union of matched boxes.
     pub distance: f64,
 }
 
 impl ClearMotCounts {
-    /// Multiple object tracking accuracy, 1 at best; NaN without true boxes.
+    /// Returns the multiple object tracking accuracy, 1 at best; NaN without ground-truth boxes.
     pub fn mota(&self) -> f64 {
         match self.objects {
             0 => f64::NAN,
@@ -80,8 +81,8 @@ impl ClearMotCounts {
         }
     }
 
-    /// Multiple object tracking precision as py-motmetrics has it: the mean distance, 1 - intersection over union, of
-    /// matched boxes, 0 at best; NaN without any.
+    /// Returns the multiple object tracking precision as defined in py-motmetrics: the mean distance, 1 - intersection over
+    /// union, of matched boxes, 0 at best; NaN without matches.
     pub fn motp(&self) -> f64 {
         self.distance / (self.matches + self.switches) as f64
     }
@@ -113,30 +114,31 @@ impl ClearMotCounts {
     }
 }
 
-/// What a sequence remembers of one true object.
+/// State of a ground-truth object in a sequence.
 #[derive(Debug, Clone, Default)]
 struct Object {
-    seen: u64,
+    frames_present: u64,
     tracked: u64,
     is_lost: bool,
-    /// Its last match.
+    /// Track of its last match.
     track: Option<i64>,
 }
 
 #[derive(Debug, Clone, Default)]
 struct Sequence {
     objects: BTreeMap<i64, Object>,
-    /// The object of each track when it was last matched anew.
+    /// Object of each track at its last new match.
     owners: HashMap<i64, i64>,
-    /// Tracks that have matched something.
+    /// Tracks with matches.
     known_tracks: HashSet<i64>,
     counts: ClearMotCounts,
 }
 
 impl Sequence {
-    /// Pairs of places (true, found) of matching boxes, after what was matched before, and counts them.
+    /// Matches the boxes of a frame, previous matches first, and counts them. Returns pairs of indices (ground truth,
+    /// prediction).
     fn count(&mut self, frame: &TrackingFrame, params: &TrackMatchingParams) -> Vec<(usize, usize)> {
-        let (truth, found) = (frame.truth(), frame.found());
+        let (truth, found) = (frame.truth(), frame.predictions());
         let distances = |(row, at)| params.distance(frame.overlap(row, at));
         let mut matched = vec![false; truth.len()];
         let mut taken = vec![false; found.len()];
@@ -157,7 +159,7 @@ impl Sequence {
             .map(|(row, at)| if matched[row] || taken[at] { f64::INFINITY } else { distances((row, at)) })
             .collect();
         for (row, at) in cheapest_pairs(&costs, found.len()) {
-            self.match_anew(truth[row], found[at]);
+            self.count_new_match(truth[row], found[at]);
             (matched[row], taken[at]) = (true, true);
             pairs.push((row, at));
         }
@@ -167,13 +169,13 @@ impl Sequence {
         self.counts.predictions += found.len() as u64;
         self.counts.false_positives += taken.iter().filter(|taken| !**taken).count() as u64;
         for (id, matched) in truth.iter().zip(matched) {
-            self.see(*id, matched);
+            self.count_object(*id, matched);
         }
         pairs
     }
 
-    /// An object is matched with a track that it did not have in the picture before.
-    fn match_anew(&mut self, id: i64, track: i64) {
+    /// Counts a match with a track that the object did not have in the previous frame.
+    fn count_new_match(&mut self, id: i64, track: i64) {
         let object = self.objects.entry(id).or_default();
         let (before, is_known_object) = (object.track.replace(track), object.tracked > 0);
         let is_known_track = !self.known_tracks.insert(track);
@@ -189,9 +191,9 @@ impl Sequence {
         }
     }
 
-    fn see(&mut self, id: i64, is_matched: bool) {
+    fn count_object(&mut self, id: i64, is_matched: bool) {
         let object = self.objects.entry(id).or_default();
-        object.seen += 1;
+        object.frames_present += 1;
         if is_matched {
             self.counts.fragmentations += u64::from(object.is_lost && object.tracked > 0);
             object.tracked += 1;
@@ -200,13 +202,16 @@ impl Sequence {
         }
         object.is_lost = !is_matched;
     }
+}
 
-    /// The counts, as if the sequence were over.
+impl SequenceState for Sequence {
+    type Counts = ClearMotCounts;
+
     fn counts(&self) -> ClearMotCounts {
         let mut counts = self.counts.clone();
         counts.unique_objects = self.objects.len() as u64;
         for object in self.objects.values() {
-            let share = object.tracked as f64 / object.seen as f64;
+            let share = object.tracked as f64 / object.frames_present as f64;
             let count = match share {
                 share if share >= 0.8 => &mut counts.mostly_tracked,
                 share if share >= 0.2 => &mut counts.partially_tracked,
@@ -216,59 +221,60 @@ impl Sequence {
         }
         counts
     }
+
+    fn add(sum: &mut ClearMotCounts, other: &ClearMotCounts) {
+        sum.add(other.clone());
+    }
 }
 
-/// CLEAR MOT over sequences of pictures.
+/// CLEAR MOT over video sequences.
 #[derive(Debug, Clone)]
 pub struct ClearMot {
     params: TrackMatchingParams,
-    finished: ClearMotCounts,
-    sequence: Sequence,
+    sequences: Sequences<Sequence>,
 }
 
 impl ClearMot {
-    /// Counts the next picture of the sequence; the share of its boxes that match, 0 to 1.
+    /// Counts the next frame of the sequence and returns the fraction of its boxes that match, 0 to 1.
     pub fn count(&mut self, frame: &TrackingFrame) -> f64 {
-        let matches = self.sequence.count(frame, &self.params).len();
-        match frame.truth().len() + frame.found().len() - matches {
+        let matches = self.sequences.open.count(frame, &self.params).len();
+        match frame.truth().len() + frame.predictions().len() - matches {
             0 => 1.0,
             boxes => matches as f64 / boxes as f64,
         }
     }
 
-    /// What was counted, the open sequence included.
+    /// Returns the counts, including those of the open sequence.
     pub fn counts(&self) -> ClearMotCounts {
-        let mut counts = self.finished.clone();
-        counts.add(self.sequence.counts());
-        counts
+        self.sequences.counts()
     }
 }
 
 impl Metric for ClearMot {
     const NAME: &'static str = "clear_mot";
-    const ABOUT: &'static str = "MOTA, MOTP, switches and fragmentations, as py-motmetrics 1.4";
+    const ABOUT: &'static str = "MOTA, MOTP, identity switches and fragmentations, as py-motmetrics 1.4";
     const NUMBERS: &'static [(&'static str, &'static str)] = &[
         ("mota", "1 - (misses + false positives + switches) / objects."),
         ("motp", "Mean distance (1 - IoU) of matches: 0 is best."),
-        ("precision", "Matches among predictions."),
-        ("recall", "Matches among objects."),
-        ("frames", "Frames that were counted."),
-        ("objects", "Boxes of objects."),
-        ("predictions", "Boxes of tracks."),
-        ("unique_objects", "Objects."),
-        ("matches", "Boxes that match and keep their track."),
-        ("switches", "Matches by another track than before."),
-        ("transfers", "Tracks that go over to another object."),
-        ("ascends", "Switches to a track that is new."),
-        ("migrates", "Transfers to an object that is new."),
-        ("false_positives", "Boxes of tracks without an object."),
-        ("misses", "Boxes of objects without a track."),
-        ("fragmentations", "Times that an object is lost and found again."),
+        ("precision", "Fraction of predictions that match."),
+        ("recall", "Fraction of ground-truth boxes that match."),
+        ("frames", "Number of frames."),
+        ("objects", "Number of ground-truth boxes."),
+        ("predictions", "Number of predicted boxes."),
+        ("unique_objects", "Number of ground-truth objects."),
+        ("matches", "Matches by the same track as before."),
+        ("switches", "Matches by another track than before (identity switches)."),
+        ("transfers", "Matches of a track with another object than before."),
+        ("ascends", "Switches to a new track."),
+        ("migrates", "Transfers to a new object."),
+        ("false_positives", "Predicted boxes without a match."),
+        ("misses", "Ground-truth boxes without a match."),
+        ("fragmentations", "Number of times that an object is lost and matched again."),
         ("mostly_tracked", "Objects matched in 80 % of their frames or more."),
         ("partially_tracked", "Objects matched in 20 to 80 %."),
         ("mostly_lost", "Objects matched in less than 20 %."),
     ];
-    const ERRORS: &'static [&'static str] = &[
+    const LOWER_IS_BETTER: &'static [&'static str] = &[
         "motp",
         "switches",
         "transfers",
@@ -284,8 +290,7 @@ impl Metric for ClearMot {
     type Truth = TrackingAnnotationList;
 
     fn new(params: &TrackMatchingParams) -> Result<Self> {
-        let params = params.clone();
-        Ok(Self { params, finished: ClearMotCounts::default(), sequence: Sequence::default() })
+        Ok(Self { params: params.clone(), sequences: Sequences::default() })
     }
 
     fn update(
@@ -298,26 +303,24 @@ impl Metric for ClearMot {
     }
 
     fn end_sequence(&mut self) {
-        self.finished = self.counts();
-        self.sequence = Sequence::default();
+        self.sequences.end();
     }
 
     fn merge(&mut self, other: Self) {
-        self.end_sequence();
-        self.finished.add(other.counts());
+        self.sequences.merge(&other.sequences);
     }
 
     fn finish(&self) -> Report {
         let mut report = Report::new("mota");
         let mut counts = self.counts();
         let detections = (counts.matches + counts.switches) as f64;
-        let shares = [
+        let ratios = [
             ("mota", counts.mota()),
             ("motp", counts.motp()),
             ("precision", detections / counts.predictions as f64),
             ("recall", detections / counts.objects as f64),
         ];
-        shares.into_iter().for_each(|(key, share)| report.statistics.set(key, share));
+        ratios.into_iter().for_each(|(key, ratio)| report.statistics.set(key, ratio));
         for (key, count) in counts.named_mut() {
             report.statistics.set(key, *count as f64);
         }

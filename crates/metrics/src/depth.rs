@@ -1,4 +1,4 @@
-//! Depth and stereo: relative and squared errors, share of pixels within a factor, share of bad pixels.
+//! Depth and stereo: relative and squared errors, fraction of pixels within a factor, fraction of bad pixels.
 
 use std::collections::BTreeMap;
 
@@ -10,50 +10,51 @@ use crate::average::ratio;
 use crate::{Metric, Report};
 
 opendr_engine::choices! {
-    /// What a map tells of each pixel.
+    /// Quantity in a depth map.
     pub enum DepthQuantity {
         /// Distance in metres.
         Depth = "depth",
-        /// Shift between the two pictures of a stereo camera, in pixels.
+        /// Shift between the two images of a stereo camera, in pixels.
         Disparity = "disparity",
     }
 }
 
-/// What a user may set.
+/// Parameters of [`Depth`].
 #[derive(Debug, Clone, Params)]
 pub struct DepthParams {
-    /// What the maps tell.
+    /// Quantity in the maps.
     pub quantity: DepthQuantity,
-    /// Smaller depths do not count as truth; predicted ones are raised to it.
+    /// Smallest depth: smaller ground truth is ignored, smaller predictions are raised to it.
     #[param(default = 1e-3, range = 1e-9..=1e6, unit = "m")]
     pub min_depth: f64,
-    /// Larger depths do not count as truth; predicted ones are lowered to it.
+    /// Largest depth: larger ground truth is ignored, larger predictions are lowered to it.
     #[param(range = 1e-9..=1e9, unit = "m")]
     pub max_depth: Option<f64>,
 }
 
-/// Errors of depth, each a mean over pixels (Eigen et al., 2014).
+/// Errors of depth, each a mean over the pixels of an image (Eigen et al., 2014).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct DepthErrors {
-    /// Distance from the truth as a share of it.
+    /// Absolute error divided by the ground truth.
     pub absolute_relative: f64,
-    /// Squared distance from the truth over it, metres.
+    /// Squared error divided by the ground truth, in metres.
     pub squared_relative: f64,
-    /// Root of the mean squared distance, metres.
+    /// Root mean square error, in metres.
     pub rmse: f64,
-    /// Root of the mean squared distance of the natural logarithms.
+    /// Root mean square error of the natural logarithms.
     pub rmse_log: f64,
-    /// Standard deviation of the distance of the natural logarithms: [`DepthErrors::rmse_log`] at the best scale.
+    /// Standard deviation of the error of the natural logarithms: [`DepthErrors::rmse_log`] at the best scale.
     pub scale_invariant_log: f64,
-    /// Shares of the pixels whose ratio to the truth is within 1.25, 1.25² and 1.25³ (below it, either way).
+    /// Fractions of the pixels whose ratio to the ground truth, or its inverse, is below 1.25, 1.25² and 1.25³.
     pub within: [f64; 3],
 }
 
 impl DepthErrors {
-    /// Over the pixels of one picture whose truth is finite and within `range`, metres; `None` where there is none.
+    /// Computes the errors over the pixels of an image whose ground truth is finite and within `range` metres; `None` if
+    /// there are none.
     ///
     /// # Errors
-    /// `InvalidInput` when the maps differ in size or an answer to such a pixel is NaN.
+    /// Returns `InvalidInput` if the maps differ in size or the prediction of such a pixel is NaN.
     pub fn of(truth: &[f32], predicted: &[f32], range: [f64; 2]) -> Result<Option<Self>> {
         let (mut count, mut sums, mut within) = (0_u64, [0.0; 5], [0_u64; 3]);
         for (truth, predicted) in pairs(truth, predicted, range)? {
@@ -79,7 +80,7 @@ impl DepthErrors {
         }))
     }
 
-    /// All of them under the keys of the report.
+    /// Returns all errors with the keys of the report.
     pub fn numbers(&self) -> [(&'static str, f64); 8] {
         let [first, second, third] = self.within;
         [
@@ -95,31 +96,31 @@ impl DepthErrors {
     }
 }
 
-/// Errors of disparity, counted over pixels.
+/// Errors of disparity, accumulated over pixels.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct DisparityErrors {
-    /// Pixels with a truth.
+    /// Number of pixels with ground truth.
     pub pixels: u64,
-    /// Sum of the distances from the truth, pixels.
+    /// Sum of the absolute errors, in pixels.
     pub distance: f64,
-    /// Pixels more than 1, 2 and 3 pixels off.
+    /// Number of pixels with an error of more than 1, 2 and 3 pixels.
     pub bad: [u64; 3],
-    /// Pixels more than 3 pixels and more than 5 % off: KITTI's outliers, D1.
+    /// Number of pixels with an error of more than 3 pixels and more than 5 %: KITTI's outliers, D1.
     pub outliers: u64,
 }
 
 impl DisparityErrors {
-    /// Over the pixels of one picture whose truth is finite and above 0.
+    /// Computes the errors over the pixels of an image whose ground truth is finite and above 0.
     ///
     /// # Errors
-    /// `InvalidInput` when the maps differ in size or an answer to such a pixel is NaN or infinite.
+    /// Returns `InvalidInput` if the maps differ in size or the prediction of such a pixel is NaN or infinite.
     pub fn of(truth: &[f32], predicted: &[f32]) -> Result<Self> {
         let mut errors = Self::default();
         for (truth, predicted) in pairs(truth, predicted, [f64::MIN_POSITIVE, f64::MAX])? {
             let distance = (predicted - truth).abs();
             if !distance.is_finite() {
                 return Err(Error::invalid_input(
-                    "a disparity is infinite; give numbers, or 0 for what is far",
+                    "a disparity is infinite; give finite numbers, 0 for points at infinity",
                 ));
             }
             errors.pixels += 1;
@@ -140,30 +141,30 @@ impl DisparityErrors {
     }
 }
 
-/// Truth and answer of the pixels that have a truth within `range`; none of them is NaN.
+/// Returns ground truth and prediction of the pixels with ground truth within `range`, after a check for NaN.
 fn pairs(truth: &[f32], predicted: &[f32], range: [f64; 2]) -> Result<impl Iterator<Item = (f64, f64)>> {
     if truth.len() != predicted.len() {
-        let (wanted, given) = (truth.len(), predicted.len());
+        let (expected, given) = (truth.len(), predicted.len());
         return Err(Error::invalid_input(format!(
-            "a map of {given} pixels cannot answer one of {wanted}; give maps of the same size"
+            "a map of {given} pixels cannot be compared with one of {expected}; give maps of the same size"
         )));
     }
     let all =
         truth.iter().zip(predicted).map(|(truth, predicted)| (f64::from(*truth), f64::from(*predicted)));
     let valid = all.filter(move |(truth, _)| (range[0]..=range[1]).contains(truth) && truth.is_finite());
     match valid.clone().any(|(_, predicted)| predicted.is_nan()) {
-        true => Err(Error::invalid_input("the answer to a pixel that has a truth is NaN; give numbers")),
+        true => Err(Error::invalid_input("the prediction of a pixel with ground truth is NaN; give numbers")),
         false => Ok(valid),
     }
 }
 
-/// Adds up errors of pictures. Those of depth are means over pictures, as benchmarks have them; those of disparity are
-/// over all pixels.
+/// Accumulates errors over images. Errors of depth are means over images, as in benchmarks; errors of disparity are over
+/// all pixels.
 #[derive(Debug, Clone, Default)]
 pub struct Depth {
     params: DepthParams,
-    pictures: u64,
-    /// Of the errors of each picture, by key.
+    images: u64,
+    /// Sums of the errors of each image, by key.
     depth: BTreeMap<&'static str, f64>,
     disparity: DisparityErrors,
 }
@@ -176,24 +177,24 @@ impl Depth {
     }
 }
 
-/// Maps of scores `[height, width]`; where the truth is 0, NaN or infinite, there is none.
+/// Predictions and ground truth are maps of scores `[height, width]`; ground truth of 0, NaN or infinity is ignored.
 impl Metric for Depth {
     const NAME: &'static str = "depth";
     const ABOUT: &'static str =
         "relative and root errors and delta of depth; end-point error, bad pixels and D1 of disparity";
     const NUMBERS: &'static [(&'static str, &'static str)] = &[
-        ("abs_rel", "Mean of |answer - truth| / truth."),
-        ("sq_rel", "Mean of (answer - truth)^2 / truth, metres."),
-        ("rmse", "Root mean square error, metres; of each picture, then averaged."),
-        ("rmse_log", "The same of logarithms."),
+        ("abs_rel", "Mean of |prediction - truth| / truth."),
+        ("sq_rel", "Mean of (prediction - truth)^2 / truth, in metres."),
+        ("rmse", "Root mean square error in metres, the mean over images."),
+        ("rmse_log", "Root mean square error of logarithms."),
         ("silog", "Scale-invariant error of logarithms (Eigen et al. 2014)."),
-        ("delta<n>", "Share of pixels whose ratio to the truth is below 1.25^n."),
-        ("end_point_error", "Mean distance in pixels, of disparities."),
-        ("bad_<n>", "Share of pixels that are more than n pixels off."),
-        ("d1", "Share of pixels more than 3 pixels and 5 % off (KITTI)."),
-        ("pictures", "How many were counted."),
+        ("delta<n>", "Fraction of pixels whose ratio to the ground truth is below 1.25^n."),
+        ("end_point_error", "Mean absolute error of disparities, in pixels."),
+        ("bad_<n>", "Fraction of pixels with an error of more than n pixels."),
+        ("d1", "Fraction of pixels with an error of more than 3 pixels and 5 % (KITTI)."),
+        ("pictures", "Number of images."),
     ];
-    const ERRORS: &'static [&'static str] = &[
+    const LOWER_IS_BETTER: &'static [&'static str] = &[
         "abs_rel",
         "sq_rel",
         "rmse",
@@ -218,32 +219,32 @@ impl Metric for Depth {
     }
 
     fn update(&mut self, _at: usize, prediction: &Heatmap, truth: &Heatmap) -> Result<f64> {
-        let (HeatmapValues::Scores(given), HeatmapValues::Scores(wanted)) =
+        let (HeatmapValues::Scores(given), HeatmapValues::Scores(expected)) =
             (prediction.values(), truth.values())
         else {
-            return Err(Error::invalid_input("depth is a map of scores, not of labels"));
+            return Err(Error::invalid_input("depth must be a map of scores, not of labels"));
         };
         if prediction.shape() != truth.shape() {
-            let (given, wanted) = (prediction.shape(), truth.shape());
+            let (given, expected) = (prediction.shape(), truth.shape());
             return Err(Error::invalid_input(format!(
-                "a map of shape {given:?} cannot answer one of {wanted:?}; resize the prediction to the truth"
+                "a map of shape {given:?} cannot be compared with one of {expected:?}; resize the prediction to the ground truth"
             )));
         }
         if self.params.quantity == DepthQuantity::Disparity {
-            let errors = DisparityErrors::of(wanted, given)?;
+            let errors = DisparityErrors::of(expected, given)?;
             self.disparity.add(&errors);
-            self.pictures += u64::from(errors.pixels > 0);
+            self.images += u64::from(errors.pixels > 0);
             return Ok(1.0 - ratio(errors.outliers, errors.pixels).unwrap_or(0.0));
         }
         let range = [self.params.min_depth, self.params.max_depth.unwrap_or(f64::MAX)];
-        let Some(errors) = DepthErrors::of(wanted, given, range)? else { return Ok(1.0) };
+        let Some(errors) = DepthErrors::of(expected, given, range)? else { return Ok(1.0) };
         self.add(errors.numbers());
-        self.pictures += 1;
+        self.images += 1;
         Ok(errors.within[0])
     }
 
     fn merge(&mut self, other: Self) {
-        self.pictures += other.pictures;
+        self.images += other.images;
         self.add(other.depth);
         self.disparity.add(&other.disparity);
     }
@@ -251,7 +252,7 @@ impl Metric for Depth {
     fn finish(&self) -> Report {
         let disparity = self.params.quantity == DepthQuantity::Disparity;
         let mut report = Report::new(if disparity { "d1" } else { "abs_rel" });
-        report.statistics.set("pictures", self.pictures as f64);
+        report.statistics.set("pictures", self.images as f64);
         if disparity {
             let DisparityErrors { pixels, distance, bad, outliers } = self.disparity;
             report.statistics.set("end_point_error", distance / pixels as f64);
@@ -262,7 +263,7 @@ impl Metric for Depth {
             }
         } else {
             for (key, sum) in &self.depth {
-                report.statistics.set(*key, sum / self.pictures as f64);
+                report.statistics.set(*key, sum / self.images as f64);
             }
         }
         report
@@ -294,14 +295,14 @@ mod tests {
     }
 
     #[test]
-    fn answers_out_of_range_are_moved_to_its_ends() {
+    fn predictions_are_clamped_to_the_range() {
         let errors = DepthErrors::of(&[10.0, 90.0], &[100.0, 1.0], [1.0, 80.0]).unwrap().unwrap();
         assert_eq!(errors.absolute_relative, 7.0);
         assert_eq!(DepthErrors::of(&[90.0], &[1.0], [1.0, 80.0]).unwrap(), None);
     }
 
     #[test]
-    fn outliers_are_far_in_pixels_and_in_share() {
+    fn outliers_exceed_pixels_and_fraction() {
         let truth = [10.0, 10.0, 100.0, 100.0, 0.0];
         let errors = DisparityErrors::of(&truth, &[13.0, 14.0, 104.0, 106.0, 50.0]).unwrap();
         assert_eq!((errors.pixels, errors.outliers, errors.bad), (4, 2, [4, 4, 3]));
@@ -309,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn pictures_have_equal_weight() {
+    fn images_have_equal_weight() {
         let mut depth = Depth::default();
         depth.update(0, &map(&[2.0]), &map(&[1.0])).unwrap();
         let mut other = Depth::default();
@@ -323,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn maps_that_do_not_fit_are_refused() {
+    fn invalid_maps_are_rejected() {
         let mut depth = Depth::default();
         assert!(depth.update(0, &map(&[1.0]), &map(&[1.0, 1.0])).is_err());
         assert!(depth.update(0, &map(&[f32::NAN]), &map(&[1.0])).is_err());

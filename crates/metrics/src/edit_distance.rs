@@ -1,28 +1,28 @@
-//! The fewest edits that turn one sequence into another, told apart as RapidFuzz does (which jiwer counts with).
+//! Edit distance of two sequences, with the alignment of RapidFuzz (which jiwer uses).
 //!
-//! Several alignments can have the fewest edits but differ in their hits. RapidFuzz prefers, from the end backwards, a
-//! deletion to an insertion to a substitution or hit, after ends that are alike are cut off, and halves what is too
-//! large for a matrix (Hirschberg); so does this. The matrix is gone through 64 places at once (Myers, 1999; Hyyrö, 2003).
+//! Several alignments may have the fewest edits but differ in their hits. RapidFuzz removes common ends, then prefers,
+//! from the end backwards, a deletion to an insertion to a substitution or hit, and halves inputs that are too large for
+//! a matrix (Hirschberg). This module does the same. 64 matrix entries are computed at once (Myers, 1999; Hyyrö, 2003).
 
 use std::collections::HashMap;
 use std::hash::Hash;
 use std::ops::Range;
 
-/// How a sequence differs from its reference.
+/// Edits of a sequence relative to its reference.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct EditCounts {
-    /// Symbols of the reference that are there.
+    /// Number of symbols of the reference that are correct.
     pub hits: u64,
-    /// Symbols of the reference that are replaced.
+    /// Number of symbols of the reference that are replaced.
     pub substitutions: u64,
-    /// Symbols of the reference that are missing.
+    /// Number of symbols of the reference that are missing.
     pub deletions: u64,
-    /// Symbols that the reference does not have.
+    /// Number of additional symbols.
     pub insertions: u64,
 }
 
 impl EditCounts {
-    /// Of `hypothesis` against `reference`. Takes time in proportion to the length times the number of edits.
+    /// Computes the edits from `reference` to `hypothesis`. Time grows with the length times the number of edits.
     pub fn of<T: Eq + Hash>(reference: &[T], hypothesis: &[T]) -> Self {
         let mut numbers = HashMap::new();
         let [reference, hypothesis] = [reference, hypothesis].map(|symbols| {
@@ -37,12 +37,12 @@ impl EditCounts {
         counts
     }
 
-    /// All edits.
+    /// Returns the number of edits.
     pub fn errors(&self) -> u64 {
         self.substitutions + self.deletions + self.insertions
     }
 
-    /// Adds other counts.
+    /// Adds the counts of `other`.
     pub fn add(&mut self, other: &Self) {
         self.hits += other.hits;
         self.substitutions += other.substitutions;
@@ -50,7 +50,7 @@ impl EditCounts {
         self.insertions += other.insertions;
     }
 
-    /// Counts the edits from `a` to `b`, of which there are at most `most`.
+    /// Counts the edits from `a` to `b`, at most `most`.
     fn align(&mut self, a: &[u32], b: &[u32], most: usize) {
         let (a, b, same) = without_common_ends(a, b);
         self.hits += same as u64;
@@ -59,7 +59,7 @@ impl EditCounts {
         if band * b.len() / 4 < MATRIX_BYTES || a.len() < 65 || b.len() < 10 {
             return self.trace(a, b, most);
         }
-        // The halves have their own fewest edits: where both together are fewest, `a` is cut.
+        // Each half has its own fewest edits; `a` is cut where their sum is smallest.
         let (left, right) = b.split_at(b.len() / 2);
         let begin = last_row(a, left, most);
         let [a_reversed, right_reversed] =
@@ -72,7 +72,7 @@ impl EditCounts {
         self.align(&a[cut..], right, end[cut] as usize);
     }
 
-    /// As [`EditCounts::align`], backwards through a matrix that is kept.
+    /// Like [`EditCounts::align`], by backtracking through a stored matrix.
     fn trace(&mut self, a: &[u32], b: &[u32], most: usize) {
         let (mut kept, mut rows) = (Vec::new(), Vec::with_capacity(b.len()));
         Matrix::new(a, most).sweep(b, |first, blocks| {
@@ -80,7 +80,7 @@ impl EditCounts {
             kept.extend_from_slice(blocks);
         });
         rows.push((0, kept.len()));
-        // How much further the `i`th place of `a` is than the one before it, after `j` symbols of `b`.
+        // Difference of the distances at the `i`th and the previous symbol of `a`, after `j` symbols of `b`.
         let step = |i: usize, j: usize| {
             let (first, start) = rows[j - 1];
             let block = ((i - 1) / 64).checked_sub(first).and_then(|at| kept[start..rows[j].1].get(at));
@@ -104,13 +104,13 @@ impl EditCounts {
     }
 }
 
-/// Two bits for each place, as RapidFuzz keeps them, may take less than this.
+/// Maximum size of the stored matrix at two bits per entry, as in RapidFuzz.
 const MATRIX_BYTES: usize = 1 << 20;
 
-/// Further than any distance.
+/// A number above every distance.
 const FAR: u32 = u32::MAX / 4;
 
-/// What is between the ends that `a` and `b` share, and how many symbols those have.
+/// Returns the sequences without their common ends, and the number of symbols in these ends.
 fn without_common_ends<'a>(a: &'a [u32], b: &'a [u32]) -> (&'a [u32], &'a [u32], usize) {
     let prefix = a.iter().zip(b).take_while(|(one, other)| one == other).count();
     let (a, b) = (&a[prefix..], &b[prefix..]);
@@ -118,13 +118,13 @@ fn without_common_ends<'a>(a: &'a [u32], b: &'a [u32]) -> (&'a [u32], &'a [u32],
     (&a[..a.len() - suffix], &b[..b.len() - suffix], prefix + suffix)
 }
 
-/// The fewest edits from `a` to `b`, or, of short ones, a bound (Ukkonen, 1985: a band around the diagonal, doubled until
-/// it is wide enough).
+/// Returns the fewest edits from `a` to `b`; for short sequences an upper bound (Ukkonen, 1985: a band around the diagonal
+/// that is doubled until it is wide enough).
 fn distance(a: &[u32], b: &[u32]) -> usize {
     let (a, b, _) = without_common_ends(a, b);
     let most = a.len().max(b.len());
     if most <= 256 {
-        // A bound will do where the matrix is small anyway.
+        // A bound suffices for small matrices.
         return most;
     }
     let mut band = a.len().abs_diff(b.len()).max(63);
@@ -137,7 +137,7 @@ fn distance(a: &[u32], b: &[u32]) -> usize {
     }
 }
 
-/// The fewest edits from every beginning of `a` to `b`, right where they are at most `most`.
+/// Returns the fewest edits from every prefix of `a` to `b`, correct where they are at most `most`.
 fn last_row(a: &[u32], b: &[u32], most: usize) -> Vec<u32> {
     let mut row = vec![FAR; a.len() + 1];
     let (mut from, mut differences) = (0, Vec::new());
@@ -155,12 +155,12 @@ fn last_row(a: &[u32], b: &[u32], most: usize) -> Vec<u32> {
     row
 }
 
-/// Differences between the distances at 64 places and those at the places before them.
+/// Differences of the distances at 64 positions to those at the previous positions.
 #[derive(Debug, Clone, Copy)]
 struct Block {
-    /// Where it is 1.
+    /// Positions where the difference is 1.
     plus: u64,
-    /// Where it is -1.
+    /// Positions where the difference is -1.
     minus: u64,
 }
 
@@ -171,11 +171,11 @@ impl Block {
     }
 }
 
-/// The distances between the beginnings of a sequence and those of another, in a band around the diagonal.
+/// The distances between the prefixes of two sequences, in a band around the diagonal.
 struct Matrix {
-    /// Where in the sequence each symbol stands, ascending, symbol after symbol.
+    /// Positions of each symbol in the sequence, ascending, symbol after symbol.
     places: Vec<usize>,
-    /// Where in `places` each symbol begins.
+    /// Start of each symbol in `places`.
     begins: Vec<usize>,
     blocks: Vec<Block>,
     length: usize,
@@ -186,7 +186,7 @@ impl Matrix {
     fn new(a: &[u32], most: usize) -> Self {
         let symbols = a.iter().max().map_or(0, |symbol| *symbol as usize + 1);
         let mut begins = vec![0; symbols + 2];
-        // Counted one too far, so that going through the sequence moves each beginning to where it belongs.
+        // Counted with an offset of one, so that the pass over the sequence moves each start to its final value.
         a.iter().for_each(|symbol| begins[*symbol as usize + 2] += 1);
         for symbol in 2..begins.len() {
             begins[symbol] += begins[symbol - 1];
@@ -197,13 +197,13 @@ impl Matrix {
             places[*next] = at;
             *next += 1;
         }
-        // Before any symbol of the other sequence, every place is one deletion further than the one before. So is, as an
-        // upper bound, a place that the band did not reach yet.
+        // Before any symbol of the other sequence, each position is one deletion further than the previous one. The same
+        // is an upper bound for positions that the band did not reach yet.
         let blocks = vec![Block { plus: u64::MAX, minus: 0 }; a.len().div_ceil(64)];
         Self { places, begins, blocks, length: a.len(), most }
     }
 
-    /// Where `symbol` stands among the places `range`.
+    /// Returns the positions of `symbol` in `range`.
     fn places_of(&self, symbol: u32, range: Range<usize>) -> &[usize] {
         let symbol = symbol as usize;
         let (Some(begin), Some(end)) = (self.begins.get(symbol), self.begins.get(symbol + 1)) else {
@@ -214,8 +214,8 @@ impl Matrix {
         &places[..places.partition_point(|at| *at < range.end)]
     }
 
-    /// Hands the first block of the band and the blocks from there to `each` after every symbol of `b`. Gives the
-    /// distance before the first of the last ones; `None` where the band left the matrix, or there is no symbol.
+    /// Calls `each` with the first block of the band and the blocks from there on, after every symbol of `b`. Returns the
+    /// distance before the first of the last blocks; `None` if the band left the matrix, or there is no symbol.
     fn sweep(&mut self, b: &[u32], mut each: impl FnMut(usize, &[Block])) -> Option<u32> {
         let (mut top, mut edits) = (0, 0);
         let mut equal = vec![0; self.blocks.len()];
@@ -232,7 +232,7 @@ impl Matrix {
             edits += 1;
             let places = self.places_of(*symbol, 64 * first..64 * end);
             places.iter().for_each(|at| equal[at / 64] |= 1 << (at % 64));
-            // Above the band, as above the matrix, distances grow by one.
+            // Above the band, as above the matrix, distances increase by one.
             let mut carry = (1, 0);
             for (block, equal) in self.blocks[first..end].iter_mut().zip(&mut equal[first..end]) {
                 carry = block.advance(*equal, carry);
@@ -245,8 +245,8 @@ impl Matrix {
 }
 
 impl Block {
-    /// Goes on by a symbol that stands where `equal` is set. `carry`: whether the distance just before the first place
-    /// grows or falls by that; gives the same of the last place.
+    /// Advances by a symbol that occurs at the positions set in `equal`. `carry` states whether the distance before the
+    /// first position increases or decreases; the result states the same for the last position.
     fn advance(&mut self, equal: u64, (grows, falls): (u64, u64)) -> (u64, u64) {
         let matched = equal | falls;
         let diagonal = ((matched & self.plus).wrapping_add(self.plus) ^ self.plus) | matched | self.minus;
@@ -281,7 +281,7 @@ mod tests {
         assert_eq!(counts("abcd", "bcde"), [3, 0, 1, 1]);
     }
 
-    /// The plain matrix, and what the counts must add up to.
+    /// Compares with the plain matrix, and checks the sums of the counts.
     fn check(a: &[u8], b: &[u8]) {
         let mut row: Vec<usize> = (0..=b.len()).collect();
         for (i, symbol) in a.iter().enumerate() {
@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn fewest_edits_of_random_texts() {
+    fn edits_of_random_texts() {
         let mut random = Random::new(3);
         for round in 0..200 {
             let letters = 2 + round % 4;
@@ -313,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn fewest_edits_of_texts_that_are_halved() {
+    fn edits_of_halved_texts() {
         let mut random = Random::new(4);
         let a: Vec<u8> = (0..3000).map(|_| random.below(3) as u8).collect();
         let b: Vec<u8> = (0..2500).map(|_| random.below(3) as u8).collect();

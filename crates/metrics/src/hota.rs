@@ -1,4 +1,4 @@
-//! HOTA: detection and association weighed evenly.
+//! HOTA: detection and association with equal weight.
 //!
 //! J. Luiten et al., "HOTA: a higher order metric for evaluating multi-object tracking", International Journal of
 //! Computer Vision 129, 2021. Equal to TrackEval 1.3.
@@ -7,13 +7,13 @@ use std::array::from_fn;
 use std::collections::{BTreeMap, HashMap};
 
 use opendr_engine::Result;
-use opendr_engine::assignment::cheapest_pairs;
 use opendr_engine::params::Params;
 use opendr_engine::target::TrackingAnnotationList;
 
+use crate::sequences::{Indices, SequenceState, Sequences, heaviest_pairs};
 use crate::{Curves, Figure, Line, Metric, MotRules, Report, TrackingFrame};
 
-/// How many localisation thresholds there are: 0.05 to 0.95.
+/// Number of localisation thresholds: 0.05 to 0.95.
 const ALPHAS: usize = 19;
 
 /// One number per threshold.
@@ -23,53 +23,53 @@ fn alpha(at: usize) -> f64 {
     0.05 + at as f64 * 0.05
 }
 
-/// What [`Hota`] is set by.
+/// Parameters of [`Hota`].
 #[derive(Debug, Clone, Params)]
 pub struct HotaParams {
-    /// Which rows of truth and answer count: "all", or those that a MOT Challenge counts.
+    /// Rows of ground truth and predictions that count: "all", or those of a MOT Challenge.
     #[param(default = MotRules::All)]
     pub rules: MotRules,
 }
 
-/// What was counted over whole sequences at each localisation threshold 0.05, 0.1 to 0.95.
+/// Counts over whole sequences at each localisation threshold 0.05, 0.1 to 0.95.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct HotaCounts {
-    /// Boxes matched.
+    /// Matched boxes.
     pub true_positives: PerAlpha<u64>,
-    /// True boxes not matched.
+    /// Unmatched ground-truth boxes.
     pub false_negatives: PerAlpha<u64>,
-    /// Found boxes not matched.
+    /// Unmatched predicted boxes.
     pub false_positives: PerAlpha<u64>,
-    /// Sum of overlaps of matched boxes.
+    /// Sum of the overlaps of matched boxes.
     pub overlap: PerAlpha<f64>,
-    /// Sum over matched boxes of how well object and track coincide: intersection over union of their pictures.
+    /// Sum over matched boxes of the association of object and track: intersection over union of their frames.
     pub association: PerAlpha<f64>,
-    /// The same as a share of the object's pictures.
+    /// Sum over matched boxes of the fraction of the object's frames with the track.
     pub association_recall: PerAlpha<f64>,
-    /// The same as a share of the track's pictures.
+    /// Sum over matched boxes of the fraction of the track's frames with the object.
     pub association_precision: PerAlpha<f64>,
 }
 
-/// The scores at each localisation threshold 0.05, 0.1 to 0.95.
+/// Scores at each localisation threshold 0.05, 0.1 to 0.95.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HotaScores {
-    /// Geometric mean of detection and association.
+    /// HOTA: geometric mean of detection and association.
     pub hota: PerAlpha<f64>,
-    /// Detection.
+    /// Detection accuracy.
     pub deta: PerAlpha<f64>,
-    /// Association.
+    /// Association accuracy.
     pub assa: PerAlpha<f64>,
-    /// Mean overlap of matched boxes; 1 without any.
+    /// Localisation accuracy: mean overlap of matched boxes; 1 without matches.
     pub loca: PerAlpha<f64>,
-    /// Share of true boxes found.
+    /// Detection recall.
     pub detre: PerAlpha<f64>,
-    /// Share of found boxes that are true.
+    /// Detection precision.
     pub detpr: PerAlpha<f64>,
-    /// Share of an object's pictures that its track covers.
+    /// Association recall: fraction of an object's frames that its track covers.
     pub assre: PerAlpha<f64>,
-    /// Share of a track's pictures that its object covers.
+    /// Association precision: fraction of a track's frames that its object covers.
     pub asspr: PerAlpha<f64>,
-    /// Geometric mean of `detre` and `assa`: for open worlds, where not every object is labelled.
+    /// Geometric mean of `detre` and `assa`, for data where not every object is labelled.
     pub owta: PerAlpha<f64>,
 }
 
@@ -90,7 +90,7 @@ impl HotaScores {
 }
 
 impl HotaCounts {
-    /// The scores.
+    /// Computes the scores.
     pub fn scores(&self) -> HotaScores {
         let hits = self.true_positives.map(|hits| hits as f64);
         let share =
@@ -125,34 +125,35 @@ impl HotaCounts {
     }
 }
 
-/// Identities by the order in which they first occur, with the number of their pictures.
+/// Indices of identities, with the number of frames of each.
 #[derive(Debug, Clone, Default)]
 struct Identities {
-    places: HashMap<i64, usize>,
+    indices: Indices,
     frames: Vec<u64>,
 }
 
 impl Identities {
-    fn see(&mut self, identities: &[i64]) -> Vec<usize> {
-        let mut places = Vec::with_capacity(identities.len());
+    /// Counts a frame of each identity and returns their indices.
+    fn count(&mut self, identities: &[i64]) -> Vec<usize> {
+        let mut indices = Vec::with_capacity(identities.len());
         for id in identities {
-            let place = *self.places.entry(*id).or_insert(self.frames.len());
-            if place == self.frames.len() {
+            let index = self.indices.index(*id);
+            if index == self.frames.len() {
                 self.frames.push(0);
             }
-            self.frames[place] += 1;
-            places.push(place);
+            self.frames[index] += 1;
+            indices.push(index);
         }
-        places
+        indices
     }
 }
 
-/// One picture; only pairs that overlap are kept, as the second pass comes when the sequence is over.
+/// One frame with its overlapping pairs, kept for the second pass at the end of the sequence.
 #[derive(Debug, Clone)]
 struct Frame {
     objects: Vec<usize>,
     tracks: Vec<usize>,
-    /// Places in `objects` and `tracks`, and the overlap.
+    /// Indices into `objects` and `tracks`, and the overlap.
     overlaps: Vec<(u32, u32, f64)>,
 }
 
@@ -161,13 +162,13 @@ struct Sequence {
     objects: Identities,
     tracks: Identities,
     frames: Vec<Frame>,
-    /// How often an object and a track could match, every picture weighed by how sure the match is.
+    /// Number of frames in which an object and a track could match, each weighted by the certainty of the match.
     potential: HashMap<(usize, usize), f64>,
 }
 
 impl Sequence {
-    fn see(&mut self, frame: &TrackingFrame) {
-        let (objects, tracks) = (self.objects.see(frame.truth()), self.tracks.see(frame.found()));
+    fn add_frame(&mut self, frame: &TrackingFrame) {
+        let (objects, tracks) = (self.objects.count(frame.truth()), self.tracks.count(frame.predictions()));
         let mut overlaps = Vec::new();
         let mut sums = (vec![0.0; objects.len()], vec![0.0; tracks.len()]);
         for (row, overlaps_of_row) in frame.overlaps().chunks_exact(tracks.len().max(1)).enumerate() {
@@ -189,13 +190,48 @@ impl Sequence {
         self.frames.push(Frame { objects, tracks, overlaps });
     }
 
-    /// How well an object and a track fit each other over the sequence.
+    /// Returns how well an object and a track agree over the sequence, 0 to 1.
     fn alignment(&self, object: usize, track: usize) -> f64 {
         let potential = self.potential.get(&(object, track)).copied().unwrap_or_default();
         potential / ((self.objects.frames[object] + self.tracks.frames[track]) as f64 - potential)
     }
 
-    /// The counts, as if the sequence were over.
+    /// Matches the boxes of one frame and returns the number of matches at each threshold.
+    fn count_frame(
+        &self,
+        frame: &Frame,
+        counts: &mut HotaCounts,
+        matches: &mut BTreeMap<(usize, usize), PerAlpha<u64>>,
+    ) -> PerAlpha<u64> {
+        let (rows, columns) = (frame.objects.len(), frame.tracks.len());
+        let mut overlaps = vec![0.0; rows * columns];
+        let weights = frame.overlaps.iter().map(|&(row, column, overlap)| {
+            let (row, column) = (row as usize, column as usize);
+            overlaps[row * columns + column] = overlap;
+            (row, column, self.alignment(frame.objects[row], frame.tracks[column]) * overlap)
+        });
+        let pairs = heaviest_pairs(rows, columns, weights);
+        let mut hits = [0; ALPHAS];
+        for (row, column, _) in pairs {
+            let overlap = overlaps[row * columns + column];
+            let reached = (0..ALPHAS).take_while(|at| overlap >= alpha(*at) - f64::EPSILON).count();
+            if reached > 0 {
+                let matches =
+                    matches.entry((frame.objects[row], frame.tracks[column])).or_insert([0; ALPHAS]);
+                for at in 0..reached {
+                    hits[at] += 1;
+                    matches[at] += 1;
+                    counts.overlap[at] += overlap;
+                }
+            }
+        }
+        hits
+    }
+}
+
+impl SequenceState for Sequence {
+    type Counts = HotaCounts;
+
     fn counts(&self) -> HotaCounts {
         let mut counts = HotaCounts::default();
         let mut matches: BTreeMap<(usize, usize), PerAlpha<u64>> = BTreeMap::new();
@@ -219,59 +255,27 @@ impl Sequence {
         counts
     }
 
-    /// Matches the boxes of one picture; how many match at each threshold.
-    fn count_frame(
-        &self,
-        frame: &Frame,
-        counts: &mut HotaCounts,
-        matches: &mut BTreeMap<(usize, usize), PerAlpha<u64>>,
-    ) -> PerAlpha<u64> {
-        let columns = frame.tracks.len();
-        let mut overlaps = vec![0.0; frame.objects.len() * columns];
-        let mut costs = overlaps.clone();
-        for &(row, column, overlap) in &frame.overlaps {
-            let (row, column) = (row as usize, column as usize);
-            overlaps[row * columns + column] = overlap;
-            costs[row * columns + column] =
-                -(self.alignment(frame.objects[row], frame.tracks[column]) * overlap);
-        }
-        let mut hits = [0; ALPHAS];
-        for (row, column) in cheapest_pairs(&costs, columns) {
-            let overlap = overlaps[row * columns + column];
-            let reached = (0..ALPHAS).take_while(|at| overlap >= alpha(*at) - f64::EPSILON).count();
-            if reached > 0 {
-                let matches =
-                    matches.entry((frame.objects[row], frame.tracks[column])).or_insert([0; ALPHAS]);
-                for at in 0..reached {
-                    hits[at] += 1;
-                    matches[at] += 1;
-                    counts.overlap[at] += overlap;
-                }
-            }
-        }
-        hits
+    fn add(sum: &mut HotaCounts, other: &HotaCounts) {
+        sum.add(other);
     }
 }
 
-/// HOTA over sequences of pictures. Keeps the overlapping pairs of a sequence until it ends.
+/// HOTA over video sequences. The overlapping pairs of a sequence are kept until it ends.
 #[derive(Debug, Clone)]
 pub struct Hota {
     params: HotaParams,
-    finished: HotaCounts,
-    sequence: Sequence,
+    sequences: Sequences<Sequence>,
 }
 
 impl Hota {
-    /// Counts the next picture of the sequence.
+    /// Counts the next frame of the sequence.
     pub fn count(&mut self, frame: &TrackingFrame) {
-        self.sequence.see(frame);
+        self.sequences.open.add_frame(frame);
     }
 
-    /// What was counted, the open sequence included.
+    /// Returns the counts, including those of the open sequence.
     pub fn counts(&self) -> HotaCounts {
-        let mut counts = self.finished.clone();
-        counts.add(&self.sequence.counts());
-        counts
+        self.sequences.counts()
     }
 }
 
@@ -282,20 +286,22 @@ impl Metric for Hota {
         ("hota", "Geometric mean of detection and association, mean over thresholds .05 to .95."),
         ("deta", "Detection accuracy."),
         ("assa", "Association accuracy."),
-        ("loca", "Accuracy of places: mean IoU of matches."),
-        ("detre", "Recall of detection."),
-        ("detpr", "Precision of detection."),
-        ("assre", "Recall of association."),
-        ("asspr", "Precision of association."),
-        ("owta", "Geometric mean of recall of detection and association: false positives do not count."),
+        ("loca", "Localisation accuracy: mean IoU of matches."),
+        ("detre", "Detection recall."),
+        ("detpr", "Detection precision."),
+        ("assre", "Association recall."),
+        ("asspr", "Association precision."),
+        (
+            "owta",
+            "Geometric mean of detection recall and association accuracy; false positives do not count.",
+        ),
     ];
     type Params = HotaParams;
     type Prediction = TrackingAnnotationList;
     type Truth = TrackingAnnotationList;
 
     fn new(params: &HotaParams) -> Result<Self> {
-        let params = params.clone();
-        Ok(Self { params, finished: HotaCounts::default(), sequence: Sequence::default() })
+        Ok(Self { params: params.clone(), sequences: Sequences::default() })
     }
 
     fn update(
@@ -310,13 +316,11 @@ impl Metric for Hota {
     }
 
     fn end_sequence(&mut self) {
-        self.finished = self.counts();
-        self.sequence = Sequence::default();
+        self.sequences.end();
     }
 
     fn merge(&mut self, other: Self) {
-        self.end_sequence();
-        self.finished.add(&other.counts());
+        self.sequences.merge(&other.sequences);
     }
 
     fn finish(&self) -> Report {

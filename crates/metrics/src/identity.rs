@@ -1,4 +1,4 @@
-//! IDF1, IDP and IDR: how long tracks carry the right identity.
+//! IDF1, IDP and IDR: how long tracks have the correct identity.
 //!
 //! E. Ristani et al., "Performance measures and a data set for multi-target, multi-camera tracking", ECCV workshops
 //! 2016. Equal to py-motmetrics 1.4.
@@ -6,41 +6,41 @@
 use std::collections::{BTreeMap, HashMap};
 
 use opendr_engine::Result;
-use opendr_engine::assignment::cheapest_pairs;
 use opendr_engine::target::TrackingAnnotationList;
 
 use crate::clear_mot::TrackMatchingParams;
+use crate::sequences::{Indices, SequenceState, Sequences, heaviest_pairs};
 use crate::{Metric, Report, TrackingFrame};
 
-/// Boxes counted over whole sequences, every true object given the one track that fits best overall.
+/// Counts of boxes over whole sequences. Every ground-truth object has at most one track, by the best overall assignment.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct IdentityCounts {
-    /// True boxes matched by the object's track.
+    /// Ground-truth boxes matched by the track of the object.
     pub true_positives: u64,
-    /// Found boxes that do not match the track's object.
+    /// Predicted boxes not matched with the object of the track.
     pub false_positives: u64,
-    /// True boxes not matched by the object's track.
+    /// Ground-truth boxes not matched by the track of the object.
     pub false_negatives: u64,
 }
 
 impl IdentityCounts {
-    /// Share of found boxes with the right identity; NaN without any.
+    /// Returns the fraction of predicted boxes with the correct identity; NaN without any.
     pub fn precision(&self) -> f64 {
         self.true_positives as f64 / (self.true_positives + self.false_positives) as f64
     }
 
-    /// Share of true boxes with the right identity; NaN without any.
+    /// Returns the fraction of ground-truth boxes with the correct identity; NaN without any.
     pub fn recall(&self) -> f64 {
         self.true_positives as f64 / (self.true_positives + self.false_negatives) as f64
     }
 
-    /// Harmonic mean of the two; NaN without boxes.
+    /// Returns the harmonic mean of precision and recall; NaN without boxes.
     pub fn f1(&self) -> f64 {
         let hits = 2 * self.true_positives;
         hits as f64 / (hits + self.false_positives + self.false_negatives) as f64
     }
 
-    fn add(&mut self, other: Self) {
+    fn add(&mut self, other: &Self) {
         self.true_positives += other.true_positives;
         self.false_positives += other.false_positives;
         self.false_negatives += other.false_negatives;
@@ -51,28 +51,23 @@ impl IdentityCounts {
 struct Sequence {
     objects: u64,
     predictions: u64,
-    /// In how many pictures an object and a track match.
+    /// Number of frames in which an object and a track match.
     matches: BTreeMap<(i64, i64), u64>,
 }
 
-impl Sequence {
-    /// The counts, as if the sequence were over.
+impl SequenceState for Sequence {
+    type Counts = IdentityCounts;
+
     fn counts(&self) -> IdentityCounts {
         let mut hits = 0;
         for group in groups(&self.matches) {
-            let (mut rows, mut columns) = (HashMap::new(), HashMap::new());
-            for ((object, track), _) in &group {
-                let (next_row, next_column) = (rows.len(), columns.len());
-                rows.entry(*object).or_insert(next_row);
-                columns.entry(*track).or_insert(next_column);
-            }
-            let mut costs = vec![0.0; rows.len() * columns.len()];
-            for ((object, track), count) in &group {
-                costs[rows[object] * columns.len() + columns[track]] = -(*count as f64);
-            }
-            let pairs = cheapest_pairs(&costs, columns.len());
-            hits +=
-                pairs.iter().map(|(row, column)| -costs[row * columns.len() + column] as u64).sum::<u64>();
+            let (mut rows, mut columns) = (Indices::default(), Indices::default());
+            let entry = |((object, track), count): ((i64, i64), u64)| {
+                (rows.index(object), columns.index(track), count as f64)
+            };
+            let counts: Vec<_> = group.into_iter().map(entry).collect();
+            let pairs = heaviest_pairs(rows.len(), columns.len(), counts);
+            hits += pairs.into_iter().map(|(_, _, count)| count as u64).sum::<u64>();
         }
         IdentityCounts {
             true_positives: hits,
@@ -80,9 +75,13 @@ impl Sequence {
             false_negatives: self.objects - hits,
         }
     }
+
+    fn add(sum: &mut IdentityCounts, other: &IdentityCounts) {
+        sum.add(other);
+    }
 }
 
-/// Matches in groups that share neither object nor track: each is an assignment of its own, and small.
+/// Divides matches into groups that share neither object nor track. Each group is a small assignment of its own.
 fn groups(matches: &BTreeMap<(i64, i64), u64>) -> Vec<Vec<((i64, i64), u64)>> {
     let mut of_object: BTreeMap<i64, Vec<(i64, u64)>> = BTreeMap::new();
     let mut of_track: HashMap<i64, Vec<i64>> = HashMap::new();
@@ -106,32 +105,31 @@ fn groups(matches: &BTreeMap<(i64, i64), u64>) -> Vec<Vec<((i64, i64), u64)>> {
     groups
 }
 
-/// IDF1, IDP and IDR over sequences of pictures.
+/// IDF1, IDP and IDR over video sequences.
 #[derive(Debug, Clone)]
 pub struct Identity {
     params: TrackMatchingParams,
-    finished: IdentityCounts,
-    sequence: Sequence,
+    sequences: Sequences<Sequence>,
 }
 
 impl Identity {
-    /// Counts the next picture of the sequence.
+    /// Counts the next frame of the sequence.
     pub fn count(&mut self, frame: &TrackingFrame) {
-        self.sequence.objects += frame.truth().len() as u64;
-        self.sequence.predictions += frame.found().len() as u64;
-        let pairs = frame.truth().iter().flat_map(|id| frame.found().iter().map(move |track| (*id, *track)));
+        let sequence = &mut self.sequences.open;
+        sequence.objects += frame.truth().len() as u64;
+        sequence.predictions += frame.predictions().len() as u64;
+        let pairs =
+            frame.truth().iter().flat_map(|id| frame.predictions().iter().map(move |track| (*id, *track)));
         for (pair, overlap) in pairs.zip(frame.overlaps()) {
             if self.params.distance(*overlap).is_finite() {
-                *self.sequence.matches.entry(pair).or_default() += 1;
+                *sequence.matches.entry(pair).or_default() += 1;
             }
         }
     }
 
-    /// What was counted, the open sequence included.
+    /// Returns the counts, including those of the open sequence.
     pub fn counts(&self) -> IdentityCounts {
-        let mut counts = self.finished;
-        counts.add(self.sequence.counts());
-        counts
+        self.sequences.counts()
     }
 }
 
@@ -139,20 +137,19 @@ impl Metric for Identity {
     const NAME: &'static str = "identity";
     const ABOUT: &'static str = "IDF1, IDP and IDR, as py-motmetrics 1.4";
     const NUMBERS: &'static [(&'static str, &'static str)] = &[
-        ("idf1", "F1 of the best one-to-one match of whole tracks."),
-        ("idp", "Its precision."),
-        ("idr", "Its recall."),
-        ("idtp", "Boxes that are right by that match."),
-        ("idfp", "Predicted boxes that are not."),
-        ("idfn", "Boxes of objects that are not."),
+        ("idf1", "F1 of the best one-to-one assignment of whole tracks."),
+        ("idp", "Precision of that assignment."),
+        ("idr", "Recall of that assignment."),
+        ("idtp", "True positives of that assignment."),
+        ("idfp", "False positives of that assignment."),
+        ("idfn", "False negatives of that assignment."),
     ];
     type Params = TrackMatchingParams;
     type Prediction = TrackingAnnotationList;
     type Truth = TrackingAnnotationList;
 
     fn new(params: &TrackMatchingParams) -> Result<Self> {
-        let params = params.clone();
-        Ok(Self { params, finished: IdentityCounts::default(), sequence: Sequence::default() })
+        Ok(Self { params: params.clone(), sequences: Sequences::default() })
     }
 
     fn update(
@@ -167,13 +164,11 @@ impl Metric for Identity {
     }
 
     fn end_sequence(&mut self) {
-        self.finished = self.counts();
-        self.sequence = Sequence::default();
+        self.sequences.end();
     }
 
     fn merge(&mut self, other: Self) {
-        self.end_sequence();
-        self.finished.add(other.counts());
+        self.sequences.merge(&other.sequences);
     }
 
     fn finish(&self) -> Report {
@@ -207,7 +202,7 @@ mod tests {
         TrackingFrame::new(truth, found, overlaps).unwrap()
     }
 
-    /// Object 1 is followed by tracks 7, 7, 8; object 2 by 8, 8, 7: the best is 1-7 and 2-8 with 2 + 2 of 6 boxes.
+    /// Object 1 is matched by tracks 7, 7, 8; object 2 by 8, 8, 7: the best is 1-7 and 2-8 with 2 + 2 of 6 boxes.
     #[test]
     fn one_track_per_object() {
         let mut metric = new();
@@ -233,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_counted_has_no_score() {
+    fn scores_are_undefined_without_boxes() {
         let report = new().finish();
         assert_eq!((report.statistics.get("idf1"), report.statistics.get("idtp")), (None, Some(0.0)));
     }

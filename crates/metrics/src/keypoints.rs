@@ -1,71 +1,61 @@
-//! Key points: share of correct ones (PCK, PCKh) and its area, normalised mean error (NME), end-point error (EPE), equal
-//! to MMPose.
+//! Keypoints: percentage of correct keypoints (PCK, PCKh) and its area, normalised mean error (NME), end-point error
+//! (EPE), equal to MMPose.
 
 mod matching;
+mod params;
+mod places;
 mod size;
 
-use opendr_engine::params::Params;
 use opendr_engine::target::{Pose, PoseList};
 use opendr_engine::{Error, Result};
 
-pub use size::PoseSize;
+pub use params::{KeypointsParams, PoseSize};
+
+use places::{place_of, places_like};
 
 use crate::average::{mean, ratio};
 use crate::{Curves, Figure, Line, Metric, Report, Table};
 
-/// Most joints of a pose.
+/// Maximum number of joints of a pose.
 const MAX_JOINTS: usize = 4096;
 
-/// Thresholds of the area under the curve: 0, 0.05, .. 0.95, as MMPose.
+/// Number of thresholds of the area under the curve: 0, 0.05 to 0.95, as in MMPose.
 const STEPS: usize = 20;
 
-/// What a user may set.
-#[derive(Debug, Clone, Params)]
-pub struct KeypointsParams {
-    /// What distances are measured in.
-    pub normalize: PoseSize,
-    /// For `joints`: an even number of joints. The size of a pose is the distance between the middle of the first half
-    /// and that of the second: the outer corners of the eyes (300-W: 36, 45), the points around each eye.
-    pub joints: Vec<usize>,
-    /// A joint is correct when it is less than this off, in sizes of the pose.
-    #[param(default = 0.2, range = 0.0..=10.0)]
-    pub threshold: f64,
-}
-
-/// What was counted of one joint.
+/// Counts of one joint.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Joint {
-    /// Poses in which it is annotated.
+    /// Number of poses in which it is annotated.
     count: u64,
     correct: u64,
     within: [u64; STEPS],
-    /// Of the annotated ones, those that were answered.
+    /// Number of annotated poses in which it is predicted.
     found: u64,
-    /// Sum of the distances of those, pixels.
+    /// Sum of the distances in these, in pixels.
     distance: f64,
-    /// The same in sizes of the poses.
+    /// Sum of the normalised distances.
     normalized: f64,
 }
 
-/// Counts joints over poses; bounded memory.
+/// Accumulates joints over poses; memory is bounded.
 #[derive(Debug, Clone, Default)]
 pub struct Keypoints {
     params: KeypointsParams,
     joints: Vec<Joint>,
     names: &'static [&'static str],
     poses: u64,
-    /// Poses that have no size: not counted.
+    /// Number of poses without a size, which are ignored.
     without_size: u64,
 }
 
 impl Keypoints {
-    /// Counts one pose of `size` pixels and gives its share of correct joints; `None` where no joint is annotated.
-    /// Joints that are not annotated are `None` in `truth`; those not found are `None` in `predicted`, count as wrong,
+    /// Adds a pose of `size` pixels and returns its fraction of correct joints; `None` if no joint is annotated. Joints that
+    /// are not annotated are `None` in `truth`. Joints that are not predicted are `None` in `predicted`; they are incorrect
     /// and have no distance.
     ///
     /// # Errors
-    /// `InvalidInput` when the numbers of joints differ or are above 4096, a place is NaN or infinite, or the size is
-    /// not a positive number.
+    /// Returns `InvalidInput` if the numbers of joints differ or are above 4096, a coordinate is NaN or infinite, or the size
+    /// is not a positive number.
     pub fn add(
         &mut self,
         truth: &[Option<[f64; 2]>],
@@ -73,20 +63,20 @@ impl Keypoints {
         size: f64,
     ) -> Result<Option<f64>> {
         if truth.len() != predicted.len() || truth.len() > MAX_JOINTS {
-            let (wanted, given) = (truth.len(), predicted.len());
+            let (expected, given) = (truth.len(), predicted.len());
             return Err(Error::invalid_input(format!(
-                "a pose of {given} joints cannot answer one of {wanted}; give poses of the same joints, at most {MAX_JOINTS}"
+                "a pose of {given} joints cannot be compared with one of {expected}; give poses of the same joints, at most {MAX_JOINTS}"
             )));
         }
         let places = truth.iter().chain(predicted).flatten().flatten();
         if let Some(place) = places.into_iter().chain([&size]).find(|number| !number.is_finite()) {
             return Err(Error::invalid_input(format!(
-                "a place or size of a pose is {place}; give finite numbers"
+                "a coordinate or size of a pose is {place}; give finite numbers"
             )));
         }
         if size <= 0.0 {
             return Err(Error::invalid_input(format!(
-                "a pose of size {size} measures nothing; give more than 0"
+                "the size of a pose is {size}; give a positive number"
             )));
         }
         if self.joints.len() < truth.len() {
@@ -103,9 +93,9 @@ impl Keypoints {
             joint.found += 1;
             joint.distance += distance;
             joint.normalized += distance / size;
-            let right = self.params.is_correct(distance / size);
-            joint.correct += u64::from(right);
-            correct += u64::from(right);
+            let is_correct = self.params.is_correct(distance / size);
+            joint.correct += u64::from(is_correct);
+            correct += u64::from(is_correct);
             for (step, within) in joint.within.iter_mut().enumerate() {
                 *within += u64::from(distance / size < step as f64 / STEPS as f64);
             }
@@ -113,34 +103,34 @@ impl Keypoints {
         Ok(ratio(correct, count))
     }
 
-    /// Share of correct joints: the mean over joints that are annotated somewhere.
+    /// Returns the fraction of correct joints: the mean over joints that are annotated at least once.
     pub fn pck(&self) -> Option<f64> {
         mean(self.joints.iter().filter_map(|joint| ratio(joint.correct, joint.count)))
     }
 
-    /// Share of correct joints over all that are annotated: the mean of the MPII benchmark (PCKh).
+    /// Returns the fraction of correct joints over all annotated joints, as in the MPII benchmark (PCKh).
     pub fn pooled_pck(&self) -> Option<f64> {
         ratio(self.total(|joint| joint.correct), self.total(|joint| joint.count))
     }
 
-    /// [`Keypoints::pck`] at each threshold of the area under the curve.
+    /// Returns [`Keypoints::pck`] at each threshold of the area under the curve.
     fn curve(&self) -> [Option<f64>; STEPS] {
         std::array::from_fn(|at| {
             mean(self.joints.iter().filter_map(|joint| ratio(joint.within[at], joint.count)))
         })
     }
 
-    /// Mean of [`Keypoints::pck`] at the thresholds 0, 0.05, .. 0.95.
+    /// Returns the mean of [`Keypoints::pck`] at the thresholds 0, 0.05 to 0.95.
     pub fn area(&self) -> Option<f64> {
         mean(self.curve().into_iter().flatten())
     }
 
-    /// Mean distance of the joints found, in sizes of the poses.
+    /// Returns the mean normalised distance of the predicted joints.
     pub fn normalized_mean_error(&self) -> Option<f64> {
         self.mean_of_found(|joint| joint.normalized)
     }
 
-    /// Mean distance of the joints found, pixels.
+    /// Returns the mean distance of the predicted joints, in pixels.
     pub fn end_point_error(&self) -> Option<f64> {
         self.mean_of_found(|joint| joint.distance)
     }
@@ -175,37 +165,21 @@ impl Keypoints {
     }
 }
 
-/// Where a joint is; `None` where it is not annotated or was not found.
-fn place_of(keypoint: &opendr_engine::target::Keypoint) -> Option<[f64; 2]> {
-    // NaN is neither found nor missing: it is passed on and refused.
-    let missing = keypoint.x < 0.0 || keypoint.y < 0.0;
-    (!missing).then(|| [f64::from(keypoint.x), f64::from(keypoint.y)])
-}
-
-/// Where the joints of `pose` are, in the order of the skeleton of `wanted`.
-fn places_like(wanted: &Pose, pose: &Pose) -> Vec<Option<[f64; 2]>> {
-    if wanted.skeleton == pose.skeleton {
-        return pose.keypoints.iter().map(place_of).collect();
-    }
-    let joints = wanted.skeleton.joints().iter().take(wanted.keypoints.len());
-    joints.map(|joint| pose.keypoint(joint).and_then(place_of)).collect()
-}
-
-/// Each pose of the truth is answered by the nearest one that answers no other; what is left over does not count. Poses
-/// of different skeletons are compared by the names of the joints of the truth.
+/// Each ground-truth pose is matched with the nearest unmatched prediction; other predictions are ignored. Poses of
+/// different skeletons are compared by the names of the ground-truth joints.
 impl Metric for Keypoints {
     const NAME: &'static str = "keypoints";
-    const ABOUT: &'static str = "PCK, PCKh and their area, NME and EPE of key points, as MMPose";
+    const ABOUT: &'static str = "PCK, PCKh and their area, NME and EPE of keypoints, as MMPose";
     const NUMBERS: &'static [(&'static str, &'static str)] = &[
-        ("pck", "Share of joints within the threshold, mean over joints."),
-        ("pck_pooled", "The same over all joints together."),
-        ("auc", "Area under the share of right joints by threshold."),
-        ("nme", "Mean distance in sizes of the pose."),
+        ("pck", "Fraction of joints within the threshold, mean over joints."),
+        ("pck_pooled", "Fraction over all joints together."),
+        ("auc", "Area under the curve of PCK over the threshold."),
+        ("nme", "Mean distance, normalised by the size of the pose."),
         ("epe", "Mean distance in pixels."),
-        ("poses", "Poses that were counted."),
-        ("poses_without_size", "Poses that have no size to measure by."),
+        ("poses", "Number of poses."),
+        ("poses_without_size", "Number of poses without a size to normalise by."),
     ];
-    const ERRORS: &'static [&'static str] = &["nme", "epe"];
+    const LOWER_IS_BETTER: &'static [&'static str] = &["nme", "epe"];
     type Params = KeypointsParams;
     type Prediction = PoseList;
     type Truth = PoseList;
@@ -215,7 +189,7 @@ impl Metric for Keypoints {
             && (params.joints.is_empty() || !params.joints.len().is_multiple_of(2))
         {
             return Err(Error::invalid_param(format!(
-                "joints = {:?}: give an even number of joints to normalize by",
+                "joints = {:?}: give an even number of joints to normalise by",
                 params.joints
             )));
         }
@@ -223,24 +197,24 @@ impl Metric for Keypoints {
     }
 
     fn update(&mut self, _at: usize, prediction: &PoseList, truth: &PoseList) -> Result<f64> {
-        let mut picture = Self { params: self.params.clone(), ..Self::default() };
+        let mut image = Self { params: self.params.clone(), ..Self::default() };
         let sizes: Vec<Option<f64>> = truth.poses.iter().map(|pose| self.params.size_of_pose(pose)).collect();
-        let answers = matching::nearest(&truth.poses, &prediction.poses)?;
-        for ((pose, size), answer) in truth.poses.iter().zip(sizes).zip(answers) {
-            let answer = answer.and_then(|at| prediction.poses.get(at));
+        let matches = matching::nearest(&truth.poses, &prediction.poses)?;
+        for ((pose, size), matched) in truth.poses.iter().zip(sizes).zip(matches) {
+            let matched = matched.and_then(|at| prediction.poses.get(at));
             match size {
-                Some(size) => picture.add_pose(pose, answer, size)?,
+                Some(size) => image.add_pose(pose, matched, size)?,
                 None => {
-                    picture.without_size += 1;
+                    image.without_size += 1;
                     None
                 }
             };
             if pose.skeleton.joints().len() == pose.keypoints.len() {
-                picture.names = pose.skeleton.joints();
+                image.names = pose.skeleton.joints();
             }
         }
-        let score = picture.pooled_pck().unwrap_or(1.0);
-        self.merge(picture);
+        let score = image.pooled_pck().unwrap_or(1.0);
+        self.merge(image);
         Ok(score)
     }
 
@@ -284,8 +258,8 @@ impl Metric for Keypoints {
         if !points.is_empty() {
             report.figures.push(Figure::Curves(Curves {
                 name: "pck".to_owned(),
-                title: "Share of correct key points".to_owned(),
-                x: "threshold in sizes of the pose".to_owned(),
+                title: "Fraction of correct keypoints".to_owned(),
+                x: "threshold, normalised by the size of the pose".to_owned(),
                 y: "PCK".to_owned(),
                 lines: vec![Line { label: "all joints".to_owned(), points }],
             }));

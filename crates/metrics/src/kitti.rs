@@ -1,4 +1,4 @@
-//! KITTI's object detection: average precision of boxes in the picture, from above and in space, and of orientation.
+//! KITTI's object detection: average precision of boxes in the image, in bird's-eye view and in space, and of orientation.
 //!
 //! A. Geiger, P. Lenz, R. Urtasun, "Are we ready for autonomous driving? The KITTI vision benchmark suite", CVPR 2012;
 //! 40 recall points: A. Simonelli et al., "Disentangling monocular 3D object detection", ICCV 2019. The rules are those
@@ -25,19 +25,19 @@ use average_precision::curves;
 use frame::Frame;
 use rules::Rules;
 
-/// KITTI's object detection over pictures.
+/// KITTI's object detection metrics.
 ///
-/// Keeps what the rules look at of every box, as the thresholds of the scores depend on all of them.
+/// The properties that the rules use are kept for every box, as the score thresholds depend on all of them.
 #[derive(Debug, Clone, Default)]
 pub struct Kitti {
     frames: Vec<Frame>,
 }
 
 impl Kitti {
-    /// Counts picture number `at`; how well boxes of the same class cover each other in space, 0 to 1.
+    /// Adds image `at` and returns how well boxes of the same class overlap in space, 0 to 1.
     ///
     /// # Errors
-    /// `InvalidInput` for more than 1024 boxes, and for one whose numbers are not finite.
+    /// Returns `InvalidInput` for more than 1024 boxes, and for a box whose numbers are not finite.
     pub fn count(&mut self, at: usize, found: &[KittiObject], truth: &[KittiObject]) -> Result<f64> {
         let frame = Frame::new(at, found, truth)?;
         let coverage = frame.coverage;
@@ -45,9 +45,9 @@ impl Kitti {
         Ok(coverage)
     }
 
-    /// The scores: of every class, kind of overlap and difficulty for which there is truth that counts.
+    /// Returns the scores of every class, kind of overlap and difficulty with ground truth that counts.
     ///
-    /// That of orientation is there unless a found box has no `alpha` (-10).
+    /// The score of orientation is included unless a predicted box has no `alpha` (-10).
     pub fn scores(&self) -> Vec<KittiScore> {
         let mut frames: Vec<_> = self.frames.iter().collect();
         frames.sort_by_key(|frame| frame.at);
@@ -59,15 +59,15 @@ impl Kitti {
 impl Metric for Kitti {
     const NAME: &'static str = "kitti_detection";
     const ABOUT: &'static str =
-        "KITTI's AP of boxes in picture, from above and in space, and AOS, as its development kit";
+        "KITTI's AP of boxes in the image, in bird's-eye view and in space, and AOS, as its development kit";
     const NUMBERS: &'static [(&'static str, &'static str)] = &[
         (
             "map_<kind>_<difficulty>_<points>",
-            "Mean over the classes: `2d`, `bev`, `3d` or `aos`; `easy`, `moderate` or `hard`; `r11` or `r40` points of recall, and `_loose` where overlaps are the loose ones.",
+            "Mean over the classes: `2d`, `bev`, `3d` or `aos`; `easy`, `moderate` or `hard`; `r11` or `r40` points of recall, and `_loose` with the lower limits of overlap.",
         ),
-        ("<class>_<kind>_<difficulty>_<points>", "The same of one class: `car`, `pedestrian`, `cyclist`."),
+        ("<class>_<kind>_<difficulty>_<points>", "AP of one class: `car`, `pedestrian` or `cyclist`."),
     ];
-    const RANKS: bool = true;
+    const IS_RANKING: bool = true;
     type Params = NoParams;
     type Prediction = BoundingBox3DList;
     type Truth = BoundingBox3DList;
@@ -111,7 +111,7 @@ impl Metric for Kitti {
     }
 }
 
-/// A line for every class and kind of overlap, at moderate difficulty.
+/// Returns a line for every class and kind of overlap, at moderate difficulty.
 fn precision_over_recall(scores: &[KittiScore]) -> Curves {
     let usual =
         scores.iter().filter(|score| score.difficulty == KittiDifficulty::Moderate && !score.is_loose);
@@ -130,7 +130,7 @@ fn precision_over_recall(scores: &[KittiScore]) -> Curves {
     }
 }
 
-/// Rows of class, kind and overlap; a column per difficulty and number of recall points.
+/// Returns a table with rows of class, kind and overlap, and a column per difficulty and number of recall points.
 fn table(scores: &[KittiScore]) -> Table {
     let mut table = Table { name: "class".to_owned(), ..Table::default() };
     for points in ["R40", "R11"] {
@@ -141,7 +141,7 @@ fn table(scores: &[KittiScore]) -> Table {
     for score in scores {
         let column = score.difficulty as usize;
         for (kind, r11, r40) in score.numbers() {
-            let label = format!("{} {kind} @{:.2}", score.class.name(), score.least_overlap);
+            let label = format!("{} {kind} @{:.2}", score.class.name(), score.overlap_threshold);
             let row = match table.rows.iter().position(|(other, _)| *other == label) {
                 Some(row) => row,
                 None => {

@@ -1,8 +1,29 @@
-//! The field's metrics, one file each, as streaming accumulators.
+//! Metrics of perception and reinforcement learning, as streaming accumulators.
 //!
-//! A [`Metric`] counts one answer after the other (`update`), keeps little of each, merges with what other threads
-//! counted, and ends in a [`Report`]: numbers, tables, and figures to draw. Numbers equal those of the tools that
-//! papers cite; each file names its own.
+//! A [`Metric`] adds samples one by one (`update`), keeps little of each, merges with accumulators of other threads, and
+//! returns a [`Report`]: numbers, tables, and figures to draw. The numbers equal those of the reference tools that papers
+//! cite; each file names its tool. There is one file per metric:
+//!
+//! * detection and poses: [`CocoDetection`], [`CocoSegmentation`], [`CocoKeypoints`], [`Voc`], [`Kitti`], [`Keypoints`];
+//! * tracking: [`ClearMot`], [`Hota`], [`Identity`], [`Tracking3d`];
+//! * segmentation and depth: [`Segmentation`], [`Panoptic`], [`Depth`];
+//! * classification and retrieval: [`Classification`], [`Roc`], [`Verification`], [`Reidentification`], [`Regression`];
+//! * speech: [`Transcription`]; reinforcement learning: [`Success`].
+//!
+//! [`metrics`] and [`find`] list them by name, as the surfaces do. Running a learner over a data set is the task of
+//! `opendr-evaluation`; drawing the figures is not part of this crate either. [`Metric`] is the type to begin with.
+//!
+//! ```
+//! use opendr_engine::target::Category;
+//! use opendr_metrics::{Classification, ClassificationParams, Metric};
+//!
+//! let mut metric = Classification::new(&ClassificationParams::default())?;
+//! for (at, (predicted, truth)) in [(0, 0), (1, 1), (1, 0), (1, 1)].into_iter().enumerate() {
+//!     metric.update(at, &Category::new(predicted, None), &Category::new(truth, None))?;
+//! }
+//! assert_eq!(metric.finish().statistics.get("accuracy"), Some(0.75));
+//! # Ok::<_, opendr_engine::Error>(())
+//! ```
 
 mod any;
 mod average;
@@ -29,6 +50,7 @@ mod reidentification;
 mod report;
 mod roc;
 mod segmentation;
+mod sequences;
 mod success;
 mod tracking_3d;
 mod tracking_frame;
@@ -50,7 +72,7 @@ pub use kitti::{Kitti, KittiClass, KittiDifficulty, KittiObject, KittiOverlap, K
 pub use metric::Metric;
 pub use mot_challenge::MotRules;
 pub use numbers::undocumented;
-pub use opendr_engine::overlap::{RotatedRectangle, StandingBox, image_cover, image_overlap};
+pub use opendr_engine::overlap::{RotatedRectangle, UprightBox3D, box_ioa, box_iou};
 pub use panoptic::{LABEL_DIVISOR, Panoptic, PanopticCounts, PanopticMap, PanopticParams, PanopticSegment};
 pub use precision_recall::{ClassCounts, ClassScore, ClassScores, PrecisionRecall, ZeroDivision};
 pub use registry::{find, metrics};
@@ -64,6 +86,6 @@ pub use success::{
 };
 pub use tracking_3d::{Tracking3d, Tracking3dParams};
 pub use tracking_frame::TrackingFrame;
-pub use transcription::{Transcription, TranscriptionParams, words_of_text};
+pub use transcription::{Transcription, TranscriptionParams, split_words};
 pub use verification::{FoldAccuracy, Verification, VerificationParams};
 pub use voc::{Voc, VocParams};

@@ -1,4 +1,4 @@
-//! What a metric is.
+//! The trait of metrics.
 
 use std::borrow::Cow;
 
@@ -10,66 +10,66 @@ use crate::Report;
 
 /// A streaming accumulator over the samples of a data set.
 ///
-/// Cores that work on plain numbers stand beside it, as methods of the same type or as functions of the same file; this
-/// trait is what `eval` and every surface drive.
+/// `eval` and every surface use this trait. Cores that work on plain numbers are methods of the same type or functions of
+/// the same file.
 pub trait Metric: Clone + Send + Sized + 'static {
-    /// The name, as users write it, e.g. `"coco_detection"`.
+    /// Name, e.g. `"coco_detection"`.
     const NAME: &'static str;
-    /// In one line, with the reference implementation that it equals.
+    /// Description in one line, with the reference implementation that it equals.
     const ABOUT: &'static str;
-    /// The names of its numbers and what they are; `<k>` in a name stands for something that varies.
+    /// Keys of its numbers with descriptions; `<k>` in a key is a placeholder.
     const NUMBERS: &'static [(&'static str, &'static str)];
-    /// What a user may set.
+    /// Parameters.
     type Params: Params;
-    /// What a learner answers.
+    /// Type of the predictions.
     type Prediction: Datum;
-    /// What it should answer.
+    /// Type of the ground truth.
     type Truth: Datum;
 
-    /// Those of its numbers of which less is better.
-    const ERRORS: &'static [&'static str] = &[];
+    /// Keys of the numbers for which lower is better.
+    const LOWER_IS_BETTER: &'static [&'static str] = &[];
 
-    /// Whether answers are ranked by their scores, so that a learner's threshold would cut the ranking off.
-    const RANKS: bool = false;
+    /// Whether predictions are ranked by score, so that the threshold of a learner would truncate the ranking.
+    const IS_RANKING: bool = false;
 
-    /// Whether labels of maps are those of segments: [`LABEL_DIVISOR`](crate::LABEL_DIVISOR) times the class plus the number of the
-    /// object.
+    /// Whether labels of maps are those of segments: [`LABEL_DIVISOR`](crate::LABEL_DIVISOR) times the class index plus the
+    /// index of the object.
     const SEGMENTS: bool = false;
 
-    /// An accumulator that has counted nothing.
+    /// Creates an empty accumulator.
     ///
     /// # Errors
-    /// `InvalidParam` for parameters that do not go together.
+    /// Returns `InvalidParam` for parameters that contradict each other.
     fn new(params: &Self::Params) -> Result<Self>;
 
-    /// Names the classes of the data set, before anything is counted. What depends on an order of classes (ties of scores) is
-    /// then settled by their names, so that no numbering changes an outcome.
+    /// Sets the class names of the data set, before the first sample. Ties of scores are then resolved by class names, so
+    /// that the numbering of the classes does not change the result.
     fn name_classes(&mut self, _classes: &Classes) {}
 
-    /// Counts the answer to sample number `at` of the data set, and tells how good it is: 0 (worst) to 1.
+    /// Adds the prediction for sample `at` of the data set and returns its quality, 0 (worst) to 1.
     ///
-    /// Whatever depends on an order (ties of scores) is settled by `at`, so that the outcome does not depend on how
-    /// samples are spread over threads. Frames of a sequence come one after the other to one accumulator.
+    /// Ties of scores are resolved by `at`, so that the result does not depend on the distribution of samples over threads.
+    /// The frames of a sequence are passed in order to one accumulator.
     ///
     /// # Errors
-    /// `InvalidInput` for an answer or a truth that cannot be counted; nothing has been counted then.
+    /// Returns `InvalidInput` for an invalid prediction or ground truth; nothing is counted then.
     fn update(&mut self, at: usize, prediction: &Self::Prediction, truth: &Self::Truth) -> Result<f64>;
 
-    /// The sequence (video, drive) is over; what follows has nothing to do with it.
+    /// Ends a sequence (video, drive); the next frame belongs to another one.
     fn end_sequence(&mut self) {}
 
-    /// Counts what `other` counted: whole sequences, and other samples than this one's.
+    /// Adds the counts of `other`, which has other samples and whole sequences.
     fn merge(&mut self, other: Self);
 
-    /// The outcome; counting may go on.
+    /// Returns the result. More samples can be added afterwards.
     fn finish(&self) -> Report;
 
-    /// Reads a prediction; a metric that takes several types overrides it.
+    /// Converts a value to a prediction; metrics that accept several types override it.
     fn prediction(value: ValueRef<'_>) -> Option<Cow<'_, Self::Prediction>> {
         Self::Prediction::from_value_ref(value).map(Cow::Borrowed)
     }
 
-    /// Reads a truth; a metric that takes several types overrides it.
+    /// Converts a value to ground truth; metrics that accept several types override it.
     fn truth(value: ValueRef<'_>) -> Option<Cow<'_, Self::Truth>> {
         Self::Truth::from_value_ref(value).map(Cow::Borrowed)
     }

@@ -1,4 +1,4 @@
-//! The MOT Challenge's rules about which rows of truth and answer count.
+//! The MOT Challenge's rules about the rows of ground truth and predictions that count.
 
 use opendr_engine::assignment::cheapest_pairs;
 use opendr_engine::target::{Name, TrackingAnnotationList};
@@ -6,7 +6,7 @@ use opendr_engine::{Error, Result, choices};
 
 use crate::TrackingFrame;
 
-/// Classes of the MOT Challenge; class numbers count from 1.
+/// Classes of the MOT Challenge; class numbers start at 1.
 const CLASSES: [&str; 13] = [
     "pedestrian",
     "person_on_vehicle",
@@ -28,12 +28,12 @@ const NON_MOT_VEHICLE: usize = 6;
 const DISTRACTORS: [usize; 4] = [2, 7, 8, 12];
 
 choices! {
-    /// Which rows of truth and answer count.
+    /// Rows of ground truth and predictions that count.
     ///
-    /// The challenges' rules are those of TrackEval 1.3 (`MotChallenge2DBox`): rows of truth whose confidence is 0 do
-    /// not count; from MOT16 on only pedestrians count, and answers that match persons on vehicles, static persons,
-    /// distractors and reflections (in MOT20 also other vehicles) are taken out first. Answers are taken as
-    /// pedestrians, whatever class they have. A class of truth is its label, e.g. `static_person`, or its number in
+    /// The rules of the challenges are those of TrackEval 1.3 (`MotChallenge2DBox`). Rows of ground truth with
+    /// confidence 0 do not count. From MOT16 on only pedestrians count, and predictions that match persons on vehicles,
+    /// static persons, distractors and reflections (in MOT20 also other vehicles) are removed first. Predictions count
+    /// as pedestrians, of any class. A class of the ground truth is its label, e.g. `static_person`, or its number in
     /// the challenge, from 1.
     pub enum MotRules {
         /// All rows.
@@ -50,10 +50,11 @@ choices! {
 }
 
 impl MotRules {
-    /// What counts of one picture.
+    /// Returns the rows of one frame that count.
     ///
     /// # Errors
-    /// As [`TrackingFrame::from_lists`]; `InvalidInput` for a class of truth that the challenge does not have.
+    /// Returns `InvalidInput` for a ground-truth class that the challenge does not have; otherwise as
+    /// [`TrackingFrame::from_lists`].
     pub fn frame(
         self,
         found: &TrackingAnnotationList,
@@ -66,7 +67,7 @@ impl MotRules {
         let is_marked = |at: usize| truth.annotations[at].bounding_box.confidence.abs() >= 1.0;
         if self == Self::Mot15 {
             let kept: Vec<_> = (0..frame.truth().len()).map(is_marked).collect();
-            return Ok(frame.keep(&kept, &vec![true; frame.found().len()]));
+            return Ok(frame.keep(&kept, &vec![true; frame.predictions().len()]));
         }
         let classes = truth
             .annotations
@@ -78,18 +79,19 @@ impl MotRules {
         Ok(frame.keep(&kept, &found))
     }
 
-    /// Which answers do not match a distractor.
+    /// Returns for each prediction whether it matches no distractor.
     fn without_distractors(self, frame: &TrackingFrame, classes: &[usize]) -> Vec<bool> {
         let costs: Vec<_> = frame
             .overlaps()
             .iter()
             .map(|overlap| if *overlap < 0.5 - f64::EPSILON { 0.0 } else { -overlap })
             .collect();
-        let mut kept = vec![true; frame.found().len()];
+        let mut kept = vec![true; frame.predictions().len()];
         for (truth, found) in cheapest_pairs(&costs, kept.len()) {
             let class = classes[truth];
-            let distracts = DISTRACTORS.contains(&class) || (self == Self::Mot20 && class == NON_MOT_VEHICLE);
-            if distracts && costs[truth * kept.len() + found] < -f64::EPSILON {
+            let is_distractor =
+                DISTRACTORS.contains(&class) || (self == Self::Mot20 && class == NON_MOT_VEHICLE);
+            if is_distractor && costs[truth * kept.len() + found] < -f64::EPSILON {
                 kept[found] = false;
             }
         }
@@ -97,7 +99,7 @@ impl MotRules {
     }
 }
 
-/// The number of a class, from 1. Numbers are the challenge's own, whatever classes the list names.
+/// Returns the number of a class in the challenge, from 1, independent of the class names of the list.
 fn class_from_name(name: &Name) -> Result<usize> {
     let number = match name {
         Name::Index(index) => usize::try_from(*index).ok(),
@@ -109,7 +111,7 @@ fn class_from_name(name: &Name) -> Result<usize> {
     };
     number.filter(|number| (1..=CLASSES.len()).contains(number)).ok_or_else(|| {
         Error::invalid_input(format!(
-            "class {name} of the truth is none of the MOT Challenge; give 1 to 13, or one of {}",
+            "the MOT Challenge has no class {name}; give 1 to 13, or one of {}",
             CLASSES.join(", ")
         ))
     })
@@ -131,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn rules_take_out_rows() {
+    fn rules_remove_rows() {
         let truth = list(&[
             (1, 1.into(), 0.0, 1.0),
             (2, "Static person".into(), 20.0, 1.0),
@@ -146,14 +148,14 @@ mod tests {
         ]);
         let ids = |rules: MotRules| {
             let frame = rules.frame(&found, &truth).unwrap();
-            (frame.truth().to_vec(), frame.found().to_vec())
+            (frame.truth().to_vec(), frame.predictions().to_vec())
         };
         assert_eq!(ids(MotRules::All), (vec![1, 2, 3, 4], vec![1, 2, 3, 4]));
         assert_eq!(ids(MotRules::Mot15), (vec![1, 2, 4], vec![1, 2, 3, 4]));
         assert_eq!(ids(MotRules::Mot17), (vec![1], vec![1, 3, 4]));
         assert_eq!(ids(MotRules::Mot20), (vec![1], vec![1, 3]));
-        let strange = list(&[(1, 14.into(), 0.0, 1.0)]);
-        assert!(MotRules::Mot16.frame(&found, &strange).is_err());
-        assert!(MotRules::Mot15.frame(&found, &strange).is_ok());
+        let unknown = list(&[(1, 14.into(), 0.0, 1.0)]);
+        assert!(MotRules::Mot16.frame(&found, &unknown).is_err());
+        assert!(MotRules::Mot15.frame(&found, &unknown).is_ok());
     }
 }

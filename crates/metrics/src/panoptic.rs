@@ -1,8 +1,9 @@
-//! Panoptic quality: how well every object and every region is segmented.
+//! Panoptic quality.
 //!
 //! A. Kirillov, K. He, R. Girshick, C. Rother, P. Dollár, "Panoptic segmentation", CVPR 2019. Void and crowd are treated
-//! as COCO's `panopticapi` treats them.
+//! as in COCO's `panopticapi`.
 
+mod label;
 mod masks;
 mod segments;
 
@@ -15,60 +16,56 @@ use opendr_engine::{Error, Result, ValueRef};
 
 use crate::{Metric, Report, Table};
 
+pub use label::LABEL_DIVISOR;
 pub use segments::{PanopticMap, PanopticSegment};
 
+use label::VOID_LABEL;
 use segments::Overlaps;
 
-/// One: an intersection over union above one half is a whole number of these.
+/// The number 1 in fixed point. An intersection over union above one half is an integer in this unit.
 const IOU_UNITS: f64 = (1_u64 << f64::MANTISSA_DIGITS) as f64;
 
-/// A label is this times its class, plus the number of the object in its class: Cityscapes' way.
-pub const LABEL_DIVISOR: u32 = 1000;
-
-/// The label of a pixel of no class, whatever [`PanopticParams::ignore`] is.
-const VOID_LABEL: u32 = Heatmap::NO_CLASS;
-
-/// What [`Panoptic`] is set by.
+/// Parameters of [`Panoptic`].
 #[derive(Debug, Clone, Params)]
 pub struct PanopticParams {
-    /// Classes whose objects are told apart; in the truth their object 0 is a crowd. All others are stuff.
+    /// Classes with separate objects (things); in the ground truth their object 0 is a crowd. All others are stuff.
     #[param(default = Vec::new())]
     pub things: Vec<u32>,
-    /// The class of pixels that do not count (void).
+    /// Class of ignored pixels (void).
     #[param(default = Some(255), range = 0..=4_294_967_295_u32)]
     pub ignore: Option<u32>,
 }
 
-/// Segments of one class.
+/// Counts of segments of one class.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct PanopticCounts {
-    /// Pairs of true and found segments that share more than half of their union.
+    /// Pairs of a ground-truth and a predicted segment with an intersection over union above one half.
     pub true_positives: u64,
-    /// Found segments without a partner.
+    /// Unmatched predicted segments.
     pub false_positives: u64,
-    /// True segments without a partner.
+    /// Unmatched ground-truth segments.
     pub false_negatives: u64,
-    /// Sum over pairs of intersection over union, in whole units so that no order of adding matters.
+    /// Sum of the intersections over union of pairs, in fixed point, so that the order of addition does not matter.
     iou: u128,
 }
 
 impl PanopticCounts {
-    /// Segmentation times recognition quality, 0 to 1; NaN where there is no segment.
+    /// Returns segmentation times recognition quality, 0 to 1; NaN without segments.
     pub fn quality(&self) -> f64 {
         self.iou() / self.segments()
     }
 
-    /// Mean intersection over union of pairs; 0 without any.
+    /// Returns the mean intersection over union of pairs; 0 without pairs.
     pub fn segmentation_quality(&self) -> f64 {
         self.iou() / self.true_positives.max(1) as f64
     }
 
-    /// F1 score of segments; NaN where there is none.
+    /// Returns the F1 score of segments; NaN without segments.
     pub fn recognition_quality(&self) -> f64 {
         self.true_positives as f64 / self.segments()
     }
 
-    /// Sum of intersection over union of pairs.
+    /// Returns the sum of the intersections over union of pairs.
     pub fn iou(&self) -> f64 {
         self.iou as f64 / IOU_UNITS
     }
@@ -89,10 +86,10 @@ impl PanopticCounts {
     }
 }
 
-/// Panoptic quality over pictures.
+/// Panoptic quality over images.
 ///
-/// As values, a picture is a map of labels, [`LABEL_DIVISOR`] times the class plus the number of the object; or boxes
-/// with masks by runs, one per segment, stuff included.
+/// An image is a map of labels, [`LABEL_DIVISOR`] times the class index plus the index of the object, or a list of boxes
+/// with run-length encoded masks, one per segment, including stuff.
 #[derive(Debug, Clone)]
 pub struct Panoptic {
     params: PanopticParams,
@@ -101,13 +98,13 @@ pub struct Panoptic {
 }
 
 impl Panoptic {
-    /// Counts a picture; its quality over all segments, 0 to 1.
+    /// Adds an image and returns its quality over all segments, 0 to 1.
     ///
     /// # Errors
-    /// `InvalidInput` for maps of different size, for a number in a map that its table does not have, for one that the
-    /// table has twice, and for a found segment without pixels.
+    /// Returns `InvalidInput` for maps of different size, for an id in a map that its table does not have or has twice,
+    /// and for a predicted segment without pixels.
     pub fn count(&mut self, found: &PanopticMap<'_>, truth: &PanopticMap<'_>) -> Result<f64> {
-        let counted = count_picture(found, truth)?;
+        let counted = count_image(found, truth)?;
         let mut all = PanopticCounts::default();
         for (class, counts) in &counted {
             all.add(counts);
@@ -116,12 +113,12 @@ impl Panoptic {
         Ok(if all.segments().is_nan() { 1.0 } else { all.quality() })
     }
 
-    /// What was counted, by class.
+    /// Returns the counts by class.
     pub fn counts(&self) -> &BTreeMap<u32, PanopticCounts> {
         &self.classes
     }
 
-    /// Numbers of segments in place of labels, and the segments' table.
+    /// Returns a map of segment ids in place of labels, and the table of the segments.
     fn segments_from_labels(&self, labels: &[u32], is_truth: bool) -> (Vec<u32>, Vec<PanopticSegment>) {
         let PanopticParams { things, ignore } = &self.params;
         let mut ids = BTreeMap::new();
@@ -147,13 +144,13 @@ impl Panoptic {
     }
 }
 
-fn count_picture(found: &PanopticMap<'_>, truth: &PanopticMap<'_>) -> Result<BTreeMap<u32, PanopticCounts>> {
+fn count_image(found: &PanopticMap<'_>, truth: &PanopticMap<'_>) -> Result<BTreeMap<u32, PanopticCounts>> {
     let overlaps = Overlaps::new(found, truth)?;
     let mut classes = BTreeMap::<u32, PanopticCounts>::new();
     let mut is_paired = (vec![false; truth.segments.len()], vec![false; found.segments.len()]);
     for (row, column, shared) in overlaps.pairs() {
-        let (object, answer) = (truth.segments[row], found.segments[column]);
-        if object.is_crowd || object.class != answer.class {
+        let (object, predicted) = (truth.segments[row], found.segments[column]);
+        if object.is_crowd || object.class != predicted.class {
             continue;
         }
         let union = overlaps.true_pixels(row) + overlaps.found_pixels(column) - shared;
@@ -171,8 +168,8 @@ fn count_picture(found: &PanopticMap<'_>, truth: &PanopticMap<'_>) -> Result<BTr
         }
     }
     for (column, is_paired) in is_paired.1.into_iter().enumerate() {
-        let free = overlaps.in_void(column) + overlaps.in_crowd(column);
-        if !is_paired && free * 2 <= overlaps.found_pixels(column) {
+        let ignored = overlaps.in_void(column) + overlaps.in_crowd(column);
+        if !is_paired && ignored * 2 <= overlaps.found_pixels(column) {
             classes.entry(found.segments[column].class).or_default().false_positives += 1;
         }
     }
@@ -184,11 +181,11 @@ impl Metric for Panoptic {
     const ABOUT: &'static str = "PQ, SQ and RQ of things, stuff and all, as COCO's panopticapi";
     const NUMBERS: &'static [(&'static str, &'static str)] = &[
         ("pq", "Panoptic quality, mean over the classes that occur."),
-        ("sq", "Quality of segments: mean IoU of matches."),
-        ("rq", "Quality of recognition: F1 of segments."),
-        ("pq_<kind>", "The same over countable classes (`things`) or the others (`stuff`)."),
-        ("sq_<kind>", "The same of segments."),
-        ("rq_<kind>", "The same of recognition."),
+        ("sq", "Segmentation quality: mean IoU of matches."),
+        ("rq", "Recognition quality: F1 of segments."),
+        ("pq_<kind>", "Panoptic quality over `things` or `stuff` classes."),
+        ("sq_<kind>", "Segmentation quality over `things` or `stuff` classes."),
+        ("rq_<kind>", "Recognition quality over `things` or `stuff` classes."),
     ];
     const SEGMENTS: bool = true;
     type Params = PanopticParams;
@@ -200,23 +197,25 @@ impl Metric for Panoptic {
     }
 
     fn update(&mut self, _at: usize, prediction: &Heatmap, truth: &Heatmap) -> Result<f64> {
-        let (HeatmapValues::Labels(found), HeatmapValues::Labels(wanted)) =
+        let (HeatmapValues::Labels(found), HeatmapValues::Labels(expected)) =
             (prediction.values(), truth.values())
         else {
-            return Err(Error::invalid_input("a map of scores has no segments; give a map of labels"));
+            return Err(Error::invalid_input(
+                "panoptic quality needs a map of labels, not of scores; give labels",
+            ));
         };
-        // An answer without segments may not know its size.
-        let nothing = vec![VOID_LABEL; if found.is_empty() { wanted.len() } else { 0 }];
+        // A prediction without segments may have no size.
+        let nothing = vec![VOID_LABEL; if found.is_empty() { expected.len() } else { 0 }];
         let found = if found.is_empty() { &nothing } else { found.as_slice() };
         if prediction.shape() != truth.shape() && nothing.is_empty() {
             return Err(Error::invalid_input(format!(
-                "the answer's shape is {:?}, the truth's {:?}; give maps of one size",
+                "the shape of the prediction is {:?}, that of the ground truth {:?}; give maps of one size",
                 prediction.shape(),
                 truth.shape()
             )));
         }
         let (ids, segments) = self.segments_from_labels(found, false);
-        let (true_ids, true_segments) = self.segments_from_labels(wanted, true);
+        let (true_ids, true_segments) = self.segments_from_labels(expected, true);
         let quality = self.count(
             &PanopticMap { ids: &ids, segments: &segments },
             &PanopticMap { ids: &true_ids, segments: &true_segments },
@@ -283,7 +282,7 @@ fn qualities(counts: &PanopticCounts) -> [f64; 3] {
     [counts.quality(), counts.segmentation_quality(), counts.recognition_quality()]
 }
 
-/// Means over classes that have segments.
+/// Sets the means over the classes that have segments.
 fn set_means<'a>(report: &mut Report, suffix: &str, classes: impl Iterator<Item = &'a PanopticCounts>) {
     let (mut sums, mut count) = ([0.0; 3], 0.0);
     for counts in classes.filter(|counts| !counts.segments().is_nan()) {

@@ -1,15 +1,15 @@
-//! Precision, recall and F1 of classes and their averages, as scikit-learn's `precision_recall_fscore_support`.
+//! Precision, recall and F1 of classes and their averages, equal to scikit-learn's `precision_recall_fscore_support`.
 
 use crate::average;
 
 opendr_engine::choices! {
-    /// What precision, recall and F1 are where their denominator is zero (scikit-learn's `zero_division`).
+    /// Value of precision, recall and F1 where the denominator is zero (scikit-learn's `zero_division`).
     pub enum ZeroDivision {
         /// 0.
         Zero = "zero",
         /// 1.
         One = "one",
-        /// Undefined, and left out of averages (`np.nan`).
+        /// Undefined, and excluded from averages (`np.nan`).
         Undefined = "undefined",
     }
 }
@@ -25,30 +25,30 @@ impl ZeroDivision {
     }
 }
 
-/// How often a class was right, answered, and there.
+/// Counts of one class.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct ClassCounts {
-    /// Samples of the class that were answered with it.
+    /// Samples of the class that are predicted as the class.
     pub hits: u64,
-    /// Samples answered with the class.
+    /// Samples predicted as the class.
     pub predicted: u64,
     /// Samples of the class.
     pub support: u64,
 }
 
-/// Precision, recall and F1, each 0..=1; `None` where undefined.
+/// Precision, recall and F1, each 0..=1; `None` if undefined.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PrecisionRecall {
-    /// Share of the answers that are right.
+    /// Fraction of the predictions that are correct.
     pub precision: Option<f64>,
-    /// Share of the samples that were found.
+    /// Fraction of the samples that are detected.
     pub recall: Option<f64>,
     /// Harmonic mean of both.
     pub f1: Option<f64>,
 }
 
 impl PrecisionRecall {
-    /// Of one class against all others.
+    /// Computes the scores of one class against all others.
     pub fn new(counts: ClassCounts, zero: ZeroDivision) -> Self {
         Self {
             precision: zero.divide(counts.hits, counts.predicted),
@@ -57,7 +57,7 @@ impl PrecisionRecall {
         }
     }
 
-    /// Weighted averages, undefined numbers left out; plain ones where all weights are zero.
+    /// Returns weighted averages of defined numbers, or plain averages if all weights are zero.
     fn average(classes: &[ClassScore], weight: fn(&ClassScore) -> f64) -> Self {
         let mean = |number: fn(&Self) -> Option<f64>| {
             let defined = || classes.iter().filter_map(|class| Some((number(&class.scores)?, weight(class))));
@@ -74,29 +74,29 @@ impl PrecisionRecall {
 /// One class of [`ClassScores`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClassScore {
-    /// The class.
+    /// Class index.
     pub label: i64,
-    /// Samples of the class.
+    /// Number of samples of the class.
     pub support: u64,
-    /// Of the class against all others.
+    /// Scores of the class against all others.
     pub scores: PrecisionRecall,
 }
 
 /// Precision, recall and F1 of every class, and their averages.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClassScores {
-    /// In the order given.
+    /// Scores by class, in the given order.
     pub classes: Vec<ClassScore>,
-    /// From the counts of all classes together.
+    /// Scores from the counts of all classes together.
     pub micro: PrecisionRecall,
-    /// Mean over the classes.
+    /// Means over the classes.
     pub macro_: PrecisionRecall,
-    /// Mean over the classes, each weighted by its samples.
+    /// Means over the classes, weighted by their samples.
     pub weighted: PrecisionRecall,
 }
 
 impl ClassScores {
-    /// The scores of classes by their counts.
+    /// Computes the scores from the counts by class.
     pub fn new(counts: impl IntoIterator<Item = (i64, ClassCounts)>, zero: ZeroDivision) -> Self {
         let mut total = ClassCounts::default();
         let mut classes = Vec::new();
@@ -133,7 +133,7 @@ mod tests {
         assert_eq!(f1(ZeroDivision::Undefined), Some(1.0 / 3.0));
         let alone = ClassScores::new([counts[2]], ZeroDivision::Undefined);
         assert_eq!(alone.weighted, PrecisionRecall::default());
-        // All weights are zero: the plain mean, as scikit-learn.
+        // All weights are zero: the plain mean, as in scikit-learn.
         assert_eq!(ClassScores::new([counts[2]], ZeroDivision::One).weighted.f1, Some(1.0));
     }
 }

@@ -1,11 +1,11 @@
-//! Which metrics there are: one line each.
+//! The list of metrics.
 
 use opendr_engine::{Error, Result};
 
 use crate::MetricEntry;
 
-/// Every metric.
-#[rustfmt::skip] // One line a metric.
+/// Returns all metrics.
+#[rustfmt::skip] // One line per metric.
 pub const fn metrics() -> &'static [MetricEntry] {
     const {
         &[
@@ -32,10 +32,10 @@ pub const fn metrics() -> &'static [MetricEntry] {
     }
 }
 
-/// The metric called `name`.
+/// Returns the metric `name`.
 ///
 /// # Errors
-/// `NotFound`, with the names that there are.
+/// Returns `NotFound` with the list of names if there is none.
 pub fn find(name: &str) -> Result<&'static MetricEntry> {
     metrics().iter().find(|entry| entry.name == name).ok_or_else(|| {
         let names: Vec<_> = metrics().iter().map(|entry| entry.name).collect();

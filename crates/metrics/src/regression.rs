@@ -1,5 +1,5 @@
 //! Regression of numbers: mean errors and R² equal to scikit-learn, and the concordance correlation coefficient (Lin,
-//! 1989) by which valence and arousal are judged.
+//! 1989), the measure for valence and arousal.
 
 use std::borrow::Cow;
 
@@ -11,7 +11,7 @@ use opendr_engine::{Error, Result, ValueRef};
 use crate::average::mean;
 use crate::{Metric, Report, Table};
 
-/// One number over all samples: means and sums of squares that can be merged (Chan et al., 1979). Nothing else is kept.
+/// Errors of one number over all samples: means and sums of squares that can be merged (Chan et al., 1979).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Residuals {
     count: u64,
@@ -25,7 +25,7 @@ pub struct Residuals {
 }
 
 impl Residuals {
-    /// Counts one sample; both numbers are finite.
+    /// Adds a sample; both numbers are finite.
     pub fn add(&mut self, truth: f64, predicted: f64) {
         let error = predicted - truth;
         let (absolute, squared) = (error.abs(), error * error);
@@ -33,7 +33,7 @@ impl Residuals {
         self.merge(&Self { count: 1, absolute, squared, truth_mean, predicted_mean, ..Self::default() });
     }
 
-    /// Adds what another accumulator counted.
+    /// Adds the samples of another accumulator.
     pub fn merge(&mut self, other: &Self) {
         let total = self.count + other.count;
         if total == 0 {
@@ -53,23 +53,23 @@ impl Residuals {
         self.count = total;
     }
 
-    /// Samples counted.
+    /// Returns the number of samples.
     pub fn count(&self) -> u64 {
         self.count
     }
 
-    /// Mean absolute error.
+    /// Returns the mean absolute error.
     pub fn mean_absolute_error(&self) -> Option<f64> {
         (self.count > 0).then(|| self.absolute / self.count as f64)
     }
 
-    /// Root of the mean squared error.
+    /// Returns the root mean square error.
     pub fn root_mean_squared_error(&self) -> Option<f64> {
         (self.count > 0).then(|| (self.squared / self.count as f64).sqrt())
     }
 
-    /// Share of the variance that is explained, at most 1. Where the truth is constant: 1 when every answer is exact,
-    /// else 0. `None` for fewer than two samples.
+    /// Returns the coefficient of determination, at most 1. For constant ground truth it is 1 if every prediction is exact,
+    /// otherwise 0. `None` for fewer than two samples.
     pub fn r2(&self) -> Option<f64> {
         match self.truth_squares > 0.0 {
             _ if self.count < 2 => None,
@@ -78,29 +78,29 @@ impl Residuals {
         }
     }
 
-    /// Concordance correlation coefficient, -1..=1, with population variances; `None` where truth and answers are one
-    /// and the same constant.
+    /// Returns the concordance correlation coefficient, -1..=1, with population variances; `None` if ground truth and
+    /// predictions are the same constant.
     pub fn concordance(&self) -> Option<f64> {
         let apart = self.truth_mean - self.predicted_mean;
         let spread = self.truth_squares + self.predicted_squares + self.count as f64 * apart * apart;
         (spread > 0.0).then(|| 2.0 * self.products / spread)
     }
 
-    /// Pearson's correlation coefficient, -1..=1; `None` where truth or answers are constant.
+    /// Returns Pearson's correlation coefficient, -1..=1; `None` if ground truth or predictions are constant.
     pub fn correlation(&self) -> Option<f64> {
         let spread = self.truth_squares.sqrt() * self.predicted_squares.sqrt();
         (spread > 0.0).then(|| (self.products / spread).clamp(-1.0, 1.0))
     }
 }
 
-/// [`Residuals`] of each number of a vector.
+/// [`Residuals`] of each element of a vector.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Regression {
     columns: Vec<Residuals>,
 }
 
 impl Regression {
-    /// Each number's outcome, in their order.
+    /// Returns the residuals of each element, in order.
     pub fn columns(&self) -> &[Residuals] {
         &self.columns
     }
@@ -108,7 +108,7 @@ impl Regression {
 
 type Measure = fn(&Residuals) -> Option<f64>;
 
-/// What is reported, under its key.
+/// Reported measures by key.
 const MEASURES: [(&str, Measure); 5] = [
     ("mae", Residuals::mean_absolute_error),
     ("rmse", Residuals::root_mean_squared_error),
@@ -117,20 +117,20 @@ const MEASURES: [(&str, Measure); 5] = [
     ("correlation", Residuals::correlation),
 ];
 
-/// Predictions and truths are vectors, or maps of scores. The report has the mean of each measure over the numbers of
-/// the vector (scikit-learn's `uniform_average`), and a row for each number.
+/// Predictions and ground truth are vectors, or maps of scores. The report has the mean of each measure over the elements
+/// of the vector (scikit-learn's `uniform_average`), and a row per element.
 impl Metric for Regression {
     const NAME: &'static str = "regression";
     const ABOUT: &'static str = "MAE, RMSE and R2 as scikit-learn, concordance correlation coefficient";
     const NUMBERS: &'static [(&'static str, &'static str)] = &[
-        ("ccc", "Concordance correlation."),
-        ("correlation", "Pearson's correlation."),
+        ("ccc", "Concordance correlation coefficient."),
+        ("correlation", "Pearson's correlation coefficient."),
         ("r2", "Coefficient of determination."),
         ("mae", "Mean absolute error."),
         ("rmse", "Root mean square error."),
-        ("samples", "How many were counted."),
+        ("samples", "Number of samples."),
     ];
-    const ERRORS: &'static [&'static str] = &["mae", "rmse"];
+    const LOWER_IS_BETTER: &'static [&'static str] = &["mae", "rmse"];
     type Params = NoParams;
     type Prediction = Vector;
     type Truth = Vector;
@@ -140,23 +140,23 @@ impl Metric for Regression {
     }
 
     fn update(&mut self, _at: usize, prediction: &Vector, truth: &Vector) -> Result<f64> {
-        let (given, wanted) = (prediction.as_slice(), truth.as_slice());
-        let expected = if self.columns.is_empty() { wanted.len() } else { self.columns.len() };
-        if given.len() != wanted.len() || wanted.len() != expected {
-            let (given, wanted) = (given.len(), wanted.len());
+        let (given, truth) = (prediction.as_slice(), truth.as_slice());
+        let expected = if self.columns.is_empty() { truth.len() } else { self.columns.len() };
+        if given.len() != truth.len() || truth.len() != expected {
+            let (given, truth) = (given.len(), truth.len());
             return Err(Error::invalid_input(format!(
-                "{given} numbers answer {wanted} where {expected} are expected; give as many in every sample"
+                "{given} predicted and {truth} true numbers where {expected} are expected; give equally many in every sample"
             )));
         }
-        if let Some(number) = given.iter().chain(wanted).find(|number| !number.is_finite()) {
-            return Err(Error::invalid_input(format!("{number} is not finite; give numbers")));
+        if let Some(number) = given.iter().chain(truth).find(|number| !number.is_finite()) {
+            return Err(Error::invalid_input(format!("{number} is not finite; give finite numbers")));
         }
         self.columns.resize(expected, Residuals::default());
-        let pairs = given.iter().zip(wanted).map(|(given, wanted)| [f64::from(*given), f64::from(*wanted)]);
-        for (column, [given, wanted]) in self.columns.iter_mut().zip(pairs.clone()) {
-            column.add(wanted, given);
+        let pairs = given.iter().zip(truth).map(|(given, truth)| [f64::from(*given), f64::from(*truth)]);
+        for (column, [given, truth]) in self.columns.iter_mut().zip(pairs.clone()) {
+            column.add(truth, given);
         }
-        let error = mean(pairs.map(|[given, wanted]| (given - wanted).abs()));
+        let error = mean(pairs.map(|[given, truth]| (given - truth).abs()));
         Ok(1.0 / (1.0 + error.unwrap_or(0.0)))
     }
 
@@ -234,7 +234,7 @@ mod tests {
 
     #[test]
     fn far_from_zero() {
-        // Sums of squares would lose every digit here.
+        // Plain sums of squares would lose every digit here.
         let residuals = counted(&[(1e9, 1e9), (1e9 + 1.0, 1e9 + 1.0), (1e9 + 2.0, 1e9 + 2.0)]);
         assert_eq!((residuals.r2(), residuals.concordance()), (Some(1.0), Some(1.0)));
     }
@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn vectors_that_do_not_fit_are_refused() {
+    fn invalid_vectors_are_rejected() {
         let vector = |numbers: &[f32]| Vector::from_data(numbers.to_vec()).unwrap();
         let mut regression = Regression::default();
         assert!(regression.update(0, &vector(&[1.0]), &vector(&[1.0, 2.0])).is_err());

@@ -12,24 +12,24 @@ use opendr_engine::{Error, Result, ValueRef};
 use crate::average::ratio;
 use crate::{Curves, Figure, Line, Metric, Regression, Report};
 
-/// The identity of pictures that show nobody worth finding: they are passed over.
+/// Identity of images without a person of interest, which are ignored.
 const JUNK: i64 = -1;
 
-/// Ranks that are drawn.
+/// Number of ranks in the figure.
 const DRAWN_RANKS: usize = 50;
 
 opendr_engine::choices! {
-    /// How far two vectors are apart.
+    /// Distance of two vectors.
     pub enum VectorDistance {
         /// One minus the cosine of the angle between them.
         Cosine = "cosine",
-        /// The length of the straight line between them.
+        /// The Euclidean distance.
         Euclidean = "euclidean",
     }
 }
 
 impl VectorDistance {
-    /// Between vectors of the same length; a vector of zeros is at cosine distance 1 of every other.
+    /// Returns the distance of vectors of the same length; a vector of zeros has cosine distance 1 to every other.
     pub fn between(self, one: &[f32], other: &[f32]) -> f64 {
         self.between_of_lengths((one, length(one)), (other, length(other)))
     }
@@ -50,7 +50,7 @@ fn length(vector: &[f32]) -> f64 {
     sum(vector, vector, |one, other| one * other).sqrt()
 }
 
-/// The sum of `term` over pairs, in eight parts that do not wait for each other.
+/// Returns the sum of `term` over pairs, in eight independent partial sums.
 fn sum(one: &[f32], other: &[f32], term: impl Fn(f64, f64) -> f64) -> f64 {
     let (ones, rest) = one.as_chunks::<8>();
     let (others, rest_of_others) = other.as_chunks::<8>();
@@ -64,59 +64,59 @@ fn sum(one: &[f32], other: &[f32], term: impl Fn(f64, f64) -> f64) -> f64 {
     sums.into_iter().chain(rest).sum()
 }
 
-/// What a user may set.
+/// Parameters of [`Reidentification`].
 #[derive(Debug, Clone, Params)]
 pub struct ReidentificationParams {
-    /// How many samples at the beginning of the data set are searched for among all others; 0: each is searched for
-    /// among all others.
+    /// Number of samples at the start of the data set that are queries, with all others as the gallery; 0: each sample is a
+    /// query with all others as its gallery.
     pub queries: usize,
-    /// How far two vectors are apart.
+    /// Distance of two vectors.
     pub distance: VectorDistance,
-    /// Ranks to tell the share of queries of that find a match so early.
+    /// Ranks of the reported match rates.
     #[param(default = vec![1, 5, 10], range = 1..=1_000_000)]
     pub ranks: Vec<usize>,
 }
 
-/// Whom a picture shows, and which camera took it.
+/// Identity and camera of an image.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Subject {
-    /// Number of the person or thing; -1 is passed over, as on Market-1501.
+    /// Identity of the person or object; -1 is ignored, as on Market-1501.
     pub identity: i64,
-    /// Pictures of the same subject by the same camera are passed over; `None` where cameras are not told apart.
+    /// Camera: images of the same subject by the same camera are ignored; `None` if cameras are unknown.
     pub camera: Option<Arc<str>>,
 }
 
 impl Subject {
-    fn is_passed_over(&self, query: &Self) -> bool {
+    fn is_ignored(&self, query: &Self) -> bool {
         let same_camera = self.camera.is_some() && self.camera == query.camera;
         self.identity == JUNK || (self.identity == query.identity && same_camera)
     }
 }
 
-/// Adds up the outcome of queries.
+/// Accumulates the results of queries.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Retrieval {
-    /// Queries by the rank of their first match.
+    /// Number of queries by the rank of their first match.
     first: Vec<u64>,
     precision: f64,
     without_match: u64,
 }
 
 impl Retrieval {
-    /// Counts one query, given the pictures that it was searched for in and how far each is off. Of equally far ones
-    /// the first ranks first. A query that has no match at all does not count.
+    /// Adds a query with its gallery and the distance to each image in it. Of equal distances the first ranks first. A query
+    /// without any match does not count.
     ///
     /// # Errors
-    /// `InvalidInput` when a distance is NaN.
+    /// Returns `InvalidInput` if a distance is NaN.
     pub fn add<'a>(
         &mut self,
         query: &Subject,
         gallery: impl IntoIterator<Item = (&'a Subject, f64)>,
     ) -> Result<()> {
         let mut ranked = Vec::new();
-        for (subject, distance) in gallery.into_iter().filter(|(subject, _)| !subject.is_passed_over(query)) {
+        for (subject, distance) in gallery.into_iter().filter(|(subject, _)| !subject.is_ignored(query)) {
             if distance.is_nan() {
-                return Err(Error::invalid_input("the distance between two pictures is NaN; give numbers"));
+                return Err(Error::invalid_input("the distance between two images is NaN; give numbers"));
             }
             ranked.push((distance, subject.identity == query.identity));
         }
@@ -137,106 +137,106 @@ impl Retrieval {
         Ok(())
     }
 
-    /// Queries that have a match.
+    /// Returns the number of queries that have a match.
     pub fn queries(&self) -> u64 {
         self.first.iter().sum()
     }
 
-    /// Mean of the average precisions of the queries.
+    /// Returns the mean of the average precisions of the queries.
     pub fn mean_average_precision(&self) -> Option<f64> {
         let queries = self.queries();
         (queries > 0).then(|| self.precision / queries as f64)
     }
 
-    /// Share of the queries whose first match is among the `rank` nearest (rank-1, rank-5, ..).
+    /// Returns the fraction of the queries whose first match is among the `rank` nearest (rank-1, rank-5, ..).
     pub fn match_rate(&self, rank: usize) -> Option<f64> {
         ratio(self.first.iter().take(rank).sum(), self.queries())
     }
 }
 
 #[derive(Debug, Clone)]
-struct Picture {
+struct ImageVector {
     at: usize,
     subject: Subject,
     vector: Vector,
-    /// Of the vector.
+    /// Length of the vector.
     length: f64,
 }
 
-impl Picture {
+impl ImageVector {
     fn vector_with_length(&self) -> (&[f32], f64) {
         (self.vector.as_slice(), self.length)
     }
 }
 
-/// Collects vectors; their distances are measured at the end.
+/// Collects vectors; distances are computed at the end.
 #[derive(Debug, Clone, Default)]
 pub struct Reidentification {
     params: ReidentificationParams,
-    pictures: Vec<Picture>,
+    images: Vec<ImageVector>,
 }
 
 impl Reidentification {
-    /// The outcome of all queries.
+    /// Returns the results of all queries.
     pub fn retrieval(&self) -> Retrieval {
-        let mut pictures: Vec<&Picture> = self.pictures.iter().collect();
-        pictures.sort_by_key(|picture| picture.at);
+        let mut images: Vec<&ImageVector> = self.images.iter().collect();
+        images.sort_by_key(|image| image.at);
         let queries = self.params.queries;
         let mut retrieval = Retrieval::default();
-        let asked =
-            |picture: &&&Picture| (queries == 0 || picture.at < queries) && picture.subject.identity != JUNK;
-        for query in pictures.iter().filter(asked) {
-            let searched = pictures.iter().filter(|picture| match queries {
-                0 => picture.at != query.at,
-                _ => picture.at >= queries,
+        let is_query =
+            |image: &&&ImageVector| (queries == 0 || image.at < queries) && image.subject.identity != JUNK;
+        for query in images.iter().filter(is_query) {
+            let gallery = images.iter().filter(|image| match queries {
+                0 => image.at != query.at,
+                _ => image.at >= queries,
             });
-            let far = |picture: &&Picture| {
+            let distance_to = |image: &&ImageVector| {
                 self.params
                     .distance
-                    .between_of_lengths(query.vector_with_length(), picture.vector_with_length())
+                    .between_of_lengths(query.vector_with_length(), image.vector_with_length())
             };
             // Vectors are finite, hence no distance is NaN.
-            retrieval.add(&query.subject, searched.map(|picture| (&picture.subject, far(picture)))).ok();
+            retrieval.add(&query.subject, gallery.map(|image| (&image.subject, distance_to(image)))).ok();
         }
         retrieval
     }
 }
 
-/// A prediction is the vector of a picture; the truth's class is the identity, its frame id the camera.
+/// A prediction is the vector of an image. The class of the ground truth is the identity, its frame id the camera.
 impl Metric for Reidentification {
     const NAME: &'static str = "reidentification";
     const ABOUT: &'static str = "mAP and CMC of retrieval as on Market-1501";
     const NUMBERS: &'static [(&'static str, &'static str)] = &[
         ("map", "Mean average precision over queries."),
-        ("rank_<k>", "Share of queries with a match among the k best."),
-        ("queries", "Queries that have a match in the gallery."),
-        ("queries_without_match", "Queries that have none, which do not count."),
+        ("rank_<k>", "Fraction of queries with a match among the k nearest."),
+        ("queries", "Number of queries with a match in the gallery."),
+        ("queries_without_match", "Number of queries without a match, which do not count."),
     ];
     type Params = ReidentificationParams;
     type Prediction = Vector;
     type Truth = Category;
 
     fn new(params: &ReidentificationParams) -> Result<Self> {
-        Ok(Self { params: params.clone(), pictures: Vec::new() })
+        Ok(Self { params: params.clone(), images: Vec::new() })
     }
 
-    /// A picture alone is neither found nor missed: its score is 1.
+    /// Returns 1: an image alone has no quality.
     fn update(&mut self, at: usize, prediction: &Vector, truth: &Category) -> Result<f64> {
         let (length, numbers) = (prediction.as_slice().len(), prediction.as_slice());
-        let expected = self.pictures.first().map_or(length, |picture| picture.vector.as_slice().len());
+        let expected = self.images.first().map_or(length, |image| image.vector.as_slice().len());
         if length != expected || numbers.iter().any(|number| !number.is_finite()) {
             return Err(Error::invalid_input(format!(
-                "picture {at} has a vector of {length} numbers where {expected} finite ones are expected"
+                "image {at} has a vector of {length} numbers; give {expected} finite numbers"
             )));
         }
         let subject = Subject { identity: truth.class, camera: truth.header.frame_id.clone() };
         let length = self::length(numbers);
-        self.pictures.push(Picture { at, subject, vector: prediction.clone(), length });
+        self.images.push(ImageVector { at, subject, vector: prediction.clone(), length });
         Ok(1.0)
     }
 
     fn merge(&mut self, other: Self) {
-        self.pictures.extend(other.pictures);
+        self.images.extend(other.images);
     }
 
     fn finish(&self) -> Report {
@@ -255,7 +255,7 @@ impl Metric for Reidentification {
                 name: "cmc".to_owned(),
                 title: "Cumulative match characteristic".to_owned(),
                 x: "rank".to_owned(),
-                y: "share of queries with a match".to_owned(),
+                y: "fraction of queries with a match".to_owned(),
                 lines: vec![Line { label: "queries".to_owned(), points }],
             }));
         }
@@ -289,11 +289,11 @@ mod tests {
         ];
         let mut retrieval = Retrieval::default();
         let with = |distances: [f64; 6]| gallery.iter().zip(distances).collect::<Vec<_>>();
-        // Ranked: 7 of the same camera and -1 are passed over, 1 is wrong, then 7, 2, 7.
+        // Ranked: 7 of the same camera and -1 are ignored, 1 is another identity, then 7, 2, 7.
         retrieval.add(&subject(7, "a"), with([0.0, 0.2, 0.3, 0.1, 0.5, 0.4])).unwrap();
         assert_eq!(retrieval.mean_average_precision(), Some((1.0 / 2.0 + 2.0 / 4.0) / 2.0));
         assert_eq!([1, 2, 9].map(|rank| retrieval.match_rate(rank)), [0.0, 1.0, 1.0].map(Some));
-        // Only the same camera has this one.
+        // Only the same camera has this identity.
         retrieval.add(&subject(2, "a"), with([0.0; 6])).unwrap();
         assert_eq!((retrieval.queries(), retrieval.without_match), (1, 1));
         assert!(retrieval.add(&subject(2, "a"), with([f64::NAN; 6])).is_err());
@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn queries_come_first() {
+    fn first_samples_are_queries() {
         let params = ReidentificationParams { queries: 1, ..ReidentificationParams::default() };
         let samples = [([1.0, 0.0], 3), ([0.0, 1.0], 3), ([1.0, 0.1], 4), ([0.5, 0.5], 3)];
         let mut whole = Reidentification::new(&params).unwrap();
@@ -330,13 +330,13 @@ mod tests {
     }
 
     #[test]
-    fn vectors_that_do_not_fit_are_refused() {
+    fn invalid_vectors_are_rejected() {
         let mut reidentification = Reidentification::default();
         let vector = |numbers: &[f32]| Vector::from_data(numbers.to_vec()).unwrap();
         let truth = Category::new(1, None);
         assert!(reidentification.update(0, &vector(&[f32::INFINITY]), &truth).is_err());
         reidentification.update(0, &vector(&[1.0]), &truth).unwrap();
         assert!(reidentification.update(1, &vector(&[1.0, 2.0]), &truth).is_err());
-        assert_eq!(reidentification.pictures.len(), 1);
+        assert_eq!(reidentification.images.len(), 1);
     }
 }

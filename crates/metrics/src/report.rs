@@ -1,100 +1,100 @@
-//! What an evaluation ends in.
+//! Reports of metrics.
 
 use opendr_engine::Statistics;
 use serde::{Deserialize, Serialize};
 
-/// Numbers, tables, and figures to draw.
+/// The result of a metric: numbers, tables, and figures to draw.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Report {
-    /// The metric's numbers, main one first in [`Report::headline`].
+    /// Numbers of the metric; [`Report::headline`] is the key of the main one.
     #[serde(flatten)]
     pub statistics: Statistics,
-    /// The key of the number to quote, to rank by, and to stop a training by.
+    /// Key of the main number, for ranking and early stopping.
     pub headline: String,
-    /// Numbers by class, by range, by sequence.
+    /// Tables of numbers by class, range or sequence.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tables: Vec<Table>,
-    /// What people would look at.
+    /// Figures.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub figures: Vec<Figure>,
 }
 
 impl Report {
-    /// An empty report whose number to quote will be `headline`.
+    /// Creates an empty report with the key of its main number.
     pub fn new(headline: &str) -> Self {
         Self { headline: headline.to_owned(), ..Self::default() }
     }
 }
 
-/// Numbers in rows.
+/// A table of numbers.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Table {
-    /// What the rows are, e.g. `"class"`.
+    /// Kind of the rows, e.g. `"class"`.
     pub name: String,
-    /// What the columns are.
+    /// Names of the columns.
     pub columns: Vec<String>,
-    /// Label and numbers of each row; `None` where there is none.
+    /// Label and numbers of each row; `None` if undefined.
     pub rows: Vec<(String, Vec<Option<f64>>)>,
 }
 
-/// Something to draw.
+/// A figure to draw.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Figure {
-    /// Lines over two axes.
+    /// A line chart.
     Curves(Curves),
-    /// Counts of truth by answer.
+    /// A confusion matrix.
     Matrix(Matrix),
-    /// One number for each of several things.
+    /// A bar chart.
     Bars(Bars),
 }
 
-/// One number, from 0, for each of several things.
+/// A bar chart, with bars from 0.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bars {
-    /// Of the file, e.g. `"importance"`.
+    /// File name, e.g. `"importance"`.
     pub name: String,
-    /// For people.
+    /// Title.
     pub title: String,
-    /// What the numbers are.
+    /// Label of the axis of the numbers.
     pub x: String,
-    /// What each is of, and it.
+    /// Label and number of each bar.
     pub bars: Vec<(String, f64)>,
 }
 
-/// Lines over two axes.
+/// A line chart.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Curves {
-    /// Of the file, e.g. `"precision_recall"`.
+    /// File name, e.g. `"precision_recall"`.
     pub name: String,
-    /// For people.
+    /// Title.
     pub title: String,
-    /// The horizontal axis.
+    /// Label of the horizontal axis.
     pub x: String,
-    /// The vertical axis.
+    /// Label of the vertical axis.
     pub y: String,
-    /// The lines.
+    /// Lines.
     pub lines: Vec<Line>,
 }
 
-/// One line.
+/// A line of a line chart.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Line {
-    /// For the legend.
+    /// Label in the legend.
     pub label: String,
-    /// `[x, y]`.
+    /// Points `[x, y]`.
     pub points: Vec<[f64; 2]>,
 }
 
 /// A confusion matrix.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Matrix {
-    /// Of the file, e.g. `"confusion"`.
+    /// File name, e.g. `"confusion"`.
     pub name: String,
-    /// For people.
+    /// Title.
     pub title: String,
-    /// Of rows (truth) and columns (answer).
+    /// Labels of rows (ground truth) and columns (predictions).
     pub labels: Vec<String>,
     /// Counts, row by row, `labels.len()` squared.
     pub counts: Vec<u64>,

@@ -1,4 +1,4 @@
-//! Receiver operating characteristic and precision against recall, equal to scikit-learn, ties included.
+//! Receiver operating characteristic and precision-recall curve, equal to scikit-learn, including ties.
 
 use opendr_engine::params::Params;
 use opendr_engine::target::Category;
@@ -6,21 +6,21 @@ use opendr_engine::{Error, Result};
 
 use crate::{Curves, Figure, Line, Metric, Report};
 
-/// Most points of a line that is drawn.
+/// Maximum number of points of a drawn line.
 const DRAWN_POINTS: usize = 1000;
 
-/// How many negatives (`false_positives`) and positives (`true_positives`) score at least `threshold`.
+/// Numbers of negatives (`false_positives`) and positives (`true_positives`) with a score of at least `threshold`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RocPoint {
-    /// What scores at least this is taken for positive.
+    /// Threshold: samples with at least this score are predicted positive.
     pub threshold: f64,
-    /// Negatives taken for positive.
+    /// Negatives predicted positive.
     pub false_positives: u64,
-    /// Positives taken for positive.
+    /// Positives predicted positive.
     pub true_positives: u64,
 }
 
-/// A [`RocPoint`] for every score that occurs, highest first, after one at infinity where nothing is positive.
+/// A [`RocPoint`] for every score that occurs, highest first, after one at infinity where nothing is predicted positive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RocCurve {
     points: Vec<RocPoint>,
@@ -29,12 +29,12 @@ pub struct RocCurve {
 }
 
 impl RocCurve {
-    /// The curve of (score, is positive), in any order; scores are not NaN.
+    /// Computes the curve of samples (score, is positive), in any order; scores are not NaN.
     pub fn new(mut samples: Vec<(f64, bool)>) -> Self {
         samples.sort_unstable_by(|one, other| other.0.total_cmp(&one.0));
         let (mut positives, mut negatives) = (0, 0);
         let mut points = vec![RocPoint { threshold: f64::INFINITY, false_positives: 0, true_positives: 0 }];
-        // By `==`, so that 0 and -0 are one score.
+        // Compared by `==`, so that 0 and -0 are one score.
         for tied in samples.chunk_by(|one, other| one.0 == other.0) {
             let hits = tied.iter().filter(|(_, positive)| *positive).count();
             positives += hits as u64;
@@ -45,25 +45,25 @@ impl RocCurve {
         Self { points, positives, negatives }
     }
 
-    /// Thresholds fall, counts rise.
+    /// Returns the points in order of descending thresholds and ascending counts.
     pub fn points(&self) -> &[RocPoint] {
         &self.points
     }
 
-    /// Positives there are.
+    /// Returns the number of positives.
     pub fn positives(&self) -> u64 {
         self.positives
     }
 
-    /// Negatives there are.
+    /// Returns the number of negatives.
     pub fn negatives(&self) -> u64 {
         self.negatives
     }
 
-    /// The points at which the curve turns, as scikit-learn's `roc_curve` keeps them.
+    /// Returns the points at which the curve bends, as scikit-learn's `roc_curve` does.
     pub fn corners(&self) -> Vec<RocPoint> {
         let turns = |at: usize| {
-            // The point at infinity is not weighed: the first score is always kept.
+            // The point at infinity is not compared: the first score is always kept.
             let (Some(before), Some(after)) = (self.points.get(at - 1), self.points.get(at + 1)) else {
                 return true;
             };
@@ -77,7 +77,7 @@ impl RocCurve {
         kept.map(|(_, point)| *point).collect()
     }
 
-    /// False and true positive rate at `point`; `None` where there are no negatives or no positives.
+    /// Returns the false and true positive rate at `point`; `None` without negatives or without positives.
     pub fn rates(&self, point: &RocPoint) -> Option<[f64; 2]> {
         (self.positives > 0 && self.negatives > 0).then(|| {
             [
@@ -87,9 +87,9 @@ impl RocCurve {
         })
     }
 
-    /// Area under the curve by the trapezoidal rule (`roc_auc_score`); `None` without positives or negatives.
+    /// Returns the area under the curve by the trapezoidal rule (`roc_auc_score`); `None` without positives or negatives.
     pub fn area(&self) -> Option<f64> {
-        // Twice the area in whole numbers, hence exact.
+        // Twice the area in integers, hence exact.
         let steps = self.points.windows(2).map(|pair| {
             let width = pair[1].false_positives - pair[0].false_positives;
             u128::from(width) * u128::from(pair[1].true_positives + pair[0].true_positives)
@@ -98,7 +98,8 @@ impl RocCurve {
         (whole > 0).then(|| steps.sum::<u128>() as f64 / whole as f64)
     }
 
-    /// Precision at every rise of recall, weighted by the rise (`average_precision_score`); `None` without positives.
+    /// Returns the precision at every rise of recall, weighted by the rise (`average_precision_score`); `None` without
+    /// positives.
     pub fn average_precision(&self) -> Option<f64> {
         let steps = self.points.windows(2).map(|pair| {
             let rise = pair[1].true_positives - pair[0].true_positives;
@@ -107,18 +108,19 @@ impl RocCurve {
         (self.positives > 0).then(|| steps.sum::<f64>() / self.positives as f64)
     }
 
-    /// The point with the highest F1 and that F1; of equal ones that of the lowest threshold. `None` without positives.
+    /// Returns the point with the highest F1 and that F1; of equal ones the point with the lowest threshold. `None` without
+    /// positives.
     pub fn best_f1(&self) -> Option<(RocPoint, f64)> {
         let f1 = |point: &RocPoint| {
-            let answered = point.true_positives + point.false_positives;
-            2.0 * point.true_positives as f64 / (answered + self.positives) as f64
+            let predicted = point.true_positives + point.false_positives;
+            2.0 * point.true_positives as f64 / (predicted + self.positives) as f64
         };
         let scored = self.points.iter().skip(1).map(|point| (*point, f1(point)));
-        // `max_by` keeps the last of equal ones.
+        // `max_by` returns the last of equal ones.
         scored.filter(|_| self.positives > 0).max_by(|one, other| one.1.total_cmp(&other.1))
     }
 
-    /// The curve to draw.
+    /// Returns the figure of the curve.
     pub(crate) fn figure(&self) -> Option<Figure> {
         let points = self.corners().iter().map(|point| self.rates(point)).collect::<Option<Vec<_>>>()?;
         let chance = Line { label: "chance".to_owned(), points: vec![[0.0, 0.0], [1.0, 1.0]] };
@@ -127,7 +129,7 @@ impl RocCurve {
             title: "Receiver operating characteristic".to_owned(),
             x: "false positive rate".to_owned(),
             y: "true positive rate".to_owned(),
-            lines: vec![chance, Line { label: "answers".to_owned(), points: thinned(points) }],
+            lines: vec![chance, Line { label: "predictions".to_owned(), points: thinned(points) }],
         }))
     }
 
@@ -141,7 +143,7 @@ impl RocCurve {
                 title: "Precision and recall".to_owned(),
                 x: "recall".to_owned(),
                 y: "precision".to_owned(),
-                lines: vec![Line { label: "answers".to_owned(), points: thinned(points) }],
+                lines: vec![Line { label: "predictions".to_owned(), points: thinned(points) }],
             })
         })
     }
@@ -151,7 +153,7 @@ fn precision(point: &RocPoint) -> f64 {
     point.true_positives as f64 / (point.true_positives + point.false_positives).max(1) as f64
 }
 
-/// Evenly chosen points, first and last among them.
+/// Returns evenly spaced points, including the first and the last.
 fn thinned(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     if points.len() <= DRAWN_POINTS {
         return points;
@@ -160,15 +162,15 @@ fn thinned(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     (0..DRAWN_POINTS).map(|at| points[at * last / (DRAWN_POINTS - 1)]).collect()
 }
 
-/// What a user may set.
+/// Parameters of [`Roc`].
 #[derive(Debug, Clone, Params)]
 pub struct RocParams {
-    /// The class that is to be found, e.g. the anomaly; all others are negative.
+    /// Positive class, e.g. the anomaly; all others are negative.
     #[param(default = 1)]
     pub positive: i64,
 }
 
-/// Collects scores of positives and negatives: 16 bytes a sample.
+/// Collects the scores of positives and negatives: 16 bytes per sample.
 #[derive(Debug, Clone, Default)]
 pub struct Roc {
     params: RocParams,
@@ -176,36 +178,36 @@ pub struct Roc {
 }
 
 impl Roc {
-    /// Counts one sample; a high score means positive.
+    /// Adds a sample; a high score means positive.
     ///
     /// # Errors
-    /// `InvalidInput` for a score that is NaN or infinite.
+    /// Returns `InvalidInput` for a score that is NaN or infinite.
     pub fn add(&mut self, positive: bool, score: f64) -> Result<()> {
         if !score.is_finite() {
-            return Err(Error::invalid_input(format!("score {score} is not finite; give numbers")));
+            return Err(Error::invalid_input(format!("score {score} is not finite; give finite numbers")));
         }
         self.samples.push((score, positive));
         Ok(())
     }
 
-    /// The curve of what was counted.
+    /// Returns the curve of the samples.
     pub fn curve(&self) -> RocCurve {
         RocCurve::new(self.samples.clone())
     }
 }
 
-/// A prediction's score is the probability of the positive class; without probabilities its confidence, or one minus
-/// that where it answers another class than the positive one.
+/// The score of a prediction is the probability of the positive class; without probabilities its confidence, or one minus
+/// the confidence if it predicts another class.
 impl Metric for Roc {
     const NAME: &'static str = "roc";
     const ABOUT: &'static str = "ROC and precision-recall of one class against the others, as scikit-learn";
     const NUMBERS: &'static [(&'static str, &'static str)] = &[
         ("roc_auc", "Area under the ROC curve."),
-        ("average_precision", "Area under precision over recall, by steps."),
-        ("best_f1", "The best F1 of any threshold."),
-        ("best_f1_threshold", "That threshold."),
-        ("positives", "Samples of the class that is looked for."),
-        ("negatives", "All others."),
+        ("average_precision", "Area under the precision-recall curve, as a step function."),
+        ("best_f1", "Highest F1 over all thresholds."),
+        ("best_f1_threshold", "Threshold of the highest F1."),
+        ("positives", "Number of samples of the positive class."),
+        ("negatives", "Number of all other samples."),
     ];
     type Params = RocParams;
     type Prediction = Category;
@@ -229,9 +231,9 @@ impl Metric for Roc {
                 )));
             }
         };
-        let wanted = truth.class == positive;
-        self.add(wanted, score)?;
-        Ok((if wanted { score } else { 1.0 - score }).clamp(0.0, 1.0))
+        let is_positive = truth.class == positive;
+        self.add(is_positive, score)?;
+        Ok((if is_positive { score } else { 1.0 - score }).clamp(0.0, 1.0))
     }
 
     fn merge(&mut self, other: Self) {
@@ -298,8 +300,8 @@ mod tests {
     fn score_of_the_positive_class() {
         let mut roc = Roc::default();
         let truth = Category::new(1, None);
-        let answer = Category { probabilities: vec![0.25, 0.75], ..Category::new(0, None) };
-        assert_eq!(roc.update(0, &answer, &truth).unwrap(), 0.75);
+        let prediction = Category { probabilities: vec![0.25, 0.75], ..Category::new(0, None) };
+        assert_eq!(roc.update(0, &prediction, &truth).unwrap(), 0.75);
         assert_eq!(roc.update(1, &Category::new(0, Some(0.75)), &truth).unwrap(), 0.25);
         assert_eq!(roc.update(2, &Category::new(1, Some(0.75)), &truth).unwrap(), 0.75);
         assert!(roc.update(3, &Category::new(1, Some(f32::NAN)), &truth).is_err());

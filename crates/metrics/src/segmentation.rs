@@ -7,23 +7,23 @@ use opendr_engine::{Error, Result};
 use crate::average::{mean, ratio};
 use crate::{Figure, Matrix, Metric, Report, Table};
 
-/// Most classes, hence at most 8 MiB of counts.
+/// Maximum number of classes, for at most 8 MiB of counts.
 const MAX_CLASSES: usize = 1024;
 
-/// Pixels looked at together: where all are alike, as inside of things, they are counted at once.
+/// Pixels per run: runs of equal pixels, as inside of objects, are counted at once.
 const RUN: usize = 16;
 
-/// What a user may set.
+/// Parameters of [`Segmentation`].
 #[derive(Debug, Clone, Params)]
 pub struct SegmentationParams {
-    /// The label of pixels that do not count.
+    /// Label of ignored pixels.
     #[param(default = Some(255), range = 0..=4_294_967_295_u32)]
     pub ignore: Option<u32>,
 }
 
-/// Counts of pixels by truth (row) and answer (column).
+/// Numbers of pixels by ground truth (row) and prediction (column).
 ///
-/// Row and column `classes` hold an ignored label that is no class number; an ignored one that is keeps its own.
+/// Row and column `classes` contain an ignored label that is not a class index; an ignored class index has its own row.
 #[derive(Debug, Clone, Default, PartialEq)]
 struct Pixels {
     classes: usize,
@@ -37,16 +37,16 @@ impl Pixels {
 
     fn count(&mut self, truth: &[u32], predicted: &[u32]) {
         let (runs, rest) = truth.as_chunks::<RUN>();
-        let (answers, rest_of_answers) = predicted.as_chunks::<RUN>();
+        let (predictions, rest_of_predictions) = predicted.as_chunks::<RUN>();
         let differing = |run: &[u32; RUN]| run.iter().fold(0, |bits, label| bits | (label ^ run[0]));
-        for (run, answer) in runs.iter().zip(answers) {
-            if differing(run) | differing(answer) == 0 {
-                *self.at(run[0], answer[0]) += RUN as u64;
+        for (run, prediction) in runs.iter().zip(predictions) {
+            if differing(run) | differing(prediction) == 0 {
+                *self.at(run[0], prediction[0]) += RUN as u64;
             } else {
-                self.count_each(run, answer);
+                self.count_each(run, prediction);
             }
         }
-        self.count_each(rest, rest_of_answers);
+        self.count_each(rest, rest_of_predictions);
     }
 
     fn count_each(&mut self, truth: &[u32], predicted: &[u32]) {
@@ -85,8 +85,8 @@ impl Pixels {
             class.truth = counts.iter().sum();
             class.hits = counts[row];
             for (column, count) in counts.iter().enumerate().filter(|(column, _)| *column != ignored) {
-                if let Some(answered) = classes.get_mut(column) {
-                    answered.predicted += count;
+                if let Some(class) = classes.get_mut(column) {
+                    class.predicted += count;
                 }
             }
         }
@@ -94,33 +94,33 @@ impl Pixels {
     }
 }
 
-/// Pixels of one class.
+/// Numbers of pixels of one class.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct ClassPixels {
-    /// Answered rightly.
+    /// Pixels of the class that are predicted as the class.
     pub hits: u64,
-    /// Of the class.
+    /// Pixels of the class.
     pub truth: u64,
-    /// Answered with the class.
+    /// Pixels predicted as the class.
     pub predicted: u64,
 }
 
 impl ClassPixels {
-    /// Intersection over union; `None` for a class that neither is there nor answered.
+    /// Returns the intersection over union; `None` for a class that occurs in neither map.
     pub fn iou(&self) -> Option<f64> {
         ratio(self.hits, self.truth + self.predicted - self.hits)
     }
 
-    /// Share of its pixels that were found; `None` for a class that is not there.
+    /// Returns the fraction of its pixels that are correct; `None` for a class without pixels.
     pub fn accuracy(&self) -> Option<f64> {
         ratio(self.hits, self.truth)
     }
 }
 
-/// The outcome, by class number.
+/// Pixel counts by class index.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct SegmentationScores {
-    /// Pixels of each class.
+    /// Counts of each class.
     pub classes: Vec<ClassPixels>,
 }
 
@@ -129,22 +129,22 @@ impl SegmentationScores {
         self.classes.iter().map(number).sum()
     }
 
-    /// Mean intersection over union of the classes that are there or answered.
+    /// Returns the mean intersection over union of the classes that occur as ground truth or prediction.
     pub fn mean_iou(&self) -> Option<f64> {
         mean(self.classes.iter().filter_map(ClassPixels::iou))
     }
 
-    /// Share of all pixels that are right.
+    /// Returns the fraction of correct pixels.
     pub fn pixel_accuracy(&self) -> Option<f64> {
         ratio(self.total(|class| class.hits), self.total(|class| class.truth))
     }
 
-    /// Mean accuracy of the classes that are there.
+    /// Returns the mean accuracy of the classes that occur in the ground truth.
     pub fn mean_accuracy(&self) -> Option<f64> {
         mean(self.classes.iter().filter_map(ClassPixels::accuracy))
     }
 
-    /// Intersection over union weighted by the share of the class of all pixels (Long et al., 2015).
+    /// Returns the intersection over union, weighted by the fraction of pixels of the class (Long et al., 2015).
     pub fn frequency_weighted_iou(&self) -> Option<f64> {
         let total = self.total(|class| class.truth);
         let part = |class: &ClassPixels| class.iou().unwrap_or(0.0) * class.truth as f64;
@@ -152,7 +152,7 @@ impl SegmentationScores {
     }
 }
 
-/// Counts pixels. Memory grows with the square of the highest class number, not with the pictures.
+/// Accumulates pixels. Memory grows with the square of the highest class index, not with the images.
 #[derive(Debug, Clone, Default)]
 pub struct Segmentation {
     params: SegmentationParams,
@@ -161,20 +161,20 @@ pub struct Segmentation {
 }
 
 impl Segmentation {
-    /// Counts the pixels of one picture and gives its scores. Pixels whose truth is the ignored label do not count; an
-    /// answer of the ignored label, or of [`Heatmap::NO_CLASS`], is a miss that burdens no other class.
+    /// Adds the pixels of an image and returns its scores. Pixels with the ignored label as ground truth do not count. A
+    /// prediction of the ignored label, or of [`Heatmap::NO_CLASS`], is a miss and no false positive of any class.
     ///
     /// # Errors
-    /// `InvalidInput` when the maps differ in size or a label is above 1023 and not the ignored one.
+    /// Returns `InvalidInput` if the maps differ in size, or a label is above 1023 and not the ignored one.
     pub fn add(&mut self, truth: &[u32], predicted: &[u32]) -> Result<SegmentationScores> {
         if truth.len() != predicted.len() {
-            let (wanted, given) = (truth.len(), predicted.len());
+            let (expected, given) = (truth.len(), predicted.len());
             return Err(Error::invalid_input(format!(
-                "a map of {given} pixels cannot answer one of {wanted}; give maps of the same size"
+                "a map of {given} pixels cannot be compared with one of {expected}; give maps of the same size"
             )));
         }
         let ignore = self.params.ignore;
-        // A label that is not counted stands for class 0, which there always is.
+        // A label that is not counted is replaced by class 0, which always exists.
         let none = ignore.unwrap_or(0);
         let highest = |labels: &[u32], uncounted: u32| {
             let counted = labels.iter().filter(|label| ![none, uncounted].contains(label));
@@ -183,16 +183,16 @@ impl Segmentation {
         let highest = highest(truth, none).max(highest(predicted, Heatmap::NO_CLASS)) as usize;
         if highest >= MAX_CLASSES {
             return Err(Error::invalid_input(format!(
-                "label {highest} is no class number below {MAX_CLASSES} and not the ignored label {ignore:?}"
+                "label {highest} is not a class index below {MAX_CLASSES} and not the ignored label {ignore:?}; fix the labels"
             )));
         }
-        let mut picture = Pixels::new(highest + 1);
-        picture.count(truth, predicted);
-        self.pixels.add(&picture);
-        Ok(picture.scores(ignore))
+        let mut image = Pixels::new(highest + 1);
+        image.count(truth, predicted);
+        self.pixels.add(&image);
+        Ok(image.scores(ignore))
     }
 
-    /// Scores of all pixels counted.
+    /// Returns the scores over all pixels.
     pub fn scores(&self) -> SegmentationScores {
         self.pixels.scores(self.params.ignore)
     }
@@ -201,7 +201,7 @@ impl Segmentation {
         self.names.name(class as i64).map_or_else(|| class.to_string(), |name| name.to_string())
     }
 
-    /// The classes that are there or answered, with their numbers.
+    /// Returns the confusion matrix of the classes `present`.
     fn confusion(&self, present: &[usize]) -> Matrix {
         let count = |row: usize, column: usize| self.pixels.counts[row * (self.pixels.classes + 1) + column];
         let counts = present.iter().flat_map(|row| present.iter().map(|column| count(*row, *column)));
@@ -214,16 +214,16 @@ impl Segmentation {
     }
 }
 
-/// A prediction may be scores `[classes, height, width]`: the highest is the answer.
+/// A prediction may be scores `[classes, height, width]`; the class with the highest score counts.
 impl Metric for Segmentation {
     const NAME: &'static str = "segmentation";
     const ABOUT: &'static str = "mean IoU, IoU of classes and pixel accuracies of label maps";
     const NUMBERS: &'static [(&'static str, &'static str)] = &[
-        ("miou", "Mean over classes of intersection over union."),
-        ("pixel_accuracy", "Share of right pixels."),
-        ("mean_accuracy", "Mean over classes of the share of right pixels."),
-        ("frequency_weighted_iou", "Intersection over union, weighted by pixels of the class."),
-        ("pixels", "Pixels that were counted."),
+        ("miou", "Mean intersection over union over classes."),
+        ("pixel_accuracy", "Fraction of correct pixels."),
+        ("mean_accuracy", "Mean over classes of the fraction of correct pixels."),
+        ("frequency_weighted_iou", "Intersection over union, weighted by the pixels of the class."),
+        ("pixels", "Number of pixels."),
     ];
     type Params = SegmentationParams;
     type Prediction = Heatmap;
@@ -234,17 +234,19 @@ impl Metric for Segmentation {
     }
 
     fn update(&mut self, _at: usize, prediction: &Heatmap, truth: &Heatmap) -> Result<f64> {
-        let HeatmapValues::Labels(wanted) = truth.values() else {
-            return Err(Error::invalid_input("the truth of segmentation is a map of labels, not of scores"));
+        let HeatmapValues::Labels(expected) = truth.values() else {
+            return Err(Error::invalid_input(
+                "the ground truth of segmentation must be a map of labels, not of scores",
+            ));
         };
         let (given, shape) = prediction.class_labels()?;
         if shape != truth.shape() {
-            let wanted = truth.shape();
+            let expected = truth.shape();
             return Err(Error::invalid_input(format!(
-                "a map of shape {shape:?} cannot answer one of {wanted:?}; resize the prediction to the truth"
+                "a map of shape {shape:?} cannot be compared with one of {expected:?}; resize the prediction to the ground truth"
             )));
         }
-        let scores = self.add(wanted, &given)?;
+        let scores = self.add(expected, &given)?;
         if self.names.is_empty() {
             let names = if truth.classes.is_empty() { &prediction.classes } else { &truth.classes };
             self.names = names.clone();

@@ -1,5 +1,5 @@
-//! Reinforcement learning: success rate with its interval, returns, and the interquartile mean with its interval as
-//! the paper behind `rliable` (Agarwal et al., Deep Reinforcement Learning at the Edge of the Statistical Precipice,
+//! Reinforcement learning: success rate with confidence interval, returns, and the interquartile mean with confidence
+//! interval as in `rliable` (Agarwal et al., Deep Reinforcement Learning at the Edge of the Statistical Precipice,
 //! NeurIPS 2021).
 
 use std::collections::BTreeMap;
@@ -11,33 +11,33 @@ use serde::{Deserialize, Serialize};
 use crate::average::{mean, ratio};
 use crate::{Report, Table};
 
-/// The 97.5 % quantile of the normal distribution: 95 % lie within, either way.
+/// 97.5 % quantile of the normal distribution, for two-sided 95 % intervals.
 const Z: f64 = 1.959_963_984_540_054;
 
-/// One episode that was played.
+/// Result of an episode.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Episode {
-    /// The environment, where there are several.
+    /// Name of the environment, if there are several.
     #[serde(default)]
     pub task: String,
-    /// The training run that the policy is from.
+    /// Seed of the training run of the policy.
     #[serde(default)]
     pub seed: u64,
     /// Sum of the rewards.
     #[serde(rename = "return")]
     pub total_reward: f64,
-    /// Whether the goal was reached, where there is one.
+    /// Whether the goal was reached, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub success: Option<bool>,
 }
 
-/// What a user may set.
+/// Parameters of [`Success`].
 #[derive(Debug, Clone, Params)]
 pub struct SuccessParams {
-    /// How often runs are drawn anew for the interval of the interquartile mean.
+    /// Number of bootstrap resamples of runs for the interval of the interquartile mean.
     #[param(default = 50_000, range = 100..=1_000_000)]
     pub resamples: usize,
-    /// Of the random numbers that they are drawn with.
+    /// Seed of the resampling.
     pub seed: u64,
 }
 
@@ -45,10 +45,10 @@ pub struct SuccessParams {
 struct Run {
     returns: Vec<f64>,
     successes: u64,
-    tried: u64,
+    trials: u64,
 }
 
-/// Collects episodes by task and run: 8 bytes an episode.
+/// Collects episodes by task and run: 8 bytes per episode.
 #[derive(Debug, Clone, Default)]
 pub struct Success {
     params: SuccessParams,
@@ -56,30 +56,30 @@ pub struct Success {
 }
 
 impl Success {
-    /// A collection without episodes.
+    /// Creates an empty accumulator.
     pub fn new(params: &SuccessParams) -> Self {
         Self { params: params.clone(), tasks: BTreeMap::new() }
     }
 
-    /// Counts one episode.
+    /// Adds an episode.
     ///
     /// # Errors
-    /// `InvalidInput` for a return that is NaN or infinite.
+    /// Returns `InvalidInput` for a return that is NaN or infinite.
     pub fn add(&mut self, episode: &Episode) -> Result<()> {
         if !episode.total_reward.is_finite() {
             let Episode { task, seed, total_reward, .. } = episode;
             return Err(Error::invalid_input(format!(
-                "return {total_reward} of task {task:?}, seed {seed} is not finite; give numbers"
+                "return {total_reward} of task {task:?}, seed {seed} is not finite; give finite numbers"
             )));
         }
         let run = self.tasks.entry(episode.task.clone()).or_default().entry(episode.seed).or_default();
         run.returns.push(episode.total_reward);
-        run.tried += u64::from(episode.success.is_some());
+        run.trials += u64::from(episode.success.is_some());
         run.successes += u64::from(episode.success == Some(true));
         Ok(())
     }
 
-    /// Counts what `other` counted.
+    /// Adds the episodes of `other`.
     pub fn merge(&mut self, other: Self) {
         for (task, runs) in other.tasks {
             let task = self.tasks.entry(task).or_default();
@@ -87,15 +87,15 @@ impl Success {
                 let run = task.entry(seed).or_default();
                 run.returns.extend(more.returns);
                 run.successes += more.successes;
-                run.tried += more.tried;
+                run.trials += more.trials;
             }
         }
     }
 
-    /// The mean return of every run, task by task.
+    /// Returns the mean return of every run, by task.
     fn scores(&self) -> Vec<Vec<f64>> {
         let of_run = |run: &Run| {
-            // Sorted, so that the order of episodes changes no digit.
+            // Sorted, so that the result does not depend on the order of episodes.
             let mut returns = run.returns.clone();
             returns.sort_by(f64::total_cmp);
             mean(returns)
@@ -103,18 +103,18 @@ impl Success {
         self.tasks.values().map(|runs| runs.values().filter_map(of_run).collect()).collect()
     }
 
-    /// The outcome. The scores of the interquartile mean are the mean returns of the runs; where every task has only
-    /// one run, there is no interval.
+    /// Returns the result. The interquartile mean is over the mean returns of the runs; it has no interval if every task has
+    /// only one run.
     pub fn finish(&self) -> Report {
         let runs = || self.tasks.values().flat_map(BTreeMap::values);
-        let tried = runs().map(|run| run.tried).sum();
-        let mut report = Report::new(if tried > 0 { "success_rate" } else { "return_iqm" });
+        let trials = runs().map(|run| run.trials).sum();
+        let mut report = Report::new(if trials > 0 { "success_rate" } else { "return_iqm" });
         let mut set = |key: &str, value: f64| report.statistics.set(key, value);
         let mut returns: Vec<f64> = runs().flat_map(|run| &run.returns).copied().collect();
         returns.sort_by(f64::total_cmp);
         set("episodes", returns.len() as f64);
         set("runs", runs().count() as f64);
-        if let Some(interval) = wilson_interval(runs().map(|run| run.successes).sum(), tried) {
+        if let Some(interval) = wilson_interval(runs().map(|run| run.successes).sum(), trials) {
             set("success_rate", interval.value);
             set("success_rate_low", interval.low);
             set("success_rate_high", interval.high);
@@ -140,7 +140,7 @@ impl Success {
     fn table(&self) -> Table {
         let row = |(task, runs): (&String, &BTreeMap<u64, Run>)| {
             let successes = runs.values().map(|run| run.successes).sum();
-            let interval = wilson_interval(successes, runs.values().map(|run| run.tried).sum());
+            let interval = wilson_interval(successes, runs.values().map(|run| run.trials).sum());
             let mut returns: Vec<f64> = runs.values().flat_map(|run| &run.returns).copied().collect();
             returns.sort_by(f64::total_cmp);
             let (count, rate) = (returns.len() as f64, interval.map(|interval| interval.value));
@@ -154,10 +154,10 @@ impl Success {
     }
 }
 
-/// A number with the ends of its 95 % interval.
+/// A number with its 95 % confidence interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
-    /// The number.
+    /// Value.
     pub value: f64,
     /// Lower end.
     pub low: f64,
@@ -165,20 +165,20 @@ pub struct Interval {
     pub high: f64,
 }
 
-/// The share of successes with its 95 % interval (Wilson, 1927); `None` without trials.
+/// Returns the fraction of successes with its 95 % interval (Wilson, 1927); `None` without trials.
 pub fn wilson_interval(successes: u64, trials: u64) -> Option<Interval> {
     let (value, count) = (ratio(successes, trials)?, trials as f64);
     let scale = 1.0 + Z * Z / count;
     let centre = (value + Z * Z / (2.0 * count)) / scale;
     let half = Z / scale * (value * (1.0 - value) / count + Z * Z / (4.0 * count * count)).sqrt();
-    // At the ends exactly 0 and 1, which rounding would miss.
+    // Exactly 0 and 1 at the ends, which rounding would miss.
     let low = if successes == 0 { 0.0 } else { centre - half };
     let high = if successes == trials { 1.0 } else { centre + half };
     Some(Interval { value, low, high })
 }
 
-/// The mean without the lowest and the highest quarter, each rounded down (`scipy.stats.trim_mean(scores, 0.25)`);
-/// changes the order of `scores`, which are not NaN. `None` of nothing.
+/// Returns the mean without the lowest and the highest quarter, each rounded down (`scipy.stats.trim_mean(scores, 0.25)`);
+/// `None` without scores. It reorders `scores`, which are not NaN.
 pub fn interquartile_mean(scores: &mut [f64]) -> Option<f64> {
     let cut = scores.len() / 4;
     let mut kept = scores;
@@ -189,9 +189,9 @@ pub fn interquartile_mean(scores: &mut [f64]) -> Option<f64> {
     mean(kept.iter().copied())
 }
 
-/// The interquartile mean of `scores[task][run]` with the 2.5 and 97.5 percentiles of those of `resamples` draws of as
-/// many runs of each task, with replacement (stratified bootstrap). Equal seeds give equal intervals. `None` where no
-/// task has two runs.
+/// Returns the interquartile mean of `scores[task][run]` with its 95 % interval: the 2.5 and 97.5 percentiles over
+/// `resamples` bootstrap samples of runs, stratified by task. Equal seeds give equal intervals. `None` if no task has two
+/// runs.
 pub fn bootstrap_interval(scores: &[Vec<f64>], resamples: usize, seed: u64) -> Option<Interval> {
     if scores.iter().all(|runs| runs.len() < 2) {
         return None;
@@ -211,12 +211,12 @@ pub fn bootstrap_interval(scores: &[Vec<f64>], resamples: usize, seed: u64) -> O
     Some(Interval { value, low: percentile(&means, 2.5), high: percentile(&means, 97.5) })
 }
 
-/// Between the two nearest of `sorted`, as `numpy.percentile`; NaN of nothing.
+/// Returns a percentile of `sorted` by linear interpolation, as `numpy.percentile`; NaN without numbers.
 fn percentile(sorted: &[f64], percent: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
-    let place = last as f64 * percent / 100.0;
-    let (below, above) = (sorted[place as usize], sorted[last.min(place as usize + 1)]);
-    below + (above - below) * place.fract()
+    let position = last as f64 * percent / 100.0;
+    let (below, above) = (sorted[position as usize], sorted[last.min(position as usize + 1)]);
+    below + (above - below) * position.fract()
 }
 
 #[cfg(test)]
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn quarters_are_cut() {
+    fn quarters_are_removed() {
         assert_eq!(interquartile_mean(&mut [100.0, 1.0, 2.0, -50.0]), Some(1.5));
         assert_eq!(interquartile_mean(&mut [5.0, 1.0, 3.0]), Some(3.0));
         assert_eq!(interquartile_mean(&mut []), None);
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn interval_holds_the_mean_and_follows_the_seed() {
+    fn interval_contains_the_mean_and_follows_the_seed() {
         let scores = [vec![1.03, 2.17, 3.31, 4.73, 10.9, 7.11], vec![0.57, 0.29, 1.71, 5.3]];
         let interval = bootstrap_interval(&scores, 500, 7).unwrap();
         assert!(interval.low < interval.value && interval.value < interval.high);
@@ -269,17 +269,17 @@ mod tests {
             episode("push", 0, 0.0, None),
         ];
         let mut whole = Success::new(&SuccessParams { resamples: 200, seed: 1 });
-        let mut turned = whole.clone();
+        let mut reversed = whole.clone();
         for episode in &episodes {
             whole.add(episode).unwrap();
         }
         for episode in episodes.iter().rev() {
             let mut part = Success::default();
             part.add(episode).unwrap();
-            turned.merge(part);
+            reversed.merge(part);
         }
         let report = whole.finish();
-        assert_eq!(report, turned.finish());
+        assert_eq!(report, reversed.finish());
         let number = |key| report.statistics.get(key);
         assert_eq!(number("success_rate"), Some(2.0 / 3.0));
         assert_eq!((number("return_mean"), number("return_median")), (Some(2.0), Some(2.0)));
@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_and_nan() {
+    fn no_episodes_and_nan() {
         let mut success = Success::default();
         assert!(success.add(&episode("", 0, f64::NAN, None)).is_err());
         let report = success.finish();

@@ -1,10 +1,10 @@
-//! Tracking in space: HOTA and CLEAR MOT over the volumes that boxes share.
+//! 3D tracking: HOTA and CLEAR MOT over the intersection over union of volumes.
 //!
-//! What X. Weng et al., "3D Multi-Object Tracking: A Baseline and New Evaluation Metrics", IROS 2020, ask for: boxes are
-//! compared in space, not in the picture, and match from a quarter of shared volume on. The counting is that of
-//! [`Hota`] and [`ClearMot`], which know overlaps alone.
+//! As in X. Weng et al., "3D Multi-Object Tracking: A Baseline and New Evaluation Metrics", IROS 2020, boxes are compared
+//! in space, not in the image, and match from an intersection over union of one quarter. The counts are those of
+//! [`Hota`] and [`ClearMot`].
 
-use opendr_engine::overlap::StandingBox;
+use opendr_engine::overlap::UprightBox3D;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBox3D, Name, TrackingAnnotation3DList};
 use opendr_engine::{Error, Result};
@@ -12,44 +12,44 @@ use opendr_engine::{Error, Result};
 use crate::clear_mot::TrackMatchingParams;
 use crate::{ClearMot, Hota, HotaParams, Metric, Report, TrackingFrame};
 
-/// What [`Tracking3d`] is set by.
+/// Parameters of [`Tracking3d`].
 #[derive(Debug, Clone, Params)]
 pub struct Tracking3dParams {
-    /// Boxes match, for CLEAR MOT, from this intersection over union of their volumes on: the paper's for cars.
+    /// Minimum intersection over union of volumes of boxes that match for CLEAR MOT; the default is the paper's for cars.
     #[param(default = 0.25, range = 0.0..=1.0)]
     pub overlap: f64,
 }
 
-/// HOTA and CLEAR MOT of boxes in space. Boxes of different classes share nothing.
+/// HOTA and CLEAR MOT of 3D boxes. Boxes of different classes do not overlap.
 #[derive(Debug, Clone)]
 pub struct Tracking3d {
     hota: Hota,
     clear: ClearMot,
 }
 
-/// Of a truth that says where nothing is annotated.
+/// Class of ground-truth regions without annotation.
 const NOTHING: &str = "DontCare";
 
 impl Metric for Tracking3d {
     const NAME: &'static str = "tracking_3d";
-    const ABOUT: &'static str = "HOTA and CLEAR MOT of boxes in space, by the volume that they share";
+    const ABOUT: &'static str = "HOTA and CLEAR MOT of 3D boxes, by the IoU of their volumes";
     const NUMBERS: &'static [(&'static str, &'static str)] = &[
         ("hota", "Geometric mean of detection and association, mean over thresholds .05 to .95."),
         ("deta", "Detection accuracy."),
         ("assa", "Association accuracy."),
-        ("loca", "Accuracy of places: mean shared volume of matches."),
+        ("loca", "Localisation accuracy: mean IoU of volumes of matches."),
         ("mota", "1 - (misses + false positives + switches) / objects."),
-        ("motp", "Mean distance (1 - shared volume) of matches: 0 is best."),
-        ("precision", "Matches among predictions."),
-        ("recall", "Matches among objects."),
-        ("switches", "Matches by another track than before."),
-        ("fragmentations", "Times that an object is lost and found again."),
-        ("false_positives", "Boxes of tracks without an object."),
-        ("misses", "Boxes of objects without a track."),
+        ("motp", "Mean distance (1 - IoU of volumes) of matches: 0 is best."),
+        ("precision", "Fraction of predictions that match."),
+        ("recall", "Fraction of ground-truth boxes that match."),
+        ("switches", "Matches by another track than before (identity switches)."),
+        ("fragmentations", "Number of times that an object is lost and matched again."),
+        ("false_positives", "Predicted boxes without a match."),
+        ("misses", "Ground-truth boxes without a match."),
         ("mostly_tracked", "Objects matched in 80 % of their frames or more."),
         ("mostly_lost", "Objects matched in less than 20 %."),
     ];
-    const ERRORS: &'static [&'static str] =
+    const LOWER_IS_BETTER: &'static [&'static str] =
         &["motp", "switches", "fragmentations", "false_positives", "misses", "mostly_lost"];
     type Params = Tracking3dParams;
     type Prediction = TrackingAnnotation3DList;
@@ -93,10 +93,10 @@ impl Metric for Tracking3d {
     }
 }
 
-/// A moment of truth and answer.
+/// Creates a frame of ground truth and prediction.
 ///
 /// # Errors
-/// `InvalidInput` as [`TrackingFrame::new`], and for a box that is not finite.
+/// Returns `InvalidInput` for a box that is not finite; otherwise as [`TrackingFrame::new`].
 fn frame_from_lists(
     found: &TrackingAnnotation3DList,
     truth: &TrackingAnnotation3DList,
@@ -105,21 +105,21 @@ fn frame_from_lists(
     if found.len().saturating_mul(truth.len()) > TrackingFrame::MOST_PAIRS {
         let (truth, found) = (truth.len(), found.len());
         return Err(Error::invalid_input(format!(
-            "{truth} true and {found} found objects at one moment make too many pairs; give fewer"
+            "{truth} true and {found} predicted objects in one frame are too many pairs; give fewer"
         )));
     }
     let overlaps = truth.iter().flat_map(|(_, name, place)| {
         found.iter().map(move |(_, other, found)| {
             let same = name.eq_ignore_ascii_case(other);
-            if same { place.overlap(found).clamp(0.0, 1.0) } else { 0.0 }
+            if same { place.iou(found).clamp(0.0, 1.0) } else { 0.0 }
         })
     });
     let overlaps = overlaps.collect();
-    let ids = |boxes: &[(i64, String, StandingBox)]| boxes.iter().map(|(id, ..)| *id).collect();
+    let ids = |boxes: &[(i64, String, UprightBox3D)]| boxes.iter().map(|(id, ..)| *id).collect();
     TrackingFrame::new(ids(&truth), ids(&found), overlaps)
 }
 
-fn boxes_from_list(list: &TrackingAnnotation3DList) -> Result<Vec<(i64, String, StandingBox)>> {
+fn boxes_from_list(list: &TrackingAnnotation3DList) -> Result<Vec<(i64, String, UprightBox3D)>> {
     let name = |found: &BoundingBox3D| match (list.classes.label(&found.name), &found.name) {
         (Some(label), _) => label.to_owned(),
         (None, Name::Label(label)) => label.to_string(),
@@ -136,7 +136,7 @@ fn boxes_from_list(list: &TrackingAnnotation3DList) -> Result<Vec<(i64, String, 
                 track.id
             )));
         }
-        Ok((track.id, name, StandingBox::in_camera(size, place, f64::from(found.rotation_y))))
+        Ok((track.id, name, UprightBox3D::from_kitti(size, place, f64::from(found.rotation_y))))
     });
     boxes.collect()
 }
@@ -157,13 +157,13 @@ mod tests {
         TrackingAnnotation3D { bounding_box_3d, id, frame: None }
     }
 
-    fn numbers(moments: &[(Vec<TrackingAnnotation3D>, Vec<TrackingAnnotation3D>)]) -> Vec<f64> {
+    fn numbers(frames: &[(Vec<TrackingAnnotation3D>, Vec<TrackingAnnotation3D>)]) -> Vec<f64> {
         let mut metric = Tracking3d::new(&Tracking3dParams::default()).unwrap();
         let list = |annotations: &[TrackingAnnotation3D]| TrackingAnnotation3DList {
             annotations: annotations.to_vec(),
             ..TrackingAnnotation3DList::default()
         };
-        for (at, (found, truth)) in moments.iter().enumerate() {
+        for (at, (found, truth)) in frames.iter().enumerate() {
             metric.update(at, &list(found), &list(truth)).unwrap();
         }
         let scalars = metric.finish().statistics.scalars;
@@ -171,14 +171,14 @@ mod tests {
         ["hota", "mota", "motp", "switches", "misses", "false_positives"].map(|name| scalars[name]).to_vec()
     }
 
-    /// Cars 4 metres long that are told 1 metre too far along share 3 of 5 parts, 0.6: a match for CLEAR MOT with a distance
-    /// of 0.4, and for HOTA at the 12 of 19 thresholds from .05 to .6. There all objects are found and keep their track, so
-    /// HOTA is 12 / 19.
+    /// Cars 4 metres long that are predicted 1 metre too far along share 3 of 5 parts, 0.6: a match for CLEAR MOT with a
+    /// distance of 0.4, and for HOTA at the 12 of 19 thresholds from .05 to .6. There all objects are detected and keep their
+    /// track, so HOTA is 12 / 19.
     #[test]
     fn shifted_cars_by_hand() {
-        let moments: Vec<_> =
+        let frames: Vec<_> =
             (0..4).map(|at| (vec![car(9, 1.0 + at as f32, "Car")], vec![car(1, at as f32, "Car")])).collect();
-        let [hota, mota, motp, switches, misses, wrong] = numbers(&moments)[..] else { panic!() };
+        let [hota, mota, motp, switches, misses, wrong] = numbers(&frames)[..] else { panic!() };
         assert!((hota - 12.0 / 19.0).abs() < 1e-9, "{hota}");
         assert!((mota, switches, misses, wrong) == (1.0, 0.0, 0.0, 0.0) && (motp - 0.4).abs() < 1e-6);
     }
@@ -186,18 +186,18 @@ mod tests {
     #[test]
     fn switches_classes_and_dont_care() {
         let truth = vec![car(1, 0.0, "Car"), car(-1, 50.0, "DontCare")];
-        let moments = vec![
+        let frames = vec![
             (vec![car(5, 0.0, "car")], truth.clone()),
             (vec![car(6, 0.0, "Car")], truth.clone()),
             (vec![car(6, 0.0, "Pedestrian")], truth.clone()),
             (vec![car(6, 0.0, "Car"), car(7, 50.0, "Car")], truth),
         ];
-        let [_, mota, _, switches, misses, wrong] = numbers(&moments)[..] else { panic!() };
+        let [_, mota, _, switches, misses, wrong] = numbers(&frames)[..] else { panic!() };
         assert_eq!((switches, misses, wrong, mota), (1.0, 1.0, 2.0, 0.0));
     }
 
     #[test]
-    fn what_cannot_be_counted_is_refused() {
+    fn invalid_lists_are_rejected() {
         let mut metric = Tracking3d::new(&Tracking3dParams::default()).unwrap();
         let list = |x: f32, count: usize| TrackingAnnotation3DList {
             annotations: (0..count).map(|id| car(id as i64, x, "Car")).collect(),

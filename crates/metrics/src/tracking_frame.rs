@@ -1,12 +1,12 @@
-//! One picture of a video as tracking metrics see it: who is there, who was found, and how well they overlap.
+//! One frame of a video for tracking metrics: identities of objects and tracks, and their overlaps.
 
 use std::collections::HashSet;
 
-use opendr_engine::overlap::image_overlap;
+use opendr_engine::overlap::box_iou;
 use opendr_engine::target::TrackingAnnotationList;
 use opendr_engine::{Error, Result};
 
-/// Identities of one picture and the overlap of every pair.
+/// Identities in one frame and the overlap of every pair.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TrackingFrame {
     truth: Vec<i64>,
@@ -15,49 +15,49 @@ pub struct TrackingFrame {
 }
 
 impl TrackingFrame {
-    /// Pairs of one picture, so that a hostile list cannot ask for all memory.
+    /// Maximum number of pairs per frame, which bounds the memory for hostile lists.
     pub(crate) const MOST_PAIRS: usize = 1 << 22;
 
-    /// A picture from identities and `overlaps`, `[truth, found]`, last axis fastest, each 0 (apart) to 1 (equal).
+    /// Creates a frame from identities and `overlaps`, `[truth, found]` in row-major order, each 0 to 1.
     ///
     /// # Errors
-    /// `InvalidInput` when an identity occurs twice in `truth` or twice in `found`, when there is not one overlap per
-    /// pair, and for an overlap outside 0..=1.
+    /// Returns `InvalidInput` if an identity occurs twice in `truth` or in `found`, if there is not one overlap per pair,
+    /// or if an overlap is outside 0..=1.
     pub fn new(truth: Vec<i64>, found: Vec<i64>, overlaps: Vec<f64>) -> Result<Self> {
-        check_identities("the truth", &truth)?;
-        check_identities("the answer", &found)?;
+        check_identities("the ground truth", &truth)?;
+        check_identities("the prediction", &found)?;
         check_pairs(truth.len(), found.len())?;
         if overlaps.len() != truth.len() * found.len() {
             return Err(Error::invalid_input(format!(
-                "{} overlaps for {} true and {} found objects; give one for every pair",
+                "{} overlaps for {} true and {} predicted objects; give one for every pair",
                 overlaps.len(),
                 truth.len(),
                 found.len()
             )));
         }
         if let Some(wrong) = overlaps.iter().find(|overlap| !(0.0..=1.0).contains(*overlap)) {
-            return Err(Error::invalid_input(format!("an overlap of {wrong}; give numbers from 0 to 1")));
+            return Err(Error::invalid_input(format!("an overlap is {wrong}; give numbers from 0 to 1")));
         }
         Ok(Self { truth, found, overlaps })
     }
 
-    /// A picture from identities and corners `[x0, y0, x1, y1]`; overlap is intersection over union.
+    /// Creates a frame from identities and corners `[x0, y0, x1, y1]`; the overlap is the intersection over union.
     ///
     /// # Errors
-    /// `InvalidInput` as [`TrackingFrame::new`], and for a box that is not finite.
+    /// Returns `InvalidInput` for a box that is not finite; otherwise as [`TrackingFrame::new`].
     pub fn from_boxes(truth: &[(i64, [f64; 4])], found: &[(i64, [f64; 4])]) -> Result<Self> {
-        check_boxes("the truth", truth)?;
-        check_boxes("the answer", found)?;
+        check_boxes("the ground truth", truth)?;
+        check_boxes("the prediction", found)?;
         check_pairs(truth.len(), found.len())?;
         let overlaps = truth
             .iter()
-            .flat_map(|(_, truth)| found.iter().map(|(_, found)| image_overlap(*truth, *found)))
+            .flat_map(|(_, truth)| found.iter().map(|(_, found)| box_iou(*truth, *found)))
             .collect();
         let identities = |boxes: &[(i64, [f64; 4])]| boxes.iter().map(|(id, _)| *id).collect();
         Self::new(identities(truth), identities(found), overlaps)
     }
 
-    /// A picture from what a tracker answered and what it should have answered; classes are not looked at.
+    /// Creates a frame from the lists of a tracker and of the ground truth; classes are ignored.
     ///
     /// # Errors
     /// As [`TrackingFrame::from_boxes`].
@@ -65,27 +65,27 @@ impl TrackingFrame {
         Self::from_boxes(&boxes_from_list(truth), &boxes_from_list(found))
     }
 
-    /// Identities that are there.
+    /// Returns the identities of the ground truth.
     pub fn truth(&self) -> &[i64] {
         &self.truth
     }
 
-    /// Identities that were found.
-    pub fn found(&self) -> &[i64] {
+    /// Returns the identities of the prediction.
+    pub fn predictions(&self) -> &[i64] {
         &self.found
     }
 
-    /// Overlaps, `[truth, found]`, last axis fastest.
+    /// Returns the overlaps, `[truth, found]` in row-major order.
     pub fn overlaps(&self) -> &[f64] {
         &self.overlaps
     }
 
-    /// Overlap of object `truth` with object `found`, by their places in the picture.
+    /// Returns the overlap of object `truth` and track `found`, by their indices in the frame.
     pub(crate) fn overlap(&self, truth: usize, found: usize) -> f64 {
         self.overlaps[truth * self.found.len() + found]
     }
 
-    /// The picture without the objects whose places are not kept.
+    /// Returns the frame with the objects and tracks whose flags are set.
     pub(crate) fn keep(&self, truth: &[bool], found: &[bool]) -> Self {
         let kept = |mask: &[bool]| (0..mask.len()).filter(|at| mask[*at]).collect::<Vec<_>>();
         let (truth, found) = (kept(truth), kept(found));
@@ -96,7 +96,7 @@ impl TrackingFrame {
         }
     }
 
-    /// How well the boxes cover each other, identities aside: 0 to 1.
+    /// Returns how well the boxes overlap regardless of identities, 0 to 1.
     pub(crate) fn coverage(&self) -> f64 {
         let width = self.found.len();
         let mut best = (vec![0.0f64; self.truth.len()], vec![0.0f64; width]);
@@ -126,20 +126,20 @@ fn boxes_from_list(list: &TrackingAnnotationList) -> Vec<(i64, [f64; 4])> {
         .collect()
 }
 
-fn check_identities(whose: &str, identities: &[i64]) -> Result<()> {
-    let mut seen = HashSet::with_capacity(identities.len());
-    match identities.iter().find(|id| !seen.insert(**id)) {
+fn check_identities(what: &str, identities: &[i64]) -> Result<()> {
+    let mut unique = HashSet::with_capacity(identities.len());
+    match identities.iter().find(|id| !unique.insert(**id)) {
         Some(id) => Err(Error::invalid_input(format!(
-            "two objects of {whose} have id {id} in one picture; give every object its own"
+            "two objects of {what} have id {id} in one frame; give every object its own id"
         ))),
         None => Ok(()),
     }
 }
 
-fn check_boxes(whose: &str, boxes: &[(i64, [f64; 4])]) -> Result<()> {
+fn check_boxes(what: &str, boxes: &[(i64, [f64; 4])]) -> Result<()> {
     match boxes.iter().find(|(_, corners)| corners.iter().any(|corner| !corner.is_finite())) {
         Some((id, corners)) => Err(Error::invalid_input(format!(
-            "object {id} of {whose} has corners {corners:?}; give finite numbers"
+            "object {id} of {what} has corners {corners:?}; give finite numbers"
         ))),
         None => Ok(()),
     }
@@ -149,7 +149,7 @@ fn check_pairs(truth: usize, found: usize) -> Result<()> {
     match truth.checked_mul(found) {
         Some(pairs) if pairs <= TrackingFrame::MOST_PAIRS => Ok(()),
         _ => Err(Error::invalid_input(format!(
-            "{truth} true and {found} found objects in one picture make more than {} pairs; give fewer",
+            "{truth} true and {found} predicted objects in one frame are more than {} pairs; give fewer",
             TrackingFrame::MOST_PAIRS
         ))),
     }
@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_counted_is_refused() {
+    fn invalid_frames_are_rejected() {
         let here = [0.0, 0.0, 1.0, 1.0];
         assert!(TrackingFrame::from_boxes(&[(1, here), (1, here)], &[]).is_err());
         assert!(TrackingFrame::from_boxes(&[], &[(-1, here), (-1, here)]).is_err());

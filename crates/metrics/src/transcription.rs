@@ -10,23 +10,23 @@ use crate::average::ratio;
 use crate::generated::punctuation::PUNCTUATION;
 use crate::{EditCounts, Metric, Report};
 
-/// Most characters of one text: comparing two that have nothing in common takes the square of it.
+/// Maximum number of characters of a text; the time for two unrelated texts grows with its square.
 const MAX_CHARACTERS: usize = 1 << 17;
 
-/// What is done to both texts before they are compared. Without any of it they are taken as jiwer's defaults take them:
-/// words are parted by spaces and by runs of two or more white characters.
+/// Normalisation of both texts before the comparison. The default is that of jiwer: words are separated by spaces and by
+/// runs of two or more white-space characters.
 #[derive(Debug, Clone, Params)]
 pub struct TranscriptionParams {
-    /// Make all letters small (Unicode's lower case).
+    /// Whether to convert letters to lower case (Unicode).
     pub lower_case: bool,
-    /// Drop punctuation (Unicode's categories P); nothing takes its place: "it's" becomes "its".
+    /// Whether to remove punctuation (Unicode's categories P) without replacement: "it's" becomes "its".
     pub drop_punctuation: bool,
-    /// Make every run of white characters, line breaks and tabs among them, one space.
+    /// Whether to replace every run of white space, including line breaks and tabs, by one space.
     pub join_whitespace: bool,
 }
 
 impl TranscriptionParams {
-    /// `text` as it is compared, white characters at its ends cut off.
+    /// Returns the normalised text, without white space at its ends.
     pub fn normalized(&self, text: &str) -> String {
         let mut text = Cow::Borrowed(text);
         if self.lower_case {
@@ -42,7 +42,7 @@ impl TranscriptionParams {
     }
 }
 
-/// Python's `str.isspace`: Unicode's white space and four control characters.
+/// Returns the same as Python's `str.isspace`: Unicode's white space and four control characters.
 fn is_white(character: char) -> bool {
     character.is_whitespace() || ('\x1c'..='\x1f').contains(&character)
 }
@@ -52,8 +52,9 @@ fn is_punctuation(character: char) -> bool {
     PUNCTUATION.get(at).is_some_and(|(first, _)| *first <= character)
 }
 
-/// The words of `text`: between spaces, or two and more white characters; a single tab or line break parts none.
-pub fn words_of_text(text: &str) -> Vec<&str> {
+/// Returns the words of `text`, separated by spaces or two and more white-space characters; a single tab or line break does
+/// not separate words.
+pub fn split_words(text: &str) -> Vec<&str> {
     let mut words = Vec::new();
     let (mut start, mut white) = (0, None::<(usize, usize)>);
     for (at, character) in text.char_indices().chain([(text.len(), 'x')]) {
@@ -74,7 +75,7 @@ pub fn words_of_text(text: &str) -> Vec<&str> {
     words
 }
 
-/// Counts edits of words and of characters over all utterances: rates are those of the whole corpus.
+/// Accumulates edits of words and characters over all utterances; rates are those of the whole corpus.
 #[derive(Debug, Clone, Default)]
 pub struct Transcription {
     params: TranscriptionParams,
@@ -85,10 +86,10 @@ pub struct Transcription {
 }
 
 impl Transcription {
-    /// Counts one utterance and gives its edits of words.
+    /// Adds an utterance and returns its edits of words.
     ///
     /// # Errors
-    /// `InvalidInput` for a text of more than 2^17 characters.
+    /// Returns `InvalidInput` for a text of more than 2^17 characters.
     pub fn add(&mut self, reference: &str, hypothesis: &str) -> Result<EditCounts> {
         for text in [reference, hypothesis] {
             let count = text.chars().count();
@@ -99,21 +100,21 @@ impl Transcription {
             }
         }
         let (reference, hypothesis) = (self.params.normalized(reference), self.params.normalized(hypothesis));
-        let words = EditCounts::of(&words_of_text(&reference), &words_of_text(&hypothesis));
-        let [wanted, given] = [&reference, &hypothesis].map(|text| text.chars().collect::<Vec<_>>());
+        let words = EditCounts::of(&split_words(&reference), &split_words(&hypothesis));
+        let [expected, given] = [&reference, &hypothesis].map(|text| text.chars().collect::<Vec<_>>());
         self.words.add(&words);
-        self.characters.add(&EditCounts::of(&wanted, &given));
+        self.characters.add(&EditCounts::of(&expected, &given));
         self.utterances += 1;
         self.wrong_utterances += u64::from(words.errors() > 0);
         Ok(words)
     }
 
-    /// Edits of words.
+    /// Returns the edits of words.
     pub fn words(&self) -> &EditCounts {
         &self.words
     }
 
-    /// Edits of characters, spaces among them.
+    /// Returns the edits of characters, including spaces.
     pub fn characters(&self) -> &EditCounts {
         &self.characters
     }
@@ -128,18 +129,18 @@ impl EditCounts {
         self.hits + self.substitutions + self.insertions
     }
 
-    /// Edits for each symbol of the reference (WER of words, CER of characters); where the reference is empty, the
-    /// number of insertions, as jiwer.
+    /// Returns the edits per symbol of the reference (WER of words, CER of characters); for an empty reference the number of
+    /// insertions, as jiwer does.
     pub fn error_rate(&self) -> f64 {
         ratio(self.errors(), self.reference()).unwrap_or(self.insertions as f64)
     }
 
-    /// Edits for each symbol of the alignment (MER, Morris et al., 2004); 0 of two empty texts.
+    /// Returns the edits per symbol of the alignment (MER, Morris et al., 2004); 0 for two empty texts.
     pub fn match_error_rate(&self) -> f64 {
         ratio(self.errors(), self.reference() + self.insertions).unwrap_or(0.0)
     }
 
-    /// Share of the reference that is right times share of the hypothesis that is right (WIP); 1 of two empty texts.
+    /// Returns the fraction of correct symbols of the reference times that of the hypothesis (WIP); 1 for two empty texts.
     pub fn information_preserved(&self) -> f64 {
         match (ratio(self.hits, self.reference()), ratio(self.hits, self.hypothesis())) {
             (Some(found), Some(right)) => found * right,
@@ -149,22 +150,22 @@ impl EditCounts {
     }
 }
 
-/// Predictions and truths may be any transcription, or a spoken command whose word is the text.
+/// Predictions and ground truth may be any transcription, or a spoken command, whose word is the text.
 impl Metric for Transcription {
     const NAME: &'static str = "transcription";
     const ABOUT: &'static str = "WER, CER, MER and WIL of transcriptions, as jiwer";
     const NUMBERS: &'static [(&'static str, &'static str)] = &[
-        ("wer", "Word error rate: (substitutions + deletions + insertions) / words of the truth."),
-        ("cer", "The same of characters."),
-        ("mer", "Match error rate: errors / all that was aligned."),
+        ("wer", "Word error rate: (substitutions + deletions + insertions) / words of the ground truth."),
+        ("cer", "Character error rate."),
+        ("mer", "Match error rate: errors / aligned words."),
         ("wil", "Word information lost."),
         ("wip", "Word information preserved."),
-        ("utterance_error_rate", "Share of utterances with any error."),
-        ("utterances", "How many were counted."),
-        ("word_<count>", "Hits, substitutions, deletions, insertions of words."),
-        ("character_<count>", "The same of characters."),
+        ("utterance_error_rate", "Fraction of utterances with errors."),
+        ("utterances", "Number of utterances."),
+        ("word_<count>", "Numbers of hits, substitutions, deletions and insertions of words."),
+        ("character_<count>", "Numbers of hits, substitutions, deletions and insertions of characters."),
     ];
-    const ERRORS: &'static [&'static str] = &["wer", "cer", "mer", "wil", "utterance_error_rate"];
+    const LOWER_IS_BETTER: &'static [&'static str] = &["wer", "cer", "mer", "wil", "utterance_error_rate"];
     type Params = TranscriptionParams;
     type Prediction = BaseTranscription;
     type Truth = BaseTranscription;

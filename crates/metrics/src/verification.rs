@@ -1,4 +1,4 @@
-//! Verification of pairs (same face, same person or not): ROC, accuracy as LFW, TAR at FAR, equal error rate.
+//! Verification of pairs (same face or person, or not): ROC, accuracy as LFW, TAR at FAR, equal error rate.
 
 use opendr_engine::params::Params;
 use opendr_engine::target::Category;
@@ -6,13 +6,13 @@ use opendr_engine::{Error, Result};
 
 use crate::{Metric, Report, RocCurve, RocPoint, Table};
 
-/// What a user may set.
+/// Parameters of [`Verification`].
 #[derive(Debug, Clone, Params)]
 pub struct VerificationParams {
-    /// Parts of the cross-validation that finds the threshold: consecutive pairs, as LFW's file has them.
+    /// Number of folds of the cross-validation that selects the threshold: consecutive pairs, as in LFW's file.
     #[param(default = 10, range = 2..=1000)]
     pub folds: usize,
-    /// False accept rates to tell the true accept rate at.
+    /// False accept rates at which the true accept rate is reported.
     #[param(default = vec![1e-1, 1e-2, 1e-3, 1e-4], range = 0.0..=1.0)]
     pub false_accept_rates: Vec<f64>,
 }
@@ -20,23 +20,23 @@ pub struct VerificationParams {
 /// One pair.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Pair {
-    /// Number in the data set.
+    /// Index in the data set.
     at: usize,
-    /// How alike: a pair is taken for the same from a threshold on.
+    /// Similarity: pairs with at least a threshold are predicted to be the same.
     score: f64,
     same: bool,
 }
 
-/// What one part of the cross-validation ended in.
+/// Result of one fold of the cross-validation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FoldAccuracy {
-    /// The best threshold on all other parts; infinite where it is best to take no pair for the same.
+    /// Best threshold on all other folds; infinite if it is best to accept no pair.
     pub threshold: f64,
-    /// Share of the part's pairs that it tells right.
+    /// Fraction of correct pairs of the fold.
     pub accuracy: f64,
 }
 
-/// Collects scores of pairs: 24 bytes a pair.
+/// Collects the scores of pairs: 24 bytes per pair.
 #[derive(Debug, Clone, Default)]
 pub struct Verification {
     params: VerificationParams,
@@ -44,29 +44,29 @@ pub struct Verification {
 }
 
 impl Verification {
-    /// Counts pair number `at` of the data set; the higher the score, the more alike.
+    /// Adds pair `at` of the data set; a higher score means more similar.
     ///
     /// # Errors
-    /// `InvalidInput` for a score that is NaN or infinite.
+    /// Returns `InvalidInput` for a score that is NaN or infinite.
     pub fn add(&mut self, at: usize, same: bool, score: f64) -> Result<()> {
         if !score.is_finite() {
             return Err(Error::invalid_input(format!(
-                "score {score} of pair {at} is not finite; give numbers"
+                "score {score} of pair {at} is not finite; give finite numbers"
             )));
         }
         self.pairs.push(Pair { at, score, same });
         Ok(())
     }
 
-    /// The receiver operating characteristic.
+    /// Returns the receiver operating characteristic.
     pub fn curve(&self) -> RocCurve {
         RocCurve::new(self.pairs.iter().map(|pair| (pair.score, pair.same)).collect())
     }
 
-    /// Accuracy on each part with the threshold that is best on the other parts (Huang et al., Labeled Faces in the
-    /// Wild, 2007). Parts are consecutive pairs by number, the first ones one longer where they do not come out even
-    /// (scikit-learn's `KFold`). A threshold is one of the scores of the other parts, or infinite; of equally good ones
-    /// the highest. `None` for fewer pairs than parts.
+    /// Returns the accuracy on each fold with the threshold that is best on the other folds (Huang et al., Labeled Faces
+    /// in the Wild, 2007). Folds are consecutive pairs by index, the first ones longer by one if the division leaves a
+    /// remainder (scikit-learn's `KFold`). A threshold is one of the scores of the other folds, or infinite; of equally
+    /// good ones the highest. `None` for fewer pairs than folds.
     pub fn fold_accuracies(&self) -> Option<Vec<FoldAccuracy>> {
         let (count, folds) = (self.pairs.len(), self.params.folds);
         let mut pairs = self.pairs.clone();
@@ -86,16 +86,16 @@ impl Verification {
     }
 }
 
-/// `ranked`: fold and pair, highest score first.
+/// Computes the accuracy of a fold. `ranked` has the fold of each pair and the pair, highest score first.
 fn accuracy_of_fold(ranked: &[(usize, Pair)], fold: usize) -> FoldAccuracy {
-    let (mut right, mut best) = (0_i64, 0_i64);
+    let (mut correct, mut best) = (0_i64, 0_i64);
     let mut threshold = f64::INFINITY;
     for tied in ranked.chunk_by(|(_, one), (_, other)| one.score == other.score) {
-        // Taking them for the same gains the same ones and loses the others.
+        // Accepting them adds one per pair of the same and subtracts one per other pair.
         let gain = |(_, pair): &(usize, Pair)| if pair.same { 1 } else { -1 };
-        right += tied.iter().filter(|(part, _)| *part != fold).map(gain).sum::<i64>();
-        if right > best {
-            (best, threshold) = (right, tied[0].1.score);
+        correct += tied.iter().filter(|(part, _)| *part != fold).map(gain).sum::<i64>();
+        if correct > best {
+            (best, threshold) = (correct, tied[0].1.score);
         }
     }
     let tested = ranked.iter().filter(|(part, _)| *part == fold).map(|(_, pair)| pair);
@@ -108,16 +108,16 @@ fn accuracy_of_fold(ranked: &[(usize, Pair)], fold: usize) -> FoldAccuracy {
 }
 
 impl RocCurve {
-    /// The point of the highest true accept rate whose false accept rate is at most `rate`. There is no interpolation:
-    /// with fewer than `1 / rate` negatives that is a point without any false accept. `None` without positives or
-    /// negatives.
+    /// Returns the point of the highest true accept rate whose false accept rate is at most `rate`, without
+    /// interpolation: with fewer than `1 / rate` negatives it is a point without false accepts. `None` without positives
+    /// or negatives.
     pub fn at_false_accept_rate(&self, rate: f64) -> Option<RocPoint> {
         let allowed = |point: &&RocPoint| self.rates(point).is_some_and(|[accepted, _]| accepted <= rate);
         self.points().iter().rev().find(allowed).copied()
     }
 
-    /// The rate at which false accepts and false rejects are equally frequent, on the straight line between the two
-    /// points around it; `None` without positives or negatives.
+    /// Returns the rate at which false accepts and false rejects are equally frequent, by linear interpolation between
+    /// the two nearest points; `None` without positives or negatives.
     pub fn equal_error_rate(&self) -> Option<f64> {
         let rates = self.points().iter().map(|point| self.rates(point)).collect::<Option<Vec<_>>>()?;
         let excess = |[accepted, found]: [f64; 2]| accepted - (1.0 - found);
@@ -127,7 +127,7 @@ impl RocCurve {
         Some(before[0] + share * (after[0] - before[0]))
     }
 
-    /// The highest share of right answers that one threshold reaches, with its point, the highest of equally good ones;
+    /// Returns the point of the highest accuracy and that accuracy; of equal ones the point with the highest threshold.
     /// `None` without samples.
     pub fn best_accuracy(&self) -> Option<(RocPoint, f64)> {
         let right = |point: &RocPoint| point.true_positives + (self.negatives() - point.false_positives);
@@ -137,25 +137,22 @@ impl RocCurve {
     }
 }
 
-/// A prediction's score is its confidence, whatever its class; truth is class 1 for the same, another for different.
+/// The score of a prediction is its confidence, for any class; ground truth is class 1 for the same, another for different.
 impl Metric for Verification {
     const NAME: &'static str = "verification";
-    const ABOUT: &'static str = "accuracy by cross-validation as LFW, ROC, TAR at FAR and EER of pairs";
+    const ABOUT: &'static str = "accuracy of pairs by cross-validation as LFW, ROC, TAR at FAR and EER";
     const NUMBERS: &'static [(&'static str, &'static str)] = &[
         ("accuracy", "Mean over folds of the accuracy at the best threshold of the other folds, as LFW."),
-        ("accuracy_standard_error", "Its standard error over the folds."),
-        ("best_accuracy", "Accuracy at the best threshold of all."),
-        ("best_threshold", "That threshold."),
+        ("accuracy_standard_error", "Standard error of the accuracy over the folds."),
+        ("best_accuracy", "Accuracy at the best threshold."),
+        ("best_threshold", "Best threshold."),
         ("roc_auc", "Area under the ROC curve."),
-        ("equal_error_rate", "Where as many are accepted as refused wrongly."),
-        (
-            "tar_at_far_<rate>",
-            "Share of right pairs accepted where the rate of wrong ones accepted is as given.",
-        ),
-        ("same", "Pairs of the same."),
-        ("different", "Pairs of different ones."),
+        ("equal_error_rate", "Rate at which false accepts and false rejects are equally frequent."),
+        ("tar_at_far_<rate>", "True accept rate at the given false accept rate."),
+        ("same", "Number of pairs of the same."),
+        ("different", "Number of pairs of different ones."),
     ];
-    const ERRORS: &'static [&'static str] = &["accuracy_standard_error", "equal_error_rate"];
+    const LOWER_IS_BETTER: &'static [&'static str] = &["accuracy_standard_error", "equal_error_rate"];
     type Params = VerificationParams;
     type Prediction = Category;
     type Truth = Category;
@@ -167,7 +164,7 @@ impl Metric for Verification {
     fn update(&mut self, at: usize, prediction: &Category, truth: &Category) -> Result<f64> {
         let Some(score) = prediction.confidence else {
             return Err(Error::invalid_input(format!(
-                "pair {at} has no confidence; give how alike its two sides are"
+                "pair {at} has no confidence; give its similarity as confidence"
             )));
         };
         let (score, same) = (f64::from(score), truth.class == 1);

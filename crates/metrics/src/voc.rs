@@ -1,7 +1,7 @@
-//! Pascal VOC's average precision of boxes, as its development kit (`VOCevaldet.m`) counts.
+//! Pascal VOC's average precision of boxes, equal to its development kit (`VOCevaldet.m`).
 //!
-//! M. Everingham et al., "The Pascal visual object classes (VOC) challenge", IJCV 2010. With ignored faces instead of
-//! difficult objects it is also the rule of WIDER FACE, but for that one's sampling of the curve at 1000 scores.
+//! M. Everingham et al., "The Pascal visual object classes (VOC) challenge", IJCV 2010. With ignored faces as difficult
+//! objects it is also the metric of WIDER FACE, except that WIDER FACE samples the curve at 1000 scores.
 
 use std::collections::BTreeMap;
 
@@ -11,26 +11,26 @@ use opendr_engine::{Error, Result};
 
 use crate::average::mean;
 use crate::class_key::ClassKey;
-use crate::coco::box_overlap;
+use crate::coco::box_iou;
 use crate::{Curves, Figure, Line, Metric, Report, Table};
 
-/// Most classes whose curves are drawn.
+/// Maximum number of classes whose curves are drawn.
 const DRAWN: usize = 20;
 
-/// What a user may set.
+/// Parameters of [`Voc`].
 #[derive(Debug, Clone, Params)]
 pub struct VocParams {
-    /// A detection is right when it overlaps an object by this much (intersection over union).
+    /// Minimum intersection over union of a true positive with its object.
     #[param(default = 0.5, range = 0.0..=1.0)]
     pub overlap: f64,
-    /// Take the mean precision at recalls 0, .1 to 1, as in 2007, instead of the area under the curve.
+    /// Whether to use the mean precision at recalls 0, .1 to 1, as in 2007, instead of the area under the curve.
     pub eleven_points: bool,
 }
 
 /// Average precision of boxes, the mean over classes.
 ///
-/// An object whose [`Segment`](opendr_engine::target::Segment) is a crowd is difficult: neither finding nor missing it
-/// counts. Boxes are `[left, top, width, height]`; VOC's corners, which both belong to the box, are one pixel less apart.
+/// An object whose [`Segment`](opendr_engine::target::Segment) is a crowd is difficult and ignored. Boxes are
+/// `[left, top, width, height]`; VOC's corners, which both belong to the box, are one pixel less apart.
 #[derive(Debug, Clone)]
 pub struct Voc {
     params: VocParams,
@@ -40,7 +40,7 @@ pub struct Voc {
 
 #[derive(Debug, Clone, Default)]
 struct Class {
-    /// Objects that are not difficult.
+    /// Number of objects that are not difficult.
     truths: u64,
     ranked: Vec<Ranked>,
 }
@@ -49,19 +49,18 @@ struct Class {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Ranked {
     score: f64,
-    picture: usize,
-    /// Place among the detections of its picture and class, best first.
+    image: usize,
+    /// Rank among the detections of its image and class, best first.
     rank: u32,
-    right: bool,
+    is_correct: bool,
 }
 
 impl Metric for Voc {
     const NAME: &'static str = "voc_detection";
-    const ABOUT: &'static str =
-        "Pascal VOC's average precision of boxes; that of faces, some of them ignored";
+    const ABOUT: &'static str = "Pascal VOC's average precision of boxes; for faces that of WIDER FACE";
     const NUMBERS: &'static [(&'static str, &'static str)] =
-        &[("map", "Average precision, the mean over classes that have objects.")];
-    const RANKS: bool = true;
+        &[("map", "Average precision, mean over the classes that have objects.")];
+    const IS_RANKING: bool = true;
     type Params = VocParams;
     type Prediction = BoundingBoxList;
     type Truth = BoundingBoxList;
@@ -71,34 +70,37 @@ impl Metric for Voc {
     }
 
     fn update(&mut self, at: usize, prediction: &BoundingBoxList, truth: &BoundingBoxList) -> Result<f64> {
-        let numbers = |found: &BoundingBox| found.corners().into_iter().all(f32::is_finite);
-        if let Some(wrong) = prediction.boxes.iter().chain(&truth.boxes).find(|found| !numbers(found)) {
-            return Err(Error::invalid_input(format!("{wrong:#} has no place; give finite numbers")));
+        let is_finite = |object: &BoundingBox| object.corners().into_iter().all(f32::is_finite);
+        if let Some(invalid) = prediction.boxes.iter().chain(&truth.boxes).find(|object| !is_finite(object)) {
+            return Err(Error::invalid_input(format!(
+                "{invalid:#} has coordinates that are not finite; give finite numbers"
+            )));
         }
-        if prediction.boxes.iter().any(|found| found.confidence.is_nan()) {
-            return Err(Error::invalid_input("a detection has a score that is no number; give it one"));
+        if prediction.boxes.iter().any(|detection| detection.confidence.is_nan()) {
+            return Err(Error::invalid_input("the score of a detection is NaN; give a number"));
         }
         if self.names.is_empty() {
             self.names = truth.classes.clone();
         }
         let mut pairs: BTreeMap<ClassKey, [Vec<&BoundingBox>; 2]> = BTreeMap::new();
         for (side, list) in [prediction, truth].into_iter().enumerate() {
-            for found in &list.boxes {
-                let key = ClassKey::new(&found.name, &list.classes, &truth.classes);
-                pairs.entry(key).or_default()[side].push(found);
+            for object in &list.boxes {
+                let key = ClassKey::new(&object.name, &list.classes, &truth.classes);
+                pairs.entry(key).or_default()[side].push(object);
             }
         }
         let mut averages = Vec::new();
-        for (key, [found, there]) in pairs {
+        for (key, [detected, annotated]) in pairs {
             let class = self.classes.entry(key).or_default();
-            let truths = there.iter().filter(|object| !is_difficult(object)).count() as u64;
+            let truths = annotated.iter().filter(|object| !is_difficult(object)).count() as u64;
             let start = class.ranked.len();
-            class.ranked.extend(ranked(at, found, &there, self.params.overlap));
+            class.ranked.extend(ranked(at, detected, &annotated, self.params.overlap));
             class.truths += truths;
             averages.extend(self.params.average(&class.ranked[start..], truths));
         }
-        let surest = prediction.boxes.iter().map(|found| f64::from(found.confidence)).fold(0.0, f64::max);
-        Ok(mean(averages).unwrap_or(1.0 - surest.min(1.0)))
+        let highest =
+            prediction.boxes.iter().map(|detection| f64::from(detection.confidence)).fold(0.0, f64::max);
+        Ok(mean(averages).unwrap_or(1.0 - highest.min(1.0)))
     }
 
     fn merge(&mut self, other: Self) {
@@ -120,7 +122,8 @@ impl Metric for Voc {
             ranked.sort_unstable_by(Ranked::before);
             let Some(average) = self.params.average(&ranked, class.truths) else { continue };
             let label = key.label(&self.names);
-            let recall = ranked.iter().filter(|ranked| ranked.right).count() as f64 / class.truths as f64;
+            let recall =
+                ranked.iter().filter(|ranked| ranked.is_correct).count() as f64 / class.truths as f64;
             rows.push((label.clone(), vec![Some(class.truths as f64), Some(average), Some(recall)]));
             lines.push(Line { label, points: points(&ranked, class.truths) });
             averages.push(average);
@@ -148,41 +151,46 @@ fn is_difficult(object: &BoundingBox) -> bool {
     object.segment.as_deref().is_some_and(|segment| segment.iscrowd)
 }
 
-/// What becomes of the detections of one picture and class: each in turn looks at the object that it overlaps most, and
-/// is right when nothing has found that one before.
-fn ranked(at: usize, mut found: Vec<&BoundingBox>, there: &[&BoundingBox], overlap: f64) -> Vec<Ranked> {
-    found.sort_by(|a, b| b.confidence.partial_cmp(&a.confidence).unwrap_or(std::cmp::Ordering::Equal));
-    let bounds = |found: &BoundingBox| [found.left, found.top, found.width, found.height].map(f64::from);
-    let mut taken = vec![false; there.len()];
-    let mut ranked = Vec::with_capacity(found.len());
-    for (rank, detection) in (0..).zip(found) {
+/// Matches the detections of one image and class. Each in turn is compared with the object that it overlaps most, and
+/// is a true positive if no earlier detection matched that object.
+fn ranked(
+    at: usize,
+    mut detected: Vec<&BoundingBox>,
+    annotated: &[&BoundingBox],
+    overlap: f64,
+) -> Vec<Ranked> {
+    detected.sort_by(|a, b| b.confidence.partial_cmp(&a.confidence).unwrap_or(std::cmp::Ordering::Equal));
+    let bounds = |object: &BoundingBox| [object.left, object.top, object.width, object.height].map(f64::from);
+    let mut taken = vec![false; annotated.len()];
+    let mut ranked = Vec::with_capacity(detected.len());
+    for (rank, detection) in (0..).zip(detected) {
         let mut best: Option<(usize, f64)> = None;
-        for (index, object) in there.iter().enumerate() {
-            let shared = box_overlap(bounds(detection), bounds(object), false);
+        for (index, object) in annotated.iter().enumerate() {
+            let shared = box_iou(bounds(detection), bounds(object), false);
             if best.is_none_or(|(_, most)| shared > most) {
                 best = Some((index, shared));
             }
         }
         let object = best.filter(|(_, shared)| *shared >= overlap).map(|(index, _)| index);
-        if object.is_some_and(|object| is_difficult(there[object])) {
+        if object.is_some_and(|object| is_difficult(annotated[object])) {
             continue;
         }
-        let right = object.is_some_and(|object| !std::mem::replace(&mut taken[object], true));
-        ranked.push(Ranked { score: f64::from(detection.confidence), picture: at, rank, right });
+        let is_correct = object.is_some_and(|object| !std::mem::replace(&mut taken[object], true));
+        ranked.push(Ranked { score: f64::from(detection.confidence), image: at, rank, is_correct });
     }
     ranked
 }
 
 impl Ranked {
-    /// By falling score; equal ones by picture, then by rank.
+    /// Compares by descending score, then by image, then by rank.
     fn before(&self, other: &Self) -> std::cmp::Ordering {
         let scores = other.score.partial_cmp(&self.score).unwrap_or(std::cmp::Ordering::Equal);
-        scores.then(self.picture.cmp(&other.picture)).then(self.rank.cmp(&other.rank))
+        scores.then(self.image.cmp(&other.image)).then(self.rank.cmp(&other.rank))
     }
 }
 
 impl VocParams {
-    /// Average precision; `None` without objects.
+    /// Returns the average precision; `None` without objects.
     fn average(&self, ranked: &[Ranked], truths: u64) -> Option<f64> {
         let precision = precisions(ranked);
         let at = |tenth: u64| precision.get((tenth * truths).div_ceil(10).max(1) as usize - 1).copied();
@@ -193,10 +201,10 @@ impl VocParams {
     }
 }
 
-/// For each object found, the highest precision at its recall or above.
+/// Returns for each true positive the highest precision at its recall or above.
 fn precisions(ranked: &[Ranked]) -> Vec<f64> {
     let mut precision = Vec::new();
-    for (at, _) in ranked.iter().enumerate().filter(|(_, ranked)| ranked.right) {
+    for (at, _) in ranked.iter().enumerate().filter(|(_, ranked)| ranked.is_correct) {
         precision.push((precision.len() + 1) as f64 / (at + 1) as f64);
     }
     let mut highest = 0.0f64;
@@ -207,12 +215,12 @@ fn precisions(ranked: &[Ranked]) -> Vec<f64> {
     precision
 }
 
-/// At most 101 points of the curve.
+/// Returns at most 101 points of the curve.
 fn points(ranked: &[Ranked], truths: u64) -> Vec<[f64; 2]> {
     let precision = precisions(ranked);
     let step = precision.len().div_ceil(100).max(1);
-    let found = precision.iter().enumerate().step_by(step);
-    found.map(|(at, precision)| [(at + 1) as f64 / truths as f64, *precision]).collect()
+    let sampled = precision.iter().enumerate().step_by(step);
+    sampled.map(|(at, precision)| [(at + 1) as f64 / truths as f64, *precision]).collect()
 }
 
 #[cfg(test)]
@@ -222,26 +230,26 @@ mod tests {
     use super::*;
 
     fn list(boxes: &[(i64, f32, f32)]) -> BoundingBoxList {
-        let found =
+        let bounding_box =
             |(name, left, score): &(i64, f32, f32)| BoundingBox::new(*name, *left, 0.0, 10.0, 10.0, *score);
-        BoundingBoxList::from(boxes.iter().map(found).collect::<Vec<_>>())
+        BoundingBoxList::from(boxes.iter().map(bounding_box).collect::<Vec<_>>())
     }
 
     fn average(params: VocParams, samples: &[(BoundingBoxList, BoundingBoxList)]) -> Option<f64> {
         let mut voc = Voc::new(&params).unwrap();
-        for (at, (found, there)) in samples.iter().enumerate() {
-            voc.update(at, found, there).unwrap();
+        for (at, (detected, annotated)) in samples.iter().enumerate() {
+            voc.update(at, detected, annotated).unwrap();
         }
         voc.finish().statistics.get("map")
     }
 
-    /// By hand: right, wrong, right of 4 objects: precision 1 at recall 1/4, 2/3 at 1/2.
+    /// True, false, true positive for 4 objects: precision 1 at recall 1/4, 2/3 at 1/2.
     #[test]
     fn both_averages_by_hand() {
-        let found = list(&[(1, 0.0, 0.9), (1, 500.0, 0.8), (1, 100.0, 0.7)]);
-        let there = list(&[(1, 0.0, 0.0), (1, 100.0, 0.0), (1, 200.0, 0.0), (1, 300.0, 0.0)]);
+        let detected = list(&[(1, 0.0, 0.9), (1, 500.0, 0.8), (1, 100.0, 0.7)]);
+        let annotated = list(&[(1, 0.0, 0.0), (1, 100.0, 0.0), (1, 200.0, 0.0), (1, 300.0, 0.0)]);
         let of = |eleven_points| {
-            average(VocParams { overlap: 0.5, eleven_points }, &[(found.clone(), there.clone())])
+            average(VocParams { overlap: 0.5, eleven_points }, &[(detected.clone(), annotated.clone())])
         };
         assert!((of(false).unwrap() - (1.0 + 2.0 / 3.0) / 4.0).abs() < 1e-12);
         // Recalls 0, .1, .2 have precision 1; .3, .4, .5 have 2/3.
@@ -249,15 +257,15 @@ mod tests {
     }
 
     #[test]
-    fn second_finds_are_wrong_and_difficult_objects_count_neither_way() {
+    fn duplicate_detections_are_false_and_difficult_objects_are_ignored() {
         let params = VocParams { overlap: 0.5, eleven_points: false };
-        let mut there = list(&[(1, 0.0, 0.0), (1, 100.0, 0.0)]);
-        there.boxes[1].segment = Some(Box::new(Segment { iscrowd: true, ..Segment::default() }));
-        let found = list(&[(1, 100.0, 0.95), (1, 102.0, 0.9), (1, 1.0, 0.8), (1, 0.0, 0.7)]);
-        assert_eq!(average(params.clone(), &[(found, there.clone())]), Some(1.0));
+        let mut annotated = list(&[(1, 0.0, 0.0), (1, 100.0, 0.0)]);
+        annotated.boxes[1].segment = Some(Box::new(Segment { iscrowd: true, ..Segment::default() }));
+        let detected = list(&[(1, 100.0, 0.95), (1, 102.0, 0.9), (1, 1.0, 0.8), (1, 0.0, 0.7)]);
+        assert_eq!(average(params.clone(), &[(detected, annotated.clone())]), Some(1.0));
         let twice = list(&[(1, 1.0, 0.8), (1, 0.0, 0.7), (2, 0.0, 0.9)]);
         let other = (list(&[(1, 0.0, 0.6)]), list(&[(1, 0.0, 0.0)]));
-        assert_eq!(average(params.clone(), &[(twice, there), other]), Some((1.0 + 2.0 / 3.0) / 2.0));
+        assert_eq!(average(params.clone(), &[(twice, annotated), other]), Some((1.0 + 2.0 / 3.0) / 2.0));
         assert_eq!(average(params, &[(list(&[(1, 0.0, 0.5)]), list(&[]))]), None);
     }
 }

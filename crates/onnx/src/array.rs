@@ -1,18 +1,18 @@
-//! Tensors whose elements are known: weights, shapes and whatever follows from them.
+//! Tensors with known elements: weights, shapes and values that follow from them.
 
 use opendr_engine::{Error, Result};
 
 use super::proto::{DataType, TensorProto};
 
-/// Number of elements of a tensor of these dimensions; `None` when it overflows.
+/// Returns the number of elements of a tensor of these dimensions; `None` when it overflows.
 pub fn element_count(dims: &[usize]) -> Option<usize> {
     dims.iter().try_fold(1usize, |count, &dim| count.checked_mul(dim))
 }
 
-/// The element types that occur. TensorFlow's integer types all become `Int`, which ONNX knows as int64:
-/// shapes and indices have to be that anyway.
+/// Element types of a graph under construction. All integer types become `Int`: ONNX requires int64 for shapes and
+/// indices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Kind {
+pub enum ElementType {
     /// `f32`.
     Float,
     /// `i64`.
@@ -21,8 +21,8 @@ pub enum Kind {
     Bool,
 }
 
-impl Kind {
-    /// ONNX's number of this element type.
+impl ElementType {
+    /// Returns ONNX's value of this element type.
     pub fn data_type(self) -> DataType {
         match self {
             Self::Float => DataType::Float,
@@ -39,19 +39,19 @@ pub enum Data {
     Float(Vec<f32>),
     /// Integers.
     Int(Vec<i64>),
-    /// Truth values.
+    /// Booleans.
     Bool(Vec<bool>),
-    /// Quantised numbers that a `DequantizeLinear` reads, below zero too.
+    /// Signed quantised values, read by a `DequantizeLinear`.
     Int8(Vec<i8>),
-    /// Quantised numbers that a `DequantizeLinear` reads, none below zero.
+    /// Unsigned quantised values, read by a `DequantizeLinear`.
     UInt8(Vec<u8>),
-    /// Quantised sums that a `DequantizeLinear` reads.
+    /// Quantised sums, read by a `DequantizeLinear`.
     Int32(Vec<i32>),
     /// Integers of which only some are known: the shape of a tensor with open dimensions.
     Partial(Vec<Option<i64>>),
 }
 
-/// Runs one expression on the vector of whichever variant, wrapping the result in the same variant.
+/// Evaluates one expression on the vector of any variant, and wraps the result in the same variant.
 macro_rules! map_data {
     ($data:expr, $values:ident => $result:expr) => {
         match $data {
@@ -68,7 +68,7 @@ macro_rules! map_data {
 pub(crate) use map_data;
 
 impl Data {
-    /// Number of elements.
+    /// Returns the number of elements.
     pub fn len(&self) -> usize {
         match self {
             Self::Float(values) => values.len(),
@@ -81,21 +81,23 @@ impl Data {
         }
     }
 
-    /// Whether there is no element.
+    /// Returns whether there are no elements.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Element type; the narrow integers count as integers.
-    pub fn kind(&self) -> Kind {
+    /// Returns the element type; the narrow integers count as integers.
+    pub fn kind(&self) -> ElementType {
         match self {
-            Self::Float(_) => Kind::Float,
-            Self::Int(_) | Self::Partial(_) | Self::Int8(_) | Self::UInt8(_) | Self::Int32(_) => Kind::Int,
-            Self::Bool(_) => Kind::Bool,
+            Self::Float(_) => ElementType::Float,
+            Self::Int(_) | Self::Partial(_) | Self::Int8(_) | Self::UInt8(_) | Self::Int32(_) => {
+                ElementType::Int
+            }
+            Self::Bool(_) => ElementType::Bool,
         }
     }
 
-    /// ONNX's number of the type in which the elements are written.
+    /// Returns ONNX's value of the type in which the elements are written.
     pub(super) fn data_type(&self) -> DataType {
         match self {
             Self::Int8(_) => DataType::Int8,
@@ -106,7 +108,7 @@ impl Data {
     }
 }
 
-/// Dimensions and elements; there are always as many elements as the dimensions say.
+/// Dimensions and elements; the number of elements always matches the dimensions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Array {
     dims: Vec<usize>,
@@ -114,57 +116,57 @@ pub struct Array {
 }
 
 impl Array {
-    /// `None` when the number of elements does not fit the dimensions.
+    /// Returns `None` when the number of elements does not match the dimensions.
     pub fn new(dims: Vec<usize>, data: Data) -> Option<Self> {
         (element_count(&dims) == Some(data.len())).then_some(Self { dims, data })
     }
 
-    /// A tensor of rank 0.
+    /// Creates a float tensor of rank 0.
     pub fn scalar(value: f32) -> Self {
         Self { dims: Vec::new(), data: Data::Float(vec![value]) }
     }
 
-    /// An integer of rank 0.
+    /// Creates an integer tensor of rank 0.
     pub fn int(value: i64) -> Self {
         Self { dims: Vec::new(), data: Data::Int(vec![value]) }
     }
 
-    /// A list of integers, as shapes and axes are.
+    /// Creates a list of integers, such as a shape or axes.
     pub fn ints(values: Vec<i64>) -> Self {
         Self { dims: vec![values.len()], data: Data::Int(values) }
     }
 
-    /// A list of integers some of which are unknown.
+    /// Creates a list of integers of which some are unknown.
     pub fn partial(values: Vec<Option<i64>>) -> Self {
         Self { dims: vec![values.len()], data: Data::Partial(values) }.completed()
     }
 
-    /// Dimensions, row-major.
+    /// Returns the dimensions, outermost first.
     pub fn dims(&self) -> &[usize] {
         &self.dims
     }
 
-    /// Elements.
+    /// Returns the elements.
     pub fn data(&self) -> &Data {
         &self.data
     }
 
-    /// Elements, to be changed in place but not in number.
+    /// Returns the elements for changes in place; their number must stay.
     pub(super) fn data_mut(&mut self) -> &mut Data {
         &mut self.data
     }
 
-    /// Element type.
-    pub fn kind(&self) -> Kind {
+    /// Returns the element type.
+    pub fn kind(&self) -> ElementType {
         self.data.kind()
     }
 
-    /// Whether every element is known.
+    /// Returns whether every element is known.
     pub fn is_complete(&self) -> bool {
         !matches!(self.data, Data::Partial(_))
     }
 
-    /// Partial data with no gap left becomes plain integers.
+    /// Converts partial data without unknown elements to plain integers.
     #[must_use]
     pub fn completed(mut self) -> Self {
         if let Data::Partial(values) = &self.data
@@ -175,7 +177,7 @@ impl Array {
         self
     }
 
-    /// The floats, if they are floats.
+    /// Returns the elements of a float tensor.
     pub fn as_floats(&self) -> Option<&[f32]> {
         match &self.data {
             Data::Float(values) => Some(values),
@@ -183,7 +185,7 @@ impl Array {
         }
     }
 
-    /// The integers, if they are integers and all known.
+    /// Returns the elements of an integer tensor, if all are known.
     pub fn as_ints(&self) -> Option<&[i64]> {
         match &self.data {
             Data::Int(values) => Some(values),
@@ -191,15 +193,15 @@ impl Array {
         }
     }
 
-    /// The same elements under other dimensions.
+    /// Returns the same elements with other dimensions; `None` when the number of elements does not match.
     pub fn reshaped(self, dims: Vec<usize>) -> Option<Self> {
         Self::new(dims, self.data)
     }
 
-    /// As an initializer of a graph.
+    /// Converts to an initializer of a graph.
     ///
     /// # Errors
-    /// `Internal` for partial data, which has no value to write.
+    /// `Internal` for partial data, which cannot be written.
     pub fn to_tensor(&self, name: &str) -> Result<TensorProto> {
         let raw_data = match &self.data {
             Data::Float(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
@@ -219,7 +221,7 @@ impl Array {
         })
     }
 
-    /// Reads an initializer of type float, int64 or bool; `None` for others and for inconsistent ones.
+    /// Reads an initializer of type float, int64 or bool; `None` for other types and inconsistent tensors.
     pub fn from_tensor(tensor: &TensorProto) -> Option<Self> {
         let dims: Option<Vec<usize>> = tensor.dims.iter().map(|&dim| usize::try_from(dim).ok()).collect();
         let raw = &tensor.raw_data;

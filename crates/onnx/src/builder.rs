@@ -1,26 +1,26 @@
-//! Writes a graph node by node, evaluating what is known and never writing the same node twice.
+//! Construction of a graph node by node, with constant folding and common-subexpression elimination.
 
 use std::collections::{BTreeMap, HashMap};
 
 use opendr_engine::{Error, Result};
 use prost::Message;
 
-use super::array::{Array, Kind};
+use super::array::{Array, ElementType};
 use super::fold;
+use super::graph_tensor::{Dim, GraphTensor};
 use super::operator::Operator;
 use super::proto::{
     Dimension, DimensionValue, GraphProto, NodeProto, TensorProto, TensorShapeProto, TensorType, TypeProto,
     TypeValue, ValueInfoProto,
 };
-use super::wire::{Dim, Wire};
 
-/// No real model comes near; a hostile one could ask for a node per element of a huge axis.
+/// Maximum number of nodes. Real models have far fewer; a hostile one could need a node per element of a huge axis.
 const MAX_NODES: usize = 100_000;
 
-/// Elements that evaluation may produce over the whole graph; beyond, nodes are written instead.
+/// Maximum number of elements that constant folding may produce over the whole graph; beyond it, nodes are written.
 const MAX_FOLDED: usize = 1 << 26;
 
-/// Constants up to this size are compared by content, so that equal shapes share one initializer.
+/// Maximum size of constants that are compared by content, so that equal shapes share one initializer.
 const SMALL: usize = 16;
 
 /// A graph under construction.
@@ -31,26 +31,27 @@ pub struct Builder {
     inputs: Vec<ValueInfoProto>,
     outputs: Vec<ValueInfoProto>,
     names: BTreeMap<String, usize>,
-    written: HashMap<Vec<u8>, Vec<Wire>>,
+    written: HashMap<Vec<u8>, Vec<GraphTensor>>,
     small_constants: HashMap<Vec<u8>, String>,
-    large_constants: HashMap<usize, (String, Wire)>,
+    large_constants: HashMap<usize, (String, GraphTensor)>,
     folded: usize,
 }
 
 impl Builder {
-    /// An input of the graph; open dimensions get the names given, or none.
-    pub fn input(&mut self, name: &str, kind: Kind, dims: Vec<Dim>, open: &[&str]) -> Wire {
+    /// Adds an input of the graph. `open` has names of its open dimensions; an empty or missing name leaves a
+    /// dimension unnamed.
+    pub fn input(&mut self, name: &str, kind: ElementType, dims: Vec<Dim>, open: &[&str]) -> GraphTensor {
         let name = self.unique(name);
         self.inputs.push(value_info(&name, kind, &dims, open));
-        Wire::new(&name, kind, dims, None)
+        GraphTensor::new(&name, kind, dims, None)
     }
 
-    /// Declares an output. The tensor gets that name; one that has a name of its own already (an input, a
-    /// constant, another output) is passed through an `Identity`. Open dimensions get the names given, or none.
+    /// Declares an output with the name `name`. A tensor that already has a name (an input, a constant, another
+    /// output) is passed through an `Identity`. `open` has names of its open dimensions, as in [`Builder::input`].
     ///
     /// # Errors
-    /// `Format` when the graph has grown too large.
-    pub fn output(&mut self, name: &str, wire: &Wire, doc: &str, open: &[&str]) -> Result<()> {
+    /// `Format` when the graph exceeds the maximum number of nodes.
+    pub fn output(&mut self, name: &str, wire: &GraphTensor, doc: &str, open: &[&str]) -> Result<()> {
         let source = self.source_name(wire)?;
         let mut node = Operator::new("Identity").into_node(name);
         node.input.push(source);
@@ -62,38 +63,38 @@ impl Builder {
         Ok(())
     }
 
-    /// Adds one operator with one output, or evaluates it.
+    /// Adds an operator with one output, or evaluates it.
     ///
     /// # Errors
-    /// `Format` when the graph has grown too large.
+    /// `Format` when the graph exceeds the maximum number of nodes.
     pub fn add(
         &mut self,
         hint: &str,
         operator: Operator,
-        inputs: &[&Wire],
-        kind: Kind,
+        inputs: &[&GraphTensor],
+        kind: ElementType,
         dims: Vec<Dim>,
-    ) -> Result<Wire> {
+    ) -> Result<GraphTensor> {
         let outputs = self.add_many(hint, operator, inputs, vec![(kind, dims)])?;
         outputs.into_iter().next().ok_or_else(|| Error::internal("operator without output"))
     }
 
-    /// Adds one operator with several outputs, or evaluates it.
+    /// Adds an operator with several outputs, or evaluates it.
     ///
     /// # Errors
-    /// `Format` when the graph has grown too large.
+    /// `Format` when the graph exceeds the maximum number of nodes.
     pub fn add_many(
         &mut self,
         hint: &str,
         operator: Operator,
-        inputs: &[&Wire],
-        outputs: Vec<(Kind, Vec<Dim>)>,
-    ) -> Result<Vec<Wire>> {
+        inputs: &[&GraphTensor],
+        outputs: Vec<(ElementType, Vec<Dim>)>,
+    ) -> Result<Vec<GraphTensor>> {
         let known = self.evaluate(&operator, inputs).filter(|known| known.len() == outputs.len());
         if let Some(known) = &known
             && known.iter().all(Array::is_complete)
         {
-            return Ok(known.iter().cloned().map(Wire::constant).collect());
+            return Ok(known.iter().cloned().map(GraphTensor::constant).collect());
         }
         let mut node = operator.into_node("");
         for input in inputs {
@@ -108,7 +109,7 @@ impl Builder {
         for (kind, dims) in outputs {
             let name = self.unique(hint);
             node.output.push(name.clone());
-            wires.push(Wire::new(&name, kind, dims, known.next()));
+            wires.push(GraphTensor::new(&name, kind, dims, known.next()));
         }
         node.name = node.output.first().cloned().unwrap_or_default();
         self.push(node)?;
@@ -119,14 +120,14 @@ impl Builder {
     fn push(&mut self, node: NodeProto) -> Result<()> {
         if self.nodes.len() >= MAX_NODES {
             return Err(Error::format(format!(
-                "the graph needs more than {MAX_NODES} nodes; it is damaged or hostile"
+                "the graph needs more than {MAX_NODES} nodes; the model is damaged or hostile"
             )));
         }
         self.nodes.push(node);
         Ok(())
     }
 
-    fn evaluate(&mut self, operator: &Operator, inputs: &[&Wire]) -> Option<Vec<Array>> {
+    fn evaluate(&mut self, operator: &Operator, inputs: &[&GraphTensor]) -> Option<Vec<Array>> {
         let known = match operator.name() {
             "Shape" => {
                 let dims = inputs.first()?.dims();
@@ -136,7 +137,7 @@ impl Builder {
             }
             "Size" => vec![Array::int(i64::try_from(inputs.first()?.element_count()?).ok()?)],
             _ => {
-                let unknown = |wire: &&Wire| !wire.name.is_empty() && wire.known().is_none();
+                let unknown = |wire: &&GraphTensor| !wire.name.is_empty() && wire.known().is_none();
                 if self.folded > MAX_FOLDED || inputs.iter().any(unknown) {
                     return None;
                 }
@@ -147,8 +148,8 @@ impl Builder {
         Some(known)
     }
 
-    /// The name by which a node refers to `wire`; constants become initializers here.
-    fn source_name(&mut self, wire: &Wire) -> Result<String> {
+    /// Returns the name by which a node refers to `wire`; writes an initializer for a constant.
+    fn source_name(&mut self, wire: &GraphTensor) -> Result<String> {
         let Some(array) = wire.array() else { return Ok(wire.name.to_string()) };
         let hint = if wire.name.is_empty() { "constant" } else { &*wire.name };
         if array.data().len() <= SMALL {
@@ -170,7 +171,7 @@ impl Builder {
         Ok(name)
     }
 
-    /// `hint`, or `hint_2`, `hint_3` where it is taken.
+    /// Returns `hint`, or `hint_2`, `hint_3` where it is used.
     fn unique(&mut self, hint: &str) -> String {
         let hint = if hint.is_empty() { "tensor" } else { hint };
         let mut name = hint.to_owned();
@@ -183,12 +184,12 @@ impl Builder {
         name
     }
 
-    /// Keeps a name free for an output.
+    /// Reserves a name for an output.
     pub fn reserve(&mut self, name: &str) {
         self.names.insert(name.to_owned(), 1);
     }
 
-    /// The finished graph.
+    /// Returns the finished graph.
     pub fn finish(self, name: &str) -> GraphProto {
         GraphProto {
             name: name.to_owned(),
@@ -201,7 +202,7 @@ impl Builder {
     }
 }
 
-fn value_info(name: &str, kind: Kind, dims: &[Dim], open: &[&str]) -> ValueInfoProto {
+fn value_info(name: &str, kind: ElementType, dims: &[Dim], open: &[&str]) -> ValueInfoProto {
     let dimension = |(axis, dim): (usize, &Dim)| {
         let value = match (dim, open.get(axis)) {
             (Some(dim), _) => Some(DimensionValue::Value(*dim as i64)),

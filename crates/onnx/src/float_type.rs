@@ -1,22 +1,22 @@
-//! Floating-point numbers as they lie in files of weights.
+//! Floating-point formats of weight files.
 
 use crate::float_from_half;
 
-/// How wide the numbers of a file are.
+/// Floating-point format of the numbers of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FloatType {
     /// 64 bits.
     F64,
     /// 32 bits.
     F32,
-    /// 16 bits, of which five are the exponent.
+    /// 16 bits, with an exponent of five bits (IEEE 754 binary16).
     F16,
-    /// The upper 16 bits of 32.
+    /// The upper 16 bits of a 32-bit float (bfloat16).
     Bf16,
 }
 
 impl FloatType {
-    /// Bytes of one number.
+    /// Returns the bytes per number.
     pub fn bytes(self) -> usize {
         match self {
             Self::F64 => 8,
@@ -25,8 +25,8 @@ impl FloatType {
         }
     }
 
-    /// The numbers in little-endian `bytes`; what is left over at the end is dropped.
-    pub fn numbers(self, bytes: &[u8]) -> Vec<f32> {
+    /// Decodes the numbers in little-endian `bytes`; an incomplete number at the end is ignored.
+    pub fn decode(self, bytes: &[u8]) -> Vec<f32> {
         match self {
             Self::F64 => bytes.as_chunks().0.iter().map(|&b| f64::from_le_bytes(b) as f32).collect(),
             Self::F32 => bytes.as_chunks().0.iter().map(|&b| f32::from_le_bytes(b)).collect(),
@@ -48,15 +48,15 @@ mod tests {
     #[test]
     fn every_width_reads_the_same_number() {
         for number in [0.0f32, 1.0, -2.5, 0.375] {
-            assert_eq!(FloatType::F32.numbers(&number.to_le_bytes()), [number]);
-            assert_eq!(FloatType::F64.numbers(&f64::from(number).to_le_bytes()), [number]);
+            assert_eq!(FloatType::F32.decode(&number.to_le_bytes()), [number]);
+            assert_eq!(FloatType::F64.decode(&f64::from(number).to_le_bytes()), [number]);
             let brain = (number.to_bits() >> 16) as u16;
-            assert_eq!(FloatType::Bf16.numbers(&brain.to_le_bytes()), [number]);
+            assert_eq!(FloatType::Bf16.decode(&brain.to_le_bytes()), [number]);
         }
         let halves =
             [(0x0000, 0.0), (0x3c00, 1.0), (0xc100, -2.5), (0x0001, 5.9604645e-8), (0x7bff, 65504.0)];
         for (bits, number) in halves {
-            assert_eq!(FloatType::F16.numbers(&u16::to_le_bytes(bits)), [number]);
+            assert_eq!(FloatType::F16.decode(&u16::to_le_bytes(bits)), [number]);
         }
         assert!(float_from_half(0x7e00).is_nan() && float_from_half(0xfc00) == f32::NEG_INFINITY);
     }

@@ -1,6 +1,6 @@
-//! Numbers of 16 bits (IEEE 754 binary16).
+//! Half precision (IEEE 754 binary16).
 
-/// The number that a `float16` stands for: exact for every one.
+/// Converts the bits of a `float16` to an `f32`, exactly.
 pub fn float_from_half(half: u16) -> f32 {
     let sign = u32::from(half & 0x8000) << 16;
     let exponent = u32::from(half >> 10 & 0x1f);
@@ -13,13 +13,14 @@ pub fn float_from_half(half: u16) -> f32 {
     }
 }
 
-/// The nearest `float16`, the even one of two, as its bits.
+/// Converts an `f32` to the bits of the nearest `float16`, ties to even.
 pub fn half_from_float(value: f32) -> u16 {
     let bits = value.to_bits();
     let sign = (bits >> 16 & 0x8000) as u16;
     let magnitude = f32::from_bits(bits & 0x7fff_ffff);
     if magnitude < 6.103_515_6e-5 {
-        // Below the least normal number steps are equal: a sum with 0.5 has the same steps, and rounds.
+        // Below the smallest normal number the steps are equal: adding 0.5 aligns the steps of the sum with them and
+        // rounds.
         return sign | ((magnitude + 0.5).to_bits() - 0.5_f32.to_bits()) as u16;
     }
     let bits = bits & 0x7fff_ffff;
@@ -43,7 +44,7 @@ mod tests {
     }
 
     #[test]
-    fn every_half_comes_back_and_what_lies_between_goes_to_the_nearest() {
+    fn halves_round_trip_and_other_values_round_to_nearest() {
         for half in (0..=0x7bff_u16).chain(0x8000..=0xfbff) {
             assert_eq!(half_from_float(float_from_half(half)), half, "{half:#x}");
         }

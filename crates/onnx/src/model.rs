@@ -1,17 +1,17 @@
-//! Whole model files.
+//! Reading and writing of model files.
 
 use opendr_engine::{Error, Result};
 use prost::Message;
 
 use super::proto::{GraphProto, ModelProto, OperatorSetIdProto};
 
-/// Operators are written as this version of ONNX defines them.
+/// Opset version of written models.
 const OPSET: i64 = 17;
 
-/// The version of the file format that goes with [`OPSET`].
+/// IR version that corresponds to [`OPSET`].
 const IR_VERSION: i64 = 8;
 
-/// A model around a graph of ONNX's default operators, opset 17.
+/// Wraps a graph of ONNX's default operators, opset 17, in a model.
 pub fn model_from_graph(graph: GraphProto) -> ModelProto {
     ModelProto {
         ir_version: IR_VERSION,
@@ -22,22 +22,23 @@ pub fn model_from_graph(graph: GraphProto) -> ModelProto {
     }
 }
 
-/// Reads a model file.
+/// Decodes a model file.
 ///
 /// # Errors
-/// `Format` when it is no ONNX model.
+/// `Format` when it is not an ONNX model.
 pub fn model_from_bytes(bytes: &[u8]) -> Result<ModelProto> {
     let model = ModelProto::decode(bytes).map_err(|error| {
-        Error::format("not an ONNX model, or a damaged one; get the file anew").with_source(error)
+        Error::format("not an ONNX model, or a damaged one; copy or download the file again")
+            .with_source(error)
     })?;
     match model.graph {
         Some(_) => Ok(model),
-        None => Err(Error::format("ONNX model without a graph")),
+        None => Err(Error::format("the ONNX model has no graph")),
     }
 }
 
-/// Writes a model file. Lists in attributes are written unpacked, as ONNX's schema has them: reading and writing a file
-/// makes it fit for readers that refuse packed ones, the built-in runtime among them.
+/// Encodes a model file. Lists in attributes are written unpacked, as in ONNX's schema: re-encoding a file makes it
+/// readable for readers that reject packed lists, such as the built-in runtime.
 pub fn bytes_from_model(model: &ModelProto) -> Vec<u8> {
     model.encode_to_vec()
 }

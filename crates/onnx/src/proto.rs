@@ -1,8 +1,8 @@
-//! The messages of ONNX's protobuf schema (`onnx.proto`, IR version 8 and the fields of later ones that change
-//! nothing here), written by hand so that no protobuf compiler is needed.
+//! The messages of ONNX's protobuf schema (`onnx.proto`, IR version 8 and later fields that do not change its
+//! meaning), written by hand so that no protobuf compiler is needed.
 //!
-//! Every field of the schema is here: decoding and encoding again loses nothing. `ints` and `floats` of
-//! attributes are written unpacked, as the schema says; decoding takes both forms.
+//! All fields of the schema are included: decoding and encoding loses nothing. `ints` and `floats` of attributes are
+//! written unpacked, as in the schema; both forms are decoded.
 #![allow(missing_docs)]
 
 use prost::{Enumeration, Message, Oneof};
@@ -30,7 +30,7 @@ pub enum DataType {
     Bfloat16 = 16,
 }
 
-/// Which field of an [`AttributeProto`] holds the value.
+/// The field of an [`AttributeProto`] that contains the value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Enumeration)]
 #[repr(i32)]
 pub enum AttributeType {
@@ -227,7 +227,7 @@ pub struct TensorProto {
     pub raw_data: Vec<u8>,
     #[prost(message, repeated, tag = "13")]
     pub external_data: Vec<StringStringEntryProto>,
-    /// 0: in this file, 1: in the file that `external_data` names.
+    /// 0: in this file, 1: in the file named by `external_data`.
     #[prost(int32, tag = "14")]
     pub data_location: i32,
     #[prost(double, repeated, tag = "10")]

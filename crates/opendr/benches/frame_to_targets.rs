@@ -1,4 +1,4 @@
-//! From a decoded 1080p frame to targets, and the bare session beside it: the difference is ours.
+//! Time from a decoded 1080p frame to targets, and of the bare session; the difference is pre- and post-processing.
 //!
 //! `OPENDR_TEST_DATA=../shared cargo bench -p opendr --bench frame_to_targets`; `benches/compare.py` runs the same in
 //! Python beside it.

@@ -6,8 +6,8 @@
 //! ```
 //!
 //! The learner is a name of the registry, with `/VARIANT` or `=CONTAINER`; then its parameters as JSON; then the inputs:
-//! `PORT=FILE` with a picture, sound, series, scan, or the JSON of a target, as the port takes it, with a comma between the
-//! calls of one stream. With `--seconds` before all that, a last line lists how long each call took.
+//! `PORT=FILE` with an image, audio, time series, point cloud, or the JSON of a target, by the type of the port, with a comma
+//! between the calls of one stream. With `--seconds` before all that, a last line lists the duration of each call.
 
 use std::collections::BTreeMap;
 use std::env;
@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The name without `/VARIANT` and `=CONTAINER`.
+/// Returns the name without `/VARIANT` and `=CONTAINER`.
 fn learner_name(name: &str) -> &str {
     name.split(['/', '=']).next().unwrap_or(name)
 }
@@ -63,7 +63,7 @@ fn load(name: &str, params: &ParamMap) -> opendr::Result<Box<dyn AnyLearner>> {
     Ok(learner)
 }
 
-/// The name of a port and what goes into it.
+/// Parses `PORT=FILE` into the name of a port and its value.
 fn read<'a>(word: &'a str, ports: &[Port]) -> Result<(&'a str, Value), Box<dyn Error>> {
     let (name, file) = word.split_once('=').ok_or("inputs are PORT=FILE")?;
     let port = ports.iter().find(|port| port.name == name).ok_or_else(|| format!("no input {name:?}"))?;

@@ -1,4 +1,4 @@
-//! Looks for a tracker's parameters on videos of the MOT Challenge's format, by the mean of HOTA and IDF1.
+//! Searches a tracker's parameters on videos in the format of the MOT Challenge, by the mean of HOTA and IDF1.
 //!
 //! ```console
 //! $ pip download --no-deps motmetrics && unzip motmetrics-*.whl 'motmetrics/data/TUD-*/*'
@@ -9,8 +9,8 @@
 //! $ cargo run --release -p opendr --example tune_tracker -- byte_track videos 60 iou_threshold track_buffer=5..60 min_hits=1..5
 //! ```
 //!
-//! A parameter is searched in the range that the learner states, in `NAME=LOW..HIGH`, or among `NAME=A,B,C`. Prints the score of the
-//! defaults, then one line of JSON with the best. `opendr tune` searches what a training has; trackers have none.
+//! A parameter is searched in the learner's range, in `NAME=LOW..HIGH`, or among `NAME=A,B,C`. Prints the score of the defaults, then
+//! one line of JSON with the best parameters.
 
 use std::error::Error;
 
@@ -25,7 +25,7 @@ use serde_json::{Value, json};
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [name, folder, trials, search @ ..] = &arguments[..] else {
-        return Err("give a tracker, a folder of videos, a number of trials, and what to search".into());
+        return Err("give a tracker, a folder of videos, a number of trials, and parameters to search".into());
     };
     let entry = opendr::registry().find(name)?;
     let videos = ExternalDataset::new(folder, "mot");
@@ -34,14 +34,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let study = Study::open(Storage::memory(), name, &[Direction::Maximize])?.with_sampler(Tpe::new(0));
     let measure = |trial: &Trial<'_>| score(entry, &trial.param_map()?, &videos).map(Outcome::from);
     study.optimize(&space, &Budget::total(trials.parse()?), measure, |_, _| Progress::Continue)?;
-    let best = study.best().ok_or("no trial came to its end")?;
+    let best = study.best().ok_or("no trial completed")?;
     let params: serde_json::Map<String, Value> =
         best.params.iter().map(|(name, one)| (name.clone(), one.value())).collect();
     println!("{}", json!({"score": best.value(), "params": params}));
     Ok(())
 }
 
-/// The mean of HOTA and IDF1 of the tracker with these parameters.
+/// Returns the mean of HOTA and IDF1 of the tracker with these parameters.
 fn score(entry: &'static Entry, params: &ParamMap, videos: &ExternalDataset) -> opendr::Result<f64> {
     let mut learner = opendr::learner_with(entry.spec.name, params, Device::Cpu, &Silent)?;
     let mut sum = 0.0;

@@ -9,20 +9,20 @@ use opendr_zoo::{Zoo, ZooOptions};
 
 use crate::registry;
 
-/// The learner that `spec` names (`"nanodet"`, `"yunet/320"`), with its pretrained model, on the best device.
+/// Loads the learner that `spec` names (`"nanodet"`, `"yunet/320"`) with its pretrained model, on the best device.
 ///
-/// The model is downloaded into the cache the first time.
+/// The first call downloads the model into the cache.
 ///
 /// # Errors
-/// `NotFound` for a name that there is not, else what kept the model from being got or loaded.
+/// `NotFound` for an unknown name, else the error of the download or of loading.
 pub fn learner(spec: &str) -> Result<Box<dyn AnyLearner>> {
     learner_with(spec, &ParamMap::new(), Device::Auto, &Silent)
 }
 
-/// As [`learner`], with parameters, a device, and someone to tell how the download goes.
+/// As [`learner`], with parameters, a device, and a progress display for the download.
 ///
 /// # Errors
-/// As [`learner`], and `InvalidParam` for a parameter that does not fit.
+/// As [`learner`], and `InvalidParam` for a wrong parameter.
 pub fn learner_with(
     spec: &str,
     params: &ParamMap,
@@ -35,20 +35,20 @@ pub fn learner_with(
     Ok(learner)
 }
 
-/// The container of the pretrained model that `spec` names, downloaded into the cache the first time.
+/// Returns the path of the container of the pretrained model that `spec` names; the first call downloads it into the cache.
 ///
 /// # Errors
-/// `NotFound` for a name that there is not, else what kept the model from being got.
+/// `NotFound` for an unknown name, else the error of the download.
 pub fn download(spec: &str) -> Result<PathBuf> {
     zoo()?.get(spec, &Silent)
 }
 
-/// The zoo as the environment sets it up.
+/// Returns the zoo with the options of the environment.
 fn zoo() -> Result<Zoo> {
     Zoo::new(ZooOptions::from_env()?)
 }
 
-/// The registry name with the variant of `spec`, whose first half may be a class name.
+/// Returns the registry name with the variant of `spec`, whose learner may be given by class name.
 fn model_spec(name: &str, spec: &str) -> String {
     match spec.split_once('/') {
         Some((_, variant)) => format!("{name}/{variant}"),

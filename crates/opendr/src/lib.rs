@@ -1,19 +1,22 @@
 //! OpenDR in Rust: the open deep-learning toolkit for robotics.
 //!
-//! Learners by name, from a registry, as every surface has them:
+//! The facade of the workspace: the [registry](registry()) of learners, [learners and models by name](learner()), [pipelines](Pipeline),
+//! training ([`fit()`], [`fit_policy`]), hyperparameter search ([`tune()`]), [`export()`], and re-exports of the other crates. Algorithms are in
+//! the crates of `crates/perception`, data types and the trait `Learner` in `opendr-engine`; the command line, Python and C are in
+//! `apps` and `bindings`. Begin with [`learner()`]:
 //!
 //! ```no_run
 //! # fn main() -> opendr::Result<()> {
 //! use opendr::learner::Ports;
 //!
-//! let mut detector = opendr::learner("centernet")?;   // downloads once, with checksum
+//! let mut detector = opendr::learner("centernet")?;   // downloads the model once, checked by SHA-256
 //! let image = opendr::vision::open("street.jpg")?;
 //! println!("{:#}", detector.infer(&Ports::one(&image))?);
 //! # Ok(())
 //! # }
 //! ```
 //!
-//! or by type, without a dispatch:
+//! A learner is also available by its type, without dynamic dispatch:
 //!
 //! ```no_run
 //! # fn main() -> opendr::Result<()> {
@@ -24,18 +27,27 @@
 //! let mut nanodet = Handle::<Nanodet>::new(params, Device::Auto)?;
 //! nanodet.load(opendr::download("nanodet")?)?;
 //! let image = opendr::vision::open("street.jpg")?;
-//! for found in &nanodet.infer(&image)?.boxes {
-//!     println!("{} {:?}", found.name, found.corners());
+//! for detection in &nanodet.infer(&image)?.boxes {
+//!     println!("{} {:?}", detection.name, detection.corners());
 //! }
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! The registry lists the learners of this build:
+//!
+//! ```
+//! for entry in opendr::registry().entries() {
+//!     println!("{}: {}", entry.spec.name, entry.spec.about);
+//! }
+//! assert!(opendr::registry().find("no_such_learner").is_err());
+//! ```
 
 mod by_name;
-mod eval_in;
 mod export;
 mod fit;
 mod pipeline;
+mod policy_evaluation;
 mod registry;
 mod smaller;
 #[cfg(any(feature = "detection", feature = "segmentation"))]
@@ -43,10 +55,10 @@ pub mod tiling;
 mod tune;
 
 pub use by_name::{download, learner, learner_with};
-pub use eval_in::{ActingStream, eval_in, trained_in};
 pub use export::{export, network};
 pub use fit::{
-    FitData, FitEnvironments, FitOptions, Fitted, Opening, check_fit, fit, fit_in, teacher, teacher_with,
+    DatasetOpener, FitData, FitEnvironments, FitOptions, Fitted, check_fit, fit, fit_policy, teacher,
+    teacher_with,
 };
 #[cfg(feature = "actions")]
 pub use opendr_actions::{activity_recognition, skeleton_based_action_recognition};
@@ -84,6 +96,7 @@ pub use opendr_stereo::stereo_matching;
 #[cfg(feature = "tracking")]
 pub use opendr_tracking::{object_tracking_2d, object_tracking_3d, tracking};
 pub use pipeline::Pipeline;
+pub use policy_evaluation::{PolicyController, evaluate_policy, training_environment};
 pub use registry::registry;
 pub use smaller::optimize_loaded;
 pub use tune::{LearnerTraining, MakeLearner, TuneData, TuneOptions, Tuned, search_space, tune};

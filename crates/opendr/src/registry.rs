@@ -1,4 +1,4 @@
-//! The learners that are compiled in: one line each.
+//! Registry of the learners in this build, one line each.
 
 use std::sync::OnceLock;
 
@@ -67,8 +67,8 @@ use opendr_tracking::{
     object_tracking_3d::{Ab3dmot, Vpit},
 };
 
-/// Every learner: those compiled in, and those that the program adds.
-#[rustfmt::skip] // One line a learner.
+/// Returns the registry of all learners: those of this build, and those that the program adds.
+#[rustfmt::skip] // One line per learner.
 pub fn registry() -> &'static Registry {
     static REGISTRY: OnceLock<Registry> = OnceLock::new();
     REGISTRY.get_or_init(|| {

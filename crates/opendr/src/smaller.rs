@@ -1,4 +1,4 @@
-//! `optimize` of a loaded learner, as surfaces have it.
+//! Quantisation and FP16 conversion of a loaded learner.
 
 use std::fs;
 use std::path::Path;
@@ -10,16 +10,16 @@ use opendr_engine::params::{ParamMap, Params};
 use opendr_engine::{Progress, Result, ResultExt};
 use opendr_optimize::{OptimizeJob, OptimizeOptions, Report};
 
-use crate::Opening;
+use crate::DatasetOpener;
 
-/// The model as it was, beside the one that is written, until that is done.
+/// Name of the temporary copy of the original model.
 const ORIGINAL: &str = "original";
 
-/// Makes the model of a loaded learner smaller: writes it to `output`, and loads it. `calibration` is what it looks at,
-/// `validation` what it is measured on before and after.
+/// Quantises the model of a loaded learner to INT8 or converts it to FP16, writes it to `output`, and loads it. `calibration`
+/// is the data for the ranges of activations; on `validation` the model is evaluated before and after.
 ///
 /// # Errors
-/// `NotFound` when nothing is loaded; `InvalidParam` for options that do not fit; as [`OptimizeJob::run`].
+/// `NotFound` when no model is loaded; `InvalidParam` for wrong options; as [`OptimizeJob::run`].
 pub fn optimize_loaded(
     learner: &mut dyn AnyLearner,
     entry: &Entry,
@@ -30,9 +30,9 @@ pub fn optimize_loaded(
 ) -> Result<Report> {
     let options = OptimizeOptions::from_map(options)?;
     let problems = Problems::strict();
-    let opening = |annotated| Opening { entry, annotated, problems: &problems, progress };
-    let calibration = calibration.map(|dataset| opening(false).to_train(dataset, None)).transpose()?;
-    let validation = validation.map(|dataset| opening(true).to_measure(dataset, None)).transpose()?;
+    let opening = |annotated| DatasetOpener { entry, annotated, problems: &problems, progress };
+    let calibration = calibration.map(|dataset| opening(false).open_training(dataset, None)).transpose()?;
+    let validation = validation.map(|dataset| opening(true).open_validation(dataset, None)).transpose()?;
     let mut original = output.as_os_str().to_owned();
     original.push(format!(".{}.{ORIGINAL}", std::process::id()));
     learner.save(original.as_ref())?;

@@ -1,4 +1,4 @@
-//! Large pictures in tiles, with the learners that can look at them.
+//! Inference on large images in tiles, and the learners that support it.
 
 #[cfg(feature = "detection")]
 pub use opendr_detection::object_detection_2d::DETECTORS;

@@ -1,5 +1,5 @@
-//! After warm-up, pre- and post-processing of every learner allocate nothing: a call allocates what the bare run of its
-//! network allocates, and no more.
+//! Tests that pre- and post-processing of every learner allocate nothing after warm-up: a call allocates no more than the bare
+//! run of its network.
 //!
 //! A program of its own: work of other threads counts, so no other test may run beside these.
 
@@ -17,12 +17,12 @@ use opendr::speech_recognition::DsCnn;
 use opendr::stereo_matching::{SemiGlobalMatching, SemiGlobalMatchingInputs, SemiGlobalMatchingTargets};
 use opendr::target::{BoundingBox, BoundingBoxList, Category, TrackingAnnotationList};
 use opendr::{Device, Model};
-use opendr_test_allocator::{Counting, allocations};
+use opendr_test_allocator::{CountingAllocator, allocations};
 
 #[global_allocator]
-static ALLOCATOR: Counting = Counting;
+static ALLOCATOR: CountingAllocator = CountingAllocator;
 
-/// The fewest allocations of ten calls: other threads of the test runner may allocate meanwhile.
+/// Returns the minimum number of allocations of ten calls, since other threads of the test runner may allocate meanwhile.
 fn fewest(mut call: impl FnMut()) -> usize {
     let count = |_| {
         let before = allocations();
@@ -57,7 +57,7 @@ where
     assert!(whole <= bare, "{name} allocates {whole} times a call, its bare session {bare} times");
 }
 
-/// Crowds that walk, for a tracker that has seen them for a while.
+/// Checks a tracker on walking crowds, after warm-up.
 fn check_tracker<L>(make: impl FnOnce(L::Params) -> L)
 where
     L: for<'a> Learner<Input<'a> = TrackerInputs<'a>, Target = TrackingAnnotationList>,

@@ -1,5 +1,5 @@
-//! Makes an ONNX file smaller: `shrink PRECISION FROM.onnx TO.onnx`, with ranges from inputs drawn from a normal
-//! distribution.
+//! Quantises an ONNX file or converts it to FP16: `shrink PRECISION FROM.onnx TO.onnx`, with ranges from normally
+//! distributed inputs.
 
 use std::path::Path;
 

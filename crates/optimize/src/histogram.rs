@@ -1,15 +1,15 @@
-//! How often values occur.
+//! Histograms of tensor values.
 
-/// Bins of a histogram.
+/// Number of bins.
 const BINS: usize = 4096;
-/// Of a larger tensor, only so many values are counted, spread over it.
+/// Maximum number of values counted per tensor; larger tensors are sampled evenly.
 const COUNTED: usize = 1 << 15;
 
-/// Counts of the values of a tensor in bins of equal width around zero, whose width doubles when a value lies outside.
+/// Counts of the values of a tensor in bins of equal width around zero. The width doubles when a value lies outside.
 #[derive(Debug, Clone)]
 pub struct Histogram {
     counts: Vec<u64>,
-    /// Of a bin; zero before the first value.
+    /// Width of a bin; zero before the first value.
     width: f64,
     low: f32,
     high: f32,
@@ -22,7 +22,7 @@ impl Default for Histogram {
 }
 
 impl Histogram {
-    /// Counts values, or some of very many; those that are not finite are left out.
+    /// Counts values, or a sample of very many; values that are not finite are ignored.
     pub fn add(&mut self, values: &[f32]) {
         let finite = || values.iter().copied().filter(|value| value.is_finite());
         let (low, high) =
@@ -33,7 +33,7 @@ impl Histogram {
         (self.low, self.high) = (low, high);
         self.make_room(f64::from(high.max(-low)).max(1e-30));
         let scale = 1.0 / self.width;
-        // An odd step meets every column of a picture.
+        // An odd step visits every column of an image.
         for value in finite().step_by((values.len() / COUNTED) | 1) {
             let bin = (f64::from(value) * scale).floor() as isize + (BINS / 2) as isize;
             if let Some(count) = self.counts.get_mut(bin.clamp(0, BINS as isize - 1) as usize) {
@@ -56,12 +56,12 @@ impl Histogram {
         }
     }
 
-    /// The smallest and largest value; `None` before the first.
+    /// Returns the smallest and largest value; `None` before the first.
     pub fn range(&self) -> Option<(f32, f32)> {
         (self.low <= self.high).then_some((self.low, self.high))
     }
 
-    /// The range without the smallest and the largest values, `share` of all values each.
+    /// Returns the range without the smallest and the largest values, `share` of all values each.
     pub fn range_without(&self, share: f64) -> Option<(f32, f32)> {
         let (low, high) = self.range()?;
         let most = (self.counts.iter().sum::<u64>() as f64 * share) as u64;
@@ -79,7 +79,7 @@ impl Histogram {
         Some((((first * self.width) as f32).max(low), ((last * self.width) as f32).min(high)))
     }
 
-    /// Middles of the bins that have values, and how many.
+    /// Returns the centres and the counts of the bins that have values.
     pub fn bins(&self) -> impl Iterator<Item = (f64, u64)> {
         let middle = |bin: usize| (bin as f64 - (BINS / 2) as f64 + 0.5) * self.width;
         self.counts
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn some_of_very_many_values_are_enough() {
+    fn large_tensors_are_sampled() {
         let mut histogram = Histogram::default();
         let many: Vec<f32> = (0..1_000_000).map(|at| (at % 640) as f32).collect();
         histogram.add(&many);

@@ -1,6 +1,6 @@
-//! Writes the graph that computes with bytes: every tensor that becomes bytes goes through `QuantizeLinear` and
-//! `DequantizeLinear`, weights and biases come out of `DequantizeLinear`, and the engine fuses these with the node between
-//! them into one that computes with bytes. An engine that fuses nothing computes the same in floats.
+//! Construction of the INT8 graph: every quantised tensor passes through `QuantizeLinear` and `DequantizeLinear`,
+//! weights and biases come from `DequantizeLinear`, and the runtime fuses these with the node between them into an
+//! integer operator. A runtime without this fusion computes the same in floats.
 
 use std::collections::{HashMap, HashSet};
 
@@ -13,13 +13,13 @@ use crate::plan::{Layer, Plan};
 use crate::range::Range;
 use crate::weights::ByteWeights;
 
-/// What a bias may be at most, in steps.
+/// Maximum of a quantised bias, in steps.
 const LARGEST_BIAS: f32 = (1_u32 << 30) as f32;
 
-/// What follows the name of a tensor that went through bytes.
+/// Suffix of the names of quantised tensors.
 pub const ROUNDED: &str = "/rounded";
 
-/// The graph that computes with bytes where `plan` says so; `ranges` has that of each tensor by name.
+/// Returns the graph with the layers of `plan` in INT8; `ranges` contains the range of each tensor by name.
 ///
 /// # Errors
 /// `Internal` when a range is missing.
@@ -72,11 +72,11 @@ struct Writer<'a> {
     initializers: Vec<TensorProto>,
     names: HashSet<String>,
     ranges: &'a HashMap<String, Range>,
-    /// Tensors that became bytes, and what stands for them.
+    /// Quantised tensors and their replacements.
     rounded: HashMap<String, String>,
-    /// Initializers that were added, by what they hold: layers may share weights.
+    /// Added initializers by content; layers may share weights.
     constants: HashMap<(i32, Vec<i64>, Vec<u8>), String>,
-    /// Names of the scale and the zero point of each range.
+    /// Names of scale and zero point of each range.
     parameters: HashMap<&'a str, [String; 2]>,
 }
 
@@ -108,7 +108,7 @@ impl<'a> Writer<'a> {
     }
 
     fn range(&self, tensor: &str) -> Result<Range> {
-        let missing = || Error::internal(format!("the range of {tensor:?} is not known"));
+        let missing = || Error::internal(format!("the range of {tensor:?} is unknown"));
         self.ranges.get(tensor).copied().ok_or_else(missing)
     }
 
@@ -137,7 +137,7 @@ impl<'a> Writer<'a> {
         name
     }
 
-    /// Sends a tensor through bytes.
+    /// Quantises and dequantises a tensor.
     fn round(&mut self, tensor: &str, range_of: &str) -> Result<()> {
         let range = self.range(range_of)?;
         let key = self.ranges.get_key_value(range_of).map_or("", |(name, _)| name.as_str());
@@ -161,7 +161,7 @@ impl<'a> Writer<'a> {
         Ok(())
     }
 
-    /// Makes the weights and the bias of a layer bytes.
+    /// Quantises the weights and the bias of a layer.
     fn use_bytes(&mut self, layer: &Layer, node: &mut NodeProto, input: Range, bits: u32) -> Result<()> {
         let channels = layer.weights.dims().get(layer.axis).copied().unwrap_or_default();
         let bias = self.bias(node).filter(|bias| bias.len() == channels);
@@ -191,7 +191,7 @@ impl<'a> Writer<'a> {
         Ok(())
     }
 
-    /// A bias in steps of the product of both scales, so that it is added before anything is scaled.
+    /// Quantises a bias in steps of the product of both scales, so that it is added before scaling.
     fn whole_bias(&mut self, layer: &str, bias: &[f32], scales: &[f32], input: Range) -> Result<String> {
         let scales: Vec<f32> = scales.iter().map(|scale| scale * input.scale).collect();
         let steps = bias.iter().zip(&scales).map(|(bias, scale)| (bias / scale).round_ties_even() as i32);
@@ -199,7 +199,7 @@ impl<'a> Writer<'a> {
         let dims = vec![bias.len() as i64];
         let steps = bytes_tensor(dims, raw, DataType::Int32);
         let scales = Array::new(vec![bias.len()], opendr_onnx::Data::Float(scales))
-            .ok_or_else(|| Error::internal("a bias of two lengths"))?;
+            .ok_or_else(|| Error::internal("the length of the bias does not match the layer"))?;
         let inputs = vec![
             self.constant(format!("{layer}/bias/steps"), steps),
             self.constant(format!("{layer}/bias/scale"), scales.to_tensor("")?),

@@ -1,4 +1,4 @@
-//! A learner's container, made smaller with a data set.
+//! Optimisation of a learner's container with a data set.
 
 use std::path::Path;
 
@@ -11,39 +11,39 @@ use opendr_engine::{Device, Error, Progress, Result, ResultExt, Unit};
 use opendr_evaluation::{Evaluation, Subject, metric_of};
 use opendr_inference::recording::{self, Recording};
 
-use crate::optimize::{Measured, optimize};
+use crate::optimize::{MetricValue, optimize};
 use crate::options::{OptimizeOptions, Precision};
 use crate::report::Report;
 
-/// Bytes of what sessions were given that are kept; enough for hundreds of pictures.
+/// Maximum memory of recorded session inputs, in bytes; enough for hundreds of images.
 const MOST_BYTES: usize = 1 << 30;
 
-/// A learner's container, made smaller with a data set.
+/// The optimisation of a learner's container: INT8 or FP16, with calibration and validation data.
 #[derive(Clone, Copy)]
 pub struct OptimizeJob<'a> {
     /// The learner.
     pub entry: &'a Entry,
-    /// Its container.
+    /// Path of its container.
     pub model: &'a Path,
-    /// How.
+    /// Options.
     pub options: &'a OptimizeOptions,
-    /// What the learner looks at, spread over the data set; `int8` takes its ranges from it. Annotations are not needed.
+    /// Samples for the calibration of `int8`, spread over the data set. Annotations are not needed.
     pub calibration: Option<&'a dyn DatasetIterator>,
-    /// What the task's metric is measured on before and after.
+    /// Samples with annotations for the task's metric before and after.
     pub validation: Option<&'a dyn DatasetIterator>,
-    /// The container that is written.
+    /// Path of the written container.
     pub output: &'a Path,
-    /// Where networks run.
+    /// Device of the networks.
     pub device: Device,
-    /// To whom to report; asked whether to stop.
+    /// Receiver of progress; also asked whether to stop.
     pub progress: &'a dyn Progress,
 }
 
 impl OptimizeJob<'_> {
-    /// Writes the smaller container.
+    /// Writes the optimised container.
     ///
     /// # Errors
-    /// As [`optimize`](crate::optimize()), and what the learner meets in the data sets.
+    /// Those of [`optimize`](crate::optimize()), and those of the learner and the data sets.
     pub fn run(&self) -> Result<Report> {
         let model = Model::open(self.model)?;
         let recordings = match (self.options.precision, self.calibration) {
@@ -61,13 +61,13 @@ impl OptimizeJob<'_> {
         Ok(learner)
     }
 
-    /// What the learner gives its sessions while it looks at samples spread over the data set.
+    /// Records the inputs of the learner's sessions for samples spread over the data set.
     fn record(&self, dataset: &dyn DatasetIterator) -> Result<Vec<Recording>> {
         let mut learner = self.learner(self.model)?;
         let count = self.options.samples.min(dataset.len());
         let mut recordings = Vec::new();
         let mut bytes = 0;
-        self.progress.begin("looking at samples", Some(count as u64), Unit::Items);
+        self.progress.begin("calibrating", Some(count as u64), Unit::Items);
         for at in (0..count).map(|at| at * dataset.len() / count) {
             if self.progress.stopped() {
                 self.progress.end();
@@ -92,9 +92,9 @@ impl OptimizeJob<'_> {
         Ok(recordings)
     }
 
-    /// The number of the task's metric that counts.
-    fn measure(&self, model: &Model) -> Result<Measured> {
-        let dataset = self.validation.ok_or_else(|| Error::internal("nothing to measure on"))?;
+    /// Measures the selected value of the task's metric.
+    fn measure(&self, model: &Model) -> Result<MetricValue> {
+        let dataset = self.validation.ok_or_else(|| Error::internal("no validation data"))?;
         let metric = opendr_metrics::find(metric_of(self.entry.spec.task)?)?;
         let problems = Problems::strict();
         let subject = Subject { learner: self.entry.spec.name.to_owned(), ..Subject::default() };
@@ -110,11 +110,11 @@ impl OptimizeJob<'_> {
         let value = scalars.get(&name).copied().ok_or_else(|| {
             let names: Vec<_> = scalars.keys().map(String::as_str).collect();
             Error::invalid_param(format!(
-                "measured_by: {} gives no {name:?}; it gives {}",
+                "measured_by: the metric {} has no value {name:?}; it has {}",
                 metric.name,
                 names.join(", ")
             ))
         })?;
-        Ok(Measured { is_error: metric.is_error(&name), name, value })
+        Ok(MetricValue { is_error: metric.is_lower_better(&name), name, value })
     }
 }

@@ -1,8 +1,21 @@
-//! Smaller and faster models: weights in 16 bits, or everything in 8.
+//! Model optimisation: INT8 quantisation with calibration, and FP16 weights.
 //!
-//! [`OptimizeJob`] makes a container of a container with a learner and a data set: it runs the learner, records what
-//! it gives its sessions, and takes the ranges of every tensor from that, so that no learner needs a line for it.
-//! [`optimize`] does the same with recordings of the caller's own.
+//! Contents:
+//! * [`OptimizeJob`]: optimises the container of a learner with a data set. It runs the learner, records the inputs
+//!   of its sessions, and derives the range of every tensor from them; learners need no code for it. Begin here.
+//! * [`optimize`](optimize()): the same with recordings that the caller provides.
+//! * [`OptimizeOptions`]: precision, calibration, and layers that stay in floats; [`Report`]: size, accuracy and loss
+//!   per layer.
+//!
+//! Recordings come from `opendr_inference::recording`, graph rewriting from `opendr-onnx`, metrics from
+//! `opendr-evaluation`.
+//!
+//! ```
+//! use opendr_optimize::{Calibration, OptimizeOptions, Precision};
+//!
+//! let options = OptimizeOptions { calibration: Calibration::Entropy, ..OptimizeOptions::default() };
+//! assert_eq!(options.precision, Precision::Int8);
+//! ```
 
 mod histogram;
 mod integer_graph;
@@ -17,6 +30,6 @@ mod watched;
 mod weights;
 
 pub use learner::OptimizeJob;
-pub use optimize::{Judge, Measured, optimize};
+pub use optimize::{MeasureFn, MetricValue, optimize};
 pub use options::{Calibration, OptimizeOptions, Precision};
 pub use report::{Accuracy, LayerReport, Report};

@@ -1,4 +1,4 @@
-//! From a container to a smaller one.
+//! Optimisation of a container.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use opendr_engine::params::Params;
 use opendr_engine::{Device, Error, Progress, Result, ResultExt};
 use opendr_inference::Session;
 use opendr_inference::recording::Recording;
-use opendr_onnx::passes::{constants_to_initializers, halve_weights};
+use opendr_onnx::passes::{constants_to_initializers, weights_to_fp16};
 use opendr_onnx::proto::ModelProto;
 use opendr_onnx::{bytes_from_model, model_from_bytes};
 
@@ -15,43 +15,44 @@ use crate::options::{OptimizeOptions, Precision};
 use crate::quantise::{Quantiser, check_version};
 use crate::report::{Accuracy, Report};
 
-/// A metric's number of a model.
+/// A value of a metric.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Measured {
-    /// Its key, e.g. `"map50"`.
+pub struct MetricValue {
+    /// Key of the value, e.g. `"map50"`.
     pub name: String,
-    /// The number.
+    /// The value.
     pub value: f64,
-    /// Whether less of it is better.
+    /// Whether lower is better.
     pub is_error: bool,
 }
 
-/// What measures a model.
-pub type Judge<'a> = dyn FnMut(&Model) -> Result<Measured> + 'a;
+/// A function that measures a model.
+pub type MeasureFn<'a> = dyn FnMut(&Model) -> Result<MetricValue> + 'a;
 
-/// Of the layers that are left, which part goes back to floats at a time.
-const BACK_AT_A_TIME: usize = 8;
+/// One in this many layers returns to floats at a time.
+const FLOAT_LAYERS_DIVISOR: usize = 8;
 
-/// Writes `model` to `output` with its networks in the precision that `options` say.
+/// Writes `model` to `output` with its networks in the precision of `options`.
 ///
-/// `recordings` are what the learner gave its sessions, which `int8` takes its ranges from; every network of the container
-/// is told by what it takes and gives. `judge` measures models before and after, where there is something to measure by.
+/// `recordings` are the inputs of the learner's sessions, from which the ranges for `int8` follow; each is assigned
+/// to the network of the container with the same declared inputs and outputs. `judge` measures the model before and
+/// after, where there is validation data.
 ///
 /// # Errors
-/// `InvalidParam` for options that do not fit, `InvalidInput` without recordings, `Unsupported` for a network that cannot be
-/// quantised, and what `judge` returns.
+/// `InvalidParam` for invalid options, `InvalidInput` without recordings, `Unsupported` for a network that cannot be
+/// quantised, and the errors of `judge`.
 pub fn optimize(
     model: &Model,
     options: &OptimizeOptions,
     recordings: &[Recording],
-    mut judge: Option<&mut Judge<'_>>,
+    mut judge: Option<&mut MeasureFn<'_>>,
     device: Device,
     output: &Path,
     progress: &dyn Progress,
 ) -> Result<Report> {
     options.check()?;
     if options.max_drop.is_some() && judge.is_none() {
-        return Err(Error::invalid_param("max_drop needs data with annotations to measure by"));
+        return Err(Error::invalid_param("max_drop needs validation data with annotations; pass a data set"));
     }
     let mut networks = networks(model, options, recordings, device, progress)?;
     let before = judge.as_mut().map(|judge| judge(model)).transpose()?;
@@ -68,7 +69,7 @@ pub fn optimize(
             after: after.value,
         });
         if drop > options.max_drop.unwrap_or(f64::INFINITY) {
-            progress.note(&format!("{drop:.4} worse than before: more layers stay in floats"));
+            progress.note(&format!("the metric is worse by {drop:.4}: more layers stay in floats"));
             let kept = networks.iter_mut().map(Network::keep_worst).filter(|kept| *kept).count();
             if kept > 0 {
                 continue;
@@ -78,7 +79,7 @@ pub fn optimize(
     }
 }
 
-/// One ONNX file of a container.
+/// An ONNX file of a container.
 struct Network<'a> {
     name: String,
     kind: Kind<'a>,
@@ -94,7 +95,7 @@ impl Network<'_> {
         match &mut self.kind {
             Kind::Half(_) => false,
             Kind::Bytes(quantiser) => {
-                let count = quantiser.layer_count().div_ceil(BACK_AT_A_TIME);
+                let count = quantiser.layer_count().div_ceil(FLOAT_LAYERS_DIVISOR);
                 quantiser.keep_worst(count)
             }
         }
@@ -127,7 +128,7 @@ fn networks<'a>(
             Precision::Fp16 => {
                 if let Some(graph) = &mut network.graph {
                     constants_to_initializers(graph);
-                    halve_weights(graph);
+                    weights_to_fp16(graph);
                 }
                 Kind::Half(Box::new(network))
             }
@@ -142,7 +143,7 @@ fn networks<'a>(
     names.iter().map(|name| network(name).context(|| format!("the network {name}"))).collect()
 }
 
-/// The recordings of a network, which is told by what it takes and gives.
+/// Returns the recordings of a network, identified by its declared inputs and outputs.
 fn of_network<'a>(recordings: &'a [Recording], network: &Session) -> Vec<&'a Recording> {
     let is_own = |recording: &&Recording| {
         recording.inputs == network.inputs() && recording.outputs == network.outputs()
@@ -152,7 +153,7 @@ fn of_network<'a>(recordings: &'a [Recording], network: &Session) -> Vec<&'a Rec
 
 fn write(model: &Model, networks: &[Network<'_>], options: &OptimizeOptions, output: &Path) -> Result<Model> {
     let mut manifest = model.manifest().clone();
-    // They were of the other weights.
+    // The metrics belong to the original weights.
     manifest.metrics.clear();
     let steps =
         [manifest.lineage.importer.as_str(), &format!("opendr optimize --{}", options.precision.name())];

@@ -1,11 +1,11 @@
-//! Which nodes of a graph compute with bytes, and which tensors therefore become bytes.
+//! Selection of the nodes that compute in INT8, and of the tensors to quantise.
 
 use std::collections::{HashMap, HashSet};
 
 use opendr_onnx::Array;
 use opendr_onnx::proto::{GraphProto, NodeProto};
 
-/// Operators that pass values on, so that what goes in and what comes out share a range.
+/// Operators that pass values unchanged, so that input and output share a range.
 const PASSING: [&str; 11] = [
     "DepthToSpace",
     "Flatten",
@@ -20,7 +20,7 @@ const PASSING: [&str; 11] = [
     "Unsqueeze",
 ];
 
-/// Operators with a kernel for bytes, when all that they read are bytes.
+/// Operators with an INT8 kernel, used when all their inputs are quantised.
 const FOLLOWING: [&str; 11] = [
     "Add",
     "AveragePool",
@@ -38,28 +38,28 @@ const FOLLOWING: [&str; 11] = [
 /// A node with weights.
 #[derive(Debug, Clone)]
 pub struct Layer {
-    /// Its place among the nodes.
+    /// Index among the nodes.
     pub node: usize,
-    /// The name of what it gives.
+    /// Name of its output.
     pub name: String,
     pub op: String,
     /// Dimensions and elements of its weights.
     pub weights: Array,
-    /// The axis of the weights along which its outputs lie.
+    /// Output axis of the weights.
     pub axis: usize,
     /// Whether it stays in floats.
     pub is_float: bool,
 }
 
-/// The layers of a graph and the tensors that become bytes.
+/// The layers of a graph and the tensors to quantise.
 #[derive(Debug)]
 pub struct Plan {
     pub layers: Vec<Layer>,
-    /// Tensors that become bytes, in the order of the nodes, and the tensor whose range each takes.
+    /// Tensors to quantise, in the order of the nodes, with the tensor whose range each uses.
     pub tensors: Vec<(String, String)>,
 }
 
-/// The nodes of a graph that have weights.
+/// Returns the nodes of a graph that have weights.
 pub fn layers(graph: &GraphProto) -> Vec<Layer> {
     let constants: HashMap<&str, _> =
         graph.initializer.iter().map(|tensor| (tensor.name.as_str(), tensor)).collect();
@@ -94,7 +94,7 @@ fn axis_of_outputs(node: &NodeProto, dims: &[usize]) -> Option<usize> {
 }
 
 impl Plan {
-    /// What follows from `layers`, of which some stay in floats.
+    /// Creates the plan for `layers`, of which some stay in floats.
     pub fn new(graph: &GraphProto, layers: Vec<Layer>) -> Self {
         let constants: HashSet<&str> = graph.initializer.iter().map(|tensor| tensor.name.as_str()).collect();
         let given_out: HashSet<&str> = graph.output.iter().map(|output| output.name.as_str()).collect();
@@ -115,7 +115,7 @@ impl Plan {
                 plan.add(&mut ranges, input, input);
             }
             if feeds_rectifier(graph, node) {
-                // The range of what the rectifier gives is enough.
+                // The output range of the rectifier is sufficient.
                 if let Some(output) = node.output.first() {
                     ranges.insert(output, output);
                 }
@@ -136,14 +136,14 @@ impl Plan {
         }
     }
 
-    /// The tensors whose values have to be seen.
+    /// Returns the tensors whose values must be observed.
     pub fn seen(&self) -> Vec<String> {
         let own = self.tensors.iter().filter(|(tensor, range)| tensor == range);
         own.map(|(tensor, _)| tensor.clone()).collect()
     }
 }
 
-/// The inputs that hold values, and not sizes or limits.
+/// Returns the inputs that contain values, not sizes or limits.
 fn data_inputs(node: &NodeProto) -> Vec<&str> {
     let count = match node.op_type.as_str() {
         "Add" | "Concat" | "Mul" => usize::MAX,
@@ -158,7 +158,7 @@ fn follows(node: &NodeProto) -> bool {
     node.domain.is_empty() && (PASSING.contains(&op) || FOLLOWING.contains(&op)) && stays_within
 }
 
-/// Whether all that a layer gives goes into one rectifier, which bytes do by saturating.
+/// Returns whether the output of a layer is read by a single rectifier, which saturation of the bytes replaces.
 fn feeds_rectifier(graph: &GraphProto, node: &NodeProto) -> bool {
     let [output] = node.output.as_slice() else { return false };
     let mut readers = graph.node.iter().filter(|reader| reader.input.contains(output));

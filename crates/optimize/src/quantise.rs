@@ -1,4 +1,4 @@
-//! INT8: from a network in floats and what it is given to one that computes with bytes.
+//! INT8 quantisation of a float network with recorded inputs.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -16,17 +16,17 @@ use crate::report::LayerReport;
 use crate::watched::Watched;
 use crate::weights::ByteWeights;
 
-/// The version of ONNX's operators from which weights have a scale for each channel.
+/// First opset with per-channel scales of weights.
 const LEAST_OPSET: i64 = 13;
-/// Samples that the report compares outputs on.
+/// Number of samples on which the report compares outputs.
 const COMPARED: usize = 8;
-/// Tensors that are watched at once: all of a large network's would not fit into memory.
+/// Maximum number of tensors observed at once; all tensors of a large network do not fit into memory.
 const WATCHED: usize = 64;
 
-/// Checks that a network is written in operators that can be quantised.
+/// Checks that the opset of a network supports quantisation.
 ///
 /// # Errors
-/// `Unsupported` when they are too old.
+/// `Unsupported` when it is too old.
 pub fn check_version(model: &ModelProto) -> Result<()> {
     let opset =
         model.opset_import.iter().find(|opset| opset.domain.is_empty()).map_or(1, |opset| opset.version);
@@ -34,11 +34,11 @@ pub fn check_version(model: &ModelProto) -> Result<()> {
         return Ok(());
     }
     Err(Error::unsupported(format!(
-        "the network uses ONNX operators of version {opset}, int8 takes {LEAST_OPSET} or later: export it anew, or take fp16"
+        "the network uses ONNX opset {opset}, but int8 needs {LEAST_OPSET} or later; export it again, or use fp16"
     )))
 }
 
-/// A network that is being quantised.
+/// A network during quantisation.
 pub struct Quantiser<'a> {
     model: ModelProto,
     graph: GraphProto,
@@ -50,11 +50,11 @@ pub struct Quantiser<'a> {
 }
 
 impl<'a> Quantiser<'a> {
-    /// Looks at every tensor of `model` while it runs on `recordings`.
+    /// Observes every tensor of `model` while it runs on `recordings`.
     ///
     /// # Errors
-    /// `InvalidInput` when there is no recording, `InvalidParam` when `keep_float` names no layer, `Unsupported` when the
-    /// network has no layer to quantise.
+    /// `InvalidInput` without recordings, `InvalidParam` when `keep_float` names an unknown layer, `Unsupported` when
+    /// the network has no layer to quantise.
     pub fn new(
         mut model: ModelProto,
         recordings: Vec<&'a Recording>,
@@ -64,7 +64,7 @@ impl<'a> Quantiser<'a> {
     ) -> Result<Self> {
         if recordings.is_empty() {
             return Err(Error::invalid_input(
-                "int8 takes its ranges from what the network sees, and there is no sample: name a data set",
+                "int8 needs calibration samples, and there are none; pass a data set",
             ));
         }
         let mut graph = model.graph.take().unwrap_or_default();
@@ -73,13 +73,15 @@ impl<'a> Quantiser<'a> {
         let mut layers = layers(&graph);
         if layers.is_empty() {
             return Err(Error::unsupported(
-                "the network has no convolution or product with weights to quantise",
+                "the network has no convolution or matrix product with constant weights; use fp16",
             ));
         }
         for name in &options.keep_float {
             let names = || layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>().join(", ");
-            let unknown =
-                Error::invalid_param(format!("keep_float: no layer {name:?}; there are {}", names()));
+            let unknown = Error::invalid_param(format!(
+                "keep_float: there is no layer {name:?}; the layers are {}",
+                names()
+            ));
             layers.iter_mut().find(|layer| layer.name == *name).ok_or(unknown)?.is_float = true;
         }
         let mut quantiser =
@@ -88,12 +90,12 @@ impl<'a> Quantiser<'a> {
         Ok(quantiser)
     }
 
-    /// Counts the values of every tensor that may become bytes.
+    /// Counts the values of every tensor that may be quantised.
     fn watch(&mut self, progress: &dyn Progress) -> Result<()> {
         let mut all = self.layers.clone();
         all.iter_mut().for_each(|layer| layer.is_float = false);
         let layer_input = |layer: &Layer| self.graph.node.get(layer.node)?.input.first().cloned();
-        // With some layers in floats, what these read begins a range of its own.
+        // With some layers in floats, their inputs need a range of their own.
         let layer_inputs: Vec<String> = all.iter().filter_map(layer_input).collect();
         let seen: BTreeSet<String> =
             Plan::new(&self.graph, all).seen().into_iter().chain(layer_inputs).collect();
@@ -102,7 +104,7 @@ impl<'a> Quantiser<'a> {
         for name in given {
             let mut histogram = Histogram::default();
             for recording in &self.recordings {
-                let tensors = recording.inputs.iter().zip(&recording.given);
+                let tensors = recording.inputs.iter().zip(&recording.tensors);
                 for (_, tensor) in tensors.filter(|(info, _)| info.name == name) {
                     histogram.add(tensor.view()?.values()?);
                 }
@@ -139,21 +141,21 @@ impl<'a> Quantiser<'a> {
         self.histograms.iter().map(range).collect()
     }
 
-    /// The network with the layers that are not kept in floats computing with bytes.
+    /// Returns the network in INT8, except for the layers that stay in floats.
     ///
     /// # Errors
-    /// `Internal`, which a network that was watched never gives.
+    /// `Internal` when a range is missing, which does not occur after the observation.
     pub fn network(&self) -> Result<ModelProto> {
         let plan = Plan::new(&self.graph, self.layers.clone());
         let graph = integer_graph(&self.graph, &plan, &self.ranges(), self.options.weight_bits)?;
         Ok(ModelProto { graph: Some(graph), ..self.model.clone() })
     }
 
-    /// Keeps the `count` layers that lose most in floats, of those that are not; whether there was one.
+    /// Keeps the `count` quantised layers with the largest loss in floats; returns whether there was one.
     pub fn keep_worst(&mut self, count: usize) -> bool {
         let mut ratios: Vec<(usize, f64)> = (self.own_reports().iter().enumerate())
             .filter(|(_, layer)| !layer.is_float)
-            .map(|(at, layer)| (at, layer.own_ratio()))
+            .map(|(at, layer)| (at, layer.layer_snr_db()))
             .collect();
         ratios.sort_by(|(_, a), (_, b)| a.total_cmp(b));
         for (at, _) in ratios.iter().take(count) {
@@ -164,12 +166,12 @@ impl<'a> Quantiser<'a> {
         !ratios.is_empty()
     }
 
-    /// How many layers there are.
+    /// Returns the number of layers.
     pub fn layer_count(&self) -> usize {
         self.layers.len()
     }
 
-    /// What each layer loses by itself.
+    /// Returns the loss of each layer on its own.
     fn own_reports(&self) -> Vec<LayerReport> {
         let ranges = self.ranges();
         let plan = Plan::new(&self.graph, self.layers.clone());
@@ -184,19 +186,19 @@ impl<'a> Quantiser<'a> {
                 name: layer.name.clone(),
                 op: layer.op.clone(),
                 weights: layer.weights.data().len(),
-                weight_ratio: weights.map_or(0.0, |weights| weights.signal_to_noise),
-                input_ratio: seen.map_or(0.0, |(histogram, range)| range.signal_to_noise(histogram)),
-                output_ratio: 0.0,
+                weight_snr_db: weights.map_or(0.0, |weights| weights.signal_to_noise),
+                input_snr_db: seen.map_or(0.0, |(histogram, range)| range.signal_to_noise(histogram)),
+                output_snr_db: 0.0,
                 is_float: layer.is_float,
             }
         };
         self.layers.iter().map(report).collect()
     }
 
-    /// What each layer loses by itself, and all up to it together.
+    /// Returns the loss of each layer on its own, and the loss accumulated up to it.
     ///
     /// # Errors
-    /// As [`Watched::run`].
+    /// Those of [`Watched::run`].
     pub fn reports(&self) -> Result<Vec<LayerReport>> {
         let mut reports = self.own_reports();
         let network = self.network()?;
@@ -219,7 +221,7 @@ impl<'a> Quantiser<'a> {
                 })?;
             }
             for (report, [power, lost]) in reports.iter_mut().zip(powers) {
-                report.output_ratio = decibels(power, lost);
+                report.output_snr_db = decibels(power, lost);
             }
         }
         Ok(reports)

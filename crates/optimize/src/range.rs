@@ -1,14 +1,14 @@
-//! How a tensor's values become bytes.
+//! Mapping of a tensor's values to bytes.
 
 use crate::histogram::Histogram;
 use crate::options::Calibration;
 
-/// Of each end, what `Calibration::Percentile` leaves out.
+/// Share of the values that `Calibration::Percentile` clips at each end.
 const LEFT_OUT: f64 = 1e-4;
-/// Ranges that are tried.
+/// Number of candidate ranges.
 const TRIALS: usize = 100;
 
-/// `value = (byte - zero_point) * scale`.
+/// An affine quantisation: `value = (byte - zero_point) * scale`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
     pub scale: f32,
@@ -16,7 +16,7 @@ pub struct Range {
 }
 
 impl Range {
-    /// Bytes over `low..=high`, widened to hold zero: padding and rectifiers must have it exactly.
+    /// Returns the range for `low..=high`, widened to include zero, which padding and rectifiers need exactly.
     pub fn over(low: f32, high: f32) -> Self {
         let (low, high) = (low.min(0.0), high.max(0.0));
         let scale = (high - low) / 255.0;
@@ -26,7 +26,7 @@ impl Range {
         Self { scale, zero_point: (-low / scale).round() as u8 }
     }
 
-    /// The range for the values in a histogram.
+    /// Returns the range for the values of a histogram.
     pub fn chosen(histogram: &Histogram, by: Calibration) -> Self {
         let Some((low, high)) = histogram.range() else { return Self::over(0.0, 0.0) };
         match by {
@@ -40,25 +40,25 @@ impl Range {
         }
     }
 
-    /// The value that comes back of one.
+    /// Returns a value after quantisation and dequantisation.
     pub fn rounded(self, value: f64) -> f64 {
         let (scale, zero) = (f64::from(self.scale), f64::from(self.zero_point));
         (((value / scale).round_ties_even() + zero).clamp(0.0, 255.0) - zero) * scale
     }
 
-    /// The sum of the squares of what is lost.
+    /// Returns the sum of squared errors.
     fn noise(self, histogram: &Histogram) -> f64 {
         histogram.bins().map(|(value, count)| (value - self.rounded(value)).powi(2) * count as f64).sum()
     }
 
-    /// Signal to noise, decibels.
+    /// Returns the signal-to-noise ratio in decibels.
     pub fn signal_to_noise(self, histogram: &Histogram) -> f64 {
         let signal: f64 = histogram.bins().map(|(value, count)| value * value * count as f64).sum();
         decibels(signal, self.noise(histogram))
     }
 
-    /// How much the distribution of the values that come back differs from that of the values clipped to the range. Each
-    /// byte's values are spread evenly over the bins that it stands for.
+    /// Returns the Kullback-Leibler divergence of the dequantised values from the values clipped to the range. The
+    /// values of each byte are spread evenly over its bins.
     fn divergence(self, histogram: &Histogram) -> f64 {
         let mut bytes = vec![(0_u64, 0_u32); 256];
         let byte = |value: f64| {
@@ -94,7 +94,7 @@ impl Range {
     }
 }
 
-/// The range of least loss among those that are shares of the whole one.
+/// Returns the range with the least loss among shares of the whole one.
 fn best(low: f32, high: f32, loss: impl Fn(Range) -> f64) -> Range {
     let ranges = (TRIALS / 5..=TRIALS).map(|part| {
         let share = part as f32 / TRIALS as f32;
@@ -104,7 +104,7 @@ fn best(low: f32, high: f32, loss: impl Fn(Range) -> f64) -> Range {
     losses.min_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(Range::over(low, high), |(range, _)| range)
 }
 
-/// The ratio of two sums of squares, in decibels: 10 log10; at most 200.
+/// Returns the ratio of two sums of squares in decibels, 10 log10; at most 200.
 pub fn decibels(signal: f64, noise: f64) -> f64 {
     if signal <= 0.0 {
         return if noise <= 0.0 { 200.0 } else { 0.0 };
@@ -117,7 +117,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn zero_and_the_ends_come_back() {
+    fn zero_and_the_limits_round_trip() {
         for (low, high) in [(-1.0, 3.0), (0.5, 2.0), (-4.0, -1.0), (0.0, 1e-3)] {
             let range = Range::over(low, high);
             assert_eq!(range.rounded(0.0), 0.0);
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn an_outlier_is_clipped_where_that_pays() {
+    fn outliers_are_clipped_where_that_reduces_the_error() {
         let mut histogram = Histogram::default();
         let bell: Vec<f32> = (1..100_000).map(|at| (at as f32 / 100_000.0).ln()).collect();
         (0..30).for_each(|_| histogram.add(&bell));

@@ -1,4 +1,4 @@
-//! A network whose inner tensors can be seen.
+//! Sessions with inner tensors as outputs.
 
 use opendr_engine::{Device, Result};
 use opendr_inference::recording::Recording;
@@ -8,18 +8,18 @@ use opendr_onnx::proto::{
     DataType, GraphProto, ModelProto, TensorType, TypeProto, TypeValue, ValueInfoProto,
 };
 
-/// A session that gives out inner tensors.
+/// A session with inner tensors as outputs.
 pub struct Watched {
     session: Session,
-    /// Where each tensor that is watched lies among the outputs.
+    /// Index of each observed tensor among the outputs.
     places: Vec<usize>,
 }
 
 impl Watched {
-    /// Opens `model` with `graph` in its place and the float tensors `names` as outputs.
+    /// Opens `model` with its graph replaced by `graph` and with the float tensors `names` as outputs.
     ///
     /// # Errors
-    /// As [`Session::open`].
+    /// Those of [`Session::open`].
     pub fn open(model: &ModelProto, graph: &GraphProto, names: &[String], device: Device) -> Result<Self> {
         let mut graph = graph.clone();
         for name in names {
@@ -39,13 +39,13 @@ impl Watched {
         Ok(Self { session, places })
     }
 
-    /// Runs on what was recorded; `see` gets the number of each tensor among `names`, and its elements.
+    /// Runs on a recording; `see` receives the index of each tensor in `names`, and its elements.
     ///
     /// # Errors
-    /// As [`Session::run`].
+    /// Those of [`Session::run`].
     pub fn run(&self, recording: &Recording, mut see: impl FnMut(usize, &[f32])) -> Result<()> {
         let inputs =
-            recording.given.iter().map(|tensor| tensor.view()).collect::<Result<Vec<TensorView<'_>>>>()?;
+            recording.tensors.iter().map(|tensor| tensor.view()).collect::<Result<Vec<TensorView<'_>>>>()?;
         self.session.run(&inputs, |outputs| {
             for (at, place) in self.places.iter().enumerate() {
                 if let Some(output) = outputs.get(*place) {

@@ -1,22 +1,23 @@
-//! Weights as bytes, by output channel, symmetric around zero.
+//! Weights as bytes, with a scale per output channel, symmetric around zero.
 
 use opendr_onnx::Array;
 use opendr_onnx::proto::{DataType, TensorProto};
 
 use crate::range::decibels;
 
-/// Weights as bytes; `weight = byte * scale` of its channel.
+/// Quantised weights; `weight = byte * scale` of its channel.
 pub struct ByteWeights {
     bytes: Vec<i8>,
     dims: Vec<i64>,
     axis: usize,
     pub scales: Vec<f32>,
-    /// Signal to noise, decibels.
+    /// Signal-to-noise ratio, in decibels.
     pub signal_to_noise: f64,
 }
 
 impl ByteWeights {
-    /// Rounds `weights` to `bits` bits; channels lie along `axis`. `least_scale` is the least that a channel may have.
+    /// Quantises `weights` to `bits` bits, with channels along `axis`. `least_scale` returns the minimum scale of a
+    /// channel.
     pub fn new(weights: &Array, axis: usize, bits: u32, least_scale: impl Fn(usize) -> f32) -> Option<Self> {
         let (floats, dims) = (weights.as_floats()?, weights.dims());
         let channels = *dims.get(axis)?;
@@ -47,12 +48,12 @@ impl ByteWeights {
         Some(Self { bytes, dims, axis, scales, signal_to_noise: decibels(signal, noise) })
     }
 
-    /// The axis of the channels.
+    /// Returns the axis of the channels.
     pub fn axis(&self) -> usize {
         self.axis
     }
 
-    /// The bytes, as an initializer.
+    /// Converts the bytes to an initializer.
     pub fn to_tensor(&self, name: &str) -> TensorProto {
         TensorProto {
             name: name.to_owned(),

@@ -1,4 +1,4 @@
-//! A small network of every kind of node that is quantised, on both engines.
+//! A small network with every kind of quantised node, on both runtimes.
 
 #![allow(clippy::unwrap_used)]
 
@@ -10,9 +10,10 @@ use opendr_engine::{Device, ErrorKind, Random, Silent};
 use opendr_inference::recording::{self, Recording};
 use opendr_inference::{Session, TensorView, runtimes};
 use opendr_onnx::{
-    Array, Builder, Data, Kind, Operator, Wire, bytes_from_model, model_from_bytes, model_from_graph,
+    Array, Builder, Data, ElementType, GraphTensor, Operator, bytes_from_model, model_from_bytes,
+    model_from_graph,
 };
-use opendr_optimize::{Calibration, Measured, OptimizeOptions, Precision, optimize};
+use opendr_optimize::{Calibration, MetricValue, OptimizeOptions, Precision, optimize};
 
 const INPUT: [usize; 4] = [1, 3, 16, 16];
 
@@ -32,23 +33,24 @@ impl Drop for Folder {
     }
 }
 
-fn weights(random: &mut Random, dims: &[usize]) -> Wire {
+fn weights(random: &mut Random, dims: &[usize]) -> GraphTensor {
     let count = dims.iter().product();
     let fan_in: usize = dims[1..].iter().product();
     let scale = (2.0 / fan_in as f32).sqrt();
     let floats = (0..count).map(|_| random.normal() as f32 * scale).collect();
-    Wire::constant(Array::new(dims.to_vec(), Data::Float(floats)).unwrap())
+    GraphTensor::constant(Array::new(dims.to_vec(), Data::Float(floats)).unwrap())
 }
 
-/// Convolutions (one by channel), a rectifier, a leaky one, pooling, a sum, a concatenation, a resize, a product with weights.
+/// A network of convolutions (one depthwise), a rectifier, a leaky one, pooling, a sum, a concatenation, a resize and
+/// a matrix product.
 fn network() -> Vec<u8> {
     let mut random = Random::new(3);
     let mut graph = Builder::default();
     let dims = |dims: &[usize]| dims.iter().copied().map(Some).collect::<Vec<_>>();
     graph.reserve("scores");
     graph.reserve("map");
-    let image = graph.input("image", Kind::Float, dims(&INPUT), &[]);
-    let mut conv = |graph: &mut Builder, input: &Wire, filters: usize, side: usize, groups: usize| {
+    let image = graph.input("image", ElementType::Float, dims(&INPUT), &[]);
+    let mut conv = |graph: &mut Builder, input: &GraphTensor, filters: usize, side: usize, groups: usize| {
         let channels = input.dims()[1].unwrap();
         let kernel = weights(&mut random, &[filters, channels / groups, side, side]);
         let bias =
@@ -61,10 +63,12 @@ fn network() -> Vec<u8> {
             .int("group", groups as i64);
         let mut shape = input.dims().to_vec();
         shape[1] = Some(filters);
-        graph.add("conv", operator, &[input, &kernel, &Wire::constant(bias)], Kind::Float, shape).unwrap()
+        graph
+            .add("conv", operator, &[input, &kernel, &GraphTensor::constant(bias)], ElementType::Float, shape)
+            .unwrap()
     };
-    let plain = |graph: &mut Builder, operator: Operator, inputs: &[&Wire], shape: &[usize]| {
-        graph.add("node", operator, inputs, Kind::Float, dims(shape)).unwrap()
+    let plain = |graph: &mut Builder, operator: Operator, inputs: &[&GraphTensor], shape: &[usize]| {
+        graph.add("node", operator, inputs, ElementType::Float, dims(shape)).unwrap()
     };
     let first = conv(&mut graph, &image, 16, 3, 1);
     let first = plain(&mut graph, Operator::new("Relu"), &[&first], &[1, 16, 16, 16]);
@@ -75,18 +79,18 @@ fn network() -> Vec<u8> {
         plain(&mut graph, Operator::new("LeakyRelu").float("alpha", 0.1), &[&second], &[1, 16, 8, 8]);
     let sum = plain(&mut graph, Operator::new("Add"), &[&second, &pooled], &[1, 16, 8, 8]);
     let joined = plain(&mut graph, Operator::new("Concat").int("axis", 1), &[&sum, &second], &[1, 32, 8, 8]);
-    let scales = Wire::constant(Array::new(vec![4], Data::Float(vec![1.0, 1.0, 2.0, 2.0])).unwrap());
+    let scales = GraphTensor::constant(Array::new(vec![4], Data::Float(vec![1.0, 1.0, 2.0, 2.0])).unwrap());
     let resize = Operator::new("Resize")
         .text("mode", "nearest")
         .text("coordinate_transformation_mode", "asymmetric")
         .text("nearest_mode", "floor");
-    let larger = plain(&mut graph, resize, &[&joined, &Wire::absent(), &scales], &[1, 32, 16, 16]);
+    let larger = plain(&mut graph, resize, &[&joined, &GraphTensor::absent(), &scales], &[1, 32, 16, 16]);
     let map = conv(&mut graph, &larger, 8, 1, 1);
     graph.output("map", &map, "", &[]).unwrap();
     let mean = plain(&mut graph, Operator::new("GlobalAveragePool"), &[&joined], &[1, 32, 1, 1]);
     let flat = plain(&mut graph, Operator::new("Flatten"), &[&mean], &[1, 32]);
     let kernel = weights(&mut Random::new(9), &[10, 32]);
-    let bias = Wire::constant(Array::new(vec![10], Data::Float(vec![0.1; 10])).unwrap());
+    let bias = GraphTensor::constant(Array::new(vec![10], Data::Float(vec![0.1; 10])).unwrap());
     let gemm = Operator::new("Gemm").int("transB", 1);
     let scores = plain(&mut graph, gemm, &[&flat, &kernel, &bias], &[1, 10]);
     graph.output("scores", &scores, "", &[]).unwrap();
@@ -115,7 +119,7 @@ fn recordings(model: &Model, count: usize) -> Vec<Recording> {
     recording::take()
 }
 
-/// Signal to noise of each output of `model` beside those of `reference`, decibels, on each engine.
+/// Returns the signal-to-noise ratio in decibels of each output of `model` against `reference`, on each runtime.
 fn ratios(reference: &Model, model: &Model) -> Vec<f64> {
     let mut ratios = Vec::new();
     for runtime in runtimes() {
@@ -156,7 +160,7 @@ fn options(precision: Precision) -> OptimizeOptions {
 }
 
 #[test]
-fn int8_answers_nearly_the_same_on_every_engine() {
+fn int8_predicts_nearly_the_same_on_every_runtime() {
     let folder = Folder::new("int8");
     let model = container(&folder);
     let seen = recordings(&model, 16);
@@ -176,7 +180,7 @@ fn int8_answers_nearly_the_same_on_every_engine() {
             ["Conv", "Conv", "Conv", "Gemm"]
         );
         assert!(
-            report.layers.iter().all(|layer| layer.output_ratio > 22.0 && layer.weight_ratio > 30.0),
+            report.layers.iter().all(|layer| layer.output_snr_db > 22.0 && layer.weight_snr_db > 30.0),
             "{report}"
         );
     }
@@ -210,28 +214,29 @@ fn layers_go_back_to_floats_until_the_drop_is_small_enough() {
     let seen = recordings(&model, 4);
     let options = OptimizeOptions { max_drop: Some(0.5), ..options(Precision::Int8) };
     let mut sizes = Vec::new();
-    // Bytes lost stand for accuracy lost: the drop is small once half of the layers are in floats again.
+    // The number of quantised layers serves as the loss: it is small enough once half of the layers are in floats
+    // again.
     let mut judge = |judged: &Model| {
         let network = model_from_bytes(&judged.onnx()?)?.graph.unwrap_or_default();
         let rounded = network.node.iter().filter(|node| node.name.ends_with("weights/rounded")).count();
         sizes.push(rounded);
         let value = 1.0 - rounded as f64 / 4.0;
-        Ok(Measured { name: "points".to_owned(), value, is_error: false })
+        Ok(MetricValue { name: "points".to_owned(), value, is_error: false })
     };
     let output = folder.0.join("out");
     let report = optimize(&model, &options, &seen, Some(&mut judge), Device::Cpu, &output, &Silent).unwrap();
     assert_eq!(sizes, [0, 4, 3, 2]);
     let accuracy = report.accuracy.unwrap();
     assert_eq!((accuracy.metric.as_str(), accuracy.before, accuracy.after), ("points", 1.0, 0.5));
-    let worst_first = report.layers.iter().filter(|layer| layer.is_float).map(|layer| layer.own_ratio());
-    let others = report.layers.iter().filter(|layer| !layer.is_float).map(|layer| layer.own_ratio());
+    let worst_first = report.layers.iter().filter(|layer| layer.is_float).map(|layer| layer.layer_snr_db());
+    let others = report.layers.iter().filter(|layer| !layer.is_float).map(|layer| layer.layer_snr_db());
     assert!(worst_first.fold(0.0, f64::max) <= others.fold(f64::INFINITY, f64::min));
     let unmeasured = optimize(&model, &options, &seen, None, Device::Cpu, &output, &Silent);
     assert_eq!(unmeasured.unwrap_err().kind(), ErrorKind::InvalidParam);
 }
 
 #[test]
-fn fp16_answers_the_same_on_every_engine() {
+fn fp16_predicts_the_same_on_every_runtime() {
     let folder = Folder::new("fp16");
     let model = container(&folder);
     let output = folder.0.join("out");
@@ -243,7 +248,7 @@ fn fp16_answers_the_same_on_every_engine() {
 }
 
 #[test]
-fn what_cannot_be_done_is_told() {
+fn unsupported_cases_are_errors() {
     let folder = Folder::new("told");
     let model = container(&folder);
     let output = folder.0.join("out");
@@ -253,7 +258,7 @@ fn what_cannot_be_done_is_told() {
     };
     let unseen = run(&model, &[]);
     assert_eq!(unseen.kind(), ErrorKind::InvalidInput);
-    assert!(unseen.to_string().contains("name a data set"), "{unseen}");
+    assert!(unseen.to_string().contains("pass a data set"), "{unseen}");
     let mut old = model_from_bytes(&model.onnx().unwrap()).unwrap();
     old.opset_import[0].version = 12;
     let mut writer = ModelWriter::new(folder.0.join("old"), Manifest::new("", "")).unwrap();

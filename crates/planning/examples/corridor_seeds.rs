@@ -1,5 +1,5 @@
-//! How often drones arrive that were trained with several seeds, and one that learnt nothing and flies as its memory
-//! proposes, between few and many obstacles, with a noisy camera, and with inertia and wind:
+//! Measures the success rate of policies trained with several seeds, and of the planner without a policy, between few and
+//! many obstacles, with a noisy camera, and with inertia and wind:
 //!
 //! ```console
 //! $ cargo run --release -p opendr-planning --example corridor_seeds -- [SEEDS [EPISODES [PARAMETER=VALUE ...]]]
@@ -17,7 +17,7 @@ use opendr_planning::end_to_end::{EndToEndPlanningFitParams, EndToEndPlanningRl}
 use opendr_rl::{
     EvaluationProtocol, PolicyParams, SuccessRate, evaluate_controller, observation_from_numbers,
 };
-use opendr_simulation::uav_corridor::Remembered;
+use opendr_simulation::uav_corridor::FlightMemoryWrapper;
 use opendr_simulation::{RegisteredSource, make};
 
 const EVALUATED: [&str; 4] = [
@@ -31,24 +31,24 @@ fn main() -> Result<()> {
     let mut arguments = std::env::args().skip(1).map(|text| text.parse::<u64>());
     let mut next = |default| arguments.next().unwrap_or(Ok(default));
     let (Ok(seeds), Ok(episodes)) = (next(5), next(500)) else {
-        return Err(Error::invalid_param("give two whole numbers: seeds and episodes"));
+        return Err(Error::invalid_param("give two integers: seeds and episodes"));
     };
-    println!("without learning");
+    println!("without training");
     for id in EVALUATED {
-        shown(id, measured(&mut Unchanged, &mut Remembered::new(make(id)?)?, episodes)?);
+        print_rate(id, success_rate(&mut NoCorrection, &mut FlightMemoryWrapper::new(make(id)?)?, episodes)?);
     }
     let mut rates: [Vec<SuccessRate>; EVALUATED.len()] = Default::default();
     for seed in 0..seeds {
         let folder = std::env::temp_dir().join(format!("opendr-corridor-{}-{seed}", std::process::id()));
-        let begun = Instant::now();
+        let start = Instant::now();
         let mut learner = trained(seed, &folder)?;
-        println!("seed {seed}: {:.1} s", begun.elapsed().as_secs_f64());
+        println!("seed {seed}: {:.1} s", start.elapsed().as_secs_f64());
         for (id, rates) in EVALUATED.iter().zip(&mut rates) {
             let mut corridor = make(id)?;
             let space = corridor.spec().observation.clone();
-            let see = |numbers: &[f32]| observation_from_numbers(&space, numbers);
-            let mut pilot = Pilot { learner: &mut learner, see: &see };
-            rates.extend(shown(id, measured(&mut pilot, &mut *corridor, episodes)?));
+            let observe = |numbers: &[f32]| observation_from_numbers(&space, numbers);
+            let mut pilot = Pilot { learner: &mut learner, observe: &observe };
+            rates.extend(print_rate(id, success_rate(&mut pilot, &mut *corridor, episodes)?));
         }
         std::fs::remove_dir_all(folder)?;
     }
@@ -62,7 +62,7 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// The parameters of the training that are given behind the numbers.
+/// Returns the parameters of the training from the arguments after the two numbers.
 fn fit_params(seed: u64) -> Result<EndToEndPlanningFitParams> {
     let mut params = EndToEndPlanningFitParams { seed, ..Default::default() };
     for text in std::env::args().skip(3) {
@@ -81,7 +81,7 @@ fn trained(seed: u64, folder: &Path) -> Result<Handle<EndToEndPlanningRl>> {
     Ok(learner)
 }
 
-fn measured(
+fn success_rate(
     pilot: &mut dyn Controller,
     corridor: &mut dyn Environment,
     episodes: u64,
@@ -91,7 +91,7 @@ fn measured(
     Ok(evaluate_controller(pilot, corridor, &protocol, &success)?.success)
 }
 
-fn shown(id: &str, success: Option<SuccessRate>) -> Option<SuccessRate> {
+fn print_rate(id: &str, success: Option<SuccessRate>) -> Option<SuccessRate> {
     if let Some(success) = &success {
         let [low, high] = success.interval.map(|share| 100.0 * share);
         println!("  {id}: {:.1} % (95 %: {low:.1} to {high:.1})", 100.0 * success.rate);
@@ -99,10 +99,10 @@ fn shown(id: &str, success: Option<SuccessRate>) -> Option<SuccessRate> {
     success
 }
 
-/// Corrects nothing.
-struct Unchanged;
+/// A controller without corrections.
+struct NoCorrection;
 
-impl Controller for Unchanged {
+impl Controller for NoCorrection {
     fn reset(&mut self) {}
 
     fn act(&mut self, _: &[f32], correction: &mut [f32]) -> Result<()> {
@@ -113,7 +113,7 @@ impl Controller for Unchanged {
 
 struct Pilot<'a> {
     learner: &'a mut Handle<EndToEndPlanningRl>,
-    see: &'a dyn Fn(&[f32]) -> Result<Observation>,
+    observe: &'a dyn Fn(&[f32]) -> Result<Observation>,
 }
 
 impl Controller for Pilot<'_> {
@@ -122,7 +122,7 @@ impl Controller for Pilot<'_> {
     }
 
     fn act(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()> {
-        action.copy_from_slice(&self.learner.infer(&(self.see)(observation)?)?.values);
+        action.copy_from_slice(&self.learner.infer(&(self.observe)(observation)?)?.values);
         Ok(())
     }
 }

@@ -1,4 +1,4 @@
-//! Drones arrive, remember their flight until `reset`, and learn the same on any number of threads.
+//! Drones arrive, keep the memory of a flight until `reset`, and train reproducibly on any number of threads.
 #![allow(clippy::unwrap_used)]
 
 use std::path::{Path, PathBuf};
@@ -8,7 +8,9 @@ use opendr_engine::learner::{FitJob, Handle, Learner as _};
 use opendr_engine::model::{Manifest, Model, ModelWriter};
 use opendr_engine::{Device, ErrorKind, Result};
 use opendr_planning::end_to_end::{EndToEndPlanningFitParams, EndToEndPlanningRl};
-use opendr_rl::{EvaluationProtocol, POLICY, PolicyParams, evaluate_controller, observation_from_numbers};
+use opendr_rl::{
+    EvaluationProtocol, POLICY_FILE, PolicyParams, evaluate_controller, observation_from_numbers,
+};
 use opendr_simulation::make;
 
 struct Folder(PathBuf);
@@ -31,12 +33,12 @@ fn handle() -> Handle<EndToEndPlanningRl> {
     Handle::new(PolicyParams::default(), Device::Cpu).unwrap()
 }
 
-/// With the policy that comes with OpenDR.
+/// Returns a learner with OpenDR's pretrained policy.
 fn pretrained(folder: &Path) -> Handle<EndToEndPlanningRl> {
     let weights = "../../models/weights/end_to_end_planning/uav_depth_corridor.safetensors";
     let weights = PathBuf::from(std::env::var_os("CARGO_MANIFEST_DIR").unwrap()).join(weights);
     let mut writer = ModelWriter::new(folder, Manifest::new(EndToEndPlanningRl::SPEC.name, "")).unwrap();
-    writer.add(POLICY, &std::fs::read(weights).unwrap()).unwrap();
+    writer.add(POLICY_FILE, &std::fs::read(weights).unwrap()).unwrap();
     writer.finish().unwrap();
     let mut learner = handle();
     learner.load(folder).unwrap();
@@ -47,16 +49,16 @@ fn corridor() -> Result<Box<dyn Environment>> {
     make("UavDepthCorridor-v1")
 }
 
-/// The first actions of a flight in the same corridor.
+/// Returns the first actions of a flight in the same corridor.
 fn flight(learner: &mut Handle<EndToEndPlanningRl>) -> Vec<Vec<f32>> {
     let mut corridor = corridor().unwrap();
     let space = corridor.spec().observation.clone();
-    let mut seen = vec![0.0; space.len()];
-    corridor.reset(Some(3), &ResetOptions::new(), &mut seen).unwrap();
+    let mut observation = vec![0.0; space.len()];
+    corridor.reset(Some(3), &ResetOptions::new(), &mut observation).unwrap();
     let mut actions = Vec::new();
     for _ in 0..8 {
-        let action = learner.infer(&observation_from_numbers(&space, &seen).unwrap()).unwrap().values;
-        let over = corridor.step(&action, &mut seen).unwrap().is_over();
+        let action = learner.infer(&observation_from_numbers(&space, &observation).unwrap()).unwrap().values;
+        let over = corridor.step(&action, &mut observation).unwrap().is_over();
         actions.push(action);
         if over {
             break;
@@ -65,7 +67,7 @@ fn flight(learner: &mut Handle<EndToEndPlanningRl>) -> Vec<Vec<f32>> {
     actions
 }
 
-/// Of the first hundred of the 500 worlds of the table of results; between many obstacles, of all of them.
+/// Success rates in the first hundred of the 500 worlds of the table of results; between many obstacles, in all of them.
 #[test]
 fn the_pretrained_policy_arrives() {
     struct Pilot<'a>(&'a mut Handle<EndToEndPlanningRl>);
@@ -97,7 +99,7 @@ fn the_pretrained_policy_arrives() {
 }
 
 #[test]
-fn a_flight_is_remembered_until_reset() {
+fn memory_of_a_flight_is_kept_until_reset() {
     let folder = Folder::new("flight");
     let mut learner = pretrained(&folder.0);
     let first = flight(&mut learner);
@@ -107,7 +109,7 @@ fn a_flight_is_remembered_until_reset() {
 }
 
 #[test]
-fn it_learns_the_same_on_any_number_of_threads() {
+fn training_does_not_depend_on_the_number_of_threads() {
     let folder = Folder::new("fit");
     let mut params = EndToEndPlanningFitParams { n_steps: 64, batch_size: 64, ..Default::default() };
     params.training.total_timesteps = 256;
@@ -119,7 +121,7 @@ fn it_learns_the_same_on_any_number_of_threads() {
         let statistics = learner.fit_in(&params, &corridor, None, &FitJob::new(&output)).unwrap();
         assert_eq!(statistics.get("steps"), Some(256.0));
         assert_eq!(flight(&mut learner).first().unwrap().len(), 2);
-        Model::open(output.join("model")).unwrap().file(POLICY).unwrap()
+        Model::open(output.join("model")).unwrap().file(POLICY_FILE).unwrap()
     });
     assert!(policies[0] == policies[1]);
     let cart = || make("CartPole-v1");

@@ -1,29 +1,29 @@
-//! Channels and messages: what the bytes of a recording are.
+//! Message types of the channels of a recording.
 
-use opendr_bags::{BagFormat, Channel, Encoding, Recorded};
+use opendr_bags::{BagFormat, Channel, Encoding, RecordedMessage};
 use opendr_engine::{Error, Result, ResultExt};
-use opendr_messages::{Message, MessageType, Wire};
+use opendr_messages::{Message, MessageType, WireFormat};
 
-/// What is known of the messages of a channel.
+/// Whether OpenDR can decode the messages of a channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Known {
-    Type(MessageType, Wire),
+    Type(MessageType, WireFormat),
     OtherVersion,
     Unknown,
 }
 
 impl Known {
-    /// By name, and by sum or hash where the recording has it.
+    /// Looks up a channel by the name of its type, and by its hash if the recording has it.
     pub fn of(channel: &Channel) -> Self {
         let wire = match channel.encoding {
-            Encoding::Ros1 => Wire::Ros1,
-            Encoding::Cdr => Wire::Cdr,
+            Encoding::Ros1 => WireFormat::Ros1,
+            Encoding::Cdr => WireFormat::Cdr,
             Encoding::Other(_) => return Self::Unknown,
         };
         let Ok(message_type) = channel.message_type.parse::<MessageType>() else { return Self::Unknown };
         let ours = match wire {
-            Wire::Cdr => Some(message_type.rihs01()),
-            Wire::Ros1 => message_type.ros1().map(|known| known.md5sum),
+            WireFormat::Cdr => Some(message_type.rihs01()),
+            WireFormat::Ros1 => message_type.ros1().map(|known| known.md5sum),
         };
         let Some(ours) = ours else { return Self::Unknown };
         match channel.type_hash.as_deref() {
@@ -32,8 +32,8 @@ impl Known {
         }
     }
 
-    /// Reads a message of the channel.
-    pub fn decode(self, channel: &Channel, message: &Recorded) -> Result<Message> {
+    /// Decodes a message of the channel.
+    pub fn decode(self, channel: &Channel, message: &RecordedMessage) -> Result<Message> {
         let Self::Type(message_type, wire) = self else {
             return Err(unreadable(channel, self));
         };
@@ -45,25 +45,25 @@ impl Known {
 pub(crate) fn unreadable(channel: &Channel, known: Known) -> Error {
     let Channel { topic, message_type, encoding, .. } = channel;
     let why = match known {
-        Known::OtherVersion => "OpenDR knows this message in another version".to_owned(),
-        _ => format!("OpenDR does not know this message in the encoding {encoding}"),
+        Known::OtherVersion => "OpenDR supports another version of this message".to_owned(),
+        _ => format!("OpenDR does not support this message in the encoding {encoding}"),
     };
     Error::unsupported(format!("{topic} ({message_type}): {why}"))
 }
 
-/// How a format keeps messages that OpenDR writes.
-pub(crate) fn wire_of(format: BagFormat) -> Wire {
-    if format == BagFormat::Bag1 { Wire::Ros1 } else { Wire::Cdr }
+/// Returns the encoding in which messages are written to a format.
+pub(crate) fn wire_of(format: BagFormat) -> WireFormat {
+    if format == BagFormat::Bag1 { WireFormat::Ros1 } else { WireFormat::Cdr }
 }
 
-/// A channel for messages of a type that OpenDR writes.
-pub(crate) fn channel_of(topic: &str, message_type: MessageType, wire: Wire) -> Result<Channel> {
+/// Returns a channel for messages of `message_type`.
+pub(crate) fn channel_of(topic: &str, message_type: MessageType, wire: WireFormat) -> Result<Channel> {
     let definition = message_type.definition(wire)?;
     let (name, hash, encoding) = match wire {
-        Wire::Cdr => (message_type.ros2_name(), message_type.rihs01(), Encoding::Cdr),
-        Wire::Ros1 => {
+        WireFormat::Cdr => (message_type.ros2_name(), message_type.rihs01(), Encoding::Cdr),
+        WireFormat::Ros1 => {
             let known = message_type.ros1();
-            let known = known.ok_or_else(|| Error::internal("a definition without a type"))?;
+            let known = known.ok_or_else(|| Error::internal("the message has a definition, but no type"))?;
             (known.name, known.md5sum, Encoding::Ros1)
         }
     };

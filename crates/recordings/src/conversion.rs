@@ -1,45 +1,47 @@
-//! A recording in another format.
+//! Conversion of recordings between formats.
 
 use std::path::Path;
 
 use opendr_bags::{BagFormat, BagWriter, Channel, Encoding, Selection, WriteOptions};
 use opendr_engine::{Error, Progress, Result, ResultExt, Unit};
-use opendr_messages::Wire;
+use opendr_messages::WireFormat;
 
 use crate::Recording;
 use crate::channels::{Known, channel_of, unreadable};
 
-/// How a recording is converted.
+/// Options of a conversion.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Conversion {
-    /// How it is written.
+    /// Format and options of the new recording.
     pub options: WriteOptions,
-    /// Only these topics; `None` is all of them.
+    /// Topics to convert; `None` for all.
     pub topics: Option<Vec<String>>,
-    /// An MCAP file gets messages of ROS 2 also from a recording of ROS 1. The other formats keep those of one ROS only.
+    /// Whether messages of ROS 1 are converted to ROS 2 in an MCAP file, which supports both. The other formats
+    /// support one ROS version only.
     pub is_ros2: bool,
 }
 
-/// All topics as they are, as far as the format keeps them.
+/// Converts all topics, without conversion of messages that the format supports.
 impl<O: Into<WriteOptions>> From<O> for Conversion {
     fn from(options: O) -> Self {
         Self { options: options.into(), topics: None, is_ros2: false }
     }
 }
 
-/// What becomes of a channel.
+/// How the messages of a channel are converted.
 enum Way {
     Copied(usize),
-    Converted(Known, Wire, usize),
+    Converted(Known, WireFormat, usize),
     LeftOut,
 }
 
 impl Conversion {
-    /// Writes `recording` at `path`; how many messages that were. Messages of the other ROS are converted where OpenDR knows
-    /// them; `left_out` is told of topics that are left out, and of single messages that are.
+    /// Writes `recording` at `path` and returns the number of messages written. Messages of the other ROS version
+    /// are converted if OpenDR supports them. `left_out` is called with an error for each topic and message that is
+    /// skipped.
     ///
     /// # Errors
-    /// As [`BagWriter::create`]; what the recording itself or `left_out` ends with.
+    /// As [`BagWriter::create`]; the errors of reading and those that `left_out` returns.
     pub fn run(
         &self,
         recording: &Recording,
@@ -77,7 +79,7 @@ impl Conversion {
             if progress.stopped() {
                 break;
             }
-            // A recording that breaks off is written as far as it goes.
+            // The readable part of a damaged recording is written.
             let message = match message {
                 Ok(message) => message,
                 Err(error) => {
@@ -107,17 +109,17 @@ impl Conversion {
 
     fn way(&self, writer: &mut BagWriter, channel: &Channel, known: Known) -> Result<Way> {
         let own = match channel.encoding {
-            Encoding::Ros1 => Some(Wire::Ros1),
-            Encoding::Cdr => Some(Wire::Cdr),
+            Encoding::Ros1 => Some(WireFormat::Ros1),
+            Encoding::Cdr => Some(WireFormat::Cdr),
             Encoding::Other(_) => None,
         };
-        let wanted = match self.options.format {
-            BagFormat::Bag1 => Some(Wire::Ros1),
+        let needed = match self.options.format {
+            BagFormat::Bag1 => Some(WireFormat::Ros1),
             BagFormat::Mcap if !self.is_ros2 => own,
-            _ => Some(Wire::Cdr),
+            _ => Some(WireFormat::Cdr),
         };
-        match (known, wanted) {
-            _ if own.is_some() && own == wanted => writer.add_channel(channel.clone()).map(Way::Copied),
+        match (known, needed) {
+            _ if own.is_some() && own == needed => writer.add_channel(channel.clone()).map(Way::Copied),
             (Known::Type(message_type, _), Some(wire)) => {
                 let number = writer.add_channel(channel_of(&channel.topic, message_type, wire)?)?;
                 Ok(Way::Converted(known, wire, number))

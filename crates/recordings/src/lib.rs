@@ -1,25 +1,26 @@
-//! Recordings of robots as what learners take and answer.
+//! Recordings as inputs of learners, and predictions written as recordings.
 //!
-//! `opendr-bags` reads and writes bytes, and knows no message; here they become values. [`Recording`] tells the topics of a
-//! recording and which of them stand for a type, [`Sets`] reads what belongs together in order of time, [`Answers`] writes
-//! values as messages, [`Conversion`] copies recordings between formats, ROS 1 and ROS 2.
+//! `opendr-bags` reads and writes messages as bytes; this crate converts them to values and back. [`Recording`]
+//! lists the topics of a recording and the types of their messages. [`SyncedSets`] reads messages of several topics,
+//! synchronised by stamp. [`RecordingWriter`] writes values as messages. [`Conversion`] copies recordings between formats,
+//! and between ROS 1 and ROS 2. The conversion of a single message is in `opendr-ros-bridge`.
 //!
 //! ```
 //! use opendr_engine::data::Timeseries;
 //! use opendr_engine::{ValueRef, ValueType};
-//! use opendr_recordings::{Answers, BagFormat, PortTopic, Recording, Sets};
+//! use opendr_recordings::{RecordingWriter, BagFormat, PortTopic, Recording, SyncedSets};
 //!
 //! # let folder = tempfile::tempdir()?;
 //! # let path = folder.path().join("beats.bag");
-//! let mut answers = Answers::create(&path, BagFormat::Bag1)?;
+//! let mut writer = RecordingWriter::create(&path, BagFormat::Bag1)?;
 //! let series = Timeseries::new(vec![0.5; 140], [140, 1])?;
-//! answers.write("/beats", ValueRef::Timeseries(&series), 1_000)?;
-//! answers.finish()?;
+//! writer.write("/beats", ValueRef::Timeseries(&series), 1_000)?;
+//! writer.finish()?;
 //!
 //! let recording = Recording::open(&path)?;
 //! let topic = recording.topic_for(ValueType::Timeseries, None)?;
 //! let port = PortTopic::new(topic.name, ValueType::Timeseries);
-//! let sets: Vec<_> = Sets::open(&recording, vec![port])?.collect::<Result<_, _>>()?;
+//! let sets: Vec<_> = SyncedSets::open(&recording, vec![port])?.collect::<Result<_, _>>()?;
 //! assert_eq!((sets.len(), sets[0].log_time_ns), (1, 1_000));
 //! # Ok::<_, opendr_engine::Error>(())
 //! ```
@@ -32,10 +33,10 @@ mod sets;
 mod stamp;
 mod topic;
 
-pub use answers::Answers;
+pub use answers::RecordingWriter;
 pub use conversion::Conversion;
 pub use opendr_bags::*;
 pub use recording::{Recording, is_recording};
-pub use sets::{Need, PortTopic, Set, Sets};
+pub use sets::{Need, PortTopic, SyncedSet, SyncedSets};
 pub use stamp::{stamp_of, value_of};
 pub use topic::Topic;

@@ -1,21 +1,21 @@
-//! A recording whose messages are known.
+//! Recordings whose messages can be decoded.
 
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use opendr_bags::{Bag, Recorded};
+use opendr_bags::{Bag, RecordedMessage};
 use opendr_engine::{Error, Result, ValueType};
 use opendr_messages::{Message, MessageType};
 
 use crate::Topic;
 use crate::channels::Known;
 
-/// How the `metadata.yaml` of rosbag 2 begins; other folders have files of this name, too.
+/// First key of the `metadata.yaml` of rosbag 2; other files of this name do not have it.
 const METADATA: &[u8] = b"rosbag2_bagfile_information";
 
-/// Whether `path` looks like a recording: by its extension, or a folder with the `metadata.yaml` of rosbag 2 or nothing
-/// but its files.
+/// Returns whether `path` is a recording by its name: a file with an extension of recordings, or a folder with the
+/// `metadata.yaml` of rosbag 2 or only its files.
 pub fn is_recording(path: &Path) -> bool {
     let is_one_of = |path: &Path, known: &[&str]| {
         let extension = path.extension().and_then(|extension| extension.to_str());
@@ -29,7 +29,7 @@ pub fn is_recording(path: &Path) -> bool {
     if read.is_ok() {
         return start.windows(METADATA.len()).any(|window| window == METADATA);
     }
-    // What a crash left: files without their metadata.
+    // After a crash, a recording has files without metadata.
     let Ok(entries) = path.read_dir() else { return false };
     let mut files = entries.flatten().map(|entry| entry.path()).peekable();
     files.peek().is_some() && files.all(|file| is_one_of(&file, &["db3", "mcap"]))
@@ -55,17 +55,17 @@ impl Recording {
         Ok(Self { path: path.to_owned(), bag, known })
     }
 
-    /// Where it lies.
+    /// Returns the path of the recording.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Its bytes.
+    /// Returns the recording as raw messages.
     pub fn bag(&self) -> &Bag {
         &self.bag
     }
 
-    /// Its topics by name. One whose publishers do not agree on the type is what its first one says.
+    /// Returns the topics, sorted by name. If channels of a topic differ in type, the first one counts.
     pub fn topics(&self) -> Vec<Topic> {
         let mut topics: Vec<Topic> = Vec::new();
         let counts = self.bag.message_counts();
@@ -90,19 +90,20 @@ impl Recording {
         topics
     }
 
-    /// The topic called `name` if its messages can be read as `value_type`; without a name, the only one that can.
+    /// Returns the topic `name`, whose messages must be readable as `value_type`; without a name, the only such
+    /// topic.
     ///
     /// # Errors
-    /// `NotFound` and `InvalidInput` with the topics that there are.
+    /// `NotFound` and `InvalidInput`, with the list of topics.
     pub fn topic_for(&self, value_type: ValueType, name: Option<&str>) -> Result<Topic> {
         let topics = self.topics();
         let path = self.path.display();
         if topics.is_empty() {
-            let cut = if self.bag.is_complete() { "" } else { ": it was cut off or is damaged" };
+            let cut = if self.bag.is_complete() { "" } else { ": it is truncated or damaged" };
             return Err(Error::not_found(format!("{path} has no messages{cut}")));
         }
         let list = || topics.iter().map(|topic| topic.line(value_type)).collect::<String>();
-        let wanted = value_type.name();
+        let type_name = value_type.name();
         if let Some(name) = name {
             let plain = |name: &str| name.trim_start_matches('/').to_owned();
             let found = topics.iter().find(|topic| plain(&topic.name) == plain(name));
@@ -113,7 +114,7 @@ impl Recording {
                 Ok(found.clone())
             } else {
                 Err(Error::invalid_input(format!(
-                    "{} of {path} ({}) cannot be read as {wanted}; its topics are{}",
+                    "{} of {path} ({}) cannot be read as {type_name}; its topics are{}",
                     found.name,
                     found.type_name,
                     list()
@@ -126,22 +127,23 @@ impl Recording {
             ([only], _) => Ok((**only).clone()),
             ([], [only]) => Ok((*only).clone()),
             ([], []) => Err(Error::not_found(format!(
-                "no topic of {path} can be read as {wanted} ({}); its topics are{}",
+                "no topic of {path} can be read as {type_name} ({}); its topics are{}",
                 names(value_type),
                 list()
             ))),
             _ => Err(Error::invalid_input(format!(
-                "several topics of {path} can be read as {wanted}; name one of them{}",
+                "several topics of {path} can be read as {type_name}; choose one of them{}",
                 list()
             ))),
         }
     }
 
-    /// Reads a message of this recording.
+    /// Decodes a message of this recording.
     ///
     /// # Errors
-    /// `Unsupported` for a type or encoding that OpenDR does not know, `Format` for bytes that are no such message.
-    pub fn decode(&self, message: &Recorded) -> Result<Message> {
+    /// `Unsupported` for a type or encoding that OpenDR does not support, `Format` for bytes that are not such a
+    /// message.
+    pub fn decode(&self, message: &RecordedMessage) -> Result<Message> {
         decode(&self.known, self.bag.channels(), message)
     }
 
@@ -153,16 +155,16 @@ impl Recording {
 pub(crate) fn decode(
     known: &[Known],
     channels: &[opendr_bags::Channel],
-    message: &Recorded,
+    message: &RecordedMessage,
 ) -> Result<Message> {
     let (known, channel) = (known.get(message.channel), channels.get(message.channel));
     match (known, channel) {
         (Some(known), Some(channel)) => known.decode(channel, message),
-        _ => Err(Error::invalid_input("a message of another recording")),
+        _ => Err(Error::invalid_input("the message is of another recording")),
     }
 }
 
-/// The messages that stand for a type.
+/// Returns the names of the messages that represent a type.
 fn names(value_type: ValueType) -> String {
     let types = opendr_ros_bridge::message_types(value_type);
     types.map(MessageType::ros2_name).collect::<Vec<_>>().join(", ")

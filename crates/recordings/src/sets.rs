@@ -1,8 +1,8 @@
-//! What belongs together, in order of time.
+//! Messages of several topics, synchronised by stamp.
 
 use std::collections::VecDeque;
 
-use opendr_bags::{Channel, Messages, Recorded, Selection};
+use opendr_bags::{Channel, Messages, RecordedMessage, Selection};
 use opendr_engine::{Result, ResultExt, Value, ValueType};
 use opendr_messages::Message;
 
@@ -11,69 +11,72 @@ use crate::channels::Known;
 use crate::recording::decode;
 use crate::stamp::{stamp_of, value_of};
 
-/// How far stamps of what belongs together may lie apart, as in nodes.
+/// Largest difference of stamps within a set, in nanoseconds; the value of the ROS node.
 const SLOP_NS: i64 = 20_000_000;
-/// How much later than the first port's another port's message may have been recorded.
-const PATIENCE_NS: i64 = 1_000_000_000;
-/// Messages that wait for others take up to this many bytes.
-const MOST_BYTES: usize = 256 << 20;
-/// Messages of one port that wait.
-const MOST_WAITING: usize = 1024;
+/// How much later than the first port's message another port's message may be recorded, in nanoseconds.
+const MAX_DELAY_NS: i64 = 1_000_000_000;
+/// Most bytes of queued messages.
+const MAX_QUEUED_BYTES: usize = 256 << 20;
+/// Most queued messages of one port.
+const MAX_QUEUED: usize = 1024;
 
-/// Whether a set needs a port.
+/// Whether a set needs a message of a port.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Need {
-    /// A set without it is none.
+    /// The set is dropped without it.
     Required,
-    /// Where there is one that fits.
+    /// It is used if a message with a close stamp exists.
     Optional,
-    /// The newest that came since the last set, however old: what begins a stream. Before the first there is no set.
+    /// The newest message since the last set, of any age, which starts a stream. There is no set before the first
+    /// one.
     Init,
 }
 
-/// A topic for a port.
+/// The topic of a port.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PortTopic {
-    /// The topic as the recording names it.
+    /// Name of the topic in the recording.
     pub topic: String,
-    /// What its messages are read as.
+    /// Type as which the messages are read.
     pub value_type: ValueType,
-    /// Whether a set needs it; the first port is always needed.
+    /// Whether a set needs a message; the first port is always needed.
     pub need: Need,
 }
 
 impl PortTopic {
-    /// A topic that every set needs.
+    /// Creates a required port.
     pub fn new(topic: impl Into<String>, value_type: ValueType) -> Self {
         Self { topic: topic.into(), value_type, need: Need::Required }
     }
 }
 
-/// The values of one call, with what they were read from.
+/// The inputs of one inference, with their messages.
 #[derive(Debug, Clone)]
-pub struct Set {
-    /// One for each port, in the order of the ports. A value without a stamp has the log time of its message as stamp.
+pub struct SyncedSet {
+    /// One value for each port, in the order of the ports. A value without a stamp gets the log time of its
+    /// message.
     pub values: Vec<Option<Value>>,
-    /// The messages themselves.
-    pub messages: Vec<Option<Recorded>>,
-    /// When the first port's message was recorded, nanoseconds.
+    /// The messages of the values.
+    pub messages: Vec<Option<RecordedMessage>>,
+    /// Log time of the first port's message, in nanoseconds.
     pub log_time_ns: i64,
-    /// When its datum was taken, else when it was recorded; nanoseconds.
+    /// Stamp of the first port's message, or its log time without a stamp; in nanoseconds.
     pub stamp_ns: i64,
 }
 
-/// Sets of messages, each around one of the first port's, in order of their log times; others are those with the
-/// nearest stamps within 20 ms, recorded up to a second later. What is held meanwhile is bounded.
+/// Iterator over synchronised sets of messages, in order of the log times of the first port.
 ///
-/// A message that cannot be read is an error in its place, and reading goes on.
+/// Each message of the first port is matched with the messages of the other ports whose stamps are nearest, within
+/// 20 ms, recorded up to one second later. The queues are bounded. A message that cannot be read yields an error,
+/// and reading continues.
 #[derive(Debug)]
-pub struct Sets {
+pub struct SyncedSets {
     ports: Vec<PortTopic>,
     channels: Vec<Channel>,
     known: Vec<Known>,
     messages: Option<Messages>,
     queues: Vec<VecDeque<Waiting>>,
-    /// Whether each port had a message in a set.
+    /// Whether each port had a message in any set.
     has_begun: Vec<bool>,
     /// Bytes in the queues.
     held: usize,
@@ -84,12 +87,12 @@ pub struct Sets {
 #[derive(Debug)]
 struct Waiting {
     message: Message,
-    recorded: Recorded,
+    recorded: RecordedMessage,
     stamp_ns: i64,
 }
 
-impl Sets {
-    /// The sets of `recording` with a topic for each port.
+impl SyncedSets {
+    /// Opens the sets of `recording`, with a topic for each port.
     ///
     /// # Errors
     /// As [`Bag::select`](opendr_bags::Bag::select).
@@ -104,12 +107,12 @@ impl Sets {
         Ok(Self { ports, channels, known, messages, queues, has_begun, held, now_ns, unmatched })
     }
 
-    /// Messages of the first port so far for which another port had none.
+    /// Returns the number of messages of the first port without a match of another port so far.
     pub fn unmatched(&self) -> u64 {
         self.unmatched
     }
 
-    fn take_in(&mut self, recorded: &Recorded) -> Result<()> {
+    fn enqueue(&mut self, recorded: &RecordedMessage) -> Result<()> {
         self.now_ns = recorded.log_time_ns;
         let topic = self.channels.get(recorded.channel).map(|channel| channel.topic.as_str());
         for (port, queue) in self.ports.iter().zip(&mut self.queues) {
@@ -121,11 +124,11 @@ impl Sets {
             self.held += recorded.bytes.len();
             queue.push_back(Waiting { message, recorded: recorded.clone(), stamp_ns });
         }
-        for queue in self.queues.iter_mut().skip(1).filter(|queue| queue.len() > MOST_WAITING) {
+        for queue in self.queues.iter_mut().skip(1).filter(|queue| queue.len() > MAX_QUEUED) {
             self.held -= queue.pop_front().map_or(0, |old| old.recorded.bytes.len());
         }
-        // Without a first to match, the oldest of the others are of no use.
-        while self.held > MOST_BYTES && self.queues.first().is_none_or(VecDeque::is_empty) {
+        // Without a message of the first port to match, the oldest messages of the others are dropped.
+        while self.held > MAX_QUEUED_BYTES && self.queues.first().is_none_or(VecDeque::is_empty) {
             let longest = self.queues.iter_mut().max_by_key(|queue| queue.len());
             let Some(old) = longest.and_then(VecDeque::pop_front) else { break };
             self.held -= old.recorded.bytes.len();
@@ -133,19 +136,19 @@ impl Sets {
         Ok(())
     }
 
-    /// Whether nothing that is still to come can change the set around the first that waits.
+    /// Returns whether later messages cannot change the set of the first queued message.
     fn is_decided(&self) -> bool {
         let Some((lead, others)) = self.queues.split_first() else { return true };
         let Some(first) = lead.front() else { return false };
-        let waited = self.now_ns.saturating_sub(first.recorded.log_time_ns) > PATIENCE_NS;
-        let is_full = self.held > MOST_BYTES || lead.len() > MOST_WAITING;
+        let waited = self.now_ns.saturating_sub(first.recorded.log_time_ns) > MAX_DELAY_NS;
+        let is_full = self.held > MAX_QUEUED_BYTES || lead.len() > MAX_QUEUED;
         let came =
             |queue: &VecDeque<Waiting>| queue.back().is_some_and(|last| last.stamp_ns >= first.stamp_ns);
         self.messages.is_none() || waited || is_full || others.iter().all(came)
     }
 
-    /// The set around the first that waits; `None` when a port that it needs has nothing.
-    fn take(&mut self) -> Option<Result<Set>> {
+    /// Takes the set of the first queued message; `None` if a required port has no match.
+    fn take(&mut self) -> Option<Result<SyncedSet>> {
         let lead = self.queues.first_mut()?.pop_front()?;
         self.held -= lead.recorded.bytes.len();
         let (stamp_ns, log_time_ns) = (lead.stamp_ns, lead.recorded.log_time_ns);
@@ -166,7 +169,7 @@ impl Sets {
                 waiting.push(None);
                 continue;
             };
-            // What is older than what is taken is of no use any more.
+            // Messages older than the match are dropped.
             let taken = queue.drain(..=at).inspect(|old| self.held -= old.recorded.bytes.len());
             waiting.push(taken.last());
         }
@@ -183,7 +186,7 @@ impl Sets {
             self.unmatched += 1;
             return None;
         }
-        let mut set = Set { values: Vec::new(), messages: Vec::new(), log_time_ns, stamp_ns };
+        let mut set = SyncedSet { values: Vec::new(), messages: Vec::new(), log_time_ns, stamp_ns };
         for (port, waiting) in self.ports.iter().zip(waiting) {
             let Some(Waiting { message, recorded, stamp_ns }) = waiting else {
                 set.values.push(None);
@@ -200,8 +203,8 @@ impl Sets {
     }
 }
 
-impl Iterator for Sets {
-    type Item = Result<Set>;
+impl Iterator for SyncedSets {
+    type Item = Result<SyncedSet>;
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {
@@ -214,11 +217,11 @@ impl Iterator for Sets {
             }
             match self.messages.as_mut()?.next() {
                 Some(Ok(recorded)) => {
-                    if let Err(error) = self.take_in(&recorded) {
+                    if let Err(error) = self.enqueue(&recorded) {
                         return Some(Err(error));
                     }
                 }
-                // The last that comes; what waits is still answered.
+                // The last item of the iterator; queued messages are still matched.
                 Some(Err(error)) => {
                     self.messages = None;
                     return Some(Err(error));

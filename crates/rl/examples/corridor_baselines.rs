@@ -1,4 +1,4 @@
-//! How often controllers without learning fly through the corridor, in 500 fixed worlds:
+//! Success rates of hand-written controllers in the corridor, in 500 fixed worlds:
 //! `cargo run --release -p opendr-rl --example corridor_baselines [ID [WORLDS]]`.
 
 use opendr_engine::environment::{Environment as _, ResetOptions};
@@ -6,19 +6,21 @@ use opendr_engine::params::Params as _;
 use opendr_engine::{Error, Result};
 use opendr_rl::{EvaluationProtocol, evaluate_controller};
 use opendr_simulation::uav_corridor::{
-    BySight, CorridorController, PotentialField, Reactive, Straight, UavDepthCorridor, UavDepthCorridorParams,
+    CorridorController, ObservationController, PotentialField, ReactiveController, StraightController,
+    UavDepthCorridor, UavDepthCorridorParams,
 };
-use opendr_simulation::{Registered as _, Registry, make};
+use opendr_simulation::{RegisteredEnvironment as _, Registry, make};
 
 fn main() -> Result<()> {
     let mut arguments = std::env::args().skip(1);
     let id = arguments.next().unwrap_or_else(|| "UavDepthCorridor-v1".to_owned());
     let episodes = arguments.next().map_or(Ok(500), |text| text.parse());
-    let episodes = episodes.map_err(|_| Error::invalid_param("the number of worlds is no whole number"))?;
+    let episodes =
+        episodes.map_err(|_| Error::invalid_param("the number of worlds is not a whole number"))?;
     let protocol = EvaluationProtocol { episodes, ..EvaluationProtocol::default() };
-    println!("{id}: {} of {episodes} worlds have a way", passable(&id, &protocol)?);
-    fly("straight", Straight, &id, &protocol)?;
-    fly("by hand", Reactive::default(), &id, &protocol)?;
+    println!("{id}: {} of {episodes} worlds are passable", passable(&id, &protocol)?);
+    fly("straight", StraightController, &id, &protocol)?;
+    fly("by hand", ReactiveController::default(), &id, &protocol)?;
     fly("potential field", PotentialField::default(), &id, &protocol)
 }
 
@@ -42,7 +44,7 @@ fn fly(
     protocol: &EvaluationProtocol,
 ) -> Result<()> {
     let mut environment = make(id)?;
-    let mut controller = BySight::new(controller, environment.spec().observation.clone());
+    let mut controller = ObservationController::new(controller, environment.spec().observation.clone());
     let report =
         evaluate_controller(&mut controller, &mut *environment, protocol, &|step| step.info.success())?;
     let Some(success) = report.success else { return Ok(()) };

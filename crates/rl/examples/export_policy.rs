@@ -1,4 +1,4 @@
-//! Policies as ONNX models, with what they do beside them, to be compared elsewhere:
+//! Exports policies to ONNX with some of their actions, for a comparison with ONNX Runtime:
 //! `cargo run -p opendr-rl --example export_policy FOLDER`, then `python tests/rl/compare_onnx.py FOLDER`.
 
 use std::collections::BTreeMap;
@@ -8,7 +8,7 @@ use opendr_engine::environment::{EnvironmentSpec, Space};
 use opendr_engine::{Error, Random, Result};
 use opendr_kernels::Compute;
 use opendr_rl::{
-    Acting, Algorithm as _, Beginning, Head, NetworkConfig, PictureNetwork, Policy, PolicyMemory, Ppo,
+    ActionMode, Algorithm as _, Head, ImageNetwork, NetworkConfig, ParameterInit, Policy, PolicyMemory, Ppo,
     PpoConfig, Sac, SacConfig, onnx_from_policy,
 };
 use opendr_simulation::make_vec;
@@ -16,7 +16,7 @@ use opendr_simulation::vector::{Autoreset, VectorOptions};
 
 fn main() -> Result<()> {
     let folder = std::env::args_os().nth(1).map(PathBuf::from);
-    let folder = folder.ok_or_else(|| Error::invalid_param("no folder; name one to write to"))?;
+    let folder = folder.ok_or_else(|| Error::invalid_param("no output folder; give one as argument"))?;
     std::fs::create_dir_all(&folder)?;
     let options = VectorOptions { autoreset: Autoreset::SameStep, ..VectorOptions::new(4) };
 
@@ -36,22 +36,22 @@ fn main() -> Result<()> {
 
     let parts =
         [("depth", Space::uniform(0.0, 15.0, &[64, 64, 1])?), ("target", Space::symmetric(&[5.0; 3]))];
-    let seen = Space::Dict(parts.map(|(name, part)| (name.to_owned(), part)).into());
+    let observation = Space::Dict(parts.map(|(name, part)| (name.to_owned(), part)).into());
     for (name, picture_network, gru_size, action) in [
-        ("depth_small", PictureNetwork::Small, None, Space::symmetric(&[1.0, 1.0])),
-        ("depth_nature", PictureNetwork::Nature, None, Space::MultiDiscrete(vec![3, 4])),
-        ("depth_memory", PictureNetwork::Small, Some(24), Space::MultiBinary(vec![3])),
+        ("depth_small", ImageNetwork::Small, None, Space::symmetric(&[1.0, 1.0])),
+        ("depth_nature", ImageNetwork::Nature, None, Space::MultiDiscrete(vec![3, 4])),
+        ("depth_memory", ImageNetwork::Small, Some(24), Space::MultiBinary(vec![3])),
     ] {
-        let spec = EnvironmentSpec::new(name, seen.clone(), action);
-        let config = NetworkConfig { picture_network, gru_size, ..NetworkConfig::default() };
+        let spec = EnvironmentSpec::new(name, observation.clone(), action);
+        let config = NetworkConfig { image_network: picture_network, gru_size, ..NetworkConfig::default() };
         let mut policy = Policy::new(&spec, Head::stochastic(&spec.action)?, &config, Some(10.0))?;
-        policy.initialise(Beginning::Orthogonal(1.0), 0.0, &mut Random::new(5));
+        policy.initialise(ParameterInit::Orthogonal(1.0), 0.0, &mut Random::new(5));
         export(&folder, name, &policy)?;
     }
     Ok(())
 }
 
-/// Writes the model, and actions for some observations by chance, in three steps of 32 rows.
+/// Writes the model, and the actions for random observations, in three steps of 32 rows.
 fn export(folder: &Path, name: &str, policy: &Policy) -> Result<()> {
     std::fs::write(folder.join(format!("{name}.onnx")), onnx_from_policy(policy)?)?;
     let (mut random, rows) = (Random::new(3), 3 * 32);
@@ -60,10 +60,11 @@ fn export(folder: &Path, name: &str, policy: &Policy) -> Result<()> {
     let mut actions = vec![0.0; rows * policy.action().len()];
     let (compute, mut memory) = (Compute::single(), PolicyMemory::default());
     let steps = observations.chunks_exact(observations.len() / 3);
-    for (seen, done) in steps.zip(actions.chunks_exact_mut(32 * policy.action().len())) {
-        policy.act(&compute, seen, Acting::Deterministic, &mut memory, done)?;
+    for (observations, actions) in steps.zip(actions.chunks_exact_mut(32 * policy.action().len())) {
+        policy.act(&compute, observations, ActionMode::Deterministic, &mut memory, actions)?;
     }
-    let answers = BTreeMap::from([("observations", observations), ("actions", actions)]);
-    let json = serde_json::to_vec(&answers).map_err(|error| Error::internal("no JSON").with_source(error))?;
+    let record = BTreeMap::from([("observations", observations), ("actions", actions)]);
+    let json = serde_json::to_vec(&record)
+        .map_err(|error| Error::internal("the actions cannot be written as JSON").with_source(error))?;
     Ok(std::fs::write(folder.join(format!("{name}.json")), json)?)
 }

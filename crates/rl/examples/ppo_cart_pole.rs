@@ -1,4 +1,4 @@
-//! PPO learns to balance a pole: `cargo run --release -p opendr-rl --example ppo_cart_pole [SEED]`.
+//! Trains PPO on CartPole: `cargo run --release -p opendr-rl --example ppo_cart_pole [SEED]`.
 
 use std::ops::ControlFlow;
 
@@ -25,18 +25,18 @@ fn main() -> Result<()> {
     let (steps, mean) = (report.timesteps, report.mean_return.unwrap_or(0.0));
     let seconds = cpu_seconds().unwrap_or_else(|| begun.elapsed().as_secs_f64());
     let rate = steps as f64 / seconds;
-    println!("seed {seed}: {steps} steps in {seconds:.2} CPU-seconds, {rate:.0} a second");
+    println!("seed {seed}: {steps} steps in {seconds:.2} CPU-seconds, {rate:.0} steps per second");
     println!("mean return of the last 100 episodes {mean:.1}; 475 first at step {solved:?}");
-    let judged = evaluate(ppo.policy(), &mut *make("CartPole-v1")?, &EvaluationProtocol::default())?;
+    let report = evaluate(ppo.policy(), &mut *make("CartPole-v1")?, &EvaluationProtocol::default())?;
     println!(
         "mean return of the most likely actions in {} episodes {:.1}",
-        judged.episodes.len(),
-        judged.mean_return
+        report.episodes.len(),
+        report.mean_return
     );
     Ok(())
 }
 
-/// Seconds that this thread has spent on a processor, where the system tells.
+/// Returns the CPU time of this thread in seconds, if the system reports it.
 fn cpu_seconds() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     text.split(' ').next()?.parse::<f64>().ok().map(|nanoseconds| nanoseconds * 1e-9)

@@ -1,4 +1,4 @@
-//! SAC learns to swing a pendulum up: `cargo run --release -p opendr-rl --example sac_pendulum -- [SEED] [THREADS] [THOUSANDS]`.
+//! Trains SAC on Pendulum: `cargo run --release -p opendr-rl --example sac_pendulum -- [SEED] [THREADS] [THOUSANDS]`.
 
 use std::time::Instant;
 

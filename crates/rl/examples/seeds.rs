@@ -1,9 +1,8 @@
-//! How well learners do, over several seeds, as a table in Markdown:
-//! `cargo run --release -p opendr-rl --example seeds -- [--seeds 10] [TASK ...]`, tasks as `ppo/CartPole-v1`; all without.
+//! Trains algorithms with several seeds and prints a Markdown table of their returns:
+//! `cargo run --release -p opendr-rl --example seeds -- [--seeds 10] [TASK ...]`, tasks as `ppo/CartPole-v1`; default all.
 //!
-//! A policy counts by the mean return of its most likely actions in 100 episodes that no training saw: the one at the end of
-//! the training, and the one that a training with episodes to measure on keeps, which did best in 20 others, measured ten
-//! times on the way.
+//! A policy is evaluated by the mean return of its most likely actions in 100 held-out episodes. Two policies are evaluated: the
+//! last one, and the best of ten evaluations during the training, in 20 other episodes.
 
 use opendr_engine::{Error, Result};
 use opendr_rl::{
@@ -13,7 +12,7 @@ use opendr_rl::{
 use opendr_simulation::vector::{Autoreset, VecEnvironment, VectorOptions};
 use opendr_simulation::{make, make_vec};
 
-/// Learner, environment, the mean return to reach, and the steps of a training where they are not those of the preset.
+/// Algorithm, environment, goal of the mean return, and steps of the training if they differ from the preset.
 const TASKS: &[(&str, &str, f64, Option<u64>)] = &[
     ("ppo", "CartPole-v1", 475.0, None),
     ("dqn", "CartPole-v1", 475.0, None),
@@ -30,7 +29,7 @@ fn main() -> Result<()> {
         match argument.as_str() {
             "--seeds" => {
                 let number = arguments.next().and_then(|number| number.parse().ok());
-                seeds = number.ok_or_else(|| Error::invalid_param("give --seeds a number"))?;
+                seeds = number.ok_or_else(|| Error::invalid_param("--seeds needs a number"))?;
             }
             _ => chosen.push(argument),
         }
@@ -48,9 +47,9 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// How often a training is measured to keep the best.
-const MEASURED: u64 = 10;
-/// Episodes of which neither trainings nor the table's figures know.
+/// Number of evaluations during a training.
+const EVALUATIONS: u64 = 10;
+/// Validation episodes, separate from those of the training and of the table.
 const VALIDATION: EvaluationProtocol =
     EvaluationProtocol { episodes: 20, first_seed: 2_000_000, deterministic: true, max_steps: 100_000 };
 
@@ -60,9 +59,9 @@ fn row(learner: &str, id: &str, goal: f64, timesteps: Option<u64>, seeds: u64) -
         let mut training = begin(learner, id, seed)?;
         let total = timesteps.unwrap_or(training.timesteps);
         let (mut best, mut spent) = (None, 0.0);
-        for part in 1..=MEASURED {
+        for part in 1..=EVALUATIONS {
             let begun = cpu_seconds();
-            while training.learner.report().timesteps < total * part / MEASURED {
+            while training.learner.report().timesteps < total * part / EVALUATIONS {
                 steps = training.learner.iterate(&mut *training.environments, total)?.timesteps;
             }
             spent += cpu_seconds() - begun;
@@ -92,7 +91,7 @@ fn row(learner: &str, id: &str, goal: f64, timesteps: Option<u64>, seeds: u64) -
     Ok(())
 }
 
-/// What the table tells of the returns of all seeds.
+/// Cells of the table for the returns of all seeds.
 struct Cells {
     returns: String,
     reached: u64,
@@ -110,7 +109,7 @@ fn cells(mut returns: Vec<f64>, goal: f64) -> Result<Cells> {
     Ok(Cells { returns, reached, interval: rate.interval })
 }
 
-/// The middle one of sorted numbers, or between the two.
+/// Returns the median of sorted numbers.
 fn median(sorted: &[f64]) -> f64 {
     let middle = sorted.len() / 2;
     if sorted.len().is_multiple_of(2) { 0.5 * (sorted[middle - 1] + sorted[middle]) } else { sorted[middle] }
@@ -144,7 +143,7 @@ fn begin(learner: &str, id: &str, seed: u64) -> Result<Training> {
     }
 }
 
-/// Seconds that this thread has spent on a processor, where the system tells; else 0.
+/// Returns the CPU time of this thread in seconds; 0 if the system does not report it.
 fn cpu_seconds() -> f64 {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
     text.split(' ').next().and_then(|time| time.parse::<f64>().ok()).map_or(0.0, |time| time * 1e-9)

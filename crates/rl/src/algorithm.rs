@@ -1,4 +1,4 @@
-//! What all learners of this crate have in common.
+//! The trait of all training algorithms, and their report.
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -12,85 +12,85 @@ use crate::episodes::Episodes;
 use crate::policy::Policy;
 use crate::saved_state::SavedState;
 
-/// How a training goes.
+/// Progress and statistics of a training.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Report {
     /// Steps of all environments together.
     pub timesteps: u64,
     /// Episodes that ended.
     pub episodes: u64,
-    /// The mean return of the last hundred.
+    /// Mean return of the last 100 episodes.
     pub mean_return: Option<f64>,
-    /// Their mean length.
+    /// Mean length of the last 100 episodes, in steps.
     pub mean_length: Option<f64>,
-    /// The share of successes among those whose infos tell.
+    /// Success rate over those of the last 100 episodes whose final info has `success`.
     pub success_rate: Option<f64>,
-    /// Losses and the like of the last update, by the names of Stable-Baselines3; empty before one.
+    /// Losses and other statistics of the last update, under the names of Stable-Baselines3; empty before the first.
     pub metrics: Info,
 }
 
-/// What an observer of a training sees after each iteration.
-pub struct Event<'a, A> {
+/// Argument of the observer of [`Algorithm::train`], after each iteration.
+pub struct IterationEvent<'a, A> {
     /// The learner, e.g. to evaluate its policy.
     pub learner: &'a A,
     /// Its environments, e.g. to save a checkpoint.
     pub environments: &'a dyn VecEnvironment,
-    /// How the training goes.
+    /// Progress and statistics so far.
     pub report: &'a Report,
 }
 
-/// A learner: it acts in environments and changes its policy.
+/// A training algorithm: it collects steps in environments and updates a policy.
 ///
-/// A training is a loop of [`iterate`](Self::iterate), by [`train`](Self::train) or by the caller; between two iterations it can be
-/// saved, and goes on later, elsewhere, with any number of threads, with the same bits.
+/// A training is a loop of [`iterate`](Self::iterate), by [`train`](Self::train) or by the caller. Between two iterations it can be
+/// saved. A resumed training gives the same result bit for bit, with any number of threads.
 pub trait Algorithm {
-    /// Its name: `ppo`.
+    /// Name of the algorithm, such as `ppo`.
     fn name(&self) -> &'static str;
 
-    /// What it has learnt.
+    /// Returns the current policy.
     fn policy(&self) -> &Policy;
 
-    /// Begins from a policy, e.g. one that was imported or cloned from demonstrations; values are still to be learnt.
+    /// Starts from a policy, e.g. an imported one or one cloned from demonstrations. Critics keep their parameters.
     ///
     /// # Errors
-    /// `InvalidInput` when it sees, acts or is made otherwise.
+    /// `InvalidInput` when its spaces, head or networks differ from those of this algorithm.
     fn set_policy(&mut self, policy: &Policy) -> Result<()>;
 
-    /// How the training goes.
+    /// Returns progress and statistics.
     fn report(&self) -> &Report;
 
-    /// Acts for some steps and learns from them. `total_timesteps` is the length of the whole training, on which
-    /// schedules depend.
+    /// Collects steps and updates the policy from them. `total_timesteps` is the length of the whole training, for
+    /// schedules.
     ///
     /// # Errors
-    /// `InvalidInput` for environments of another kind, or not with [`Autoreset::SameStep`](opendr_simulation::vector::Autoreset), and
-    /// for observations and rewards that are not finite; `Internal` when learning diverges. The message has the step.
+    /// `InvalidInput` for environments of other spaces or without [`Autoreset::SameStep`](opendr_simulation::vector::Autoreset), and
+    /// for observations and rewards that are not finite; `Internal` when learning diverges. The message contains the time step.
     fn iterate(&mut self, environments: &mut dyn VecEnvironment, total_timesteps: u64) -> Result<&Report>;
 
-    /// Everything that decides the future; but environments without snapshots begin their episodes anew.
+    /// Returns the state of the training. Environments without snapshots are not part of it; their episodes restart.
     ///
     /// # Errors
     /// `InvalidInput` before the first iteration.
     fn saved_state(&self, environments: &dyn VecEnvironment) -> Result<SavedState>;
 
-    /// Goes back to a state, in environments of the same kind and number.
+    /// Restores a state, in environments of the same kind and number.
     ///
     /// # Errors
-    /// `InvalidInput` and `Format` for a state of something else; the learner is then not to be used.
+    /// `InvalidInput` and `Format` for a state of another training; the algorithm must not be used afterwards.
     fn restore(&mut self, state: &SavedState, environments: &mut dyn VecEnvironment) -> Result<()>;
 
-    /// The long rows of numbers in its state.
-    fn rows(&self) -> &'static [&'static str];
+    /// Names of the arrays in a saved state.
+    fn array_names(&self) -> &'static [&'static str];
 
-    /// Saves a checkpoint of this step, and gives its folder.
+    /// Saves a checkpoint of this step. Returns its folder.
     ///
     /// # Errors
-    /// As [`Self::saved_state`], and `Io` when the disk is full: the other checkpoints are untouched then.
+    /// As [`Self::saved_state`], and `Io` when the disk is full; other checkpoints stay untouched.
     fn save(&self, checkpoints: &Checkpoints, environments: &dyn VecEnvironment) -> Result<PathBuf> {
         self.save_with(checkpoints, environments, Vec::new())
     }
 
-    /// The same with further files in the checkpoint.
+    /// Saves a checkpoint with additional files.
     ///
     /// # Errors
     /// As [`Self::save`].
@@ -106,24 +106,24 @@ pub trait Algorithm {
         checkpoints.save(self.report().timesteps, &files)
     }
 
-    /// Goes on from the newest checkpoint that is whole, and gives it; none where there is none.
+    /// Resumes from the newest intact checkpoint and returns it; none if there is no checkpoint.
     ///
     /// # Errors
-    /// `NotFound` for the checkpoints of another learner, `Integrity` where all are broken, and as [`Self::restore`].
+    /// `NotFound` for checkpoints of another algorithm, `Integrity` when all are damaged, and as [`Self::restore`].
     fn load(
         &mut self,
         checkpoints: &Checkpoints,
         environments: &mut dyn VecEnvironment,
     ) -> Result<Option<Checkpoint>> {
         let Some(checkpoint) = checkpoints.latest()? else { return Ok(None) };
-        SavedState::from_files(&|name| checkpoint.file(name), self.rows())
+        SavedState::from_files(&|name| checkpoint.file(name), self.array_names())
             .and_then(|state| self.restore(&state, environments))
             .context(|| format!("resuming from {}", checkpoint.path().display()))?;
         Ok(Some(checkpoint))
     }
 
-    /// Trains until `total_timesteps` steps were taken, or `observer`, asked after each iteration, breaks off. A
-    /// training that was broken off, or loaded, goes on.
+    /// Trains until `total_timesteps` steps are taken, or until `observer` breaks; it is called after each iteration. A
+    /// later call resumes the training.
     ///
     /// # Errors
     /// As [`Self::iterate`], and those of the observer.
@@ -131,14 +131,15 @@ pub trait Algorithm {
         &mut self,
         environments: &mut dyn VecEnvironment,
         total_timesteps: u64,
-        observer: &mut dyn FnMut(Event<'_, Self>) -> Result<ControlFlow<()>>,
+        observer: &mut dyn FnMut(IterationEvent<'_, Self>) -> Result<ControlFlow<()>>,
     ) -> Result<&Report>
     where
         Self: Sized,
     {
         while self.report().timesteps < total_timesteps {
             self.iterate(environments, total_timesteps)?;
-            let event = Event { learner: &*self, environments: &*environments, report: self.report() };
+            let event =
+                IterationEvent { learner: &*self, environments: &*environments, report: self.report() };
             if observer(event)?.is_break() {
                 break;
             }
@@ -158,10 +159,12 @@ impl Report {
 }
 
 pub(crate) fn not_begun(name: &str) -> Error {
-    Error::invalid_input(format!("{name} has not begun; iterate once before its state is saved"))
+    Error::invalid_input(format!(
+        "the training of {name} has no state before the first iteration; call iterate once"
+    ))
 }
 
-/// The states of environments; of those that keep none, a snapshot without a name, from which they begin anew.
+/// Returns the states of environments; for those without snapshots, a snapshot with an empty name.
 pub(crate) fn snapshot_of(environments: &dyn VecEnvironment) -> Result<Snapshot> {
     match environments.snapshot() {
         Err(error) if error.kind() == ErrorKind::Unsupported => Ok(Snapshot::new("")),
@@ -169,7 +172,7 @@ pub(crate) fn snapshot_of(environments: &dyn VecEnvironment) -> Result<Snapshot>
     }
 }
 
-/// The error of a loss or gradient that is not finite.
+/// Returns the error for a loss or gradient that is not finite.
 pub(crate) fn diverged(what: &str, number: f64, timesteps: u64) -> Error {
     Error::internal(format!(
         "{what} is {number} at time step {timesteps}: learning diverged; lower learning_rate, or normalise rewards"

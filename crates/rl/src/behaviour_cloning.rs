@@ -1,4 +1,4 @@
-//! Learning from what others did.
+//! Behaviour cloning: imitation learning from demonstrations.
 
 use std::ops::ControlFlow;
 
@@ -10,27 +10,27 @@ use opendr_kernels::{Adam, AdamOptions, Compute};
 use crate::algorithm::diverged;
 use crate::policy::{Head, Likelihood, Policy, PolicyMemory};
 
-/// Settings of [`clone_behaviour`]; names and defaults are those of the `imitation` library.
+/// Settings of [`clone_behaviour`]. Names and defaults are those of the `imitation` library.
 #[derive(Debug, Clone, PartialEq, Params)]
 pub struct BehaviourCloningConfig {
     /// Learning rate of Adam.
     #[param(default = 1e-3, range = 0.0..=1.0, log)]
     pub learning_rate: f32,
-    /// Steps in a minibatch.
+    /// Steps per minibatch.
     #[param(default = 32, range = 1..=1_000_000, log)]
     pub batch_size: usize,
-    /// How often all demonstrations are gone over.
+    /// Passes over all demonstrations.
     #[param(default = 10, range = 1..=1_000_000)]
     pub n_epochs: usize,
-    /// Weight of the entropy.
+    /// Weight of the entropy in the loss.
     #[param(default = 1e-3, range = 0.0..=10.0)]
     pub ent_weight: f32,
-    /// What fixes the order of steps.
+    /// Seed of the order of steps.
     #[param(default = 0)]
     pub seed: u64,
 }
 
-/// What was seen and what was done then, row after row, as the environment has them.
+/// Observations and the actions taken on them, one row per step, as the environment defines them.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Demonstrations {
     observations: Vec<f32>,
@@ -39,30 +39,31 @@ pub struct Demonstrations {
 }
 
 impl Demonstrations {
-    /// Demonstrations in an environment of this kind.
+    /// Creates demonstrations for an environment with this specification, from flat rows.
     ///
     /// # Errors
-    /// `InvalidInput` when the numbers are no observations and as many actions, or an action is none.
+    /// `InvalidInput` when the lengths do not match the spaces, or an action is not in its space.
     pub fn new(spec: &EnvironmentSpec, observations: Vec<f32>, actions: Vec<f32>) -> Result<Self> {
-        let (seen, done) = (spec.observation.len().max(1), spec.action.len().max(1));
-        let steps = actions.len() / done;
-        if steps == 0 || actions.len() != steps * done || observations.len() != steps * seen {
+        let (observation_len, action_len) = (spec.observation.len().max(1), spec.action.len().max(1));
+        let steps = actions.len() / action_len;
+        if steps == 0 || actions.len() != steps * action_len || observations.len() != steps * observation_len
+        {
             return Err(Error::invalid_input(format!(
-                "{} numbers of observations and {} of actions; give rows of {seen} and {done}, as many of each",
+                "{} observation numbers and {} action numbers; give the same number of rows of {observation_len} and {action_len} numbers",
                 observations.len(),
                 actions.len()
             )));
         }
-        for (step, action) in actions.chunks_exact(done).enumerate() {
+        for (step, action) in actions.chunks_exact(action_len).enumerate() {
             spec.action.check(action).context(|| format!("the action of step {step}"))?;
         }
         Ok(Self { observations, actions, steps })
     }
 
-    /// What a controller does in episodes that begin with these seeds.
+    /// Records a controller in one episode per seed.
     ///
     /// # Errors
-    /// Those of the environment and of the controller.
+    /// The errors of the environment and of the controller.
     pub fn record(
         controller: &mut dyn Controller,
         environment: &mut dyn Environment,
@@ -87,13 +88,13 @@ impl Demonstrations {
         Self::new(&spec, observations, actions)
     }
 
-    /// How many steps there are.
+    /// Returns the number of steps.
     pub fn steps(&self) -> usize {
         self.steps
     }
 }
 
-/// Memory of a minibatch.
+/// Work memory of a minibatch.
 #[derive(Default)]
 struct Memory {
     policy: PolicyMemory,
@@ -105,13 +106,13 @@ struct Memory {
     gradients: Vec<f32>,
 }
 
-/// Makes what was demonstrated more likely (Pomerleau, 1991): the loss is minus the log-probability of the actions, for policies
-/// without chance the squared distance. Statistics of a normaliser are taken from the demonstrations. `observer` gets the mean
-/// loss of each epoch and may break off; the mean losses of all epochs are the result.
+/// Trains a policy to imitate demonstrations (Pomerleau, 1991). The loss is the negative log-likelihood of the actions, or their
+/// mean squared error for a deterministic policy. A normaliser takes its statistics from the demonstrations. `observer` receives
+/// the epoch and its mean loss and may stop the training. Returns the mean losses of all epochs.
 ///
 /// # Errors
-/// `InvalidInput` when demonstrations are of another kind, `Unsupported` for policies of values or with memory, `Internal` when learning
-/// diverges.
+/// `InvalidInput` when the demonstrations do not match the spaces, `Unsupported` for Q-networks and recurrent policies, `Internal`
+/// when learning diverges.
 pub fn clone_behaviour(
     policy: &mut Policy,
     demonstrations: &Demonstrations,
@@ -120,16 +121,16 @@ pub fn clone_behaviour(
     observer: &mut dyn FnMut(usize, f64) -> ControlFlow<()>,
 ) -> Result<Vec<f64>> {
     config.check()?;
-    policy.config.check_no_memory("cloning of behaviour")?;
+    policy.config.check_no_memory("behaviour cloning")?;
     if let Head::Greedy { .. } = policy.head {
-        return Err(Error::unsupported("values of choices cannot be cloned; make a policy of ppo"));
+        return Err(Error::unsupported("behaviour cloning cannot train a Q-network; use a policy of ppo"));
     }
     let steps = demonstrations.steps;
     if demonstrations.observations.len() != steps * policy.encoder.raw_len()
         || demonstrations.actions.len() != steps * policy.head.action_len()
     {
         return Err(Error::invalid_input(format!(
-            "the demonstrations are of another kind than a policy for {}",
+            "the demonstrations do not match a policy for observations {}; record them in its environment",
             policy.observation()
         )));
     }
@@ -138,7 +139,7 @@ pub fn clone_behaviour(
     policy.encoder.encode(&demonstrations.observations, &mut encoded)?;
     let mut actions = vec![0.0; demonstrations.actions.len()];
     policy.head.distribution_actions(&demonstrations.actions, &mut actions);
-    let mut random = Random::at([config.seed, 2]);
+    let mut random = Random::from_key([config.seed, 2]);
     let mut adam = Adam::new(policy.parameters.len(), AdamOptions::default());
     let mut order: Vec<_> = (0..steps).collect();
     let (mut memory, mut losses) = (Memory::default(), Vec::new());
@@ -149,7 +150,7 @@ pub fn clone_behaviour(
             memory.gather(places, [&encoded, &actions], steps);
             let loss = memory.pass(policy, compute, config.ent_weight);
             if !loss.is_finite() {
-                return Err(diverged("the loss of cloning", loss.into(), adam.steps));
+                return Err(diverged("the loss of behaviour cloning", loss.into(), adam.steps));
             }
             adam.step(compute, config.learning_rate, &mut policy.parameters, &memory.gradients);
             sum += f64::from(loss) * places.len() as f64;
@@ -171,7 +172,7 @@ impl Memory {
         }
     }
 
-    /// The loss, with its gradients.
+    /// Computes the loss and its gradients.
     fn pass(&mut self, policy: &Policy, compute: &Compute, ent_weight: f32) -> f32 {
         let outputs = policy.forward(compute, &self.observations, &mut self.policy);
         let rows = outputs.len() / policy.head.outputs();
@@ -214,7 +215,7 @@ mod tests {
     use opendr_engine::environment::Space;
 
     use super::*;
-    use crate::policy::{Beginning, Bounds, NetworkConfig};
+    use crate::policy::{Bounds, NetworkConfig, ParameterInit};
 
     fn demonstrations(spec: &EnvironmentSpec, act: impl Fn(f32, f32) -> f32) -> Demonstrations {
         let mut random = Random::new(4);
@@ -224,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_done_is_done_again() {
+    fn cloned_policies_repeat_the_demonstrations() {
         let seen = Space::symmetric(&[1.0, 1.0]);
         let box_ = Space::symmetric(&[2.0]);
         let bounds = Bounds { low: vec![-2.0], high: vec![2.0] };
@@ -240,7 +241,7 @@ mod tests {
         ];
         for (spec, head, demonstrations) in cases {
             let mut policy = Policy::new(spec, head, &NetworkConfig::default(), None).unwrap();
-            policy.initialise(Beginning::Orthogonal(0.01), 0.0, &mut Random::new(1));
+            policy.initialise(ParameterInit::Orthogonal(0.01), 0.0, &mut Random::new(1));
             let config = BehaviourCloningConfig { n_epochs: 30, ..Default::default() };
             let compute = Compute::single();
             let mut observer = |_, _| ControlFlow::Continue(());
@@ -248,7 +249,7 @@ mod tests {
                 clone_behaviour(&mut policy, demonstrations, &config, &compute, &mut observer).unwrap();
             assert!(losses[29] < losses[0], "{losses:?}");
             let mut actions = vec![0.0; 400];
-            let acting = crate::Acting::Deterministic;
+            let acting = crate::ActionMode::Deterministic;
             let mut memory = PolicyMemory::default();
             policy.act(&compute, &demonstrations.observations, acting, &mut memory, &mut actions).unwrap();
             let errors = actions.iter().zip(&demonstrations.actions).map(|(a, b)| (a - b).abs());

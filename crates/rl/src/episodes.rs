@@ -6,21 +6,21 @@ use opendr_engine::Result;
 use opendr_engine::environment::{Snapshot, StateReader};
 use opendr_simulation::vector::Batch;
 
-/// Episodes over which means are taken.
+/// Number of episodes over which means are computed.
 const KEPT: usize = 100;
 
-/// An episode that ended.
+/// Statistics of a finished episode.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Episode {
-    /// The sum of its rewards.
-    pub earned: f64,
-    /// How many steps it had.
+    /// Return: the sum of its rewards.
+    pub total_reward: f64,
+    /// Number of steps.
     pub length: u64,
-    /// Whether its last info told of a `success`, where it told.
+    /// Value of `success` in its final info, if present.
     pub success: Option<bool>,
 }
 
-/// What episodes earned: those that run, and the last hundred.
+/// Statistics of the running episodes and of the last 100 finished ones.
 #[derive(Debug, Clone)]
 pub struct Episodes {
     running: Vec<(f64, u64)>,
@@ -33,7 +33,7 @@ impl Episodes {
         Self { running: vec![(0.0, 0); environments], last: VecDeque::with_capacity(KEPT), count: 0 }
     }
 
-    /// Takes in a step of all environments.
+    /// Adds a step of all environments.
     pub(crate) fn add(&mut self, batch: &Batch) {
         for (index, (earned, length)) in self.running.iter_mut().enumerate() {
             *earned += batch.rewards[index];
@@ -43,46 +43,46 @@ impl Episodes {
                 if self.last.len() == KEPT {
                     self.last.pop_front();
                 }
-                self.last.push_back(Episode { earned: *earned, length: *length, success });
+                self.last.push_back(Episode { total_reward: *earned, length: *length, success });
                 (*earned, *length) = (0.0, 0);
                 self.count += 1;
             }
         }
     }
 
-    /// Forgets the episodes that run.
-    pub(crate) fn begin_anew(&mut self) {
+    /// Discards the running episodes.
+    pub(crate) fn discard_running(&mut self) {
         self.running.fill((0.0, 0));
     }
 
-    /// How many ended.
+    /// Returns the number of finished episodes.
     pub fn count(&self) -> u64 {
         self.count
     }
 
-    /// The last hundred, oldest first.
+    /// Returns the last 100 episodes, oldest first.
     pub fn last(&self) -> impl ExactSizeIterator<Item = &Episode> {
         self.last.iter()
     }
 
-    /// The mean return of the last hundred; none before one ended.
+    /// Returns the mean return of the last 100 episodes; none before the first has ended.
     pub fn mean_return(&self) -> Option<f64> {
-        self.mean(|episode| Some(episode.earned))
+        self.mean(|episode| Some(episode.total_reward))
     }
 
-    /// Their mean length.
+    /// Returns the mean length of the last 100 episodes, in steps.
     pub fn mean_length(&self) -> Option<f64> {
         self.mean(|episode| Some(episode.length as f64))
     }
 
-    /// The share of successes among those that told.
+    /// Returns the success rate over the episodes that report `success`.
     pub fn success_rate(&self) -> Option<f64> {
         self.mean(|episode| episode.success.map(f64::from))
     }
 
     fn mean(&self, of: impl Fn(&Episode) -> Option<f64>) -> Option<f64> {
-        let told = self.last.iter().filter_map(of);
-        let (sum, count) = told.fold((0.0, 0), |(sum, count), number| (sum + number, count + 1));
+        let reported = self.last.iter().filter_map(of);
+        let (sum, count) = reported.fold((0.0, 0), |(sum, count), number| (sum + number, count + 1));
         (count > 0).then(|| sum / f64::from(count))
     }
 
@@ -94,7 +94,7 @@ impl Episodes {
         }
         words.push(self.last.len() as u64);
         for episode in &self.last {
-            words.push_number(episode.earned);
+            words.push_number(episode.total_reward);
             words.push(episode.length);
             words.push(episode.success.map_or(2, u64::from));
         }
@@ -110,9 +110,9 @@ impl Episodes {
             let (earned, length) = (words.finite()?, words.word()?);
             let success = match words.count(2)? {
                 2 => None,
-                told => Some(told == 1),
+                reported => Some(reported == 1),
             };
-            self.last.push_back(Episode { earned, length, success });
+            self.last.push_back(Episode { total_reward: earned, length, success });
         }
         Ok(())
     }

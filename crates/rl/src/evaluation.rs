@@ -1,4 +1,4 @@
-//! How good a policy is, on episodes that are always the same.
+//! Evaluation of policies on fixed episodes.
 
 use std::time::Instant;
 
@@ -8,72 +8,72 @@ use opendr_engine::{Error, Random, Result, ResultExt as _, Statistics};
 use opendr_kernels::Compute;
 use opendr_metrics::{Interval, wilson_interval};
 
-use crate::policy::{Acting, Policy, PolicyMemory};
+use crate::policy::{ActionMode, Policy, PolicyMemory};
 
-/// Which episodes a policy is measured on, and how it acts there.
+/// Episodes of an evaluation, and how the policy acts in them.
 #[derive(Debug, Clone, PartialEq, Params)]
 pub struct EvaluationProtocol {
-    /// How many episodes; episode `i` begins with the first seed plus `i`.
+    /// Number of episodes; episode `i` is reset with the seed `first_seed + i`.
     #[param(default = 100, range = 1..=1_000_000)]
     pub episodes: u64,
-    /// The seed of the first episode; far from those of trainings.
+    /// Seed of the first episode; far from the seeds of trainings.
     #[param(default = 1_000_000)]
     pub first_seed: u64,
-    /// Whether the policy takes its most likely actions.
+    /// Whether the policy takes its most likely actions instead of sampling.
     #[param(default = true)]
     pub deterministic: bool,
-    /// Where an episode is given up that neither terminates nor is truncated.
+    /// Steps after which an episode is ended if it neither terminates nor is truncated.
     #[param(default = 100_000, range = 1..=1_000_000_000)]
     pub max_steps: u64,
 }
 
-/// An episode that was measured.
+/// Statistics of an evaluated episode.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EvaluatedEpisode {
-    /// What it began with.
+    /// Seed of its reset.
     pub seed: u64,
-    /// The sum of its rewards.
-    pub earned: f64,
-    /// Its steps.
+    /// Return: the sum of its rewards.
+    pub total_reward: f64,
+    /// Number of steps.
     pub length: u64,
-    /// Whether it reached its goal, where that is known.
+    /// Whether it was a success; none if not reported.
     pub success: Option<bool>,
-    /// Whether it ended by itself, and not by a time limit.
+    /// Whether it terminated, as opposed to being truncated.
     pub terminated: bool,
 }
 
-/// A share of successes with what chance allows for.
+/// A success rate with its confidence interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SuccessRate {
-    /// The share.
+    /// Fraction of successes.
     pub rate: f64,
-    /// The 95 % interval of Wilson (1927).
+    /// 95 % confidence interval (Wilson, 1927).
     pub interval: [f64; 2],
-    /// Of how many episodes.
+    /// Number of episodes.
     pub episodes: u64,
 }
 
-/// What was measured.
+/// Results of an evaluation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EvaluationReport {
-    /// Every episode, in the order of their seeds.
+    /// All episodes, in order of seeds.
     pub episodes: Vec<EvaluatedEpisode>,
-    /// The mean return.
+    /// Mean return.
     pub mean_return: f64,
-    /// The deviation of returns, of the sample.
+    /// Sample standard deviation of the returns.
     pub std_return: f64,
-    /// The mean length.
+    /// Mean length, in steps.
     pub mean_length: f64,
-    /// The share of successes among the episodes that told; none where none told.
+    /// Success rate over the episodes that report success; none if none does.
     pub success: Option<SuccessRate>,
-    /// How long it took.
+    /// Wall-clock time, in seconds.
     pub seconds: f64,
 }
 
-/// Measures a policy; an episode is a success where the info of its last step has a `success` above 0.5.
+/// Evaluates a policy. An episode is a success if the info of its last step has a `success` above 0.5.
 ///
 /// # Errors
-/// `InvalidInput` for an environment of other spaces, else those of the environment, with the seed.
+/// `InvalidInput` for an environment of other spaces, and the errors of the environment, with the seed.
 pub fn evaluate(
     policy: &Policy,
     environment: &mut dyn Environment,
@@ -82,7 +82,7 @@ pub fn evaluate(
     let spec = environment.spec();
     if (&spec.observation, &spec.action) != (policy.observation(), policy.action()) {
         return Err(Error::invalid_input(format!(
-            "{} shows {} and takes {}, but the policy sees {} and gives {}; evaluate it in its own environment",
+            "{} has observations {} and actions {}, but the policy has {} and {}; evaluate it in an environment with its spaces",
             spec.id,
             spec.observation,
             spec.action,
@@ -90,41 +90,40 @@ pub fn evaluate(
             policy.action()
         )));
     }
-    let mut player = Player {
+    let mut controller = PolicyController {
         policy,
         compute: Compute::single(),
         memory: PolicyMemory::default(),
-        random: (!protocol.deterministic).then(|| Random::at([protocol.first_seed, 1])),
+        random: (!protocol.deterministic).then(|| Random::from_key([protocol.first_seed, 1])),
     };
     let success = |step: &Step| step.info.success();
-    evaluate_controller(&mut player, environment, protocol, &success)
+    evaluate_controller(&mut controller, environment, protocol, &success)
 }
 
-/// A policy in one environment.
-struct Player<'a> {
+/// A policy that acts in one environment.
+struct PolicyController<'a> {
     policy: &'a Policy,
     compute: Compute,
     memory: PolicyMemory,
-    /// None where it takes its most likely actions.
+    /// None for the most likely actions.
     random: Option<Random>,
 }
 
-impl Controller for Player<'_> {
+impl Controller for PolicyController<'_> {
     fn reset(&mut self) {
         self.memory.reset(0);
     }
 
     fn act(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()> {
-        let acting = self.random.as_mut().map_or(Acting::Deterministic, Acting::Sampled);
+        let acting = self.random.as_mut().map_or(ActionMode::Deterministic, ActionMode::Sampled);
         self.policy.act(&self.compute, observation, acting, &mut self.memory, action)
     }
 }
 
-/// Measures a controller. `success` tells from the last step of an
-/// episode whether it reached its goal.
+/// Evaluates a controller. `success` returns, from the last step of an episode, whether it was a success.
 ///
 /// # Errors
-/// Those of the environment and of the controller, with the seed.
+/// The errors of the environment and of the controller, with the seed.
 pub fn evaluate_controller(
     controller: &mut dyn Controller,
     environment: &mut dyn Environment,
@@ -142,21 +141,21 @@ pub fn evaluate_controller(
 }
 
 impl EvaluationReport {
-    /// The report of episodes that took `seconds`.
+    /// Computes the report of episodes that took `seconds` in total.
     pub fn of(episodes: Vec<EvaluatedEpisode>, seconds: f64) -> Self {
         let count = episodes.len() as f64;
         let mean = |of: &dyn Fn(&EvaluatedEpisode) -> f64| episodes.iter().map(of).sum::<f64>() / count;
-        let mean_return = mean(&|episode| episode.earned);
+        let mean_return = mean(&|episode| episode.total_reward);
         let variance =
-            mean(&|episode| (episode.earned - mean_return).powi(2)) * count / (count - 1.0).max(1.0);
-        let told: Vec<_> = episodes.iter().filter_map(|episode| episode.success).collect();
+            mean(&|episode| (episode.total_reward - mean_return).powi(2)) * count / (count - 1.0).max(1.0);
+        let reported: Vec<_> = episodes.iter().filter_map(|episode| episode.success).collect();
         Self {
             mean_return,
             std_return: variance.sqrt(),
             mean_length: mean(&|episode| episode.length as f64),
             success: SuccessRate::of(
-                told.iter().filter(|success| **success).count() as u64,
-                told.len() as u64,
+                reported.iter().filter(|success| **success).count() as u64,
+                reported.len() as u64,
             ),
             seconds,
             episodes,
@@ -182,14 +181,14 @@ fn run(
         earned += step.reward;
         if step.is_over() || length == max_steps {
             let (success, terminated) = (success(&step), step.terminated);
-            return Ok(EvaluatedEpisode { seed, earned, length, success, terminated });
+            return Ok(EvaluatedEpisode { seed, total_reward: earned, length, success, terminated });
         }
     }
-    Err(Error::internal("an episode of no steps"))
+    Err(Error::internal("an episode has no steps"))
 }
 
 impl SuccessRate {
-    /// The share of `successes` among `episodes`; none where there are no episodes.
+    /// Returns the rate of `successes` among `episodes`; none for 0 episodes.
     pub fn of(successes: u64, episodes: u64) -> Option<Self> {
         let Interval { value, low, high } = wilson_interval(successes, episodes)?;
         Some(Self { rate: value, interval: [low, high], episodes })
@@ -235,7 +234,7 @@ mod tests {
         let mut environment = opendr_simulation::make("CartPole-v1").unwrap();
         let protocol = EvaluationProtocol { episodes: 7, ..EvaluationProtocol::default() };
         let mut measure = || {
-            // Pushes against the lean of the pole.
+            // Pushes in the direction in which the pole leans.
             let mut act = |observation: &[f32], action: &mut [f32]| {
                 action[0] = f32::from(observation[2] + observation[3] > 0.0);
                 Ok(())

@@ -1,4 +1,4 @@
-//! A learner and its environments.
+//! The environments of a training and their current state.
 
 use opendr_engine::environment::{EnvironmentSpec, ResetOptions, Snapshot, StateReader};
 use opendr_engine::{Error, Random, Result, ResultExt as _};
@@ -7,34 +7,34 @@ use opendr_simulation::vector::{Autoreset, Batch, Seeds, VecEnvironment};
 use crate::episodes::Episodes;
 use crate::policy::{ObservationEncoder, check_finite};
 
-/// What a learner knows of the environments that it acts in: what they answered last, and what episodes earned.
+/// Current observations of the environments of a training, and statistics of their episodes.
 #[derive(Debug, Clone)]
 pub(crate) struct Interaction {
     pub batch: Batch,
     pub episodes: Episodes,
     /// Steps of all environments together.
     pub timesteps: u64,
-    /// The observations to act on next, encoded.
+    /// Current observations, encoded for the policy.
     pub encoded: Vec<f32>,
     size: usize,
 }
 
 impl Interaction {
-    /// Begins an episode in each of `environments`.
+    /// Resets all environments.
     pub fn begin(
         environments: &mut dyn VecEnvironment,
         encoder: &mut ObservationEncoder,
         seed: u64,
     ) -> Result<Self> {
         check(environments, encoder)?;
-        let mut interaction = Self::unbegun(environments.spec(), environments.count(), encoder);
+        let mut interaction = Self::before_reset(environments.spec(), environments.count(), encoder);
         let batch = &mut interaction.batch;
         environments.reset(Seeds::From(seed), &ResetOptions::new(), None, batch)?;
-        interaction.see(encoder)?;
+        interaction.update_observations(encoder)?;
         Ok(interaction)
     }
 
-    fn unbegun(spec: &EnvironmentSpec, count: usize, encoder: &ObservationEncoder) -> Self {
+    fn before_reset(spec: &EnvironmentSpec, count: usize, encoder: &ObservationEncoder) -> Self {
         Self {
             batch: Batch::new(spec, count),
             episodes: Episodes::new(count),
@@ -44,12 +44,12 @@ impl Interaction {
         }
     }
 
-    /// How many environments there are.
+    /// Returns the number of environments.
     pub fn count(&self) -> usize {
         self.batch.count()
     }
 
-    /// Takes a step in all environments and encodes what they show.
+    /// Takes a step in all environments and encodes the new observations.
     pub fn step(
         &mut self,
         environments: &mut dyn VecEnvironment,
@@ -61,7 +61,7 @@ impl Interaction {
         self.timesteps += self.count() as u64;
         if let Some(index) = self.batch.rewards.iter().position(|reward| !reward.is_finite()) {
             return Err(Error::invalid_input(format!(
-                "the reward of environment {index} is {} at time step {at}; repair the environment",
+                "the reward of environment {index} is {} at time step {at}; fix the environment",
                 self.batch.rewards[index]
             )));
         }
@@ -70,12 +70,12 @@ impl Interaction {
             last.context(|| format!("at time step {at}, where environment {index} ended an episode"))?;
         }
         self.episodes.add(&self.batch);
-        self.see(encoder)
+        self.update_observations(encoder)
     }
 
-    fn see(&mut self, encoder: &mut ObservationEncoder) -> Result<()> {
+    fn update_observations(&mut self, encoder: &mut ObservationEncoder) -> Result<()> {
         let at = self.timesteps;
-        // What is not finite must not reach the normaliser, where it would stay.
+        // Numbers that are not finite would stay in the moments of the normaliser.
         check_finite(&self.batch.observations, self.size)
             .and_then(|()| {
                 encoder.learn(&self.batch.observations);
@@ -89,7 +89,7 @@ impl Interaction {
         self.batch.terminated[index] || self.batch.truncated[index]
     }
 
-    /// The last observation of an episode that ended in environment `index`.
+    /// Returns the last observation of the episode that ended in environment `index`.
     pub fn final_observation(&self, index: usize) -> &[f32] {
         &self.batch.final_observations[index * self.size..(index + 1) * self.size]
     }
@@ -102,7 +102,7 @@ impl Interaction {
             .extend_numbers(self.batch.observations.iter().chain(&self.encoded).map(|&number| number.into()));
     }
 
-    /// What [`Self::save`] wrote of `environments`.
+    /// Reads what [`Self::save`] wrote, for `environments` of the same number.
     pub fn load(
         words: &mut StateReader<'_>,
         environments: &dyn VecEnvironment,
@@ -112,10 +112,10 @@ impl Interaction {
         let (count, own) = (words.word()?, environments.count());
         if count != own as u64 {
             return Err(Error::invalid_input(format!(
-                "the checkpoint is of a training in {count} environments, not {own}; make {count}"
+                "the checkpoint is from a training with {count} environments, not {own}; create {count}"
             )));
         }
-        let mut interaction = Self::unbegun(environments.spec(), own, encoder);
+        let mut interaction = Self::before_reset(environments.spec(), own, encoder);
         interaction.timesteps = words.word()?;
         interaction.episodes.load(words)?;
         for number in interaction.batch.observations.iter_mut().chain(&mut interaction.encoded) {
@@ -126,8 +126,8 @@ impl Interaction {
 }
 
 impl Interaction {
-    /// Brings environments back to their states; where they keep none, begins an episode in each, and answers false.
-    pub fn go_on(
+    /// Restores the states of the environments. Returns false, after a reset of all of them, if they have no snapshots.
+    pub fn resume(
         &mut self,
         states: &Snapshot,
         environments: &mut dyn VecEnvironment,
@@ -136,9 +136,9 @@ impl Interaction {
         if !states.id().is_empty() {
             return environments.restore(states).map(|()| true);
         }
-        let seeds = Seeds::From(Random::at([self.timesteps, self.count() as u64]).bits() >> 32);
+        let seeds = Seeds::From(Random::from_key([self.timesteps, self.count() as u64]).bits() >> 32);
         environments.reset(seeds, &ResetOptions::new(), None, &mut self.batch)?;
-        self.episodes.begin_anew();
+        self.episodes.discard_running();
         check_finite(&self.batch.observations, self.size)?;
         encoder.encode(&self.batch.observations, &mut self.encoded)?;
         Ok(false)
@@ -149,7 +149,7 @@ fn check(environments: &dyn VecEnvironment, encoder: &ObservationEncoder) -> Res
     let spec = environments.spec();
     if spec.observation != *encoder.space() {
         return Err(Error::invalid_input(format!(
-            "{} shows {}, but the policy was made for {}; make a policy for it",
+            "the observations of {} are {}, but those of the policy are {}; create a policy for this environment",
             spec.id,
             spec.observation,
             encoder.space()
@@ -158,7 +158,7 @@ fn check(environments: &dyn VecEnvironment, encoder: &ObservationEncoder) -> Res
     match environments.autoreset() {
         Autoreset::SameStep => Ok(()),
         other => Err(Error::invalid_input(format!(
-            "these environments begin anew by {other:?}; make them with Autoreset::SameStep, which tells how episodes ended"
+            "the environments use Autoreset::{other:?}; create them with Autoreset::SameStep, which reports how episodes end"
         ))),
     }
 }

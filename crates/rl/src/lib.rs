@@ -1,5 +1,33 @@
-//! Reinforcement learning and imitation for robots, on a processor: PPO with the semantics of Stable-Baselines3 on networks
-//! that are small, hand-batched, and the same bit for bit on any number of threads.
+//! Reinforcement learning and behaviour cloning of small policies on a CPU.
+//!
+//! The algorithms [`Ppo`], [`Sac`], [`Td3`] and [`Dqn`] follow Stable-Baselines3 in semantics, names and defaults. Networks are
+//! small, with gradients written by hand; results are the same bit for bit with any number of threads, and after a resumed
+//! training. [`clone_behaviour`] trains on demonstrations, [`evaluate`] measures a policy on fixed episodes,
+//! [`onnx_from_policy`] exports it and [`policy_from_stable_baselines3`] imports one. [`PpoLearner`] and its siblings are policies as
+//! learners, which every surface of OpenDR can load and train.
+//!
+//! Environments, their vectors and wrappers are in `opendr-simulation`, the trait `Environment` and spaces in `opendr-engine`, layers
+//! and optimisers in `opendr-kernels`.
+//!
+//! Begin with [`Ppo`] and the trait [`Algorithm`]:
+//!
+//! ```
+//! use std::ops::ControlFlow;
+//!
+//! use opendr_rl::{Algorithm as _, EvaluationProtocol, Ppo, PpoConfig, evaluate};
+//! use opendr_simulation::vector::{Autoreset, VectorOptions};
+//!
+//! let options = VectorOptions { autoreset: Autoreset::SameStep, ..VectorOptions::new(4) };
+//! let mut environments = opendr_simulation::make_vec("CartPole-v1", options)?;
+//! let config = PpoConfig { n_steps: 64, ..PpoConfig::default() };
+//! let mut ppo = Ppo::new(&config, environments.spec())?;
+//! ppo.train(&mut *environments, 1024, &mut |_| Ok(ControlFlow::Continue(())))?;
+//!
+//! let protocol = EvaluationProtocol { episodes: 5, ..EvaluationProtocol::default() };
+//! let report = evaluate(ppo.policy(), &mut *opendr_simulation::make("CartPole-v1")?, &protocol)?;
+//! assert_eq!(report.episodes.len(), 5);
+//! # Ok::<_, opendr_engine::Error>(())
+//! ```
 
 mod algorithm;
 mod behaviour_cloning;
@@ -22,7 +50,7 @@ mod td3;
 mod training;
 mod twin_critics;
 
-pub use algorithm::{Algorithm, Event, Report};
+pub use algorithm::{Algorithm, IterationEvent, Report};
 pub use behaviour_cloning::{BehaviourCloningConfig, Demonstrations, clone_behaviour};
 pub use dqn::{Dqn, DqnConfig};
 pub use episodes::{Episode, Episodes};
@@ -37,8 +65,8 @@ pub use learner::{
 pub use off_policy::OffPolicyConfig;
 pub use onnx::onnx_from_policy;
 pub use policy::{
-    Acting, Beginning, Bounds, Head, Hidden, NetworkConfig, ObservationEncoder, ObservationNormaliser,
-    PictureNetwork, Policy, PolicyMemory,
+    ActionMode, ActivationFn, Bounds, Head, ImageNetwork, NetworkConfig, ObservationEncoder,
+    ObservationNormaliser, ParameterInit, Policy, PolicyMemory,
 };
 pub use ppo::{Ppo, PpoConfig, Trajectory, generalised_advantages};
 pub use preset::Preset;
@@ -47,4 +75,4 @@ pub use saved_state::SavedState;
 pub use schedule::Schedule;
 pub use stable_baselines3::policy_from_stable_baselines3;
 pub use td3::{ActionNoise, Td3, Td3Config};
-pub use training::{POLICY, fit_policy};
+pub use training::{POLICY_FILE, fit_policy};

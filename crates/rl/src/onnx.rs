@@ -1,38 +1,41 @@
-//! Policies as ONNX models, for runtimes that know nothing of learning.
+//! Export of policies to ONNX.
 
 use opendr_engine::{Error, Result};
 use opendr_kernels::{Activation, Gru, Layer, Network};
-use opendr_onnx::{Array, Builder, Data, Kind, Operator, Wire, bytes_from_model, model_from_graph};
+use opendr_onnx::{
+    Array, Builder, Data, ElementType, GraphTensor, Operator, bytes_from_model, model_from_graph,
+};
 
 use crate::policy::{Bounds, EPSILON, Head, ObservationNormaliser, Part, PartKind, Policy};
 
-/// The bytes of an ONNX model of a policy's most likely actions, with everything before and behind its network: the
-/// normaliser, pictures to [0, 1], the largest score, bounds of actions.
+/// Returns the bytes of an ONNX model of a policy's most likely actions, with pre- and post-processing: normalisation of
+/// observations, scaling of images to [0, 1], argmax, bounds of actions.
 ///
-/// Its input `observation` is `[batch, numbers]`, as the environment gives them. Its output `action` is `[batch, numbers]`, as the
-/// environment takes them (int64 for choices and digits); its output `network` is what the network gave: scores, or means before
-/// they are squashed or clipped. A recurrent policy has the input `state`, `[batch, numbers]`, 0 where an episode begins, and the
-/// output `next_state`.
+/// The input `observation` is `[batch, numbers]`, as the environment returns it. The output `action` is `[batch, numbers]`, as the
+/// environment takes it (int64 for discrete and binary actions). The output `network` holds the raw outputs of the network: logits, or
+/// means before squashing or clipping. A recurrent policy also has the input `state`, `[batch, numbers]`, zero at the start of an
+/// episode, and the output `next_state`.
 ///
 /// # Errors
-/// `Unsupported` for observations with choices, or policies with layer normalisation.
+/// `Unsupported` for discrete observations and for layer normalisation.
 pub fn onnx_from_policy(policy: &Policy) -> Result<Vec<u8>> {
     let mut graph = Graph { builder: Builder::default() };
     graph.builder.reserve("action");
     graph.builder.reserve("network");
     graph.builder.reserve("next_state");
     let raw = policy.encoder.raw_len();
-    let observation = graph.builder.input("observation", Kind::Float, vec![None, Some(raw)], &["batch", ""]);
+    let observation =
+        graph.builder.input("observation", ElementType::Float, vec![None, Some(raw)], &["batch", ""]);
     let features = graph.features(policy, &observation)?;
     let first = policy.extractor.parameters();
     let parameters = &policy.parameters[first..first + policy.trunk.parameters()];
     let (of_gru, of_network) = parameters.split_at(policy.trunk.recurrent_parameters());
     let features = match policy.trunk.gru() {
         None => features,
-        Some(gru) => graph.remembered(gru, of_gru, &features)?,
+        Some(gru) => graph.recurrent_unit(gru, of_gru, &features)?,
     };
     let outputs = graph.network(policy.trunk.network(), of_network, features)?;
-    graph.builder.output("network", &outputs, "what the network gives", &["batch", ""])?;
+    graph.builder.output("network", &outputs, "the raw output of the network", &["batch", ""])?;
     let action = graph.action(&policy.head, &outputs)?;
     graph.builder.output("action", &action, "the most likely action", &["batch", ""])?;
     Ok(bytes_from_model(&model_from_graph(graph.builder.finish("policy"))))
@@ -43,12 +46,12 @@ struct Graph {
 }
 
 impl Graph {
-    fn add(&mut self, operator: Operator, inputs: &[&Wire], width: usize) -> Result<Wire> {
-        self.builder.add("", operator, inputs, Kind::Float, vec![None, Some(width)])
+    fn add(&mut self, operator: Operator, inputs: &[&GraphTensor], width: usize) -> Result<GraphTensor> {
+        self.builder.add("", operator, inputs, ElementType::Float, vec![None, Some(width)])
     }
 
-    /// What the network behind the parts of an observation takes.
-    fn features(&mut self, policy: &Policy, observation: &Wire) -> Result<Wire> {
+    /// Adds the encoding of an observation and the networks of its images. Returns the features.
+    fn features(&mut self, policy: &Policy, observation: &GraphTensor) -> Result<GraphTensor> {
         let encoder = &policy.encoder;
         let (mut features, mut number) = (Vec::new(), 0);
         for (part, (_, network)) in encoder.parts().iter().zip(policy.extractor.parts()) {
@@ -62,20 +65,21 @@ impl Graph {
                     number += part.raw.len();
                     self.normalised(raw, normaliser, number - part.raw.len(), part.raw.len())?
                 }
-                (PartKind::Picture { low, scale, .. }, _) => {
+                (PartKind::Image { low, scale, .. }, _) => {
                     let width = part.raw.len();
-                    let shifted = self.add(Operator::new("Sub"), &[&raw, &Wire::scalar(*low)], width)?;
-                    self.add(Operator::new("Mul"), &[&shifted, &Wire::scalar(*scale)], width)?
+                    let shifted =
+                        self.add(Operator::new("Sub"), &[&raw, &GraphTensor::scalar(*low)], width)?;
+                    self.add(Operator::new("Mul"), &[&shifted, &GraphTensor::scalar(*scale)], width)?
                 }
                 (PartKind::Choices(..), _) => {
                     return Err(Error::unsupported(
-                        "observations with choices have no ONNX form here; show them as numbers",
+                        "policies with discrete observations cannot be exported to ONNX; use a box of numbers",
                     ));
                 }
             };
             features.push(match (network, &part.kind) {
-                (Some((network, range)), PartKind::Picture { shape, .. }) => {
-                    self.pictures(network, &policy.parameters[range], *shape, encoded)?
+                (Some((network, range)), PartKind::Image { shape, .. }) => {
+                    self.image_network(network, &policy.parameters[range], *shape, encoded)?
                 }
                 _ => encoded,
             });
@@ -89,19 +93,19 @@ impl Graph {
         }
     }
 
-    fn slice(&mut self, observation: &Wire, part: &Part) -> Result<Wire> {
-        let ends = [part.raw.start as i64, part.raw.end as i64].map(|end| Wire::ints([end]));
-        let inputs = [observation, &ends[0], &ends[1], &Wire::ints([1])];
+    fn slice(&mut self, observation: &GraphTensor, part: &Part) -> Result<GraphTensor> {
+        let ends = [part.raw.start as i64, part.raw.end as i64].map(|end| GraphTensor::ints([end]));
+        let inputs = [observation, &ends[0], &ends[1], &GraphTensor::ints([1])];
         self.add(Operator::new("Slice"), &inputs, part.raw.len())
     }
 
     fn normalised(
         &mut self,
-        raw: Wire,
+        raw: GraphTensor,
         normaliser: &ObservationNormaliser,
         first: usize,
         width: usize,
-    ) -> Result<Wire> {
+    ) -> Result<GraphTensor> {
         let moments = &normaliser.moments;
         let mean = moments.mean()[first..first + width].iter().map(|mean| *mean as f32);
         let variance = moments.variance()[first..first + width].iter();
@@ -110,16 +114,25 @@ impl Graph {
         let shifted = self.add(Operator::new("Sub"), &[&raw, &mean], width)?;
         let scaled = self.add(Operator::new("Div"), &[&shifted, &deviation], width)?;
         let clip = normaliser.clip;
-        self.add(Operator::new("Clip"), &[&scaled, &Wire::scalar(-clip), &Wire::scalar(clip)], width)
+        self.add(
+            Operator::new("Clip"),
+            &[&scaled, &GraphTensor::scalar(-clip), &GraphTensor::scalar(clip)],
+            width,
+        )
     }
 
-    /// What a recurrent unit makes of features and `state`, as [`Gru`] has it.
-    fn remembered(&mut self, gru: &Gru, parameters: &[f32], features: &Wire) -> Result<Wire> {
+    /// Adds a recurrent unit on features and `state`, as [`Gru`] computes it.
+    fn recurrent_unit(
+        &mut self,
+        gru: &Gru,
+        parameters: &[f32],
+        features: &GraphTensor,
+    ) -> Result<GraphTensor> {
         let (inputs, size) = (gru.inputs(), gru.size());
-        let state = self.builder.input("state", Kind::Float, vec![None, Some(size)], &["batch", ""]);
+        let state = self.builder.input("state", ElementType::Float, vec![None, Some(size)], &["batch", ""]);
         let (weights, rest) = parameters.split_at(3 * size * inputs);
         let (recurrent, biases) = rest.split_at(3 * size * size);
-        let mut sums = |x: &Wire, weights: &[f32], biases: &[f32]| {
+        let mut sums = |x: &GraphTensor, weights: &[f32], biases: &[f32]| {
             let weights = constant(vec![weights.len() / (3 * size), 3 * size], weights)?;
             let biases = constant(vec![3 * size], biases)?;
             self.add(Operator::new("Gemm"), &[x, &weights, &biases], 3 * size)
@@ -128,9 +141,9 @@ impl Graph {
         let of_state = sums(&state, recurrent, &biases[3 * size..])?;
         let mut gates = Vec::new();
         for gate in 0..3 {
-            let ends = [gate, gate + 1].map(|end| Wire::ints([(end * size) as i64]));
-            let mut own = |of: &Wire| {
-                let inputs = [of, &ends[0], &ends[1], &Wire::ints([1])];
+            let ends = [gate, gate + 1].map(|end| GraphTensor::ints([(end * size) as i64]));
+            let mut own = |of: &GraphTensor| {
+                let inputs = [of, &ends[0], &ends[1], &GraphTensor::ints([1])];
                 self.add(Operator::new("Slice"), &inputs, size)
             };
             let (of_features, mut of_state) = (own(&of_features)?, own(&of_state)?);
@@ -142,36 +155,36 @@ impl Graph {
             gates.push(self.activation(activation, sum)?);
         }
         let [_, kept, candidate] = &gates[..] else {
-            return Err(Error::internal("a recurrent unit has three gates"));
+            return Err(Error::internal("a recurrent unit without three gates"));
         };
         // (1 - z) n + z h is n + z (h - n).
         let change = self.add(Operator::new("Sub"), &[&state, candidate], size)?;
         let change = self.add(Operator::new("Mul"), &[kept, &change], size)?;
         let next = self.add(Operator::new("Add"), &[candidate, &change], size)?;
-        self.builder.output("next_state", &next, "what is remembered", &["batch", ""])?;
+        self.builder.output("next_state", &next, "the next recurrent state", &["batch", ""])?;
         Ok(next)
     }
 
-    /// A picture through convolutions, and flat again.
-    fn pictures(
+    /// Adds the convolutions of an image and flattens the result.
+    fn image_network(
         &mut self,
         network: &Network,
         parameters: &[f32],
         shape: [usize; 3],
-        flat: Wire,
-    ) -> Result<Wire> {
+        flat: GraphTensor,
+    ) -> Result<GraphTensor> {
         let sizes = shape.map(|size| size as i64);
-        let reshape = Wire::ints([-1, sizes[0], sizes[1], sizes[2]]);
+        let reshape = GraphTensor::ints([-1, sizes[0], sizes[1], sizes[2]]);
         let dims = vec![None, Some(shape[0]), Some(shape[1]), Some(shape[2])];
-        let picture =
-            self.builder.add("", Operator::new("Reshape"), &[&flat, &reshape], Kind::Float, dims)?;
-        self.network(network, parameters, picture)
+        let image =
+            self.builder.add("", Operator::new("Reshape"), &[&flat, &reshape], ElementType::Float, dims)?;
+        self.network(network, parameters, image)
     }
 
-    fn network(&mut self, network: &Network, parameters: &[f32], from: Wire) -> Result<Wire> {
+    fn network(&mut self, network: &Network, parameters: &[f32], from: GraphTensor) -> Result<GraphTensor> {
         let mut wire = from;
         for (index, layer) in network.layers().iter().enumerate() {
-            let own = &parameters[network.parameters_of(index)];
+            let own = &parameters[network.parameter_range(index)];
             wire = match layer {
                 Layer::Dense(dense) => {
                     let (inputs, outputs) = (dense.inputs(), dense.outputs());
@@ -198,19 +211,19 @@ impl Graph {
                     let [_, height, width] = convolution.output_shape();
                     let dims = vec![None, Some(outputs), Some(height), Some(width)];
                     let inputs = [&wire, &weights, &biases];
-                    let convolved = self.builder.add("", operator, &inputs, Kind::Float, dims)?;
+                    let convolved = self.builder.add("", operator, &inputs, ElementType::Float, dims)?;
                     self.activation(convolution.activation(), convolved)?
                 }
                 Layer::Activation(activation, _) => self.activation(*activation, wire)?,
                 Layer::LayerNorm(_) => {
-                    return Err(Error::unsupported("a layer normalisation has no ONNX form here"));
+                    return Err(Error::unsupported("layer normalisation cannot be exported to ONNX"));
                 }
             };
         }
         Ok(wire)
     }
 
-    fn activation(&mut self, activation: Activation, wire: Wire) -> Result<Wire> {
+    fn activation(&mut self, activation: Activation, wire: GraphTensor) -> Result<GraphTensor> {
         let name = match activation {
             Activation::Identity => return Ok(wire),
             Activation::Relu => "Relu",
@@ -218,10 +231,10 @@ impl Graph {
             Activation::Sigmoid => "Sigmoid",
         };
         let dims = wire.dims().to_vec();
-        self.builder.add("", Operator::new(name), &[&wire], Kind::Float, dims)
+        self.builder.add("", Operator::new(name), &[&wire], ElementType::Float, dims)
     }
 
-    fn action(&mut self, head: &Head, outputs: &Wire) -> Result<Wire> {
+    fn action(&mut self, head: &Head, outputs: &GraphTensor) -> Result<GraphTensor> {
         let axes = head.action_len();
         match head {
             Head::Categorical { counts, start } => {
@@ -232,8 +245,8 @@ impl Graph {
                     let own = match counts.len() {
                         1 => outputs.clone(),
                         _ => {
-                            let ends = [begin as i64, end as i64].map(|end| Wire::ints([end]));
-                            let inputs = [outputs, &ends[0], &ends[1], &Wire::ints([1])];
+                            let ends = [begin as i64, end as i64].map(|end| GraphTensor::ints([end]));
+                            let inputs = [outputs, &ends[0], &ends[1], &GraphTensor::ints([1])];
                             self.add(Operator::new("Slice"), &inputs, end - begin)?
                         }
                     };
@@ -245,17 +258,18 @@ impl Graph {
                     several => {
                         let (several, dims): (Vec<_>, _) = (several.iter().collect(), vec![None, Some(axes)]);
                         let concat = Operator::new("Concat").int("axis", 1);
-                        self.builder.add("", concat, &several, Kind::Int, dims)
+                        self.builder.add("", concat, &several, ElementType::Int, dims)
                     }
                 }
             }
             Head::Greedy { start, .. } => self.largest(outputs, *start),
             Head::Binary(_) => {
                 let dims = vec![None, Some(axes)];
-                let (above, zero) = (Operator::new("Greater"), Wire::scalar(0.0));
-                let digits = self.builder.add("", above, &[outputs, &zero], Kind::Bool, dims.clone())?;
-                let cast = Operator::new("Cast").int("to", Kind::Int.data_type() as i64);
-                self.builder.add("", cast, &[&digits], Kind::Int, dims)
+                let (above, zero) = (Operator::new("Greater"), GraphTensor::scalar(0.0));
+                let digits =
+                    self.builder.add("", above, &[outputs, &zero], ElementType::Bool, dims.clone())?;
+                let cast = Operator::new("Cast").int("to", ElementType::Int.data_type() as i64);
+                self.builder.add("", cast, &[&digits], ElementType::Int, dims)
             }
             Head::Gaussian(bounds) => self.clipped(outputs, bounds),
             Head::Squashed(bounds) => {
@@ -263,8 +277,8 @@ impl Graph {
                 self.stretched(&squashed, bounds)
             }
             Head::SquashedGaussian(bounds) => {
-                let end = Wire::ints([axes as i64]);
-                let inputs = [outputs, &Wire::ints([0]), &end, &Wire::ints([1])];
+                let end = GraphTensor::ints([axes as i64]);
+                let inputs = [outputs, &GraphTensor::ints([0]), &end, &GraphTensor::ints([1])];
                 let means = self.add(Operator::new("Slice"), &inputs, axes)?;
                 let squashed = self.activation(Activation::Tanh, means)?;
                 self.stretched(&squashed, bounds)
@@ -272,20 +286,20 @@ impl Graph {
         }
     }
 
-    fn largest(&mut self, scores: &Wire, start: i32) -> Result<Wire> {
+    fn largest(&mut self, scores: &GraphTensor, start: i32) -> Result<GraphTensor> {
         let operator = Operator::new("ArgMax").int("axis", 1).int("keepdims", 1);
         let dims = vec![None, Some(1)];
-        let place = self.builder.add("", operator, &[scores], Kind::Int, dims.clone())?;
+        let place = self.builder.add("", operator, &[scores], ElementType::Int, dims.clone())?;
         match start {
             0 => Ok(place),
             start => {
-                let start = Wire::ints([start.into()]);
-                self.builder.add("", Operator::new("Add"), &[&place, &start], Kind::Int, dims)
+                let start = GraphTensor::ints([start.into()]);
+                self.builder.add("", Operator::new("Add"), &[&place, &start], ElementType::Int, dims)
             }
         }
     }
 
-    fn clipped(&mut self, actions: &Wire, bounds: &Bounds) -> Result<Wire> {
+    fn clipped(&mut self, actions: &GraphTensor, bounds: &Bounds) -> Result<GraphTensor> {
         let width = bounds.low.len();
         let (low, high) = (row(bounds.low.clone())?, row(bounds.high.clone())?);
         let above = self.add(Operator::new("Max"), &[actions, &low], width)?;
@@ -293,23 +307,25 @@ impl Graph {
     }
 
     /// As [`Bounds::stretch`].
-    fn stretched(&mut self, actions: &Wire, bounds: &Bounds) -> Result<Wire> {
+    fn stretched(&mut self, actions: &GraphTensor, bounds: &Bounds) -> Result<GraphTensor> {
         let width = bounds.low.len();
         let both = bounds.low.iter().zip(&bounds.high);
         let half = row(both.map(|(low, high)| 0.5 * (high - low)).collect())?;
-        let above = self.add(Operator::new("Add"), &[actions, &Wire::scalar(1.0)], width)?;
+        let above = self.add(Operator::new("Add"), &[actions, &GraphTensor::scalar(1.0)], width)?;
         let scaled = self.add(Operator::new("Mul"), &[&above, &half], width)?;
         let moved = self.add(Operator::new("Add"), &[&scaled, &row(bounds.low.clone())?], width)?;
         self.clipped(&moved, bounds)
     }
 }
 
-fn row(numbers: Vec<f32>) -> Result<Wire> {
+fn row(numbers: Vec<f32>) -> Result<GraphTensor> {
     let dims = vec![1, numbers.len()];
     constant(dims, &numbers)
 }
 
-fn constant(dims: Vec<usize>, numbers: &[f32]) -> Result<Wire> {
+fn constant(dims: Vec<usize>, numbers: &[f32]) -> Result<GraphTensor> {
     let array = Array::new(dims, Data::Float(numbers.to_vec()));
-    array.map(Wire::constant).ok_or_else(|| Error::internal("a constant of another size"))
+    array
+        .map(GraphTensor::constant)
+        .ok_or_else(|| Error::internal("the size of a constant does not match its shape"))
 }

@@ -1,12 +1,12 @@
-//! Settings that are known to solve an environment.
+//! Hyperparameters known to solve an environment.
 
-/// Settings of a learner and what they are made for.
+/// Settings of an algorithm for one environment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Preset<C> {
-    /// How many environments are stepped together.
+    /// Number of parallel environments.
     pub environments: usize,
-    /// Steps of a whole training.
+    /// Steps of a whole training, over all environments.
     pub timesteps: u64,
-    /// The settings of the learner.
+    /// Settings of the algorithm.
     pub config: C,
 }

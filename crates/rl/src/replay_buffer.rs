@@ -1,4 +1,4 @@
-//! What off-policy learners remember.
+//! Replay buffer of off-policy methods.
 
 use opendr_engine::environment::StateReader;
 use opendr_engine::{Error, Random, Result};
@@ -6,7 +6,7 @@ use opendr_engine::{Error, Random, Result};
 use crate::policy::ObservationEncoder;
 use crate::saved_state::SavedState;
 
-/// Steps of the past, of which the oldest make way; observations are kept as they were shown.
+/// Ring buffer of past steps; the oldest are overwritten. Observations are stored as the environment returns them.
 #[derive(Debug, Clone)]
 pub(crate) struct ReplayBuffer {
     capacity: usize,
@@ -17,14 +17,14 @@ pub(crate) struct ReplayBuffer {
     next_observations: Vec<f32>,
     actions: Vec<f32>,
     rewards: Vec<f32>,
-    /// 0 where the episode terminated, else 1.
+    /// 0 for a terminal step, else 1.
     continues: Vec<f32>,
 }
 
-/// Steps that were drawn; memory that is used again.
+/// A batch of sampled steps; its memory is reused.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Transitions {
-    /// As networks take them, once they are [encoded](Self::encode).
+    /// Inputs of the networks, once [encoded](Self::encode).
     pub observations: Vec<f32>,
     pub next_observations: Vec<f32>,
     raw: [Vec<f32>; 2],
@@ -33,7 +33,7 @@ pub(crate) struct Transitions {
     pub continues: Vec<f32>,
 }
 
-/// One step.
+/// One step of one environment.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Transition<'a> {
     pub observation: &'a [f32],
@@ -43,10 +43,10 @@ pub(crate) struct Transition<'a> {
     pub terminated: bool,
 }
 
-/// No buffer has more numbers than this: 8 GiB.
-const MOST_NUMBERS: usize = 1 << 31;
+/// Maximum numbers in a buffer: 8 GiB.
+const MAX_NUMBERS: usize = 1 << 31;
 
-/// The rows of a saved buffer.
+/// Names of the arrays of a saved buffer.
 pub(crate) const ROWS: [&str; 5] = [
     "replay_observations",
     "replay_next_observations",
@@ -56,12 +56,12 @@ pub(crate) const ROWS: [&str; 5] = [
 ];
 
 impl ReplayBuffer {
-    /// Room for `capacity` steps of so many numbers of observations and actions.
+    /// Allocates room for `capacity` steps, each with `observation` and `action` numbers.
     pub fn new(capacity: usize, observation: usize, action: usize) -> Result<Self> {
         let numbers = (2 * observation + action + 2).checked_mul(capacity);
-        if capacity == 0 || numbers.is_none_or(|numbers| numbers > MOST_NUMBERS) {
+        if capacity == 0 || numbers.is_none_or(|numbers| numbers > MAX_NUMBERS) {
             return Err(Error::invalid_param(format!(
-                "buffer_size = {capacity} steps of {observation} and {action} numbers; give at least 1, and at most {MOST_NUMBERS} numbers"
+                "buffer_size = {capacity} steps of {observation} + {action} numbers; set at least 1 step and at most {MAX_NUMBERS} numbers"
             )));
         }
         let zeros = |width: usize| vec![0.0; capacity * width];
@@ -94,18 +94,18 @@ impl ReplayBuffer {
         self.len = self.capacity.min(self.len + 1);
     }
 
-    /// Draws `count` steps, each as likely as the others.
-    pub fn sample(&self, count: usize, random: &mut Random, drawn: &mut Transitions) {
+    /// Samples `count` steps uniformly, with replacement, into `batch`.
+    pub fn sample(&self, count: usize, random: &mut Random, batch: &mut Transitions) {
         let [observation, action] = self.widths;
-        drawn.clear();
+        batch.clear();
         for _ in 0..count {
             let at = random.below(self.len);
             let row = at * observation..(at + 1) * observation;
-            drawn.raw[0].extend_from_slice(&self.observations[row.clone()]);
-            drawn.raw[1].extend_from_slice(&self.next_observations[row]);
-            drawn.actions.extend_from_slice(&self.actions[at * action..(at + 1) * action]);
-            drawn.rewards.push(self.rewards[at]);
-            drawn.continues.push(self.continues[at]);
+            batch.raw[0].extend_from_slice(&self.observations[row.clone()]);
+            batch.raw[1].extend_from_slice(&self.next_observations[row]);
+            batch.actions.extend_from_slice(&self.actions[at * action..(at + 1) * action]);
+            batch.rewards.push(self.rewards[at]);
+            batch.continues.push(self.continues[at]);
         }
     }
 
@@ -133,7 +133,7 @@ impl ReplayBuffer {
 }
 
 impl Transitions {
-    /// Encodes what was drawn, with the normaliser as it is now.
+    /// Encodes the sampled observations with the current moments of the normaliser.
     pub fn encode(&mut self, encoder: &ObservationEncoder) -> Result<()> {
         let Self { observations, next_observations, raw, rewards, .. } = self;
         for (raw, encoded) in raw.iter().zip([observations, next_observations]) {
@@ -141,6 +141,20 @@ impl Transitions {
             encoder.encode(raw, encoded)?;
         }
         Ok(())
+    }
+
+    /// Writes the targets of the values: reward plus discounted value of the next step, which counts 0 after a terminal step.
+    pub fn bellman_targets(
+        &self,
+        gamma: f32,
+        next_values: impl Iterator<Item = f32>,
+        targets: &mut Vec<f32>,
+    ) {
+        let steps = self.rewards.iter().zip(&self.continues);
+        targets.clear();
+        targets.extend(
+            steps.zip(next_values).map(|((reward, continues), value)| reward + continues * gamma * value),
+        );
     }
 
     fn clear(&mut self) {
@@ -175,22 +189,22 @@ mod tests {
     }
 
     #[test]
-    fn the_newest_steps_are_drawn_whole() {
-        let (buffer, mut random, mut drawn) = (filled(7), Random::new(1), Transitions::default());
-        buffer.sample(500, &mut random, &mut drawn);
-        let mut seen = [0; 7];
+    fn samples_are_whole_steps_among_the_newest() {
+        let (buffer, mut random, mut batch) = (filled(7), Random::new(1), Transitions::default());
+        buffer.sample(500, &mut random, &mut batch);
+        let mut counts = [0; 7];
         for at in 0..500 {
-            let number = drawn.raw[0][2 * at];
-            seen[number as usize] += 1;
-            assert_eq!(drawn.raw[1][2 * at], number + 1.0);
-            assert_eq!((drawn.actions[at], drawn.rewards[at]), (10.0 * number, 100.0 * number));
-            assert_eq!(drawn.continues[at], number % 2.0);
+            let number = batch.raw[0][2 * at];
+            counts[number as usize] += 1;
+            assert_eq!(batch.raw[1][2 * at], number + 1.0);
+            assert_eq!((batch.actions[at], batch.rewards[at]), (10.0 * number, 100.0 * number));
+            assert_eq!(batch.continues[at], number % 2.0);
         }
-        assert!(seen[..2] == [0, 0] && seen[2..].iter().all(|count| *count > 60), "{seen:?}");
+        assert!(counts[..2] == [0, 0] && counts[2..].iter().all(|count| *count > 60), "{counts:?}");
     }
 
     #[test]
-    fn comes_back_from_a_state() {
+    fn is_restored_from_a_saved_state() {
         let buffer = filled(3);
         let mut state = SavedState::new("test", Snapshot::new("none"));
         buffer.save(&mut state);

@@ -1,11 +1,11 @@
-//! What a learner writes to go on later, bit for bit.
+//! The saved state of a training, from which it resumes bit for bit.
 
 use opendr_engine::environment::{Snapshot, StateReader};
 use opendr_engine::{Error, Random, Result};
 use opendr_kernels::Adam;
 use serde::{Deserialize, Serialize};
 
-/// Words, long rows of numbers, and the states of environments: everything that decides the future of a training.
+/// State of a training: words, arrays of numbers, and the states of environments.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SavedState {
     pub(crate) words: Snapshot,
@@ -13,7 +13,7 @@ pub struct SavedState {
     environments: Snapshot,
 }
 
-/// What of it is JSON; numbers are words there, so that they keep every bit.
+/// The JSON part of a state. Numbers are stored as words, which keep every bit.
 #[derive(Serialize, Deserialize)]
 struct Record {
     words: Snapshot,
@@ -23,12 +23,12 @@ struct Record {
 const STATE: &str = "state.json";
 
 impl SavedState {
-    /// Still empty, of the learner called `name` and these environments.
+    /// Creates an empty state of the algorithm `name` with the states of its environments.
     pub(crate) fn new(name: &str, environments: Snapshot) -> Self {
         Self { words: Snapshot::new(name), arrays: Vec::new(), environments }
     }
 
-    /// The states of environments.
+    /// Returns the states of the environments.
     pub fn environments(&self) -> &Snapshot {
         &self.environments
     }
@@ -43,17 +43,17 @@ impl SavedState {
         self.add(names[1], &adam.second);
     }
 
-    /// Copies the row called `name` into one of the same length.
+    /// Copies the array `name` into `numbers`, of the same length.
     pub(crate) fn fill(&self, name: &str, numbers: &mut [f32]) -> Result<()> {
-        let found = self.arrays.iter().find(|(own, _)| *own == name).map_or(&[][..], |(_, row)| row);
-        if found.len() != numbers.len() {
+        let array = self.arrays.iter().find(|(own, _)| *own == name).map_or(&[][..], |(_, row)| row);
+        if array.len() != numbers.len() {
             return Err(Error::invalid_input(format!(
-                "the checkpoint has {} numbers in {name}, this learner {}; make it with the same parameters",
-                found.len(),
+                "the checkpoint has {} numbers in {name}, this algorithm {}; create it with the same parameters",
+                array.len(),
                 numbers.len()
             )));
         }
-        numbers.copy_from_slice(found);
+        numbers.copy_from_slice(array);
         Ok(())
     }
 
@@ -68,36 +68,35 @@ impl SavedState {
         self.fill(names[1], &mut adam.second)
     }
 
-    /// Names and bytes of the files that hold it: JSON, and little-endian numbers for each row.
+    /// Returns the names and bytes of the files of the state: JSON, and little-endian `f32` for each array.
     ///
     /// # Errors
-    /// `Internal` where words have no JSON form.
+    /// `Internal` when the words cannot be written as JSON.
     pub fn files(&self) -> Result<Vec<(String, Vec<u8>)>> {
         let record = Record { words: self.words.clone(), environments: self.environments.clone() };
         let json = serde_json::to_vec(&record)
-            .map_err(|error| Error::internal("a state has no JSON form").with_source(error))?;
+            .map_err(|error| Error::internal("the state cannot be written as JSON").with_source(error))?;
         let rows = self.arrays.iter().map(|(name, row)| {
             let bytes = row.iter().flat_map(|number| number.to_le_bytes());
-            (file_of(name), bytes.collect())
+            (file_name(name), bytes.collect())
         });
         Ok(std::iter::once((STATE.to_owned(), json)).chain(rows).collect())
     }
 
-    /// The state in the files that [`Self::files`] gave, of a learner that has the rows called `names`; `read` gives the bytes
-    /// of a file.
+    /// Reads the state from the files of [`Self::files`], with the arrays `names`; `read` returns the bytes of a file.
     ///
     /// # Errors
-    /// `Format` when a file is damaged, and those of `read`.
+    /// `Format` for a damaged file, and the errors of `read`.
     pub fn from_files(read: &dyn Fn(&str) -> Result<Vec<u8>>, names: &[&'static str]) -> Result<Self> {
         let Record { words, environments } = serde_json::from_slice(&read(STATE)?).map_err(|error| {
-            Error::format("the state of a training is not what is wanted").with_source(error)
+            Error::format(format!("{STATE} is not the state of a training")).with_source(error)
         })?;
         let array = |name: &&'static str| -> Result<_> {
-            let bytes = read(&file_of(name))?;
+            let bytes = read(&file_name(name))?;
             let (numbers, rest) = bytes.as_chunks::<4>();
             match rest {
                 [] => Ok((*name, numbers.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect())),
-                _ => Err(Error::format(format!("{name} is no row of numbers of four bytes"))),
+                _ => Err(Error::format(format!("the size of array {name} is not a multiple of 4 bytes"))),
             }
         };
         let arrays = names.iter().map(array).collect::<Result<_>>()?;
@@ -105,7 +104,7 @@ impl SavedState {
     }
 }
 
-fn file_of(name: &str) -> String {
+fn file_name(name: &str) -> String {
     format!("{name}.f32")
 }
 

@@ -1,17 +1,17 @@
-//! Numbers that change in the course of a training.
+//! Schedules of hyperparameters over a training.
 
 opendr_engine::choices! {
-    /// How a number changes from the beginning of a training to its end.
+    /// How a hyperparameter changes over a training.
     pub enum Schedule {
-        /// Not at all.
+        /// Constant.
         Constant = "constant",
-        /// Evenly to zero: what rl-zoo writes as `lin_0.001`.
+        /// Linear decay to zero, as `lin_0.001` in rl-zoo.
         Linear = "linear",
     }
 }
 
 impl Schedule {
-    /// The number that began as `first`, where the share `remaining` of the training, in [0, 1], is left.
+    /// Returns the value for the initial value `first` when the fraction `remaining`, in [0, 1], of the training is left.
     pub fn at(self, first: f32, remaining: f64) -> f32 {
         match self {
             Self::Constant => first,
@@ -20,7 +20,7 @@ impl Schedule {
     }
 }
 
-/// The share of a training that is left after `done` of `total` steps; 0 where more than all are done.
+/// Returns the fraction of a training that is left after `done` of `total` steps; 0 after the end.
 pub(crate) fn remaining(done: u64, total: u64) -> f64 {
     1.0 - (done as f64 / total.max(1) as f64).min(1.0)
 }

@@ -1,89 +1,82 @@
-//! Twin delayed deep deterministic policy gradient (Fujimoto et al., 2018), as Stable-Baselines3 has it.
+//! Twin delayed deep deterministic policy gradient (Fujimoto et al., 2018), as in Stable-Baselines3.
 
-use opendr_engine::environment::EnvironmentSpec;
+use opendr_engine::Result;
+use opendr_engine::environment::{EnvironmentSpec, StateReader};
 use opendr_engine::params::Params;
-use opendr_engine::{Random, Result};
-use opendr_kernels::{Adam, AdamOptions, Compute, move_towards, tanh_in_place};
-use opendr_simulation::vector::VecEnvironment;
+use opendr_kernels::{Adam, AdamOptions, Compute, polyak_update, tanh_in_place};
 
-use crate::algorithm::{Algorithm, Report, diverged, not_begun, snapshot_of};
-use crate::off_policy::{Experience, OffPolicyConfig};
-use crate::policy::{Beginning, Bounds, Head, NetworkConfig, Policy, PolicyMemory};
+use crate::algorithm::diverged;
+use crate::off_policy::{Experience, OffPolicyAlgorithm, OffPolicyBase, OffPolicyConfig};
+use crate::policy::{Bounds, Head, NetworkConfig, Policy, PolicyMemory};
 use crate::preset::Preset;
 use crate::replay_buffer::{self, Transitions};
 use crate::saved_state::SavedState;
 use crate::twin_critics::{self, TwinCritics};
 
 opendr_engine::choices! {
-    /// How the noise on actions goes on from step to step.
+    /// Process of the exploration noise on actions.
     pub enum ActionNoise {
-        /// Each step has its own.
+        /// Independent normal noise at each step.
         Normal = "normal",
-        /// It wanders (Uhlenbeck and Ornstein, 1930), so that what it pushes is pushed for a while.
+        /// Ornstein-Uhlenbeck process (1930): noise that is correlated from step to step.
         OrnsteinUhlenbeck = "ornstein_uhlenbeck",
     }
 }
 
-/// Settings of [`Td3`]. Names and defaults are those of Stable-Baselines3, but for those of the noise.
+/// Settings of [`Td3`]. Names and defaults are those of Stable-Baselines3, except for the exploration noise.
 #[derive(Debug, Clone, PartialEq, Params)]
 pub struct Td3Config {
-    /// What off-policy learners share.
+    /// Settings shared by off-policy methods.
     #[param(flatten, learning_rate = 1e-3)]
     pub off_policy: OffPolicyConfig,
-    /// The networks of policy and values.
-    #[param(flatten, net_arch = vec![400, 300], activation_fn = crate::Hidden::Relu)]
+    /// Networks of policy and critics.
+    #[param(flatten, net_arch = vec![400, 300], activation_fn = crate::ActivationFn::Relu)]
     pub network: NetworkConfig,
-    /// Deviation of the noise on actions while exploring, where actions span [-1, 1]: rl-zoo's, Stable-Baselines3 has none.
+    /// Standard deviation of the exploration noise, for actions in [-1, 1]. The default is rl-zoo's; Stable-Baselines3 has none.
     #[param(default = 0.1, range = 0.0..=2.0)]
     pub action_noise_std: f32,
-    /// How that noise goes on.
+    /// Process of the exploration noise.
     pub action_noise: ActionNoise,
-    /// Updates of the values between two of the policy.
+    /// Updates of the critics per update of the policy.
     #[param(default = 2, range = 1..=1_000_000)]
     pub policy_delay: u64,
-    /// Deviation of the noise on the target policy's actions.
+    /// Standard deviation of the noise on the actions of the target policy.
     #[param(default = 0.2, range = 0.0..=2.0)]
     pub target_policy_noise: f32,
-    /// That noise lies within plus and minus this.
+    /// The noise on the target policy's actions is clipped to plus and minus this value.
     #[param(default = 0.5, range = 0.0..=2.0)]
     pub target_noise_clip: f32,
 }
 
 /// TD3: a deterministic policy for continuous actions.
 pub struct Td3 {
+    base: OffPolicyBase,
     config: Td3Config,
-    compute: Compute,
-    random: Random,
-    policy: Policy,
     target: Policy,
     actor_adam: Adam,
     critics: TwinCritics,
-    experience: Option<Experience>,
     memory: Memory,
-    /// The noise on the actions of each environment.
+    /// Exploration noise on the actions of each environment.
     noise: Vec<f32>,
-    updates: u64,
-    report: Report,
 }
 
+/// Work memory of a gradient step, kept between steps.
 #[derive(Debug, Clone, Default)]
 struct Memory {
-    drawn: Transitions,
+    batch: Transitions,
     now: PolicyMemory,
     next: PolicyMemory,
     actions: Vec<f32>,
     doutputs: Vec<f32>,
-    wanted: Vec<f32>,
+    targets: Vec<f32>,
     gradients: Vec<f32>,
 }
 
-const NAME: &str = "td3";
+/// Time step and mean reversion rate of the Ornstein-Uhlenbeck noise, as in Stable-Baselines3.
+const NOISE_TIME_STEP: f32 = 1e-2;
+const NOISE_REVERSION: f32 = 0.15;
 
-/// The time step of wandering noise, and how fast it returns to 0: those of Stable-Baselines3.
-const STEP: f32 = 1e-2;
-const RETURN: f32 = 0.15;
-
-/// The rows of its state.
+/// Names of the arrays of a saved state.
 const ROWS: &[&str] = &[
     "policy",
     "policy_target",
@@ -109,7 +102,7 @@ const ROWS: &[&str] = &[
 ];
 
 impl Td3Config {
-    /// The settings of rl-zoo for an environment, where it has some.
+    /// Returns the settings of rl-zoo for an environment; none if it has none.
     pub fn preset(id: &str) -> Option<Preset<Self>> {
         let (timesteps, learning_starts, action_noise_std, action_noise) = match id {
             "Pendulum-v1" => (20_000, 10_000, 0.1, ActionNoise::Normal),
@@ -123,67 +116,96 @@ impl Td3Config {
 }
 
 impl Td3 {
-    /// A learner for environments of this kind, on one thread.
+    /// Creates an algorithm for environments with this specification, on one thread.
     ///
     /// # Errors
-    /// `InvalidParam` for settings out of range, `Unsupported` for actions that are no bounded box, and for memory.
+    /// `InvalidParam` for settings out of range, `Unsupported` for actions that are not a bounded box and for recurrent networks.
     pub fn new(config: &Td3Config, spec: &EnvironmentSpec) -> Result<Self> {
         config.check()?;
-        config.network.check_no_memory(NAME)?;
-        let clip = config.off_policy.clip();
+        config.network.check_no_memory(Self::NAME)?;
         let bounds = Bounds::of(&spec.action, true)?;
         let axes = bounds.low.len();
-        let mut policy = Policy::new(spec, Head::Squashed(bounds), &config.network, clip)?;
-        let mut random = Random::at([config.off_policy.seed, 0]);
-        policy.initialise(Beginning::Uniform, 0.0, &mut random);
+        let mut base = OffPolicyBase::new(&config.off_policy, &config.network, Head::Squashed(bounds), spec)?;
         Ok(Self {
             config: config.clone(),
-            compute: Compute::single(),
-            critics: TwinCritics::new(&policy.encoder, axes, &config.network, &mut random)?,
-            random,
-            actor_adam: Adam::new(policy.parameters.len(), AdamOptions::default()),
-            target: policy.clone(),
-            policy,
-            experience: None,
+            critics: TwinCritics::new(&base.policy.encoder, axes, &config.network, &mut base.random)?,
+            actor_adam: Adam::new(base.policy.parameters.len(), AdamOptions::default()),
+            target: base.policy.clone(),
+            base,
             memory: Memory::default(),
             noise: Vec::new(),
-            updates: 0,
-            report: Report::default(),
         })
     }
 
-    /// The same on other threads, which change no bit.
+    /// Uses the threads of `compute`; results do not depend on their number.
     #[must_use]
-    pub fn with_compute(self, compute: Compute) -> Self {
-        Self { compute, ..self }
+    pub fn with_compute(mut self, compute: Compute) -> Self {
+        self.base.compute = compute;
+        self
     }
 
-    /// Writes actions for what is seen: by chance before learning begins, then the policy's with noise.
-    fn act(&mut self, experience: &mut Experience) {
-        if experience.interaction.timesteps < self.config.off_policy.learning_starts {
-            return experience.act_by_chance(&self.policy, self.policy.action(), &mut self.random);
+    /// Updates the policy towards actions of higher value, then all target networks.
+    fn learn_policy(&mut self, timesteps: u64) -> Result<()> {
+        let OffPolicyBase { config, compute, policy, report, .. } = &mut self.base;
+        let Memory { batch, now, actions, doutputs, gradients, .. } = &mut self.memory;
+        let outputs = policy.forward(compute, &batch.observations, now);
+        actions.clear();
+        actions.extend_from_slice(outputs);
+        tanh_in_place(compute.isa(), actions);
+        let rows = batch.rewards.len();
+        let (value, dactions) =
+            self.critics.gradient_by_actions_of_first(compute, &batch.observations, actions, rows);
+        if !value.is_finite() {
+            return Err(diverged("the value of the policy", value.into(), timesteps));
         }
-        let memory = &mut self.memory.now;
-        let encoded = &experience.interaction.encoded;
-        let outputs = self.policy.forward(&self.compute, encoded, memory);
-        experience.kept.copy_from_slice(outputs);
-        tanh_in_place(self.compute.isa(), &mut experience.kept);
+        doutputs.clear();
+        doutputs.extend(actions.iter().zip(dactions).map(|(action, d)| d * (1.0 - action * action)));
+        gradients.clear();
+        gradients.resize(policy.parameters.len(), 0.0);
+        policy.backward(compute, doutputs, now, gradients);
+        self.actor_adam.step(compute, config.learning_rate, &mut policy.parameters, gradients);
+        self.critics.update_targets(config.tau);
+        polyak_update(&mut self.target.parameters, &policy.parameters, config.tau);
+        report.metrics.set("actor_loss", (-value).into());
+        Ok(())
+    }
+}
+
+impl OffPolicyAlgorithm for Td3 {
+    const NAME: &'static str = "td3";
+    const ROWS: &'static [&'static str] = ROWS;
+
+    fn base(&self) -> &OffPolicyBase {
+        &self.base
+    }
+
+    fn base_mut(&mut self) -> &mut OffPolicyBase {
+        &mut self.base
+    }
+
+    fn explore(&mut self, experience: &mut Experience, _total_timesteps: u64) {
+        let OffPolicyBase { compute, random, policy, .. } = &mut self.base;
+        let outputs = policy.forward(compute, &experience.interaction.encoded, &mut self.memory.now);
+        experience.buffer_actions.copy_from_slice(outputs);
+        tanh_in_place(compute.isa(), &mut experience.buffer_actions);
         let deviation = self.config.action_noise_std;
-        self.noise.resize(experience.kept.len(), 0.0);
-        for (action, noise) in experience.kept.iter_mut().zip(&mut self.noise) {
-            let chance = deviation * self.random.normal() as f32;
+        self.noise.resize(experience.buffer_actions.len(), 0.0);
+        for (action, noise) in experience.buffer_actions.iter_mut().zip(&mut self.noise) {
+            let sample = deviation * random.normal() as f32;
             *noise = match self.config.action_noise {
-                ActionNoise::Normal => chance,
-                ActionNoise::OrnsteinUhlenbeck => *noise + STEP * (chance / STEP.sqrt() - RETURN * *noise),
+                ActionNoise::Normal => sample,
+                ActionNoise::OrnsteinUhlenbeck => {
+                    *noise + NOISE_TIME_STEP * (sample / NOISE_TIME_STEP.sqrt() - NOISE_REVERSION * *noise)
+                }
             };
             *action = (*action + *noise).clamp(-1.0, 1.0);
         }
-        self.policy.head.environment_actions(&experience.kept, &mut experience.actions);
+        policy.head.environment_actions(&experience.buffer_actions, &mut experience.actions);
     }
 
-    /// Noise does not wander from one episode into the next.
-    fn calm(&mut self, experience: &Experience) {
-        let axes = self.policy.head.action_len();
+    /// Resets the noise where an episode ended.
+    fn on_step(&mut self, experience: &Experience) {
+        let axes = self.base.policy.head.action_len();
         for (index, noise) in self.noise.chunks_exact_mut(axes).enumerate() {
             if experience.interaction.ended(index) {
                 noise.fill(0.0);
@@ -192,145 +214,63 @@ impl Td3 {
     }
 
     fn learn(&mut self, experience: &Experience) -> Result<()> {
-        let config = &self.config.off_policy;
-        let (rate, timesteps) = (config.learning_rate, experience.interaction.timesteps);
-        let Memory { drawn, next, actions, wanted, .. } = &mut self.memory;
-        let (compute, rows) = (&self.compute, config.batch_size);
-        experience.draw(&self.policy, rows, &mut self.random, drawn)?;
-        let outputs = self.target.forward(compute, &drawn.next_observations, next);
+        let timesteps = experience.interaction.timesteps;
+        let OffPolicyBase { config, compute, random, policy, updates, report, .. } = &mut self.base;
+        let Memory { batch, next, actions, targets, .. } = &mut self.memory;
+        experience.sample(policy, config.batch_size, random, batch)?;
+        let outputs = self.target.forward(compute, &batch.next_observations, next);
         actions.clear();
         actions.extend_from_slice(outputs);
         tanh_in_place(compute.isa(), actions);
         let clip = self.config.target_noise_clip;
         for action in &mut *actions {
-            let noise = self.config.target_policy_noise * self.random.normal() as f32;
+            let noise = self.config.target_policy_noise * random.normal() as f32;
             *action = (*action + noise.clamp(-clip, clip)).clamp(-1.0, 1.0);
         }
-        let values = self.critics.target_values(compute, &drawn.next_observations, actions, rows);
-        wanted.clear();
-        for (value, (reward, goes_on)) in values.iter().zip(drawn.rewards.iter().zip(&drawn.continues)) {
-            wanted.push(reward + goes_on * config.gamma * value);
-        }
-        let loss = self.critics.learn(compute, [&drawn.observations, &drawn.actions], wanted, 1.0, rate);
+        let next_values =
+            self.critics.target_values(compute, &batch.next_observations, actions, config.batch_size);
+        batch.bellman_targets(config.gamma, next_values.iter().copied(), targets);
+        let inputs = [&batch.observations[..], &batch.actions[..]];
+        let loss = self.critics.learn(compute, inputs, targets, 1.0, config.learning_rate);
         if !loss.is_finite() {
             return Err(diverged("the loss of values", loss.into(), timesteps));
         }
-        self.updates += 1;
-        self.report.metrics.set("critic_loss", loss.into());
-        self.report.metrics.set("n_updates", self.updates as f64);
-        if self.updates.is_multiple_of(self.config.policy_delay) {
-            self.learn_policy(rate, timesteps)?;
+        *updates += 1;
+        report.metrics.set("critic_loss", loss.into());
+        report.metrics.set("n_updates", *updates as f64);
+        if updates.is_multiple_of(self.config.policy_delay) {
+            self.learn_policy(timesteps)?;
         }
         Ok(())
     }
 
-    /// Moves the policy to actions that are worth more, and all targets after their networks.
-    fn learn_policy(&mut self, learning_rate: f32, timesteps: u64) -> Result<()> {
-        let Memory { drawn, now, actions, doutputs, gradients, .. } = &mut self.memory;
-        let (compute, rows) = (&self.compute, drawn.rewards.len());
-        let outputs = self.policy.forward(compute, &drawn.observations, now);
-        actions.clear();
-        actions.extend_from_slice(outputs);
-        tanh_in_place(compute.isa(), actions);
-        let (value, dactions) =
-            self.critics.gradient_by_actions_of_first(compute, &drawn.observations, actions, rows);
-        if !value.is_finite() {
-            return Err(diverged("the value of the policy", value.into(), timesteps));
-        }
-        doutputs.clear();
-        doutputs.extend(actions.iter().zip(dactions).map(|(action, d)| d * (1.0 - action * action)));
-        gradients.clear();
-        gradients.resize(self.policy.parameters.len(), 0.0);
-        self.policy.backward(compute, doutputs, now, gradients);
-        self.actor_adam.step(compute, learning_rate, &mut self.policy.parameters, gradients);
-        let tau = self.config.off_policy.tau;
-        self.critics.follow(tau);
-        move_towards(&mut self.target.parameters, &self.policy.parameters, tau);
-        self.report.metrics.set("actor_loss", (-value).into());
-        Ok(())
+    fn reset_target(&mut self) {
+        self.target.clone_from(&self.base.policy);
     }
 
-    fn advance(&mut self, environments: &mut dyn VecEnvironment, experience: &mut Experience) -> Result<()> {
-        for _ in 0..self.config.off_policy.train_freq {
-            self.act(experience);
-            experience.step(environments, &mut self.policy)?;
-            self.calm(experience);
-        }
-        for _ in 0..experience.gradient_steps(&self.config.off_policy) {
-            self.learn(experience)?;
-        }
-        Ok(())
-    }
-}
-
-impl Algorithm for Td3 {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
-    fn policy(&self) -> &Policy {
-        &self.policy
-    }
-
-    fn set_policy(&mut self, policy: &Policy) -> Result<()> {
-        self.policy.take_over(policy)?;
-        self.target.clone_from(&self.policy);
-        Ok(())
-    }
-
-    fn report(&self) -> &Report {
-        &self.report
-    }
-
-    fn iterate(&mut self, environments: &mut dyn VecEnvironment, _total_timesteps: u64) -> Result<&Report> {
-        let mut experience = match self.experience.take() {
-            Some(experience) => experience,
-            None => Experience::begin(environments, &mut self.policy, &self.config.off_policy)?,
-        };
-        let outcome = self.advance(environments, &mut experience);
-        let interaction = &experience.interaction;
-        self.report.count(interaction.timesteps, &interaction.episodes);
-        self.experience = Some(experience);
-        outcome.map(|()| &self.report)
-    }
-
-    fn saved_state(&self, environments: &dyn VecEnvironment) -> Result<SavedState> {
-        let experience = self.experience.as_ref().ok_or_else(|| not_begun(NAME))?;
-        let mut state = SavedState::new(NAME, snapshot_of(environments)?);
-        state.add(ROWS[0], &self.policy.parameters);
+    fn save_networks(&self, state: &mut SavedState) {
         state.add(ROWS[1], &self.target.parameters);
         state.add_adam([ROWS[2], ROWS[3]], &self.actor_adam);
-        self.critics.save(&mut state);
-        state.words.push(self.updates);
+        self.critics.save(state);
+        state.words.push(self.base.updates);
         state.words.push(self.noise.len() as u64);
         state.words.extend_numbers(self.noise.iter().map(|&noise| noise.into()));
-        experience.save(&mut state, &self.policy, &self.random);
-        Ok(state)
     }
 
-    fn restore(&mut self, state: &SavedState, environments: &mut dyn VecEnvironment) -> Result<()> {
-        let mut words = state.words.read(NAME)?;
-        state.fill(ROWS[0], &mut self.policy.parameters)?;
+    fn load_networks(
+        &mut self,
+        state: &SavedState,
+        words: &mut StateReader<'_>,
+        environments: usize,
+    ) -> Result<()> {
         state.fill(ROWS[1], &mut self.target.parameters)?;
-        state.fill_adam([ROWS[2], ROWS[3]], &mut self.actor_adam, &mut words)?;
-        self.critics.load(state, &mut words)?;
-        self.updates = words.word()?;
-        self.noise.resize(words.count(environments.count() * self.policy.head.action_len())?, 0.0);
+        state.fill_adam([ROWS[2], ROWS[3]], &mut self.actor_adam, words)?;
+        self.critics.load(state, words)?;
+        self.base.updates = words.word()?;
+        self.noise.resize(words.count(environments * self.base.policy.head.action_len())?, 0.0);
         for noise in &mut self.noise {
             *noise = words.finite()? as f32;
         }
-        let config = &self.config.off_policy;
-        let (mut experience, random) =
-            Experience::load(state, &mut words, environments, &mut self.policy, config)?;
-        words.finish()?;
-        experience.interaction.go_on(state.environments(), environments, &self.policy.encoder)?;
-        self.random = random;
-        self.report.count(experience.interaction.timesteps, &experience.interaction.episodes);
-        self.experience = Some(experience);
         Ok(())
-    }
-
-    fn rows(&self) -> &'static [&'static str] {
-        ROWS
     }
 }

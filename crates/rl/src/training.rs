@@ -1,4 +1,4 @@
-//! The training of a policy, with its log, checkpoints and measurements: what `fit` does.
+//! Training of a policy with log, checkpoints and evaluations: the implementation of `fit`.
 
 use std::cmp::Ordering;
 use std::time::Instant;
@@ -18,17 +18,17 @@ use crate::learner::{Method, RlTrainingParams};
 use crate::onnx::onnx_from_policy;
 use crate::policy::Policy;
 
-/// The file of the policy in a container.
-pub const POLICY: &str = "policy.safetensors";
-/// The folder of the checkpoints within the output folder.
+/// File of the policy in a container.
+pub const POLICY_FILE: &str = "policy.safetensors";
+/// Folder of the checkpoints in the output folder.
 const CHECKPOINTS: &str = "checkpoints";
-/// The files of a checkpoint beside the state of the algorithm: the best policy so far, and what was measured.
+/// Further files of a checkpoint: the best policy so far, and the results of the evaluations.
 const BEST: &str = "best.safetensors";
 const MEASURED: &str = "measured.json";
-/// The environment that a policy is for, in the inputs of its container.
+/// Key of the environment's name in the inputs of the manifest.
 const ENVIRONMENT: &str = "environment";
 
-/// What was measured on the way, oldest first: time steps, mean return, share of successes.
+/// Results of the evaluations, oldest first: time steps, mean return, success rate.
 type Measured = Vec<(u64, f64, Option<f64>)>;
 
 struct Training<'a, A> {
@@ -44,8 +44,8 @@ struct Training<'a, A> {
     job: &'a FitJob<'a>,
 }
 
-/// Trains a policy by the method `M` and writes the best one that was measured into [`FitJob::model`]: what `fit` of a learner does.
-/// `params` are those of the learner, for the container.
+/// Trains a policy by the method `M` and writes the best evaluated one into [`FitJob::model`]. This is `fit` of the learners.
+/// `params` are the parameters of the learner, for the container.
 ///
 /// # Errors
 /// As [`LearnerRl::fit`](opendr_engine::learner::LearnerRl::fit).
@@ -57,16 +57,16 @@ pub fn fit_policy<M: Method>(
     val_env: Option<&dyn EnvironmentSource>,
     job: &FitJob<'_>,
 ) -> Result<Statistics> {
-    let base = base.map(|model| Policy::from_bytes(&model.file(POLICY)?)).transpose()?;
+    let base = base.map(|model| Policy::from_bytes(&model.file(POLICY_FILE)?)).transpose()?;
     let begun = Instant::now();
     let first = env.make()?;
     let id = first.spec().id.clone();
-    let first = M::seen(first, true)?;
+    let first = M::wrap(first, true)?;
     let spec = first.spec().clone();
-    let fit_params = M::for_environment(fit_params, &id);
+    let fit_params = M::with_preset(fit_params, &id);
     fit_params.check()?;
     let training = M::training(&fit_params);
-    let further = (1..training.n_envs).map(|_| M::seen(env.make()?, true));
+    let further = (1..training.n_envs).map(|_| M::wrap(env.make()?, true));
     let environments = std::iter::once(Ok(first)).chain(further).collect::<Result<Vec<_>>>()?;
     let environments = EnvironmentVector::new(environments, Autoreset::SameStep, training.num_workers)?;
     let compute = if training.num_workers > 1 {
@@ -78,7 +78,7 @@ pub fn fit_policy<M: Method>(
         algorithm: M::algorithm(&fit_params, &spec, compute, base.as_ref())?,
         environments,
         params: training,
-        val_env: to_measure_in::<M>(env, val_env)?,
+        val_env: evaluation_environment::<M>(env, val_env)?,
         checkpoints: Checkpoints::new(&job.output.join(CHECKPOINTS), training.checkpoints_kept)?,
         log: RunLog::open(None, None)?,
         best: None,
@@ -94,22 +94,23 @@ pub fn fit_policy<M: Method>(
     Ok(training.statistics(begun))
 }
 
-/// An environment to measure in: of `val_env`, else another of `env`, if there can be one.
-fn to_measure_in<M: Method>(
+/// Returns the environment for evaluations: from `val_env`, else another of `env` if the source can make one.
+fn evaluation_environment<M: Method>(
     env: &dyn EnvironmentSource,
     val_env: Option<&dyn EnvironmentSource>,
 ) -> Result<Option<Box<dyn Environment>>> {
-    let made = match val_env.unwrap_or(env).make() {
+    let environment = match val_env.unwrap_or(env).make() {
         Err(error) if val_env.is_none() && error.kind() == ErrorKind::Unsupported => return Ok(None),
-        made => made,
+        environment => environment,
     };
-    made.and_then(|made| M::seen(made, false))
+    environment
+        .and_then(|environment| M::wrap(environment, false))
         .map(Some)
-        .context(|| "making the environment that the policy is measured in")
+        .context(|| "making the environment for evaluations")
 }
 
 impl<A: Algorithm> Training<'_, A> {
-    /// Goes on from the last checkpoint, where the job says so and there is one; the step of it.
+    /// Resumes from the last checkpoint, if the job asks for it and there is one. Returns its step.
     fn resume(&mut self) -> Result<Option<u64>> {
         let loaded = match self.job.resume {
             true => self.algorithm.load(&self.checkpoints, &mut self.environments)?,
@@ -118,7 +119,7 @@ impl<A: Algorithm> Training<'_, A> {
         let Some(checkpoint) = loaded else { return Ok(None) };
         self.measured = serde_json::from_slice(&checkpoint.file(MEASURED)?).map_err(|error| {
             let path = checkpoint.path().display();
-            Error::format(format!("{path} has no list of measurements")).with_source(error)
+            Error::format(format!("{path} has no valid {MEASURED}")).with_source(error)
         })?;
         if checkpoint.names().any(|name| name == BEST) {
             self.best = Some(checkpoint.file(BEST)?);
@@ -150,13 +151,13 @@ impl<A: Algorithm> Training<'_, A> {
         outcome.context(|| match self.saved_at {
             0 => format!("training at step {done}"),
             saved => {
-                format!("training at step {done}; what was learnt until step {saved} is kept, to be resumed")
+                format!("training at step {done}; a checkpoint of step {saved} is saved, resume from it")
             }
         })?;
         self.log.flush()
     }
 
-    /// Acts and learns once, tells of it, and measures and saves where that is due.
+    /// Runs one iteration, logs it, and evaluates and saves when due.
     fn step(&mut self, total: u64) -> Result<()> {
         let before = self.algorithm.report().timesteps;
         let report = self.algorithm.iterate(&mut self.environments, total)?;
@@ -185,7 +186,7 @@ impl<A: Algorithm> Training<'_, A> {
         Ok(())
     }
 
-    /// Measures the policy; the best is kept.
+    /// Evaluates the policy and keeps the best one.
     fn measure(&mut self) -> Result<()> {
         let now = self.algorithm.report().timesteps;
         let Some(val_env) = &mut self.val_env else { return Ok(()) };
@@ -215,8 +216,9 @@ impl<A: Algorithm> Training<'_, A> {
             return Ok(());
         }
         self.log.flush()?;
-        let measured = serde_json::to_vec(&self.measured)
-            .map_err(|error| Error::internal("measurements have no JSON form").with_source(error))?;
+        let measured = serde_json::to_vec(&self.measured).map_err(|error| {
+            Error::internal("the results of evaluations cannot be written as JSON").with_source(error)
+        })?;
         let best = self.best.clone().map(|best| (BEST.to_owned(), best));
         let further = std::iter::once((MEASURED.to_owned(), measured)).chain(best).collect();
         self.algorithm.save_with(&self.checkpoints, &self.environments, further)?;
@@ -224,7 +226,7 @@ impl<A: Algorithm> Training<'_, A> {
         Ok(())
     }
 
-    /// The best policy that was measured, else the one of now.
+    /// Returns the best evaluated policy; the current one if none was evaluated.
     fn best_policy(&self) -> Result<Policy> {
         match &self.best {
             Some(bytes) => Policy::from_bytes(bytes),
@@ -251,13 +253,13 @@ impl<A: Algorithm> Training<'_, A> {
     }
 }
 
-/// What succeeded most often, then what earned most; the last of those that are as good.
+/// Returns the evaluation of the highest success rate, then of the highest return; the last of equals.
 fn best_of(measured: &Measured) -> Option<&(u64, f64, Option<f64>)> {
     let score = |(_, earned, success): &(u64, f64, Option<f64>)| (success.unwrap_or(0.0), *earned);
     measured.iter().max_by(|one, other| score(one).partial_cmp(&score(other)).unwrap_or(Ordering::Equal))
 }
 
-/// Writes the container: the policy, the same as ONNX where it has that form, and what it was trained in.
+/// Writes the container: the policy, its ONNX model if it can be exported, and the environment of the training.
 fn write_model<M: Method>(
     policy: &Policy,
     environment: &str,
@@ -277,7 +279,7 @@ fn write_model<M: Method>(
         manifest.metrics.insert(environment.to_owned(), numbers);
     }
     let mut writer = ModelWriter::new(job.model(), manifest)?;
-    writer.add(POLICY, &policy.to_bytes()?)?;
+    writer.add(POLICY_FILE, &policy.to_bytes()?)?;
     if let Ok(network) = onnx_from_policy(policy) {
         writer.add("policy.onnx", &network)?;
     }

@@ -1,25 +1,25 @@
-//! Two estimates of what actions are worth, of which the lower one counts (Fujimoto et al., 2018).
+//! Two critics, of which the lower value is used (clipped double Q-learning; Fujimoto et al., 2018).
 
 use opendr_engine::environment::StateReader;
 use opendr_engine::{Random, Result};
-use opendr_kernels::{Adam, AdamOptions, Compute, Network, Tape, move_towards};
+use opendr_kernels::{Adam, AdamOptions, Compute, Network, Tape, polyak_update};
 
-use crate::policy::{Beginning, Extractor, ExtractorMemory, NetworkConfig, ObservationEncoder};
+use crate::policy::{Extractor, ExtractorMemory, NetworkConfig, ObservationEncoder, ParameterInit};
 use crate::saved_state::SavedState;
 
-/// The rows of saved critics and of what they see through: parameters, targets and moments of each.
+/// Names of the arrays of saved critics and of their shared extractor: parameters, target and moments of Adam of each.
 pub(crate) const ROWS: [[&str; 4]; 3] = [
     ["critic_1", "critic_1_target", "critic_1_adam_first", "critic_1_adam_second"],
     ["critic_2", "critic_2_target", "critic_2_adam_first", "critic_2_adam_second"],
     ["critic_sight", "critic_sight_target", "critic_sight_adam_first", "critic_sight_adam_second"],
 ];
 
-/// Both critics, with memory that is used again.
+/// Both critics and their work memory.
 #[derive(Debug, Clone)]
 pub(crate) struct TwinCritics {
     network: Network,
     critics: [Critic; 2],
-    sight: Sight,
+    shared: SharedExtractor,
     /// Features and actions, side by side.
     inputs: Vec<f32>,
     /// The lower of both values of each row.
@@ -27,9 +27,9 @@ pub(crate) struct TwinCritics {
     daction: Vec<f32>,
 }
 
-/// The networks of pictures, which both critics share, as in Stable-Baselines3; without pictures nothing.
+/// Networks of image observations, shared by both critics as in Stable-Baselines3; empty without images.
 #[derive(Debug, Clone)]
-struct Sight {
+struct SharedExtractor {
     extractor: Extractor,
     parameters: Vec<f32>,
     target: Vec<f32>,
@@ -39,10 +39,10 @@ struct Sight {
     dfeatures: Vec<f32>,
 }
 
-/// Whose parameters answer.
+/// Which parameters compute the values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Version {
-    Learnt,
+    Online,
     Target,
 }
 
@@ -52,7 +52,7 @@ struct Critic {
     target: Vec<f32>,
     adam: Adam,
     tape: Tape,
-    /// Rows for which its value counts.
+    /// Rows for which its value is the lower one.
     rows: Vec<usize>,
     dvalues: Vec<f32>,
     gradients: Vec<f32>,
@@ -67,12 +67,12 @@ impl TwinCritics {
         config: &NetworkConfig,
         random: &mut Random,
     ) -> Result<Self> {
-        let sight = Sight::new(encoder, config, random)?;
-        let network = config.network(sight.extractor.outputs() + action, 1)?;
+        let shared = SharedExtractor::new(encoder, config, random)?;
+        let network = config.network(shared.extractor.outputs() + action, 1)?;
         let count = network.parameters();
         let critics = [(); 2].map(|()| {
             let mut parameters = vec![0.0; count];
-            network.initialise(Beginning::Uniform.of_output(), random, &mut parameters);
+            network.initialise(ParameterInit::Uniform.of_output(), random, &mut parameters);
             Critic {
                 target: parameters.clone(),
                 parameters,
@@ -85,10 +85,10 @@ impl TwinCritics {
                 loss: 0.0,
             }
         });
-        Ok(Self { network, critics, sight, inputs: Vec::new(), lowest: Vec::new(), daction: Vec::new() })
+        Ok(Self { network, critics, shared, inputs: Vec::new(), lowest: Vec::new(), daction: Vec::new() })
     }
 
-    /// What the targets think that actions are worth: the lower of both.
+    /// Returns the lower value of both target networks for each row.
     pub fn target_values(
         &mut self,
         compute: &Compute,
@@ -112,30 +112,35 @@ impl TwinCritics {
         lowest
     }
 
-    /// Takes a step of both towards `wanted`, with `weight` times the mean squared error of each as loss; gives the sum.
+    /// Takes a gradient step of both towards `targets`. The loss of each is `weight` times the mean squared error; returns their sum.
     pub fn learn(
         &mut self,
         compute: &Compute,
         [observations, actions]: [&[f32]; 2],
-        wanted: &[f32],
+        targets: &[f32],
         weight: f32,
         learning_rate: f32,
     ) -> f32 {
-        self.set_inputs(compute, observations, actions, wanted.len(), Version::Learnt);
-        let Self { network, critics: [first, second], sight, inputs, .. } = self;
-        let goal = Goal { wanted, weight, learning_rate, wants_input: !sight.extractor.is_identity() };
+        self.set_inputs(compute, observations, actions, targets.len(), Version::Online);
+        let Self { network, critics: [first, second], shared, inputs, .. } = self;
+        let update = CriticUpdate {
+            targets,
+            weight,
+            learning_rate,
+            needs_input_gradient: !shared.extractor.is_identity(),
+        };
         compute.pool().join(
-            || first.learn(compute, network, inputs, goal),
-            || second.learn(compute, network, inputs, goal),
+            || first.learn(compute, network, inputs, update),
+            || second.learn(compute, network, inputs, update),
         );
         let loss = first.loss + second.loss;
-        if goal.wants_input && loss.is_finite() {
-            sight.learn(compute, [&first.dinputs, &second.dinputs], network.inputs(), learning_rate);
+        if update.needs_input_gradient && loss.is_finite() {
+            shared.learn(compute, [&first.dinputs, &second.dinputs], network.inputs(), learning_rate);
         }
         loss
     }
 
-    /// The mean, over rows, of the lower of both values, and the gradient of minus that mean by the actions.
+    /// Returns the mean over rows of the lower value, and the gradient of minus that mean with respect to the actions.
     pub fn gradient_by_actions(
         &mut self,
         compute: &Compute,
@@ -143,7 +148,7 @@ impl TwinCritics {
         actions: &[f32],
         rows: usize,
     ) -> (f32, &[f32]) {
-        self.set_inputs(compute, observations, actions, rows, Version::Learnt);
+        self.set_inputs(compute, observations, actions, rows, Version::Online);
         let Self { network, critics: [first, second], inputs, daction, .. } = self;
         compute.pool().join(
             || {
@@ -177,7 +182,7 @@ impl TwinCritics {
         (sum * scale, daction)
     }
 
-    /// Only the first: as TD3 has it.
+    /// Returns the same for the first critic alone, as TD3 uses it.
     pub fn gradient_by_actions_of_first(
         &mut self,
         compute: &Compute,
@@ -185,7 +190,7 @@ impl TwinCritics {
         actions: &[f32],
         rows: usize,
     ) -> (f32, &[f32]) {
-        self.set_inputs(compute, observations, actions, rows, Version::Learnt);
+        self.set_inputs(compute, observations, actions, rows, Version::Online);
         let Self { network, critics: [first, _], inputs, daction, .. } = self;
         let values = network.forward(compute, &first.parameters, inputs, &mut first.tape);
         let scale = 1.0 / rows as f32;
@@ -201,12 +206,12 @@ impl TwinCritics {
         (mean, daction)
     }
 
-    /// Moves the targets.
-    pub fn follow(&mut self, tau: f32) {
+    /// Moves the target networks by `tau` towards the online networks.
+    pub fn update_targets(&mut self, tau: f32) {
         for critic in &mut self.critics {
-            move_towards(&mut critic.target, &critic.parameters, tau);
+            polyak_update(&mut critic.target, &critic.parameters, tau);
         }
-        move_towards(&mut self.sight.target, &self.sight.parameters, tau);
+        polyak_update(&mut self.shared.target, &self.shared.parameters, tau);
     }
 
     fn set_inputs(
@@ -217,7 +222,7 @@ impl TwinCritics {
         rows: usize,
         version: Version,
     ) {
-        let Sight { extractor, parameters, target, memory, .. } = &mut self.sight;
+        let SharedExtractor { extractor, parameters, target, memory, .. } = &mut self.shared;
         let parameters = if version == Version::Target { target } else { parameters };
         let features = extractor.forward(compute, parameters, observations, memory);
         let (width, action) = (features.len() / rows, actions.len() / rows);
@@ -234,10 +239,10 @@ impl TwinCritics {
             state.add(target, &critic.target);
             state.add_adam([first, second], &critic.adam);
         }
-        let (sight, [parameters, target, first, second]) = (&self.sight, ROWS[2]);
-        state.add(parameters, &sight.parameters);
-        state.add(target, &sight.target);
-        state.add_adam([first, second], &sight.adam);
+        let (shared, [parameters, target, first, second]) = (&self.shared, ROWS[2]);
+        state.add(parameters, &shared.parameters);
+        state.add(target, &shared.target);
+        state.add_adam([first, second], &shared.adam);
     }
 
     pub fn load(&mut self, state: &SavedState, words: &mut StateReader<'_>) -> Result<()> {
@@ -246,19 +251,19 @@ impl TwinCritics {
             state.fill(target, &mut critic.target)?;
             state.fill_adam([first, second], &mut critic.adam, words)?;
         }
-        let (sight, [parameters, target, first, second]) = (&mut self.sight, ROWS[2]);
-        state.fill(parameters, &mut sight.parameters)?;
-        state.fill(target, &mut sight.target)?;
-        state.fill_adam([first, second], &mut sight.adam, words)
+        let (shared, [parameters, target, first, second]) = (&mut self.shared, ROWS[2]);
+        state.fill(parameters, &mut shared.parameters)?;
+        state.fill(target, &mut shared.target)?;
+        state.fill_adam([first, second], &mut shared.adam, words)
     }
 }
 
-impl Sight {
+impl SharedExtractor {
     fn new(encoder: &ObservationEncoder, config: &NetworkConfig, random: &mut Random) -> Result<Self> {
-        let extractor = Extractor::new(encoder, config.picture_network)?;
+        let extractor = Extractor::new(encoder, config.image_network)?;
         let count = extractor.parameters();
         let mut parameters = vec![0.0; count];
-        extractor.initialise(Beginning::Uniform, random, &mut parameters);
+        extractor.initialise(ParameterInit::Uniform, random, &mut parameters);
         Ok(Self {
             extractor,
             target: parameters.clone(),
@@ -270,7 +275,7 @@ impl Sight {
         })
     }
 
-    /// Takes a step from the gradients of the inputs of both critics, rows of `width`.
+    /// Takes a gradient step from the input gradients of both critics, in rows of `width`.
     fn learn(&mut self, compute: &Compute, [first, second]: [&[f32]; 2], width: usize, learning_rate: f32) {
         let Self { extractor, parameters, adam, memory, gradients, dfeatures, .. } = self;
         dfeatures.clear();
@@ -284,24 +289,24 @@ impl Sight {
     }
 }
 
-/// What a step of learning is to come to.
+/// A gradient step of a critic: targets, loss weight and learning rate.
 #[derive(Debug, Clone, Copy)]
-struct Goal<'a> {
-    wanted: &'a [f32],
+struct CriticUpdate<'a> {
+    targets: &'a [f32],
     weight: f32,
     learning_rate: f32,
-    wants_input: bool,
+    needs_input_gradient: bool,
 }
 
 impl Critic {
-    fn learn(&mut self, compute: &Compute, network: &Network, inputs: &[f32], goal: Goal<'_>) {
-        let Goal { wanted, weight, learning_rate, wants_input } = goal;
+    fn learn(&mut self, compute: &Compute, network: &Network, inputs: &[f32], update: CriticUpdate<'_>) {
+        let CriticUpdate { targets, weight, learning_rate, needs_input_gradient } = update;
         let values = network.forward(compute, &self.parameters, inputs, &mut self.tape);
-        let scale = weight / wanted.len() as f32;
+        let scale = weight / targets.len() as f32;
         self.loss = 0.0;
         self.dvalues.clear();
-        for (value, wanted) in values.iter().zip(wanted) {
-            let error = value - wanted;
+        for (value, target) in values.iter().zip(targets) {
+            let error = value - target;
             self.loss += scale * error * error;
             self.dvalues.push(2.0 * scale * error);
         }
@@ -311,14 +316,15 @@ impl Critic {
         self.gradients.fill(0.0);
         let gradients = Some(&mut self.gradients[..]);
         let (parameters, tape) = (&self.parameters, &mut self.tape);
-        let dinputs = network.backward(compute, parameters, &self.dvalues, tape, gradients, wants_input);
+        let dinputs =
+            network.backward(compute, parameters, &self.dvalues, tape, gradients, needs_input_gradient);
         self.dinputs.clear();
         self.dinputs.extend_from_slice(dinputs);
         self.adam.step(compute, learning_rate, &mut self.parameters, &self.gradients);
     }
 
-    /// The gradient by the inputs of minus the sum of the values of its `rows`, divided by `batch`: the rows of the last pass
-    /// forward. Other rows have none, and cost nothing.
+    /// Computes the gradient, with respect to the inputs, of minus the sum of the values of its `rows` in the last forward pass,
+    /// divided by `batch`. Other rows have a gradient of 0 and are not computed.
     fn differentiate(&mut self, compute: &Compute, network: &Network, batch: usize) {
         let Self { parameters, tape, rows, dvalues, dinputs, .. } = self;
         dvalues.clear();
@@ -370,16 +376,16 @@ mod tests {
     }
 
     #[test]
-    fn values_come_to_what_is_wanted_and_targets_follow() {
+    fn values_converge_to_regression_targets_and_target_networks_follow() {
         let (compute, mut random) = (Compute::single(), Random::new(4));
         let mut critics = TwinCritics::new(&numbers(1), 1, &NetworkConfig::default(), &mut random).unwrap();
-        let (observations, actions, wanted) = ([0.5, -0.5], [1.0, -1.0], [2.0, -3.0]);
+        let (observations, actions, targets) = ([0.5, -0.5], [1.0, -1.0], [2.0, -3.0]);
         let losses: Vec<_> = (0..300)
-            .map(|_| critics.learn(&compute, [&observations, &actions], &wanted, 0.5, 0.01))
+            .map(|_| critics.learn(&compute, [&observations, &actions], &targets, 0.5, 0.01))
             .collect();
         assert!(losses[299] < 1e-3 * losses[0], "{losses:?}");
-        critics.follow(1.0);
+        critics.update_targets(1.0);
         let values = critics.target_values(&compute, &observations, &actions, 2);
-        assert!(values.iter().zip(wanted).all(|(value, wanted)| (value - wanted).abs() < 0.1), "{values:?}");
+        assert!(values.iter().zip(targets).all(|(value, target)| (value - target).abs() < 0.1), "{values:?}");
     }
 }

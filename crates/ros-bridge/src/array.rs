@@ -5,9 +5,9 @@ use opendr_engine::{Error, Header, Result};
 use opendr_messages::opendr_msgs::Float32MultiArrayStamped;
 use opendr_messages::std_msgs::{Float32MultiArray, MultiArrayDimension, MultiArrayLayout};
 
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
-/// An array whose axes are called `labels`.
+/// Writes an array whose axes are named `labels`.
 ///
 /// # Errors
 /// `InvalidInput` for more than 2^32 - 1 numbers.
@@ -27,14 +27,15 @@ pub(crate) fn message_from_array(
 }
 
 fn number(value: usize) -> Result<u32> {
-    u32::try_from(value)
-        .map_err(|_| Error::invalid_input(format!("{value} numbers; a message holds up to 4,294,967,295")))
+    u32::try_from(value).map_err(|_| {
+        Error::invalid_input(format!("the array has {value} numbers; a message holds at most 4,294,967,295"))
+    })
 }
 
-/// Shape and numbers of an array that lies without gaps; one without a layout is a row of `data.len()`.
+/// Returns shape and numbers of a contiguous array; one without a layout has the shape `[data.len()]`.
 ///
 /// # Errors
-/// `Format` when the layout asks for other numbers than there are, or leaves gaps.
+/// `Format` when the layout does not match the numbers, or is not contiguous.
 pub(crate) fn array_from_message(message: Float32MultiArray) -> Result<(Vec<usize>, Vec<f32>)> {
     let Float32MultiArray { layout, data } = message;
     if layout.dim.is_empty() {
@@ -45,7 +46,7 @@ pub(crate) fn array_from_message(message: Float32MultiArray) -> Result<(Vec<usiz
     let offset = layout.data_offset as usize;
     if offset != 0 || wanted != Some(data.len()) {
         return Err(Error::format(format!(
-            "an array of shape {shape:?} from place {offset} in {} numbers; send it whole and without gaps",
+            "the layout {shape:?} with offset {offset} does not match {} numbers; send a contiguous array",
             data.len()
         )));
     }
@@ -54,14 +55,17 @@ pub(crate) fn array_from_message(message: Float32MultiArray) -> Result<(Vec<usiz
 
 fn exact<const D: usize>(shape: &[usize], name: &str) -> Result<[usize; D]> {
     shape.try_into().map_err(|_| {
-        Error::format(format!("an array of {} axes is no {name}, which has {D}: {shape:?}", shape.len()))
+        Error::format(format!(
+            "an array of {} axes cannot be a {name}, which has {D}: {shape:?}",
+            shape.len()
+        ))
     })
 }
 
 macro_rules! arrays {
     ($($name:ident $axes:literal $labels:expr;)*) => {$(
-        /// The axes by their names, the numbers as they are.
-        impl Bridged<Float32MultiArrayStamped> for $name {
+        /// Axes by name, numbers unchanged.
+        impl FromToMessage<Float32MultiArrayStamped> for $name {
             fn from_message(message: Float32MultiArrayStamped, _: &RosBridge) -> Result<Self> {
                 let (shape, data) = array_from_message(message.array)?;
                 let shape = exact::<$axes>(&shape, stringify!($name))?;
@@ -83,8 +87,8 @@ arrays! {
     SkeletonSequence 5 ["samples", "channels", "frames", "joints", "persons"];
 }
 
-/// What other people's nodes send: the time of arrival stands for the stamp, and a plain row is one feature through time.
-impl Bridged<Float32MultiArray> for Timeseries {
+/// Array of other nodes: the stamp is the time of arrival, and a plain row is one feature over time.
+impl FromToMessage<Float32MultiArray> for Timeseries {
     fn from_message(message: Float32MultiArray, _: &RosBridge) -> Result<Self> {
         let (shape, data) = array_from_message(message)?;
         let shape = if let [length] = shape[..] { [length, 1] } else { exact::<2>(&shape, "Timeseries")? };
@@ -96,8 +100,8 @@ impl Bridged<Float32MultiArray> for Timeseries {
     }
 }
 
-/// Stamp and frame are left out.
-impl Bridged<Float32MultiArray> for Vector {
+/// Without stamp and frame.
+impl FromToMessage<Float32MultiArray> for Vector {
     fn from_message(message: Float32MultiArray, _: &RosBridge) -> Result<Self> {
         let (_, data) = array_from_message(message)?;
         Self::from_data(data)

@@ -1,22 +1,22 @@
-//! Sound: `opendr_msgs/AudioStamped`, around the messages of `audio_common`.
+//! Audio: `opendr_msgs/AudioStamped`, which contains messages of `audio_common`.
 
 use opendr_engine::data::Audio;
 use opendr_engine::{Error, Result};
 use opendr_messages::audio_common_msgs::{AudioData, AudioInfo};
 use opendr_messages::opendr_msgs::AudioStamped;
 
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
-/// The words of `audio_common` for samples (GStreamer's), that we write.
+/// Written sample format of `audio_common`, in GStreamer's notation.
 const FLOATS: &str = "F32LE";
 
-/// Written as floats, which keeps every bit; read also as 8 (`U8`), 16 (`S16LE`) and 32 bits (`S32LE`).
-impl Bridged<AudioStamped> for Audio {
+/// Written losslessly as floats; also read as 8 (`U8`), 16 (`S16LE`) and 32 bits (`S32LE`).
+impl FromToMessage<AudioStamped> for Audio {
     fn from_message(message: AudioStamped, _: &RosBridge) -> Result<Self> {
         let AudioInfo { channels, sample_rate, sample_format, coding_format, .. } = message.info;
         if !matches!(coding_format.as_str(), "" | "wave" | "WAVE" | "raw" | "pcm") {
             return Err(Error::unsupported(format!(
-                "sound coded as {coding_format:?}; send uncompressed samples (coding_format \"wave\")"
+                "audio is coded as {coding_format:?}; send uncompressed samples (coding_format \"wave\")"
             )));
         }
         let data = message.audio.data;
@@ -32,7 +32,7 @@ impl Bridged<AudioStamped> for Audio {
             }
             other => {
                 return Err(Error::unsupported(format!(
-                    "samples of the format {other:?}; OpenDR reads F32LE, S16LE, S32LE and U8"
+                    "samples have the format {other:?}; OpenDR reads F32LE, S16LE, S32LE and U8"
                 )));
             }
         };
@@ -41,7 +41,10 @@ impl Bridged<AudioStamped> for Audio {
 
     fn to_message(&self, _: &RosBridge) -> Result<AudioStamped> {
         let channels = u8::try_from(self.channels()).map_err(|_| {
-            Error::invalid_input(format!("{} channels; a message holds up to 255", self.channels()))
+            Error::invalid_input(format!(
+                "audio has {} channels; a message holds at most 255",
+                self.channels()
+            ))
         })?;
         let info = AudioInfo {
             channels,
@@ -58,7 +61,10 @@ impl Bridged<AudioStamped> for Audio {
 fn samples<const N: usize, T>(data: &[u8], read: impl Fn([u8; N]) -> T) -> Result<Vec<T>> {
     let (samples, rest) = data.as_chunks::<N>();
     if !rest.is_empty() {
-        return Err(Error::format(format!("{} bytes are no samples of {N} bytes", data.len())));
+        return Err(Error::format(format!(
+            "{} bytes are not a whole number of samples of {N} bytes",
+            data.len()
+        )));
     }
     Ok(samples.iter().map(|bytes| read(*bytes)).collect())
 }

@@ -1,4 +1,4 @@
-//! Boxes in space: `vision_msgs/Detection3DArray`.
+//! 3D boxes: `vision_msgs/Detection3DArray`.
 
 use opendr_engine::Result;
 use opendr_engine::target::{BoundingBox3D, BoundingBox3DList, Classes};
@@ -10,12 +10,12 @@ use opendr_messages::vision_msgs::{
 
 use crate::bounding_box_list::best;
 use crate::class_id::name_from_class_id;
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
-/// One detection a box, in the camera frame of KITTI (x right, y down, z ahead): its middle in metres, its turn about y as
-/// a quaternion, its length, height and width as the sizes along its own x, y and z. What KITTI's files say besides (truncated,
-/// occluded, the angle of view, the box in the picture) has no place.
-impl Bridged<Detection3DArray> for BoundingBox3DList {
+/// One detection per box, in the camera frame of KITTI (x right, y down, z ahead): centre in metres, rotation about y as a
+/// quaternion; length, height and width are the sizes along the box's x, y and z. Further fields of KITTI (truncation, occlusion,
+/// observation angle, 2D box) are not in the message.
+impl FromToMessage<Detection3DArray> for BoundingBox3DList {
     fn from_message(message: Detection3DArray, _: &RosBridge) -> Result<Self> {
         let boxes: Vec<_> = message.detections.iter().map(box_from_detection).collect();
         Ok(Self { header: header_from_message(&message.header), ..Self::from(boxes) })
@@ -59,7 +59,7 @@ pub(crate) fn detection_from_box(
 pub(crate) fn box_from_detection(detection: &Detection3D) -> BoundingBox3D {
     let BoxMessage { center: Pose { position, orientation }, size } = &detection.bbox;
     let Quaternion { x, y, z, w } = orientation;
-    // The turn about y of any orientation.
+    // Rotation about y of any orientation.
     let rotation_y = (2.0 * (w * y + x * z)).atan2(1.0 - 2.0 * (x * x + y * y));
     let best = best(detection.results.iter().map(|result| &result.hypothesis));
     BoundingBox3D {

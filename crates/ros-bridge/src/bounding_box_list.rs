@@ -1,4 +1,4 @@
-//! Boxes in pictures: `vision_msgs/Detection2DArray`.
+//! 2D boxes: `vision_msgs/Detection2DArray`.
 
 use opendr_engine::Result;
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes};
@@ -8,11 +8,11 @@ use opendr_messages::vision_msgs::{
 };
 
 use crate::class_id::name_from_class_id;
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
-/// One detection a box, its centre and size in pixels. Outlines, points of faces and the number of the picture in its data
-/// set have no place. Read is the hypothesis with the highest score; a box that is turned becomes the upright one around it.
-impl Bridged<Detection2DArray> for BoundingBoxList {
+/// One detection per box, with centre and size in pixels. Masks, face landmarks and the image id of a data set are not in the
+/// message. The hypothesis with the highest score is read; a rotated box becomes its axis-aligned enclosing box.
+impl FromToMessage<Detection2DArray> for BoundingBoxList {
     fn from_message(message: Detection2DArray, _: &RosBridge) -> Result<Self> {
         let boxes: Vec<_> = message.detections.iter().map(box_from_detection).collect();
         Ok(Self { header: header_from_message(&message.header), ..Self::from(boxes) })
@@ -61,7 +61,7 @@ pub(crate) fn box_from_detection(detection: &Detection2D) -> BoundingBox {
     BoundingBox::new(name, left, top, width as f32, height as f32, confidence)
 }
 
-/// The hypothesis with the highest score; the first of equal ones, and of those that are not numbers.
+/// Returns the hypothesis with the highest score; the first of equal or NaN ones.
 pub(crate) fn best<'a>(
     hypotheses: impl Iterator<Item = &'a ObjectHypothesis>,
 ) -> Option<&'a ObjectHypothesis> {

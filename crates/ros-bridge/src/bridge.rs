@@ -1,62 +1,62 @@
-//! The table of pairs, and conversion between types that are known at run time.
+//! Table of convertible types, and conversion between types known at run time.
 
 use opendr_engine::{Datum, Error, Result, Value, ValueRef, ValueType};
 use opendr_messages::{Message, MessageType, RosMessage};
 
 use crate::ClassIds;
 
-/// A data or target type that a message stands for.
-pub trait Bridged<M>: Sized {
+/// A data or target type that converts to and from the message type `M`.
+pub trait FromToMessage<M>: Sized {
     /// Reads the message.
     ///
     /// # Errors
-    /// `Format` for a message that contradicts itself; `Unsupported` for one that is known but not read.
+    /// `Format` for an inconsistent message; `Unsupported` for an encoding that OpenDR does not read.
     fn from_message(message: M, bridge: &RosBridge) -> Result<Self>;
 
     /// Writes the message.
     ///
     /// # Errors
-    /// `InvalidInput` for what the message has no place for.
+    /// `InvalidInput` for a value that the message cannot hold.
     fn to_message(&self, bridge: &RosBridge) -> Result<M>;
 }
 
-/// How messages are written: OpenDR's `ROSBridge`.
+/// Converter between values and messages, with its options: OpenDR's `ROSBridge`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RosBridge {
-    /// How classes are told in `class_id` fields.
+    /// Form of `class_id` fields.
     pub class_ids: ClassIds,
-    /// Quality of compressed pictures, 1 (small) to 100 (good).
+    /// JPEG quality of compressed images, 1 (smallest) to 100 (best).
     pub jpeg_quality: u8,
 }
 
 impl Default for RosBridge {
-    /// Classes by name; JPEG quality 90.
+    /// Returns a bridge with classes by name and JPEG quality 90.
     fn default() -> Self {
         Self { class_ids: ClassIds::Names, jpeg_quality: 90 }
     }
 }
 
 impl RosBridge {
-    /// Reads a message of a type that is known at compile time.
+    /// Reads a message of a type known at compile time.
     ///
     /// # Errors
-    /// As [`Bridged::from_message`].
-    pub fn from_message<T: Bridged<M>, M>(&self, message: M) -> Result<T> {
+    /// As [`FromToMessage::from_message`].
+    pub fn from_message<T: FromToMessage<M>, M>(&self, message: M) -> Result<T> {
         T::from_message(message, self)
     }
 
-    /// Writes a message of a type that is known at compile time.
+    /// Writes a message of a type known at compile time.
     ///
     /// # Errors
-    /// As [`Bridged::to_message`].
-    pub fn to_message<T: Bridged<M>, M>(&self, value: &T) -> Result<M> {
+    /// As [`FromToMessage::to_message`].
+    pub fn to_message<T: FromToMessage<M>, M>(&self, value: &T) -> Result<M> {
         value.to_message(self)
     }
 
     /// Reads a message as a value of `value_type`.
     ///
     /// # Errors
-    /// As [`Bridged::from_message`]; `InvalidInput` when no message of this type stands for the value.
+    /// As [`FromToMessage::from_message`]; `InvalidInput` when the types do not convert.
     pub fn value_from_message(&self, value_type: ValueType, message: Message) -> Result<Value> {
         let message_type = message.message_type();
         (find(value_type, message_type)?.read)(message, self)
@@ -65,13 +65,13 @@ impl RosBridge {
     /// Writes a value as a message of `message_type`.
     ///
     /// # Errors
-    /// As [`Bridged::to_message`]; `InvalidInput` when no message of this type stands for the value.
+    /// As [`FromToMessage::to_message`]; `InvalidInput` when the types do not convert.
     pub fn message_from_value(&self, value: ValueRef<'_>, message_type: MessageType) -> Result<Message> {
         (find(value.value_type(), message_type)?.write)(value, self)
     }
 }
 
-/// The messages that stand for a type; the first is the usual one.
+/// Returns the message types that convert to a type; the first is the default.
 pub fn message_types(value_type: ValueType) -> impl Iterator<Item = MessageType> {
     PAIRS.iter().filter(move |pair| pair.value_type == value_type).map(|pair| pair.message_type)
 }
@@ -88,7 +88,7 @@ fn find(value_type: ValueType, message_type: MessageType) -> Result<&'static Pai
     found.ok_or_else(|| {
         let known: Vec<_> = message_types(value_type).map(MessageType::ros2_name).collect();
         Error::invalid_input(format!(
-            "{} is no message of {}; there are {}",
+            "{} is not a message of {}; there are {}",
             message_type.ros2_name(),
             value_type.name(),
             known.join(", ")
@@ -98,7 +98,7 @@ fn find(value_type: ValueType, message_type: MessageType) -> Result<&'static Pai
 
 fn read<T, M>(message: Message, bridge: &RosBridge) -> Result<Value>
 where
-    T: Bridged<M> + Into<Value>,
+    T: FromToMessage<M> + Into<Value>,
     M: TryFrom<Message, Error = Error>,
 {
     T::from_message(message.try_into()?, bridge).map(Into::into)
@@ -106,11 +106,12 @@ where
 
 fn write<T, M>(value: ValueRef<'_>, bridge: &RosBridge) -> Result<Message>
 where
-    T: Bridged<M> + Datum,
+    T: FromToMessage<M> + Datum,
     M: Into<Message>,
 {
-    let value = T::from_value_ref(value)
-        .ok_or_else(|| Error::internal(format!("{} in the place of another", value.value_type().name())))?;
+    let value = T::from_value_ref(value).ok_or_else(|| {
+        Error::internal(format!("a {} where another type is expected", value.value_type().name()))
+    })?;
     value.to_message(bridge).map(Into::into)
 }
 
@@ -163,12 +164,12 @@ mod tests {
     }
 
     #[test]
-    fn a_message_of_another_type_is_told() {
+    fn a_message_of_another_type_is_refused() {
         let message = opendr_messages::std_msgs::String::default().into();
         let error =
             RosBridge::default().value_from_message(ValueType::Image, message).unwrap_err().to_string();
         assert!(
-            error.contains("std_msgs/msg/String is no message of Image; there are sensor_msgs/msg/Image"),
+            error.contains("std_msgs/msg/String is not a message of Image; there are sensor_msgs/msg/Image"),
             "{error}"
         );
     }

@@ -4,10 +4,10 @@ use opendr_engine::data::Calibration;
 use opendr_engine::{Error, Result};
 use opendr_messages::{opendr_msgs, sensor_msgs};
 
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
-/// The three matrices row by row.
-impl Bridged<opendr_msgs::Calibration> for Calibration {
+/// The three matrices in row-major order.
+impl FromToMessage<opendr_msgs::Calibration> for Calibration {
     fn from_message(message: opendr_msgs::Calibration, _: &RosBridge) -> Result<Self> {
         let all = message.p2.iter().chain(&message.r0_rect).chain(&message.tr_velo_to_cam);
         check_finite(all)?;
@@ -29,12 +29,12 @@ impl Bridged<opendr_msgs::Calibration> for Calibration {
     }
 }
 
-/// A camera alone: projection and rectification; the lidar's frame is taken to be the camera's, and is left out when written.
-impl Bridged<sensor_msgs::CameraInfo> for Calibration {
+/// Projection and rectification of a camera; the lidar is assumed to be in the camera's frame, and its pose is not written.
+impl FromToMessage<sensor_msgs::CameraInfo> for Calibration {
     fn from_message(message: sensor_msgs::CameraInfo, _: &RosBridge) -> Result<Self> {
         check_finite(message.p.iter().chain(&message.r))?;
         if message.p[0] == 0.0 || message.p[5] == 0.0 {
-            return Err(Error::format("a camera that is not calibrated: its focal length is 0"));
+            return Err(Error::format("the camera is not calibrated: its focal length is 0"));
         }
         Ok(Self {
             header: header_from_message(&message.header),
@@ -58,7 +58,7 @@ impl Bridged<sensor_msgs::CameraInfo> for Calibration {
 
 fn check_finite<'a>(mut numbers: impl Iterator<Item = &'a f64>) -> Result<()> {
     match numbers.find(|number| !number.is_finite()) {
-        Some(number) => Err(Error::format(format!("a calibration with {number} in a matrix"))),
+        Some(number) => Err(Error::format(format!("a matrix of the calibration contains {number}"))),
         None => Ok(()),
     }
 }

@@ -1,23 +1,23 @@
-//! Classes of whole pictures and sounds: `vision_msgs/Classification` (ROS 1: `Classification2D`).
+//! Classes of whole images and audio: `vision_msgs/Classification` (ROS 1: `Classification2D`).
 
 use opendr_engine::target::{Category, Classes, Name};
 use opendr_engine::{Error, Result};
 use opendr_messages::vision_msgs::{Classification, ObjectHypothesis};
 
 use crate::class_id::{ClassIds, name_from_class_id};
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
-/// The class first, by its description or number, then the scores of all classes by number where the learner tells them.
-impl Bridged<Classification> for Category {
+/// The predicted class first, by description or index, then the scores of all classes by index, if the learner predicts them.
+impl FromToMessage<Classification> for Category {
     fn from_message(message: Classification, _: &RosBridge) -> Result<Self> {
         let [first, all @ ..] = &message.results[..] else {
-            return Err(Error::format("a classification without a result"));
+            return Err(Error::format("the classification has no result"));
         };
         let mut probabilities = Vec::with_capacity(all.len());
         for (index, result) in all.iter().enumerate() {
             if result.class_id != index.to_string() {
                 return Err(Error::format(format!(
-                    "result {} of a classification is of class {:?}; after the first there is one for each class, by number",
+                    "result {} of the classification has class {:?}; after the first there must be one per class, by index",
                     index + 1,
                     result.class_id
                 )));
@@ -32,7 +32,7 @@ impl Bridged<Classification> for Category {
                 (same.map_or(-1, |class| class as i64), Some(label))
             }
         };
-        // A score of NaN stands for none.
+        // NaN stands for no score.
         let confidence = (!score.is_nan()).then_some(score);
         let header = header_from_message(&message.header);
         Ok(Self { header, description, probabilities, ..Self::new(class, confidence) })

@@ -1,4 +1,4 @@
-//! Classes in messages: vision_msgs has one text, a network a number, a robot's user a name.
+//! Class ids in messages, whose text is a name or an index.
 
 use opendr_engine::target::{Classes, Name};
 use opendr_engine::{Header, Result};
@@ -7,17 +7,17 @@ use opendr_messages::vision_msgs;
 use crate::message_from_header;
 
 opendr_engine::choices! {
-    /// How classes are told in `class_id` fields.
+    /// Form of `class_id` fields.
     pub enum ClassIds {
-        /// By name where the learner knows one (`person`), by number otherwise.
+        /// Name of the class (`person`), or its index without a name.
         Names = "names",
-        /// By number (`0`), as OpenDR's nodes did; a message `LabelInfo` says what they mean.
+        /// Index of the class (`0`), as in OpenDR's nodes; a message `LabelInfo` contains the names.
         Numbers = "numbers",
     }
 }
 
 impl ClassIds {
-    /// The text of a class.
+    /// Returns the text of a class.
     pub(crate) fn class_id(self, name: &Name, classes: &Classes) -> String {
         match (self, name) {
             (Self::Names, name) => match classes.label(name) {
@@ -33,7 +33,7 @@ impl ClassIds {
     }
 }
 
-/// The class of a text: a number where it is one.
+/// Returns the class of a text, which is an index if the text is a number.
 pub(crate) fn name_from_class_id(class_id: &str) -> Name {
     match class_id.parse::<i64>() {
         Ok(number) => Name::Index(number),
@@ -41,10 +41,10 @@ pub(crate) fn name_from_class_id(class_id: &str) -> Name {
     }
 }
 
-/// What class numbers mean, as vision_msgs tells it beside its detections.
+/// Returns the message of vision_msgs with the names of the classes. Class indices above 65,535 do not fit and are omitted.
 ///
 /// # Errors
-/// `InvalidInput` for a stamp that ROS cannot hold. Classes beyond 65,535 have no number there and are left out.
+/// `InvalidInput` for a stamp that ROS cannot hold.
 pub fn label_info(classes: &Classes, header: &Header, threshold: f32) -> Result<vision_msgs::LabelInfo> {
     let class_map = classes
         .iter()

@@ -5,15 +5,15 @@ use opendr_messages::{builtin_interfaces, std_msgs};
 
 const NANOSECONDS_A_SECOND: i64 = 1_000_000_000;
 
-/// A time in nanoseconds since the epoch of its clock.
+/// Returns a time in nanoseconds since the epoch of its clock.
 pub fn nanoseconds(time: &builtin_interfaces::Time) -> i64 {
     i64::from(time.sec) * NANOSECONDS_A_SECOND + i64::from(time.nanosec)
 }
 
-/// The message of a time in nanoseconds.
+/// Returns the message of a time in nanoseconds.
 ///
 /// # Errors
-/// `InvalidInput` for a time that the 32 bits of ROS cannot hold (after 2038).
+/// `InvalidInput` for a time that does not fit the 32-bit seconds of ROS (after 2038).
 pub fn time(nanoseconds: i64) -> Result<builtin_interfaces::Time> {
     let (sec, nanosec) =
         (nanoseconds.div_euclid(NANOSECONDS_A_SECOND), nanoseconds.rem_euclid(NANOSECONDS_A_SECOND));
@@ -25,7 +25,7 @@ pub fn time(nanoseconds: i64) -> Result<builtin_interfaces::Time> {
     }
 }
 
-/// The header of a message; a stamp of 0 and an empty frame id mean that they are not known, as ROS has it.
+/// Returns the header of a message; a stamp of 0 and an empty frame id mean unknown, as in ROS.
 pub fn header_from_message(header: &std_msgs::Header) -> Header {
     let stamp = nanoseconds(&header.stamp);
     Header {
@@ -34,7 +34,7 @@ pub fn header_from_message(header: &std_msgs::Header) -> Header {
     }
 }
 
-/// The message of a header.
+/// Returns the message of a header.
 ///
 /// # Errors
 /// As [`time`].
@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn times_that_do_not_fit_are_told() {
+    fn times_that_do_not_fit_are_refused() {
         let error = time(i64::MAX).unwrap_err().to_string();
         assert!(error.contains("9223372036854775807"), "{error}");
         let odd = builtin_interfaces::Time { sec: i32::MIN, nanosec: u32::MAX };

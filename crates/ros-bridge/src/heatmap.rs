@@ -1,29 +1,31 @@
-//! Maps of classes or scores: `sensor_msgs/Image`.
+//! Maps of class indices or scores: `sensor_msgs/Image`.
 
 use opendr_engine::data::{Image, Layout, PixelFormat, Pixels};
 use opendr_engine::target::{Heatmap, HeatmapValues};
 use opendr_engine::{Error, Result};
 use opendr_messages::sensor_msgs;
 
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
-/// Class numbers are `mono8`, `16UC1` or `32SC1`, the smallest that holds them; scores are `32FC1`, or with classes
-/// `[classes, height, width]` `32FC` and their number. What classes mean is told by `vision_msgs/LabelInfo`.
-impl Bridged<sensor_msgs::Image> for Heatmap {
+/// Class indices are `mono8`, `16UC1` or `32SC1`, the smallest that holds them. Scores are `32FC1`; those of shape
+/// `[classes, height, width]` are `32FCn` with n classes. `vision_msgs/LabelInfo` contains the names of the classes.
+impl FromToMessage<sensor_msgs::Image> for Heatmap {
     fn from_message(mut message: sensor_msgs::Image, bridge: &RosBridge) -> Result<Self> {
         let header = header_from_message(&message.header);
         let (height, width) = (message.height as usize, message.width as usize);
         let channels = match message.encoding.strip_prefix("32FC").map(str::parse::<usize>) {
             Some(Ok(channels)) if channels > 0 => channels,
-            Some(_) => return Err(Error::format(format!("the encoding {:?}", message.encoding))),
+            Some(_) => {
+                return Err(Error::format(format!("the encoding {:?} is not one of maps", message.encoding)));
+            }
             None => 0,
         };
         if channels > 0 || message.encoding == "32SC1" {
-            // The same bytes as a picture of one float a pixel that is as much wider.
+            // Read the same bytes as a wider image of one float per pixel.
             message.encoding = "32FC1".to_owned();
             let wide = u32::try_from(width.saturating_mul(channels.max(1)));
-            message.width =
-                wide.map_err(|_| Error::format(format!("{channels} channels of {width} pixels")))?;
+            message.width = wide
+                .map_err(|_| Error::format(format!("{channels} channels of {width} pixels are too many")))?;
         }
         let image: Image = bridge.from_message(message)?;
         let mut map = match image.pixels() {
@@ -54,7 +56,7 @@ impl Bridged<sensor_msgs::Image> for Heatmap {
             (&[height, width], _) => (1, height, width),
             (&[channels, height, width], HeatmapValues::Scores(_)) => (channels, height, width),
             (shape, _) => {
-                return Err(Error::invalid_input(format!("a map of shape {shape:?} is no picture")));
+                return Err(Error::invalid_input(format!("a map of shape {shape:?} is not an image")));
             }
         };
         let mut encoding = None;

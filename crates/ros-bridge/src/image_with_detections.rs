@@ -1,13 +1,13 @@
-//! A picture with boxes: `opendr_msgs/ImageWithDetections`.
+//! An image with boxes: `opendr_msgs/ImageWithDetections`.
 
 use opendr_engine::Result;
 use opendr_engine::data::ImageWithDetections;
 use opendr_messages::opendr_msgs;
 
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
-/// Picture and boxes as they are alone.
-impl Bridged<opendr_msgs::ImageWithDetections> for ImageWithDetections {
+/// Image and boxes, each as in its own message.
+impl FromToMessage<opendr_msgs::ImageWithDetections> for ImageWithDetections {
     fn from_message(message: opendr_msgs::ImageWithDetections, bridge: &RosBridge) -> Result<Self> {
         Ok(Self {
             header: header_from_message(&message.header),

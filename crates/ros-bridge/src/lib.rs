@@ -1,8 +1,9 @@
-//! OpenDR's `ros_bridge`: each data and target type to and from ROS messages.
+//! Conversion between data and target types and ROS messages.
 //!
-//! A pair of types is one implementation of [`Bridged`], and one word in the table of [`RosBridge`]; nodes for ROS 1 and
-//! ROS 2, recordings and the Python functions all go through it. Stamps, frame ids, scores, identities and depth at full
-//! precision survive both ways; what a standard message has no field for is said beside the implementation.
+//! A pair of types is one implementation of [`FromToMessage`] and one entry in the table of [`RosBridge`], which nodes of ROS 1 and
+//! ROS 2, recordings and the Python functions use. Stamps, frame ids, scores, track ids and depth at full precision are kept in
+//! both directions; fields that a standard message does not have are listed at the implementation. Message types are in
+//! `opendr-messages`, nodes in `opendr-ros`. Begin with [`RosBridge`]:
 //!
 //! ```
 //! use opendr_engine::data::Image;
@@ -40,7 +41,7 @@ mod tracking_annotation_list;
 mod transcription;
 mod view_action;
 
-pub use bridge::{Bridged, RosBridge, message_types};
+pub use bridge::{FromToMessage, RosBridge, message_types};
 pub use class_id::{ClassIds, label_info};
 pub use header::{header_from_message, message_from_header, nanoseconds, time};
 pub use view_action::view_action;

@@ -6,10 +6,10 @@ use opendr_messages::opendr_msgs::{self, Float32MultiArrayStamped, ObservationPa
 use opendr_messages::std_msgs::Float32MultiArray;
 
 use crate::array::{array_from_message, message_from_array};
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
-/// The parts by name; an observation without parts is one part without a name.
-impl Bridged<opendr_msgs::Observation> for Observation {
+/// Parts by name; an observation without parts is one unnamed part.
+impl FromToMessage<opendr_msgs::Observation> for Observation {
     fn from_message(message: opendr_msgs::Observation, _: &RosBridge) -> Result<Self> {
         let header = header_from_message(&message.header);
         let mut parts = Vec::with_capacity(message.parts.len());
@@ -18,7 +18,7 @@ impl Bridged<opendr_msgs::Observation> for Observation {
             parts.push((part.name, shape, data));
         }
         let observation = match &parts[..] {
-            [] => return Err(Error::format("an observation without parts")),
+            [] => return Err(Error::format("the observation has no parts")),
             [(name, _, data)] if name.is_empty() => Self::from_data(data.clone())?,
             parts => Self::from_parts(
                 parts.iter().map(|(name, shape, data)| (name.as_str(), shape.as_slice(), data.as_slice())),
@@ -46,11 +46,12 @@ impl Bridged<opendr_msgs::Observation> for Observation {
     }
 }
 
-/// The numbers in a row.
-impl Bridged<Float32MultiArrayStamped> for Observation {
+/// The numbers as one row.
+impl FromToMessage<Float32MultiArrayStamped> for Observation {
     fn from_message(message: Float32MultiArrayStamped, bridge: &RosBridge) -> Result<Self> {
         let header = header_from_message(&message.header);
-        Ok(<Self as Bridged<Float32MultiArray>>::from_message(message.array, bridge)?.with_header(header))
+        Ok(<Self as FromToMessage<Float32MultiArray>>::from_message(message.array, bridge)?
+            .with_header(header))
     }
 
     fn to_message(&self, bridge: &RosBridge) -> Result<Float32MultiArrayStamped> {
@@ -59,8 +60,8 @@ impl Bridged<Float32MultiArrayStamped> for Observation {
     }
 }
 
-/// The numbers in a row, without stamp and frame.
-impl Bridged<Float32MultiArray> for Observation {
+/// The numbers as one row, without stamp and frame.
+impl FromToMessage<Float32MultiArray> for Observation {
     fn from_message(message: Float32MultiArray, _: &RosBridge) -> Result<Self> {
         Self::from_data(array_from_message(message)?.1)
     }

@@ -1,24 +1,24 @@
-//! Clouds: `sensor_msgs/PointCloud2` with any layout of its fields.
+//! Point clouds: `sensor_msgs/PointCloud2` with any layout of its fields.
 
 use opendr_engine::data::PointCloud;
 use opendr_engine::{Error, Result};
 use opendr_messages::sensor_msgs::{PointCloud2, PointField};
 
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
-/// What the channels of our clouds are called when they are written; more are `channel_7` and so on.
+/// Written names of the channels; further ones are `channel_7` and so on.
 const NAMES: [&str; 7] = ["x", "y", "z", "intensity", "r", "g", "b"];
 
-/// The names under which drivers send the strength of the echo.
+/// Names of the intensity field in messages of drivers.
 const INTENSITIES: [&str; 4] = ["intensity", "intensities", "reflectivity", "i"];
 
-/// The names of a colour packed into 32 bits (PCL).
+/// Names of colours packed into 32 bits (PCL).
 const PACKED_COLOURS: [&str; 2] = ["rgb", "rgba"];
 
-/// Read are x, y, z, then the strength of the echo, then colours (single fields, or `rgb`/`rgba` packed as PCL has it,
-/// 0 to 255 each), then `channel_N`, of any number type, place and byte order; other fields (ring, time) are left out.
-/// Points that are not a number stay. Written are floats in that order.
-impl Bridged<PointCloud2> for PointCloud {
+/// Reads x, y, z, then the intensity, then colours (single fields, or packed `rgb`/`rgba` as in PCL, 0 to 255 each), then
+/// `channel_N`, of any number type, offset and byte order; other fields (ring, time) are skipped. NaN points are kept. Writes
+/// floats in the same order.
+impl FromToMessage<PointCloud2> for PointCloud {
     fn from_message(message: PointCloud2, _: &RosBridge) -> Result<Self> {
         let columns = Columns::of(&message)?;
         let (points, step) = (columns.points, message.point_step as usize);
@@ -40,13 +40,15 @@ impl Bridged<PointCloud2> for PointCloud {
         const FLOAT_BYTES: usize = size_of::<f32>();
         let number = |value: usize| {
             u32::try_from(value).map_err(|_| {
-                Error::invalid_input(format!("{value}; a cloud in a message has up to 4,294,967,295"))
+                Error::invalid_input(format!(
+                    "{value} exceeds the limit of 4,294,967,295 in a point cloud message"
+                ))
             })
         };
         let mut fields = Vec::with_capacity(self.channels());
         for channel in 0..self.channels() {
             let name = match (self.channels(), channel) {
-                // Without the strength of the echo.
+                // Without intensity.
                 (6, 3..) => NAMES.get(channel + 1),
                 _ => NAMES.get(channel),
             };
@@ -72,7 +74,7 @@ impl Bridged<PointCloud2> for PointCloud {
     }
 }
 
-/// The columns that are read, checked against what was sent.
+/// Columns to read, checked against the size of the data.
 struct Columns {
     columns: Vec<Column>,
     points: usize,
@@ -88,7 +90,7 @@ enum Kind {
         datatype: u8,
         big_endian: bool,
     },
-    /// Red, green and blue of 32 bits.
+    /// Red, green and blue in 32 bits.
     Packed {
         big_endian: bool,
     },
@@ -109,7 +111,7 @@ impl Columns {
         };
         if points > 0 && (step == 0 || needed > message.data.len() || (height > 1 && row_step < row)) {
             return Err(Error::format(format!(
-                "a cloud of {width}x{height} points of {step} bytes in rows of {row_step}, and {} bytes of data",
+                "a cloud of {width}x{height} points of {step} bytes in rows of {row_step} does not match {} bytes of data",
                 message.data.len()
             )));
         }
@@ -120,7 +122,7 @@ impl Columns {
         for name in ["x", "y", "z"] {
             let field = find(&[name]).ok_or_else(|| {
                 let names: Vec<_> = message.fields.iter().map(|field| field.name.as_str()).collect();
-                Error::format(format!("a cloud without a field {name:?}; it has {}", names.join(", ")))
+                Error::format(format!("the cloud has no field {name:?}; it has {}", names.join(", ")))
             })?;
             columns.push(Column::of(field, message)?);
         }
@@ -134,7 +136,10 @@ impl Columns {
         } else if let Some(field) = find(&PACKED_COLOURS) {
             let mut column = Column::of(field, message)?;
             if !matches!(field.datatype, PointField::FLOAT32 | PointField::UINT32 | PointField::INT32) {
-                return Err(Error::unsupported(format!("packed colours of the type {}", field.datatype)));
+                return Err(Error::unsupported(format!(
+                    "packed colours have the unsupported type {}",
+                    field.datatype
+                )));
             }
             column.kind = Kind::Packed { big_endian: message.is_bigendian };
             columns.push(column);
@@ -159,13 +164,16 @@ impl Column {
             PointField::INT32 | PointField::UINT32 | PointField::FLOAT32 => 4,
             PointField::FLOAT64 => 8,
             other => {
-                return Err(Error::format(format!("field {:?} of a cloud has the type {other}", field.name)));
+                return Err(Error::format(format!(
+                    "field {:?} of the cloud has the unknown type {other}",
+                    field.name
+                )));
             }
         };
         let offset = field.offset as usize;
         if offset + size > message.point_step as usize {
             return Err(Error::format(format!(
-                "field {:?} of a cloud lies at {offset}, beyond its points of {} bytes",
+                "field {:?} of the cloud has offset {offset}, beyond its points of {} bytes",
                 field.name, message.point_step
             )));
         }
@@ -194,7 +202,7 @@ impl Column {
     }
 }
 
-/// The number that `bytes` begin with; they were checked to be long enough.
+/// Returns the number at the start of `bytes`, whose length was checked.
 fn first<const N: usize, T>(bytes: &[u8], big_endian: bool, read: fn([u8; N]) -> T) -> T {
     let mut own = bytes.first_chunk().copied().unwrap_or([0; N]);
     if !big_endian {

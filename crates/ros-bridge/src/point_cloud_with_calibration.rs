@@ -1,13 +1,13 @@
-//! A cloud with its calibration: `opendr_msgs/PointCloudWithCalibration`.
+//! A point cloud with its calibration: `opendr_msgs/PointCloudWithCalibration`.
 
 use opendr_engine::data::PointCloudWithCalibration;
 use opendr_engine::{Error, Result};
 use opendr_messages::opendr_msgs;
 
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
-/// Cloud and calibration as they are alone; a picture's size of 0 means that it is not known.
-impl Bridged<opendr_msgs::PointCloudWithCalibration> for PointCloudWithCalibration {
+/// Point cloud and calibration, each as in its own message; an image size of 0 means unknown.
+impl FromToMessage<opendr_msgs::PointCloudWithCalibration> for PointCloudWithCalibration {
     fn from_message(message: opendr_msgs::PointCloudWithCalibration, bridge: &RosBridge) -> Result<Self> {
         let shape = [message.image_height as usize, message.image_width as usize];
         Ok(Self {
@@ -20,7 +20,11 @@ impl Bridged<opendr_msgs::PointCloudWithCalibration> for PointCloudWithCalibrati
 
     fn to_message(&self, bridge: &RosBridge) -> Result<opendr_msgs::PointCloudWithCalibration> {
         let side = |length: usize| {
-            u32::try_from(length).map_err(|_| Error::invalid_input(format!("a picture's side of {length}")))
+            u32::try_from(length).map_err(|_| {
+                Error::invalid_input(format!(
+                    "the image has a side of {length} pixels; a message holds at most 4,294,967,295"
+                ))
+            })
         };
         let [image_height, image_width] = self.image_shape.unwrap_or_default();
         Ok(opendr_msgs::PointCloudWithCalibration {

@@ -4,10 +4,10 @@ use opendr_engine::target::{Keypoint, Pose, PoseList, Skeleton};
 use opendr_engine::{Error, Result};
 use opendr_messages::opendr_msgs::{Pose2D, Pose2DArray, Pose2DKeypoint};
 
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
-/// The joints by name and place. The box that data sets draw around persons has no place.
-impl Bridged<Pose2DArray> for PoseList {
+/// Keypoints by name and position. The person boxes of data sets are not in the message.
+impl FromToMessage<Pose2DArray> for PoseList {
     fn from_message(message: Pose2DArray, _: &RosBridge) -> Result<Self> {
         let poses = message.poses.iter().map(pose_from_message).collect::<Result<Vec<_>>>()?;
         Ok(Self { header: header_from_message(&message.header), ..Self::from(poses) })
@@ -40,7 +40,7 @@ fn pose_from_message(message: &Pose2D) -> Result<Pose> {
         Skeleton::ALL.iter().copied().find(|known| known.name() == message.skeleton).ok_or_else(|| {
             let known: Vec<_> = Skeleton::ALL.iter().map(|known| known.name()).collect();
             Error::format(format!(
-                "a pose of the skeleton {:?}; there are {}",
+                "the pose has the unknown skeleton {:?}; there are {}",
                 message.skeleton,
                 known.join(", ")
             ))

@@ -1,4 +1,4 @@
-//! Answers of policies: an array, or a velocity.
+//! Actions of policies: an array, or a velocity.
 
 use opendr_engine::target::RlTarget;
 use opendr_engine::{Error, Result};
@@ -6,10 +6,10 @@ use opendr_messages::geometry_msgs::{Twist, TwistStamped, Vector3};
 use opendr_messages::opendr_msgs::Float32MultiArrayStamped;
 
 use crate::array::{array_from_message, message_from_array};
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
 /// The numbers of the action.
-impl Bridged<Float32MultiArrayStamped> for RlTarget {
+impl FromToMessage<Float32MultiArrayStamped> for RlTarget {
     fn from_message(message: Float32MultiArrayStamped, _: &RosBridge) -> Result<Self> {
         let header = header_from_message(&message.header);
         Ok(Self { header, ..Self::from(array_from_message(message.array)?.1) })
@@ -21,9 +21,9 @@ impl Bridged<Float32MultiArrayStamped> for RlTarget {
     }
 }
 
-/// A velocity in m/s and rad/s. Written from 2 numbers (ahead, turn), 3 (ahead, left, up), 4 (ahead, left, up, turn) or 6
-/// (x, y, z and about x, y, z); read as 6.
-impl Bridged<Twist> for RlTarget {
+/// A velocity in m/s and rad/s. Written from 2 numbers (forward, yaw rate), 3 (forward, left, up), 4 (forward, left, up, yaw rate)
+/// or 6 (linear x, y, z, angular x, y, z); read as 6.
+impl FromToMessage<Twist> for RlTarget {
     fn from_message(message: Twist, _: &RosBridge) -> Result<Self> {
         let Twist { linear, angular } = message;
         let values = [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z];
@@ -39,7 +39,7 @@ impl Bridged<Twist> for RlTarget {
             [x, y, z, about_x, about_y, about_z] => (linear(x, y, z), linear(about_x, about_y, about_z)),
             _ => {
                 return Err(Error::invalid_input(format!(
-                    "an action of {} numbers is no velocity; it has 2, 3, 4 or 6",
+                    "an action of {} numbers is not a velocity, which has 2, 3, 4 or 6",
                     self.values.len()
                 )));
             }
@@ -49,7 +49,7 @@ impl Bridged<Twist> for RlTarget {
 }
 
 /// A velocity with stamp and frame.
-impl Bridged<TwistStamped> for RlTarget {
+impl FromToMessage<TwistStamped> for RlTarget {
     fn from_message(message: TwistStamped, bridge: &RosBridge) -> Result<Self> {
         let header = header_from_message(&message.header);
         Ok(Self { header, ..bridge.from_message(message.twist)? })

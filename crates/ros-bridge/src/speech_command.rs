@@ -1,17 +1,17 @@
-//! Spoken commands: `vision_msgs/Classification`, as OpenDR's nodes sent them.
+//! Speech commands: `vision_msgs/Classification`, as in OpenDR's nodes.
 
 use opendr_engine::target::{Classes, SpeechCommand};
 use opendr_engine::{Error, Result};
 use opendr_messages::vision_msgs::{Classification, ObjectHypothesis};
 
 use crate::class_id::{ClassIds, name_from_class_id};
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
-/// The word or number with its score. Begin and end within the sound have no place.
-impl Bridged<Classification> for SpeechCommand {
+/// Word or index with its score. Start and end within the audio are not in the message.
+impl FromToMessage<Classification> for SpeechCommand {
     fn from_message(message: Classification, _: &RosBridge) -> Result<Self> {
         let first = message.results.first();
-        let first = first.ok_or_else(|| Error::format("a classification without a result"))?;
+        let first = first.ok_or_else(|| Error::format("the classification has no result"))?;
         let command = Self::new(name_from_class_id(&first.class_id), first.score as f32);
         Ok(Self { header: header_from_message(&message.header), ..command })
     }

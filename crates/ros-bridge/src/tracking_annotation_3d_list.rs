@@ -1,4 +1,4 @@
-//! Followed objects in space: `vision_msgs/Detection3DArray` with identities.
+//! 3D tracks: `vision_msgs/Detection3DArray` with track ids.
 
 use opendr_engine::Result;
 use opendr_engine::target::{TrackingAnnotation3D, TrackingAnnotation3DList};
@@ -6,10 +6,10 @@ use opendr_messages::vision_msgs::Detection3DArray;
 
 use crate::bounding_box_3d_list::{box_from_detection, detection_from_box};
 use crate::tracking_annotation_list::track_id;
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
-/// As boxes in space; the object's number is the detection's `id`. An `id` that is no number is not known (-1).
-impl Bridged<Detection3DArray> for TrackingAnnotation3DList {
+/// As 3D boxes, with the track id as the detection's `id`. An `id` that is not a number is read as -1 (unknown).
+impl FromToMessage<Detection3DArray> for TrackingAnnotation3DList {
     fn from_message(message: Detection3DArray, _: &RosBridge) -> Result<Self> {
         let annotation = |detection| TrackingAnnotation3D {
             bounding_box_3d: box_from_detection(detection),

@@ -1,15 +1,15 @@
-//! Followed objects in pictures: `vision_msgs/Detection2DArray` with identities.
+//! 2D tracks: `vision_msgs/Detection2DArray` with track ids.
 
 use opendr_engine::Result;
 use opendr_engine::target::{TrackingAnnotation, TrackingAnnotationList};
 use opendr_messages::vision_msgs::Detection2DArray;
 
 use crate::bounding_box_list::{box_from_detection, detection_from_box};
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
-/// As boxes; the object's number is the detection's `id`. The number of the picture has no place: its stamp stands for it.
-/// An `id` that is no number is not known (-1).
-impl Bridged<Detection2DArray> for TrackingAnnotationList {
+/// As boxes, with the track id as the detection's `id`. The frame index is not in the message; the stamp identifies the frame. An
+/// `id` that is not a number is read as -1 (unknown).
+impl FromToMessage<Detection2DArray> for TrackingAnnotationList {
     fn from_message(message: Detection2DArray, _: &RosBridge) -> Result<Self> {
         let annotation = |detection| TrackingAnnotation {
             bounding_box: box_from_detection(detection),
@@ -30,7 +30,7 @@ impl Bridged<Detection2DArray> for TrackingAnnotationList {
     }
 }
 
-/// The text of an object's number; nothing where it is not known.
+/// Returns the text of a track id; empty if it is unknown.
 pub(crate) fn track_id(id: i64) -> String {
     if id < 0 { String::new() } else { id.to_string() }
 }

@@ -1,13 +1,13 @@
-//! What was said: `opendr_msgs/Transcription`.
+//! Transcriptions: `opendr_msgs/Transcription`.
 
 use opendr_engine::Result;
 use opendr_engine::target::{BaseTranscription, VoskTranscription, WhisperSegment, WhisperTranscription};
 use opendr_messages::opendr_msgs::{Transcription, TranscriptionSegment};
 
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
-/// The words.
-impl Bridged<Transcription> for BaseTranscription {
+/// The text.
+impl FromToMessage<Transcription> for BaseTranscription {
     fn from_message(message: Transcription, _: &RosBridge) -> Result<Self> {
         Ok(Self { header: header_from_message(&message.header), text: message.text, action: None })
     }
@@ -18,8 +18,8 @@ impl Bridged<Transcription> for BaseTranscription {
     }
 }
 
-/// The words so far, and whether they will stay.
-impl Bridged<Transcription> for VoskTranscription {
+/// The text so far, and whether it is final.
+impl FromToMessage<Transcription> for VoskTranscription {
     fn from_message(message: Transcription, _: &RosBridge) -> Result<Self> {
         let header = header_from_message(&message.header);
         Ok(Self { header, text: message.text, accept_waveform: message.is_final, action: None })
@@ -32,8 +32,8 @@ impl Bridged<Transcription> for VoskTranscription {
     }
 }
 
-/// The words with their parts.
-impl Bridged<Transcription> for WhisperTranscription {
+/// The text with its segments.
+impl FromToMessage<Transcription> for WhisperTranscription {
     fn from_message(message: Transcription, _: &RosBridge) -> Result<Self> {
         let segments = message.segments.into_iter().map(segment_from_message).collect();
         Ok(Self { header: header_from_message(&message.header), text: message.text, segments, action: None })

@@ -1,4 +1,4 @@
-//! Active perception: what a target says of how to move, as `opendr_msgs/ViewAction`.
+//! Active perception: the recommended movement of a target, as `opendr_msgs/ViewAction`.
 
 use opendr_engine::target::Action;
 use opendr_engine::{Header, Result};
@@ -6,7 +6,7 @@ use opendr_messages::opendr_msgs::ViewAction;
 
 use crate::message_from_header;
 
-/// The message of a movement.
+/// Returns the message of a movement.
 ///
 /// # Errors
 /// `InvalidInput` for a stamp that ROS cannot hold.

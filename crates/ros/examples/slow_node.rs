@@ -1,4 +1,4 @@
-//! A node of ROS 2 around a learner that takes as long as it is told to: for tests of what a slow one does.
+//! A ROS 2 node with a learner of configurable duration, for tests of slow learners.
 //!
 //! ```console
 //! $ cargo run -p opendr-ros --example slow_node
@@ -13,17 +13,17 @@ use opendr_engine::model::{Manifest, Model, ModelWriter};
 use opendr_engine::params::{ParamMap, Params};
 use opendr_engine::target::Category;
 use opendr_engine::{Device, Result, Task, learners};
-use opendr_ros::{Feeds, LearnerNode, Names, Ros2, Ros2Options, Severity, default_topics};
+use opendr_ros::{LearnerNode, Names, Ros2, Ros2Options, Severity, SharedSubscriptions, default_topics};
 
-/// What a user may set.
+/// Parameters of the learner.
 #[derive(Debug, Clone, Params)]
 struct SlowParams {
-    /// How long an inference takes.
+    /// Duration of an inference.
     #[param(default = 100.0, range = 0.0..=60_000.0, unit = "ms", live)]
     delay_ms: f64,
 }
 
-/// Answers always the same, late.
+/// Returns a constant prediction after a delay.
 struct Slow {
     params: SlowParams,
 }
@@ -64,7 +64,13 @@ fn main() -> Result<()> {
     learner.load(&folder)?;
     std::fs::remove_dir_all(&folder)?;
     let mut graph = Ros2::new(&Ros2Options::default())?.node(Names::new("/", "slow", [""; 0])?)?;
-    let node = LearnerNode::new(&mut *graph, entry, learner, default_topics(entry), &mut Feeds::default())?;
+    let node = LearnerNode::new(
+        &mut *graph,
+        entry,
+        learner,
+        default_topics(entry),
+        &mut SharedSubscriptions::default(),
+    )?;
     graph.start()?;
     graph.log()(Severity::Info, "SlowLearner is ready as /slow");
     node.run(&|| false);

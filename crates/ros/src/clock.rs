@@ -1,4 +1,4 @@
-//! Whose time it is: the system's, or a simulation's.
+//! System time, and simulated time from `/clock`.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
@@ -10,10 +10,10 @@ use opendr_ros_bridge::nanoseconds;
 
 use crate::{Clock, Graph, Qos};
 
-/// While nobody asked for the simulation's time.
+/// Value of `sim_time` while the system time is used.
 pub(crate) const NO_SIM_TIME: i64 = i64::MIN;
 
-/// The clock that `sim_time` tells, or the system's.
+/// Returns a clock that reads `sim_time` or, without it, the system time.
 pub(crate) fn clock(sim_time: Arc<AtomicI64>) -> Clock {
     Arc::new(move || match sim_time.load(Ordering::Relaxed) {
         NO_SIM_TIME => system_time_ns(),
@@ -21,13 +21,13 @@ pub(crate) fn clock(sim_time: Arc<AtomicI64>) -> Clock {
     })
 }
 
-/// Nanoseconds since 1970.
+/// Returns the system time in nanoseconds since 1970.
 pub(crate) fn system_time_ns() -> i64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     i64::try_from(since.as_nanos()).unwrap_or(i64::MAX)
 }
 
-/// Has `sim_time` follow `/clock` from now on.
+/// Subscribes to `/clock` and updates `sim_time` from it.
 pub(crate) fn follow(graph: &mut dyn Graph, sim_time: &Arc<AtomicI64>) -> Result<()> {
     sim_time.store(0, Ordering::Relaxed);
     let sim_time = sim_time.clone();

@@ -1,4 +1,4 @@
-//! An embedded world as a node: simulation over ROS.
+//! Environments as nodes: simulation over ROS.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,21 +15,21 @@ use opendr_ros_bridge::RosBridge;
 use crate::graph::serve_reset;
 use crate::{Clock, Graph, Log, Publisher, Qos, Severity};
 
-/// How a world runs.
+/// Options of an environment node.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnvironmentOptions {
-    /// Where actions come from.
+    /// Topic of the actions.
     pub action_topic: String,
-    /// Their message: an array, or a velocity.
+    /// Message type of the actions: an array, or a velocity.
     pub action_message: MessageType,
     /// Seed of the first episode.
     pub seed: u64,
-    /// Steps a second with the last action that came; `None` for a step with each action.
+    /// Steps per second, with the last received action; `None` for one step per action.
     pub rate: Option<f64>,
 }
 
 impl Default for EnvironmentOptions {
-    /// A step with each array on `~/action`, seed 0.
+    /// Returns options for one step per array on `~/action`, with seed 0.
     fn default() -> Self {
         Self {
             action_topic: "~/action".to_owned(),
@@ -40,14 +40,14 @@ impl Default for EnvironmentOptions {
     }
 }
 
-/// Writes an observation with the names of its parts.
-pub type Observe = Box<dyn Fn(&[f32]) -> Result<Observation> + Send>;
+/// Converts the numbers of an observation into an observation with named parts.
+pub type ObservationWriter = Box<dyn Fn(&[f32]) -> Result<Observation> + Send>;
 
-/// A world that takes actions and answers with observation (`~/observation`), reward (`~/reward`) and whether the episode is
-/// over (`~/is_over`), and then begins the next. `~/reset` begins one at once.
+/// An environment as a node: it subscribes to actions and publishes the observation (`~/observation`), the reward (`~/reward`) and
+/// whether the episode is over (`~/is_over`). After an episode it begins the next; the service `~/reset` begins one at once.
 pub struct EnvironmentNode {
     environment: Box<dyn Environment>,
-    observe: Observe,
+    observe: ObservationWriter,
     options: EnvironmentOptions,
     actions: Receiver<Result<Message>>,
     reset: Arc<AtomicBool>,
@@ -59,42 +59,42 @@ pub struct EnvironmentNode {
     log: Log,
 }
 
-/// How long the loop waits for an action before it looks at everything else.
+/// Maximum wait of the loop for an action before it handles resets and the stop.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// How long a world that waits for an action is silent.
+/// Interval at which a waiting environment publishes its observation again.
 const REMINDER: Duration = Duration::from_secs(1);
 
 impl EnvironmentNode {
-    /// Declares the topics of `environment` on `graph`; `observe` gives observations the names of their parts.
+    /// Declares the topics of `environment` on `graph`; `observe` names the parts of observations.
     ///
     /// # Errors
-    /// `InvalidInput` for a message that is no action; `Io` when the network cannot be used.
+    /// `InvalidInput` for a message type without an action; `Io` when the network cannot be used.
     pub fn new(
         graph: &mut dyn Graph,
         environment: Box<dyn Environment>,
-        observe: Observe,
+        observe: ObservationWriter,
         options: EnvironmentOptions,
     ) -> Result<Self> {
         let known = opendr_ros_bridge::message_types(ValueType::RlTarget);
         if !known.into_iter().any(|known| known == options.action_message) {
             return Err(Error::invalid_input(format!(
-                "{} is no action; give an array or a velocity",
+                "{} is not an action; use an array or a velocity",
                 options.action_message.ros2_name()
             )));
         }
-        // The world answers to the newest action; one that waits besides is enough.
+        // The environment uses the newest action; a queue of two is enough.
         let (sender, actions) = sync_channel(2);
         graph.subscribe(
             &options.action_topic,
             options.action_message,
             Qos::RESULT,
             Box::new(move |message| {
-                // Who acts faster than the world answers is not waited for.
+                // Actions that come faster than the environment steps are dropped.
                 let _ = sender.try_send(message);
             }),
         )?;
-        let reset = serve_reset(graph, "an episode begins")?;
+        let reset = serve_reset(graph, "a new episode begins")?;
         Ok(Self {
             observations: graph.advertise(
                 "~/observation",
@@ -118,20 +118,20 @@ impl EnvironmentNode {
         })
     }
 
-    /// Lives until `stop` says so.
+    /// Runs until `stop` returns true.
     ///
     /// # Errors
-    /// Those of the environment, but for actions that do not fit, which are told and left out.
+    /// Those of the environment. Invalid actions are logged and skipped instead.
     pub fn run(mut self, stop: &dyn Fn() -> bool) -> Result<()> {
         let spec = self.environment.spec().clone();
-        let mut seen = vec![0.0; spec.observation.len()];
+        let mut observation = vec![0.0; spec.observation.len()];
         let mut action = vec![0.0; spec.action.len()];
-        self.begin(Some(self.options.seed), &mut seen)?;
+        self.begin(Some(self.options.seed), &mut observation)?;
         let period = self.options.rate.map(|rate| Duration::from_secs_f64(1.0 / rate.max(1e-3)));
         let (mut next, mut answered) = (Instant::now(), Instant::now());
         while !stop() {
             if self.reset.swap(false, Ordering::Relaxed) {
-                self.begin(None, &mut seen)?;
+                self.begin(None, &mut observation)?;
             }
             let wait =
                 period.map_or(PATIENCE, |_| next.saturating_duration_since(Instant::now()).min(PATIENCE));
@@ -143,9 +143,9 @@ impl EnvironmentNode {
             if came {
                 answered = Instant::now();
             } else if period.is_none() && answered.elapsed() > REMINDER {
-                // Who acts may have come late, or missed it.
+                // The policy may have started late or missed the observation.
                 answered = Instant::now();
-                self.show(&seen)?;
+                self.publish_observation(&observation)?;
             }
             let due = match period {
                 None => came,
@@ -156,24 +156,24 @@ impl EnvironmentNode {
                 Some(_) => false,
             };
             if due {
-                self.step(&action, &mut seen)?;
+                self.step(&action, &mut observation)?;
             }
         }
         Ok(())
     }
 
-    /// The action of a message; one that does not fit is told.
+    /// Reads the action of a message; an invalid one is logged.
     fn take(&self, message: Result<Message>, action: &mut [f32]) -> bool {
         let read = message
             .and_then(|message| RosBridge::default().value_from_message(ValueType::RlTarget, message))
             .and_then(|value| {
                 let Value::RlTarget(RlTarget { values, .. }) = value else {
-                    return Err(Error::internal("an action of another type"));
+                    return Err(Error::internal("an action of another type than its topic"));
                 };
-                // A velocity has six numbers, of which a world takes the first it knows.
+                // A velocity has six numbers, of which the environment uses the first ones.
                 let values = values.get(..action.len()).ok_or_else(|| {
                     Error::invalid_input(format!(
-                        "an action of {} numbers; the world takes {}",
+                        "an action has {} numbers; the environment needs {}",
                         values.len(),
                         action.len()
                     ))
@@ -188,25 +188,25 @@ impl EnvironmentNode {
         read.is_ok()
     }
 
-    fn begin(&mut self, seed: Option<u64>, seen: &mut [f32]) -> Result<()> {
-        self.environment.reset(seed, &ResetOptions::new(), seen)?;
-        self.show(seen)
+    fn begin(&mut self, seed: Option<u64>, observation: &mut [f32]) -> Result<()> {
+        self.environment.reset(seed, &ResetOptions::new(), observation)?;
+        self.publish_observation(observation)
     }
 
-    fn step(&mut self, action: &[f32], seen: &mut [f32]) -> Result<()> {
-        let step = self.environment.step(action, seen)?;
+    fn step(&mut self, action: &[f32], observation: &mut [f32]) -> Result<()> {
+        let step = self.environment.step(action, observation)?;
         self.rewards.publish(std_msgs::Float32 { data: step.reward as f32 }.into())?;
         self.overs.publish(std_msgs::Bool { data: step.is_over() }.into())?;
         if step.is_over() {
-            return self.begin(None, seen);
+            return self.begin(None, observation);
         }
-        self.show(seen)
+        self.publish_observation(observation)
     }
 
-    fn show(&mut self, seen: &[f32]) -> Result<()> {
+    fn publish_observation(&mut self, observation: &[f32]) -> Result<()> {
         let bridge = RosBridge::default();
         let header = Header { stamp_ns: Some((self.clock)()), frame_id: Some("world".into()) };
-        let observation = Value::from((self.observe)(seen)?.with_header(header.clone()));
+        let observation = Value::from((self.observe)(observation)?.with_header(header.clone()));
         let message =
             bridge.message_from_value(observation.as_value_ref(), MessageType::OpendrMsgsObservation)?;
         self.observations.publish(message)?;

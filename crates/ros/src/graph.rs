@@ -1,4 +1,4 @@
-//! What a node needs of a ROS, whichever it is.
+//! Interface of nodes to ROS 1 and ROS 2.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,34 +8,34 @@ use opendr_messages::{Message, MessageType, std_srvs};
 
 use crate::ParameterTable;
 
-/// Quality of service, as far as a node chooses it.
+/// Quality of service of a topic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Qos {
-    /// Whether lost messages are sent again. A subscription that does not ask for it takes from both kinds of publishers.
+    /// Whether lost messages are sent again. A best-effort subscription accepts both kinds of publishers.
     pub reliable: bool,
-    /// Whether who comes late gets the last message (ROS 1: latched, ROS 2: transient local).
+    /// Whether late subscribers get the last message (ROS 1: latched, ROS 2: transient local).
     pub latched: bool,
-    /// How many messages are kept for a slow peer.
+    /// Number of messages kept for a slow peer.
     pub depth: usize,
 }
 
 impl Qos {
-    /// For what sensors send.
+    /// Quality of service of sensor data.
     pub const SENSOR: Self = Self { reliable: false, latched: false, depth: 5 };
-    /// For results.
+    /// Quality of service of predictions.
     pub const RESULT: Self = Self { reliable: true, latched: false, depth: 10 };
-    /// For what is told once.
+    /// Quality of service of messages that are sent once.
     pub const LATCHED: Self = Self { reliable: true, latched: true, depth: 1 };
 }
 
-/// Takes messages as they come; an error stands for bytes that are no message of the type.
-pub type Deliver = Box<dyn FnMut(Result<Message>) + Send>;
+/// Callback for received messages; an error stands for bytes that cannot be read as the type.
+pub type MessageCallback = Box<dyn FnMut(Result<Message>) + Send>;
 
-/// Answers a `std_srvs/Trigger`: what was done, or why it was not.
-pub type Trigger = Box<dyn FnMut() -> Result<String> + Send>;
+/// Handler of a `std_srvs/Trigger`; returns the message of the response.
+pub type TriggerHandler = Box<dyn FnMut() -> Result<String> + Send>;
 
-/// The answer to who pulled a trigger.
-pub(crate) fn answer_to(trigger: &mut Trigger) -> std_srvs::TriggerResponse {
+/// Returns the response of a trigger.
+pub(crate) fn answer_to(trigger: &mut TriggerHandler) -> std_srvs::TriggerResponse {
     let (success, message) = match trigger() {
         Ok(message) => (true, message),
         Err(error) => (false, error.to_string()),
@@ -43,7 +43,7 @@ pub(crate) fn answer_to(trigger: &mut Trigger) -> std_srvs::TriggerResponse {
     std_srvs::TriggerResponse { success, message }
 }
 
-/// Serves `~/reset`: what it sets when somebody asks, who then is told `done`.
+/// Serves `~/reset` and returns the flag that a request sets; the response is `done`.
 pub(crate) fn serve_reset(graph: &mut dyn Graph, done: &'static str) -> Result<Arc<AtomicBool>> {
     let reset = Arc::new(AtomicBool::new(false));
     let asked = reset.clone();
@@ -55,13 +55,13 @@ pub(crate) fn serve_reset(graph: &mut dyn Graph, done: &'static str) -> Result<A
     Ok(reset)
 }
 
-/// Nanoseconds since the epoch, or of the simulation.
+/// Returns nanoseconds since 1970, or of the simulation.
 pub type Clock = Arc<dyn Fn() -> i64 + Send + Sync>;
 
-/// Writes a line to the terminal and to the ROS.
+/// Logs a line to the terminal and to ROS.
 pub type Log = Arc<dyn Fn(Severity, &str) + Send + Sync>;
 
-/// How much a log line matters.
+/// Severity of a log line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[allow(missing_docs)]
 pub enum Severity {
@@ -71,7 +71,7 @@ pub enum Severity {
 }
 
 impl Severity {
-    /// As ROS's log lines have it.
+    /// Returns the name in ROS's log format.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Info => "INFO",
@@ -81,62 +81,67 @@ impl Severity {
     }
 }
 
-/// One node in a ROS.
+/// Connection of one node to ROS.
 pub trait Graph: Send {
-    /// The node's name with its namespace, e.g. `/opendr/nanodet`.
+    /// Returns the node's name with its namespace, such as `/opendr/nanodet`.
     fn name(&self) -> &str;
 
-    /// The absolute name of a topic or service as the user's remappings have it.
+    /// Returns the absolute name of a topic or service after the user's remappings.
     ///
     /// # Errors
-    /// `InvalidInput` for what is no name.
+    /// `InvalidInput` for an invalid name.
     fn resolve(&self, name: &str) -> Result<String>;
 
-    /// A topic to publish to.
+    /// Advertises a topic.
     ///
     /// # Errors
-    /// `InvalidInput` for what is no name; `Io` when the network cannot be used.
+    /// `InvalidInput` for an invalid name; `Io` when the network cannot be used.
     fn advertise(&mut self, topic: &str, message_type: MessageType, qos: Qos) -> Result<Arc<dyn Publisher>>;
 
-    /// Hands the messages of a topic on, from a thread of its own.
+    /// Subscribes to a topic; `deliver` receives the messages on a thread of its own.
     ///
     /// # Errors
     /// As [`Graph::advertise`].
-    fn subscribe(&mut self, topic: &str, message_type: MessageType, qos: Qos, deliver: Deliver)
-    -> Result<()>;
+    fn subscribe(
+        &mut self,
+        topic: &str,
+        message_type: MessageType,
+        qos: Qos,
+        deliver: MessageCallback,
+    ) -> Result<()>;
 
     /// Serves a `std_srvs/Trigger`.
     ///
     /// # Errors
     /// As [`Graph::advertise`].
-    fn serve(&mut self, service: &str, trigger: Trigger) -> Result<()>;
+    fn serve(&mut self, service: &str, trigger: TriggerHandler) -> Result<()>;
 
-    /// Shows the parameters and lets others set them.
+    /// Declares the parameters, which other nodes can then read and set.
     ///
     /// # Errors
     /// As [`Graph::advertise`].
     fn declare(&mut self, parameters: Arc<ParameterTable>) -> Result<()>;
 
-    /// Whether somebody else has ended the node (`rosnode kill`).
+    /// Returns whether the node was ended from outside (`rosnode kill`).
     fn is_over(&self) -> bool {
         false
     }
 
-    /// The clock of the ROS.
+    /// Returns the clock of ROS.
     fn clock(&self) -> Clock;
 
-    /// Logs to the terminal and to the ROS.
+    /// Returns the logger of the node.
     fn log(&self) -> Log;
 }
 
-/// One topic that a node publishes to.
+/// Publisher of one topic.
 pub trait Publisher: Send + Sync {
-    /// Sends a message; a peer that is slow or gone never holds it up for long.
+    /// Sends a message; a slow or ended peer does not block for long.
     ///
     /// # Errors
-    /// `Io` when the network cannot be used; `Unsupported` for a message that this ROS does not have.
+    /// `Io` when the network cannot be used; `Unsupported` for a message that this version of ROS does not have.
     fn publish(&self, message: Message) -> Result<()>;
 
-    /// How many listen.
+    /// Returns the number of subscribers.
     fn subscribers(&self) -> usize;
 }

@@ -1,8 +1,8 @@
-//! Names of nodes, topics and services, and how users remap them.
+//! Names of nodes, topics and services, and their remappings.
 
 use opendr_engine::{Error, Result};
 
-/// A node's name and the user's remappings (`from:=to`).
+/// Name of a node and the user's remappings (`from:=to`).
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Names {
     namespace: String,
@@ -11,12 +11,12 @@ pub struct Names {
 }
 
 impl Names {
-    /// The names of the node `node` in `namespace` (`/`, `/robot/front`), changed by `remappings`: `from:=to` for topics and
-    /// services, `__node:=name` or `__name:=name` and `__ns:=/namespace` for the node itself. A rule `other:from:=to` holds
-    /// for the node called `other` alone.
+    /// Creates the names of the node `node` in `namespace` (`/`, `/robot/front`) with `remappings`: `from:=to` for topics and
+    /// services, `__node:=name` or `__name:=name` and `__ns:=/namespace` for the node itself. A rule `other:from:=to` applies to the
+    /// node `other` only.
     ///
     /// # Errors
-    /// `InvalidInput` for a rule or a name that is none.
+    /// `InvalidInput` for an invalid rule or name.
     pub fn new<S: AsRef<str>>(
         namespace: &str,
         node: &str,
@@ -27,7 +27,7 @@ impl Names {
             let rule = rule.as_ref();
             let (from, to) = rule.split_once(":=").ok_or_else(|| {
                 Error::invalid_input(format!(
-                    "{rule:?} is no remapping; write from:=to, e.g. image:=/camera/image_raw"
+                    "{rule:?} is not a remapping; write from:=to, such as image:=/camera/image_raw"
                 ))
             })?;
             let from = match from.split_once(':') {
@@ -56,25 +56,25 @@ impl Names {
         Ok(names)
     }
 
-    /// The namespace, e.g. `/robot`.
+    /// Returns the namespace, such as `/robot`.
     pub fn namespace(&self) -> &str {
         &self.namespace
     }
 
-    /// The node's own name.
+    /// Returns the node's name without namespace.
     pub fn node(&self) -> &str {
         &self.node
     }
 
-    /// The node's name with its namespace.
+    /// Returns the node's name with its namespace.
     pub fn full(&self) -> String {
         self.in_namespace(&self.node)
     }
 
-    /// The absolute name of `name` (`/absolute`, `relative` to the namespace, `~/private` to the node) after the remappings.
+    /// Returns the absolute name of `name` (`/absolute`, `relative` to the namespace, `~/private` to the node) after the remappings.
     ///
     /// # Errors
-    /// `InvalidInput` for what is no name.
+    /// `InvalidInput` for an invalid name.
     pub fn resolve(&self, name: &str) -> Result<String> {
         let absolute = self.absolute(name)?;
         let rule = self.rules.iter().find(|(from, _)| *from == absolute);
@@ -98,7 +98,7 @@ impl Names {
     }
 }
 
-/// Absolute names: words of letters, digits and `_` that begin with no digit, each after a `/`.
+/// Checks an absolute name: words of letters, digits and `_` that do not begin with a digit, each after a `/`.
 fn check(name: &str) -> Result<()> {
     let is_word = |word: &str| {
         word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
@@ -108,7 +108,7 @@ fn check(name: &str) -> Result<()> {
     match name.strip_prefix('/') {
         Some(rest) if rest.split('/').all(is_word) => Ok(()),
         _ => Err(Error::invalid_input(format!(
-            "{name:?} is no name in a ROS; write words of letters, digits and single _, with / between"
+            "{name:?} is not a ROS name; write words of letters, digits and single _, with / between"
         ))),
     }
 }
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_name_is_told() {
+    fn invalid_names_are_refused() {
         for name in ["", "9a", "a//b", "a-b", "/", "a__b", "ä"] {
             assert!(Names::new("/", "node", [""; 0]).unwrap().resolve(name).is_err(), "{name}");
             assert!(Names::new("/", name, [""; 0]).is_err(), "{name}");

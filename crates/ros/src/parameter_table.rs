@@ -1,4 +1,4 @@
-//! A node's parameters, as the tables of `Params` have them.
+//! Parameters of a node, from the tables of `Params`.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -7,14 +7,14 @@ use opendr_engine::{Error, Result};
 
 type Apply = Box<dyn Fn(&str, &ParamValue) -> Result<()> + Send + Sync>;
 
-/// Parameters with their values, and what happens when one is set.
+/// Parameters with their values and the callback for changes.
 pub struct ParameterTable {
     rows: Mutex<Vec<(&'static Field, ParamValue)>>,
     apply: Apply,
 }
 
 impl ParameterTable {
-    /// A table of fields with their values; `apply` is called with each change of a parameter that is live before it holds.
+    /// Creates a table of fields with their values; `apply` is called with each change of a live parameter before it takes effect.
     pub fn new(
         rows: Vec<(&'static Field, ParamValue)>,
         apply: impl Fn(&str, &ParamValue) -> Result<()> + Send + Sync + 'static,
@@ -22,24 +22,24 @@ impl ParameterTable {
         Self { rows: Mutex::new(rows), apply: Box::new(apply) }
     }
 
-    /// Every parameter with its value.
+    /// Returns every parameter with its value.
     pub fn rows(&self) -> Vec<(&'static Field, ParamValue)> {
         self.locked().clone()
     }
 
-    /// One parameter with its value.
+    /// Returns one parameter with its value.
     pub fn get(&self, name: &str) -> Option<(&'static Field, ParamValue)> {
         self.locked().iter().find(|(field, _)| field.name == name).cloned()
     }
 
-    /// Whether a parameter may be set to a value.
+    /// Checks whether a parameter can be set to a value.
     ///
     /// # Errors
     /// As [`ParameterTable::set`].
     pub fn check(&self, name: &str, value: &ParamValue) -> Result<()> {
         let (field, _) = self.get(name).ok_or_else(|| {
             let names: Vec<_> = self.locked().iter().map(|(field, _)| field.name).collect();
-            Error::invalid_param(format!("there is no parameter {name}; there are {}", names.join(", ")))
+            Error::invalid_param(format!("unknown parameter {name}; there are {}", names.join(", ")))
         })?;
         if !field.live {
             return Err(Error::invalid_param(format!(

@@ -1,4 +1,4 @@
-//! ROS 1, over the native client of `opendr-ros1`.
+//! ROS 1, through the native client of `opendr-ros1`.
 
 use std::sync::atomic::AtomicI64;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -6,26 +6,26 @@ use std::time::Duration;
 
 use opendr_engine::params::ParamValue;
 use opendr_engine::{Error, ErrorKind, Result};
-use opendr_messages::{Message, MessageType, RosService as _, StdSrvsTrigger, Wire, ros1_from_message};
+use opendr_messages::{Message, MessageType, RosService as _, StdSrvsTrigger, WireFormat, ros1_from_message};
 use opendr_ros1::{
     Listener, Node, NodeOptions, ParameterValue, ParameterWatch, PublisherOptions, ServiceServer,
     ServiceType, SubscriberOptions, TopicType,
 };
 
 use crate::clock::{self, NO_SIM_TIME};
-use crate::graph::{Clock, Deliver, Graph, Log, Publisher, Qos, Severity, Trigger, answer_to};
+use crate::graph::{Clock, Graph, Log, MessageCallback, Publisher, Qos, Severity, TriggerHandler, answer_to};
 use crate::{Names, ParameterTable};
 
-/// How long a node waits for a master that is just being started.
+/// Maximum wait for a master that is being started.
 const PATIENCE_WITH_MASTER: Duration = Duration::from_secs(10);
 
-/// A node of ROS 1.
+/// A ROS 1 node.
 pub struct Ros1Node {
     names: Names,
     full_name: String,
     log: Log,
     sim_time: Arc<AtomicI64>,
-    // What ends when it goes; the node last.
+    // Dropped in this order: the node last.
     listeners: Vec<Listener>,
     services: Vec<ServiceServer>,
     watches: Vec<ParameterWatch>,
@@ -33,16 +33,16 @@ pub struct Ros1Node {
 }
 
 impl Ros1Node {
-    /// A node at the master of `ROS_MASTER_URI`.
+    /// Creates a node at the master of `ROS_MASTER_URI`.
     ///
     /// # Errors
-    /// `Network` when the master does not answer within ten seconds; `InvalidParam` for names that are none.
+    /// `Network` when the master does not respond within ten seconds; `InvalidParam` for invalid names.
     pub fn new(names: Names) -> Result<Self> {
         let full_name = names.full();
         let log = terminal_log(&full_name);
-        let told = log.clone();
+        let logger = log.clone();
         let mut options =
-            NodeOptions::new(names.node()).on_problem(move |error| told(Severity::Warn, &error.to_string()));
+            NodeOptions::new(names.node()).on_error(move |error| logger(Severity::Warn, &error.to_string()));
         options.namespace = Some(names.namespace().to_owned());
         options.wait_for_master = PATIENCE_WITH_MASTER;
         let node = Arc::new(Node::new(options)?);
@@ -51,10 +51,10 @@ impl Ros1Node {
         Ok(Self { names, full_name, log, sim_time, listeners, services, watches, node })
     }
 
-    /// The node's private parameters that are set on the parameter server (by a launch file), as text.
+    /// Returns the node's private parameters on the parameter server (set by a launch file), as text.
     ///
     /// # Errors
-    /// `Network` when the master does not answer.
+    /// `Network` when the master does not respond.
     pub fn private_parameters(&self) -> Result<Vec<(String, String)>> {
         let Some(ParameterValue::Struct(parameters)) = self.node.parameter_if_set(&self.full_name)? else {
             return Ok(Vec::new());
@@ -85,19 +85,19 @@ impl Graph for Ros1Node {
         topic: &str,
         message_type: MessageType,
         qos: Qos,
-        mut deliver: Deliver,
+        mut deliver: MessageCallback,
     ) -> Result<()> {
         let name = self.names.resolve(topic)?;
         let options = SubscriberOptions { queue_size: qos.depth.max(1), ..SubscriberOptions::default() };
         let subscription = self.node.subscribe(&name, topic_type(message_type)?, options)?;
         self.listeners.push(subscription.on_message(move |message| {
-            let read = Message::from_bytes(message_type, Wire::Ros1, &message.bytes);
+            let read = Message::from_bytes(message_type, WireFormat::Ros1, &message.bytes);
             deliver(read.map_err(|error| error.context(name.clone())));
         })?);
         Ok(())
     }
 
-    fn serve(&mut self, service: &str, trigger: Trigger) -> Result<()> {
+    fn serve(&mut self, service: &str, trigger: TriggerHandler) -> Result<()> {
         let trigger = Mutex::new(trigger);
         let kind = StdSrvsTrigger::TYPE;
         let kind = ServiceType::new(format!("{}/{}", kind.package, kind.name), kind.md5sum);
@@ -109,7 +109,7 @@ impl Graph for Ros1Node {
         Ok(())
     }
 
-    /// On the parameter server, below the node's name; what is set there is followed, and put back when it does not fit.
+    /// Writes the parameters to the parameter server, below the node's name. Changes there are applied; invalid ones are reverted.
     fn declare(&mut self, parameters: Arc<ParameterTable>) -> Result<()> {
         let sim_time = self.node.parameter_if_set("/use_sim_time")?;
         let own = parameters.get("use_sim_time").map(|(_, value)| value);
@@ -119,7 +119,7 @@ impl Graph for Ros1Node {
         }
         for (field, value) in parameters.rows() {
             let key = format!("{}/{}", self.full_name, field.name);
-            // What is absent has no value there.
+            // Absent optional values are not written.
             let Some(shown) = parameter_value(&value) else { continue };
             self.node.set_parameter(&key, shown)?;
             let (table, node, log) = (parameters.clone(), Arc::downgrade(&self.node), self.log.clone());
@@ -140,7 +140,7 @@ impl Graph for Ros1Node {
         Ok(())
     }
 
-    /// By `rosnode kill` or a second node of the same name.
+    /// True after `rosnode kill` or when a second node has taken the name.
     fn is_over(&self) -> bool {
         self.node.is_shut_down()
     }
@@ -158,7 +158,7 @@ struct Ros1Publisher(opendr_ros1::Publisher);
 
 impl Publisher for Ros1Publisher {
     fn publish(&self, message: Message) -> Result<()> {
-        self.0.publish_owned(message.to_bytes(Wire::Ros1)?)
+        self.0.publish_owned(message.to_bytes(WireFormat::Ros1)?)
     }
 
     fn subscribers(&self) -> usize {
@@ -170,7 +170,7 @@ fn topic_type(message_type: MessageType) -> Result<TopicType> {
     let known = message_type.ros1().ok_or_else(|| {
         Error::new(ErrorKind::Unsupported, format!("ROS 1 has no message {}", message_type.ros2_name()))
     })?;
-    Ok(TopicType::new(known.name, known.md5sum, message_type.definition(Wire::Ros1)?))
+    Ok(TopicType::new(known.name, known.md5sum, message_type.definition(WireFormat::Ros1)?))
 }
 
 fn param_value(value: &ParameterValue) -> Option<ParamValue> {

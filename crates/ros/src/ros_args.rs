@@ -1,4 +1,4 @@
-//! What ROS users and launch files write after `--ros-args`.
+//! ROS arguments: remappings and parameters after `--ros-args`, and the syntax of ROS 1.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -7,12 +7,12 @@ use std::path::Path;
 use opendr_engine::{Error, Result, ResultExt};
 use serde::Deserialize;
 
-/// Remappings and parameters, as `ros2 run PACKAGE NODE --ros-args ...` takes them.
+/// Remappings and parameters of `ros2 run PACKAGE NODE --ros-args ...`.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct RosArgs {
     /// `from:=to`, `__node:=name`, `__ns:=/namespace`.
     pub remappings: Vec<String>,
-    /// Parameters by name, their values as written; the last of a name holds.
+    /// Parameters by name, with values as written; of several with one name the last applies.
     pub parameters: Vec<(String, String)>,
 }
 
@@ -45,27 +45,27 @@ impl Scalar {
 }
 
 impl RosArgs {
-    /// Reads the words after `--ros-args`: `-r`/`--remap RULE`, `-p`/`--param NAME:=VALUE`, `--params-file FILE`;
-    /// `--log-level`, `--enclave` and the switches of logging are taken and have no effect. `node` is the node's own name and
-    /// `namespace` where it is, by which a file of parameters finds it.
+    /// Parses the words after `--ros-args`: `-r`/`--remap RULE`, `-p`/`--param NAME:=VALUE`, `--params-file FILE`;
+    /// `--log-level`, `--enclave` and the switches of logging are accepted without effect. `node` and `namespace` are the node's, by
+    /// which parameter files select parameters.
     ///
     /// # Errors
-    /// `InvalidInput` for a word that is none of these; `NotFound`, `Io` or `Format` for a file that cannot be read.
+    /// `InvalidInput` for another word; `NotFound`, `Io` or `Format` for a file that cannot be read.
     pub fn parse<S: AsRef<str>>(words: &[S], namespace: &str, node: &str) -> Result<Self> {
         let mut args = Self::default();
         let mut files = Vec::new();
         let mut words = words.iter().map(AsRef::as_ref);
         while let Some(word) = words.next() {
             let mut value =
-                || words.next().ok_or_else(|| Error::invalid_input(format!("{word} needs a word after it")));
+                || words.next().ok_or_else(|| Error::invalid_input(format!("{word} needs an argument")));
             match word {
                 "-r" | "--remap" => args.remappings.push(value()?.to_owned()),
                 "-p" | "--param" => {
                     let text = value()?;
                     let (name, value) = text.split_once(":=").ok_or_else(|| {
-                        Error::invalid_input(format!("{text:?} is no parameter; write name:=value"))
+                        Error::invalid_input(format!("{text:?} is not a parameter; write name:=value"))
                     })?;
-                    // A rule for another node.
+                    // Rules with a colon are for a certain node.
                     match name.split_once(':') {
                         Some((only, name)) if only == node => {
                             args.parameters.push((name.to_owned(), value.to_owned()))
@@ -82,7 +82,7 @@ impl RosArgs {
                 _ if word.starts_with("--enable-") || word.starts_with("--disable-") => {}
                 _ => {
                     return Err(Error::invalid_input(format!(
-                        "{word:?} after --ros-args; there are -r FROM:=TO, -p NAME:=VALUE and --params-file FILE"
+                        "unknown word {word:?} after --ros-args; there are -r FROM:=TO, -p NAME:=VALUE and --params-file FILE"
                     )));
                 }
             }
@@ -99,12 +99,12 @@ impl RosArgs {
     }
 }
 
-/// What `roslaunch` and `rosrun` write (`from:=to`, `__name:=node`, `_param:=value`) in the words of [`RosArgs::parse`]; `None` for
-/// another word.
+/// Converts arguments of `roslaunch` and `rosrun` (`from:=to`, `__name:=node`, `_param:=value`) to words for [`RosArgs::parse`];
+/// returns `None` for another word.
 ///
 /// # Errors
-/// `Unsupported` for what stands in the environment of a node here (`__master`, `__ip`, `__hostname`).
-pub fn words_from_ros1(word: &str) -> Result<Option<Vec<String>>> {
+/// `Unsupported` for `__master`, `__ip` and `__hostname`, which are environment variables here.
+pub fn ros_args_from_ros1(word: &str) -> Result<Option<Vec<String>>> {
     let Some((name, value)) = word.split_once(":=") else { return Ok(None) };
     if name.is_empty() || name.starts_with('-') {
         return Ok(None);
@@ -113,8 +113,10 @@ pub fn words_from_ros1(word: &str) -> Result<Option<Vec<String>>> {
     match name {
         "__log" => Ok(Some(Vec::new())),
         "__name" | "__ns" => words("-r", word.to_owned()),
-        "__master" => Err(Error::unsupported("__master; set ROS_MASTER_URI")),
-        "__ip" | "__hostname" => Err(Error::unsupported(format!("{name}; set ROS_IP or ROS_HOSTNAME"))),
+        "__master" => Err(Error::unsupported("__master is not supported; set ROS_MASTER_URI")),
+        "__ip" | "__hostname" => {
+            Err(Error::unsupported(format!("{name} is not supported; set ROS_IP or ROS_HOSTNAME")))
+        }
         _ => match name.strip_prefix('_') {
             Some(parameter) => words("-p", format!("{parameter}:={value}")),
             None => words("-r", word.to_owned()),
@@ -122,12 +124,12 @@ pub fn words_from_ros1(word: &str) -> Result<Option<Vec<String>>> {
     }
 }
 
-/// The parameters in a file that hold for the node `full`: under its name, or under `/**`.
+/// Returns the parameters of a file for the node `full`: under its name, or under `/**`.
 fn parameters_of_file(path: &Path, full: &str) -> Result<Vec<(String, String)>> {
     let context = || format!("reading {}", path.display());
     let text = fs::read_to_string(path).map_err(Error::from).context(context)?;
     let nodes: BTreeMap<String, OfNode> = serde_saphyr::from_str(&text)
-        .map_err(|error| Error::format(format!("no parameters of nodes: {error}")))
+        .map_err(|error| Error::format(format!("not a parameter file: {error}")))
         .context(context)?;
     let short = full.rsplit('/').next().unwrap_or(full);
     let mut parameters = Vec::new();
@@ -145,18 +147,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_roslaunch_writes() {
-        let words = |word| words_from_ros1(word).unwrap().map(|words| words.join(" "));
+    fn arguments_of_roslaunch_are_converted() {
+        let words = |word| ros_args_from_ros1(word).unwrap().map(|words| words.join(" "));
         assert_eq!(words("image_raw:=/camera").as_deref(), Some("-r image_raw:=/camera"));
         assert_eq!(words("__name:=eyes").as_deref(), Some("-r __name:=eyes"));
         assert_eq!(words("_threshold:=0.5").as_deref(), Some("-p threshold:=0.5"));
         assert_eq!(words("__log:=/tmp/x.log").as_deref(), Some(""));
         assert_eq!((words("nanodet"), words("--image")), (None, None));
-        assert!(words_from_ros1("__master:=http://x").is_err());
+        assert!(ros_args_from_ros1("__master:=http://x").is_err());
     }
 
     #[test]
-    fn what_launch_files_write() {
+    fn arguments_of_launch_files_are_parsed() {
         let file = std::env::temp_dir().join(format!("opendr-params-{}.yaml", std::process::id()));
         let text = "/**:\n  ros__parameters:\n    threshold: 0.25\n    classes: [1, 2]\neyes:\n  ros__parameters: {annotate: false}\nother:\n  ros__parameters:\n    threshold: 0.9\n";
         fs::write(&file, text).unwrap();

@@ -1,9 +1,8 @@
-//! One end of a conversation with a real ROS 1, for the tests in `tests/ros1`. Tells what happens as lines of
-//! JSON.
+//! A ROS 1 node for the tests in `tests/ros1`, which prints its events as lines of JSON.
 //!
 //! ```text
 //! ros1_probe publish TOPIC COUNT RATE [latched] [queue=N]   std_msgs/String, numbered; COUNT 0: no end
-//! ros1_probe images TOPIC COUNT RATE [queue=N]              640x480 pictures to the first subscriber
+//! ros1_probe images TOPIC COUNT RATE [queue=N]              640x480 images to the first subscriber
 //! ros1_probe subscribe TOPIC TYPE MD5 COUNT [slow=MS] [queue=N] [max=BYTES]
 //! ros1_probe serve SERVICE                                  std_srvs/SetBool; false is refused
 //! ros1_probe call SERVICE TYPE MD5 HEX [more=N]              once, and N times over one connection
@@ -50,7 +49,7 @@ fn json(text: &str) -> String {
     format!("\"{}\"", text.chars().map(letter).collect::<String>())
 }
 
-/// `name=N` among the words.
+/// Returns N of `name=N` among the words.
 fn option(words: &[&str], name: &str, otherwise: u64) -> u64 {
     let found = words.iter().find_map(|word| word.strip_prefix(name)?.strip_prefix('=')?.parse().ok());
     found.unwrap_or(otherwise)
@@ -62,7 +61,7 @@ fn run(arguments: &Arguments) -> Result<()> {
     options.wait_for_master = Duration::from_secs(10);
     options.max_message_bytes = option(&words, "max", 1 << 30) as usize;
     let options = options
-        .on_problem(|error| say("problem", &error.to_string()))
+        .on_error(|error| say("problem", &error.to_string()))
         .on_shutdown(|reason| say("shutdown", reason));
     let node = Node::new(options)?;
     say("node", node.name());
@@ -164,7 +163,7 @@ fn images(node: &Node, topic: &str, count: f64, rate: f64, words: &[&str]) -> Re
     Ok(())
 }
 
-/// A picture whose every byte tells its number.
+/// Returns an image whose bytes all depend on its sequence number.
 fn image(sequence: u32) -> Vec<u8> {
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     let mut message = Vec::with_capacity(640 * 480 * 3 + 100);
@@ -204,7 +203,7 @@ fn tell(message: &ReceivedMessage, dropped: u64) {
     if message.bytes.len() > 900_000 {
         let sent = UNIX_EPOCH + Duration::new(word(4).into(), word(8) % 1_000_000_000);
         let late = message.received_at.duration_since(sent).unwrap_or_default().as_micros();
-        // Two comparisons of memory: byte by byte takes a build without optimisation longer than the next picture does.
+        // Two memory comparisons, since a loop over bytes is too slow in a debug build.
         let pixels =
             message.bytes.len().checked_sub(640 * 480 * 3).map_or(&[][..], |from| &message.bytes[from..]);
         let whole = pixels.first() == Some(&(word(0) as u8)) && pixels[1..] == pixels[..pixels.len() - 1];

@@ -1,8 +1,8 @@
-//! What ROS 1 programs take from their command line: `from:=to`, `__name:=x`, `_parameter:=value`.
+//! Command-line arguments of ROS 1 programs: `from:=to`, `__name:=x`, `_parameter:=value`.
 
 use crate::ParameterValue;
 
-/// A command line, taken apart.
+/// Parsed command-line arguments.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Arguments {
     /// Remappings of names, `from` and `to`.
@@ -13,7 +13,7 @@ pub struct Arguments {
     pub name: Option<String>,
     /// `__ns:=`, the node's namespace.
     pub namespace: Option<String>,
-    /// `__hostname:=` or `__ip:=`, the name or address that others reach this machine by.
+    /// `__hostname:=` or `__ip:=`, the name or address of this machine for other nodes.
     pub host: Option<String>,
     /// `__master:=`, the master's URI.
     pub master_uri: Option<String>,
@@ -22,7 +22,7 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    /// Takes apart `arguments` (without the program's name). Names are checked by `Node::new`.
+    /// Parses `arguments` (without the program's name). `Node::new` checks the names.
     pub fn new(arguments: impl IntoIterator<Item = String>) -> Self {
         let mut found = Self::default();
         for argument in arguments {
@@ -47,7 +47,7 @@ impl Arguments {
     }
 }
 
-/// What roscpp makes of a value: an integer, a number, a truth value or a text.
+/// Parses a value as in roscpp: an integer, a number, a Boolean or a string.
 fn scalar(text: &str) -> ParameterValue {
     if let Ok(number) = text.parse() {
         return ParameterValue::Int(number);
@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_command_line_is_taken_apart() {
+    fn a_command_line_is_parsed() {
         let line = "run image:=/usb/image __name:=left __ns:=drone _rate:=10 _on:=true _gain:=0.5 _who:=me \
                     __log:=/tmp/x __ip:=10.0.0.1 __master:=http://a:1 --fast";
         let found = Arguments::new(line.split_whitespace().map(str::to_owned));

@@ -1,4 +1,4 @@
-//! TCP connections: opening them within a time, reading within a time, noticing a dead peer.
+//! TCP connections with time limits and keep-alive.
 
 use std::io::{self, Read};
 use std::net::{TcpStream, ToSocketAddrs};
@@ -6,18 +6,18 @@ use std::time::{Duration, Instant};
 
 use opendr_engine::{Error, Result};
 
-/// How long opening a connection and a handshake on it may take.
+/// Time limit of opening a connection, and of the handshake.
 pub(crate) const HANDSHAKE_TIME: Duration = Duration::from_secs(5);
 
 /// Connects to `host` within `time` for each of its addresses.
 ///
 /// # Errors
-/// `Network` when no address answers.
+/// `Network` when no address responds.
 pub(crate) fn connect(host: &str, port: u16, time: Duration) -> Result<TcpStream> {
     let failed = |error: io::Error| {
         Error::network(format!(
-            "cannot connect to {host}:{port}; is the peer up, and can this machine resolve its name (ROS_IP, \
-             ROS_HOSTNAME)?"
+            "cannot connect to {host}:{port}; check that the peer runs and that its name resolves here (ROS_IP, \
+             ROS_HOSTNAME)"
         ))
         .with_source(error)
     };
@@ -25,7 +25,7 @@ pub(crate) fn connect(host: &str, port: u16, time: Duration) -> Result<TcpStream
     for address in (host, port).to_socket_addrs().map_err(failed)? {
         match TcpStream::connect_timeout(&address, time) {
             Ok(stream) => {
-                // Whole messages are written at once, so waiting for more to send only costs time.
+                // Messages are written whole, so Nagle's algorithm only adds latency.
                 stream.set_nodelay(true).ok();
                 keep_alive(&stream);
                 return Ok(stream);
@@ -36,8 +36,7 @@ pub(crate) fn connect(host: &str, port: u16, time: Duration) -> Result<TcpStream
     Err(failed(last))
 }
 
-/// Has the system ask a silent peer whether it is still there: after a minute, every ten seconds, as roscpp
-/// does.
+/// Enables TCP keep-alive: the first probe after a minute, then every ten seconds, as in roscpp.
 #[cfg(unix)]
 pub(crate) fn keep_alive(stream: &TcpStream) {
     use std::os::fd::AsRawFd;
@@ -55,11 +54,11 @@ pub(crate) fn keep_alive(stream: &TcpStream) {
     }
 }
 
-/// Elsewhere the system's default stays.
+/// Keeps the system's default on other systems.
 #[cfg(not(unix))]
 pub(crate) fn keep_alive(_: &TcpStream) {}
 
-/// A connection whose reads fail once its time is over, however slowly bytes trickle in.
+/// A connection whose reads fail after a total time limit.
 #[derive(Debug)]
 pub(crate) struct Timed<'a> {
     stream: &'a TcpStream,
@@ -71,7 +70,7 @@ impl<'a> Timed<'a> {
         Self { stream, until: Instant::now() + time }
     }
 
-    /// Gives it `time` from now on.
+    /// Sets the limit to `time` from now.
     pub fn extend(&mut self, time: Duration) {
         self.until = Instant::now() + time;
     }

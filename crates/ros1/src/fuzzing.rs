@@ -1,10 +1,10 @@
-//! The parsers of this crate, for the fuzzers: each may refuse what it is given, none may panic.
+//! Entry points of the fuzzers: the parsers may refuse their input, but must not panic.
 
 use crate::http::read_message;
 use crate::tcpros::Header;
 use crate::xml_rpc::{call_from_xml, response_from_xml, xml_from_call, xml_from_response};
 
-/// An HTTP message, and XML-RPC calls and responses, from a master, a node or anybody.
+/// Parses an HTTP message, and XML-RPC calls and responses.
 pub fn xml_rpc(bytes: &[u8]) {
     let message = read_message(&mut &*bytes);
     let body = message.ok().flatten().map(|message| message.body).unwrap_or_else(|| bytes.to_vec());
@@ -20,7 +20,7 @@ pub fn xml_rpc(bytes: &[u8]) {
     }
 }
 
-/// The header of a TCPROS connection, after its length.
+/// Parses the header of a TCPROS connection, after its length.
 pub fn tcpros_header(bytes: &[u8]) {
     if let Ok(header) = Header::from_bytes(bytes) {
         let again = header.to_bytes();

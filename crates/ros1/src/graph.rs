@@ -1,4 +1,4 @@
-//! What a node has on the ROS graph, shared by its handles and threads.
+//! State of a node, shared by its handles and threads.
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -18,16 +18,16 @@ use crate::service::Service;
 use crate::tasks::Tasks;
 use crate::topic::{Publication, Subscribed};
 
-/// How long queued messages may take to go out when the node ends.
+/// Time limit of sending queued messages when the node ends.
 const DRAIN_TIME: Duration = Duration::from_secs(1);
 
-/// Everything of a node.
+/// State of a node on the ROS graph.
 pub(crate) struct Graph {
     pub names: Names,
     pub master: Master,
-    /// How others reach this machine.
+    /// Name or address of this machine for other nodes.
     pub host: String,
-    /// Where the node's own XML-RPC server is reached.
+    /// URI of the node's XML-RPC server.
     pub api_uri: String,
     pub tcp_port: u16,
     pub max_message_bytes: usize,
@@ -36,7 +36,7 @@ pub(crate) struct Graph {
     pub subscriptions: Mutex<Vec<Arc<Subscribed>>>,
     pub services: Mutex<BTreeMap<String, Arc<Service>>>,
     pub watches: Mutex<Vec<Arc<Watch>>>,
-    /// Whether the master may miss something of ours.
+    /// Whether the master may lack a registration of this node.
     pub unregistered: AtomicBool,
     pub on_problem: ProblemHook,
     pub on_shutdown: ShutdownHook,
@@ -47,13 +47,13 @@ pub(crate) struct Graph {
 }
 
 impl Graph {
-    /// Tells the owner what went wrong.
+    /// Reports an error to the owner's hook.
     pub fn problem(&self, error: Error) {
-        // A hook that panics must not end the thread that told it.
+        // A panic of the hook must not end the calling thread.
         catch_unwind(AssertUnwindSafe(|| (self.on_problem)(error))).ok();
     }
 
-    /// Runs the owner's code; a panic in it is a problem, not the end of a thread.
+    /// Runs the owner's code; a panic in it is reported and does not end the thread.
     pub fn guarded<T>(&self, what: &str, code: impl FnOnce() -> T) -> Option<T> {
         let done = catch_unwind(AssertUnwindSafe(code));
         if done.is_err() {
@@ -62,16 +62,15 @@ impl Graph {
         done.ok()
     }
 
-    /// A number for a connection.
+    /// Returns a new id of a connection.
     pub fn connection_id(&self) -> u32 {
         self.next_id.fetch_add(1, Ordering::Relaxed)
     }
 
-    /// Registers something: a master that does not answer is a problem told, and asked again once it is
-    /// there.
+    /// Registers with the master. If the master does not respond, the error is reported and the registration repeated later.
     ///
     /// # Errors
-    /// What the master answered, when it said no.
+    /// The error of a master that refuses.
     pub fn register(&self, method: &str, params: &[ParameterValue]) -> Result<Option<ParameterValue>> {
         match self.master.call(method, params) {
             Ok(value) => Ok(Some(value)),
@@ -84,14 +83,14 @@ impl Graph {
         }
     }
 
-    /// Takes something back; a master that is gone has forgotten it anyway.
+    /// Unregisters with the master; errors of a master that is gone are ignored.
     pub fn unregister(&self, method: &str, params: &[ParameterValue]) {
         if !self.is_ended() {
             self.master.call_within(method, params, Duration::from_secs(2)).ok();
         }
     }
 
-    /// Registers everything again, with a master that may know nothing of it.
+    /// Repeats all registrations, for a restarted master.
     pub fn register_all(&self) {
         let publications: Vec<_> = lock(&self.publications).values().cloned().collect();
         let services: Vec<_> = lock(&self.services).values().cloned().collect();
@@ -104,7 +103,7 @@ impl Graph {
         self.register_subscriptions();
     }
 
-    /// Tells the master of every subscription, and connects to the publishers that it knows.
+    /// Registers every subscription and connects to the publishers that the master returns.
     pub fn register_subscriptions(&self) {
         let subscriptions: Vec<_> = lock(&self.subscriptions).clone();
         for error in subscriptions.iter().filter_map(|subscribed| subscribed.register(true).err()) {
@@ -112,12 +111,12 @@ impl Graph {
         }
     }
 
-    /// Whether the node is being shut down or was.
+    /// Returns whether the node is shutting down or has ended.
     pub fn is_ended(&self) -> bool {
         self.ending.load(Ordering::Acquire)
     }
 
-    /// Waits until the node was shut down, `time` at most; tells whether it was.
+    /// Waits for the shutdown of the node, for at most `time`; returns whether it happened.
     pub fn wait_for_end(&self, time: Option<Duration>) -> bool {
         let until = time.and_then(|time| Instant::now().checked_add(time));
         let mut ended = lock(&self.ended);
@@ -134,12 +133,12 @@ impl Graph {
         true
     }
 
-    /// Takes everything back and ends every thread.
+    /// Unregisters everything and ends every thread.
     pub fn shut_down(&self, reason: &str) {
         if self.ending.swap(true, Ordering::AcqRel) {
             return;
         }
-        self.take_all_back();
+        self.unregister_all();
         let publications: Vec<_> = lock(&self.publications).values().cloned().collect();
         publications.iter().for_each(|publication| publication.close());
         lock(&self.subscriptions).iter().for_each(|subscribed| subscribed.close());
@@ -153,7 +152,7 @@ impl Graph {
         self.has_ended.notify_all();
     }
 
-    fn take_all_back(&self) {
+    fn unregister_all(&self) {
         let api = || ParameterValue::from(self.api_uri.as_str());
         let mut calls = Vec::new();
         calls
@@ -179,7 +178,7 @@ impl Graph {
         }
     }
 
-    /// Where the node's services are reached.
+    /// Returns the URI of the node's services.
     pub fn service_uri(&self) -> String {
         format!("rosrpc://{}:{}", crate::http::host_in_uri(&self.host), self.tcp_port)
     }

@@ -1,10 +1,10 @@
-//! The name that other machines reach this one by, as roscpp and rospy find it.
+//! Name or address of this machine for other nodes, as in roscpp and rospy.
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, UdpSocket};
 
 use crate::http::HttpUri;
 
-/// `given`, else `ROS_HOSTNAME`, else `ROS_IP`, else the machine's name, else its address towards `master`.
+/// Returns `given`, else `ROS_HOSTNAME`, else `ROS_IP`, else the machine's name, else its address towards `master`.
 pub(crate) fn host(given: Option<&str>, master: &HttpUri) -> String {
     let from_environment =
         || ["ROS_HOSTNAME", "ROS_IP"].into_iter().find_map(|key| set(std::env::var(key).ok()));
@@ -16,8 +16,7 @@ pub(crate) fn host(given: Option<&str>, master: &HttpUri) -> String {
         .unwrap_or_else(|| "127.0.0.1".to_owned())
 }
 
-/// Where to listen: on the loopback alone when others are told so, as rospy does; for IPv6 when `ROS_IPV6` is
-/// `on`.
+/// Returns the address to listen on: the loopback if `host` is a loopback name, as in rospy; IPv6 if `ROS_IPV6` is `on`.
 pub(crate) fn bind_address(host: &str) -> IpAddr {
     let ipv6 = std::env::var("ROS_IPV6").is_ok_and(|value| value == "on");
     let loopback = host.parse::<IpAddr>().map_or(host == "localhost", |address| address.is_loopback());
@@ -49,7 +48,7 @@ fn machine_name() -> Option<String> {
     set(std::env::var("COMPUTERNAME").ok())
 }
 
-/// Nothing is sent: connecting a datagram socket only chooses the way.
+/// Connects a datagram socket, which sends nothing and only selects the route.
 fn address_towards(master: &HttpUri) -> Option<String> {
     let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).ok()?;
     socket.connect((master.host.as_str(), master.port)).ok()?;
@@ -61,7 +60,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_given_wins() {
+    fn given_host_has_priority() {
         let master = HttpUri::new("http://localhost:11311").unwrap();
         assert_eq!(host(Some("10.0.0.7"), &master), "10.0.0.7");
         assert!(!host(None, &master).is_empty());

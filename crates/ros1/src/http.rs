@@ -1,4 +1,4 @@
-//! As much HTTP/1.1 as XML-RPC takes.
+//! The subset of HTTP/1.1 that XML-RPC needs.
 
 mod client;
 mod message;

@@ -1,4 +1,4 @@
-//! Connections that others make to the node.
+//! Incoming connections.
 
 use std::net::{TcpListener, TcpStream};
 use std::sync::Arc;
@@ -15,17 +15,17 @@ use crate::slave;
 use crate::tasks::Cancel;
 use crate::tcpros::Header;
 
-/// Connections at a time, of each kind; more are closed at once.
+/// Maximum number of simultaneous connections of each kind; further ones are closed at once.
 const MOST_CONNECTIONS: usize = 128;
 
-/// What is done with a connection, on a thread of its own.
+/// Handler of a connection, on a thread of its own.
 type Serve = fn(&Arc<Graph>, &TcpStream, &Cancel) -> Result<()>;
 
 /// Serves every connection to `listener`.
 pub(crate) fn start(graph: &Arc<Graph>, listener: TcpListener, serve: Serve) -> Result<()> {
     let mut address = listener.local_addr()?;
     if address.ip().is_unspecified() {
-        // Where a connection of our own reaches it.
+        // The address by which this process itself can connect.
         address.set_ip(if address.is_ipv4() {
             [127, 0, 0, 1].into()
         } else {
@@ -41,19 +41,19 @@ pub(crate) fn start(graph: &Arc<Graph>, listener: TcpListener, serve: Serve) -> 
 
 fn accept(graph: &Arc<Graph>, listener: &TcpListener, serve: Serve, cancel: &Cancel) {
     let open = Arc::new(AtomicUsize::new(0));
-    while !cancel.is_asked() {
+    while !cancel.is_cancelled() {
         let Ok((stream, _)) = listener.accept() else {
-            // Out of file descriptors, most likely: they may come back.
+            // Most likely out of file descriptors, which may become free.
             cancel.wait(Duration::from_millis(100));
             continue;
         };
-        if cancel.is_asked() {
+        if cancel.is_cancelled() {
             return;
         }
         if open.fetch_add(1, Ordering::AcqRel) >= MOST_CONNECTIONS {
             open.fetch_sub(1, Ordering::AcqRel);
             graph.problem(Error::unsupported(format!(
-                "more than {MOST_CONNECTIONS} connections at a time; one was closed"
+                "more than {MOST_CONNECTIONS} simultaneous connections; one was closed"
             )));
             continue;
         }
@@ -63,17 +63,17 @@ fn accept(graph: &Arc<Graph>, listener: &TcpListener, serve: Serve, cancel: &Can
             stream.set_nodelay(true).ok();
             keep_alive(&stream);
             let ended = cancel.hold(&stream).and_then(|()| serve(&served, &stream, cancel));
-            tell(&served, &stream, cancel, ended);
+            report(&served, &stream, cancel, ended);
         });
         if let Err(error) = started
-            && !cancel.is_asked()
+            && !cancel.is_cancelled()
         {
             graph.problem(error);
         }
     }
 }
 
-/// One connection of those that are open.
+/// Counter of an open connection.
 struct Counted(Arc<AtomicUsize>);
 
 impl Drop for Counted {
@@ -82,30 +82,30 @@ impl Drop for Counted {
     }
 }
 
-/// A peer that leaves is no problem, one that talks nonsense is.
-fn tell(graph: &Graph, stream: &TcpStream, cancel: &Cancel, ended: Result<()>) {
+/// Reports the errors of a peer that sends invalid data, but not disconnections.
+fn report(graph: &Graph, stream: &TcpStream, cancel: &Cancel, ended: Result<()>) {
     if let Err(error) = ended
         && !matches!(error.kind(), ErrorKind::Network | ErrorKind::Io)
-        && !cancel.is_asked()
+        && !cancel.is_cancelled()
     {
         let peer = stream.peer_addr().map(|address| address.to_string());
         graph.problem(error.context(format!("serving {}", peer.as_deref().unwrap_or("a peer"))));
     }
 }
 
-/// XML-RPC.
+/// Serves XML-RPC.
 pub(crate) fn serve_api(graph: &Arc<Graph>, stream: &TcpStream, _: &Cancel) -> Result<()> {
     serve_connection(stream, |method, params| slave::answer(graph, method, &params))
 }
 
-/// TCPROS: a subscriber, or a client of a service.
+/// Serves TCPROS: a subscriber, or a client of a service.
 pub(crate) fn serve_tcpros(graph: &Arc<Graph>, stream: &TcpStream, cancel: &Cancel) -> Result<()> {
-    // Somebody who never reads must not hold a handshake either.
+    // A peer that never reads must not block the handshake.
     stream.set_write_timeout(Some(HANDSHAKE_TIME))?;
     let header = Header::read(&mut Timed::new(stream, HANDSHAKE_TIME))?;
     let unknown = |text: String| {
         Header::error(&text).write(stream)?;
-        // Restarted nodes are asked for what they do not have yet: no problem of this node.
+        // Peers may request topics that a restarted node does not have yet; this is not reported.
         Err(Error::network(text))
     };
     if let Some(name) = header.get("service") {
@@ -122,6 +122,6 @@ pub(crate) fn serve_tcpros(graph: &Arc<Graph>, stream: &TcpStream, cancel: &Canc
         }
     } else {
         Header::error("the header names neither a topic nor a service").write(stream)?;
-        Err(Error::format("a TCPROS header that names neither a topic nor a service"))
+        Err(Error::format("the TCPROS header names neither a topic nor a service"))
     }
 }

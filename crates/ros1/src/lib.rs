@@ -1,7 +1,7 @@
-//! ROS 1 without ROS: a node of topics, services and parameters, on threads of the standard library alone.
+//! Native ROS 1 client: topics, services and parameters, without a ROS installation.
 //!
-//! Messages are bytes in ROS 1's format here; a type is its name, md5 sum and definition. `opendr-messages`
-//! makes both.
+//! A [`Node`] runs on threads of the standard library. Messages are bytes in ROS 1's format, and a type is its name, md5 sum and
+//! definition; message structs are in `opendr-messages`, nodes of learners in `opendr-ros`. Begin with [`Node::new`]:
 //!
 //! ```no_run
 //! use opendr_ros1::{Node, NodeOptions, PublisherOptions, SubscriberOptions, TopicType};
@@ -16,8 +16,19 @@
 //! # Ok::<_, opendr_engine::Error>(())
 //! ```
 //!
-//! Whatever a peer sends is checked before memory is taken for it. ROS 1 itself knows no authentication:
-//! everybody who reaches the node's ports can publish to it, call it, and ask it to end.
+//! Command lines of ROS 1 programs are parsed without a master:
+//!
+//! ```
+//! use opendr_ros1::Arguments;
+//!
+//! let words = ["image:=/camera/image_raw", "__name:=detector", "--fast"];
+//! let arguments = Arguments::new(words.map(str::to_owned));
+//! assert_eq!(arguments.name.as_deref(), Some("detector"));
+//! assert_eq!(arguments.rest, ["--fast"]);
+//! ```
+//!
+//! Lengths are checked before memory is allocated for a peer's data. ROS 1 has no authentication: every peer that reaches the
+//! node's ports can publish to it, call its services and shut it down.
 
 mod arguments;
 mod connection;

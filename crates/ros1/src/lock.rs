@@ -1,14 +1,14 @@
-//! Locks that outlive a panic in a caller's handler.
+//! Locks that ignore poisoning.
 
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// Every value behind our locks is valid between two statements, so a poisoned lock is taken as it is.
+/// Locks a mutex and ignores poisoning, since the values of this crate are valid after each statement.
 pub(crate) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Waits on `condition` for `time` at most.
+/// Waits on `condition` for at most `time`.
 pub(crate) fn wait<'a, T>(
     condition: &Condvar,
     guard: MutexGuard<'a, T>,

@@ -1,4 +1,4 @@
-//! The master's calls, and the answers of masters and nodes: `[code, text, value]`.
+//! Calls of the master, and responses of masters and nodes: `[code, text, value]`.
 //!
 //! Source: <https://wiki.ros.org/ROS/Master_API>, <https://wiki.ros.org/ROS/Parameter%20Server%20API>.
 
@@ -9,10 +9,10 @@ use opendr_engine::{Error, ErrorKind, Result};
 use crate::ParameterValue;
 use crate::http::{HttpUri, call};
 
-/// How long a master or node may take to answer.
+/// Time limit of a response of a master or node.
 pub(crate) const CALL_TIME: Duration = Duration::from_secs(5);
 
-/// The master as one node sees it.
+/// Client of the master for one node.
 #[derive(Debug)]
 pub(crate) struct Master {
     pub uri: HttpUri,
@@ -27,12 +27,12 @@ impl Master {
     /// Calls `method` with the node's name and `params`.
     ///
     /// # Errors
-    /// `Network` when the master does not answer, `NotFound` when it says no.
+    /// `Network` when the master does not respond, `NotFound` when it returns an error.
     pub fn call(&self, method: &str, params: &[ParameterValue]) -> Result<ParameterValue> {
         self.call_within(method, params, CALL_TIME)
     }
 
-    /// As [`Master::call`], with another time.
+    /// As [`Master::call`], with another time limit.
     pub fn call_within(
         &self,
         method: &str,
@@ -45,21 +45,21 @@ impl Master {
         })
     }
 
-    /// Calls a method that answers with a list of texts.
+    /// Calls a method that returns a list of strings.
     pub fn call_for_texts(&self, method: &str, params: &[ParameterValue]) -> Result<Vec<String>> {
         let texts = self.call(method, params)?;
         let texts =
             texts.as_list().map(|list| list.iter().map(|value| value.as_str().map(str::to_owned)).collect());
         texts
             .flatten()
-            .ok_or_else(|| Error::format(format!("{method} of the master answered no list of texts")))
+            .ok_or_else(|| Error::format(format!("{method} of the master did not return a list of strings")))
     }
 }
 
-/// Calls `method` of the master or node at `uri`, and takes its answer apart.
+/// Calls `method` of the master or node at `uri` and returns the value of its response.
 ///
 /// # Errors
-/// `Network` when the peer does not answer, `NotFound` when it says no, `Format` for another answer.
+/// `Network` when the peer does not respond, `NotFound` when it returns an error, `Format` for an invalid response.
 pub(crate) fn call_api(
     uri: &HttpUri,
     caller_id: &str,
@@ -75,13 +75,11 @@ pub(crate) fn call_api(
                 (Some(1), _, Some(value)) => Ok(value),
                 (Some(code), Some(text), _) => {
                     let text = text.as_str().unwrap_or("no reason given");
-                    Err(Error::not_found(format!("{method} of {uri} answered {code}: {text:.500}")))
+                    Err(Error::not_found(format!("{method} of {uri} returned {code}: {text:.500}")))
                 }
-                _ => Err(Error::format(format!("{method} of {uri} answered without a code"))),
+                _ => Err(Error::format(format!("{method} of {uri} returned no code"))),
             }
         }
-        _ => {
-            Err(Error::format(format!("{method} of {uri} answered something else than [code, text, value]")))
-        }
+        _ => Err(Error::format(format!("{method} of {uri} did not return [code, text, value]"))),
     }
 }

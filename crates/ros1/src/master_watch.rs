@@ -1,4 +1,4 @@
-//! Noticing that the master was restarted, and registering everything again.
+//! Detection of a restarted master, and repeated registration.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -10,25 +10,24 @@ use crate::ParameterValue;
 use crate::graph::Graph;
 use crate::lock::lock;
 
-/// How often the master is asked.
+/// Interval of the checks.
 const INTERVAL: Duration = Duration::from_secs(2);
 
-/// Looks between two questions for the publishers: the master tells of a change once, and never again where that
-/// was lost.
-const LOOKS: u32 = 5;
+/// Number of checks per query for publishers, since the master announces a change only once.
+const CHECKS_PER_QUERY: u32 = 5;
 
-/// How long it may take to answer.
+/// Time limit of a response.
 const ANSWER_TIME: Duration = Duration::from_secs(2);
 
-/// Asks the master from time to time whether it knows the node.
+/// Starts the thread that checks whether the master knows the node.
 pub(crate) fn start(graph: &Arc<Graph>) -> Result<()> {
     let tasks = Arc::clone(&graph.tasks);
     let graph = Arc::clone(graph);
     tasks.spawn("master", move |cancel| {
         let mut known = Known::default();
-        known.look(&graph).ok();
+        known.check(&graph).ok();
         while !cancel.wait(INTERVAL) {
-            if let Err(error) = known.look(&graph) {
+            if let Err(error) = known.check(&graph) {
                 graph.problem(error);
             }
         }
@@ -36,22 +35,22 @@ pub(crate) fn start(graph: &Arc<Graph>) -> Result<()> {
     Ok(())
 }
 
-/// What was known of the master.
+/// Last known state of the master.
 #[derive(Default)]
 struct Known {
     pid: Option<ParameterValue>,
     lost: bool,
-    looks: u32,
+    checks: u32,
 }
 
 impl Known {
-    fn look(&mut self, graph: &Graph) -> Result<()> {
+    fn check(&mut self, graph: &Graph) -> Result<()> {
         let pid = match graph.master.call_within("getPid", &[], ANSWER_TIME) {
             Ok(pid) => pid,
             Err(_) if self.lost => return Ok(()),
             Err(error) => {
                 self.lost = true;
-                return Err(error.context("the ROS master is gone; waiting for it to come back"));
+                return Err(error.context("the ROS master is gone; waiting for it to return"));
             }
         };
         let other = self.pid.as_ref().is_some_and(|before| *before != pid);
@@ -59,15 +58,15 @@ impl Known {
         self.pid = Some(pid);
         if std::mem::take(&mut self.lost) || other || missed || !is_known(graph)? {
             graph.register_all();
-        } else if self.looks % LOOKS == LOOKS - 1 {
+        } else if self.checks % CHECKS_PER_QUERY == CHECKS_PER_QUERY - 1 {
             graph.register_subscriptions();
         }
-        self.looks = self.looks.wrapping_add(1);
+        self.checks = self.checks.wrapping_add(1);
         Ok(())
     }
 }
 
-/// Whether the master has what we registered; in a container a new master may have the process id of the old
+/// Returns whether the master has the registrations of this node; in a container a new master may have the process id of the old
 /// one.
 fn is_known(graph: &Graph) -> Result<bool> {
     let nothing = lock(&graph.publications).is_empty()
@@ -79,9 +78,9 @@ fn is_known(graph: &Graph) -> Result<bool> {
     }
     match graph.master.call_within("lookupNode", &[graph.names.node().into()], ANSWER_TIME) {
         Ok(uri) if uri.as_str() == Some(&graph.api_uri) => Ok(true),
-        // The master tells this node to end when another takes its name.
+        // The master shuts this node down when another takes its name.
         Ok(uri) => Err(Error::unsupported(format!(
-            "another node at {} has the name {}; give each a name of its own",
+            "another node at {} has the name {}; give each node its own name",
             uri.as_str().unwrap_or("an unknown address"),
             graph.names.node()
         ))),

@@ -1,4 +1,4 @@
-//! Names of the ROS graph: which are valid, and what a relative, private or remapped one stands for.
+//! Names of the ROS graph: validation, and resolution of relative, private and remapped names.
 //!
 //! Source: <https://wiki.ros.org/Names>, and rospy's `rosgraph.names` where the page is silent.
 
@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use opendr_engine::{Error, Result};
 
-/// The names of one node: its own, its namespace and its remappings.
+/// Name, namespace and remappings of one node.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Names {
     node: String,
@@ -14,10 +14,10 @@ pub(crate) struct Names {
 }
 
 impl Names {
-    /// Names of node `name` (without slashes) in `namespace`, with remappings `from`, `to` in any form.
+    /// Creates the names of node `name` (without slashes) in `namespace`, with remappings `from`, `to` in any form.
     ///
     /// # Errors
-    /// `InvalidParam` for a name that is not valid.
+    /// `InvalidParam` for an invalid name.
     pub fn new(name: &str, namespace: &str, remappings: &[(String, String)]) -> Result<Self> {
         check_node_name(name)?;
         let namespace = canonical(&format!("/{namespace}"));
@@ -31,15 +31,15 @@ impl Names {
         Ok(names)
     }
 
-    /// The node's full name, such as `/drone/camera`.
+    /// Returns the node's full name, such as `/drone/camera`.
     pub fn node(&self) -> &str {
         &self.node
     }
 
-    /// The full name that `name` stands for, remapped.
+    /// Resolves `name` to its full name after remapping.
     ///
     /// # Errors
-    /// `InvalidParam` for a name that is not valid.
+    /// `InvalidParam` for an invalid name.
     pub fn resolve(&self, name: &str) -> Result<String> {
         let full = self.resolve_unmapped(name)?;
         Ok(self.remappings.get(&full).cloned().unwrap_or(full))
@@ -58,12 +58,12 @@ impl Names {
     }
 }
 
-/// The namespace that `name` lies in, without a trailing slash: `/a` of `/a/b`, nothing of `/a`.
+/// Returns the namespace of `name`, without a trailing slash: `/a` for `/a/b`, empty for `/a`.
 pub(crate) fn parent(name: &str) -> &str {
     name.rsplit_once('/').map_or("", |(parent, _)| parent)
 }
 
-/// One slash between parts, none at the end.
+/// Normalises slashes: one between parts, none at the end.
 pub(crate) fn canonical(name: &str) -> String {
     let parts: Vec<&str> = name.split('/').filter(|part| !part.is_empty()).collect();
     let start = if name.starts_with('/') { "/" } else { "" };
@@ -77,7 +77,7 @@ fn check_node_name(name: &str) -> Result<()> {
         return Ok(());
     }
     Err(Error::invalid_param(format!(
-        "{name:.80?} is no name for a ROS node; use a letter, then letters, digits and _, no slashes"
+        "{name:.80?} is not a name of a ROS node; use a letter, then letters, digits and _, no slashes"
     )))
 }
 
@@ -90,7 +90,7 @@ fn check_graph_name(name: &str) -> Result<()> {
         return Ok(());
     }
     Err(Error::invalid_param(format!(
-        "{name:.80?} is no ROS name; start with a letter, / or ~ and go on with letters, digits, _ and /"
+        "{name:.80?} is not a ROS name; start with a letter, / or ~ and continue with letters, digits, _ and /"
     )))
 }
 
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn names_resolve_as_the_wiki_has_them() {
+    fn names_resolve_as_in_the_wiki() {
         let names = names(&[]);
         assert_eq!(names.node(), "/drone/front/camera");
         for (name, full) in [

@@ -1,4 +1,4 @@
-//! A node.
+//! ROS 1 nodes.
 
 use std::fmt;
 use std::net::TcpListener;
@@ -20,20 +20,18 @@ use crate::{
     Subscription, TopicType, incoming, master_watch,
 };
 
-/// A node of the ROS graph, until it goes: then everything is unregistered, and every connection and thread
-/// ended.
+/// A node of the ROS graph. Dropping it unregisters everything and ends every connection and thread.
 ///
-/// Its handles (publishers, subscriptions, services) may outlive it, but do nothing any more.
+/// Its handles (publishers, subscriptions, services) may outlive it, but have no effect then.
 pub struct Node {
     pub(crate) graph: Arc<Graph>,
 }
 
 impl Node {
-    /// A node as `options` and ROS's environment variables have it.
+    /// Creates a node with `options` and ROS's environment variables.
     ///
     /// # Errors
-    /// `InvalidParam` for a name or address that is not valid, `Network` when the master does not answer,
-    /// `Io` when no port can be listened on.
+    /// `InvalidParam` for an invalid name or address, `Network` when the master does not respond, `Io` when no port is available.
     pub fn new(options: NodeOptions) -> Result<Self> {
         let from_environment = |key| std::env::var(key).ok().filter(|value| !value.is_empty());
         let uri = options.master_uri.or_else(|| from_environment("ROS_MASTER_URI"));
@@ -68,7 +66,7 @@ impl Node {
             ended: Mutex::new(false),
             has_ended: Condvar::new(),
         });
-        // From here on a failure ends the threads that run already.
+        // From here on, an error drops the node and ends its threads.
         let node = Self { graph };
         incoming::start(&node.graph, api, incoming::serve_api)?;
         incoming::start(&node.graph, tcp, incoming::serve_tcpros)?;
@@ -79,34 +77,34 @@ impl Node {
         Ok(node)
     }
 
-    /// The node's full name.
+    /// Returns the node's full name.
     pub fn name(&self) -> &str {
         self.graph.names.node()
     }
 
-    /// The address of the node's own XML-RPC server.
+    /// Returns the URI of the node's XML-RPC server.
     pub fn uri(&self) -> &str {
         &self.graph.api_uri
     }
 
-    /// The full name that `name` stands for in this node, remapped.
+    /// Resolves `name` to its full name in this node, after remapping.
     ///
     /// # Errors
-    /// `InvalidParam` for a name that is not valid.
+    /// `InvalidParam` for an invalid name.
     pub fn resolve(&self, name: &str) -> Result<String> {
         self.graph.names.resolve(name)
     }
 
-    /// Publishes `topic`. Asked again with the same type it shares the connections.
+    /// Advertises `topic`. Several publishers of one topic and type share the connections.
     ///
     /// # Errors
-    /// `InvalidParam` for names or types that are not valid or clash, `Network` once the node is shut down. A
-    /// master that does not answer is told as a problem, and told of the topic once it is back.
+    /// `InvalidParam` for invalid or conflicting names or types, `Network` after the shutdown of the node. A master that does not
+    /// respond is reported to the hook, and the registration is repeated later.
     pub fn advertise(&self, topic: &str, kind: TopicType, options: PublisherOptions) -> Result<Publisher> {
         Publisher::new(&self.graph, &self.resolve(topic)?, kind, options)
     }
 
-    /// Subscribes to `topic`. Each subscription has connections of its own.
+    /// Subscribes to `topic`. Each subscription has its own connections.
     ///
     /// # Errors
     /// As [`Node::advertise`].
@@ -119,8 +117,8 @@ impl Node {
         Subscription::new(&self.graph, &self.resolve(topic)?, kind, options)
     }
 
-    /// Offers `service`. `handler` gets a request and gives the response, or the text of an error; it is
-    /// called from a thread for each client.
+    /// Offers `service`. `handler` receives a request and returns the response, or the text of an error; it is called on one thread
+    /// per client.
     ///
     /// # Errors
     /// As [`Node::advertise`].
@@ -133,7 +131,7 @@ impl Node {
         ServiceServer::new(&self.graph, &self.resolve(service)?, kind, Box::new(handler))
     }
 
-    /// Calls `service` once, within a minute; [`Node::client`] is for many calls.
+    /// Calls `service` once, with a time limit of a minute; use [`Node::client`] for many calls.
     ///
     /// # Errors
     /// As [`ServiceClient::call`].
@@ -141,24 +139,24 @@ impl Node {
         self.client(service, kind)?.call_once(request)
     }
 
-    /// A client of `service`, which need not be there yet.
+    /// Returns a client of `service`, which need not exist yet.
     ///
     /// # Errors
-    /// `InvalidParam` for a name that is not valid.
+    /// `InvalidParam` for an invalid name.
     pub fn client(&self, service: &str, kind: ServiceType) -> Result<ServiceClient> {
         Ok(ServiceClient::new(&self.graph, self.resolve(service)?, kind))
     }
 
-    /// Waits until `service` answers.
+    /// Waits until `service` responds.
     ///
     /// # Errors
-    /// What was wrong last, when it does not within `time`.
+    /// The last error, if it does not respond within `time`.
     pub fn wait_for_service(&self, service: &str, time: Duration) -> Result<()> {
         let name = self.resolve(service)?;
         retry(time, || probe(&self.graph, &name)).context(|| format!("waiting for service {name}"))
     }
 
-    /// Topics that are published now, with their types.
+    /// Returns the currently published topics with their types.
     ///
     /// # Errors
     /// `Network` without a master.
@@ -169,25 +167,25 @@ impl Node {
             _ => None,
         };
         let pairs = answer.as_list().and_then(|list| list.iter().map(pair).collect());
-        pairs.ok_or_else(|| Error::format("getPublishedTopics of the master answered no pairs of texts"))
+        pairs.ok_or_else(|| Error::format("getPublishedTopics of the master did not return pairs of strings"))
     }
 
-    /// Whether the node was shut down, or is about to be: by `rosnode kill`, or by another node of its name.
+    /// Returns whether the node has been shut down, or is shutting down: by its owner, `rosnode kill`, or another node of its name.
     pub fn is_shut_down(&self) -> bool {
         self.graph.is_ended()
     }
 
-    /// Waits until the node was shut down.
+    /// Waits for the shutdown of the node.
     pub fn wait(&self) {
         self.graph.wait_for_end(None);
     }
 
-    /// Waits until the node was shut down, `time` at most; tells whether it was.
+    /// Waits for the shutdown of the node, for at most `time`; returns whether it happened.
     pub fn wait_timeout(&self, time: Duration) -> bool {
         self.graph.wait_for_end(Some(time))
     }
 
-    /// Unregisters everything and ends every connection and thread; so does dropping the node.
+    /// Unregisters everything and ends every connection and thread, as dropping the node does.
     pub fn shut_down(&self, reason: &str) {
         self.graph.shut_down(reason);
     }
@@ -213,13 +211,13 @@ fn anonymous(name: &str) -> String {
 fn wait_for_master(master: &Master, time: Duration) -> Result<()> {
     match retry(time, || master.call("getPid", &[]).map(|_| ())) {
         Err(error) if error.kind() != ErrorKind::Network => {
-            Err(error.context(format!("{} is no ROS master", master.uri)))
+            Err(error.context(format!("{} is not a ROS master", master.uri)))
         }
         outcome => outcome,
     }
 }
 
-/// Tries until it works or `time` is over.
+/// Repeats `attempt` until it succeeds or `time` is over.
 fn retry(time: Duration, attempt: impl Fn() -> Result<()>) -> Result<()> {
     let started = Instant::now();
     loop {
@@ -244,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn a_node_without_a_master_says_what_to_do() {
+    fn a_missing_master_is_reported() {
         // Port 1 has no listener.
         let mut options = NodeOptions::new("lonely");
         (options.master_uri, options.host) =

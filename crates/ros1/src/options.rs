@@ -1,4 +1,4 @@
-//! How a node is set up.
+//! Options of a node.
 
 use std::fmt;
 use std::sync::Arc;
@@ -8,39 +8,39 @@ use opendr_engine::Error;
 
 use crate::{Arguments, ParameterValue};
 
-/// Called with what goes wrong in the background.
+/// Hook for errors in the background.
 pub(crate) type ProblemHook = Arc<dyn Fn(Error) + Send + Sync>;
 
-/// Called once with the reason when the node is shut down.
+/// Hook for the shutdown of the node, with its reason.
 pub(crate) type ShutdownHook = Arc<dyn Fn(&str) + Send + Sync>;
 
-/// How a node is set up; what is not set comes from ROS's environment variables.
+/// Options of a node; unset ones come from ROS's environment variables.
 #[derive(Clone)]
 pub struct NodeOptions {
-    /// The node's name, without slashes.
+    /// Name of the node, without slashes.
     pub name: String,
-    /// Whether the process id and the time are added to the name, so that several may run.
+    /// Whether the process id and the time are appended to the name, so that several instances can run.
     pub anonymous: bool,
-    /// The namespace; `ROS_NAMESPACE` else the root.
+    /// Namespace (default: `ROS_NAMESPACE`, else the root).
     pub namespace: Option<String>,
-    /// The master's address; `ROS_MASTER_URI` else `http://localhost:11311`.
+    /// URI of the master (default: `ROS_MASTER_URI`, else `http://localhost:11311`).
     pub master_uri: Option<String>,
-    /// How others reach this machine; `ROS_HOSTNAME`, `ROS_IP` else the machine's name.
+    /// Name or address of this machine for other nodes (default: `ROS_HOSTNAME`, `ROS_IP`, else the machine's name).
     pub host: Option<String>,
-    /// Names that stand for others, `from` and `to`, in any form.
+    /// Remappings of names, `from` and `to`, in any form.
     pub remappings: Vec<(String, String)>,
-    /// Parameters to set once the node is there, mostly private ones such as `~rate`.
+    /// Parameters to set when the node starts, usually private ones such as `~rate`.
     pub parameters: Vec<(String, ParameterValue)>,
-    /// How long [`Node::new`](crate::Node::new) waits for a master that does not answer yet.
+    /// Maximum wait of [`Node::new`](crate::Node::new) for the master.
     pub wait_for_master: Duration,
-    /// The longest message that is taken, in bytes.
+    /// Maximum size of a received message, in bytes.
     pub max_message_bytes: usize,
     pub(crate) on_problem: ProblemHook,
     pub(crate) on_shutdown: ShutdownHook,
 }
 
 impl NodeOptions {
-    /// A node of the name `name`, the rest as the environment has it.
+    /// Creates options for a node called `name`, with the defaults of the environment.
     pub fn new(name: impl Into<String>) -> Self {
         Self {
             name: name.into(),
@@ -57,7 +57,7 @@ impl NodeOptions {
         }
     }
 
-    /// Takes over what ROS 1's command line says; `arguments.rest` is the caller's.
+    /// Applies ROS 1's command-line arguments; `arguments.rest` is left to the caller.
     #[must_use]
     pub fn with_arguments(mut self, arguments: &Arguments) -> Self {
         if let Some(name) = &arguments.name {
@@ -71,17 +71,16 @@ impl NodeOptions {
         self
     }
 
-    /// Calls `hook` with what goes wrong in the background: a clash of types, a peer that talks nonsense, a
-    /// master that is gone. It is called from the node's threads and should return soon. Without it nothing
-    /// is told.
+    /// Calls `hook` with errors in the background: conflicting types, invalid data of a peer, a lost master. It is called on the
+    /// node's threads and should return quickly. Without a hook these errors are dropped.
     #[must_use]
-    pub fn on_problem(mut self, hook: impl Fn(Error) + Send + Sync + 'static) -> Self {
+    pub fn on_error(mut self, hook: impl Fn(Error) + Send + Sync + 'static) -> Self {
         self.on_problem = Arc::new(hook);
         self
     }
 
-    /// Calls `hook` once with the reason when the node has been shut down: by `rosnode kill`, by another node
-    /// of the same name, or by its owner.
+    /// Calls `hook` once with the reason when the node has been shut down: by `rosnode kill`, another node of the same name, or its
+    /// owner.
     #[must_use]
     pub fn on_shutdown(mut self, hook: impl Fn(&str) + Send + Sync + 'static) -> Self {
         self.on_shutdown = Arc::new(hook);

@@ -4,4 +4,4 @@ mod client;
 mod watch;
 
 pub use watch::ParameterWatch;
-pub(crate) use watch::{Watch, tell};
+pub(crate) use watch::{Watch, notify};

@@ -1,4 +1,4 @@
-//! Services, both ends.
+//! Service servers and clients.
 
 mod client;
 mod provider;
@@ -9,5 +9,5 @@ pub(crate) use client::probe;
 pub(crate) use provider::Service;
 pub use server::ServiceServer;
 
-/// A request that waits for its answer longer than this fails, when the caller names no time.
+/// Default time limit of a service call.
 const ANSWER_TIME: std::time::Duration = std::time::Duration::from_secs(60);

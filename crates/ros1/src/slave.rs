@@ -1,4 +1,4 @@
-//! What other nodes and ROS's tools ask a node by XML-RPC.
+//! XML-RPC API of a node for other nodes and ROS's tools.
 //!
 //! Source: <https://wiki.ros.org/ROS/Slave_API>.
 
@@ -9,14 +9,14 @@ use std::thread;
 use crate::ParameterValue;
 use crate::graph::Graph;
 use crate::lock::lock;
-use crate::parameter::tell;
+use crate::parameter::notify;
 use crate::topic::{Subscribed, uris};
 use crate::xml_rpc::Fault;
 
-/// The answer to `method` with `params`: `[1, text, value]`, or `[0 or -1, why not, 0]`.
+/// Returns the response to `method` with `params`: `[1, text, value]`, or `[0 or -1, error, 0]`.
 ///
 /// # Errors
-/// A fault for a method that nodes do not have.
+/// A fault for an unknown method.
 pub(crate) fn answer(
     graph: &Arc<Graph>,
     method: &str,
@@ -50,7 +50,7 @@ fn list(values: impl IntoIterator<Item = ParameterValue>) -> ParameterValue {
     ParameterValue::List(values.into_iter().collect())
 }
 
-/// A count as XML-RPC's 32 bits have it: it stays at the highest.
+/// Converts a count to XML-RPC's 32 bits, saturating.
 fn count(value: u64) -> ParameterValue {
     ParameterValue::Int(i32::try_from(value).unwrap_or(i32::MAX))
 }
@@ -130,9 +130,9 @@ fn publications(graph: &Graph) -> ParameterValue {
     list(publications.values().map(|one| list([one.topic.as_str().into(), one.kind.name.as_str().into()])))
 }
 
-/// Answers first: ending waits for this very thread.
+/// Returns before the shutdown, which waits for this thread.
 fn shutdown(graph: &Arc<Graph>, caller: &str, reason: &str) -> Answer {
-    let reason = format!("{caller:.200} asked for it: {reason:.500}");
+    let reason = format!("requested by {caller:.200}: {reason:.500}");
     let graph = Arc::clone(graph);
     let started =
         thread::Builder::new().name("ros1 shutdown".to_owned()).spawn(move || graph.shut_down(&reason));
@@ -142,7 +142,7 @@ fn shutdown(graph: &Arc<Graph>, caller: &str, reason: &str) -> Answer {
 fn param_update(graph: &Graph, key: &str, value: Option<&ParameterValue>) -> Answer {
     let value =
         value.filter(|_| !key.is_empty()).ok_or((-1, "paramUpdate needs a key and a value".to_owned()))?;
-    tell(graph, key, value);
+    notify(graph, key, value);
     Ok(0.into())
 }
 
@@ -165,7 +165,7 @@ fn request_topic(graph: &Graph, topic: &str, protocols: Option<&ParameterValue>)
         protocol.as_list().and_then(<[_]>::first).and_then(ParameterValue::as_str) == Some("TCPROS")
     };
     if !protocols.and_then(ParameterValue::as_list).is_some_and(|all| all.iter().any(is_tcp)) {
-        return Err((0, "of the protocols this node has TCPROS alone".to_owned()));
+        return Err((0, "this node supports only TCPROS".to_owned()));
     }
     Ok(list(["TCPROS".into(), graph.host.as_str().into(), i32::from(graph.tcp_port).into()]))
 }

@@ -1,4 +1,4 @@
-//! The threads of a node, and how each is asked to end.
+//! Threads of a node and their cancellation.
 
 use std::cell::Cell;
 use std::collections::HashMap;
@@ -12,11 +12,11 @@ use opendr_engine::{Error, Result};
 use crate::lock::{lock, wait};
 
 thread_local! {
-    /// Whether this is a thread of a node: such a one must not wait for the node's threads.
+    /// Whether this is a thread of a node, which must not wait for the node's threads.
     static INSIDE: Cell<bool> = const { Cell::new(false) };
 }
 
-/// How one thread is asked to end.
+/// Cancellation of one thread.
 #[derive(Debug, Default)]
 pub(crate) struct Cancel {
     state: Mutex<CancelState>,
@@ -31,7 +31,7 @@ struct CancelState {
 }
 
 impl Cancel {
-    /// Asks the thread to end, and closes the connection it waits on.
+    /// Cancels the thread and closes the connection on which it waits.
     pub fn cancel(&self) {
         let drains = lock(&self.state).drains;
         if drains {
@@ -51,11 +51,11 @@ impl Cancel {
         self.changed.notify_all();
     }
 
-    pub fn is_asked(&self) -> bool {
+    pub fn is_cancelled(&self) -> bool {
         lock(&self.state).asked
     }
 
-    /// Waits for `time`, less when the thread is asked to end; tells whether it is.
+    /// Waits for `time` or until the cancellation; returns whether the thread is cancelled.
     pub fn wait(&self, time: Duration) -> bool {
         let until = Instant::now() + time;
         let mut state = lock(&self.state);
@@ -69,10 +69,10 @@ impl Cancel {
         true
     }
 
-    /// Has `stream` closed when the thread is asked to end.
+    /// Closes `stream` at the cancellation.
     ///
     /// # Errors
-    /// `Network` when it has been asked already.
+    /// `Network` when the thread is already cancelled.
     pub fn hold(&self, stream: &TcpStream) -> Result<()> {
         let mut state = lock(&self.state);
         if state.asked {
@@ -82,18 +82,18 @@ impl Cancel {
         Ok(())
     }
 
-    /// Lets go of the connection.
+    /// Releases the connection.
     pub fn release(&self) {
         lock(&self.state).socket = None;
     }
 
-    /// From now on the thread ends by itself when asked, and has a moment to send what it still has.
+    /// Lets the thread send its remaining data after the cancellation before it ends by itself.
     pub fn drain(&self) {
         lock(&self.state).drains = true;
     }
 }
 
-/// All threads of a node.
+/// Threads of a node.
 #[derive(Debug, Default)]
 pub(crate) struct Tasks {
     state: Mutex<State>,
@@ -121,7 +121,7 @@ impl Tasks {
     /// Runs `work` on a thread of its own.
     ///
     /// # Errors
-    /// `Network` once the node is stopped, `Io` when the system has no more threads.
+    /// `Network` after the shutdown of the node, `Io` when the system has no more threads.
     pub fn spawn(
         self: &Arc<Self>,
         name: &str,
@@ -151,13 +151,12 @@ impl Tasks {
         Ok(cancel)
     }
 
-    /// Remembers that a thread waits for connections at `address`.
+    /// Records that a thread listens at `address`.
     pub fn listens(&self, address: SocketAddr) {
         lock(&self.state).listeners.push(address);
     }
 
-    /// Asks every thread to end, and waits for them: as long as `grace` for those that still send, a second
-    /// more for the rest.
+    /// Cancels all threads and waits for them: `grace` for those that still send, and a second more for the others.
     pub fn stop(&self, grace: Duration) {
         let (running, listeners) = {
             let mut state = lock(&self.state);
@@ -166,7 +165,7 @@ impl Tasks {
         };
         running.iter().for_each(|cancel| cancel.cancel());
         for address in listeners {
-            // Wakes the thread that waits there.
+            // The connection wakes the listening thread.
             TcpStream::connect_timeout(&address, Duration::from_millis(200)).ok();
         }
         if INSIDE.get() {

@@ -1,4 +1,4 @@
-//! TCPROS: headers of named fields, then messages with their length in front.
+//! TCPROS: a header of named fields, then messages with a length prefix.
 //!
 //! Source: <https://wiki.ros.org/ROS/TCPROS>, <https://wiki.ros.org/ROS/Connection%20Header>.
 

@@ -1,4 +1,4 @@
-//! Topics, both ends.
+//! Publishers and subscriptions.
 
 mod inbox;
 mod link;

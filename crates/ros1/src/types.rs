@@ -1,26 +1,25 @@
-//! Types of topics and services, as texts.
+//! Types of topics and services.
 
 use opendr_engine::{Error, Result};
 
-/// The type of a topic's messages.
+/// Type of a topic's messages.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TopicType {
-    /// Such as `sensor_msgs/Image`; `*` of a subscriber takes any.
+    /// Name such as `sensor_msgs/Image`; `*` in a subscriber matches any.
     pub name: String,
-    /// 32 letters, lower case; `*` of a subscriber takes any.
+    /// md5 sum of 32 lower-case hexadecimal digits; `*` in a subscriber matches any.
     pub md5sum: String,
-    /// The definition with those of all types in it, as `gendeps --cat` makes it. May be empty for a
-    /// subscriber.
+    /// Definition with those of all contained types, as printed by `gendeps --cat`; may be empty for a subscriber.
     pub definition: String,
 }
 
 impl TopicType {
-    /// A type by its three texts.
+    /// Creates a type from name, md5 sum and definition.
     pub fn new(name: impl Into<String>, md5sum: impl Into<String>, definition: impl Into<String>) -> Self {
         Self { name: name.into(), md5sum: md5sum.into(), definition: definition.into() }
     }
 
-    /// What a subscriber to anything asks for.
+    /// Returns the type of a subscriber to any type.
     pub fn any() -> Self {
         Self::new("*", "*", "")
     }
@@ -38,21 +37,21 @@ impl TopicType {
     }
 }
 
-/// The type of a service.
+/// Type of a service.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ServiceType {
-    /// Such as `std_srvs/SetBool`.
+    /// Name such as `std_srvs/SetBool`.
     pub name: String,
-    /// 32 letters, lower case; `*` of a client takes any.
+    /// md5 sum of 32 lower-case hexadecimal digits; `*` in a client matches any.
     pub md5sum: String,
-    /// Such as `std_srvs/SetBoolRequest`.
+    /// Name of the request type, such as `std_srvs/SetBoolRequest`.
     pub request_type: String,
-    /// Such as `std_srvs/SetBoolResponse`.
+    /// Name of the response type, such as `std_srvs/SetBoolResponse`.
     pub response_type: String,
 }
 
 impl ServiceType {
-    /// A service's type; those of request and response are named after it.
+    /// Creates a service type; request and response types are named after it.
     pub fn new(name: impl Into<String>, md5sum: impl Into<String>) -> Self {
         let name = name.into();
         Self {
@@ -69,7 +68,7 @@ impl ServiceType {
     }
 }
 
-/// Whether two md5 sums or type names go together: `*` goes with any.
+/// Returns whether two md5 sums or type names match; `*` matches any.
 pub(crate) fn agree(one: &str, other: &str) -> bool {
     one == "*" || other == "*" || one == other
 }
@@ -80,7 +79,9 @@ fn check_type(name: &str) -> Result<()> {
     };
     match name.split_once('/') {
         Some((package, kind)) if part(package) && part(kind) => Ok(()),
-        _ => Err(Error::invalid_param(format!("{name:.80?} is no ROS 1 type; write it as std_msgs/String"))),
+        _ => Err(Error::invalid_param(format!(
+            "{name:.80?} is not a ROS 1 type; write a name such as std_msgs/String"
+        ))),
     }
 }
 
@@ -89,7 +90,9 @@ fn check_md5sum(md5sum: &str) -> Result<()> {
     if md5sum.len() == 32 && md5sum.bytes().all(digit) {
         return Ok(());
     }
-    Err(Error::invalid_param(format!("{md5sum:.80?} is no md5 sum; give 32 letters 0-9 and a-f, lower case")))
+    Err(Error::invalid_param(format!(
+        "{md5sum:.80?} is not an md5 sum; give 32 lower-case hexadecimal digits"
+    )))
 }
 
 #[cfg(test)]

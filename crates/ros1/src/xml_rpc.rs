@@ -9,7 +9,7 @@ pub(crate) use reader::{Fault, call_from_xml, response_from_xml};
 pub use value::ParameterValue;
 pub(crate) use writer::{xml_from_call, xml_from_fault, xml_from_response};
 
-/// Lists and structs within one another, read or written: far more than any parameter has.
+/// Maximum nesting of lists and structs, far more than in any parameter.
 const MOST_NESTED: usize = 64;
 
 #[cfg(test)]

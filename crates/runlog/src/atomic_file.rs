@@ -1,4 +1,4 @@
-//! Files that are there whole or not at all.
+//! Atomic writing of files.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -10,15 +10,15 @@ use opendr_engine::{Error, ErrorKind, Result};
 
 static COUNTER: AtomicU64 = AtomicU64::new(0);
 
-/// Writes a file beside `path`, brings it to the disk and renames it there. Whenever the machine stops, `path` holds the
-/// old bytes or the new.
+/// Writes a file atomically: to a temporary file beside `path`, which is synced and renamed. After a crash, `path` has either the
+/// old or the new bytes.
 ///
 /// # Errors
-/// `Io` when the disk is full or the folder may not be written, `NotFound` when there is no such folder, both with the
-/// path. The old file is untouched then, and nothing is left beside it.
+/// `Io` when the disk is full or the folder is not writable, `NotFound` when the folder does not exist, both with the
+/// path. The old file is then unchanged, and no temporary file is left.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
     let written = || {
-        let temporary = unfinished(path)?;
+        let temporary = temporary_name(path)?;
         let placed = write_synced(&temporary, bytes)
             .and_then(|()| fs::rename(&temporary, path))
             .and_then(|()| sync_folder(path));
@@ -28,45 +28,45 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
         }
         placed
     };
-    written().map_err(|error| refused(path, error))
+    written().map_err(|error| write_error(path, error))
 }
 
-/// The end of the names of what is not yet whole.
-pub(crate) const UNFINISHED: &str = ".partial";
+/// Suffix of the names of incomplete files.
+pub(crate) const INCOMPLETE_SUFFIX: &str = ".partial";
 
-/// A hidden name beside `path` that nobody else uses.
-pub(crate) fn unfinished(path: &Path) -> io::Result<PathBuf> {
-    let name = path.file_name().ok_or_else(|| io::Error::other("the path names no file"))?;
+/// Returns a unique hidden name beside `path`.
+pub(crate) fn temporary_name(path: &Path) -> io::Result<PathBuf> {
+    let name = path.file_name().ok_or_else(|| io::Error::other("the path has no file name"))?;
     let mut temporary = OsString::from(".");
     temporary.push(name);
     let count = COUNTER.fetch_add(1, Ordering::Relaxed);
-    temporary.push(format!(".{}.{count}{UNFINISHED}", std::process::id()));
+    temporary.push(format!(".{}.{count}{INCOMPLETE_SUFFIX}", std::process::id()));
     Ok(path.with_file_name(temporary))
 }
 
-/// Writes a new file through to the disk.
+/// Writes a new file and syncs it.
 pub(crate) fn write_synced(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = File::create(path)?;
     file.write_all(bytes)?;
     file.sync_all()
 }
 
-/// Brings the name of `path` to the disk.
+/// Syncs the folder of `path`, so that its name is on the disk.
 pub(crate) fn sync_folder(path: &Path) -> io::Result<()> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    // Elsewhere folders cannot be opened, and renaming is enough.
+    // Other systems cannot open folders, and need no sync for a rename.
     if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
 }
 
-/// Why `path` cannot be written, and what to do.
-pub(crate) fn refused(path: &Path, error: io::Error) -> Error {
+/// Returns the error of a failed write to `path`, with advice.
+pub(crate) fn write_error(path: &Path, error: io::Error) -> Error {
     use io::ErrorKind as Kind;
     let advice = match error.kind() {
         Kind::StorageFull | Kind::QuotaExceeded | Kind::FileTooLarge => {
-            ": the disk or the user's share of it is full; free some room and go on"
+            ": the disk or the user's quota is full; free some space and resume"
         }
         Kind::PermissionDenied | Kind::ReadOnlyFilesystem | Kind::NotADirectory => {
-            ": name a folder that may be written"
+            ": use a folder that may be written"
         }
         Kind::NotFound => ": its folder does not exist",
         _ => "",

@@ -1,4 +1,4 @@
-//! One checkpoint: a folder of files and a manifest that tells what they must be.
+//! A checkpoint: a folder of files with a manifest of their sizes and hashes.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -8,20 +8,20 @@ use opendr_engine::model::{Sha256, member_path};
 use opendr_engine::{Error, Result, ResultExt};
 use serde::{Deserialize, Serialize};
 
-use crate::atomic_file::{refused, sync_folder, write_synced};
+use crate::atomic_file::{sync_folder, write_error, write_synced};
 
 const MANIFEST: &str = "checkpoint.json";
 const FORMAT_VERSION: u32 = 1;
 const MAX_MANIFEST_BYTES: u64 = 1 << 20;
-/// No single file may be larger.
+/// Maximum size of a file.
 const MAX_FILE_BYTES: u64 = 16 << 30;
 
-/// A whole checkpoint.
+/// A verified checkpoint.
 #[derive(Debug, Clone)]
 pub struct Checkpoint {
-    /// The step after which it was written.
+    /// Step after which it was written.
     pub step: u64,
-    /// Newer ones that were passed over because they are broken, and why; a line each.
+    /// Newer checkpoints that were skipped because they are damaged, with the reason, one per line.
     pub skipped: Vec<String>,
     path: PathBuf,
     manifest: Manifest,
@@ -42,17 +42,17 @@ struct Entry {
 }
 
 impl Checkpoint {
-    /// Its folder.
+    /// Returns its folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The names of its files.
+    /// Returns the names of its files.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.manifest.files.iter().map(|entry| entry.name.as_str())
     }
 
-    /// The bytes of a file, checked against size and sha256.
+    /// Returns the bytes of a file, after a check of its size and SHA-256.
     ///
     /// # Errors
     /// `NotFound` when it has no such file, `Integrity` when the file is damaged.
@@ -68,10 +68,10 @@ impl Checkpoint {
         entry.read(&self.path).context(|| format!("reading the checkpoint {}", self.path.display()))
     }
 
-    /// Writes the files into a new folder, through to the disk.
+    /// Writes the files into a new folder and syncs them.
     pub(crate) fn write(folder: &Path, step: u64, files: &[(&str, &[u8])]) -> Result<()> {
         let mut entries = Vec::<Entry>::new();
-        fs::create_dir(folder).map_err(|error| refused(folder, error))?;
+        fs::create_dir(folder).map_err(|error| write_error(folder, error))?;
         for (name, bytes) in files {
             let path = folder.join(member_path(name)?);
             let taken = |entry: &Entry| entry.name.eq_ignore_ascii_case(name);
@@ -79,7 +79,7 @@ impl Checkpoint {
                 return Err(Error::invalid_param(format!("the checkpoint already has a file {name:?}")));
             }
             if let Some(parent) = path.parent().filter(|parent| *parent != folder) {
-                fs::create_dir_all(parent).map_err(|error| refused(parent, error))?;
+                fs::create_dir_all(parent).map_err(|error| write_error(parent, error))?;
             }
             write_whole(&path, bytes)?;
             let (name, size) = ((*name).to_owned(), bytes.len() as u64);
@@ -87,26 +87,26 @@ impl Checkpoint {
         }
         let manifest = Manifest { format_version: FORMAT_VERSION, step, files: entries };
         let json = serde_json::to_vec_pretty(&manifest)
-            .map_err(|error| Error::internal("a manifest has no JSON form").with_source(error))?;
+            .map_err(|error| Error::internal("the manifest cannot be written as JSON").with_source(error))?;
         write_whole(&folder.join(MANIFEST), &json)
     }
 
-    /// Opens the checkpoint in a folder and checks every file of it.
+    /// Opens the checkpoint in a folder and verifies all its files.
     ///
     /// # Errors
-    /// `NotFound`, `Format` or `Integrity` when it is not whole.
+    /// `NotFound`, `Format` or `Integrity` when it is incomplete or damaged.
     pub(crate) fn open(path: PathBuf) -> Result<Self> {
         let manifest_path = path.join(MANIFEST);
         let mut json = Vec::new();
         let file = File::open(&manifest_path).context(|| manifest_path.display().to_string())?;
         file.take(MAX_MANIFEST_BYTES).read_to_end(&mut json)?;
         let manifest: Manifest = serde_json::from_slice(&json).map_err(|error| {
-            Error::format(format!("{} is no manifest", manifest_path.display())).with_source(error)
+            Error::format(format!("{} is not a manifest", manifest_path.display())).with_source(error)
         })?;
         if manifest.format_version != FORMAT_VERSION {
             let version = manifest.format_version;
             return Err(Error::unsupported(format!(
-                "{} has version {version}, this OpenDR reads {FORMAT_VERSION}: update OpenDR",
+                "{} has version {version}, this OpenDR reads version {FORMAT_VERSION}; update OpenDR",
                 manifest_path.display()
             )));
         }
@@ -116,7 +116,7 @@ impl Checkpoint {
 }
 
 fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    write_synced(path, bytes).and_then(|()| sync_folder(path)).map_err(|error| refused(path, error))
+    write_synced(path, bytes).and_then(|()| sync_folder(path)).map_err(|error| write_error(path, error))
 }
 
 impl Entry {
@@ -128,7 +128,7 @@ impl Entry {
             return Ok(file);
         }
         Err(Error::integrity(format!(
-            "{} has {found} bytes instead of {size}: it is damaged",
+            "{} has {found} bytes instead of {size}, it is damaged",
             path.display()
         )))
     }

@@ -5,18 +5,18 @@ use std::path::{Path, PathBuf};
 
 use opendr_engine::{Error, Result};
 
-use crate::atomic_file::{UNFINISHED, refused, sync_folder, unfinished, write_atomically};
+use crate::atomic_file::{INCOMPLETE_SUFFIX, sync_folder, temporary_name, write_atomically, write_error};
 use crate::checkpoint::Checkpoint;
 
 const PREFIX: &str = "step-";
-/// What makes way for a newer checkpoint of the same step.
+/// Suffix of a checkpoint while a newer one of the same step replaces it.
 const REPLACED: &str = ".replaced";
 const BEST: &str = "best";
 
-/// A folder of checkpoints, `step-0000001200` each, of which the newest are kept and the best one.
+/// A folder of checkpoints, `step-0000001200` each, of which the newest ones and the best one are kept.
 ///
-/// Each is written under another name, brought to the disk and renamed; whenever the process is killed or the machine
-/// stops, [`Checkpoints::latest`] finds the newest whole one. One process at a time may write to a folder.
+/// Each is written under another name, synced and renamed. After a kill or crash at any time, [`Checkpoints::latest`]
+/// finds the newest intact one. Only one process at a time may write to a folder.
 ///
 /// ```
 /// # fn main() -> opendr_engine::Result<()> {
@@ -40,28 +40,28 @@ pub struct Checkpoints {
 }
 
 impl Checkpoints {
-    /// The checkpoints in `folder`, which is made where it is not there; `keep` of them stay, and the best one.
+    /// Opens the checkpoints in `folder`, which is created if missing. The newest `keep` are kept, and the best one.
     ///
     /// # Errors
-    /// `InvalidParam` when `keep` is 0, `Io` when the folder cannot be made.
+    /// `InvalidParam` when `keep` is 0, `Io` when the folder cannot be created.
     pub fn new(folder: &Path, keep: usize) -> Result<Self> {
         if keep == 0 {
-            return Err(Error::invalid_param("0 checkpoints are to be kept; keep 1 or more"));
+            return Err(Error::invalid_param("the number of kept checkpoints is 0; keep 1 or more"));
         }
-        fs::create_dir_all(folder).map_err(|error| refused(folder, error))?;
+        fs::create_dir_all(folder).map_err(|error| write_error(folder, error))?;
         Ok(Self { folder: folder.to_owned(), keep })
     }
 
-    /// Saves `files` as the checkpoint of a step, which replaces an older one of that step, and removes those that need
-    /// not be kept as well as what killed processes left half-written. The folder of the checkpoint.
+    /// Saves `files` as the checkpoint of a step and returns its folder. An older checkpoint of the step is replaced; checkpoints that
+    /// need not be kept and incomplete ones of killed processes are removed.
     ///
     /// # Errors
-    /// `Io` when the disk is full: the other checkpoints are untouched then, and nothing is left of this one. `Integrity` and
-    /// `InvalidParam` for names that leave the folder or come twice.
+    /// `Io` when the disk is full; other checkpoints are then unchanged, and nothing of this one is left. `Integrity` and
+    /// `InvalidParam` for file names that leave the folder or are duplicates.
     pub fn save(&self, step: u64, files: &[(&str, &[u8])]) -> Result<PathBuf> {
         let path = self.folder.join(format!("{PREFIX}{step:010}"));
-        self.remove_unfinished();
-        let temporary = unfinished(&path).map_err(|error| refused(&path, error))?;
+        self.remove_incomplete();
+        let temporary = temporary_name(&path).map_err(|error| write_error(&path, error))?;
         let saved = Checkpoint::write(&temporary, step, files).and_then(|()| self.place(&temporary, &path));
         if let Err(error) = saved {
             // The first failure is the one to report.
@@ -76,21 +76,21 @@ impl Checkpoints {
         let replaced = self.folder.join(format!("{}{REPLACED}", name_of(path)));
         let rename = || {
             if path.exists() {
-                // There from an earlier kill, when the folder at `path` has already replaced it.
+                // Left by an earlier kill, after the folder at `path` had replaced it.
                 fs::remove_dir_all(&replaced).ok();
                 fs::rename(path, &replaced)?;
             }
             fs::rename(temporary, path)?;
             sync_folder(path)
         };
-        rename().map_err(|error| refused(path, error))
+        rename().map_err(|error| write_error(path, error))
     }
 
-    /// The newest checkpoint that is whole; each file of it is checked. Broken ones are passed over and told of in
+    /// Returns the newest intact checkpoint, after verification of all its files. Damaged ones are skipped and listed in
     /// [`Checkpoint::skipped`].
     ///
     /// # Errors
-    /// `Integrity` when there are checkpoints and all are broken, so that no training begins anew unasked; `Io`.
+    /// `Integrity` when all checkpoints are damaged, so that no training restarts unintentionally; `Io`.
     pub fn latest(&self) -> Result<Option<Checkpoint>> {
         let mut skipped = Vec::new();
         for (_, path) in self.list()?.into_iter().rev() {
@@ -99,42 +99,42 @@ impl Checkpoints {
                     checkpoint.skipped = skipped;
                     return Ok(Some(checkpoint));
                 }
-                Err(error) => skipped.push(format!("{} is broken: {error}", path.display())),
+                Err(error) => skipped.push(format!("{} is damaged: {error}", path.display())),
             }
         }
         if skipped.is_empty() {
             return Ok(None);
         }
         Err(Error::integrity(format!(
-            "no checkpoint in {} is whole: {}; name another folder, or delete it to begin anew",
+            "all checkpoints in {} are damaged: {}; use another folder, or delete it to start again",
             self.folder.display(),
             skipped.join("; ")
         )))
     }
 
-    /// Marks the checkpoint of a step as the best: it is kept until another one is.
+    /// Marks the checkpoint of a step as the best; it is kept until another one is marked.
     ///
     /// # Errors
     /// `NotFound` when there is no such checkpoint, `Io` when the mark cannot be written.
     pub fn mark_best(&self, step: u64) -> Result<()> {
         if !self.steps()?.contains(&step) {
             let folder = self.folder.display();
-            return Err(Error::not_found(format!("no checkpoint of step {step} in {folder}: save it first")));
+            return Err(Error::not_found(format!("no checkpoint of step {step} in {folder}; save it first")));
         }
         write_atomically(&self.folder.join(BEST), format!("{step}\n").as_bytes())
     }
 
-    /// The checkpoint that was marked as the best.
+    /// Returns the checkpoint marked as the best.
     ///
     /// # Errors
-    /// `Integrity`, `NotFound` or `Format` when it is marked but not whole.
+    /// `Integrity`, `NotFound` or `Format` when it is marked but incomplete or damaged.
     pub fn best(&self) -> Result<Option<Checkpoint>> {
         let Some(best) = self.best_step() else { return Ok(None) };
         let mut of_step = self.list()?.into_iter().rev().filter(|(step, _)| *step == best);
         of_step.next().map(|(_, path)| Checkpoint::open(path)).transpose()
     }
 
-    /// The steps of the checkpoints, whole or not, in rising order.
+    /// Returns the steps of all checkpoints, intact or not, in increasing order.
     ///
     /// # Errors
     /// `Io` when the folder cannot be read.
@@ -148,10 +148,10 @@ impl Checkpoints {
         fs::read_to_string(self.folder.join(BEST)).ok()?.trim().parse().ok()
     }
 
-    /// Steps and folders, in the order of the steps; of one step, what was replaced comes first.
+    /// Lists steps and folders in order of steps; of equal steps, the replaced one comes first.
     fn list(&self) -> Result<Vec<(u64, PathBuf)>> {
         let mut found = Vec::new();
-        for entry in fs::read_dir(&self.folder).map_err(|error| refused(&self.folder, error))? {
+        for entry in fs::read_dir(&self.folder).map_err(|error| write_error(&self.folder, error))? {
             let path = entry?.path();
             let name = name_of(&path);
             let digits = name.strip_suffix(REPLACED).unwrap_or(&name).strip_prefix(PREFIX);
@@ -163,33 +163,33 @@ impl Checkpoints {
         Ok(found.into_iter().map(|(step, _, path)| (step, path)).collect())
     }
 
-    /// Removes what need not be kept. `saved` stays even where later steps of an abandoned run are there.
+    /// Removes checkpoints that need not be kept. `saved` is kept even if later steps of an abandoned run exist.
     fn prune(&self, saved: u64) -> Result<()> {
         let best = self.best_step();
         let steps = self.steps()?;
         let newest = steps.iter().rev().take(self.keep);
         let kept: Vec<u64> = newest.copied().chain(best).chain([saved]).collect();
         let found = self.list()?;
-        // A kill may leave what was replaced, half removed, before its successor.
+        // A kill may leave a replaced checkpoint, partly removed, before its successor.
         let succeeded = |at: usize| found.get(at + 1).is_some_and(|next| next.0 == found[at].0);
         let goes = |at: usize| succeeded(at) || !kept.contains(&found[at].0);
         for path in (0..found.len()).filter(|at| goes(*at)).map(|at| &found[at].1) {
-            // A folder that is being removed is no checkpoint any more.
-            let removed = unfinished(path).and_then(|gone| fs::rename(path, &gone));
-            removed.map_err(|error| refused(path, error))?;
+            // Renamed first, so that a folder being removed is not listed as a checkpoint.
+            let removed = temporary_name(path).and_then(|gone| fs::rename(path, &gone));
+            removed.map_err(|error| write_error(path, error))?;
         }
-        self.remove_unfinished();
+        self.remove_incomplete();
         Ok(())
     }
 
-    fn remove_unfinished(&self) {
+    fn remove_incomplete(&self) {
         let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten().map(|entry| entry.path());
         let is_left = |path: &PathBuf| {
             let name = name_of(path);
-            name.starts_with('.') && name.ends_with(UNFINISHED)
+            name.starts_with('.') && name.ends_with(INCOMPLETE_SUFFIX)
         };
         for path in entries.filter(is_left) {
-            // What stays only costs room.
+            // A leftover only takes space.
             fs::remove_dir_all(&path).or_else(|_| fs::remove_file(&path)).ok();
         }
     }

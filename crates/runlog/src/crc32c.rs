@@ -1,6 +1,6 @@
-//! The checksum of TensorFlow's records: CRC-32C (Castagnoli, RFC 3720), masked.
+//! CRC-32C (Castagnoli, RFC 3720), masked as in TensorFlow's records.
 
-/// Reflected 0x1edc6f41.
+/// Reflected form of 0x1edc6f41.
 const POLYNOMIAL: u32 = 0x82f6_3b78;
 
 const TABLE: [u32; 256] = {
@@ -23,7 +23,7 @@ fn crc32c(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(!0, |crc, byte| TABLE[usize::from(crc as u8 ^ byte)] ^ crc >> 8)
 }
 
-/// As records hold it: a checksum of bytes that hold their own checksum would say little.
+/// Returns the masked checksum; the mask is for bytes that contain their own checksum.
 pub fn masked_crc32c(bytes: &[u8]) -> u32 {
     crc32c(bytes).rotate_right(15).wrapping_add(0xa282_ead8)
 }
@@ -34,7 +34,7 @@ mod tests {
 
     #[test]
     fn published_vectors() {
-        // RFC 3720, appendix B.4, and the check value of the catalogue of CRCs.
+        // RFC 3720, appendix B.4, and the check value in the catalogue of CRCs.
         let rising: Vec<u8> = (0..32).collect();
         let falling: Vec<u8> = (0..32).rev().collect();
         let vectors = [
@@ -51,7 +51,7 @@ mod tests {
     }
 
     #[test]
-    fn mask_of_a_record_that_tensorflow_wrote() {
+    fn mask_matches_a_record_of_tensorflow() {
         // The length of the first record of an event file, 24, and its masked checksum.
         assert_eq!(masked_crc32c(&24_u64.to_le_bytes()).to_le_bytes(), [0xa3, 0x7f, 0x4b, 0x22]);
     }

@@ -1,11 +1,11 @@
 //! Lines of comma-separated values (RFC 4180, without line breaks in values).
 
-/// A value as it stands in a line.
+/// Returns a value as written in a line.
 pub fn quoted(text: &str) -> String {
     if text.contains([',', '"']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }
 
-/// The values of a line; `None` when its quotation marks do not pair.
+/// Returns the values of a line; `None` for unbalanced quotation marks.
 pub fn values(line: &str) -> Option<Vec<String>> {
     let mut values = Vec::new();
     let mut rest = line;
@@ -41,7 +41,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_written_is_read() {
+    fn lines_round_trip() {
         let texts = ["loss", "", "ap, small", "12\" pipe", "\"", ",", "\"a\",\"b\"", "é"];
         let line = texts.map(quoted).join(",");
         assert_eq!(values(&line).unwrap(), texts);

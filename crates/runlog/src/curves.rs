@@ -1,14 +1,14 @@
-//! The picture of a run: its loss and what was measured on other data, over steps.
+//! The image of a run's curves: loss and validation metrics over steps.
 
 use opendr_metrics::{Curves, Line};
 
 use crate::figure::svg_from_panels;
 use crate::scalar_table::ScalarTable;
 
-/// More points of a line than can be told apart are averaged.
-const MOST_POINTS: usize = 500;
+/// Maximum points of a line; more are averaged.
+const MAX_POINTS: usize = 500;
 
-/// Panels of losses, of validation numbers that lie between 0 and 1, and of each other one; `None` when there is nothing
+/// Draws panels of losses, of validation metrics in [0, 1], and of each other metric; `None` when there is nothing
 /// to draw.
 pub fn svg_from_table(table: &ScalarTable) -> Option<String> {
     let mut panels: Vec<Curves> = Vec::new();
@@ -36,9 +36,9 @@ pub fn svg_from_table(table: &ScalarTable) -> Option<String> {
     (!panels.is_empty()).then(|| svg_from_panels(&panels))
 }
 
-/// Means of so many neighbours that few points remain; what is not finite is left out where it has finite neighbours.
+/// Averages neighbouring points to reduce their number; values that are not finite are skipped if a neighbour is finite.
 fn thinned(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let neighbours = points.len().div_ceil(MOST_POINTS).max(1);
+    let neighbours = points.len().div_ceil(MAX_POINTS).max(1);
     let mean = |chunk: &[[f64; 2]]| {
         let finite = || chunk.iter().filter(|[_, value]| value.is_finite());
         let count = finite().count() as f64;
@@ -53,7 +53,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn losses_and_measures_of_each_scale_have_their_panels() {
+    fn losses_and_metrics_of_each_scale_have_their_panels() {
         let mut table = ScalarTable::new(std::env::temp_dir().join("opendr-never-written.csv"));
         assert_eq!(svg_from_table(&table), None);
         for step in 0..2000 {
@@ -79,7 +79,7 @@ mod tests {
     fn thinning_keeps_the_mean() {
         let points: Vec<_> = (0..5000).map(|step| [f64::from(step), f64::from(step % 2)]).collect();
         let thin = thinned(&points);
-        assert_eq!(thin.len(), MOST_POINTS);
+        assert_eq!(thin.len(), MAX_POINTS);
         assert!(thin.iter().all(|point| point[1] == 0.5));
         assert!(thinned(&[[3.0, f64::NAN]])[0][1].is_nan());
     }

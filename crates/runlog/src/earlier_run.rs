@@ -1,4 +1,4 @@
-//! Room for a new log where an earlier run has left one.
+//! Archiving of the log of an earlier run.
 
 use std::fs;
 use std::io;
@@ -6,14 +6,14 @@ use std::path::Path;
 
 use opendr_engine::Result;
 
-use crate::atomic_file::refused;
+use crate::atomic_file::write_error;
 use crate::event_file::is_event_file;
-use crate::run_log::{CURVES, TABLE};
+use crate::file_names::{CURVES, TABLE};
 
-/// Moves the log of an earlier run in `folder` into a folder of its own in there, `earlier-1`, `earlier-2`, ..., which
+/// Moves the log of an earlier run in `folder` into a subfolder `earlier-1`, `earlier-2`, ..., which
 /// TensorBoard shows as another run.
 pub fn set_aside(folder: &Path) -> Result<()> {
-    move_log(folder).map_err(|error| refused(folder, error))
+    move_log(folder).map_err(|error| write_error(folder, error))
 }
 
 fn move_log(folder: &Path) -> io::Result<()> {

@@ -1,4 +1,4 @@
-//! The messages of TensorBoard's event files (`event.proto`, `summary.proto`), as far as a run writes them, by hand so
+//! Messages of TensorBoard's event files (`event.proto`, `summary.proto`), as far as a run writes them, declared by hand so
 //! that no protobuf compiler is needed.
 
 use prost::{Enumeration, Message, Oneof};
@@ -16,7 +16,7 @@ pub struct Event {
 
 #[derive(Clone, PartialEq, Oneof)]
 pub enum What {
-    /// Of the first event of a file.
+    /// Version, in the first event of a file.
     #[prost(string, tag = "3")]
     FileVersion(String),
     #[prost(message, tag = "5")]
@@ -53,7 +53,7 @@ pub struct Picture {
     pub height: i32,
     #[prost(int32, tag = "2")]
     pub width: i32,
-    /// How many channels a pixel has.
+    /// Number of channels.
     #[prost(int32, tag = "3")]
     pub colorspace: i32,
     /// A PNG file.
@@ -71,6 +71,6 @@ pub struct SessionLog {
 #[repr(i32)]
 pub enum SessionStatus {
     Unspecified = 0,
-    /// Readers drop what earlier files hold from this event's step on.
+    /// Readers discard the events of earlier files from this event's step on.
     Start = 1,
 }

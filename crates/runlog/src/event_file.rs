@@ -1,4 +1,4 @@
-//! An event file: records of TensorFlow, each an [`Event`].
+//! Event files: TensorFlow records, each an [`IterationEvent`].
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Seek, SeekFrom, Write};
@@ -8,30 +8,30 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use opendr_engine::Result;
 use prost::Message;
 
-use crate::atomic_file::refused;
+use crate::atomic_file::write_error;
 use crate::crc32c::masked_crc32c;
 use crate::event::{Event, SessionLog, SessionStatus, Summary, SummaryValue, What};
 
 const PREFIX: &str = "events.out.tfevents.";
 
-/// Records wait in memory up to so many bytes.
-const MOST_WAITING: usize = 4 << 20;
+/// Maximum bytes of buffered records.
+const MAX_BUFFERED: usize = 4 << 20;
 
-/// A file that is being written. It holds whole records only, even when the disk runs full.
+/// An event file being written. It contains complete records only, even if the disk becomes full.
 #[derive(Debug)]
 pub struct EventFile {
     path: PathBuf,
     file: File,
-    /// Bytes of the whole records in the file.
+    /// Bytes of complete records in the file.
     length: u64,
     waiting: Vec<u8>,
 }
 
 impl EventFile {
-    /// Begins a file in `folder`, which readers take after all that are there; from `first_step` on it replaces what they
-    /// hold.
+    /// Creates a file in `folder`, which readers process after all existing ones; from `first_step` on it replaces their
+    /// events.
     pub fn create(folder: &Path, first_step: u64) -> Result<Self> {
-        let (path, file) = new_file(folder).map_err(|error| refused(folder, error))?;
+        let (path, file) = new_file(folder).map_err(|error| write_error(folder, error))?;
         let mut events = Self { path, file, length: 0, waiting: Vec::new() };
         events.add(0, What::FileVersion("brain.Event:2".to_owned()))?;
         events.add(first_step, What::SessionLog(SessionLog { status: SessionStatus::Start.into() }))?;
@@ -53,10 +53,10 @@ impl EventFile {
         self.waiting.extend(masked_crc32c(&length).to_le_bytes());
         self.waiting.extend(&bytes);
         self.waiting.extend(masked_crc32c(&bytes).to_le_bytes());
-        if self.waiting.len() > MOST_WAITING { self.flush() } else { Ok(()) }
+        if self.waiting.len() > MAX_BUFFERED { self.flush() } else { Ok(()) }
     }
 
-    /// Brings all records to the disk. On failure the file is cut back to whole records, and the others wait on.
+    /// Writes all buffered records to the disk. On failure the file is truncated to complete records, and the others stay buffered.
     pub fn flush(&mut self) -> Result<()> {
         if self.waiting.is_empty() {
             return Ok(());
@@ -65,7 +65,7 @@ impl EventFile {
         if let Err(error) = written {
             let cut = self.file.set_len(self.length);
             cut.and_then(|()| self.file.seek(SeekFrom::Start(self.length))).ok();
-            return Err(refused(&self.path, error));
+            return Err(write_error(&self.path, error));
         }
         self.length += self.waiting.len() as u64;
         self.waiting.clear();
@@ -73,12 +73,12 @@ impl EventFile {
     }
 }
 
-/// Whether a file of that name holds events.
+/// Returns whether a file name is that of an event file.
 pub fn is_event_file(name: &str) -> bool {
     name.starts_with(PREFIX)
 }
 
-// Readers take files in the order of their names, so that the time in a name must be later than all others, whatever the
+// Readers process files in order of their names, so the time in the name must be later than all others, whatever the
 // clock says.
 fn new_file(folder: &Path) -> io::Result<(PathBuf, File)> {
     let mut time = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs();

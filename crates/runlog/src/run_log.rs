@@ -7,25 +7,23 @@ use std::time::{Duration, Instant};
 use opendr_engine::data::Image;
 use opendr_engine::{Error, Result};
 
-use crate::atomic_file::{refused, write_atomically};
+use crate::atomic_file::{write_atomically, write_error};
 use crate::curves::svg_from_table;
 use crate::earlier_run;
 use crate::event::{Content, Picture, SummaryValue};
 use crate::event_file::EventFile;
+use crate::file_names::{CURVES, TABLE};
 use crate::scalar_table::ScalarTable;
 
-pub(crate) const TABLE: &str = "log.csv";
-pub(crate) const CURVES: &str = "curves.svg";
+/// Maximum time before logged values are written to the disk, checked when more are logged.
+const WRITE_INTERVAL: Duration = Duration::from_secs(5);
 
-/// What is told is on the disk after this time at the latest, once more is told.
-const EVERY: Duration = Duration::from_secs(5);
+const MAX_TAG_BYTES: usize = 500;
 
-const LONGEST_TAG: usize = 500;
-
-/// The log of a run, in a folder: event files for TensorBoard, `log.csv` with a row a step and a column a tag, and
-/// `curves.svg` with the loss (`loss...`) and the numbers of the validation (`val_...`).
+/// The log of a run, in a folder: event files for TensorBoard, `log.csv` with a row per step and a column per tag, and
+/// `curves.svg` with the loss (`loss...`) and the validation metrics (`val_...`).
 ///
-/// A kill loses what was told in the last seconds; [`RunLog::flush`] before a checkpoint, so that a run that resumes from
+/// A kill loses the values of the last seconds. Call [`RunLog::flush`] before saving a checkpoint, so that a run that resumes from
 /// it finds every row. Dropping a log flushes it.
 ///
 /// ```
@@ -54,17 +52,17 @@ struct Files {
 }
 
 impl RunLog {
-    /// Opens the log in `folder`, which is made where it is not there; without a folder, the log writes nothing.
+    /// Opens the log in `folder`, which is created if missing; without a folder, the log writes nothing.
     ///
-    /// A run that begins anew finds room: the log of an earlier one is moved into `earlier-1`, `earlier-2`, ... in there.
-    /// One that resumes from a step goes on with the log; of later steps, rows are dropped, and events too in the eyes of
-    /// every reader.
+    /// A new run archives the log of an earlier one in the subfolder `earlier-1`, `earlier-2`, ...
+    /// A run that resumes from a step continues the log; rows of later steps are dropped, and readers discard their
+    /// events.
     ///
     /// # Errors
-    /// `Io` when the folder cannot be written, `Format` when the table to go on with is none.
+    /// `Io` when the folder cannot be written, `Format` when the table to continue is invalid.
     pub fn open(folder: Option<&Path>, resume_from: Option<u64>) -> Result<Self> {
         let Some(folder) = folder else { return Ok(Self { files: None }) };
-        fs::create_dir_all(folder).map_err(|error| refused(folder, error))?;
+        fs::create_dir_all(folder).map_err(|error| write_error(folder, error))?;
         let path = folder.join(TABLE);
         let (table, first_step) = match resume_from {
             Some(step) => (ScalarTable::read(path, step)?, step.saturating_add(1)),
@@ -77,11 +75,11 @@ impl RunLog {
         Ok(Self { files: Some(Files { folder: folder.to_owned(), events, table, written: Instant::now() }) })
     }
 
-    /// Tells a number of a step.
+    /// Logs a number of a step.
     ///
     /// # Errors
-    /// `InvalidParam` for a tag that is empty, too long or has control characters; `Io` when the disk is full: what was
-    /// told is kept, and written by a later call that can.
+    /// `InvalidParam` for a tag that is empty, too long or has control characters; `Io` when the disk is full. Logged
+    /// values are kept and written by a later call that succeeds.
     pub fn scalar(&mut self, tag: &str, step: u64, value: f64) -> Result<()> {
         let Some(files) = checked(tag, &mut self.files)? else { return Ok(()) };
         files.table.set(tag, step, value);
@@ -89,11 +87,11 @@ impl RunLog {
         files.write_when_due()
     }
 
-    /// Shows a picture of a step, in the event file.
+    /// Logs an image of a step, in the event file.
     ///
     /// # Errors
-    /// `InvalidInput` when the picture is empty or too large for a PNG file; else as [`RunLog::scalar`].
-    pub fn picture(&mut self, tag: &str, step: u64, image: &Image) -> Result<()> {
+    /// `InvalidInput` when the image is empty or too large for a PNG file; else as [`RunLog::scalar`].
+    pub fn image(&mut self, tag: &str, step: u64, image: &Image) -> Result<()> {
         let Some(files) = checked(tag, &mut self.files)? else { return Ok(()) };
         let side = |pixels: usize| i32::try_from(pixels).unwrap_or(i32::MAX);
         let picture = Picture {
@@ -106,7 +104,7 @@ impl RunLog {
         files.write_when_due()
     }
 
-    /// Brings everything told to the disk, now.
+    /// Writes all logged values to the disk.
     ///
     /// # Errors
     /// `Io` when the disk is full.
@@ -117,14 +115,14 @@ impl RunLog {
 
 impl Drop for RunLog {
     fn drop(&mut self) {
-        // Who wants to know calls `flush`.
+        // An error can be obtained only by a call of `flush`.
         self.flush().ok();
     }
 }
 
 impl Files {
     fn write_when_due(&mut self) -> Result<()> {
-        if self.written.elapsed() < EVERY { Ok(()) } else { self.write(false) }
+        if self.written.elapsed() < WRITE_INTERVAL { Ok(()) } else { self.write(false) }
     }
 
     fn write(&mut self, whole: bool) -> Result<()> {
@@ -143,10 +141,10 @@ fn summary_value(tag: &str, content: Content) -> SummaryValue {
 }
 
 fn checked<'a, T>(tag: &str, files: &'a mut Option<T>) -> Result<Option<&'a mut T>> {
-    if tag.is_empty() || tag.len() > LONGEST_TAG || tag.contains(char::is_control) {
+    if tag.is_empty() || tag.len() > MAX_TAG_BYTES || tag.contains(char::is_control) {
         let shown: String = tag.chars().take(40).collect();
         return Err(Error::invalid_param(format!(
-            "the tag {shown:?} does not fit: 1 to {LONGEST_TAG} bytes without control characters do"
+            "the tag {shown:?} is invalid; use 1 to {MAX_TAG_BYTES} bytes without control characters"
         )));
     }
     Ok(files.as_mut())

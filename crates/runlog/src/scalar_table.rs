@@ -1,4 +1,4 @@
-//! The table of a run's numbers: a row a step, a column a tag.
+//! The table of a run's scalars: a row per step, a column per tag.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -8,10 +8,10 @@ use std::path::{Path, PathBuf};
 
 use opendr_engine::{Error, Result, ResultExt};
 
-use crate::atomic_file::{refused, write_atomically};
+use crate::atomic_file::{write_atomically, write_error};
 use crate::csv;
 
-/// No longer table is read.
+/// Maximum size of a table that is read.
 const MAX_BYTES: u64 = 1 << 30;
 
 /// A table in memory and its CSV file.
@@ -19,25 +19,25 @@ const MAX_BYTES: u64 = 1 << 30;
 pub struct ScalarTable {
     path: PathBuf,
     tags: Vec<String>,
-    /// By step; a row is as long as it has values.
+    /// Rows by step; a row may be shorter than the number of columns.
     rows: BTreeMap<u64, Vec<Option<f64>>>,
-    /// The newest step in the file.
+    /// Newest step in the file.
     newest_written: Option<u64>,
-    /// Whether the file has something else than the table up to there.
+    /// Whether the file differs from the table up to that step.
     is_stale: bool,
 }
 
 impl ScalarTable {
-    /// An empty table that will replace the file at `path`.
+    /// Creates an empty table that will replace the file at `path`.
     pub fn new(path: PathBuf) -> Self {
         Self { path, tags: Vec::new(), rows: BTreeMap::new(), newest_written: None, is_stale: true }
     }
 
-    /// Reads the table at `path` up to `last_step`; an empty one where there is none. A line that was cut off when the
-    /// process died is dropped.
+    /// Reads the table at `path` up to `last_step`; an empty one if there is no file. An incomplete last line of a killed
+    /// process is dropped.
     ///
     /// # Errors
-    /// `Format` with the number of the line that does not fit.
+    /// `Format` with the number of the invalid line.
     pub fn read(path: PathBuf, last_step: u64) -> Result<Self> {
         let mut table = Self::new(path);
         let context = |path: &Path| format!("reading {}", path.display());
@@ -47,7 +47,9 @@ impl ScalarTable {
         };
         if size > MAX_BYTES {
             let path = table.path.display();
-            return Err(Error::format(format!("{path} has {size} bytes, at most {MAX_BYTES} are read")));
+            return Err(Error::format(format!(
+                "{path} has {size} bytes, more than the limit of {MAX_BYTES}"
+            )));
         }
         let bytes = fs::read(&table.path).context(|| context(&table.path))?;
         let text = String::from_utf8_lossy(&bytes);
@@ -56,7 +58,7 @@ impl ScalarTable {
             table.read_line(at, line, last_step).ok_or_else(|| {
                 let (path, line) = (table.path.display(), at + 1);
                 Error::format(format!(
-                    "{path}, line {line}: no row of the table; move the file away to go on"
+                    "{path}, line {line} is not a row of the table; move the file away to continue"
                 ))
             })?;
         }
@@ -100,22 +102,22 @@ impl ScalarTable {
         self.is_stale |= self.newest_written.is_some_and(|written| step <= written);
     }
 
-    /// The tags, in the order of the columns.
+    /// Returns the tags, in order of the columns.
     pub fn tags(&self) -> impl Iterator<Item = &str> {
         self.tags.iter().map(String::as_str)
     }
 
-    /// `[step, value]` of a tag.
+    /// Returns `[step, value]` pairs of a tag.
     pub fn points(&self, tag: &str) -> Vec<[f64; 2]> {
         let column = self.tags.iter().position(|known| known == tag).unwrap_or(usize::MAX);
         let value = |row: &Vec<Option<f64>>| row.get(column).copied().flatten();
         self.rows.iter().filter_map(|(step, row)| Some([*step as f64, value(row)?])).collect()
     }
 
-    /// Brings the table to the disk; the newest row only when `whole`, since more may be told of its step.
+    /// Writes the table to the disk. The newest row is written only if `whole`, since more values of its step may follow.
     ///
     /// # Errors
-    /// `Io` when the disk is full; the file then ends in a whole row, and the next call writes what is missing.
+    /// `Io` when the disk is full; the file then ends in a complete row, and the next call writes the rest.
     pub fn write(&mut self, whole: bool) -> Result<()> {
         let Some((&newest, _)) = self.rows.last_key_value() else { return Ok(()) };
         let end = if whole { newest.saturating_add(1) } else { newest };
@@ -127,7 +129,7 @@ impl ScalarTable {
         } else {
             let begin = self.newest_written.map_or(0, |written| written.saturating_add(1));
             let lines = self.lines(begin, end);
-            append(&self.path, lines.as_bytes()).map_err(|error| refused(&self.path, error))?;
+            append(&self.path, lines.as_bytes()).map_err(|error| write_error(&self.path, error))?;
         }
         self.is_stale = false;
         self.newest_written = self.rows.range(..end).next_back().map(|(step, _)| *step);
@@ -140,7 +142,7 @@ impl ScalarTable {
             write!(text, "{step}").ok();
             for column in 0..self.tags.len() {
                 match row.get(column).copied().flatten() {
-                    // As short as reads back the same.
+                    // The shortest text that reads back as the same number.
                     Some(value) => write!(text, ",{value:?}").ok(),
                     None => write!(text, ",").ok(),
                 };
@@ -175,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_may_come_later_and_rows_may_grow() {
+    fn columns_and_values_can_be_added_later() {
         let path = temporary("columns");
         let text = || fs::read_to_string(&path).unwrap();
         let mut table = ScalarTable::new(path.clone());
@@ -199,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cut_line_is_dropped_and_a_foreign_one_is_named() {
+    fn an_incomplete_line_is_dropped_and_an_invalid_one_reported() {
         let path = temporary("cut");
         fs::write(&path, "step,loss\n1,0.5\n2,0.").unwrap();
         assert_eq!(ScalarTable::read(path.clone(), 9).unwrap().points("loss"), [[1.0, 0.5]]);

@@ -1,4 +1,4 @@
-//! What is left when a process is killed, the disk is full, or the folder may not be written.
+//! Integrity of logs and checkpoints after a kill, with a full disk, and in a folder that is not writable.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -14,7 +14,7 @@ use std::time::Duration;
 use opendr_engine::{ErrorKind, Random};
 use opendr_runlog::{Checkpoints, RunLog, write_atomically};
 
-/// Set in the process that a test starts from its own program: what to do, and the folder to do it in.
+/// Environment variables of the process that a test starts from its own program: the task, and its folder.
 const TASK: &str = "OPENDR_RUNLOG_TASK";
 const FOLDER: &str = "OPENDR_RUNLOG_FOLDER";
 
@@ -35,7 +35,7 @@ impl Drop for Folder {
     }
 }
 
-/// This program, to be started again for a task.
+/// Returns a command that runs this program for a task.
 fn again(program: &Path, task: &str, folder: &Path) -> Command {
     let mut command = Command::new(program);
     command.args(["--exact", "task_of_another_process", "--nocapture"]);
@@ -48,18 +48,18 @@ fn task_of_another_process() {
     let (Ok(task), Ok(folder)) = (std::env::var(TASK), std::env::var(FOLDER)) else { return };
     let folder = Path::new(&folder);
     match task.as_str() {
-        "save" => save_for_ever(folder),
+        "save" => save_forever(folder),
         "fill" => fill(folder),
         "be refused" => be_refused(folder),
         other => panic!("{other}"),
     }
 }
 
-fn save_for_ever(folder: &Path) {
+fn save_forever(folder: &Path) {
     let checkpoints = Checkpoints::new(folder, 2).unwrap();
     let begin = checkpoints.latest().unwrap().map_or(1, |checkpoint| checkpoint.step + 1);
     for step in begin.. {
-        // Twice, since a run that resumes saves steps again.
+        // Twice, since a resumed run saves steps again.
         for _ in 0..2 {
             let weights = vec![step as u8; 200_000];
             checkpoints
@@ -75,7 +75,7 @@ fn a_kill_never_loses_a_checkpoint() {
     let folder = Folder::new("kill");
     let mut random = Random::new(5);
     let mut saved = 0;
-    // How long a save takes is the disk's matter: where nothing new was saved, the next writer lives longer.
+    // Disks differ in speed: if nothing new was saved, the next writer runs longer.
     let mut longest = 60_000;
     let mut kills = 0;
     while kills < 40 || saved <= 3 {
@@ -85,8 +85,8 @@ fn a_kill_never_loses_a_checkpoint() {
         sleep(Duration::from_micros(10_000 + random.below(longest) as u64));
         writer.kill().unwrap();
         writer.wait().unwrap();
-        let told = BufReader::new(writer.stdout.take().unwrap()).lines().map_while(Result::ok);
-        let steps = told.filter_map(|line| line.strip_prefix("saved ")?.parse::<u64>().ok());
+        let printed = BufReader::new(writer.stdout.take().unwrap()).lines().map_while(Result::ok);
+        let steps = printed.filter_map(|line| line.strip_prefix("saved ")?.parse::<u64>().ok());
         let before = saved;
         saved = steps.last().unwrap_or(saved);
         if saved == before {
@@ -102,14 +102,14 @@ fn a_kill_never_loses_a_checkpoint() {
         }
     }
     let checkpoints = Checkpoints::new(&folder.0, 2).unwrap();
-    // What a kill leaves between the place of a new checkpoint and the end of the one that it replaced.
+    // A kill between the rename of a new checkpoint and the removal of the one that it replaced.
     let latest = checkpoints.latest().unwrap().unwrap();
     fs::create_dir_all(latest.path().with_extension("replaced").join("optimiser")).unwrap();
     checkpoints.save(latest.step + 10, &[("weights.bin", b"")]).unwrap();
-    assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 2, "nothing half-written is left");
+    assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 2, "no incomplete checkpoint is left");
 }
 
-/// Files may have 64 KiB here.
+/// Files are limited to 64 KiB here.
 fn fill(folder: &Path) {
     let checkpoints = Checkpoints::new(&folder.join("checkpoints"), 3).unwrap();
     checkpoints.save(1, &[("weights.bin", &[1; 1000])]).unwrap();
@@ -139,18 +139,18 @@ fn fill(folder: &Path) {
 }
 
 #[test]
-fn a_full_disk_is_told_and_nothing_is_lost() {
+fn a_full_disk_is_reported_and_nothing_is_lost() {
     let folder = Folder::new("full");
     let program = again(&std::env::current_exe().unwrap(), "fill", &folder.0);
-    // A limit on the size of files stands for a disk that runs full; its signal would end the process.
+    // A limit on the size of files simulates a full disk; its signal would end the process.
     let mut shell = Command::new("bash");
     shell.args(["-c", "trap '' XFSZ; ulimit -f 64; exec \"$0\" \"$@\""]).arg(program.get_program());
     shell.args(program.get_args()).env(TASK, "fill").env(FOLDER, &folder.0);
     let done = shell.output().unwrap();
-    let told = String::from_utf8_lossy(&done.stdout);
+    let printed = String::from_utf8_lossy(&done.stdout);
     assert!(
-        done.status.success() && told.contains("\ndone"),
-        "{told}{}",
+        done.status.success() && printed.contains("\ndone"),
+        "{printed}{}",
         String::from_utf8_lossy(&done.stderr)
     );
     for entry in fs::read_dir(folder.0.join("log")).unwrap().flatten() {
@@ -165,7 +165,7 @@ fn a_full_disk_is_told_and_nothing_is_lost() {
     }
 }
 
-/// Bytes of the records, by their lengths alone; `None` when the last one is cut.
+/// Returns the bytes of complete records, by their lengths alone; `None` when the last one is incomplete.
 fn whole_records(bytes: &[u8]) -> Option<usize> {
     let mut at = 0;
     while at < bytes.len() {
@@ -192,12 +192,12 @@ fn be_refused(folder: &Path) {
 }
 
 #[test]
-fn a_folder_that_may_not_be_written_is_told() {
+fn a_folder_that_is_not_writable_is_reported() {
     let folder = Folder::new("unwritable");
     let (program, closed) = (folder.0.join("program"), folder.0.join("closed"));
     fs::create_dir(&closed).unwrap();
     fs::set_permissions(&closed, fs::Permissions::from_mode(0o555)).unwrap();
-    // Everything is open to the superuser, and this program may lie where others may not look.
+    // The superuser can write everywhere, and other users may be unable to read this program's folder.
     fs::copy(std::env::current_exe().unwrap(), &program).unwrap();
     let mut refused = again(&program, "be refused", &closed);
     if fs::write(closed.join("probe"), b"").is_ok() {
@@ -205,16 +205,16 @@ fn a_folder_that_may_not_be_written_is_told() {
         refused.uid(65_534).gid(65_534);
     }
     let done = refused.current_dir("/").output().unwrap();
-    let told = String::from_utf8_lossy(&done.stdout);
+    let printed = String::from_utf8_lossy(&done.stdout);
     assert!(
-        done.status.success() && told.contains("\ndone"),
-        "{told}{}",
+        done.status.success() && printed.contains("\ndone"),
+        "{printed}{}",
         String::from_utf8_lossy(&done.stderr)
     );
 }
 
 #[test]
-fn a_broken_checkpoint_is_passed_over_and_told_of() {
+fn a_damaged_checkpoint_is_skipped_and_listed() {
     let folder = Folder::new("broken");
     let checkpoints = Checkpoints::new(&folder.0, 3).unwrap();
     assert!(checkpoints.latest().unwrap().is_none());
@@ -248,7 +248,7 @@ fn a_broken_checkpoint_is_passed_over_and_told_of() {
 }
 
 #[test]
-fn a_run_begun_anew_and_one_resumed() {
+fn a_new_run_and_a_resumed_one() {
     let folder = Folder::new("resumed");
     let run = |resume_from, steps: std::ops::Range<u64>| {
         let mut log = RunLog::open(Some(&folder.0), resume_from).unwrap();

@@ -1,4 +1,4 @@
-//! Steps of `CartPole-v1` a second, on one core: `cargo run --release -p opendr-simulation --example cart_pole_speed`.
+//! Steps of `CartPole-v1` per second, on one core: `cargo run --release -p opendr-simulation --example cart_pole_speed`.
 
 use std::time::Instant;
 
@@ -20,7 +20,7 @@ fn main() -> Result<()> {
             vector.step(action, &mut batch)?;
         }
         let rate = (steps * count) as f64 / begin.elapsed().as_secs_f64();
-        println!("{count} carts: {:.1} million steps a second", rate / 1e6);
+        println!("{count} carts: {:.1} million steps per second", rate / 1e6);
     }
     Ok(())
 }

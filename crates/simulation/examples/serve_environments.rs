@@ -1,8 +1,8 @@
-//! Steps environments as lines of JSON ask for it: the other half of `tests/simulation/test_gymnasium.py`.
+//! Steps environments on requests as lines of JSON: the counterpart of `tests/simulation/test_gymnasium.py`.
 //!
 //! `{"id": "Pendulum-v1", "state": [...], "action": [...]}` takes one step from a state;
-//! `{"id": "Pendulum-v1", "seed": 1, "actions": [[...], ...]}` plays an episode. Numbers that come in are the bits of
-//! doubles, since parsers of JSON may lose the last one.
+//! `{"id": "Pendulum-v1", "seed": 1, "actions": [[...], ...]}` runs an episode. Incoming numbers are the bits of
+//! doubles, since JSON parsers may lose the last one.
 
 use std::io::{BufRead, BufWriter, Write};
 
@@ -11,19 +11,19 @@ use opendr_engine::{Error, Result};
 use opendr_simulation::classic_control::{
     Acrobot, CartPole, Classic, Dynamics, MountainCar, MountainCarContinuous, Pendulum,
 };
-use opendr_simulation::{Registered, make};
+use opendr_simulation::{RegisteredEnvironment, make};
 use serde_json::{Value, json};
 
 fn main() -> Result<()> {
     let mut output = BufWriter::new(std::io::stdout().lock());
     for line in std::io::stdin().lock().lines() {
         let request = serde_json::from_str(&line?).map_err(|error| Error::format(error.to_string()))?;
-        writeln!(output, "{}", answer(&request)?)?;
+        writeln!(output, "{}", respond(&request)?)?;
     }
     Ok(output.flush()?)
 }
 
-fn answer(request: &Value) -> Result<Value> {
+fn respond(request: &Value) -> Result<Value> {
     match (request["id"].as_str().unwrap_or_default(), request["actions"].as_array()) {
         (id, Some(actions)) => episode(id, request["seed"].as_u64(), actions),
         ("Acrobot-v1", _) => one_step::<Acrobot, _>(request),
@@ -49,7 +49,7 @@ fn one_step<E: AsClassic<D>, D: Dynamics>(request: &Value) -> Result<Value> {
     }))
 }
 
-/// Names the dynamics of an environment's type.
+/// Links the type of an environment to its dynamics.
 trait AsClassic<D> {}
 impl<D: Dynamics> AsClassic<D> for Classic<D> {}
 

@@ -1,10 +1,10 @@
-//! Plain shapes in a picture, heights counted upwards as in a drawing of a world.
+//! Filled shapes on an image, with y upwards.
 
 use opendr_engine::Result;
 use opendr_engine::data::Image;
 use opendr_vision::draw::{Canvas, Colour, Point};
 
-/// A white sheet.
+/// A white canvas.
 pub(crate) struct Drawing {
     image: Image,
     height: f32,
@@ -13,7 +13,7 @@ pub(crate) struct Drawing {
 pub(crate) const BLACK: Colour = [0; 3];
 
 impl Drawing {
-    /// A sheet of so many pixels.
+    /// Creates a white canvas of a size in pixels.
     pub fn new(width: usize, height: usize) -> Result<Self> {
         let image = Image::from_rgb8(vec![255; 3 * width * height], width, height)?;
         Ok(Self { image, height: height as f32 })
@@ -23,19 +23,19 @@ impl Drawing {
         self.image
     }
 
-    /// A disc.
+    /// Draws a disc.
     pub fn disc(&mut self, centre: Point, radius: f32, colour: Colour) {
         let centre = self.flipped(centre);
         Canvas::over(&mut self.image).disc(centre, radius, colour, 1.0);
     }
 
-    /// A line with round ends.
+    /// Draws a line with round ends.
     pub fn line(&mut self, from: Point, to: Point, thickness: f32, colour: Colour) {
         let (from, to) = (self.flipped(from), self.flipped(to));
         Canvas::over(&mut self.image).line(from, to, thickness, colour, 1.0);
     }
 
-    /// A filled convex polygon; corners go round in either direction.
+    /// Draws a filled convex polygon; its corners may be in either orientation.
     pub fn polygon(&mut self, corners: &[Point], colour: Colour) {
         let corners: Vec<_> = corners.iter().map(|corner| self.flipped(*corner)).collect();
         let edges = corners.iter().zip(corners.iter().cycle().skip(1));
@@ -62,7 +62,7 @@ impl Drawing {
         }
     }
 
-    /// A rectangle around `centre`, turned to the left by an angle of this sine and cosine.
+    /// Draws a rectangle around `centre`, rotated counter-clockwise by an angle with this sine and cosine.
     pub fn turned_box(&mut self, centre: Point, half: Point, (sine, cosine): (f32, f32), colour: Colour) {
         let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]: [f32; 2]| {
             let (x, y) = (x * half[0], y * half[1]);
@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn areas_are_those_of_the_shapes() {
+    fn shapes_have_their_areas() {
         let mut drawing = Drawing::new(60, 40).unwrap();
         drawing.turned_box([30.0, 20.0], [12.0, 5.0], (0.6, 0.8), BLACK);
         drawing.polygon(&[[2.0, 2.0], [8.0, 2.0], [2.0, 10.0]], BLACK);

@@ -1,4 +1,15 @@
-//! Embedded worlds with the meaning of Gymnasium 1.x: nothing needs to be installed.
+//! Simulated environments with the semantics of Gymnasium 1.x, vectorised, and wrappers.
+//!
+//! - [`make`] and [`make_vec`] create environments by name: classic control, and a drone in a corridor with obstacles
+//!   ([`uav_corridor`]).
+//! - [`vector`] steps several environments together, [`wrappers`] limits, checks, stacks and normalises them, [`Recording`] records them.
+//! - [`raycast`] is a ray caster for depth and colour images, [`lidar`] a spinning lidar, [`street`] synthetic data sets of street
+//!   scenes.
+//!
+//! In classic control, a seed gives the same episode as in Gymnasium. The traits `Environment` and `EnvironmentSource` and the
+//! spaces are in `opendr-engine`; algorithms that train policies are in `opendr-rl`.
+//!
+//! Begin with [`make`]:
 //!
 //! ```
 //! use opendr_engine::environment::Environment as _;
@@ -16,6 +27,7 @@ mod film;
 mod multirotor;
 mod numpy_random;
 mod registered_source;
+mod registration;
 mod registry;
 mod sine_cosine;
 
@@ -28,7 +40,8 @@ pub mod uav_corridor;
 pub mod vector;
 pub mod wrappers;
 
-pub use film::Film;
+pub use film::Recording;
 pub use numpy_random::NumpyRandom;
 pub use registered_source::RegisteredSource;
-pub use registry::{Registered, Registration, Registry, make, make_vec};
+pub use registration::{RegisteredEnvironment, Registration};
+pub use registry::{Registry, make, make_vec};

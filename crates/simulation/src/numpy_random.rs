@@ -1,7 +1,7 @@
-//! NumPy's random numbers, so that a seed means the same here and in Gymnasium.
+//! NumPy's random numbers, so that seeds give the same episodes as in Gymnasium.
 //!
-//! `numpy.random.Generator(PCG64(SeedSequence(seed)))`: O'Neill's PCG XSL-RR 128/64 (2014), seeded by her `seed_seq`
-//! alternative as NumPy has it (NEP 19).
+//! `numpy.random.Generator(PCG64(SeedSequence(seed)))`: O'Neill's PCG XSL-RR 128/64 (2014), seeded by NumPy's variant of her
+//! `seed_seq` alternative (NEP 19).
 
 use std::hash::{BuildHasher as _, RandomState};
 
@@ -10,7 +10,7 @@ use opendr_engine::environment::{Snapshot, StateReader};
 
 const MULTIPLIER: u128 = 0x2360_ed05_1fc6_5da4_4385_df64_9fcc_f645;
 
-/// A stream of NumPy's default generator.
+/// A generator with the stream of NumPy's default generator.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NumpyRandom {
     state: u128,
@@ -18,7 +18,7 @@ pub struct NumpyRandom {
 }
 
 impl NumpyRandom {
-    /// The stream of `numpy.random.default_rng(seed)`.
+    /// Creates the stream of `numpy.random.default_rng(seed)`.
     pub fn new(seed: u64) -> Self {
         let [a, b, c, d] = seed_words(seed).map(u128::from);
         let mut random = Self { state: 0, increment: (((c << 64) | d) << 1) | 1 };
@@ -28,8 +28,8 @@ impl NumpyRandom {
         random
     }
 
-    /// A stream begun by chance.
-    pub fn from_chance() -> Self {
+    /// Creates a stream with a random seed.
+    pub fn from_entropy() -> Self {
         Self::new(RandomState::new().hash_one(0))
     }
 
@@ -37,24 +37,24 @@ impl NumpyRandom {
         self.state = self.state.wrapping_mul(MULTIPLIER).wrapping_add(self.increment);
     }
 
-    /// 64 random bits.
+    /// Returns 64 random bits.
     pub fn bits(&mut self) -> u64 {
         self.advance();
         let folded = (self.state >> 64) as u64 ^ self.state as u64;
         folded.rotate_right((self.state >> 122) as u32)
     }
 
-    /// `Generator.random()`: a number in [0, 1), in steps of 2^-53.
+    /// Returns a number in [0, 1), in steps of 2^-53: `Generator.random()`.
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
     }
 
-    /// `Generator.uniform(low, high)`.
+    /// Returns a number in [low, high): `Generator.uniform(low, high)`.
     pub fn uniform(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
-    /// Writes the stream's place into a snapshot.
+    /// Writes the state of the stream into a snapshot.
     pub fn save(&self, snapshot: &mut Snapshot) {
         for word in [self.state, self.increment] {
             snapshot.push((word >> 64) as u64);
@@ -62,7 +62,7 @@ impl NumpyRandom {
         }
     }
 
-    /// The stream that [`Self::save`] wrote.
+    /// Reads the stream that [`Self::save`] wrote.
     ///
     /// # Errors
     /// `Format` when the snapshot ends too early.
@@ -73,7 +73,7 @@ impl NumpyRandom {
     }
 }
 
-/// `SeedSequence(seed).generate_state(4, numpy.uint64)`.
+/// Returns `SeedSequence(seed).generate_state(4, numpy.uint64)`.
 fn seed_words(seed: u64) -> [u64; 4] {
     const MULTIPLIER_A: u32 = 0x931e_8875;
     const MULTIPLIER_B: u32 = 0x58f3_8ded;
@@ -110,7 +110,7 @@ mod tests {
 
     /// NumPy 2.4.6: `SeedSequence(s).generate_state(4, np.uint64)`.
     #[test]
-    fn seeds_are_spread_as_by_numpy() {
+    fn seed_words_match_numpy() {
         let of_0 = [
             15_793_235_383_387_715_774,
             12_390_638_538_380_655_177,
@@ -129,7 +129,7 @@ mod tests {
 
     /// NumPy 2.4.6: `PCG64(s).random_raw(3)`, then `Generator.uniform(-0.05, 0.05, 4)`.
     #[test]
-    fn streams_are_numpys() {
+    fn streams_match_numpy() {
         let mut random = NumpyRandom::new(123);
         assert_eq!(random.state, 160_078_363_690_744_033_601_390_112_987_726_904_141);
         assert_eq!(random.increment, 17_686_443_629_577_124_697_969_402_389_330_893_883);
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stream_goes_on_from_a_snapshot() {
+    fn a_stream_continues_from_a_snapshot() {
         let mut random = NumpyRandom::new(5);
         random.bits();
         let mut snapshot = Snapshot::new("x");

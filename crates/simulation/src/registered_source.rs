@@ -1,12 +1,13 @@
-//! A registered environment with its parameters, to be made as often as wanted.
+//! A registered environment with its parameters, as an environment source.
 
 use opendr_engine::Result;
 use opendr_engine::environment::{Environment, EnvironmentSource};
 use opendr_engine::params::ParamMap;
 
-use crate::registry::{Registration, Registry};
+use crate::registration::Registration;
+use crate::registry::Registry;
 
-/// What an id and parameters make.
+/// Creates environments of one id and one set of parameters.
 #[derive(Clone)]
 pub struct RegisteredSource {
     registration: Registration,
@@ -14,17 +15,17 @@ pub struct RegisteredSource {
 }
 
 impl RegisteredSource {
-    /// The built-in environment called `id`, with `params` over its defaults.
+    /// Selects the built-in environment `id`, with `params` over its defaults.
     ///
     /// # Errors
-    /// `NotFound` for an unknown id, `InvalidParam` for parameters that it has not, or that are out of range.
+    /// `NotFound` for an unknown id, `InvalidParam` for unknown parameters or values out of range.
     pub fn new(id: &str, params: &ParamMap) -> Result<Self> {
         let source = Self { registration: Registry::builtin().get(id)?.clone(), params: params.clone() };
         source.make()?;
         Ok(source)
     }
 
-    /// Name and version.
+    /// Returns name and version.
     pub fn id(&self) -> &str {
         self.registration.id()
     }

@@ -1,99 +1,16 @@
-//! Environments by name.
+//! The registry of environments by name.
 
-use std::sync::{Arc, LazyLock};
+use std::sync::LazyLock;
 
 use opendr_engine::environment::Environment;
-use opendr_engine::params::{Field, ParamMap, Params};
+use opendr_engine::params::ParamMap;
 use opendr_engine::{Error, Result};
 
-use crate::classic_control::{
-    Acrobot, CartPole, CartPoleParams, MountainCar, MountainCarContinuous, Pendulum,
-};
+use crate::classic_control::{Acrobot, CartPole, MountainCar, MountainCarContinuous, Pendulum};
 use crate::quad_track::QuadTrack;
+use crate::registration::Registration;
 use crate::uav_corridor;
-use crate::vector::{CartPoleVector, EnvironmentVector, VecEnvironment, VectorOptions};
-use crate::wrappers::{Checked, TimeLimit};
-
-/// An environment that the registry can make.
-pub trait Registered: Environment + Sized + 'static {
-    /// Name and version, as in `CartPole-v1`.
-    const ID: &'static str;
-    /// What a user may set.
-    type Params: Params;
-
-    /// The environment with these parameters.
-    ///
-    /// # Errors
-    /// `InvalidParam` when one is out of range.
-    fn new(params: &Self::Params) -> Result<Self>;
-}
-
-type Make = dyn Fn(&ParamMap) -> Result<Box<dyn Environment>> + Send + Sync;
-
-/// One environment of a [`Registry`].
-#[derive(Clone)]
-pub struct Registration {
-    id: String,
-    fields: &'static [Field],
-    make: Arc<Make>,
-}
-
-impl Registration {
-    /// An environment of the program. It is made with its time limit and with [`Checked`] around it.
-    pub fn of<E: Registered>() -> Self {
-        Self::new(E::ID, E::Params::FIELDS, |params| checked(E::new(&E::Params::from_map(params)?)?))
-    }
-
-    /// An environment that `make` makes.
-    pub fn new(
-        id: &str,
-        fields: &'static [Field],
-        make: impl Fn(&ParamMap) -> Result<Box<dyn Environment>> + Send + Sync + 'static,
-    ) -> Self {
-        Self { id: id.to_owned(), fields, make: Arc::new(make) }
-    }
-
-    /// Name and version.
-    pub fn id(&self) -> &str {
-        &self.id
-    }
-
-    /// What a user may set.
-    pub fn fields(&self) -> &'static [Field] {
-        self.fields
-    }
-
-    /// Makes the environment.
-    ///
-    /// # Errors
-    /// `InvalidParam` for parameters that it has not, or that are out of range.
-    pub fn make(&self, params: &ParamMap) -> Result<Box<dyn Environment>> {
-        (self.make)(params).map_err(|error| error.context(format!("making {}", self.id)))
-    }
-
-    /// Makes `options.count` environments that are stepped together.
-    ///
-    /// # Errors
-    /// As [`Self::make`], and `InvalidParam` for no environment or too many.
-    pub fn make_vec(&self, params: &ParamMap, options: VectorOptions) -> Result<Box<dyn VecEnvironment>> {
-        if self.id == <CartPole as Registered>::ID {
-            let carts = CartPoleParams::from_map(params)
-                .and_then(|params| CartPoleVector::new(&params, options.count, options.autoreset));
-            return Ok(Box::new(carts.map_err(|error| error.context(format!("making {}", self.id)))?));
-        }
-        let environments = (0..options.checked_count()?).map(|_| self.make(params));
-        let environments = environments.collect::<Result<Vec<_>>>()?;
-        Ok(Box::new(EnvironmentVector::new(environments, options.autoreset, options.threads)?))
-    }
-}
-
-/// An environment with the time limit of its spec and with checks.
-pub(crate) fn checked(environment: impl Environment + 'static) -> Result<Box<dyn Environment>> {
-    Ok(match environment.spec().max_episode_steps {
-        Some(limit) => Box::new(Checked::new(TimeLimit::new(environment, limit)?)),
-        None => Box::new(Checked::new(environment)),
-    })
-}
+use crate::vector::{VecEnvironment, VectorOptions};
 
 /// Environments by name and version.
 #[derive(Clone)]
@@ -114,36 +31,36 @@ static BUILTIN: LazyLock<Registry> = LazyLock::new(|| {
 });
 
 impl Registry {
-    /// The environments of this crate. A clone can be added to.
+    /// Returns the environments of this crate. A clone can be extended.
     pub fn builtin() -> &'static Self {
         &BUILTIN
     }
 
-    /// Adds an environment.
+    /// Adds an entry.
     ///
     /// # Errors
-    /// `InvalidParam` when the name does not end in a version as `-v1`, or is taken.
+    /// `InvalidParam` when the name does not end in a version such as `-v1`, or is taken.
     pub fn add(&mut self, registration: Registration) -> Result<()> {
         let id = &registration.id;
         if version_of(id).is_none() {
-            return Err(Error::invalid_param(format!("{id:?} has no version; call it {id}-v0")));
+            return Err(Error::invalid_param(format!("the name {id:?} has no version; use {id}-v0")));
         }
         if self.entries.iter().any(|entry| entry.id == *id) {
-            return Err(Error::invalid_param(format!("{id} is registered already; raise its version")));
+            return Err(Error::invalid_param(format!("{id} is already registered; use a higher version")));
         }
         self.entries.push(registration);
         Ok(())
     }
 
-    /// The names of all.
+    /// Returns the names of all entries.
     pub fn ids(&self) -> impl Iterator<Item = &str> {
         self.entries.iter().map(Registration::id)
     }
 
-    /// The environment called `id`; without a version, the newest.
+    /// Returns the entry `id`; without a version, the newest.
     ///
     /// # Errors
-    /// `NotFound`, with near names, or the newest version where only the version is wrong.
+    /// `NotFound`, with similar names, or with the newest version if only the version is unknown.
     pub fn get(&self, id: &str) -> Result<&Registration> {
         if let Some(entry) = self.entries.iter().find(|entry| entry.id == id) {
             return Ok(entry);
@@ -174,17 +91,17 @@ impl Registry {
         near.sort_by_key(distance);
         let near = if near.is_empty() { self.entries.iter().collect() } else { near };
         let names: Vec<_> = near.into_iter().map(Registration::id).collect();
-        Error::not_found(format!("no environment {id:?}; there is {}", names.join(", ")))
+        Error::not_found(format!("no environment {id:?}; available: {}", names.join(", ")))
     }
 }
 
-/// Name and version of `name-v1`.
+/// Splits `name-v1` into name and version.
 fn version_of(id: &str) -> Option<(&str, u32)> {
     let (name, version) = id.rsplit_once("-v")?;
     Some((name, version.parse().ok()?)).filter(|(name, _)| !name.is_empty())
 }
 
-/// How many letters have to be changed, added or left out (Levenshtein). Names longer than 64 letters are near nothing.
+/// Returns the edit distance (Levenshtein); names longer than 64 letters are far from all others.
 fn edits(a: &str, b: &str) -> usize {
     if a.len().max(b.len()) > 64 {
         return usize::MAX;
@@ -203,7 +120,7 @@ fn edits(a: &str, b: &str) -> usize {
     row[b.len()]
 }
 
-/// Makes an environment of this crate with its defaults: with a time limit, and with checks.
+/// Creates an environment of this crate with its defaults, its time limit and checks.
 ///
 /// # Errors
 /// `NotFound` for an unknown name.
@@ -211,10 +128,10 @@ pub fn make(id: &str) -> Result<Box<dyn Environment>> {
     Registry::builtin().get(id)?.make(&ParamMap::new())
 }
 
-/// Makes `options.count` environments that are stepped together, with their defaults.
+/// Creates `options.count` environments with their defaults, stepped together.
 ///
 /// # Errors
-/// `NotFound` for an unknown name, `InvalidParam` for no environment or too many.
+/// `NotFound` for an unknown name, `InvalidParam` for a count of 0 or too many.
 pub fn make_vec(id: &str, options: VectorOptions) -> Result<Box<dyn VecEnvironment>> {
     Registry::builtin().get(id)?.make_vec(&ParamMap::new(), options)
 }
@@ -227,7 +144,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_found_or_near_ones_told() {
+    fn unknown_names_give_similar_ones() {
         assert_eq!(make("CartPole-v1").unwrap().spec().max_episode_steps, Some(500));
         assert_eq!(make("CartPole").unwrap().spec().id, "CartPole-v1");
         let message = |id: &str| {
@@ -236,7 +153,7 @@ mod tests {
             error.to_string()
         };
         assert!(message("CartPole-v7").ends_with("the newest is \"CartPole-v1\""));
-        assert!(message("cartpol-v1").ends_with("there is CartPole-v1"));
+        assert!(message("cartpol-v1").ends_with("available: CartPole-v1"));
         assert!(message("Walker").contains("Pendulum-v1"));
         assert!(message(&"x".repeat(1000)).contains("Pendulum-v1"));
     }
@@ -260,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn others_can_be_added_once() {
+    fn entries_can_be_added_once() {
         let mut registry = Registry::builtin().clone();
         let mine = |id: &str| Registration::new(id, &[], |_| make("CartPole-v1"));
         registry.add(mine("mine/CartPole-v2")).unwrap();

@@ -1,17 +1,17 @@
-//! Sine and cosine that are the same on every system and that the compiler vectorises.
+//! Sine and cosine with the same bits on every system, vectorised by the compiler.
 //!
-//! The polynomials of fdlibm's `__kernel_sin` and `__kernel_cos` (Sun Microsystems, 1993) behind a reduction by
-//! multiples of pi/2 in three parts (Cody and Waite, 1980), without a branch. The standard library's differ from system
-//! to system in the last bit, and an episode with them.
+//! The polynomials of fdlibm's `__kernel_sin` and `__kernel_cos` (Sun Microsystems, 1993) after a reduction by
+//! multiples of pi/2 in three parts (Cody and Waite, 1980), without a branch. The standard library's results differ
+//! between systems in the last bit, and so would episodes.
 
 use std::f64::consts::FRAC_2_PI;
 
-/// Adding it rounds to a whole number, which then lies in the lowest bits.
+/// Adding it rounds to a whole number, which is then in the lowest bits.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 /// pi/2 in parts; the first two have 33 bits, so that multiples up to 2^20 are exact.
 const HALF_PI: [f64; 3] = [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
 
-/// Sine and cosine of an angle in radians, to about one unit in the last place below 1e6.
+/// Returns sine and cosine of an angle in radians, to about one unit in the last place below 1e6.
 #[inline(always)]
 pub(crate) fn sine_cosine(angle: f64) -> (f64, f64) {
     let shifted = angle * FRAC_2_PI + ROUND;
@@ -26,7 +26,7 @@ pub(crate) fn sine_cosine(angle: f64) -> (f64, f64) {
     let z = x * x;
     let sine = sine_near_zero(x, z);
     let cosine = cosine_near_zero(z);
-    // A mask instead of a choice: baseline x86-64 has no comparison of 64-bit integers.
+    // A mask instead of a branch: baseline x86-64 has no comparison of 64-bit integers.
     let odd = (quadrant & 1).wrapping_neg();
     let swapped = (sine.to_bits() ^ cosine.to_bits()) & odd;
     let sine_sign = (quadrant & 2) << 62;
@@ -71,7 +71,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn as_exact_as_the_standard_librarys() {
+    fn is_as_exact_as_the_standard_library() {
         let mut worst = 0.0_f64;
         for step in -400_000_i32..400_000 {
             let angle = f64::from(step) * 1.000_37e-4 * (1.0 + f64::from(step.abs() % 7) * 300.0);
@@ -83,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_angle_has_none() {
+    fn infinities_and_nan_give_nan() {
         assert!(sine_cosine(f64::NAN).0.is_nan() && sine_cosine(f64::INFINITY).1.is_nan());
     }
 }

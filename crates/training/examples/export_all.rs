@@ -1,5 +1,5 @@
-//! Writes every architecture of the tests into a folder, for the comparisons in tests/training: the models, inputs with
-//! what Burn answers (JSON), and the parameters (safetensors).
+//! Writes every architecture of the tests into a folder, for the comparisons in tests/training: the models, inputs with Burn's
+//! outputs (JSON), and the parameters (safetensors).
 
 #[path = "../tests/suite/architectures/mod.rs"]
 mod architectures;

@@ -1,14 +1,14 @@
-//! A module of one's own in the same training as every learner's: an autoencoder of the pictures in a folder.
+//! Trains a custom module with the loop of every learner: an autoencoder of the images in a folder.
 //! `cargo run --release -p opendr-training --example own_module -- pictures runs/autoencoder`
 
 use burn::module::Module;
 use burn::nn::conv::{Conv2d, Conv2dConfig, ConvTranspose2d, ConvTranspose2dConfig};
 use burn::tensor::{Device, Tensor, TensorData, activation::relu};
-use opendr_datasets::Pictures;
+use opendr_datasets::UnlabelledImages;
 use opendr_datasets::loader::{ImageBatch, ImageBatches};
 use opendr_engine::{Result, learner::FitJob, model::Manifest};
 use opendr_training::export::{self, Input};
-use opendr_training::{Container, Loss, Objective, TrainingParams, begin, fit_network};
+use opendr_training::{Container, Loss, Objective, TrainingParams, fit_network, seeded_device};
 use opendr_vision::Preprocess;
 
 const SIDE: usize = 64;
@@ -46,11 +46,11 @@ impl Objective for Rebuild {
 
 fn main() -> Result<()> {
     let [pictures, output] = [1, 2].map(|at| std::env::args().nth(at).unwrap_or_default());
-    let pictures = Pictures::open(pictures.as_ref())?;
+    let pictures = UnlabelledImages::open(pictures.as_ref())?;
     let log = format!("{output}/log");
     let job = FitJob { logging_path: Some(log.as_ref()), ..FitJob::new(output.as_ref()) };
     let params = TrainingParams { epochs: 20, lr: 0.01, ..TrainingParams::default() };
-    let device = begin(&job, &params)?;
+    let device = seeded_device(&job, &params)?;
     let encoder = Conv2dConfig::new([3, 32], [4, 4]).with_stride([4, 4]).init(&device);
     let decoder = ConvTranspose2dConfig::new([32, 3], [4, 4]).with_stride([4, 4]).init(&device);
     let network = Autoencoder { encoder, decoder };

@@ -1,4 +1,4 @@
-//! How long a step of `fit` takes and how much memory the process, for benches/fit.py:
+//! Measures the time of a step of `fit` and the peak memory of the process, for benches/fit.py:
 //! `step_time mobilenet|resnet18|gru|mlp STEPS` prints `{"ms": .., "peak_mb": ..}`.
 
 use std::fs;
@@ -18,13 +18,15 @@ use opendr_engine::learner::FitJob;
 use opendr_engine::model::Manifest;
 use opendr_engine::{Device as Place, Error, Progress, Random, Result, Unit, Value};
 use opendr_training::layers::{Gru, GruConfig, MobileNetV1, MobileNetV1Config, ResNet18, ResNet18Config};
-use opendr_training::{Container, Loss, Objective, OptimizerKind, TrainingParams, begin, fit_network};
+use opendr_training::{
+    Container, Loss, Objective, OptimizerKind, TrainingParams, fit_network, seeded_device,
+};
 
 const CLASSES: usize = 10;
-/// Steps before those that count.
+/// Number of warm-up steps, which are not measured.
 const WARM_UP: usize = 3;
 
-/// The four networks of the benchmark; benches/fit.py has the same in PyTorch.
+/// The networks of the benchmark; benches/fit.py has the same in PyTorch.
 #[derive(Module, Debug)]
 #[allow(clippy::large_enum_variant)]
 enum Network {
@@ -34,7 +36,7 @@ enum Network {
     Mlp(Mlp),
 }
 
-/// Features and a last layer.
+/// A network with a classification layer.
 #[derive(Module, Debug)]
 struct Classified<M: Module> {
     features: M,
@@ -48,7 +50,7 @@ struct Mlp {
     last: Linear,
 }
 
-/// A network, the shape of its batch, and what it is called.
+/// A network with its name and the shape of its batch.
 struct Case {
     name: &'static str,
     shape: &'static [usize],
@@ -106,7 +108,7 @@ impl Network {
     }
 }
 
-/// As many random samples as a batch has.
+/// A batch of random samples.
 struct Noise<'a>(&'a [usize]);
 
 impl Dataset for Noise<'_> {}
@@ -117,14 +119,14 @@ impl DatasetIterator for Noise<'_> {
     }
 
     fn get(&self, index: usize) -> Result<Sample> {
-        let mut random = Random::at([index as u64]);
+        let mut random = Random::from_key([index as u64]);
         let numbers =
             (0..self.0[1..].iter().product()).map(|_| random.uniform(-1.0, 1.0)).collect::<Vec<_>>();
         Ok(Sample { data: vec![Vector::from_data(numbers)?.into()], target: None })
     }
 }
 
-/// Numbers one after the other.
+/// Collates the values of the samples.
 struct Numbers;
 
 impl Collate for Numbers {
@@ -155,9 +157,9 @@ impl Objective for Classify<'_> {
     fn loss(&self, network: &Network, batch: &Vec<f32>, device: &Device) -> Result<Loss> {
         let count = batch.len() / self.0[1..].iter().product::<usize>();
         let shape: Vec<_> = [count].iter().chain(&self.0[1..]).copied().collect();
-        let answers = network.forward(TensorData::new(batch.clone(), shape), device);
+        let logits = network.forward(TensorData::new(batch.clone(), shape), device);
         let classes = Tensor::<1, Int>::arange(0..count as i64, device) % CLASSES as i64;
-        Ok(CrossEntropyLossConfig::new().init(device).forward(answers, classes).into())
+        Ok(CrossEntropyLossConfig::new().init(device).forward(logits, classes).into())
     }
 
     fn container(&self, _: &Network) -> Result<Container> {
@@ -165,7 +167,7 @@ impl Objective for Classify<'_> {
     }
 }
 
-/// When each step ended.
+/// End of each step.
 #[derive(Default)]
 struct Steps(Mutex<Vec<Instant>>);
 
@@ -200,7 +202,7 @@ fn main() -> Result<()> {
         num_workers: 1,
         ..TrainingParams::default()
     };
-    let network = (case.make)(&begin(&job, &params)?);
+    let network = (case.make)(&seeded_device(&job, &params)?);
     fit_network(&Classify(case.shape), network, &params, &Noise(case.shape), None, &job)?;
     fs::remove_dir_all(&output)?;
     let times = times.0.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -212,12 +214,12 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// The most memory that the process ever held, 10^6 bytes.
+/// Returns the peak memory of the process in 10^6 bytes.
 fn peak_mb() -> Result<f64> {
     let status = fs::read_to_string("/proc/self/status")?;
     let kilobytes = status.lines().find_map(|line| line.strip_prefix("VmHWM:")?.trim().strip_suffix("kB"));
     let kilobytes: Option<f64> = kilobytes.and_then(|text| text.trim().parse().ok());
     kilobytes
         .map(|kilobytes| kilobytes * 1.024e-3)
-        .ok_or_else(|| Error::unsupported("no VmHWM in /proc/self/status"))
+        .ok_or_else(|| Error::unsupported("/proc/self/status has no VmHWM"))
 }

@@ -1,29 +1,28 @@
-//! The moving average of a network's weights.
+//! Moving average of a network's weights.
 
 use burn::module::{Module, ModuleMapper, ModuleVisitor, Param, ParamId};
 use burn::optim::GradientsParams;
 use burn::tensor::Tensor;
 
-/// A network whose weights follow those of another, `w = decay * w + (1 - decay) * other` (Polyak and Juditsky 1992).
-/// Statistics of batch normalisation are averaged likewise.
+/// A network whose weights are the exponential moving average of those of another, `w = decay * w + (1 - decay) * other`
+/// (Polyak and Juditsky 1992), including the statistics of batch normalisation.
 pub struct Average<M> {
     network: M,
     decay: f64,
 }
 
 impl<M: Module> Average<M> {
-    /// Begins at `network`, which is in its form for inference.
+    /// Starts at `network`, which is in its form for inference.
     pub fn new(network: M, decay: f64) -> Self {
         Self { network, decay }
     }
 
-    /// The averaged network.
+    /// Returns the averaged network.
     pub fn network(&self) -> &M {
         &self.network
     }
 
-    /// Takes in the weights after step number `step`, from 1; the first steps weigh more, so that the beginning is
-    /// forgotten soon.
+    /// Updates the average with the weights after step `step`, from 1; the decay is smaller in the first steps.
     pub fn update(self, latest: &M, step: u64) -> Self {
         let decay = self.decay.min((1.0 + step as f64) / (10.0 + step as f64));
         let mut weights = Weights(GradientsParams::new());

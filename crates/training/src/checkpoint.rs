@@ -1,4 +1,4 @@
-//! What a checkpoint of a training is made of.
+//! Contents of a checkpoint of a training.
 
 use burn::module::Module;
 use burn::optim::{ModuleOptimizer, OptimizerRecord};
@@ -7,33 +7,33 @@ use burn::tensor::Bytes;
 use opendr_engine::{Error, Result};
 use opendr_runlog::Checkpoint;
 
-use crate::standing::Standing;
+use crate::training_state::TrainingState;
 
 const NETWORK: &str = "network.bpk";
 const AVERAGE: &str = "average.bpk";
 const OPTIMIZER: &str = "optimizer.bpk";
-const STANDING: &str = "standing.json";
+const STATE: &str = "standing.json";
 
-/// A checkpoint that was read.
+/// A loaded checkpoint.
 pub struct Saved<'a> {
     checkpoint: &'a Checkpoint,
-    /// How far the training had come.
-    pub standing: Standing,
+    /// Progress of the training.
+    pub state: TrainingState,
 }
 
 impl<'a> Saved<'a> {
-    /// The files of a checkpoint.
+    /// Returns the files of a checkpoint.
     ///
     /// # Errors
-    /// `Internal` when something has no form on disk.
+    /// `Internal` when a part cannot be serialised.
     pub fn files<M: Module>(
-        standing: &Standing,
+        state: &TrainingState,
         network: M,
         average: Option<&M>,
         optimizer: &ModuleOptimizer,
     ) -> Result<Vec<(&'static str, Vec<u8>)>> {
         let mut files = vec![
-            (STANDING, serde_json::to_vec_pretty(standing).map_err(|error| unwritable().with_source(error))?),
+            (STATE, serde_json::to_vec_pretty(state).map_err(|error| not_serialisable().with_source(error))?),
             (NETWORK, bytes(network.into_record().into_bytes())?),
             (OPTIMIZER, bytes(optimizer.into_bytes())?),
         ];
@@ -43,20 +43,20 @@ impl<'a> Saved<'a> {
         Ok(files)
     }
 
-    /// Reads how far the training had come.
+    /// Reads the progress of the training.
     ///
     /// # Errors
-    /// `Format` when it is no checkpoint of a training.
+    /// `Format` when the checkpoint is not one of a training.
     pub fn read(checkpoint: &'a Checkpoint) -> Result<Self> {
-        let json = checkpoint.file(STANDING)?;
-        let standing = serde_json::from_slice(&json).map_err(|error| {
-            Error::format(format!("{} is no checkpoint of a training", checkpoint.path().display()))
+        let json = checkpoint.file(STATE)?;
+        let state = serde_json::from_slice(&json).map_err(|error| {
+            Error::format(format!("{} is not a checkpoint of a training", checkpoint.path().display()))
                 .with_source(error)
         })?;
-        Ok(Self { checkpoint, standing })
+        Ok(Self { checkpoint, state })
     }
 
-    /// `network` with the weights that it had.
+    /// Returns `network` with the weights of the checkpoint.
     ///
     /// # Errors
     /// `Format` when the checkpoint is of another network.
@@ -64,7 +64,7 @@ impl<'a> Saved<'a> {
         self.module(NETWORK, network)
     }
 
-    /// `network` with the averaged weights.
+    /// Returns `network` with the averaged weights of the checkpoint.
     ///
     /// # Errors
     /// As [`Saved::network_into`].
@@ -72,10 +72,10 @@ impl<'a> Saved<'a> {
         self.module(AVERAGE, network)
     }
 
-    /// `optimizer` with what it remembered.
+    /// Returns `optimizer` with the state of the checkpoint.
     ///
     /// # Errors
-    /// `Format` when the checkpoint is of another.
+    /// `Format` when the checkpoint is of another optimiser.
     pub fn optimizer_into(&self, optimizer: ModuleOptimizer) -> Result<ModuleOptimizer> {
         let bytes = Bytes::from_bytes_vec(self.checkpoint.file(OPTIMIZER)?);
         let record = OptimizerRecord::from_bytes(bytes).map_err(|error| self.other(OPTIMIZER, error))?;
@@ -90,7 +90,7 @@ impl<'a> Saved<'a> {
 
     fn other(&self, name: &str, error: RecordError) -> Error {
         Error::format(format!(
-            "{name} of the checkpoint {} does not fit this network; resume with the parameters it was begun with",
+            "{name} of the checkpoint {} does not fit this network; resume with the parameters of the first run",
             self.checkpoint.path().display()
         ))
         .with_source(error)
@@ -98,9 +98,9 @@ impl<'a> Saved<'a> {
 }
 
 fn bytes(written: std::result::Result<Bytes, RecordError>) -> Result<Vec<u8>> {
-    written.map(|bytes| bytes.to_vec()).map_err(|error| unwritable().with_source(error))
+    written.map(|bytes| bytes.to_vec()).map_err(|error| not_serialisable().with_source(error))
 }
 
-fn unwritable() -> Error {
-    Error::internal("a checkpoint has no form on disk")
+fn not_serialisable() -> Error {
+    Error::internal("a checkpoint cannot be serialised")
 }

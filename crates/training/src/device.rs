@@ -1,11 +1,11 @@
-//! Where to train.
+//! Device of a training.
 
 use opendr_engine::{Device, Error, Result};
 
-/// Burn's device for ours. `auto` takes a GPU that this build can use, else the processor.
+/// Returns Burn's device for `device`. `auto` selects a GPU that this build supports, else the CPU.
 ///
 /// # Errors
-/// `Device` when this build cannot train there; the error says which it can.
+/// `Device` when this build does not support the device; the error lists the supported ones.
 pub fn training_device(device: Device) -> Result<burn::tensor::Device> {
     match device.or_environment()? {
         Device::Cpu => Ok(burn::tensor::Device::flex()),
@@ -22,7 +22,7 @@ pub fn training_device(device: Device) -> Result<burn::tensor::Device> {
             Ok(burn::tensor::Device::vulkan(burn::tensor::DeviceKind::DiscreteGpu(index as usize)))
         }
         other => Err(Error::device(format!(
-            "this build does not train on {other}; it trains on {}: build it with the cargo feature cuda or wgpu, or say \
+            "this build does not train on {other}; it trains on {}: build it with the cargo feature cuda or wgpu, or use \
              device=\"cpu\"",
             NAMES.join(", ")
         ))),

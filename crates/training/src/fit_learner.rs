@@ -1,24 +1,24 @@
-//! `fit` of a learner: data sets by their format, validation by the task's metric.
+//! `fit` of a learner: opens data sets by format, validates with the task's metric.
 
 use std::path::Path;
 
-use opendr_datasets::{OpenOptions, Problems, picture_with_target};
+use opendr_datasets::{OpenOptions, Problems, draw_sample};
 use opendr_engine::data::Image;
 use opendr_engine::dataset::{DatasetIterator, DatasetRef};
 use opendr_engine::learner::{AnyLearner, Entry, FitJob, Learner, Ports, Probe, Targets};
 use opendr_engine::params::Params;
 use opendr_engine::{Device, Error, Result, Statistics};
-use opendr_evaluation::{Evaluation, Subject, metric_of, open_for};
+use opendr_evaluation::{Evaluation, Subject, metric_of, open_for_metric};
 use opendr_metrics::{MetricEntry, find};
 use opendr_vision::draw;
 
 use crate::training::Score;
 use crate::{Objective, TrainingParams, fit_network};
 
-/// The data set to train a learner on, with targets of the type that it answers.
+/// Opens the training data set of a learner, with targets of the learner's target type.
 ///
 /// # Errors
-/// `InvalidInput` when the format has none such, else what kept it from being read.
+/// `InvalidInput` when the format has no such targets; the errors of the reader.
 pub fn open_for_training<'a, L: Learner>(
     dataset: DatasetRef<'a>,
     job: &FitJob<'_>,
@@ -33,11 +33,11 @@ pub fn open_for_training<'a, L: Learner>(
     }
 }
 
-/// Trains the network of a learner on `dataset` and, where there are validation data, keeps the one that does best on
-/// them by its task's metric, measured through the learner itself.
+/// Trains the network of a learner on `dataset`. With validation data, it keeps the network with the best value of the task's
+/// metric, measured through the learner.
 ///
 /// # Errors
-/// As [`fit_network`] and the learner's evaluation.
+/// The errors of [`fit_network`] and of the evaluation.
 pub fn fit_learner<L: Learner, O: Objective>(
     objective: &O,
     network: O::Network,
@@ -54,7 +54,7 @@ pub fn fit_learner<L: Learner, O: Objective>(
     let problems = Problems::strict();
     let val_dataset = match val_dataset {
         DatasetRef::Iterator(dataset) => Box::new(dataset),
-        DatasetRef::External(external) => open_for(metric, external, None, &problems)?,
+        DatasetRef::External(external) => open_for_metric(metric, external, None, &problems)?,
     };
     let entry = Entry::of::<L>(Probe::<L>::abilities(None, None, None));
     let mut validate = |container: &Path| -> Result<Score> {
@@ -64,7 +64,7 @@ pub fn fit_learner<L: Learner, O: Objective>(
     fit_network(objective, network, params, dataset, Some(&mut validate), job)
 }
 
-/// Measures a container through the learner; the metric's headline counts.
+/// Evaluates a container through the learner; the metric's headline is the score.
 fn score(
     mut learner: Box<dyn AnyLearner>,
     entry: &Entry,
@@ -75,7 +75,7 @@ fn score(
     job: &FitJob<'_>,
 ) -> Result<Score> {
     learner.load(container)?;
-    let picture = answers(&mut *learner, entry, dataset);
+    let picture = predictions_sheet(&mut *learner, entry, dataset);
     let subject = Subject { learner: entry.spec.name.to_owned(), model: None, params: learner.params() };
     let evaluation = Evaluation { progress: job.progress, ..Evaluation::new(subject, metric, problems) };
     let outcome = evaluation.run(std::slice::from_mut(&mut learner), entry, dataset)?;
@@ -83,29 +83,33 @@ fn score(
     let numbers = outcome.report.statistics.scalars;
     let value = numbers.get(&name).copied().ok_or_else(|| {
         Error::invalid_input(format!(
-            "{} has no {name} on the validation data: is anything annotated?",
+            "the metric {} has no {name} on the validation data; check that the data are annotated",
             metric.name
         ))
     })?;
-    let is_error = metric.is_error(&name);
-    Ok(Score { name, value, is_error, numbers, picture })
+    let is_error = metric.is_lower_better(&name);
+    Ok(Score { name, value, is_error, numbers, image: picture })
 }
 
-/// How many answers the log shows.
-const SHOWN: usize = 6;
-/// Side of a picture in the log, pixels.
+/// Number of predictions in the log.
+const LOGGED_SAMPLES: usize = 6;
+/// Side of an image in the log, in pixels.
 const SIDE: usize = 300;
 
-/// The first samples with what the learner answers, where they can be looked at. A sample that fails is the evaluation's
-/// to tell.
-fn answers(learner: &mut dyn AnyLearner, entry: &Entry, dataset: &dyn DatasetIterator) -> Option<Image> {
+/// Returns a contact sheet of the first samples with their predictions, where these can be drawn. Samples that fail are
+/// skipped; the evaluation reports them.
+fn predictions_sheet(
+    learner: &mut dyn AnyLearner,
+    entry: &Entry,
+    dataset: &dyn DatasetIterator,
+) -> Option<Image> {
     let mut pictures = Vec::new();
-    for index in 0..dataset.len().min(SHOWN) {
+    for index in 0..dataset.len().min(LOGGED_SAMPLES) {
         learner.reset();
         let Ok(mut sample) = dataset.get(index) else { continue };
         let Ok(outputs) = learner.infer(&Ports::of_sample(entry.ports, &sample.data)) else { continue };
         sample.target = outputs.iter().next().map(|(_, value)| value.clone());
-        pictures.extend(picture_with_target(&sample).map(|picture| (picture, dataset.name(index))));
+        pictures.extend(draw_sample(&sample).map(|picture| (picture, dataset.name(index))));
     }
     learner.reset();
     (!pictures.is_empty()).then(|| draw::contact_sheet(&pictures, pictures.len().min(3), SIDE).ok())?

@@ -1,10 +1,10 @@
-//! The parser of this crate, for the fuzzers: it may refuse what it is given, it may not panic.
+//! Entry point for the fuzzers: the parser may refuse its input, but must not panic.
 
 use std::path::Path;
 
 use crate::weights::WeightTable;
 
-/// Files of weights. They go through a file in the folder of temporary ones, since checkpoints are read from there.
+/// Parses weights. They are written to a temporary file, since PyTorch checkpoints are read from files.
 pub fn weights(bytes: &[u8]) {
     let path = std::env::temp_dir().join(format!("opendr-fuzz-weights-{}", std::process::id()));
     if std::fs::write(&path, bytes).is_ok() {

@@ -4,14 +4,14 @@ use burn::module::{Module, ModuleVisitor, Param};
 use burn::optim::GradientsParams;
 use burn::tensor::{ElementConversion, Tensor};
 
-/// The Euclidean norm of all gradients together.
+/// Returns the Euclidean norm of all gradients together.
 pub fn gradient_norm<M: Module>(network: &M, gradients: &GradientsParams) -> f64 {
     let mut norm = Norm { gradients, square: None };
     network.visit(&mut norm);
     norm.square.map_or(0.0, |square| square.into_scalar::<f32>().elem::<f64>().sqrt())
 }
 
-/// All gradients multiplied with `factor`.
+/// Returns all gradients multiplied by `factor`.
 pub fn scaled<M: Module>(network: &M, gradients: GradientsParams, factor: f64) -> GradientsParams {
     let mut scale = Scale { gradients, scaled: GradientsParams::new(), factor };
     network.visit(&mut scale);

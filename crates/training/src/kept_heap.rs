@@ -1,20 +1,20 @@
-//! The C library's heap while a network trains.
+//! Settings of the C library's heap during a training.
 
-/// Keeps what a step frees for the next one, as long as it lives.
+/// Makes glibc keep freed memory for the next step, until dropped.
 ///
-/// Every step asks for the same large tensors. Left to itself, glibc gives them back to the system and maps and clears them
-/// anew, which took a quarter of the time of a small network's step. Elsewhere than on Linux with glibc nothing is done.
+/// Every step allocates the same large tensors. By default glibc returns them to the system and maps and clears new pages,
+/// which took a quarter of the time of a small network's step. No effect on systems other than Linux with glibc.
 pub struct KeptHeap(());
 
 impl KeptHeap {
-    /// Memory is kept from now on.
+    /// Starts to keep memory.
     pub fn new() -> Self {
         set(32 << 20, 1 << 30, 16 << 20);
         Self(())
     }
 }
 
-/// Back to how glibc begins, and what is free to the system.
+/// Restores glibc's defaults and returns free memory to the system.
 impl Drop for KeptHeap {
     fn drop(&mut self) {
         set(128 << 10, 128 << 10, 128 << 10);
@@ -30,14 +30,14 @@ fn set(mapped_from: i32, trimmed_from: i32, more: i32) {
         (libc::M_TOP_PAD, more),
     ];
     for (option, value) in options {
-        // SAFETY: these options take any number, at any time, from any thread; one that is not taken changes nothing.
+        // SAFETY: these options accept any value, at any time, from any thread; an invalid value changes nothing.
         unsafe { libc::mallopt(option, value) };
     }
 }
 
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 fn give_back() {
-    // SAFETY: it may be called at any time, from any thread.
+    // SAFETY: the function may be called at any time, from any thread.
     unsafe { libc::malloc_trim(0) };
 }
 

@@ -1,21 +1,21 @@
-//! Whether a batch goes into memory, before a training is ended by the operating system.
+//! Memory check of a batch, before the operating system kills the training.
 
 use std::fs;
 
 use opendr_engine::{Error, Result};
 
-/// Batches below this are not worth the look.
+/// Batch size below which the check is skipped.
 const SMALL: usize = 8;
-/// Samples that are tried.
-pub const TRIED: usize = 2;
-/// Share of what is free that a training may take.
+/// Number of samples in the trial step.
+pub const TRIAL_SAMPLES: usize = 2;
+/// Share of the free memory that a training may use.
 const USABLE: f64 = 0.95;
 
-/// Has a step done with [`TRIED`] samples and infers what `batch_size` of them need. Where the system does not tell (it
-/// does on Linux), nothing is done.
+/// Runs a step with [`TRIAL_SAMPLES`] samples and extrapolates the memory of `batch_size` samples. No check on systems that do
+/// not report their memory; Linux does.
 ///
 /// # Errors
-/// `InvalidParam` when the batch would not go into memory, with the size that would; whatever `step` fails with.
+/// `InvalidParam` when the batch exceeds the memory, with the largest size that fits; the errors of `step`.
 pub fn check_memory(batch_size: usize, step: impl FnOnce() -> Result<()>) -> Result<()> {
     if batch_size < SMALL || fs::write("/proc/self/clear_refs", "5").is_err() {
         return Ok(());
@@ -23,7 +23,7 @@ pub fn check_memory(batch_size: usize, step: impl FnOnce() -> Result<()>) -> Res
     let (Some(before), Some(free)) = (status("VmRSS:"), free()) else { return Ok(()) };
     step()?;
     let Some(peak) = status("VmHWM:") else { return Ok(()) };
-    fits(batch_size, peak.saturating_sub(before) / TRIED as u64, free)
+    fits(batch_size, peak.saturating_sub(before) / TRIAL_SAMPLES as u64, free)
 }
 
 fn fits(batch_size: usize, sample: u64, free: u64) -> Result<()> {
@@ -35,20 +35,20 @@ fn fits(batch_size: usize, sample: u64, free: u64) -> Result<()> {
     let gigabytes = |bytes: u64| bytes as f64 / 1e9;
     let most = (usable / sample.max(1)).max(1);
     Err(Error::invalid_param(format!(
-        "batch_size = {batch_size} needs about {:.1} GB of memory, {:.1} GB are free; give at most {most}, and accumulate = {} \
-         for the same steps",
+        "batch_size = {batch_size} needs about {:.1} GB of memory, but {:.1} GB are free; use at most {most}, and accumulate = {} \
+         for equal steps",
         gigabytes(needed),
         gigabytes(free),
         (batch_size as u64).div_ceil(most)
     )))
 }
 
-/// A row of this process's status, in bytes.
+/// Returns a row of the process's status in bytes.
 fn status(row: &str) -> Option<u64> {
     kilobytes(&fs::read_to_string("/proc/self/status").ok()?, row)
 }
 
-/// Memory that can still be had, in bytes: of the machine, or of the control group where that is less.
+/// Returns the available memory in bytes: that of the machine, or of the control group where that is less.
 fn free() -> Option<u64> {
     let machine = kilobytes(&fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")?;
     let number =
@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_error_says_what_fits() {
+    fn the_error_states_the_largest_batch() {
         assert!(fits(16, 1_000_000, 17_000_000).is_ok());
         let text = fits(4096, 50_000_000, 20_000_000_000).unwrap_err().to_string();
         assert!(text.contains("batch_size = 4096 needs about 204.8 GB"), "{text}");

@@ -1,4 +1,4 @@
-//! What a training is told by its learner.
+//! Training objective of a learner.
 
 use std::path::Path;
 
@@ -9,28 +9,28 @@ use opendr_datasets::loader::Collate;
 use opendr_engine::Result;
 use opendr_engine::model::{Manifest, ModelWriter};
 
-/// What a learner trains and by what it is judged; everything else of a training is the same for all.
+/// Training objective of a learner: network, batches, loss and container. All other parts of a training are shared.
 pub trait Objective: Sync {
     /// The network.
     type Network: Module;
-    /// What makes batches of samples, on the loader's threads: pre-processing, and targets as the loss wants them.
+    /// Collator of samples to batches, on the loader's threads: preprocessing, and targets in the form of the loss.
     type Collate: Collate;
 
-    /// A collator.
+    /// Returns a collator.
     ///
     /// # Errors
-    /// When a parameter does not fit.
+    /// When a parameter is invalid.
     fn collate(&self) -> Result<Self::Collate>;
 
-    /// How samples are augmented before; not at all by default.
+    /// Returns the augmentation of samples before collation; none by default.
     ///
     /// # Errors
-    /// When a parameter does not fit.
+    /// When a parameter is invalid.
     fn pipeline(&self) -> Result<Pipeline> {
         Ok(Pipeline::default())
     }
 
-    /// The loss of a batch, the mean over its samples. While training, `device` records what is computed.
+    /// Returns the loss of a batch, the mean over its samples. In training, `device` records the operations.
     ///
     /// # Errors
     /// When the batch does not fit the network.
@@ -41,18 +41,18 @@ pub trait Objective: Sync {
         device: &Device,
     ) -> Result<Loss>;
 
-    /// The trained network as a container for inference.
+    /// Returns the container of the trained network for inference.
     ///
     /// # Errors
-    /// When the network cannot be written as ONNX.
+    /// When the network cannot be exported to ONNX.
     fn container(&self, network: &Self::Network) -> Result<Container>;
 }
 
 /// The loss of a batch.
 pub struct Loss {
-    /// What is minimised, `[1]`.
+    /// Total loss, which is minimised, `[1]`.
     pub total: Tensor<1>,
-    /// What it is made of, by name, each `[1]`; for the log.
+    /// Parts of the loss by name, each `[1]`; for the log.
     pub parts: Vec<(&'static str, Tensor<1>)>,
 }
 
@@ -62,16 +62,16 @@ impl From<Tensor<1>> for Loss {
     }
 }
 
-/// A model container before it is written.
+/// A model container in memory.
 pub struct Container {
-    /// Its manifest, without files.
+    /// The manifest, without files.
     pub manifest: Manifest,
-    /// Its files by name.
+    /// Files by name.
     pub files: Vec<(String, Vec<u8>)>,
 }
 
 impl Container {
-    /// Writes it to `path`, whole or not at all.
+    /// Writes the container to `path` atomically.
     ///
     /// # Errors
     /// As [`ModelWriter`].

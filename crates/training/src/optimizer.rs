@@ -4,26 +4,12 @@ use burn::optim::decay::WeightDecayConfig;
 use burn::optim::momentum::MomentumConfig;
 use burn::optim::{AdamConfig, AdamWConfig, ModuleOptimizer, RmsPropConfig, SgdConfig};
 
-use crate::TrainingParams;
+use crate::params::{OptimizerKind, TrainingParams};
 
-opendr_engine::choices! {
-    /// What turns gradients into steps.
-    pub enum OptimizerKind {
-        /// Adam with decoupled weight decay (Loshchilov and Hutter, ICLR 2019).
-        Adamw = "adamw",
-        /// Adam (Kingma and Ba, ICLR 2015).
-        Adam = "adam",
-        /// Stochastic gradient descent with momentum.
-        Sgd = "sgd",
-        /// RMSProp (Tieleman and Hinton, 2012).
-        Rmsprop = "rmsprop",
-    }
-}
-
-/// Added to the denominators of the adaptive optimisers, as in PyTorch.
+/// Epsilon in the denominators of the adaptive optimisers, as in PyTorch.
 const EPSILON: f32 = 1e-8;
 
-/// The optimiser that `params` name.
+/// Returns the optimiser of `params`.
 pub fn optimizer(params: &TrainingParams) -> ModuleOptimizer {
     let decay = params.weight_decay as f32;
     let penalty = (params.weight_decay > 0.0).then(|| WeightDecayConfig::new(decay));

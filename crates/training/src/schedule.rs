@@ -1,24 +1,10 @@
-//! The learning rate over a training.
+//! Learning rate schedules.
 
 use std::f64::consts::PI;
 
-use crate::TrainingParams;
+use crate::params::{ScheduleKind, TrainingParams};
 
-opendr_engine::choices! {
-    /// How the learning rate goes on after the warm-up.
-    pub enum ScheduleKind {
-        /// It stays.
-        Constant = "constant",
-        /// It is multiplied by `lr_gamma` at each epoch of `lr_steps`.
-        Step = "step",
-        /// Half a cosine down to `lr_min` (SGDR without restarts, Loshchilov and Hutter, ICLR 2017, Eq. 5).
-        Cosine = "cosine",
-        /// Straight down to `lr_min`.
-        Linear = "linear",
-    }
-}
-
-/// The learning rate of every step. It follows from the step alone, so that a training that is resumed goes on as it was.
+/// Learning rate of every step. It depends on the step alone, so a resumed training has the same rates.
 #[derive(Debug, Clone)]
 pub struct Schedule {
     kind: ScheduleKind,
@@ -27,13 +13,13 @@ pub struct Schedule {
     gamma: f64,
     warmup_steps: u64,
     warmup_ratio: f64,
-    /// Steps at which `step` lowers it.
+    /// Steps at which `step` lowers the learning rate.
     marks: Vec<u64>,
     steps: u64,
 }
 
 impl Schedule {
-    /// For a training of `steps` steps, `steps_per_epoch` of them an epoch.
+    /// Creates the schedule of a training of `steps` steps, `steps_per_epoch` per epoch.
     pub fn new(params: &TrainingParams, steps: u64, steps_per_epoch: u64) -> Self {
         let mark = |epoch: &i64| u64::try_from(*epoch).unwrap_or(0).saturating_mul(steps_per_epoch);
         Self {
@@ -48,7 +34,7 @@ impl Schedule {
         }
     }
 
-    /// The learning rate of step number `step`, from 0.
+    /// Returns the learning rate of step `step`, from 0.
     pub fn lr(&self, step: u64) -> f64 {
         if step < self.warmup_steps {
             let share = (step + 1) as f64 / (self.warmup_steps + 1) as f64;
@@ -92,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn cosine_and_line_end_at_the_lowest_rate() {
+    fn cosine_and_linear_end_at_lr_min() {
         for kind in [ScheduleKind::Cosine, ScheduleKind::Linear] {
             let params = TrainingParams { lr_min: 0.2, ..params(kind) };
             let schedule = Schedule::new(&params, 100, 10);

@@ -1,4 +1,4 @@
-//! The loop of every `fit`.
+//! The training loop of every `fit`.
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -20,58 +20,57 @@ use crate::average::Average;
 use crate::checkpoint::Saved;
 use crate::gradient::{gradient_norm, scaled};
 use crate::kept_heap::KeptHeap;
-use crate::memory::{TRIED, check_memory};
+use crate::memory::{TRIAL_SAMPLES, check_memory};
 use crate::optimizer::optimizer;
 use crate::schedule::Schedule;
-use crate::standing::{Best, Setting, Standing};
+use crate::training_state::{Best, Setting, TrainingState};
 use crate::{Container, Objective, TrainingParams, training_device};
 
-/// What a validation found.
+/// Result of a validation.
 pub struct Score {
-    /// What the number that counts is called.
+    /// Name of the headline metric.
     pub name: String,
-    /// The number that counts.
+    /// Value of the headline metric.
     pub value: f64,
-    /// Whether less of it is better.
+    /// Whether a lower value is better.
     pub is_error: bool,
-    /// All numbers, for the log.
+    /// All metrics, for the log.
     pub numbers: BTreeMap<String, f64>,
-    /// A few samples with what was answered, for the log.
-    pub picture: Option<Image>,
+    /// A few samples with predictions, for the log.
+    pub image: Option<Image>,
 }
 
-/// Measures a container on validation data.
+/// Evaluates a container on validation data.
 pub type Validate<'a> = &'a mut dyn FnMut(&Path) -> Result<Score>;
 
-/// Where random numbers of the network itself begin: first weights, dropout.
+/// Seed offset of the network's random numbers: initial weights, dropout.
 const NETWORK: u64 = u64::MAX - 1;
-/// The folder of the checkpoints within the output folder.
+/// Folder of the checkpoints within the output folder.
 const CHECKPOINTS: &str = "checkpoints";
-/// The container that is validated, within the output folder.
+/// Container that is validated, within the output folder.
 const CANDIDATE: &str = "candidate";
 
-/// The device of a job, with its random numbers begun anew, for a network to be made on.
+/// Returns the device of a job with a seeded random number generator, on which the network is created.
 ///
 /// # Errors
-/// As [`training_device`].
-pub fn begin(job: &FitJob<'_>, params: &TrainingParams) -> Result<Device> {
+/// The errors of [`training_device`].
+pub fn seeded_device(job: &FitJob<'_>, params: &TrainingParams) -> Result<Device> {
     let device = training_device(job.device)?;
-    device.seed(Random::at([params.seed, NETWORK]).bits());
+    device.seed(Random::from_key([params.seed, NETWORK]).bits());
     Ok(device)
 }
 
 /// Trains `network` on `dataset` and writes the result as a container into [`FitJob::model`].
 ///
-/// The same seed gives the same weights, bit for bit, on the processor of one machine, as long as no other training runs in
-/// the same process: Burn has one stream of random numbers.
+/// On the CPU of one machine, the same seed yields the same weights, bit for bit, as long as no other training runs in the same
+/// process: Burn has one random number generator.
 ///
-/// With `validate`, what is written is the network that did best; without, the last. When the user stops it, a checkpoint
-/// is written from which a resumed training goes on as if nothing had happened, and the container of what was reached.
+/// With `validate`, the network with the best score is written; without, the last one. When the user stops the training, a
+/// checkpoint, from which a resumed training continues identically, and the current container are written.
 ///
 /// # Errors
-/// `InvalidInput` for a data set that is empty or does not fit, or an output folder that holds another training;
-/// `InvalidParam` for a resumed training with other parameters; `Internal` when the loss is no number; `Io` when nothing
-/// can be written.
+/// `InvalidInput` for a data set that is empty or does not fit, or an output folder with another training; `InvalidParam` for a
+/// resumed training with other parameters; `Internal` when the loss is not finite; `Io` when a file cannot be written.
 pub fn fit_network<O: Objective>(
     objective: &O,
     network: O::Network,
@@ -82,22 +81,22 @@ pub fn fit_network<O: Objective>(
 ) -> Result<Statistics> {
     params.check()?;
     if dataset.is_empty() {
-        return Err(Error::invalid_input("the data set to train on is empty"));
+        return Err(Error::invalid_input("the training data set is empty"));
     }
     let _heap = KeptHeap::new();
     let mut training = Training::new(objective, network, params, dataset, job)?;
     let done = training.run(validate);
     job.progress.end();
     done?;
-    Ok(training.standing.statistics)
+    Ok(training.state.statistics)
 }
 
-/// Why the loop ended before its last epoch.
+/// Reason for the end of the loop.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Halt {
-    /// The user wants it.
+    /// Stopped by the user.
     Stopped,
-    /// All steps are done, or the metric gets no better.
+    /// All steps are done, or the metric no longer improves.
     Done,
 }
 
@@ -106,29 +105,29 @@ struct Training<'a, O: Objective> {
     params: &'a TrainingParams,
     dataset: &'a dyn DatasetIterator,
     job: &'a FitJob<'a>,
-    /// Where gradients are recorded.
+    /// Device that records gradients.
     device: Device,
     network: Option<O::Network>,
     average: Option<Average<O::Network>>,
     optimizer: ModuleOptimizer,
     gradients: GradientsAccumulator<O::Network>,
-    /// Batches whose gradients wait for the optimiser.
-    waiting: usize,
+    /// Number of batches whose gradients are accumulated.
+    accumulated: usize,
     schedule: Schedule,
     checkpoints: Checkpoints,
     log: RunLog,
-    standing: Standing,
+    state: TrainingState,
     steps: u64,
-    begun: Instant,
+    started_at: Instant,
     /// Seconds of earlier runs.
-    before: f64,
+    earlier_seconds: f64,
     saved_at: Instant,
     shown_at: Instant,
     images: u64,
     halt: Option<Halt>,
 }
 
-/// Samples of a batch: no more than there are.
+/// Returns the number of samples of a batch, at most those of the data set.
 fn batch_size(params: &TrainingParams, dataset: &dyn DatasetIterator) -> usize {
     params.batch_size.min(dataset.len())
 }
@@ -158,52 +157,52 @@ impl<'a, O: Objective> Training<'a, O> {
             device,
             optimizer: optimizer(params),
             gradients: GradientsAccumulator::new(),
-            waiting: 0,
+            accumulated: 0,
             schedule: Schedule::new(params, steps, per_epoch),
             checkpoints,
             log: RunLog::open(None, None)?,
-            standing: Standing { setting, ..Standing::default() },
+            state: TrainingState { setting, ..TrainingState::default() },
             steps,
-            begun: Instant::now(),
-            before: 0.0,
+            started_at: Instant::now(),
+            earlier_seconds: 0.0,
             saved_at: Instant::now(),
             shown_at: Instant::now(),
             images: 0,
             halt: None,
         };
         training.resume()?;
-        let resumed = (training.standing.step > 0).then_some(training.standing.step);
+        let resumed = (training.state.step > 0).then_some(training.state.step);
         training.log = RunLog::open(job.logging_path, resumed)?;
         Ok(training)
     }
 
-    /// How the data set is gone through.
+    /// Options of the data loader.
     fn loader_options(&self) -> LoaderOptions {
         LoaderOptions {
             batch_size: batch_size(self.params, self.dataset),
             threads: self.params.num_workers,
             seed: self.params.seed,
-            // A last batch of one or two would spoil the statistics of batch normalisation.
+            // A last batch of one or two samples would distort the statistics of batch normalisation.
             drop_last: true,
             skip_broken: self.job.skip_broken,
             ..LoaderOptions::default()
         }
     }
 
-    /// Goes on from the last checkpoint, where the job says so and there is one.
+    /// Resumes from the last checkpoint, where the job requests it and there is one.
     fn resume(&mut self) -> Result<()> {
         let Some(checkpoint) = self.checkpoints.latest()? else { return Ok(()) };
         if !self.job.resume {
             return Err(Error::invalid_input(format!(
-                "{} holds a training that was left at step {}; resume it, or give another folder",
+                "{} contains a training interrupted at step {}; resume it, or use another folder",
                 self.job.output.display(),
                 checkpoint.step
             )));
         }
         let saved = Saved::read(&checkpoint)?;
-        saved.standing.setting.check(&self.standing.setting)?;
+        saved.state.setting.check(&self.state.setting)?;
         let (Some(network), device) = (self.network.take(), &self.device) else {
-            return Err(Error::internal("a training without a network"));
+            return Err(Error::internal("the training has no network"));
         };
         self.network = Some(saved.network_into(network.valid())?.to_device(device).train());
         if let Some(average) = self.average.take() {
@@ -211,25 +210,25 @@ impl<'a, O: Objective> Training<'a, O> {
             self.average = Some(Average::new(network, self.params.ema));
         }
         self.optimizer = saved.optimizer_into(optimizer(self.params))?;
-        let setting = std::mem::take(&mut self.standing.setting);
-        self.standing = Standing { setting, ..saved.standing };
-        self.before = self.standing.seconds;
-        self.job.progress.note(&format!("resumed at step {} of {}", self.standing.step, self.steps));
+        let setting = std::mem::take(&mut self.state.setting);
+        self.state = TrainingState { setting, ..saved.state };
+        self.earlier_seconds = self.state.seconds;
+        self.job.progress.note(&format!("resumed at step {} of {}", self.state.step, self.steps));
         Ok(())
     }
 
     fn run(&mut self, mut validate: Option<Validate<'_>>) -> Result<()> {
         let options = self.loader_options();
         let loader = self.loader(options)?;
-        check_memory(loader.options().batch_size, || self.try_step())?;
+        check_memory(loader.options().batch_size, || self.trial_step())?;
         self.job.progress.begin("training", Some(self.steps), Unit::Steps);
-        self.job.progress.advance(self.standing.step);
-        while self.standing.epoch < self.params.epochs as u64 && self.halt.is_none() {
-            let (epoch, position) = (self.standing.epoch, self.standing.position);
+        self.job.progress.advance(self.state.step);
+        while self.state.epoch < self.params.epochs as u64 && self.halt.is_none() {
+            let (epoch, position) = (self.state.epoch, self.state.position);
             let skipped = loader.for_each(epoch, position, |batch| self.batch(batch))?;
             if let (Some(first), 0) = (skipped.first(), epoch) {
                 self.job.progress.note(&format!(
-                    "{} samples are left out; the first is {}: {}",
+                    "{} samples are skipped; the first is {}: {}",
                     skipped.len(),
                     first.name,
                     first.error
@@ -247,12 +246,12 @@ impl<'a, O: Objective> Training<'a, O> {
         Ok(loader.collate(self.objective.collate()?))
     }
 
-    /// A few samples forwards and backwards, without a trace: on a copy of the network.
-    fn try_step(&self) -> Result<()> {
-        let options = LoaderOptions { batch_size: TRIED, threads: 0, ..self.loader_options() };
+    /// Runs a forward and backward pass of a few samples on a copy of the network, without side effects.
+    fn trial_step(&self) -> Result<()> {
+        let options = LoaderOptions { batch_size: TRIAL_SAMPLES, threads: 0, ..self.loader_options() };
         let loader = self.loader(options)?;
         let Some(network) = &self.network else {
-            return Err(Error::internal("a training without a network"));
+            return Err(Error::internal("the training has no network"));
         };
         let network = network.valid().to_device(&self.device).train();
         let tried = loader.for_each(0, 0, |batch| {
@@ -263,41 +262,41 @@ impl<'a, O: Objective> Training<'a, O> {
         tried.map(drop)
     }
 
-    /// One batch forwards and backwards, and a step of the optimiser where enough gradients are there.
+    /// Processes one batch, and runs an optimiser step once enough gradients are accumulated.
     fn batch(&mut self, batch: Batch<<O::Collate as Collate>::Batch>) -> Result<ControlFlow<()>> {
-        if self.standing.step >= self.steps {
+        if self.state.step >= self.steps {
             self.halt = Some(Halt::Done);
             return Ok(ControlFlow::Break(()));
         }
         let Some(network) = self.network.take() else {
-            return Err(Error::internal("a training without a network"));
+            return Err(Error::internal("the training has no network"));
         };
-        // Dropout follows from the place alone, so that a resumed training repeats it.
+        // Dropout depends on the position alone, so that a resumed training repeats it.
         let place = [self.params.seed, NETWORK, batch.epoch, batch.next_position as u64];
-        self.device.seed(Random::at(place).bits());
+        self.device.seed(Random::from_key(place).bits());
         let loss = self.objective.loss(&network, &batch.content, &self.device)?;
         let value = scalar(loss.total.clone());
         if !value.is_finite() {
-            return Err(self.no_number("loss", value, &batch.indices));
+            return Err(self.non_finite("loss", value, &batch.indices));
         }
         let share = 1.0 / self.params.accumulate as f64;
         let gradients = GradientsParams::from_grads((loss.total * share).backward(), &network);
         self.gradients.accumulate(&network, gradients);
-        self.waiting += 1;
+        self.accumulated += 1;
         self.images += batch.indices.len() as u64;
-        self.standing.loss_sum += value;
-        self.standing.batches += 1;
-        self.standing.position = batch.next_position;
+        self.state.loss_sum += value;
+        self.state.batches += 1;
+        self.state.position = batch.next_position;
         let last = self.dataset.len() - batch.next_position < self.params.batch_size;
-        self.network = Some(if self.waiting == self.params.accumulate || last {
+        self.network = Some(if self.accumulated == self.params.accumulate || last {
             self.step(network, &batch.indices)?
         } else {
             network
         });
-        if self.waiting == 0 {
+        if self.accumulated == 0 {
             self.after_step(value, &loss.parts)?;
         }
-        if self.job.progress.stopped() && self.waiting == 0 {
+        if self.job.progress.stopped() && self.accumulated == 0 {
             self.halt = Some(Halt::Stopped);
             return Ok(ControlFlow::Break(()));
         }
@@ -306,28 +305,28 @@ impl<'a, O: Objective> Training<'a, O> {
 
     fn step(&mut self, network: O::Network, indices: &[usize]) -> Result<O::Network> {
         let mut gradients = self.gradients.grads();
-        self.waiting = 0;
+        self.accumulated = 0;
         if self.params.grad_clip > 0.0 {
             let norm = gradient_norm(&network, &gradients);
             if !norm.is_finite() {
-                return Err(self.no_number("gradient", norm, indices));
+                return Err(self.non_finite("gradient", norm, indices));
             }
             if norm > self.params.grad_clip {
                 gradients = scaled(&network, gradients, self.params.grad_clip / norm);
             }
         }
-        let lr = self.schedule.lr(self.standing.step);
+        let lr = self.schedule.lr(self.state.step);
         let network = self.optimizer.step(lr, network, gradients);
-        self.standing.step += 1;
+        self.state.step += 1;
         if let Some(average) = self.average.take() {
-            self.average = Some(average.update(&network.valid(), self.standing.step));
+            self.average = Some(average.update(&network.valid(), self.state.step));
         }
         Ok(network)
     }
 
-    /// Logs, shows and saves where it is time to.
+    /// Logs, reports progress and saves a checkpoint where due.
     fn after_step(&mut self, loss: f64, parts: &[(&'static str, Tensor<1>)]) -> Result<()> {
-        let step = self.standing.step;
+        let step = self.state.step;
         self.job.progress.advance(1);
         if step.is_multiple_of(self.params.log_after) || step == 1 {
             self.log.scalar("train/loss", step, loss)?;
@@ -337,13 +336,13 @@ impl<'a, O: Objective> Training<'a, O> {
             }
         }
         if self.shown_at.elapsed() > Duration::from_millis(200) {
-            let rate = self.images as f64 / self.begun.elapsed().as_secs_f64();
-            let best = self.standing.best.as_ref().map(|best| format!(", best {:.4}", best.value));
+            let rate = self.images as f64 / self.started_at.elapsed().as_secs_f64();
+            let best = self.state.best.as_ref().map(|best| format!(", best {:.4}", best.value));
             self.job.progress.status(&format!(
                 "epoch {}/{}, loss {:.4}{}, {rate:.1} samples/s",
-                self.standing.epoch + 1,
+                self.state.epoch + 1,
                 self.params.epochs,
-                self.standing.loss_sum / self.standing.batches.max(1) as f64,
+                self.state.loss_sum / self.state.batches.max(1) as f64,
                 best.unwrap_or_default(),
             ));
             self.shown_at = Instant::now();
@@ -356,52 +355,52 @@ impl<'a, O: Objective> Training<'a, O> {
     }
 
     fn end_epoch(&mut self, validate: &mut Option<Validate<'_>>) -> Result<()> {
-        let Standing { loss_sum, batches, .. } = self.standing;
+        let TrainingState { loss_sum, batches, .. } = self.state;
         if batches > 0 {
             let mean = loss_sum / batches as f64;
-            self.standing.statistics.push("loss", mean);
-            self.log.scalar("train/epoch_loss", self.standing.step, mean)?;
+            self.state.statistics.push("loss", mean);
+            self.log.scalar("train/epoch_loss", self.state.step, mean)?;
         }
-        self.standing.epoch += 1;
-        (self.standing.position, self.standing.loss_sum, self.standing.batches) = (0, 0.0, 0);
-        let last = self.standing.epoch == self.params.epochs as u64 || self.standing.step >= self.steps;
-        let due = self.standing.epoch.is_multiple_of(self.params.val_after as u64) || last;
+        self.state.epoch += 1;
+        (self.state.position, self.state.loss_sum, self.state.batches) = (0, 0.0, 0);
+        let last = self.state.epoch == self.params.epochs as u64 || self.state.step >= self.steps;
+        let due = self.state.epoch.is_multiple_of(self.params.val_after as u64) || last;
         match validate {
             Some(validate) if due => self.validate(validate),
             _ => Ok(()),
         }
     }
 
-    /// Measures the network as it stands; the best is what stays.
+    /// Validates the current network and keeps the best one.
     fn validate(&mut self, validate: &mut Validate<'_>) -> Result<()> {
         let candidate = self.job.output.join(CANDIDATE);
         self.container()?.write(&candidate)?;
-        let Score { name, value, is_error, numbers, picture } = validate(&candidate)?;
-        // The evaluation had the bar.
+        let Score { name, value, is_error, numbers, image: picture } = validate(&candidate)?;
+        // The evaluation used the progress bar.
         self.job.progress.begin("training", Some(self.steps), Unit::Steps);
-        self.job.progress.advance(self.standing.step);
-        let step = self.standing.step;
+        self.job.progress.advance(self.state.step);
+        let step = self.state.step;
         for (name, value) in &numbers {
-            self.standing.statistics.push(format!("val_{name}"), *value);
+            self.state.statistics.push(format!("val_{name}"), *value);
             self.log.scalar(&format!("val/{name}"), step, *value)?;
         }
         if let Some(picture) = picture {
-            self.log.picture("val/answers", step, &picture)?;
+            self.log.image("val/answers", step, &picture)?;
         }
         self.log.flush()?;
         let better = |best: &Best| if is_error { value < best.value } else { value > best.value };
-        if self.standing.best.as_ref().is_none_or(better) {
-            self.standing.best = Some(Best { value, step });
-            self.standing.since_best = 0;
+        if self.state.best.as_ref().is_none_or(better) {
+            self.state.best = Some(Best { value, step });
+            self.state.since_best = 0;
             self.container()?.write(&self.job.model())?;
         } else {
-            self.standing.since_best += 1;
+            self.state.since_best += 1;
         }
-        self.job.progress.note(&format!("epoch {}: {name} {value:.4}", self.standing.epoch));
-        if self.params.early_stop > 0 && self.standing.since_best >= self.params.early_stop {
+        self.job.progress.note(&format!("epoch {}: {name} {value:.4}", self.state.epoch));
+        if self.params.early_stop > 0 && self.state.since_best >= self.params.early_stop {
             self.job
                 .progress
-                .note(&format!("no better {name} in {} validations: done", self.params.early_stop));
+                .note(&format!("no better {name} in {} validations; training ends", self.params.early_stop));
             self.halt = Some(Halt::Done);
         }
         Ok(())
@@ -409,7 +408,7 @@ impl<'a, O: Objective> Training<'a, O> {
 
     fn finish(&mut self, validate: Option<Validate<'_>>) -> Result<()> {
         self.save()?;
-        if self.standing.best.is_none() || validate.is_none() {
+        if self.state.best.is_none() || validate.is_none() {
             self.container()?.write(&self.job.model())?;
         }
         let candidate = self.job.output.join(CANDIDATE);
@@ -418,49 +417,49 @@ impl<'a, O: Objective> Training<'a, O> {
         }
         if self.halt == Some(Halt::Stopped) {
             self.job.progress.note(&format!(
-                "stopped at step {} of {}; resume it with the output folder {}",
-                self.standing.step,
+                "stopped at step {} of {}; resume with the output folder {}",
+                self.state.step,
                 self.steps,
                 self.job.output.display()
             ));
         }
-        let statistics = &mut self.standing.statistics;
-        statistics.set("steps", self.standing.step as f64);
-        statistics.set("epochs", self.standing.epoch as f64);
-        statistics.set("seconds", self.standing.seconds);
-        if let Some(best) = &self.standing.best {
+        let statistics = &mut self.state.statistics;
+        statistics.set("steps", self.state.step as f64);
+        statistics.set("epochs", self.state.epoch as f64);
+        statistics.set("seconds", self.state.seconds);
+        if let Some(best) = &self.state.best {
             statistics.set("best", best.value);
             statistics.set("best_step", best.step as f64);
         }
         self.log.flush()
     }
 
-    /// The network that counts: the average where there is one.
+    /// Returns the container of the network: of the average where there is one.
     fn container(&self) -> Result<Container> {
         match (&self.average, &self.network) {
             (Some(average), _) => self.objective.container(average.network()),
             (None, Some(network)) => self.objective.container(&network.valid()),
-            (None, None) => Err(Error::internal("a training without a network")),
+            (None, None) => Err(Error::internal("the training has no network")),
         }
     }
 
     fn save(&mut self) -> Result<()> {
-        self.standing.seconds = self.before + self.begun.elapsed().as_secs_f64();
+        self.state.seconds = self.earlier_seconds + self.started_at.elapsed().as_secs_f64();
         let Some(network) = &self.network else {
-            return Err(Error::internal("a training without a network"));
+            return Err(Error::internal("the training has no network"));
         };
         let average = self.average.as_ref().map(Average::network);
-        // Rows before the checkpoint are not written again by a training that goes on from it.
+        // Rows before the checkpoint are not written again by a resumed training.
         self.log.flush()?;
-        let saved = Saved::files(&self.standing, network.valid(), average, &self.optimizer)?;
+        let saved = Saved::files(&self.state, network.valid(), average, &self.optimizer)?;
         let files: Vec<_> = saved.iter().map(|(name, bytes)| (*name, bytes.as_slice())).collect();
-        self.checkpoints.save(self.standing.step, &files)?;
+        self.checkpoints.save(self.state.step, &files)?;
         self.saved_at = Instant::now();
         Ok(())
     }
 
     #[cold]
-    fn no_number(&self, what: &str, value: f64, indices: &[usize]) -> Error {
+    fn non_finite(&self, what: &str, value: f64, indices: &[usize]) -> Error {
         let names: Vec<String> = indices.iter().take(8).map(|index| self.dataset.name(*index)).collect();
         let more = indices.len().saturating_sub(names.len());
         let kept = match self.checkpoints.latest() {
@@ -468,8 +467,8 @@ impl<'a, O: Objective> Training<'a, O> {
             _ => "there is no checkpoint yet".to_owned(),
         };
         Error::internal(format!(
-            "the {what} of step {} is {value}, on the samples {}{}; {kept}; lower lr or set grad_clip",
-            self.standing.step,
+            "the {what} of step {} is {value} on the samples {}{}; {kept}; lower lr or set grad_clip",
+            self.state.step,
             names.join(", "),
             if more > 0 { format!(" and {more} more") } else { String::new() }
         ))

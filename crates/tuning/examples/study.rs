@@ -1,4 +1,4 @@
-//! Carries out a study of a function with a known minimum, so that other programs can be compared with it:
+//! Runs a study of a function with a known minimum, for comparisons with other programs:
 //!
 //! ```console
 //! $ cargo run --release -p opendr-tuning --example study -- branin --trials 100 --seeds 0..30
@@ -6,7 +6,7 @@
 //! $ cargo run --release -p opendr-tuning --example study -- show --journal study.log --figures pictures
 //! ```
 //!
-//! Prints one line of JSON for each seed: the seed, the best value and its parameters.
+//! Prints one line of JSON per seed: the seed, the best value and its parameters.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -31,7 +31,7 @@ fn main() -> Result<()> {
     }
     let option = |name: &str, default: &str| options.get(name).cloned().unwrap_or_else(|| default.to_owned());
     let number = |text: &str| {
-        text.parse::<u64>().map_err(|_| Error::invalid_param(format!("{text:?} is no number from 0")))
+        text.parse::<u64>().map_err(|_| Error::invalid_param(format!("{text:?} is not a number from 0")))
     };
     if function == "show" {
         return show(
@@ -109,7 +109,7 @@ fn cube(size: usize, low: f64, high: f64) -> Result<SearchSpace> {
     })
 }
 
-/// Prints what a file holds, copies its studies `into` a journal, and draws them into the folder `figures`.
+/// Prints the content of a file, copies its studies `into` a journal, and draws them into the folder `figures`.
 fn show(journal: &str, sqlite: &str, into: &str, figures: &str) -> Result<()> {
     let storage = if sqlite.is_empty() { Storage::journal(journal)? } else { Storage::sqlite(sqlite)? };
     for study in storage.studies() {

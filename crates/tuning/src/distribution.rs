@@ -1,73 +1,73 @@
-//! What one parameter may be.
+//! Distributions of hyperparameters.
 
 use std::fmt;
 
 use opendr_engine::{Error, Result};
 use serde_json::Value;
 
-/// Whole numbers beyond it have no exact neighbour among doubles, as which files keep them.
+/// Largest magnitude of a whole number that is exact as a double, which is how files store it.
 const LARGEST_INT: i64 = 1 << 53;
 
-/// The values that a parameter may take, and how they are drawn.
+/// The range or choices of a hyperparameter, with its scale.
 ///
-/// Inside the tuner, and in Optuna's files, every value is a number: a float or an int itself, a choice by its index.
+/// Samplers and Optuna's files represent every value as a number: a float or an int as itself, a choice by its index.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Distribution {
-    /// Numbers from `low` to `high`, both included.
+    /// Numbers from `low` to `high`, both inclusive.
     Float {
         /// Smallest value.
         low: f64,
         /// Largest value.
         high: f64,
-        /// Whether equal factors are equally likely, rather than equal distances.
+        /// Whether the range is sampled on a logarithmic scale.
         log: bool,
-        /// Distance of the values, counted from `low`; `None` for all numbers between.
+        /// Step of the values, counted from `low`; `None` for a continuous range.
         step: Option<f64>,
     },
-    /// Whole numbers from `low` to `high`, both included.
+    /// Whole numbers from `low` to `high`, both inclusive.
     Int {
         /// Smallest value.
         low: i64,
         /// Largest value.
         high: i64,
-        /// Whether equal factors are equally likely, rather than equal distances.
+        /// Whether the range is sampled on a logarithmic scale.
         log: bool,
-        /// Distance of the values, counted from `low`.
+        /// Step of the values, counted from `low`.
         step: i64,
     },
-    /// One of several values without an order, of any kind that JSON has.
+    /// One of several unordered values, which may be any JSON values.
     Categorical {
-        /// The values.
+        /// The choices.
         choices: Vec<Value>,
     },
 }
 
 impl Distribution {
-    /// Numbers from `low` to `high`.
+    /// Creates a continuous range from `low` to `high`.
     ///
     /// # Errors
-    /// `InvalidParam` when there are none, or they are not finite; so do all that follow.
+    /// `InvalidParam` when the range is empty or not finite; this applies to all constructors.
     pub fn float(low: f64, high: f64) -> Result<Self> {
         Self::Float { low, high, log: false, step: None }.checked()
     }
 
-    /// Positive numbers from `low` to `high`, equal factors equally likely.
+    /// Creates a logarithmic range of positive numbers from `low` to `high`.
     ///
     /// # Errors
-    /// As [`Distribution::float`], and when `low` is not above 0.
+    /// As [`Distribution::float`], and when `low` is not positive.
     pub fn log_float(low: f64, high: f64) -> Result<Self> {
         Self::Float { low, high, log: true, step: None }.checked()
     }
 
-    /// `low`, `low + step`, ... as far as `high`.
+    /// Creates the values `low`, `low + step`, ... up to `high`.
     ///
     /// # Errors
-    /// As [`Distribution::float`], and when `step` is not above 0.
+    /// As [`Distribution::float`], and when `step` is not positive.
     pub fn stepped_float(low: f64, high: f64, step: f64) -> Result<Self> {
         Self::Float { low, high, log: false, step: Some(step) }.checked()
     }
 
-    /// Whole numbers from `low` to `high`.
+    /// Creates a range of whole numbers from `low` to `high`.
     ///
     /// # Errors
     /// As [`Distribution::float`].
@@ -75,7 +75,7 @@ impl Distribution {
         Self::Int { low, high, log: false, step: 1 }.checked()
     }
 
-    /// Positive whole numbers from `low` to `high`, equal factors equally likely.
+    /// Creates a logarithmic range of positive whole numbers from `low` to `high`.
     ///
     /// # Errors
     /// As [`Distribution::float`], and when `low` is below 1.
@@ -83,7 +83,7 @@ impl Distribution {
         Self::Int { low, high, log: true, step: 1 }.checked()
     }
 
-    /// `low`, `low + step`, ... as far as `high`.
+    /// Creates the whole numbers `low`, `low + step`, ... up to `high`.
     ///
     /// # Errors
     /// As [`Distribution::float`], and when `step` is below 1.
@@ -91,18 +91,18 @@ impl Distribution {
         Self::Int { low, high, log: false, step }.checked()
     }
 
-    /// One of `choices`.
+    /// Creates a choice among `choices`.
     ///
     /// # Errors
-    /// `InvalidParam` when there are none, or one stands there twice.
+    /// `InvalidParam` when there are none, or duplicates.
     pub fn categorical<T: Into<Value>>(choices: impl IntoIterator<Item = T>) -> Result<Self> {
         Self::Categorical { choices: choices.into_iter().map(Into::into).collect() }.checked()
     }
 
-    /// Itself when there is a value in it, with `high` brought to the last step.
+    /// Returns the distribution if it is valid, with `high` rounded down to the last step.
     ///
     /// # Errors
-    /// `InvalidParam` with what is wrong.
+    /// `InvalidParam` with the reason.
     pub fn checked(mut self) -> Result<Self> {
         let wrong = |what: &str, it: &Self| Err(Error::invalid_param(format!("{it}: {what}")));
         match &mut self {
@@ -111,14 +111,14 @@ impl Distribution {
                     return wrong("give a finite range with low <= high", &self);
                 }
                 if *log && (*low <= 0.0 || step.is_some()) {
-                    return wrong("a logarithmic range begins above 0 and has no step", &self);
+                    return wrong("a logarithmic range must begin above 0 and have no step", &self);
                 }
                 if let Some(step) = *step {
                     if !(step.is_finite() && step > 0.0) {
                         return wrong("give a step above 0", &self);
                     }
                     let steps = (*high - *low) / step;
-                    // A range that ends at a step but for rounding is left as it was written.
+                    // A range that ends at a step up to rounding is left unchanged.
                     if (steps - steps.round()).abs() > 1e-9 * steps.max(1.0) {
                         *high = *low + steps.floor() * step;
                     }
@@ -131,7 +131,7 @@ impl Distribution {
                 }
                 if *step < 1 || (*log && (*low < 1 || *step != 1)) {
                     return wrong(
-                        "give a step of 1 or more; a logarithmic range begins at 1 or more, with step 1",
+                        "give a step of 1 or more; a logarithmic range must begin at 1 or more and have step 1",
                         &self,
                     );
                 }
@@ -143,14 +143,14 @@ impl Distribution {
                 }
                 let twice = |at: usize| choices[..at].contains(&choices[at]);
                 if (0..choices.len()).any(twice) {
-                    return wrong("a choice stands there twice", &self);
+                    return wrong("a choice occurs twice", &self);
                 }
             }
         }
         Ok(self)
     }
 
-    /// Whether there is but one value.
+    /// Returns whether there is only one value.
     pub fn is_single(&self) -> bool {
         match self {
             Self::Float { low, high, .. } => low == high,
@@ -159,7 +159,7 @@ impl Distribution {
         }
     }
 
-    /// The value that stands behind a number; `None` when the number is not of this distribution.
+    /// Returns the value that a number represents; `None` when the number is not in this distribution.
     pub fn value_from_number(&self, number: f64) -> Option<Value> {
         match self {
             Self::Float { .. } => number.is_finite().then(|| Value::from(number)),
@@ -172,10 +172,10 @@ impl Distribution {
         }
     }
 
-    /// The number behind a value.
+    /// Returns the number that represents a value.
     ///
     /// # Errors
-    /// `InvalidParam` when the value is of another type, out of range, or no choice.
+    /// `InvalidParam` when the value has another type, is out of range, or is not a choice.
     pub fn number_from_value(&self, value: &Value) -> Result<f64> {
         let number = match self {
             Self::Float { low, high, .. } => value.as_f64().filter(|number| (*low..=*high).contains(number)),
@@ -190,7 +190,7 @@ impl Distribution {
         number.ok_or_else(|| Error::invalid_param(format!("{value} is not in {self}")))
     }
 
-    /// Whether trials with both can stand in one study: same kind, same scale, same choices.
+    /// Returns whether both may occur in one study: same kind, same scale, same choices.
     pub fn is_compatible(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Float { log, .. }, Self::Float { log: other, .. }) => log == other,
@@ -201,7 +201,7 @@ impl Distribution {
     }
 }
 
-/// For people: `0.001..=0.1 (log)`, `16..=64 step 16`, `one of "sgd", "adam"`.
+/// Formats for reading: `0.001..=0.1 (log)`, `16..=64 step 16`, `one of "sgd", "adam"`.
 impl fmt::Display for Distribution {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn values_and_numbers_stand_for_each_other() {
+    fn values_and_numbers_convert_to_each_other() {
         let choices =
             Distribution::categorical([json!("sgd"), json!(null), json!([64, 64]), json!({"a": 1})]).unwrap();
         assert_eq!(choices.number_from_value(&json!([64, 64])).unwrap(), 2.0);

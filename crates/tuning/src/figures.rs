@@ -1,11 +1,11 @@
-//! Pictures of a study, as `opendr_runlog::svg_from_figure` draws them.
+//! Figures of a study, for `opendr_runlog::svg_from_figure`.
 
 use opendr_metrics::{Bars, Curves, Figure, Line};
 
 use crate::importance::importance_from_study;
 use crate::records::{Direction, StudyRecord};
 
-/// The value of every complete trial by its number, as dots, and the best so far, as a line.
+/// Returns the values of the complete trials by number, as dots, and the best value so far, as a line.
 pub fn history_figure(study: &StudyRecord) -> Figure {
     let points: Vec<[f64; 2]> = study
         .complete()
@@ -22,7 +22,7 @@ pub fn history_figure(study: &StudyRecord) -> Figure {
     });
     let lines = vec![
         Line { label: "best so far".to_owned(), points: best.collect() },
-        // What stands alone between breaks is drawn as a dot.
+        // A point between NaNs is drawn as a dot.
         Line {
             label: "trial".to_owned(),
             points: points.iter().flat_map(|point| [*point, [f64::NAN; 2]]).collect(),
@@ -37,7 +37,7 @@ pub fn history_figure(study: &StudyRecord) -> Figure {
     })
 }
 
-/// How much each parameter had to do with good values: [`importance_from_study`].
+/// Returns the importance of each parameter as bars: [`importance_from_study`].
 pub fn importance_figure(study: &StudyRecord) -> Figure {
     Figure::Bars(Bars {
         name: "importance".to_owned(),
@@ -53,7 +53,7 @@ mod tests {
     use crate::{Budget, Distribution, Outcome, Progress, RandomSearch, SearchSpace, Storage, Study};
 
     #[test]
-    fn the_line_never_gets_worse() {
+    fn the_best_value_never_gets_worse() {
         let space = SearchSpace::new().with("x", Distribution::float(0.0, 1.0).unwrap()).unwrap();
         for (direction, sign) in [(Direction::Minimize, 1.0), (Direction::Maximize, -1.0)] {
             let study =

@@ -1,4 +1,4 @@
-//! How much each parameter has to do with good values.
+//! Importance of hyperparameters.
 
 use std::collections::BTreeMap;
 
@@ -6,16 +6,16 @@ use crate::Distribution;
 use crate::normal::mass;
 use crate::records::{StudyRecord, TrialRecord};
 
-/// The best tenth is what a parameter is asked to explain.
+/// Fraction of the trials that count as good.
 const GOOD: f64 = 0.1;
-/// Numbers are laid on a grid of at most so many.
+/// Maximum number of cells of a grid.
 const CELLS: usize = 50;
-/// Shares of a cell; 1.64 of it hold 90 % of a kernel.
-const NARROWEST: f64 = 0.5 / 1.64;
+/// Minimum kernel width in cells; 1.64 times it holds 90 % of a kernel.
+const MIN_WIDTH: f64 = 0.5 / 1.64;
 
-/// How much each parameter had to do with being among the best tenth, the most important first, sum 1: PED-ANOVA (Watanabe
-/// et al. 2023), Optuna 5's default, with its rule for parameters that do not always take part. With several directions the
-/// first counts. All are 0 when fewer than two trials are complete.
+/// Returns the importance of each parameter for being among the best tenth, highest first, with sum 1: PED-ANOVA (Watanabe
+/// et al. 2023), Optuna 5's default, with its rule for conditional parameters. With several directions the
+/// first counts. All are 0 with fewer than two complete trials.
 pub fn importance_from_study(study: &StudyRecord) -> Vec<(String, f64)> {
     let finite = |trial: &&TrialRecord| trial.values.iter().all(|value| value.is_finite());
     let all: Vec<&TrialRecord> = study.complete().filter(finite).collect();
@@ -55,7 +55,7 @@ pub fn importance_from_study(study: &StudyRecord) -> Vec<(String, f64)> {
     shares
 }
 
-/// The trials that have a parameter, by its distribution.
+/// Groups the trials that have a parameter by its distribution.
 fn regimes<'a>(trials: &[&'a TrialRecord], name: &str) -> Vec<(&'a Distribution, Vec<&'a TrialRecord>)> {
     let mut regimes: Vec<(&Distribution, Vec<&TrialRecord>)> = Vec::new();
     for trial in trials {
@@ -68,12 +68,12 @@ fn regimes<'a>(trials: &[&'a TrialRecord], name: &str) -> Vec<(&'a Distribution,
     regimes
 }
 
-/// Pearson's divergence of two densities on one grid.
+/// Returns Pearson's divergence of two densities on one grid.
 fn divergence(good: &[f64], all: &[f64]) -> f64 {
     good.iter().zip(all).map(|(good, all)| all * (good / all - 1.0).powi(2)).sum()
 }
 
-/// The probability of each cell of a distribution's grid after these numbers, never 0.
+/// Returns the probability of each cell of a distribution's grid given these numbers; never 0.
 fn densities(distribution: &Distribution, numbers: &[f64]) -> Vec<f64> {
     let (cells, places): (usize, Vec<usize>) = match distribution {
         Distribution::Categorical { choices } => {
@@ -112,7 +112,7 @@ fn densities(distribution: &Distribution, numbers: &[f64]) -> Vec<f64> {
     (0..cells).map(weighted).collect()
 }
 
-/// So many cells from `low` to `high`, and those of the numbers.
+/// Returns the number of cells from `low` to `high`, and the cells of the numbers.
 fn on_grid(low: f64, high: f64, log: bool, cells: usize, numbers: &[f64]) -> (usize, Vec<usize>) {
     let scaled = |number: f64| if log { number.ln() } else { number };
     let width = (scaled(high) - scaled(low)) / (cells.max(2) - 1) as f64;
@@ -123,7 +123,7 @@ fn on_grid(low: f64, high: f64, log: bool, cells: usize, numbers: &[f64]) -> (us
     (cells, numbers.iter().map(cell).collect())
 }
 
-/// Probabilities of choices by kernel; the last kernel is even.
+/// Returns kernels of choices as probabilities; the last kernel is uniform.
 fn choice_kernels(cells: usize, kernels: &[(usize, f64)]) -> Box<dyn Fn(usize, usize) -> f64> {
     let chosen: Vec<usize> = kernels.iter().map(|(cell, _)| *cell).collect();
     let rest = 1.0 / (chosen.len() + 1) as f64;
@@ -134,7 +134,7 @@ fn choice_kernels(cells: usize, kernels: &[(usize, f64)]) -> Box<dyn Fn(usize, u
     })
 }
 
-/// Normal distributions with Scott's width, in bins; the last is as wide as the grid.
+/// Returns normal kernels with Scott's bandwidth, integrated over bins; the last is as wide as the grid.
 fn normal_kernels(cells: usize, kernels: &[(usize, f64)]) -> Box<dyn Fn(usize, usize) -> f64> {
     let (end, total) = (cells as f64, kernels.iter().map(|(_, count)| count).sum::<f64>());
     let mean = kernels.iter().map(|(cell, count)| *cell as f64 * count).sum::<f64>() / total;
@@ -152,7 +152,7 @@ fn normal_kernels(cells: usize, kernels: &[(usize, f64)]) -> Box<dyn Fn(usize, u
         below.partition_point(|sum| *sum <= (total * 3.0 / 4.0).floor()).min(kernels.len().saturating_sub(1));
     let cell_at = |at: usize| kernels.get(at).map_or(0.0, |(cell, _)| *cell as f64);
     let between = cell_at(three) - cell_at(quarter);
-    let width = (1.059 * (between / 1.34).min(deviation) * total.powf(-0.2)).max(NARROWEST);
+    let width = (1.059 * (between / 1.34).min(deviation) * total.powf(-0.2)).max(MIN_WIDTH);
     let centres: Vec<f64> = kernels.iter().map(|(cell, _)| *cell as f64).collect();
     Box::new(move |kernel, cell| {
         let (centre, width) = centres.get(kernel).map_or(((end - 1.0) / 2.0, end), |centre| (*centre, width));

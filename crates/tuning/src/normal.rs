@@ -1,10 +1,10 @@
-//! The normal distribution.
+//! The standard normal distribution.
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-/// What of the standard normal distribution lies from `start` to `end`.
+/// Returns the probability of the interval from `start` to `end`.
 pub fn mass(start: f64, end: f64) -> f64 {
-    // On the side where both tails are small nothing cancels.
+    // On the side where both tails are small, nothing cancels.
     let (start, end) = if start > 0.0 { (-end, -start) } else { (start, end) };
     if end <= 0.0 {
         0.5 * (erfc(-end * FRAC_1_SQRT_2) - erfc(-start * FRAC_1_SQRT_2))
@@ -13,7 +13,7 @@ pub fn mass(start: f64, end: f64) -> f64 {
     }
 }
 
-/// The logarithm of [`mass`], which for thin slices and far out is that of the middle times the width.
+/// Returns the logarithm of [`mass`]; for thin or distant intervals, the log-density at the middle plus the log-width.
 pub fn log_mass(start: f64, end: f64) -> f64 {
     let (width, middle) = (end - start, (start + end) / 2.0);
     if width * middle.abs().max(1.0) < 1e-3 {
@@ -22,7 +22,7 @@ pub fn log_mass(start: f64, end: f64) -> f64 {
     mass(start, end).ln()
 }
 
-/// The complement of the error function of a number from 0, to some 1e-14 of its value.
+/// Returns the complementary error function for x >= 0, with a relative error of about 1e-14.
 fn erfc(x: f64) -> f64 {
     if x < 2.5 {
         // erf x = 2 / sqrt(pi) exp(-x^2) sum of 2^n x^(2n+1) / (2n+1)!!
@@ -36,7 +36,7 @@ fn erfc(x: f64) -> f64 {
         }
         return 1.0 - 2.0 / PI.sqrt() * (-x * x).exp() * sum;
     }
-    // The continued fraction of Laplace, from its far end.
+    // Laplace's continued fraction, from its far end.
     let fraction = (1..=60).rev().fold(x, |tail, n| x + 0.5 * f64::from(n) / tail);
     (-x * x).exp() / (PI.sqrt() * fraction)
 }
@@ -47,8 +47,8 @@ mod tests {
 
     /// Values of SciPy's `erfc`.
     #[test]
-    fn erfc_is_scipys() {
-        for (x, wanted) in [
+    fn erfc_matches_scipy() {
+        for (x, expected) in [
             (0.0, 1.0),
             (0.1, 0.8875370839817152),
             (1.0, 0.15729920705028513),
@@ -57,7 +57,7 @@ mod tests {
             (5.0, 1.5374597944280347e-12),
             (20.0, 5.395865611607901e-176),
         ] {
-            assert!((erfc(x) / wanted - 1.0).abs() < 1e-11, "{x}: {} {wanted}", erfc(x));
+            assert!((erfc(x) / expected - 1.0).abs() < 1e-11, "{x}: {} {expected}", erfc(x));
         }
         assert_eq!(erfc(30.0), 0.0);
     }

@@ -1,4 +1,4 @@
-//! What is known of studies and their trials.
+//! Records of studies and trials.
 
 use std::collections::BTreeMap;
 
@@ -8,17 +8,17 @@ use serde_json::Value;
 
 use crate::{Distribution, Timestamp};
 
-/// What of the objective is good.
+/// Direction of optimisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Direction {
-    /// Small values.
+    /// Smaller values are better.
     Minimize,
-    /// Large values.
+    /// Larger values are better.
     Maximize,
 }
 
 impl Direction {
-    /// The value with the sign with which less is better; NaN counts as the worst.
+    /// Returns the value with a sign such that less is better; NaN counts as the worst.
     pub(crate) fn loss(self, value: f64) -> f64 {
         match self {
             _ if value.is_nan() => f64::INFINITY,
@@ -28,23 +28,23 @@ impl Direction {
     }
 }
 
-/// Where a trial stands.
+/// State of a trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum TrialState {
-    /// A worker is at it.
+    /// A worker is running it.
     Running,
     /// It has its values.
     Complete,
-    /// It was not worth going on.
+    /// A pruner stopped it.
     Pruned,
-    /// It raised an error, or its worker died.
+    /// It returned an error, or its worker died.
     Failed,
-    /// Nobody is at it: it was put into the queue, or it is paused at a rung and can be gone on with.
+    /// No worker is running it: it is in the queue, or paused and can be resumed.
     Waiting,
 }
 
 impl TrialState {
-    /// Whether nothing about the trial can change any more.
+    /// Returns whether the trial is final.
     pub fn is_finished(self) -> bool {
         matches!(self, Self::Complete | Self::Pruned | Self::Failed)
     }
@@ -53,54 +53,54 @@ impl TrialState {
 /// A parameter of a trial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Suggestion {
-    /// What it might have been.
+    /// Distribution of the parameter.
     pub distribution: Distribution,
-    /// What it is, as [`Distribution::value_from_number`] understands it.
+    /// Number of the value, for [`Distribution::value_from_number`].
     pub number: f64,
 }
 
 impl Suggestion {
-    /// What it is.
+    /// Returns the value.
     pub fn value(&self) -> Value {
         self.distribution.value_from_number(self.number).unwrap_or_default()
     }
 }
 
-/// One trial.
+/// Record of a trial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrialRecord {
-    /// Its number in the study, from 0.
+    /// Number in the study, from 0.
     pub number: usize,
-    /// Where it stands.
+    /// State.
     pub state: TrialState,
-    /// Its parameters by name.
+    /// Parameters by name.
     pub params: BTreeMap<String, Suggestion>,
-    /// What the objective is, one value for each direction of the study; empty until it is complete. A pruned trial may
+    /// Values of the objective, one per direction of the study; empty until it is complete. A pruned trial may
     /// have one.
     pub values: Vec<f64>,
-    /// What was measured on the way, by step.
+    /// Intermediate values, by step.
     pub reports: BTreeMap<i64, f64>,
-    /// What users noted.
+    /// Attributes set by users.
     pub user_attributes: BTreeMap<String, Value>,
-    /// What samplers, pruners and the tuner noted.
+    /// Attributes set by samplers, pruners and the tuner.
     pub system_attributes: BTreeMap<String, Value>,
-    /// When it began.
+    /// Time of its start.
     pub started: Option<Timestamp>,
-    /// When it ended.
+    /// Time of its end.
     pub ended: Option<Timestamp>,
-    /// The number by which the storage knows it.
+    /// Number in the storage.
     pub(crate) id: usize,
-    /// Who is, or was, at it.
+    /// Name of its current or last worker.
     pub(crate) worker: String,
 }
 
-/// The system attribute with the state from which a paused trial goes on.
+/// System attribute with the state from which a paused trial resumes.
 pub(crate) const PAUSED_STATE: &str = "opendr:paused_state";
-/// The system attribute that says whether it was not the pruner that paused a trial.
+/// System attribute that marks a trial paused by something other than the pruner.
 pub(crate) const INTERRUPTED: &str = "opendr:interrupted";
 
 impl TrialRecord {
-    /// The only value of the objective, when there is exactly one.
+    /// Returns the value of the objective, if there is exactly one.
     pub fn value(&self) -> Option<f64> {
         match self.values.as_slice() {
             [value] => Some(*value),
@@ -108,29 +108,29 @@ impl TrialRecord {
         }
     }
 
-    /// The last step at which something was reported, and that.
+    /// Returns the last reported step and its value.
     pub fn last_report(&self) -> Option<(i64, f64)> {
         self.reports.last_key_value().map(|(step, value)| (*step, *value))
     }
 
-    /// Whether it stands at a rung and can be gone on with.
+    /// Returns whether the trial is paused and can be resumed.
     pub fn is_paused(&self) -> bool {
         self.state == TrialState::Waiting && self.system_attributes.contains_key(PAUSED_STATE)
     }
 
-    /// Whether it was interrupted, by a user or by the death of its worker, and is to go on before anything else.
+    /// Returns whether a user or the death of its worker interrupted the trial; it is then resumed before any other.
     pub fn is_interrupted(&self) -> bool {
         self.is_paused() && self.system_attributes.get(INTERRUPTED) == Some(&Value::Bool(true))
     }
 
-    /// The parameters as learners take them.
+    /// Returns the parameters in the form that learners take.
     ///
     /// # Errors
-    /// `InvalidParam` for a choice that is a JSON object, which no learner takes.
+    /// `InvalidParam` for a choice that is a JSON object, which no learner accepts.
     pub fn param_map(&self) -> Result<ParamMap> {
         let value = |(name, suggestion): (&String, &Suggestion)| {
             let value: ParamValue = serde_json::from_value(suggestion.value()).map_err(|error| {
-                Error::invalid_param(format!("{name}: no learner takes {}", suggestion.value()))
+                Error::invalid_param(format!("{name}: no learner accepts the value {}", suggestion.value()))
                     .with_source(error)
             })?;
             Ok((name.clone(), value))
@@ -139,35 +139,35 @@ impl TrialRecord {
     }
 }
 
-/// One study.
+/// Record of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StudyRecord {
-    /// Its name, which no other study of the storage has.
+    /// Name, unique in the storage.
     pub name: String,
-    /// What is good of each value of the objective.
+    /// Direction of each value of the objective.
     pub directions: Vec<Direction>,
-    /// Its trials; the number is the place.
+    /// Trials, indexed by number.
     pub trials: Vec<TrialRecord>,
-    /// What users noted.
+    /// Attributes set by users.
     pub user_attributes: BTreeMap<String, Value>,
-    /// What samplers, pruners and the tuner noted.
+    /// Attributes set by samplers, pruners and the tuner.
     pub system_attributes: BTreeMap<String, Value>,
 }
 
 impl StudyRecord {
-    /// What of the first value is good.
+    /// Returns the direction of the first value.
     pub fn direction(&self) -> Direction {
         self.directions.first().copied().unwrap_or(Direction::Minimize)
     }
 
-    /// The complete trial with the best value; of equals the first. `None` without one, or with several directions.
+    /// Returns the complete trial with the best value, the first of equals. `None` without one, or with several directions.
     pub fn best(&self) -> Option<&TrialRecord> {
         let [direction] = self.directions[..] else { return None };
         let loss = |trial: &TrialRecord| trial.value().map_or(f64::INFINITY, |value| direction.loss(value));
         self.complete().min_by(|a, b| loss(a).total_cmp(&loss(b)))
     }
 
-    /// The complete trials than which no other is better in one direction and as good in all.
+    /// Returns the Pareto front: the complete trials that no other dominates.
     pub fn pareto_front(&self) -> Vec<&TrialRecord> {
         let complete: Vec<_> = self.complete().collect();
         let losses: Vec<_> = complete.iter().map(|trial| self.losses(trial)).collect();
@@ -175,18 +175,18 @@ impl StudyRecord {
         (0..complete.len()).filter(undominated).map(|at| complete[at]).collect()
     }
 
-    /// The complete trials.
+    /// Returns the complete trials.
     pub fn complete(&self) -> impl Iterator<Item = &TrialRecord> {
         self.trials.iter().filter(|trial| trial.state == TrialState::Complete)
     }
 
-    /// The values of a trial with the signs with which less is better.
+    /// Returns the values of a trial with signs such that less is better.
     pub(crate) fn losses(&self, trial: &TrialRecord) -> Vec<f64> {
         self.directions.iter().zip(&trial.values).map(|(direction, value)| direction.loss(*value)).collect()
     }
 }
 
-/// Whether losses `a` are nowhere larger than `b` and somewhere smaller.
+/// Returns whether losses `a` are nowhere larger than `b` and somewhere smaller.
 pub(crate) fn dominates(a: &[f64], b: &[f64]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a <= b) && a.iter().zip(b).any(|(a, b)| a < b)
 }

@@ -1,8 +1,8 @@
-//! A study as text.
+//! Text output of a study.
 
 use crate::records::{StudyRecord, TrialRecord, TrialState};
 
-/// A table for the terminal: how many trials there are in each state, the best, and the newest `rows`, one a line.
+/// Returns a table for the terminal: the number of trials in each state, the best trial, and the newest `rows`, one per line.
 pub fn table_from_study(study: &StudyRecord, rows: usize) -> String {
     let count = |state: fn(&TrialRecord) -> bool| study.trials.iter().filter(|trial| state(trial)).count();
     let states = [
@@ -33,7 +33,7 @@ pub fn table_from_study(study: &StudyRecord, rows: usize) -> String {
     text + &aligned(&lines)
 }
 
-/// One trial in a line: how far it is, what it measured there, its parameters; and the best value so far.
+/// Returns one line about a trial: its state, last step and value, its parameters; and the best value so far.
 pub fn line_from_study(study: &StudyRecord, number: usize) -> String {
     let Some(trial) = study.trials.get(number) else { return String::new() };
     let names: Vec<_> = trial.params.keys().map(String::as_str).collect();
@@ -46,7 +46,7 @@ pub fn line_from_study(study: &StudyRecord, number: usize) -> String {
     format!("trial {number} {state}{measured}: {}{}", params.join(", "), best.unwrap_or_default())
 }
 
-/// The names of all parameters, in the order of their first trials.
+/// Returns the names of all parameters, in the order of their first trials.
 fn names(study: &StudyRecord) -> Vec<&str> {
     let mut names: Vec<&str> = Vec::new();
     for name in study.trials.iter().flat_map(|trial| trial.params.keys()) {
@@ -89,7 +89,7 @@ fn line(mark: &str, trial: &TrialRecord, names: &[&str]) -> Vec<String> {
         .collect()
 }
 
-/// Four significant digits.
+/// Formats a number with four significant digits.
 fn short(number: f64) -> String {
     let size = number.abs();
     if number == 0.0 || (1e-3..1e5).contains(&size) {
@@ -100,7 +100,7 @@ fn short(number: f64) -> String {
     }
 }
 
-/// Columns side by side, numbers and words alike to the right.
+/// Aligns columns to the right.
 fn aligned(lines: &[Vec<String>]) -> String {
     let columns = lines.iter().map(Vec::len).max().unwrap_or(0);
     let width =

@@ -1,4 +1,4 @@
-//! Moments as Optuna's files write them.
+//! Timestamps in the format of Optuna's files.
 
 use std::fmt;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
@@ -6,23 +6,23 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 const SECOND: i64 = 1_000_000;
 const DAY: i64 = 86_400 * SECOND;
 
-/// A moment: microseconds since 1970, UTC.
+/// A point in time, in microseconds since 1970, UTC.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Timestamp(pub i64);
 
 impl Timestamp {
-    /// This moment.
+    /// Returns the current time.
     pub fn now() -> Self {
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         Self(i64::try_from(since.as_micros()).unwrap_or(i64::MAX))
     }
 
-    /// The time from `earlier` to this; none when it is later.
+    /// Returns the time since `earlier`; zero if that is later.
     pub fn since(self, earlier: Self) -> Duration {
         Duration::from_micros(u64::try_from(self.0.saturating_sub(earlier.0)).unwrap_or(0))
     }
 
-    /// Reads `2026-11-22T02:00:00.123456+00:00`; the `T` may be a space, fraction and zone may be left out.
+    /// Parses `2026-11-22T02:00:00.123456+00:00`; the `T` may be a space, fraction and zone are optional.
     pub(crate) fn parse(text: &str) -> Option<Self> {
         let (date, time) = text.split_once(['T', ' '])?;
         let mut date = date.splitn(3, '-').map(|part| part.parse::<i64>().ok());
@@ -44,7 +44,7 @@ impl Timestamp {
     }
 }
 
-/// Seconds east of Greenwich of `+01:00`, `Z` or nothing.
+/// Returns the seconds east of Greenwich of `+01:00`, `Z` or an empty string.
 fn zone_seconds(zone: &str) -> Option<i64> {
     if zone.is_empty() || zone == "Z" {
         return Some(0);
@@ -56,7 +56,7 @@ fn zone_seconds(zone: &str) -> Option<i64> {
     Some(if sign == "-" { -seconds } else { seconds })
 }
 
-/// Days since 1970 of a date of the Gregorian calendar, years beginning in March so that leap days come last.
+/// Returns the days since 1970 of a Gregorian date; years start in March, so that leap days come last.
 fn days_from_date(year: i64, month: i64, day: i64) -> i64 {
     let year = if month <= 2 { year - 1 } else { year };
     let (century, of_century) = (year.div_euclid(400), year.rem_euclid(400));
@@ -74,7 +74,7 @@ fn date_from_days(days: i64) -> (i64, i64, i64) {
     (century * 400 + year + i64::from(month <= 2), month, day)
 }
 
-/// As Optuna writes it: `2026-11-22T02:00:00.123456+00:00`.
+/// Formats as Optuna does: `2026-11-22T02:00:00.123456+00:00`.
 impl fmt::Display for Timestamp {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (year, month, day) = date_from_days(self.0.div_euclid(DAY));
@@ -90,7 +90,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn text_and_moment_stand_for_each_other() {
+    fn timestamps_round_trip_as_text() {
         for (text, wanted) in [
             ("1970-01-01T00:00:00.000000+00:00", 0),
             ("2026-11-22T02:00:00.123456+00:00", 1_795_312_800_123_456),

@@ -1,6 +1,6 @@
-//! Pre-processing of a decoded frame, with as many threads as there are cores.
+//! Pre-processing of a decoded frame, with one thread per core.
 //!
-//! `benches/preprocess.py` runs this and what Python users write with OpenCV and NumPy, and prints both.
+//! `benches/preprocess.py` runs this and the same with OpenCV and NumPy, and prints both.
 
 #![allow(missing_docs, clippy::expect_used)]
 
@@ -8,12 +8,12 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use opendr_engine::data::{Image, Layout, PixelFormat};
-use opendr_vision::{Anchor, ChannelOrder, InputSample, Preprocess, Similarity};
+use opendr_vision::{ChannelOrder, InputSample, LetterboxAlign, Preprocess, Similarity};
 
 fn frame(width: usize, height: usize, layout: Layout) -> Image {
     let samples: Vec<u8> =
         (0..width * height * 3).map(|index| ((index * 2_654_435_761) >> 7) as u8).collect();
-    Image::new(samples, width, height, PixelFormat::Bgr, layout).expect("as many samples as the size says")
+    Image::new(samples, width, height, PixelFormat::Bgr, layout).expect("the sample count matches the size")
 }
 
 fn case<T: InputSample + Default>(
@@ -36,15 +36,16 @@ fn preprocess(criterion: &mut Criterion) {
         .order(ChannelOrder::Bgr)
         .normalise([103.53, 116.28, 123.675], [57.375, 57.12, 58.395]);
     case::<f32>(criterion, "nanodet_1080p", &nanodet, &camera);
-    let letterbox = nanodet.letterbox(Anchor::Centre, 0.0);
+    let letterbox = nanodet.letterbox(LetterboxAlign::Centre, 0.0);
     case::<f32>(criterion, "nanodet_letterbox_1080p", &letterbox, &camera);
-    let posenet = Preprocess::new(385, 385).letterbox(Anchor::Centre, 0.0).normalise([127.5; 3], [127.5; 3]);
+    let posenet =
+        Preprocess::new(385, 385).letterbox(LetterboxAlign::Centre, 0.0).normalise([127.5; 3], [127.5; 3]);
     case::<f32>(criterion, "posenet_1080p", &posenet, &camera);
-    let yunet = Preprocess::new(640, 640).letterbox(Anchor::TopLeft, 0.0).order(ChannelOrder::Bgr);
+    let yunet = Preprocess::new(640, 640).letterbox(LetterboxAlign::TopLeft, 0.0).order(ChannelOrder::Bgr);
     case::<f32>(criterion, "yunet_1080p", &yunet, &camera);
     let ultra_light = Preprocess::new(320, 240).normalise([127.0; 3], [128.0; 3]);
     case::<f32>(criterion, "ultra_light_1080p", &ultra_light, &camera);
-    let movenet = Preprocess::new(192, 192).letterbox(Anchor::Centre, 0.0).layout(Layout::Hwc);
+    let movenet = Preprocess::new(192, 192).letterbox(LetterboxAlign::Centre, 0.0).layout(Layout::Hwc);
     case::<i32>(criterion, "movenet_1080p", &movenet, &camera);
     case::<f32>(criterion, "centernet_320x240", &centernet, &frame(320, 240, Layout::Hwc));
     case::<f32>(criterion, "centernet_1080p_chw", &centernet, &frame(1920, 1080, Layout::Chw));

@@ -1,5 +1,6 @@
-//! `disparity LEFT RIGHT OUT [ROUNDS]`: matches a rectified pair, writes the disparities to `OUT` as 32-bit floats, row by row, and
-//! prints the seconds of the fastest round. `benches/stereo.py` runs it beside others.
+//! `disparity LEFT RIGHT OUT [ROUNDS]`: matches a rectified pair, writes the disparities to `OUT` as 32-bit floats,
+//! row by row, and prints the seconds of the fastest round. `benches/stereo.py` compares it with other
+//! implementations.
 
 use std::error::Error;
 use std::time::Instant;

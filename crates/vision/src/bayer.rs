@@ -1,8 +1,8 @@
-//! Mosaics: sensors that see one colour a pixel.
+//! Conversion of Bayer mosaics to RGB.
 
 use opendr_engine::{Error, Result};
 
-/// The colours of the first two pixels of the first two rows.
+/// Bayer pattern, by the colours of the first two pixels of the first two rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub enum BayerPattern {
@@ -13,10 +13,10 @@ pub enum BayerPattern {
 }
 
 impl BayerPattern {
-    /// Every pattern.
+    /// All patterns.
     pub const ALL: [Self; 4] = [Self::Rggb, Self::Bggr, Self::Gbrg, Self::Grbg];
 
-    /// Its name in lower case, e.g. `"rggb"`.
+    /// Returns the name in lower case, e.g. `"rggb"`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Rggb => "rggb",
@@ -26,7 +26,7 @@ impl BayerPattern {
         }
     }
 
-    /// Column and row of the first red pixel.
+    /// Returns column and row of the first red pixel.
     const fn red(self) -> (usize, usize) {
         match self {
             Self::Rggb => (0, 0),
@@ -37,15 +37,15 @@ impl BayerPattern {
     }
 }
 
-/// RGB from a mosaic `[height, width]`: what a pixel does not see is the mean of its neighbours that do (bilinear); beyond
-/// the border the picture is mirrored.
+/// Converts a Bayer mosaic `[height, width]` to RGB `[height, width, 3]`. Missing colours are interpolated
+/// bilinearly; the image is mirrored at its border.
 ///
 /// # Errors
 /// `InvalidInput` when there are not `width * height` samples, or a side is shorter than 2.
 pub fn rgb_from_bayer(samples: &[u8], width: usize, height: usize, pattern: BayerPattern) -> Result<Vec<u8>> {
     if width < 2 || height < 2 || width.checked_mul(height) != Some(samples.len()) {
         return Err(Error::invalid_input(format!(
-            "{} samples are no mosaic of {width}x{height} pixels; give one a pixel, at least 2x2",
+            "{} samples do not form a Bayer mosaic of {width}x{height} pixels; pass one sample per pixel and at least 2x2 pixels",
             samples.len()
         )));
     }

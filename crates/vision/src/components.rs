@@ -1,34 +1,34 @@
-//! Connected components: pixels that touch and belong together get one number.
+//! Connected-component labelling.
 //!
-//! A. Rosenfeld, J. L. Pfaltz, "Sequential operations in digital picture processing", J. ACM 1966, in two passes with
-//! R. Tarjan's union of sets.
+//! A. Rosenfeld, J. L. Pfaltz, "Sequential operations in digital picture processing", J. ACM 1966: two passes, with
+//! R. Tarjan's union-find.
 
-/// Which pixels touch.
+/// Connectivity of pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Touching {
-    /// The four beside, above and below.
-    Sides,
-    /// Those at the corners too.
-    Corners,
+pub enum Connectivity {
+    /// 4-connectivity: left, right, above and below.
+    Four,
+    /// 8-connectivity: the diagonal neighbours too.
+    Eight,
 }
 
-/// Numbers of the components of a picture; memory is used again.
+/// Labels of the connected components of an image; its memory is reused.
 #[derive(Debug, Clone, Default)]
 pub struct Components {
     labels: Vec<u32>,
-    /// While labelling: who a number is united with. Smaller numbers lead.
+    /// Union-find parents while labelling. Smaller labels are the roots.
     leaders: Vec<u32>,
     areas: Vec<u32>,
 }
 
 impl Components {
-    /// Numbers the components of a picture of `width` x `height` pixels, from 1 on, in the order of their first pixels,
-    /// row by row. `belongs` tells of a pixel's index (`y * width + x`) whether it belongs to any component, `joined` of
-    /// two pixels that touch and belong whether they are in one. Returns how many there are.
+    /// Labels the components of an image of `width` x `height` pixels, from 1 on, in the order of their first pixels,
+    /// row by row. `belongs` returns whether a pixel, by its index `y * width + x`, is foreground; `joined` returns
+    /// whether two neighbouring foreground pixels are in one component. Returns the number of components.
     pub fn label(
         &mut self,
         [width, height]: [usize; 2],
-        touching: Touching,
+        touching: Connectivity,
         belongs: impl Fn(usize) -> bool,
         joined: impl Fn(usize, usize) -> bool,
     ) -> usize {
@@ -63,7 +63,7 @@ impl Components {
                 if y > 0 {
                     meet(at - width);
                 }
-                if touching == Touching::Corners && y > 0 {
+                if touching == Connectivity::Eight && y > 0 {
                     if x > 0 {
                         meet(at - width - 1);
                     }
@@ -78,7 +78,7 @@ impl Components {
                 labels[at] = label;
             }
         }
-        // Leaders have smaller numbers, so theirs are settled first.
+        // Roots have smaller labels, so they are final before their members.
         areas.clear();
         areas.push(0);
         for label in 1..leaders.len() {
@@ -97,18 +97,18 @@ impl Components {
         areas.len() - 1
     }
 
-    /// The number of each pixel's component, row by row; 0 where it belongs to none.
+    /// Returns the label of each pixel, row by row; 0 is background.
     pub fn labels(&self) -> &[u32] {
         &self.labels
     }
 
-    /// Pixels of each component by its number; the first entry counts those of none.
+    /// Returns the number of pixels of each component by its label; the first entry counts the background.
     pub fn areas(&self) -> &[u32] {
         &self.areas
     }
 }
 
-/// Who leads, with the way to it made shorter.
+/// Returns the root of a label, with path compression.
 fn leader(leaders: &mut [u32], mut label: u32) -> u32 {
     while leaders[label as usize] != label {
         let above = leaders[leaders[label as usize] as usize];
@@ -124,7 +124,7 @@ mod tests {
 
     use super::*;
 
-    fn labels(picture: &[&str], touching: Touching) -> (Vec<u32>, Vec<u32>) {
+    fn labels(picture: &[&str], touching: Connectivity) -> (Vec<u32>, Vec<u32>) {
         let size = [picture[0].len(), picture.len()];
         let pixels: Vec<u8> = picture.concat().into_bytes();
         let mut components = Components::default();
@@ -133,29 +133,29 @@ mod tests {
     }
 
     #[test]
-    fn a_u_is_one_and_corners_touch_when_told() {
+    fn u_shape_is_one_component_and_diagonals_connect_on_request() {
         let picture = ["#.#.", "#.#a", "###a", "...."];
-        let (sides, areas) = labels(&picture, Touching::Sides);
+        let (sides, areas) = labels(&picture, Connectivity::Four);
         assert_eq!(sides, [1, 0, 1, 0, 1, 0, 1, 2, 1, 1, 1, 2, 0, 0, 0, 0]);
         assert_eq!(areas, [7, 7, 2]);
         let picture = ["#.", ".#"];
-        assert_eq!(labels(&picture, Touching::Sides).0, [1, 0, 0, 2]);
-        assert_eq!(labels(&picture, Touching::Corners).0, [1, 0, 0, 1]);
+        assert_eq!(labels(&picture, Connectivity::Four).0, [1, 0, 0, 2]);
+        assert_eq!(labels(&picture, Connectivity::Eight).0, [1, 0, 0, 1]);
     }
 
     #[test]
     fn nothing_has_no_components() {
         let mut components = Components::default();
-        assert_eq!(components.label([0, 7], Touching::Sides, |_| true, |_, _| true), 0);
-        assert_eq!(components.label([3, 1], Touching::Sides, |_| false, |_, _| true), 0);
+        assert_eq!(components.label([0, 7], Connectivity::Four, |_| true, |_, _| true), 0);
+        assert_eq!(components.label([3, 1], Connectivity::Four, |_| false, |_, _| true), 0);
         assert_eq!(components.areas(), [3]);
     }
 
     proptest! {
         #[test]
-        fn as_flooding_says(width in 1usize..12, pixels in prop::collection::vec(0u8..3, 0..140), corners: bool) {
+        fn agrees_with_flood_fill(width in 1usize..12, pixels in prop::collection::vec(0u8..3, 0..140), corners: bool) {
             let height = pixels.len() / width;
-            let touching = if corners { Touching::Corners } else { Touching::Sides };
+            let touching = if corners { Connectivity::Eight } else { Connectivity::Four };
             let mut components = Components::default();
             let same = |a: usize, b: usize| pixels[a] == pixels[b];
             components.label([width, height], touching, |at| pixels[at] > 0, same);

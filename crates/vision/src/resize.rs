@@ -1,14 +1,14 @@
-//! Whole pictures at another size.
+//! Resizing of images.
 
 use opendr_engine::data::{Image, Layout, PixelFormat};
 use opendr_engine::{Error, Result};
 
 use crate::preprocess::{ChannelOrder, Preprocess};
 
-/// `image` at `width` x `height` pixels, bilinear as [`Preprocess`] scales: `u8`, `HWC`, grey or RGB.
+/// Resizes `image` to `width` x `height` pixels, bilinear as in [`Preprocess`]: `u8`, `HWC`, grey or RGB.
 ///
 /// # Errors
-/// `InvalidParam` when a side is 0 or the picture does not fit into memory.
+/// `InvalidParam` when a side is 0 or the result does not fit into memory.
 pub fn resize(image: &Image, width: usize, height: usize) -> Result<Image> {
     let (order, format) = match image.format() {
         PixelFormat::Grey => (ChannelOrder::Grey, PixelFormat::Grey),

@@ -1,12 +1,12 @@
-//! Where a turned crop lies in its picture.
+//! Position of a rotated crop in its image.
 
 use opendr_engine::{Error, Result};
 
-/// A scale, a rotation and a translation between a picture and a crop of it, without reflection.
+/// A similarity transform between an image and a crop of it: scale, rotation and translation, without reflection.
 ///
-/// Positions are continuous, as [`crate::InputGeometry`]'s: the left-top corner of the first pixel is (0, 0), its
-/// centre (0.5, 0.5). Angles are in radians and turn from x to y: clockwise as pictures are shown.
-/// [`crate::Preprocess::warp_into`] makes a network's input of the crop.
+/// Positions are continuous, as in [`crate::InputGeometry`]: the left-top corner of the first pixel is (0, 0), its
+/// centre (0.5, 0.5). Angles are in radians and turn from x to y: clockwise in a displayed image.
+/// [`crate::Preprocess::warp_into`] writes the crop as a network's input.
 ///
 /// ```
 /// use opendr_vision::Similarity;
@@ -20,36 +20,36 @@ use opendr_engine::{Error, Result};
 pub struct Similarity {
     /// Scale times cosine and sine of the angle.
     turn: [f64; 2],
-    /// The picture's position of the crop's (0, 0).
+    /// Image position of the crop's (0, 0).
     origin: [f64; 2],
 }
 
 impl Similarity {
-    /// The crop is the picture.
+    /// The identity: the crop is the image.
     pub const IDENTITY: Self = Self { turn: [1.0, 0.0], origin: [0.0, 0.0] };
 
-    /// A crop whose pixels are `scale` pixels of the picture wide, whose x axis points along `angle` in the picture
-    /// and whose left-top corner lies at `origin`.
+    /// Creates a crop whose pixels are `scale` image pixels wide, whose x axis points along `angle` in the image and
+    /// whose left-top corner is at `origin`.
     pub fn new(scale: f32, angle: f32, origin: [f32; 2]) -> Self {
         let (sine, cosine) = f64::from(angle).sin_cos();
         let scale = f64::from(scale);
         Self { turn: [scale * cosine, scale * sine], origin: origin.map(f64::from) }
     }
 
-    /// The square with `side` pixels around `centre` whose x axis points along `angle`, as a crop of `crop_side`
-    /// pixels a side.
+    /// Creates the square crop of `side` image pixels around `centre` whose x axis points along `angle`; the crop has
+    /// `crop_side` pixels per side.
     pub fn rotated_square(centre: [f32; 2], side: f32, angle: f32, crop_side: usize) -> Self {
         let centred = Self::new(side / crop_side as f32, angle, [0.0, 0.0]);
         let middle = centred.forward([crop_side as f64 / 2.0; 2]);
         Self { origin: std::array::from_fn(|axis| f64::from(centre[axis]) - middle[axis]), ..centred }
     }
 
-    /// The similarity that brings points of the picture closest to points of the crop: the sum of squared distances,
-    /// measured in the crop, is least (Umeyama, "Least-squares estimation of transformation parameters between two
-    /// point patterns", 1991; alignment of faces to a template does this). Reflections are no answer.
+    /// Fits the similarity that maps image points to crop points with the least sum of squared distances, measured in
+    /// the crop (Umeyama, "Least-squares estimation of transformation parameters between two point patterns", 1991),
+    /// as in the alignment of faces to a template. The result is never a reflection.
     ///
-    /// `None` where there are fewer than two points, not as many of both, values that are not finite, or points of
-    /// which all are the same.
+    /// Returns `None` for fewer than two points, different numbers of points, values that are not finite, or points
+    /// that all coincide.
     pub fn from_points(image: &[[f32; 2]], crop: &[[f32; 2]]) -> Option<Self> {
         if image.len() != crop.len() || image.len() < 2 {
             return None;
@@ -74,12 +74,12 @@ impl Similarity {
         found.is_regular().then_some(found)
     }
 
-    /// A point of the crop, in pixels of the picture; it may lie outside of it.
+    /// Maps a point of the crop to pixels of the image; the result may be outside the image.
     pub fn image_from_crop(&self, point: [f32; 2]) -> [f32; 2] {
         self.forward(point.map(f64::from)).map(|value| value as f32)
     }
 
-    /// A point of the picture, in pixels of the crop; it may lie outside of it.
+    /// Maps a point of the image to pixels of the crop; the result may be outside the crop.
     pub fn crop_from_image(&self, [x, y]: [f32; 2]) -> [f32; 2] {
         let (x, y) = (f64::from(x) - self.origin[0], f64::from(y) - self.origin[1]);
         let [a, b] = self.turn;
@@ -87,17 +87,17 @@ impl Similarity {
         [((a * x + b * y) / norm) as f32, ((a * y - b * x) / norm) as f32]
     }
 
-    /// Pixels of the picture per pixel of the crop.
+    /// Returns the image pixels per crop pixel.
     pub fn scale(&self) -> f32 {
         self.turn[0].hypot(self.turn[1]) as f32
     }
 
-    /// Where the crop's x axis points in the picture, in radians, -pi..=pi.
+    /// Returns the direction of the crop's x axis in the image, in radians, -pi..=pi.
     pub fn angle(&self) -> f32 {
         self.turn[1].atan2(self.turn[0]) as f32
     }
 
-    /// Whether all numbers are finite and a crop pixel shows more than a point.
+    /// Returns whether all numbers are finite and the scale is not 0.
     pub fn is_regular(&self) -> bool {
         let [a, b] = self.turn;
         (a * a + b * b).is_normal() && self.origin.iter().all(|value| value.is_finite())
@@ -108,11 +108,11 @@ impl Similarity {
         [a * x - b * y + self.origin[0], b * x + a * y + self.origin[1]]
     }
 
-    /// The picture's position of the centre of the first pixel, and the steps to the next column and the next row, in
-    /// pixels of the picture times 2^32: [x, y] each. Positions count from the centre of the picture's first pixel.
+    /// Returns the image position of the centre of the first pixel, and the steps to the next column and the next
+    /// row, in image pixels times 2^32: [x, y] each. Positions are relative to the centre of the image's first pixel.
     ///
     /// # Errors
-    /// `InvalidInput` when a pixel of a crop of `size` lies further than 2^29 pixels away, or nowhere.
+    /// `InvalidInput` when a pixel of a crop of `size` lies more than 2^29 pixels away or is not finite.
     pub(crate) fn fixed_point(&self, size: [usize; 2]) -> Result<[[i64; 2]; 3]> {
         const ONE: f64 = 4_294_967_296.0;
         const FURTHEST: f64 = 536_870_912.0;
@@ -122,7 +122,7 @@ impl Similarity {
             .all(|corner| self.forward(corner).iter().all(|value| value.abs() <= FURTHEST));
         if !self.is_regular() || !near {
             return Err(Error::invalid_input(format!(
-                "a crop of scale {}, angle {} and origin {:?} cannot be cut out of a picture",
+                "a crop of scale {}, angle {} and origin {:?} has values that are not finite, a scale of 0, or lies too far outside the image",
                 self.scale(),
                 self.angle(),
                 self.origin
@@ -157,7 +157,7 @@ mod tests {
         let found = Similarity::from_points(&square, &mirrored).unwrap();
         let [a, b] = found.turn;
         assert!(a * a + b * b > 0.0);
-        // A reflection would have put every point in its place.
+        // A reflection maps every point exactly.
         assert!(square.iter().zip(&mirrored).any(|(a, b)| !close(found.crop_from_image(*a), *b, 0.1)));
     }
 
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_answer_is_none() {
+    fn degenerate_points_return_none() {
         assert!(Similarity::from_points(&[[1.0, 2.0]], &[[1.0, 2.0]]).is_none());
         assert!(Similarity::from_points(&[[1.0, 2.0]; 3], &[[1.0, 2.0]; 2]).is_none());
         assert!(Similarity::from_points(&[[1.0, 2.0]; 3], &[[1.0, 2.0], [2.0, 2.0], [3.0, 3.0]]).is_none());
@@ -194,7 +194,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn points_find_their_similarity(
+        fn similarity_is_recovered_from_points(
             scale in 0.05f32..20.0, angle in -3.1f32..3.1, origin in [-2e3f32..2e3, -2e3f32..2e3],
             points in prop::collection::vec([0.0f32..200.0, 0.0f32..200.0], 2..9),
         ) {

@@ -1,8 +1,8 @@
-//! A few threads that wait for pictures.
+//! A pool of threads that share the rows of an image.
 //!
-//! They live as long as the process, sleep between pictures (nothing spins, so that the inference runtime has the
-//! cores to itself) and claim parts one by one, as does the thread that asks: a worker that wakes late costs
-//! nothing but its help.
+//! The threads live as long as the process, sleep between images (no spinning, which would take cores from the
+//! inference runtime) and claim parts one by one, as the calling thread does. A worker that wakes late therefore
+//! delays nothing.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -10,10 +10,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread;
 
-/// More threads than this do not help: resizing is bound by memory.
+/// More threads do not help: resizing is bound by memory bandwidth.
 const MAX_THREADS: usize = 8;
 
-/// Calls `work(part)` once for each `part` in `0..parts`, on at most `threads` threads, this one among them.
+/// Calls `work(part)` once for each `part` in `0..parts`, on at most `threads` threads, the calling one included.
 pub(crate) fn run(parts: usize, threads: usize, work: &(dyn Fn(usize) + Sync)) {
     let task =
         Task { work, parts, next: AtomicUsize::new(0), active: AtomicUsize::new(0), panic: Mutex::new(None) };
@@ -21,7 +21,7 @@ pub(crate) fn run(parts: usize, threads: usize, work: &(dyn Fn(usize) + Sync)) {
     if helpers == 0 {
         return task.drain();
     }
-    match Desk::global().post(&task, helpers) {
+    match TaskSlot::global().post(&task, helpers) {
         Some(posted) => {
             task.drain();
             drop(posted);
@@ -33,7 +33,7 @@ pub(crate) fn run(parts: usize, threads: usize, work: &(dyn Fn(usize) + Sync)) {
     }
 }
 
-/// How many threads can help, this one included.
+/// Returns the number of threads that can work, the calling one included.
 pub(crate) fn available() -> usize {
     static AVAILABLE: OnceLock<usize> = OnceLock::new();
     *AVAILABLE.get_or_init(|| thread::available_parallelism().map_or(1, |count| count.get().min(MAX_THREADS)))
@@ -42,7 +42,7 @@ pub(crate) fn available() -> usize {
 struct Task<'a> {
     work: &'a (dyn Fn(usize) + Sync),
     parts: usize,
-    /// The next part that nobody has claimed.
+    /// Next part that no thread has claimed.
     next: AtomicUsize,
     /// Workers inside [`Task::drain`].
     active: AtomicUsize,
@@ -65,8 +65,8 @@ impl Task<'_> {
     }
 }
 
-/// Where one task at a time lies for the workers to see; a second caller works alone.
-struct Desk {
+/// Slot for one task that the workers watch; a second caller works alone.
+struct TaskSlot {
     slot: Mutex<Slot>,
     posted: Condvar,
 }
@@ -74,21 +74,22 @@ struct Desk {
 #[derive(Default)]
 struct Slot {
     task: Option<&'static Task<'static>>,
-    /// How many workers may still join the task.
+    /// Number of workers that may still join the task.
     seats: usize,
 }
 
-impl Desk {
+impl TaskSlot {
     fn global() -> &'static Self {
-        static DESK: Desk = Desk { slot: Mutex::new(Slot { task: None, seats: 0 }), posted: Condvar::new() };
+        static TASK_SLOT: TaskSlot =
+            TaskSlot { slot: Mutex::new(Slot { task: None, seats: 0 }), posted: Condvar::new() };
         static STARTED: OnceLock<()> = OnceLock::new();
         STARTED.get_or_init(|| {
             for _ in 1..available() {
                 // Without the thread the caller does all the work itself.
-                let _ = thread::Builder::new().name("opendr-vision".to_owned()).spawn(|| DESK.serve());
+                let _ = thread::Builder::new().name("opendr-vision".to_owned()).spawn(|| TASK_SLOT.serve());
             }
         });
-        &DESK
+        &TASK_SLOT
     }
 
     fn post<'a>(&'static self, task: &'a Task<'a>, helpers: usize) -> Option<Posted<'a>> {
@@ -96,16 +97,16 @@ impl Desk {
         if slot.task.is_some() {
             return None;
         }
-        // SAFETY: only the lifetime changes. `Posted` borrows the task for its true lifetime and its drop, which
-        // runs on unwinding too, takes the task off the desk and waits until no worker is inside; `Posted` never
-        // leaves `run`, so it is not leaked.
+        // SAFETY: only the lifetime changes. `Posted` borrows the task for its true lifetime; its drop, which runs on
+        // unwinding too, removes the task from the slot and waits until no worker uses it. `Posted` never leaves
+        // `run`, so it is not leaked.
         slot.task = Some(unsafe { std::mem::transmute::<&'a Task<'a>, &'static Task<'static>>(task) });
         slot.seats = helpers;
         drop(slot);
         for _ in 0..helpers {
             self.posted.notify_one();
         }
-        Some(Posted { desk: self, task })
+        Some(Posted { task_slot: self, task })
     }
 
     fn serve(&self) {
@@ -116,31 +117,31 @@ impl Desk {
                 continue;
             };
             slot.seats -= 1;
-            // Under the lock: whoever takes the task off the desk sees this worker.
+            // Incremented under the lock, so that the thread that removes the task counts this worker.
             task.active.fetch_add(1, Ordering::Relaxed);
             drop(slot);
             if let Err(payload) = catch_unwind(AssertUnwindSafe(|| task.drain())) {
                 *lock(&task.panic) = Some(payload);
             }
-            // The task may be gone right after this.
+            // The task may be freed right after this.
             task.active.fetch_sub(1, Ordering::Release);
             slot = lock(&self.slot);
         }
     }
 }
 
-/// A task on the desk; dropping it ends the task.
+/// A posted task; dropping it ends the task.
 struct Posted<'a> {
-    desk: &'static Desk,
+    task_slot: &'static TaskSlot,
     task: &'a Task<'a>,
 }
 
 impl Drop for Posted<'_> {
     fn drop(&mut self) {
-        lock(&self.desk.slot).task = None;
+        lock(&self.task_slot.slot).task = None;
         let mut waited = 0u32;
         while self.task.active.load(Ordering::Acquire) != 0 {
-            // A worker ends its part within microseconds, unless the system took its core away.
+            // A worker finishes its part within microseconds, unless the system preempts it.
             waited += 1;
             if waited < 1000 { std::hint::spin_loop() } else { thread::yield_now() }
         }

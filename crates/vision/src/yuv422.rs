@@ -1,22 +1,22 @@
-//! The pixels that most cameras give uncompressed: 4:2:2, where two pixels share a pair of colour differences.
+//! Conversion of 4:2:2, the usual uncompressed format of cameras, to RGB. Two pixels share a pair of chroma samples.
 
 use opendr_engine::{Error, Result};
 
-/// How luma and colour differences lie in the four bytes of two pixels.
+/// Order of luma and chroma in the four bytes of two pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Yuv422 {
     /// Luma first (YUY2).
     Yuyv,
-    /// Colour first.
+    /// Chroma first.
     Uyvy,
 }
 
-/// RGB from 4:2:2 (BT.601, luma 16..=235).
+/// Converts 4:2:2 (BT.601, luma 16..=235) to RGB.
 ///
 /// `data` holds `height` rows, `stride` bytes from one to the next; the result is `[height, width, 3]`.
 ///
 /// # Errors
-/// `Format` when there are fewer bytes than that.
+/// `Format` when `data` has fewer bytes than that.
 pub fn rgb_from_yuv422(
     data: &[u8],
     stride: usize,
@@ -28,8 +28,8 @@ pub fn rgb_from_yuv422(
     let needed = height.saturating_sub(1).saturating_mul(stride).saturating_add(row_bytes);
     if stride < row_bytes || data.len() < needed || width == 0 || height == 0 {
         return Err(Error::format(format!(
-            "a 4:2:2 frame of {width}x{height} pixels needs {needed} bytes in rows of {row_bytes}, not {} in rows of \
-             {stride}; the cable or the driver loses data",
+            "a 4:2:2 frame of {width}x{height} pixels needs {needed} bytes in rows of {row_bytes}, but has {} in rows of \
+             {stride}; check the cable and the driver",
             data.len()
         )));
     }
@@ -52,7 +52,7 @@ pub fn rgb_from_yuv422(
     Ok(rgb)
 }
 
-/// What the colour differences add to red, green and blue, in 1/65536.
+/// Returns the contributions of the chroma samples to red, green and blue, in 1/65536.
 fn colour_parts(u: u8, v: u8) -> [i32; 3] {
     let (u, v) = (i32::from(u) - 128, i32::from(v) - 128);
     [104_597 * v, -25_675 * u - 53_279 * v, 132_201 * u]

@@ -1,20 +1,20 @@
-//! After the first frames, pre-processing allocates nothing, on any thread.
+//! Pre-processing allocates nothing after the first frames, on any thread.
 //!
-//! A program of its own: work of other threads counts, so no other test may run beside it.
+//! A separate test binary: allocations of other threads count, so no other test may run beside it.
 
 use opendr_engine::data::{Image, Layout, PixelFormat};
-use opendr_test_allocator::{Counting, allocations};
-use opendr_vision::{Anchor, Preprocess};
+use opendr_test_allocator::{CountingAllocator, allocations};
+use opendr_vision::{LetterboxAlign, Preprocess};
 
 #[global_allocator]
-static ALLOCATOR: Counting = Counting;
+static ALLOCATOR: CountingAllocator = CountingAllocator;
 
 #[test]
 fn a_stream_of_frames_allocates_nothing() {
     let camera = Image::from_rgb8(vec![9; 640 * 480 * 3], 640, 480).unwrap();
     let planes = Image::new(vec![9u8; 64 * 48 * 3], 64, 48, PixelFormat::Bgr, Layout::Chw).unwrap();
     let stretched = Preprocess::new(320, 320);
-    let letterboxed = Preprocess::new(192, 192).letterbox(Anchor::Centre, 0.0).layout(Layout::Hwc);
+    let letterboxed = Preprocess::new(192, 192).letterbox(LetterboxAlign::Centre, 0.0).layout(Layout::Hwc);
     let mut floats = vec![0f32; stretched.len()];
     let mut bytes = vec![0u8; letterboxed.len()];
     let mut frame = |number: usize| {

@@ -1,4 +1,4 @@
-//! Picture files of every kind that is read or written, and files that are none.
+//! Image files of every supported kind, and files that are not images.
 
 #![allow(clippy::unwrap_used)]
 
@@ -9,7 +9,7 @@ use opendr_engine::ErrorKind;
 use opendr_engine::data::{Image, Layout, PixelFormat};
 use opendr_vision::{Decoder, Encoder, decode, open, save};
 
-/// Colours of the quarters of a 16x12 picture: left top, right top, left bottom, right bottom.
+/// Colours of the quarters of a 16x12 image: left top, right top, left bottom, right bottom.
 const QUARTERS: [[u8; 3]; 4] = [[200, 30, 40], [20, 180, 60], [30, 50, 190], [220, 210, 20]];
 
 fn quarters() -> Image {
@@ -17,7 +17,7 @@ fn quarters() -> Image {
     Image::from_rgb8((0..16 * 12).flat_map(pixel).collect(), 16, 12).unwrap()
 }
 
-/// The colours in the middle of the quarters.
+/// Returns the colours in the middle of the quarters.
 fn colours(image: &Image) -> [[u8; 3]; 4] {
     let (width, height) = (image.width(), image.height());
     let rgb = image.hwc_u8(PixelFormat::Rgb);
@@ -37,7 +37,7 @@ fn picture(name: &str) -> PathBuf {
     PathBuf::from(std::env::var("CARGO_MANIFEST_DIR").unwrap()).join("tests/pictures").join(name)
 }
 
-/// A folder of this test alone, removed at its end.
+/// A temporary folder that is removed on drop.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -111,7 +111,7 @@ fn grey_and_opacity_are_kept() {
     assert_eq!(open(folder.0.join("a.jpg")).unwrap().format(), PixelFormat::Rgb);
 }
 
-/// The bytes of `quarters` as a JPEG file with an EXIF orientation.
+/// Returns `quarters` as a JPEG file with an EXIF orientation.
 fn turned_jpeg(orientation: u8) -> Vec<u8> {
     let folder = Folder::new(&format!("turned-{orientation}"));
     let path = folder.0.join("a.jpg");
@@ -125,7 +125,7 @@ fn turned_jpeg(orientation: u8) -> Vec<u8> {
 
 #[test]
 fn all_eight_orientations_are_honoured() {
-    // Which quarter of the stored picture is seen left top, right top, left bottom, right bottom (EXIF 2.32, 4.6.4).
+    // The stored quarter that is displayed left top, right top, left bottom, right bottom (EXIF 2.32, 4.6.4).
     let seen = [
         [0, 1, 2, 3],
         [1, 0, 3, 2],
@@ -153,7 +153,7 @@ fn truncated_and_damaged_files_are_refused() {
             assert_eq!(error.kind(), ErrorKind::InvalidInput, "{name} cut to {length}: {error}");
         }
     }
-    // The end marker of a preview in front of the picture is not the picture's.
+    // The end marker of an embedded preview is not the image's.
     let mut previewed = turned_jpeg(1);
     previewed.splice(2..2, *b"\xff\xe2\0\x0a\xff\xd8\xff\xda\0\0\xff\xd9");
     assert!(decode(&previewed).is_ok());
@@ -196,7 +196,7 @@ fn headers_that_claim_too_much_are_refused() {
 }
 
 #[test]
-fn files_that_are_no_pictures_are_named() {
+fn errors_of_files_that_are_not_images_state_the_content() {
     let folder = Folder::new("others");
     for (name, content, kind, wanted) in [
         ("text.jpg", &b"Dear reader, this is no picture"[..], ErrorKind::InvalidInput, "text (\"Dear reader"),
@@ -215,7 +215,7 @@ fn files_that_are_no_pictures_are_named() {
 }
 
 #[test]
-fn what_cannot_be_saved_leaves_nothing_behind() {
+fn failed_saves_leave_no_files() {
     let folder = Folder::new("refused");
     let name = |name: &str| folder.0.join(name);
     assert_eq!(save(&quarters(), name("a.gif")).unwrap_err().kind(), ErrorKind::Unsupported);

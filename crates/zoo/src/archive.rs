@@ -1,5 +1,5 @@
-//! Takes members out of packages, which may come from anyone: nothing is written by a name in them, links and names
-//! that leave their folder are refused, and what unpacks without end is stopped.
+//! Extraction of members from untrusted archives: member names never become paths, links and names that leave their folder are
+//! refused, and the unpacked size is bounded.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek};
@@ -13,20 +13,20 @@ use zip::ZipArchive;
 
 const MAX_MEMBERS: usize = 200_000;
 
-/// An archive may unpack to so many times its own size; weights hardly shrink at all.
+/// Maximum ratio of unpacked to packed size; weights hardly compress.
 const MAX_RATIO: u64 = 20;
 
-/// Which member of how many bytes is wanted, by name; `None` for those that are not.
-pub(crate) type Wanted<'a> = &'a dyn Fn(&str) -> Option<u64>;
+/// Selects members by name: returns the size in bytes of a member to extract, `None` for others.
+pub(crate) type Select<'a> = &'a dyn Fn(&str) -> Option<u64>;
 
-/// Hands every wanted member's name and bytes to `take`, in the archive's order. The kind (`.tgz`, `.whl`, `.zip`) is
-/// told by the first bytes.
+/// Passes name and bytes of every selected member to `take`, in the archive's order. The format (`.tgz`, `.whl`, `.zip`) is
+/// detected from the first bytes.
 ///
 /// # Errors
-/// `Integrity` when the archive is damaged or hostile, `Format` when it is neither kind, those of `take`.
+/// `Integrity` for a damaged or malicious archive, `Format` for other formats, those of `take`.
 pub(crate) fn extract(
     archive: &Path,
-    wanted: Wanted<'_>,
+    select: Select<'_>,
     take: &mut dyn FnMut(&str, Vec<u8>) -> Result<()>,
 ) -> Result<()> {
     let mut read = || -> Result<()> {
@@ -36,8 +36,8 @@ pub(crate) fn extract(
         file.read_exact(&mut start)?;
         file.rewind()?;
         match &start {
-            [0x1f, 0x8b] => extract_tgz(BufReader::new(file), budget, wanted, take),
-            b"PK" => extract_zip(BufReader::new(file), budget, wanted, take),
+            [0x1f, 0x8b] => extract_tgz(BufReader::new(file), budget, select, take),
+            b"PK" => extract_zip(BufReader::new(file), budget, select, take),
             _ => Err(Error::format("neither a .tgz nor a .zip")),
         }
     };
@@ -47,7 +47,7 @@ pub(crate) fn extract(
 fn extract_tgz(
     file: BufReader<File>,
     budget: u64,
-    wanted: Wanted<'_>,
+    select: Select<'_>,
     take: &mut dyn FnMut(&str, Vec<u8>) -> Result<()>,
 ) -> Result<()> {
     let mut archive = tar::Archive::new(Bounded { reader: GzDecoder::new(file), left: budget });
@@ -59,17 +59,17 @@ fn extract_tgz(
             continue;
         }
         let name = String::from_utf8(entry.path_bytes().into_owned())
-            .map_err(|_| Error::integrity("a member's name is no UTF-8"))?;
+            .map_err(|_| Error::integrity("a member's name is not UTF-8"))?;
         let name = if kind.is_dir() { name.trim_end_matches('/') } else { &name };
         member_path(name)?;
         if !kind.is_dir() && !kind.is_file() {
             return Err(refused_link(name));
         }
-        if let Some(size) = wanted(name).filter(|_| kind.is_file()) {
+        if let Some(size) = select(name).filter(|_| kind.is_file()) {
             take(name, read_member(entry, name, size)?)?;
         }
     }
-    // The checksum of the whole stands at the end.
+    // The checksum of the archive is at its end.
     io::copy(&mut archive.into_inner(), &mut io::sink()).map_err(damaged)?;
     Ok(())
 }
@@ -77,7 +77,7 @@ fn extract_tgz(
 fn extract_zip(
     file: BufReader<File>,
     mut budget: u64,
-    wanted: Wanted<'_>,
+    select: Select<'_>,
     take: &mut dyn FnMut(&str, Vec<u8>) -> Result<()>,
 ) -> Result<()> {
     let mut archive = ZipArchive::new(file).map_err(|error| damaged(error.into()))?;
@@ -90,7 +90,7 @@ fn extract_zip(
         if entry.is_symlink() {
             return Err(refused_link(name));
         }
-        if let Some(size) = wanted(name).filter(|_| entry.is_file()) {
+        if let Some(size) = select(name).filter(|_| entry.is_file()) {
             budget = budget.checked_sub(size).ok_or_else(endless)?;
             take(name, read_member(entry, name, size)?)?;
         }
@@ -108,7 +108,7 @@ fn read_member(entry: impl Read, name: &str, size: u64) -> Result<Vec<u8>> {
     Err(Error::integrity(format!("the member {name:?} has {found} bytes instead of {size}")))
 }
 
-/// Fails when more than `left` bytes come.
+/// Reader that fails after more than `left` bytes.
 struct Bounded<R> {
     reader: R,
     left: u64,
@@ -123,14 +123,14 @@ impl<R: Read> Read for Bounded<R> {
 }
 
 fn endless() -> Error {
-    Error::integrity(format!("it unpacks to more than {MAX_RATIO} times its size: refused"))
+    Error::integrity(format!("the archive unpacks to more than {MAX_RATIO} times its size: refused"))
 }
 
 fn check_count(count: usize) -> Result<()> {
     if count <= MAX_MEMBERS {
         return Ok(());
     }
-    Err(Error::integrity(format!("more than {MAX_MEMBERS} members: refused")))
+    Err(Error::integrity(format!("the archive has more than {MAX_MEMBERS} members: refused")))
 }
 
 fn refused_link(name: &str) -> Error {

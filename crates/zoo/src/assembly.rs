@@ -1,4 +1,4 @@
-//! Makes the finished item from files of the cache.
+//! Assembly of items from files of the cache.
 
 use std::path::{Path, PathBuf};
 use std::{fs, io};
@@ -12,7 +12,7 @@ use crate::import::imported;
 use crate::item::Item;
 use crate::repository::card_files;
 
-/// What it takes to make an item.
+/// Assembly of one item.
 pub(crate) struct Assembly<'a> {
     pub(crate) item: &'a Item<'a>,
     pub(crate) cache: &'a Cache,
@@ -20,8 +20,7 @@ pub(crate) struct Assembly<'a> {
 }
 
 impl Assembly<'_> {
-    /// Makes it of the card's files; `None` when one is missing or was damaged since it came.
-    /// `parts` go into it.
+    /// Makes the item from the card's files and `parts`; returns `None` if a file is missing or was damaged after its download.
     pub(crate) fn of_files(&self, folder: &Path, parts: &[(&str, Model)]) -> Result<Option<PathBuf>> {
         let files = &self.item.variant.files;
         if !files.iter().all(|file| self.cache.has(file)) {
@@ -42,7 +41,7 @@ impl Assembly<'_> {
         made.map(Some).context(|| format!("making {}", self.item))
     }
 
-    /// Makes it of a repository's container, whose files are in the cache.
+    /// Makes the item from a repository's container, whose files are in the cache.
     pub(crate) fn of_container(&self, folder: &Path, manifest: Manifest) -> Result<PathBuf> {
         let files = card_files(&manifest)?;
         let work = self.cache.work(self.progress)?;
@@ -86,7 +85,7 @@ impl Assembly<'_> {
 
     fn sample(&self, folder: &Path, files: &[Vec<u8>]) -> Result<PathBuf> {
         let (Some(file), Some(bytes)) = (self.item.variant.files.first(), files.first()) else {
-            return Err(Error::format("a sample without a file"));
+            return Err(Error::format("the sample has no file"));
         };
         let work = self.cache.work(self.progress)?;
         let made = work.folder("item")?;
@@ -96,7 +95,7 @@ impl Assembly<'_> {
     }
 }
 
-/// Moves a finished folder to its place in the cache; what is there is not whole, else nothing would be made.
+/// Moves a finished folder to its place in the cache, where at most an incomplete one exists.
 fn place(made: &Path, folder: &Path) -> Result<()> {
     fs::remove_dir_all(folder).or_else(absent_is_fine).context(|| folder.display().to_string())?;
     if let Some(parent) = folder.parent() {
@@ -105,7 +104,7 @@ fn place(made: &Path, folder: &Path) -> Result<()> {
     fs::rename(made, folder).context(|| folder.display().to_string())
 }
 
-/// Turns the removal of what is not there into a success.
+/// Treats the removal of a missing file as success.
 pub(crate) fn absent_is_fine(error: io::Error) -> io::Result<()> {
     if error.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(error) }
 }

@@ -1,12 +1,12 @@
-//! The cache: one folder, shared by processes, whose complete parts are never written to again.
+//! The cache: one folder, shared by processes, whose complete files are never modified.
 //!
 //! ```text
-//! blobs/<sha256>                     a file as its source has it, checked
-//! parts/<sha256>                     a download that goes on where it stopped
-//! items/<learner>/<variant>-<hash>/  a container or sample, ready
-//! locks/, work/                      who is at what
+//! blobs/<sha256>                     a checked file of a source
+//! parts/<sha256>                     an incomplete download, which resumes
+//! items/<learner>/<variant>-<hash>/  a finished container or sample
+//! locks/, work/                      locks and temporary folders of processes
 //! ```
-//! Whatever is written goes to `work/` or `parts/` first and is renamed when it is complete.
+//! Files are written to `work/` or `parts/` and renamed when they are complete.
 
 use std::fs::{self, File};
 use std::io::{BufReader, Write};
@@ -29,18 +29,18 @@ impl Cache {
         Self { root }
     }
 
-    /// Where an item's folder is when it is ready; `recipe` stands for all that went into it.
+    /// Returns the folder of a finished item; `recipe` is the hash of its contents.
     pub(crate) fn item(&self, learner: &str, variant: &str, recipe: &Sha256) -> PathBuf {
         let recipe = recipe.to_string();
         self.root.join("items").join(learner).join(format!("{variant}-{}", &recipe[..12]))
     }
 
-    /// Whether the file is there in full; its checksum was right when it came.
+    /// Returns whether the complete file is in the cache; its checksum was verified at the download.
     pub(crate) fn has(&self, file: &CardFile) -> bool {
         fs::metadata(self.blob(&file.sha256)).is_ok_and(|found| found.len() == file.size)
     }
 
-    /// The file's bytes. One that was damaged since is removed, so that it is got again.
+    /// Returns the file's bytes. A damaged file is removed, so that it is downloaded again.
     pub(crate) fn read(&self, file: &CardFile) -> Result<Vec<u8>> {
         let path = self.blob(&file.sha256);
         let bytes = fs::read(&path).context(|| path.display().to_string())?;
@@ -50,7 +50,7 @@ impl Cache {
         Ok(bytes)
     }
 
-    /// Takes a file in, by way of a work folder.
+    /// Adds a file, by way of a work folder.
     pub(crate) fn insert(&self, file: &CardFile, bytes: &[u8], work: &WorkFolder) -> Result<()> {
         file.sha256.check(&file.name, bytes)?;
         let path = work.path().join("blob");
@@ -59,7 +59,7 @@ impl Cache {
         self.adopt(&path, &file.sha256)
     }
 
-    /// Takes a downloaded part in when it is the file; else removes it.
+    /// Adds a finished download if its size and checksum are right; else removes it.
     pub(crate) fn adopt_part(&self, file: &CardFile) -> Result<()> {
         let part = self.part(&file.sha256);
         let reader = BufReader::new(File::open(&part).context(|| part.display().to_string())?);
@@ -82,18 +82,18 @@ impl Cache {
         self.root.join("blobs").join(sha256.to_string())
     }
 
-    /// Where the unfinished download of a file lies.
+    /// Returns the path of the incomplete download of a file.
     pub(crate) fn part(&self, sha256: &Sha256) -> PathBuf {
         self.root.join("parts").join(sha256.to_string())
     }
 
-    /// Waits for the turn to get `what`; `key` names the lock.
+    /// Waits for the lock `key` for the download of `what`.
     pub(crate) fn lock(&self, key: &str, what: &str, progress: &dyn Progress) -> Result<Lock> {
         let name: String = key.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
         Lock::acquire(&self.root.join("locks").join(format!("{name}.lock")), what, progress)
     }
 
-    /// A new folder for unfinished work, on the cache's own disk.
+    /// Creates a temporary folder on the disk of the cache.
     pub(crate) fn work(&self, progress: &dyn Progress) -> Result<WorkFolder> {
         WorkFolder::new(&self.root.join("work"), progress)
     }

@@ -1,4 +1,4 @@
-//! Model cards: what a learner's models are, under which terms, and where they come from.
+//! Model cards: the models of a learner, their licences and their sources.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,6 @@ use opendr_engine::{Error, Result, Task};
 use serde::{Deserialize, Deserializer};
 use serde_json::{Map, Value};
 
-use crate::check::check_card;
 use crate::source::Source;
 
 /// One file `models/<learner>.toml`. `models/README.md` describes the format.
@@ -16,22 +15,22 @@ use crate::source::Source;
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct Card {
-    /// What its items are.
+    /// Kind of the items.
     #[serde(default)]
     pub kind: ItemKind,
     /// Registry name of the learner; for samples the name of the collection.
     pub learner: String,
-    /// What the learner is for.
+    /// Task of the learner.
     #[serde(default)]
     pub task: Option<Task>,
-    /// The learner in one line.
+    /// Description of the learner in one line.
     pub description: String,
-    /// The variants, of which one is the default; none where nobody gives weights away and users train their own.
+    /// Variants, of which one is the default; empty if no pretrained weights are available.
     #[serde(default)]
     pub variants: Vec<Variant>,
 }
 
-/// What the items of a card are.
+/// Kind of the items of a card.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -39,7 +38,7 @@ pub enum ItemKind {
     /// Models for the card's learner.
     #[default]
     Model,
-    /// Pictures and recordings to try a learner on.
+    /// Images and recordings to try a learner on.
     Sample,
 }
 
@@ -48,25 +47,25 @@ pub enum ItemKind {
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct Variant {
-    /// The name after the slash, e.g. `"coco_416"`.
+    /// Name after the slash, such as `"coco_416"`.
     pub name: String,
-    /// Whether it is meant when no variant is named.
+    /// Whether it is the variant of a name without one.
     #[serde(default)]
     pub default: bool,
-    /// Whether `opendr demo` shows it: one model, and one picture.
+    /// Whether `opendr demo` uses it; true for one model and one image.
     #[serde(default)]
     pub demo: bool,
-    /// What distinguishes it, in one line.
+    /// Difference from the other variants, in one line.
     #[serde(default)]
     pub description: String,
-    /// The folder that a download to a folder of the user's makes, where OpenDR's programs count on its name;
-    /// `<learner>/<variant>` without.
+    /// Name of the folder in a download to a user's folder, where programs of OpenDR 3.0 expect a certain name
+    /// (default: `<learner>/<variant>`).
     #[serde(default)]
     pub folder: Option<String>,
-    /// Name of the list in `models/classes` that names its classes.
+    /// Name of the list of classes in `models/classes`.
     #[serde(default)]
     pub classes: Option<String>,
-    /// The learner's parameters that belong to these weights.
+    /// Parameters of the learner for these weights.
     #[serde(default)]
     pub params: ParamMap,
     /// Layout, size and normalisation of the inputs.
@@ -77,19 +76,19 @@ pub struct Variant {
     /// Accuracy on named data.
     #[serde(default)]
     pub metrics: Map<String, Value>,
-    /// What `opendr bench` measured.
+    /// Speed and memory measured by `opendr bench`.
     #[serde(default)]
     pub speed: Option<Speed>,
-    /// The files to get; none for a rule, which has no weights.
+    /// Files to download; empty for an algorithm without weights.
     #[serde(default)]
     pub files: Vec<CardFile>,
-    /// Models of the zoo that it carries as parts (`Model::part`): the name of the part, and the item.
+    /// Models of the zoo that it contains as parts (`Model::part`): name of the part, and item.
     #[serde(default)]
     pub parts: BTreeMap<String, String>,
-    /// How the model's files are made from them, one network each; empty when they are the model.
+    /// Conversions of the files into the model's networks; empty when the files need none.
     #[serde(default, deserialize_with = "one_or_several")]
     pub import: Vec<Import>,
-    /// Where the files are, in the order in which to try; none where there are no files.
+    /// Sources of the files, in the order of use; empty without files.
     #[serde(default)]
     pub sources: Vec<Source>,
 }
@@ -99,16 +98,17 @@ pub struct Variant {
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct Speed {
-    /// Frames a second from decoded picture to targets, or calls a second; none of a sound.
+    /// Frames per second from decoded image to targets, or calls per second; `None` for audio.
     pub fps: Option<f64>,
-    /// Of a sound, the time for a second of it.
+    /// Processing time per second of audio.
     pub real_time_factor: Option<f64>,
-    /// Median time of a call, milliseconds.
+    /// Median time of a call, in milliseconds.
     pub p50_ms: Option<f64>,
     /// Peak memory of the process in MB (10^6 bytes).
     pub peak_mb: f64,
-    /// Processor, threads, runtime.
-    pub on: String,
+    /// CPU, threads and runtime of the measurement.
+    #[serde(alias = "on")]
+    pub measured_on: String,
 }
 
 /// One file that an item needs.
@@ -118,44 +118,43 @@ pub struct Speed {
 pub struct CardFile {
     /// Name inside the container.
     pub name: String,
-    /// Bytes.
+    /// Size in bytes.
     pub size: u64,
-    /// Checksum.
+    /// SHA-256 checksum.
     pub sha256: Sha256,
 }
 
-/// How files of another format become ONNX files; a table in the card, or a list of tables.
+/// Conversion of files of another format to ONNX; a table in the card, or a list of tables.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(tag = "format", rename_all = "snake_case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum Import {
-    /// A TensorFlow.js graph model: the first of the files is its JSON, the others are its weights in the JSON's order.
+    /// A TensorFlow.js graph model: the JSON file first, then its weights in the order of the JSON.
     Tfjs(ImportedNetwork),
     /// A TensorFlow Lite model, one file.
     Tflite(ImportedNetwork),
-    /// A model of ncnn's: the text of its layers, then its weights.
+    /// An ncnn model: the `.param` file, then the weights.
     Ncnn(ImportedNetwork),
-    /// A Whisper that CTranslate2 converted: the first of the files is its `model.bin`, of which `encoder.onnx` and
-    /// `decoder.onnx` are made; the others go into the container as they are.
+    /// A Whisper model of CTranslate2: its `model.bin` first, from which `encoder.onnx` and `decoder.onnx` are made; other files are
+    /// copied into the container.
     Ctranslate2Whisper,
-    /// A Whisper that transformers saved: the first of the files is its `model.safetensors`; else as `Ctranslate2Whisper`.
+    /// A Whisper model of transformers: its `model.safetensors` first; else as `Ctranslate2Whisper`.
     SafetensorsWhisper,
-    /// A Whisper that PyTorch exported: the first of the files is its `encoder_model.onnx`, the second its `decoder_model.onnx`;
-    /// else as `Ctranslate2Whisper`.
+    /// A Whisper model exported by PyTorch: its `encoder_model.onnx`, then its `decoder_model.onnx`; else as `Ctranslate2Whisper`.
     OnnxWhisper,
 }
 
-/// One network that is made of files of another format.
+/// One network converted from files of another format.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ImportedNetwork {
-    /// Which of the card's files it is made of; all when empty.
+    /// Names of the card's files to convert; all when empty.
     #[serde(default)]
     pub files: Vec<String>,
-    /// Name of the file that is made.
+    /// Name of the written file.
     #[serde(default = "model_onnx")]
     pub output: String,
-    /// Height and width of an image input whose size the model leaves open.
+    /// Height and width of an image input of dynamic shape.
     #[serde(default)]
     pub image_size: Option<(usize, usize)>,
     /// Outputs to keep; all when empty.
@@ -170,10 +169,10 @@ impl Default for ImportedNetwork {
 }
 
 impl Import {
-    /// What is made of a Whisper.
+    /// Files written for a Whisper model.
     pub(crate) const WHISPER: [&'static str; 2] = ["encoder.onnx", "decoder.onnx"];
 
-    /// Names of the files that are made.
+    /// Returns the names of the written files.
     pub fn outputs(&self) -> Vec<&str> {
         match self {
             Self::Tfjs(network) | Self::Tflite(network) | Self::Ncnn(network) => vec![&network.output],
@@ -181,7 +180,7 @@ impl Import {
         }
     }
 
-    /// Those of the card's files that it names; all are meant when it names none.
+    /// Returns the names of the card's files to convert; empty means all.
     pub(crate) fn named_files(&self) -> &[String] {
         match self {
             Self::Tfjs(network) | Self::Tflite(network) | Self::Ncnn(network) => &network.files,
@@ -189,7 +188,7 @@ impl Import {
         }
     }
 
-    /// Which of `files` it is made of, in the order in which it names them.
+    /// Returns those of `files` that are converted, in the order of their names in the import.
     pub(crate) fn files_of<'a>(&self, files: &'a [CardFile]) -> Vec<&'a CardFile> {
         match self.named_files() {
             [] => files.iter().collect(),
@@ -216,33 +215,19 @@ fn model_onnx() -> String {
 }
 
 impl Card {
-    /// Reads a card and checks that everything in it is sound: names, paths, addresses, sizes, one default.
+    /// Returns the variant called `name`, or the default one.
     ///
     /// # Errors
-    /// `Format` when it is no card, `Integrity` when a name in it could leave its folder.
-    pub fn from_toml(text: &str) -> Result<Self> {
-        if text.len() > MAX_CARD_BYTES {
-            return Err(Error::format(format!("a card of {} bytes: at most {MAX_CARD_BYTES}", text.len())));
-        }
-        let card: Self = toml::from_str(text)
-            .map_err(|error| Error::format("the card does not fit").with_source(error))?;
-        check_card(&card).map_err(|error| error.context(format!("the card {:?}", card.learner)))?;
-        Ok(card)
-    }
-
-    /// The variant called `name`, or the default one.
-    ///
-    /// # Errors
-    /// `NotFound`, naming those there are.
+    /// `NotFound`, with the existing names.
     pub fn variant(&self, name: Option<&str>) -> Result<&Variant> {
         if self.variants.is_empty() {
             return Err(Error::not_found(format!(
-                "nobody gives weights of {0} away: train it on your own data (opendr fit {0})",
+                "{0} has no pretrained weights: train it on your own data (opendr fit {0})",
                 self.learner
             )));
         }
-        let wanted = |variant: &&Variant| name.map_or(variant.default, |name| variant.name == name);
-        self.variants.iter().find(wanted).ok_or_else(|| {
+        let named = |variant: &&Variant| name.map_or(variant.default, |name| variant.name == name);
+        self.variants.iter().find(named).ok_or_else(|| {
             let names: Vec<_> = self.variants.iter().map(|variant| variant.name.as_str()).collect();
             Error::not_found(format!(
                 "{} has no variant {:?}; there are {}",
@@ -255,10 +240,8 @@ impl Card {
 }
 
 impl Variant {
-    /// What its files take together, in bytes; a package that carries them may be larger.
+    /// Returns the total size of its files in bytes; a package that contains them may be larger.
     pub fn size(&self) -> u64 {
         self.files.iter().map(|file| file.size).sum()
     }
 }
-
-const MAX_CARD_BYTES: usize = 1 << 20;

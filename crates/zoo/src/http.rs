@@ -1,4 +1,4 @@
-//! Talking http and https: time limits, retries, one kind of error.
+//! HTTP client with time limits and retries.
 
 use std::io;
 use std::time::Duration;
@@ -11,29 +11,29 @@ use ureq::{Agent, Body};
 use crate::stop::unless_stopped;
 use crate::stopped;
 
-/// So many tries in a row may bring nothing.
+/// Maximum number of successive attempts without progress.
 const TRIES: u32 = 3;
-/// So many tries in all, for a server that gives a little each time.
+/// Maximum number of attempts in all, for a server that sends a little each time.
 const MOST_TRIES: u32 = 50;
 
-/// A client that trusts the certificates that the system trusts, so that company proxies work.
+/// Client with the certificates of the system, so that company proxies work.
 #[derive(Debug, Clone)]
 pub(crate) struct Http {
     agent: Agent,
     pause: Duration,
 }
 
-/// Why a try did not end well.
+/// Failure of an attempt.
 #[derive(Debug)]
 pub(crate) enum Failure {
-    /// Another try may help; `gained` tells whether this one brought something.
+    /// A retry may succeed; `gained` is whether this attempt received data.
     Passing { error: Error, gained: bool },
-    /// It would fail again.
+    /// A retry would fail too.
     Final(Error),
 }
 
 impl Http {
-    /// `timeout` limits each wait for the server, `pause` is that after a try that brought something, and doubles with each that does not.
+    /// `timeout` limits each wait for the server. `pause` is the wait before a retry; it doubles with each attempt without progress.
     pub(crate) fn new(timeout: Duration, pause: Duration) -> Self {
         let config = Agent::config_builder()
             .user_agent(concat!("opendr/", env!("CARGO_PKG_VERSION")))
@@ -46,7 +46,7 @@ impl Http {
         Self { agent: config.build().into(), pause }
     }
 
-    /// The answer to a GET with these headers, when its status is one of success.
+    /// Returns the successful response to a GET request with these headers.
     pub(crate) fn get(
         &self,
         address: &str,
@@ -63,7 +63,7 @@ impl Http {
         if status.is_success() || status == StatusCode::RANGE_NOT_SATISFIABLE {
             return Ok(response);
         }
-        let text = format!("the server answers {status}");
+        let text = format!("the server returned {status}");
         Err(match status {
             StatusCode::NOT_FOUND | StatusCode::GONE => Failure::Final(Error::not_found(text)),
             StatusCode::REQUEST_TIMEOUT | StatusCode::TOO_MANY_REQUESTS => passing(text),
@@ -72,7 +72,7 @@ impl Http {
         })
     }
 
-    /// Tries until it works, it cannot work, or nothing comes any more.
+    /// Repeats an attempt until it succeeds, fails finally, or makes no more progress.
     pub(crate) fn retry<T>(
         &self,
         address: &str,
@@ -101,7 +101,7 @@ impl Http {
         }
     }
 
-    /// A small file, or `None` when the server has no such file.
+    /// Returns a small file, or `None` when the server does not have it.
     pub(crate) fn small(
         &self,
         address: &str,
@@ -116,7 +116,7 @@ impl Http {
         match self.retry(address, progress, read) {
             Ok(bytes) => Ok(Some(bytes)),
             Err(error) if error.kind() == opendr_engine::ErrorKind::NotFound => Ok(None),
-            Err(error) => Err(error).context(|| "asking the repository"),
+            Err(error) => Err(error).context(|| "reading from the repository"),
         }
     }
 }
@@ -125,9 +125,12 @@ pub(crate) fn passing(text: impl Into<String>) -> Failure {
     Failure::Passing { error: Error::network(text), gained: false }
 }
 
-/// What went wrong while a body was read.
+/// Converts an error of reading a body.
 pub(crate) fn from_io(error: io::Error) -> Failure {
-    Failure::Passing { error: Error::network("the connection broke").with_source(error), gained: false }
+    Failure::Passing {
+        error: Error::network("the connection was interrupted").with_source(error),
+        gained: false,
+    }
 }
 
 fn from_ureq(error: ureq::Error) -> Failure {
@@ -140,7 +143,7 @@ fn from_ureq(error: ureq::Error) -> Failure {
             gained: false,
         },
         BadUri(_) | TooManyRedirects | BodyExceedsLimit(_) => {
-            Failure::Final(Error::network("the server's answer is of no use").with_source(error))
+            Failure::Final(Error::network("the server's response is invalid").with_source(error))
         }
         error => Failure::Final(Error::network("the connection failed").with_source(error)),
     }

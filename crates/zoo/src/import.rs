@@ -1,4 +1,4 @@
-//! Turns files of other formats into ONNX.
+//! Conversion of model files of other formats to ONNX.
 
 use std::borrow::Cow;
 
@@ -10,16 +10,16 @@ use opendr_import::{
 
 use crate::card::{Import, ImportedNetwork};
 
-/// Changes whenever the importer's sources do, so that no stale conversion is ever used.
+/// Version of the importer, which changes with its sources, so that no outdated conversion is used.
 pub(crate) const IMPORTER: &str = env!("OPENDR_IMPORTER");
 
 /// Names and bytes of files.
 type Files<'a> = Vec<(&'a str, Cow<'a, [u8]>)>;
 
-/// The files that are made; `files` are those that they are made of, with their names, in the import's order.
+/// Returns the converted files; `files` are the inputs with their names, in the order of the import.
 pub(crate) fn imported<'a>(import: &'a Import, files: &[(&'a str, &'a [u8])]) -> Result<Files<'a>> {
     let Some(((_, first), others)) = files.split_first() else {
-        return Err(Error::format("a model without files"));
+        return Err(Error::format("the model has no files"));
     };
     match import {
         Import::Tfjs(network) => {
@@ -27,20 +27,24 @@ pub(crate) fn imported<'a>(import: &'a Import, files: &[(&'a str, &'a [u8])]) ->
             let named = tfjs_weight_files(first)?.len();
             if named != weights.len() {
                 let given = weights.len();
-                return Err(Error::format(format!("the model has {named} weight files, the card {given}")));
+                return Err(Error::format(format!(
+                    "the model has {named} weight files, but the card has {given}"
+                )));
             }
             Ok(vec![(&network.output, onnx_from_tfjs(first, &weights, &options(network))?.into())])
         }
         Import::Tflite(network) if others.is_empty() => {
             Ok(vec![(&network.output, onnx_from_tflite(first, &options(network))?.into())])
         }
-        Import::Tflite(_) => Err(Error::format(format!("a TensorFlow Lite model of {} files", files.len()))),
+        Import::Tflite(_) => {
+            Err(Error::format(format!("a TensorFlow Lite model has one file, not {}", files.len())))
+        }
         Import::Ncnn(network) => match others {
             [(_, weights)] => {
                 Ok(vec![(&network.output, onnx_from_ncnn(first, weights, &options(network))?.into())])
             }
             _ => Err(Error::format(format!(
-                "an ncnn model of {} files: layers and weights are two",
+                "an ncnn model has two files (.param and weights), not {}",
                 files.len()
             ))),
         },
@@ -53,12 +57,12 @@ pub(crate) fn imported<'a>(import: &'a Import, files: &[(&'a str, &'a [u8])]) ->
         }
         Import::OnnxWhisper => match others {
             [(_, decoder), others @ ..] => Ok(whisper(whisper_from_onnx(first, decoder)?, others)),
-            [] => Err(Error::format("a Whisper has an encoder and a decoder; give both files")),
+            [] => Err(Error::format("a Whisper model has an encoder and a decoder; give both files")),
         },
     }
 }
 
-/// The networks, and what goes with them as it is.
+/// Returns the networks and the files that are copied unchanged.
 fn whisper<'a>(networks: WhisperOnnx, others: &[(&'a str, &'a [u8])]) -> Files<'a> {
     let [encoder, decoder] = Import::WHISPER;
     let made = [(encoder, networks.encoder.into()), (decoder, networks.decoder.into())];

@@ -1,4 +1,4 @@
-//! Models that a user has, of formats that their content tells.
+//! Import of a user's model files, whose format is detected from their content.
 
 use std::path::Path;
 
@@ -9,18 +9,18 @@ use opendr_import::{ImportOptions, SafetensorsFile, is_exported_whisper};
 use crate::card::{Import, ImportedNetwork};
 use crate::import::imported;
 
-/// The most bytes of a file: an ONNX file holds no more than 2 GiB.
+/// Maximum size of a file in bytes; an ONNX file cannot exceed 2 GiB.
 const MAX_BYTES: u64 = 1 << 31;
 
-/// Makes a container at `output` of files that a user has, converted to ONNX where they are not: a model of TensorFlow
-/// Lite, TensorFlow.js (its JSON first, then its weights) or ncnn (its layers first, then its weights), the weights of a
-/// Whisper by CTranslate2, in safetensors or in two ONNX files that PyTorch exported (the encoder first). Which it is shows in the first file's content; what is not part of it, such as
-/// a tokeniser, goes into the container as it is, and one ONNX file becomes `model.onnx`. It is put there once `check`
-/// accepts it, e.g. because the learner loads it.
+/// Makes a container at `output` from a user's files, converted to ONNX: a model of TensorFlow Lite, TensorFlow.js (the JSON first,
+/// then the weights) or ncnn (the `.param` file first, then the weights), or Whisper weights of CTranslate2, in safetensors, or in
+/// two ONNX files exported by PyTorch (the encoder first). The format is detected from the content of the first file. Further
+/// files, such as a tokeniser, are copied; a single ONNX file becomes `model.onnx`. The container replaces `output` only if
+/// `check` accepts it, for example because the learner loads it.
 ///
 /// # Errors
-/// `NotFound` or `Io` for files that cannot be read, `Unsupported` for what is of no known format, else what is wrong with
-/// the files, and what `check` returns. What is at `output` stays then.
+/// `NotFound` or `Io` for files that cannot be read, `Unsupported` for an unknown format, the error of an invalid file, and that
+/// of `check`. `output` is then unchanged.
 pub fn import_files(
     manifest: Manifest,
     files: &[impl AsRef<Path>],
@@ -32,11 +32,14 @@ pub fn import_files(
     for path in files {
         let path = path.as_ref();
         let name = path.file_name().and_then(|name| name.to_str());
-        let name = name.ok_or_else(|| Error::invalid_input(format!("{} is no file", path.display())))?;
+        let name = name.ok_or_else(|| Error::invalid_input(format!("{} is not a file", path.display())))?;
         let size = path.metadata().context(|| path.display().to_string())?.len();
         if size > MAX_BYTES {
             let mb = size >> 20;
-            return Err(Error::unsupported(format!("{} of {mb} MB; at most 2048 MB", path.display())));
+            return Err(Error::unsupported(format!(
+                "{} has {mb} MB; at most 2048 MB are supported",
+                path.display()
+            )));
         }
         given.push((name, std::fs::read(path).context(|| path.display().to_string())?));
     }
@@ -86,14 +89,14 @@ impl Format {
             () if name.to_lowercase().ends_with(".onnx") => Self::Onnx,
             () => {
                 return Err(Error::unsupported(format!(
-                    "{name} is of no known format; give an .onnx, a .tflite, the JSON of a TensorFlow.js graph model, the \
-                     .param of ncnn, a Whisper's model.bin of CTranslate2 or its model.safetensors"
+                    "{name} has no known format; give an .onnx, a .tflite, the JSON of a TensorFlow.js graph model, the \
+                     .param of an ncnn model, or the model.bin (CTranslate2) or model.safetensors of a Whisper model"
                 )));
             }
         })
     }
 
-    /// How it is imported; `None` for what is ONNX.
+    /// Returns the conversion of the format; `None` for ONNX.
     fn import(self, options: &ImportOptions) -> Option<Import> {
         let network = || ImportedNetwork {
             image_size: options.image_size,
@@ -111,7 +114,7 @@ impl Format {
         }
     }
 
-    /// How many of the files it is made of, from the first, which has `bytes`.
+    /// Returns the number of leading files that form the model; `bytes` is the first file.
     fn files(self, bytes: &[u8]) -> Result<usize> {
         Ok(match self {
             Self::Tfjs => 1 + opendr_import::tfjs_weight_files(bytes)?.len(),
@@ -126,7 +129,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn content_tells_the_format() {
+    fn format_is_detected_from_content() {
         let safetensors = [&2u64.to_le_bytes()[..], b"{}"].concat();
         let cases: [(&str, &[u8], Format); 7] = [
             ("a.bin", b"\x1c\0\0\0TFL3rest", Format::Tflite),

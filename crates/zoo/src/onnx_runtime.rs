@@ -1,4 +1,4 @@
-//! Gets ONNX Runtime's library into the cache, out of its Python package.
+//! Installation of ONNX Runtime's library into the cache, from its Python package.
 
 use std::fmt;
 use std::fs::{self, File};
@@ -15,10 +15,10 @@ use crate::lock::Lock;
 use crate::pip::{self, Wheel};
 use crate::work_folder::WorkFolder;
 
-/// The Python that the wheel is for when the registry has none for the installed one; the library is the same in all.
+/// Python version of the wheel when the registry has none for the installed version; the library is the same in all wheels.
 const OTHER_PYTHON: &str = "3.12";
 
-/// Bytes of the largest library that is taken out of a wheel; that of 1.31 has 24 MB.
+/// Maximum size of the library in a wheel, in bytes; that of 1.31 has 24 MB.
 const MAX_SIZE: u64 = 512 << 20;
 
 /// Loads the library and prints its version: `OrtGetApiBase()->GetVersionString()`.
@@ -29,32 +29,35 @@ base.restype = ctypes.POINTER(ctypes.c_void_p)
 print(ctypes.CFUNCTYPE(ctypes.c_char_p)(base()[1])().decode())
 ";
 
-/// What [`install_onnx_runtime`] came to; its text says so to people.
+/// Result of [`install_onnx_runtime`]. `Display` prints one line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct InstalledRuntime {
-    /// Where the library is.
+    /// Path of the library.
     pub path: PathBuf,
-    /// ONNX Runtime's version.
+    /// Version of ONNX Runtime.
     pub version: String,
-    /// Bytes of the library.
+    /// Size of the library in bytes.
     pub size: u64,
-    /// Whether it was there before.
-    pub was_there: bool,
+    /// Whether the library was already in the cache.
+    pub was_cached: bool,
 }
 
 impl fmt::Display for InstalledRuntime {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let did = if self.was_there { "is there already" } else { "got with pip and checked that it loads" };
+        let did = if self.was_cached {
+            "already in the cache"
+        } else {
+            "downloaded with pip and loaded as a check"
+        };
         let megabytes = self.size as f64 / 1e6;
         write!(f, "ONNX Runtime {}, {did}: {} ({megabytes:.1} MB)", self.version, self.path.display())
     }
 }
 
-/// Gets ONNX Runtime's library into the cache, where this and later processes find it; installs nothing elsewhere.
+/// Installs ONNX Runtime's library into the cache, where this and later processes use it; writes nothing elsewhere.
 ///
-/// Of several processes that do so at once one works and the others wait for it. One that is killed leaves nothing
-/// that counts.
+/// Of several processes at once, one downloads and the others wait. A killed process leaves no incomplete library.
 ///
 /// # Errors
 /// `Unsupported` when Python has no pip, `NotFound` when the registry has no package for this machine, `Network` when
@@ -62,7 +65,7 @@ impl fmt::Display for InstalledRuntime {
 pub fn install_onnx_runtime(options: &ZooOptions, progress: &dyn Progress) -> Result<InstalledRuntime> {
     let folder = OnnxRuntime::cache_folder(&options.cache);
     let _turn = Lock::acquire(&options.cache.join("locks/onnxruntime.lock"), "ONNX Runtime", progress)?;
-    if let Some(installed) = there_already(&folder) {
+    if let Some(installed) = cached(&folder) {
         return Ok(installed);
     }
     if options.offline {
@@ -76,31 +79,29 @@ pub fn install_onnx_runtime(options: &ZooOptions, progress: &dyn Progress) -> Re
     let library = library_from_wheel(&wheel, work.path()).context(|| wheel.display().to_string())?;
     let version = version_of(&library)?;
     if !OnnxRuntime::is_supported(&version) {
-        return Err(Error::unsupported(format!(
-            "pip brought ONNX Runtime {version}, which is too old to use"
-        )));
+        return Err(Error::unsupported(format!("pip downloaded ONNX Runtime {version}, which is too old")));
     }
     let path = folder.join(library.file_name().unwrap_or_default());
     fs::create_dir_all(&folder).context(|| folder.display().to_string())?;
     fs::rename(&library, &path).context(|| path.display().to_string())?;
-    OnnxRuntime::search_again();
-    Ok(InstalledRuntime { size: fs::metadata(&path)?.len(), path, version, was_there: false })
+    OnnxRuntime::reset_search();
+    Ok(InstalledRuntime { size: fs::metadata(&path)?.len(), path, version, was_cached: false })
 }
 
-/// Only libraries that were checked get to the cache.
-fn there_already(folder: &Path) -> Option<InstalledRuntime> {
+/// Returns the library in the cache, which holds checked libraries only.
+fn cached(folder: &Path) -> Option<InstalledRuntime> {
     let path = OnnxRuntime::libraries_in(folder).into_iter().next()?;
     let version = version_of(&path).ok().filter(|version| OnnxRuntime::is_supported(version))?;
     let size = fs::metadata(&path).ok()?.len();
-    Some(InstalledRuntime { path, version, size, was_there: true })
+    Some(InstalledRuntime { path, version, size, was_cached: true })
 }
 
 fn wheel(python: Option<&str>, work: &WorkFolder, progress: &dyn Progress) -> Result<PathBuf> {
-    let requirement = format!("onnxruntime>={}", OnnxRuntime::OLDEST);
+    let requirement = format!("onnxruntime>={}", OnnxRuntime::MIN_VERSION);
     pip::download(&Wheel { requirement: &requirement, size: None, python, platform: None }, work, progress)
 }
 
-/// Unpacks the library alone, under its own name, into `folder`.
+/// Extracts only the library, under its own name, into `folder`.
 fn library_from_wheel(wheel: &Path, folder: &Path) -> Result<PathBuf> {
     let damaged = |error: io::Error| Error::integrity("the archive is damaged").with_source(error);
     let mut archive =
@@ -113,35 +114,36 @@ fn library_from_wheel(wheel: &Path, folder: &Path) -> Result<PathBuf> {
             continue;
         };
         if !entry.is_file() || entry.size() > MAX_SIZE {
-            return Err(Error::integrity(format!("the member {name:?} is no file of a fitting size")));
+            return Err(Error::integrity(format!("the member {name:?} is not a file of an allowed size")));
         }
         let (path, size) = (folder.join(name), entry.size());
         let mut file = File::create(&path)?;
         let written = io::copy(&mut entry.take(size + 1), &mut file).map_err(damaged)?;
         if written != size {
             return Err(Error::integrity(format!(
-                "the member {name:?} has not the {size} bytes that it states"
+                "the member {name:?} does not have its stated size of {size} bytes"
             )));
         }
         file.sync_all()?;
         return Ok(path);
     }
-    Err(Error::integrity("no library of ONNX Runtime in it"))
+    Err(Error::integrity("the wheel contains no library of ONNX Runtime"))
 }
 
-/// Asks the library in a process of its own: this one may have another loaded, and a broken one must not take it along.
+/// Returns the version of the library, from a process of its own: this process may have another version loaded, and a broken
+/// library must not crash it.
 fn version_of(library: &Path) -> Result<String> {
     let output = Command::new(pip::python_with_pip()?)
         .args(["-c", PRINT_VERSION])
         .arg(library)
         .stdin(Stdio::null())
         .output()
-        .context(|| "asking ONNX Runtime for its version")?;
+        .context(|| "reading the version of ONNX Runtime")?;
     let words = |bytes: &[u8]| String::from_utf8_lossy(bytes).trim().to_owned();
     if !output.status.success() {
         let words = words(&output.stderr);
-        return Err(Error::integrity("the ONNX Runtime that pip brought does not load")
-            .with_source(words.lines().last().unwrap_or("without a word").to_owned()));
+        return Err(Error::integrity("the ONNX Runtime that pip downloaded does not load")
+            .with_source(words.lines().last().unwrap_or("no output").to_owned()));
     }
     Ok(words(&output.stdout))
 }

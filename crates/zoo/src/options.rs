@@ -1,4 +1,4 @@
-//! Where the zoo keeps and finds things.
+//! Options of the zoo.
 
 use std::env;
 use std::path::PathBuf;
@@ -8,27 +8,27 @@ use opendr_engine::{Result, cache_dir};
 
 use crate::models_package::installed;
 
-/// How a [`Zoo`](crate::Zoo) works.
+/// Options of a [`Zoo`](crate::Zoo).
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct ZooOptions {
-    /// The cache folder, which other processes may share.
+    /// Cache folder, which other processes may share.
     pub cache: PathBuf,
-    /// A folder or an http(s) address that is asked before all other sources.
+    /// Folder or http(s) address that is used before all other sources.
     pub repository: Option<String>,
-    /// Folders in which weights of our own are looked for, in this order; each as `models/weights` of the sources.
+    /// Folders in which OpenDR's own weights are searched, in this order; each like `models/weights` of the sources.
     pub models: Vec<PathBuf>,
-    /// Never use the network.
+    /// Whether to avoid the network.
     pub offline: bool,
-    /// Longest wait for a server to go on.
+    /// Maximum wait for data from a server.
     pub timeout: Duration,
-    /// First pause before a failed request is repeated; it doubles each time.
+    /// Pause before the first retry of a failed request; it doubles each time.
     pub retry_pause: Duration,
 }
 
 impl ZooOptions {
-    /// The defaults with this cache folder and no repository; weights of our own are read from `OPENDR_MODELS` and where the package
-    /// `opendr-rs-models` is installed.
+    /// Creates default options with this cache folder and no repository; OpenDR's own weights are read from `OPENDR_MODELS` and the
+    /// installed package `opendr-rs-models`.
     pub fn new(cache: impl Into<PathBuf>) -> Self {
         Self {
             cache: cache.into(),
@@ -40,11 +40,11 @@ impl ZooOptions {
         }
     }
 
-    /// As the environment says: the cache is [`cache_dir`], the repository `OPENDR_MODEL_REPOSITORY`, and
-    /// `OPENDR_OFFLINE` set to anything but `0` keeps off the network.
+    /// Creates options from the environment: the cache is [`cache_dir`], the repository `OPENDR_MODEL_REPOSITORY`, and
+    /// `OPENDR_OFFLINE` other than `0` disables the network.
     ///
     /// # Errors
-    /// `NotFound` when there is no folder for the cache.
+    /// `NotFound` without a folder for the cache.
     pub fn from_env() -> Result<Self> {
         let mut options = Self::new(cache_dir()?);
         options.repository = env::var("OPENDR_MODEL_REPOSITORY").ok().filter(|text| !text.is_empty());

@@ -1,4 +1,4 @@
-//! Wheels of the Python package index, by the installed pip.
+//! Downloads from the Python package index with the installed pip.
 
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -9,19 +9,19 @@ use crate::client::Call;
 use crate::source::Package;
 use crate::work_folder::WorkFolder;
 
-/// A wheel to get.
+/// A wheel to download.
 pub(crate) struct Wheel<'a> {
-    /// Package and version as pip takes them.
+    /// Package and version in pip's syntax.
     pub(crate) requirement: &'a str,
-    /// Bytes, when known.
+    /// Size in bytes, if known.
     pub(crate) size: Option<u64>,
-    /// The Python version that it is for; the installed one when absent.
+    /// Python version of the wheel (default: the installed one).
     pub(crate) python: Option<&'a str>,
-    /// The platform that it is for; this machine's when absent.
+    /// Platform of the wheel (default: that of this machine).
     pub(crate) platform: Option<&'a str>,
 }
 
-/// Gets the wheel that a card names into the work folder; nothing in it is installed or run.
+/// Downloads the wheel that a card names into the work folder; nothing in it is installed or run.
 pub(crate) fn wheel(package: &Package, work: &WorkFolder, progress: &dyn Progress) -> Result<PathBuf> {
     let wheel = Wheel {
         requirement: &format!("{}=={}", package.package, package.version),
@@ -32,7 +32,7 @@ pub(crate) fn wheel(package: &Package, work: &WorkFolder, progress: &dyn Progres
     download(&wheel, work, progress)
 }
 
-/// Gets a wheel into the work folder; nothing in it is installed or run.
+/// Downloads a wheel into the work folder; nothing in it is installed or run.
 pub(crate) fn download(wheel: &Wheel<'_>, work: &WorkFolder, progress: &dyn Progress) -> Result<PathBuf> {
     let output = work.folder("out")?;
     let temporary = work.folder("tmp")?;
@@ -62,7 +62,7 @@ pub(crate) fn download(wheel: &Wheel<'_>, work: &WorkFolder, progress: &dyn Prog
         .run(progress)
 }
 
-/// The Python to call.
+/// Returns the Python interpreter that has pip.
 pub(crate) fn python_with_pip() -> Result<&'static str> {
     let works = |program: &&&str| {
         let mut command = Command::new(program);

@@ -1,4 +1,4 @@
-//! The user's own collection of models: a folder or an address that is asked first.
+//! The user's model repository: a folder or an address, which has priority over other sources.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -29,14 +29,14 @@ impl Repository {
         }
     }
 
-    /// The container of the item in a folder, where it lies.
+    /// Returns the container of the item in a folder, if it is there.
     pub(crate) fn container(&self, item: &Item<'_>) -> Option<PathBuf> {
         let Self::Folder(folder) = self else { return None };
         let path = folder.join(item.place());
         path.join(MANIFEST_NAME).is_file().then_some(path)
     }
 
-    /// The manifest of the item's container at an address, with its files taken into the cache.
+    /// Returns the manifest of the item's container at an address and downloads its files into the cache.
     pub(crate) fn fetch_container(
         &self,
         item: &Item<'_>,
@@ -50,7 +50,7 @@ impl Repository {
         let Some(json) = http.small(&address, MAX_MANIFEST_BYTES, progress)? else { return Ok(None) };
         let manifest = Manifest::from_json(&json).context(|| address.clone())?;
         if manifest.learner != item.card.learner {
-            return Err(Error::format(format!("{address} is for the learner {:?}", manifest.learner)));
+            return Err(Error::format(format!("{address} is a model of the learner {:?}", manifest.learner)));
         }
         for file in card_files(&manifest)? {
             download(http, cache, &address_below(&base, &file.name), &file, progress)?;
@@ -58,7 +58,7 @@ impl Repository {
         Ok(Some(manifest))
     }
 
-    /// Takes the file at `place` into the cache.
+    /// Adds the file at `place` to the cache.
     pub(crate) fn fetch_file(
         &self,
         place: &str,
@@ -83,7 +83,7 @@ impl Repository {
         cache.insert(file, &bytes, &cache.work(progress)?).context(|| path.display().to_string())
     }
 
-    /// Its address, when it takes the network to ask it.
+    /// Returns the address of a repository on the network.
     pub(crate) fn address(&self) -> Option<&str> {
         match self {
             Self::Folder(_) => None,
@@ -92,7 +92,7 @@ impl Repository {
     }
 }
 
-/// The files of a container as a card would name them.
+/// Returns the files of a container as entries of a card.
 pub(crate) fn card_files(manifest: &Manifest) -> Result<Vec<CardFile>> {
     let file = |file: &ModelFile| match (file.size, file.sha256) {
         (Some(size), Some(sha256)) => Ok(CardFile { name: file.name.clone(), size, sha256 }),
@@ -101,7 +101,7 @@ pub(crate) fn card_files(manifest: &Manifest) -> Result<Vec<CardFile>> {
     manifest.files.iter().map(file).collect()
 }
 
-/// Writes a copy of an opened container to `path`, checking every file on the way.
+/// Writes a copy of an opened container to `path` and verifies every file.
 pub(crate) fn copy_container(model: &Model, path: &Path) -> Result<PathBuf> {
     let mut writer = ModelWriter::new(path, model.manifest().clone())?;
     for file in &model.manifest().files {

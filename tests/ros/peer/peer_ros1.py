@@ -1,4 +1,4 @@
-"""A ROS 1 node that does what it is told (control.py); for Debian's Python, with a master.
+"""A ROS 1 node controlled by control.py; for Debian's Python, with a master.
 
     /usr/bin/python3 peer_ros1.py NAME
 """
@@ -70,7 +70,7 @@ class Peer:
         return genpy.dynamic.generate_dynamic(type, text)[type]._md5sum
 
     def do_advertise(self, topic, type, latch=False, depth=10):
-        """A publisher that stays; `publish` makes it when it is not there."""
+        """Creates a permanent publisher; `publish` creates one if there is none."""
         self.start()
         with self.lock:
             if topic not in self.publishers:
@@ -117,7 +117,7 @@ class Peer:
         return ros1_messages.to_bytes(rospy.ServiceProxy(service, service_type).call(request)).hex()
 
     def do_serve(self, service, type, hex):
-        """A service that always gives the same answer and tells of every request."""
+        """A service that always returns the same response and reports every request."""
         self.start()
         service_type = ros1_messages.type_by_name(type)
         response = ros1_messages.from_bytes(service_type._response_class, bytes.fromhex(hex))
@@ -164,8 +164,8 @@ def main():
     control.say({"event": "ready"})
     control.serve(peer)
     if "started" in vars(peer):
-        rospy.signal_shutdown("told to")
-    # Threads that wait for somebody are not waited for.
+        rospy.signal_shutdown("requested")
+    # Waiting threads are not joined.
     os._exit(0)
 
 

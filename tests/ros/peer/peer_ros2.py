@@ -1,4 +1,4 @@
-"""A ROS 2 node that does what it is told (control.py); for the interpreter of an environment with rclpy.
+"""A ROS 2 node controlled by control.py; for the interpreter of an environment with rclpy.
 
     python peer_ros2.py NAME
 """
@@ -51,7 +51,7 @@ class Peer:
 
     @cached_property
     def node(self):
-        """Made when the first command needs it: messages can be read and written without."""
+        """Created when the first command needs it: reading and writing messages works without it."""
         rclpy.init()
         node = Node(self.name)
         executor = self.executor = SingleThreadedExecutor()
@@ -68,7 +68,7 @@ class Peer:
         return node
 
     def close(self):
-        """Takes leave of the others; a process that just ends is missed only after a while."""
+        """Shuts down the node, so that others notice its end immediately."""
         if "node" in vars(self):
             self.executor.shutdown()
             self.spinning.join(5)
@@ -100,7 +100,7 @@ class Peer:
         return serialize_message(ros2_messages.from_plain(ros2_messages.type_by_name(type), fields)).hex()
 
     def do_advertise(self, topic, type, qos="reliable", depth=10):
-        """A publisher that stays; `publish` makes it when it is not there."""
+        """Creates a permanent publisher; `publish` creates one if there is none."""
         node = self.locked_node()
         with self.lock:
             if topic not in self.publishers:
@@ -155,7 +155,7 @@ class Peer:
         return serialize_message(result(client.call_async(request), timeout)).hex()
 
     def do_serve(self, service, type, hex):
-        """A service that always gives the same answer and tells of every request."""
+        """A service that always returns the same response and reports every request."""
         service_type = ros2_messages.type_by_name(type)
         response = deserialize_message(bytes.fromhex(hex), service_type.Response)
 
@@ -214,7 +214,7 @@ class Peer:
 
 
 def endpoints(look_up, topic):
-    """Who is at a topic. The node's name comes after the rest, and from what is no ROS node never."""
+    """Returns the endpoints of a topic. The node's name arrives later than the rest, and never for endpoints without a ROS node."""
     for _ in range(100):
         found = [endpoint(info) for info in look_up(topic)]
         if not any("UNKNOWN" in one["node"] for one in found):
@@ -244,7 +244,7 @@ def main():
     control.say({"event": "ready"})
     control.serve(peer)
     peer.close()
-    # Threads that wait for somebody are not waited for.
+    # Waiting threads are not joined.
     os._exit(0)
 
 

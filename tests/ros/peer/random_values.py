@@ -1,4 +1,4 @@
-"""Values for fields that find what ordinary ones do not: extremes, NaN, nothing, much, other scripts."""
+"""Edge-case values of fields: extremes, NaN, empty, long, other scripts."""
 
 import random
 import struct

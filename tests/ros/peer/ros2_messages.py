@@ -29,7 +29,7 @@ def random_message(message_type, values, depth=0):
     for name, kind in fields_of(message_type):
         setattr(message, name, random_field(kind, values, depth))
     if message_type.__module__.startswith("builtin_interfaces."):
-        # What ROS 1 can say too.
+        # Types that ROS 1 has too.
         message.nanosec %= 10**9
         if message_type.__name__ == "Time":
             message.sec &= 2**31 - 1
@@ -120,7 +120,7 @@ class Layout:
 
     def message(self, message):
         if not fields_of(message):
-            # The byte that stands for no fields.
+            # The byte of a message without fields.
             self.place(1)
         for name, kind in fields_of(message):
             self.field(kind, getattr(message, name))

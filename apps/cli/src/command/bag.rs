@@ -1,54 +1,56 @@
-//! `opendr bag`: what is in a recording, and recordings in other formats.
+//! `opendr bag`: lists the content of ROS recordings and converts them.
 
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use opendr::bags::{Answers, Bag, BagFormat, Compression, Conversion, Recording, Topic, WriteOptions};
+use opendr::bags::{
+    Bag, BagFormat, Compression, Conversion, Recording, RecordingWriter, Topic, WriteOptions,
+};
 use opendr::{Error, Progress, Result, ValueType};
 use serde_json::json;
 
 use crate::exit::Outcome;
-use crate::progress_bar::{Bar, interrupted};
+use crate::progress_bar::{ProgressBar, interrupted};
 use crate::{loading, stdout};
 
 const EXAMPLES: &str = "\
 Examples:
-  opendr bag info drive.bag                              topics, types, counts, and what learners can read them as
-  opendr bag convert drive.bag drive.mcap                the same messages in another format
-  opendr bag convert drive.bag drive/ --to bag2_sqlite   messages of ROS 1 become those of ROS 2
+  opendr bag info drive.bag                              list topics, types, counts and data types
+  opendr bag convert drive.bag drive.mcap                write the messages in another format
+  opendr bag convert drive.bag drive/ --to bag2_sqlite   convert ROS 1 messages to ROS 2
   opendr bag convert drive/ front.mcap --topic /front/image_raw --lz4";
 
 pub fn grammar() -> Command {
     let path = |name: &'static str| Arg::new(name).required(true).value_parser(value_parser!(PathBuf));
     let switch = |name: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue);
     Command::new("bag")
-        .about("Look at recordings (rosbag 1, rosbag 2, MCAP) and convert them")
+        .about("List the content of ROS recordings (rosbag 1, rosbag 2, MCAP) and convert them")
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommands([
             Command::new("info")
-                .about("Topics, types, counts, duration")
-                .arg(path("recording").value_name("RECORDING").help("A .bag or .mcap file, or a folder of rosbag 2"))
-                .arg(switch("json").help("Print one object of JSON")),
+                .about("List topics, types, message counts and duration")
+                .arg(path("recording").value_name("RECORDING").help("A .bag or .mcap file, or a rosbag 2 folder"))
+                .arg(switch("json").help("Print a JSON object")),
             Command::new("convert")
-                .about("Write a recording in another format; messages of the other ROS are converted where they are known")
+                .about("Write a recording in another format; known message types are converted between ROS 1 and ROS 2")
                 .args([
-                    path("recording").value_name("RECORDING").help("What to read"),
-                    path("output").value_name("OUTPUT").help("What to write: .bag, .mcap, or a folder with --to"),
+                    path("recording").value_name("RECORDING").help("Recording to read"),
+                    path("output").value_name("OUTPUT").help("Recording to write: .bag, .mcap, or a folder with --to"),
                     Arg::new("to")
                         .long("to")
                         .value_name("FORMAT")
                         .value_parser(PossibleValuesParser::new(BagFormat::ALL.map(BagFormat::name)))
-                        .help("The format; .bag and .mcap tell it by their names"),
+                        .help("Format to write; by default from the extension .bag or .mcap"),
                     Arg::new("topic")
                         .long("topic")
                         .action(ArgAction::Append)
                         .value_name("TOPIC")
-                        .help("Only this topic; may be repeated"),
-                    switch("ros2").help("Write messages of ROS 2 into .mcap also where the recording is of ROS 1"),
-                    switch("lz4").help("Compress by LZ4"),
-                    switch("overwrite").help("Replace a recording that is there already"),
+                        .help("Write only this topic; may be repeated"),
+                    switch("ros2").help("Write ROS 2 messages into .mcap even if the recording has ROS 1 messages"),
+                    switch("lz4").help("Compress with LZ4"),
+                    switch("overwrite").help("Replace an existing recording"),
                     loading::quiet(),
                 ]),
         ])
@@ -72,7 +74,7 @@ fn seconds(bag: &Bag) -> f64 {
     span.map_or(0.0, |(start, end)| end.saturating_sub(start) as f64 * 1e-9)
 }
 
-/// What the messages of a topic can be read as.
+/// Returns the names of the data and target types that the messages of a topic convert to.
 fn types(topic: &Topic) -> Vec<&'static str> {
     let fitting = ValueType::ALL.iter().filter(|value_type| topic.fits(**value_type));
     fitting.map(|value_type| value_type.name()).collect()
@@ -97,7 +99,7 @@ fn info(matches: &ArgMatches) -> Result<Outcome> {
         }))?;
         return Ok(Outcome::Done);
     }
-    let cut = if bag.is_complete() { "" } else { "; cut off or damaged, told as far as it goes" };
+    let cut = if bag.is_complete() { "" } else { "; truncated or damaged, listed up to the damage" };
     let (path, format, count) = (recording.path().display(), bag.format(), bag.message_count());
     stdout::print(format_args!("{path}: {format}, {count} messages, {:.1} s{cut}", seconds(bag)))?;
     let width = |text: fn(&Topic) -> usize| topics.iter().map(text).max().unwrap_or(0);
@@ -105,7 +107,7 @@ fn info(matches: &ArgMatches) -> Result<Outcome> {
     for topic in &topics {
         let read_as = match (types(topic).join(", "), topic.is_other_version) {
             (types, false) => types,
-            (_, true) => "another version of this message than OpenDR's".to_owned(),
+            (_, true) => "another version of this message than OpenDR supports".to_owned(),
         };
         let Topic { name, type_name, messages, .. } = topic;
         let line = format!("  {name:names$}  {type_name:kinds$}  {messages:8}  {read_as}");
@@ -115,13 +117,15 @@ fn info(matches: &ArgMatches) -> Result<Outcome> {
 }
 
 fn convert(matches: &ArgMatches) -> Result<Outcome> {
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let recording = open(matches)?;
     let output = matches.get_one::<PathBuf>("output").cloned().unwrap_or_default();
     let named = matches.get_one::<String>("to").map(|name| name.parse::<BagFormat>()).transpose()?;
-    let format = named.or_else(|| Answers::format_of(&output)).ok_or_else(|| {
+    let format = named.or_else(|| RecordingWriter::format_of(&output)).ok_or_else(|| {
         let output = output.display();
-        Error::invalid_param(format!("{output}: name it .bag or .mcap, or choose a format by --to"))
+        Error::invalid_param(format!(
+            "{output} has no known format: name it .bag or .mcap, or choose a format by --to"
+        ))
     })?;
     let (overwrite, same) = (matches.get_flag("overwrite"), output.canonicalize().ok());
     if same.is_some() && same == recording.path().canonicalize().ok() {
@@ -131,7 +135,7 @@ fn convert(matches: &ArgMatches) -> Result<Outcome> {
     if output.exists() && !overwrite {
         let output = output.display();
         return Err(Error::invalid_param(format!(
-            "{output} is there already; choose another name, or --overwrite it"
+            "{output} already exists; choose another name, or replace it with --overwrite"
         )));
     }
     let compression = if matches.get_flag("lz4") { Compression::Lz4 } else { Compression::None };
@@ -146,15 +150,15 @@ fn convert(matches: &ArgMatches) -> Result<Outcome> {
     let mut failures = u64::from(!recording.bag().is_complete());
     if failures > 0 {
         let path = recording.path().display();
-        eprintln!("error: {path} was cut off or is damaged; it is read as far as it goes");
+        eprintln!("error: {path} is truncated or damaged; it is read up to the damage");
     }
-    let mut left_out = |error: Error| {
+    let mut skip = |error: Error| {
         failures += 1;
-        bar.suspend(|| eprintln!("error: left out: {error}"));
+        bar.suspend(|| eprintln!("error: skipped: {error}"));
         Ok(())
     };
     let conversion = Conversion { topics, is_ros2: matches.get_flag("ros2"), ..Conversion::from(options) };
-    let written = conversion.run(&recording, &output, &mut left_out, &bar)?;
+    let written = conversion.run(&recording, &output, &mut skip, &bar)?;
     let end = if interrupted() { " so far" } else { "" };
     bar.note(&format!("{written} messages written to {}{end}", output.display()));
     Ok(if failures == 0 { Outcome::Done } else { Outcome::SomeFailed })

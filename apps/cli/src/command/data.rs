@@ -1,4 +1,4 @@
-//! `opendr data`: data sets checked, converted, counted, looked at.
+//! `opendr data`: checks, converts, summarises and draws data sets.
 
 use std::path::PathBuf;
 
@@ -8,15 +8,15 @@ use opendr::datasets::{self, DatasetStats, OpenOptions, Problems, WriteOptions};
 use opendr::{Error, Progress, Result, inference};
 
 use crate::exit::Outcome;
-use crate::progress_bar::{Bar, interrupted};
+use crate::progress_bar::{ProgressBar, interrupted};
 use crate::{dataset_flags, loading, stdout};
 
 const EXAMPLES: &str = "\
 Examples:
-  opendr data formats                                    what is read and written
-  opendr data check coco/                                every file read, what is broken listed
-  opendr data stats VOC2012/                             classes, sizes
-  opendr data view labelled/ --out sheet.png             a contact sheet
+  opendr data formats                                    list the formats
+  opendr data check coco/                                read every file and list the broken ones
+  opendr data stats VOC2012/                             count classes and sizes
+  opendr data view labelled/ --out sheet.png             draw a contact sheet
   opendr data convert coco/ yolo/ --to yolo --split val2017";
 
 pub fn grammar() -> Command {
@@ -30,40 +30,38 @@ pub fn grammar() -> Command {
     let json = || Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON");
     let path = |name: &'static str| Arg::new(name).value_parser(value_parser!(PathBuf));
     Command::new("data")
-        .about("Check, convert, count and look at data sets")
+        .about("Check, convert, summarise and draw data sets")
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommands([
-            Command::new("formats")
-                .about("The formats that there are, and which files they want")
-                .arg(json()),
-            reads("check", "Read everything, and list what is broken").arg(json()),
+            Command::new("formats").about("List the formats and the files they consist of").arg(json()),
+            reads("check", "Read every sample and list the broken ones").arg(json()),
             reads("stats", "Count classes and sizes").arg(json()),
             reads("view", "Draw a contact sheet of samples with their annotations").args([
                 path("out")
                     .long("out")
                     .short('o')
                     .required(true)
-                    .value_name("PICTURE")
-                    .help("The file to write"),
+                    .value_name("IMAGE")
+                    .help("Image file to write"),
                 Arg::new("count")
                     .long("count")
                     .default_value("24")
                     .value_parser(value_parser!(u64).range(1..=400))
                     .value_name("N")
-                    .help("How many samples, evenly over the data set"),
+                    .help("Number of samples, spread evenly over the data set"),
             ]),
             reads("convert", "Write a data set in another format").args([
-                path("output").required(true).value_name("OUTPUT").help("The folder to write into"),
-                Arg::new("to").long("to").required(true).value_name("FORMAT").help("The format to write"),
+                path("output").required(true).value_name("OUTPUT").help("Folder to write into"),
+                Arg::new("to").long("to").required(true).value_name("FORMAT").help("Format to write"),
                 Arg::new("as")
                     .long("as")
                     .value_name("NAME")
-                    .help("What to call the part that is written: train, val2017, ..."),
+                    .help("Name of the written split: train, val2017, ..."),
                 Arg::new("link")
                     .long("link")
                     .action(ArgAction::SetTrue)
-                    .help("Link pictures instead of copying them, where the disk can"),
+                    .help("Link images instead of copying them, where the file system allows it"),
             ]),
         ])
         .after_help(EXAMPLES)
@@ -116,8 +114,8 @@ fn outcome(problems: &Problems) -> Outcome {
 }
 
 fn check(matches: &ArgMatches) -> Result<Outcome> {
-    let bar = Bar::new(matches.get_flag("quiet"));
-    // Checking is there to list everything.
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
+    // A check lists every problem instead of ending with the first.
     let problems = Problems::skipping();
     let dataset = open(matches, &problems)?;
     datasets::check(dataset.as_ref(), &problems, inference::default_threads()?, &bar)?;
@@ -134,7 +132,7 @@ fn check(matches: &ArgMatches) -> Result<Outcome> {
 }
 
 fn stats(matches: &ArgMatches) -> Result<Outcome> {
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let problems = dataset_flags::problems(matches);
     let dataset = open(matches, &problems)?;
     let stats = DatasetStats::of(dataset.as_ref(), &problems, &bar)?;
@@ -150,9 +148,9 @@ fn stats(matches: &ArgMatches) -> Result<Outcome> {
 fn view(matches: &ArgMatches) -> Result<Outcome> {
     let problems = dataset_flags::problems(matches);
     let dataset = open(matches, &problems)?;
-    let wanted = matches.get_one::<u64>("count").copied().unwrap_or(1) as usize;
-    let wanted = wanted.min(dataset.len());
-    let indices = (0..wanted).map(|at| at * dataset.len() / wanted).collect();
+    let count = matches.get_one::<u64>("count").copied().unwrap_or(1) as usize;
+    let count = count.min(dataset.len());
+    let indices = (0..count).map(|at| at * dataset.len() / count).collect();
     let out = matches.get_one::<PathBuf>("out").cloned().unwrap_or_default();
     let sheet = datasets::contact_sheet(&Subset::new(dataset, indices)?, &problems)?;
     opendr::vision::save(&sheet, &out)?;
@@ -162,12 +160,12 @@ fn view(matches: &ArgMatches) -> Result<Outcome> {
 }
 
 fn convert(matches: &ArgMatches) -> Result<Outcome> {
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let problems = dataset_flags::problems(matches);
-    let to = datasets::find(matches.get_one::<String>("to").map_or("", String::as_str))?;
+    let to = datasets::find_format(matches.get_one::<String>("to").map_or("", String::as_str))?;
     let output = matches.get_one::<PathBuf>("output").cloned().unwrap_or_default();
     let external = dataset_flags::external(matches);
-    let options = OpenOptions { split: dataset_flags::split(matches), target: wanted(&external, to)? };
+    let options = OpenOptions { split: dataset_flags::split(matches), target: common_target(&external, to)? };
     let dataset = datasets::open(&external, &options, &problems)?;
     let options = WriteOptions { split: matches.get_one("as").cloned(), link: matches.get_flag("link") };
     (to.write)(dataset.as_ref(), &output, &options, &problems, &bar)?;
@@ -176,8 +174,8 @@ fn convert(matches: &ArgMatches) -> Result<Outcome> {
     Ok(outcome(&problems))
 }
 
-/// The first kind of annotation that both formats have.
-fn wanted(
+/// Returns the first target type that both formats support.
+fn common_target(
     from: &opendr::dataset::ExternalDataset,
     to: &datasets::FormatEntry,
 ) -> Result<Option<opendr::ValueType>> {
@@ -188,7 +186,7 @@ fn wanted(
             format.targets.iter().map(|target| target.name()).collect::<Vec<_>>().join(" or ")
         };
         Error::invalid_input(format!(
-            "{} has {}, {} holds {}; there is no way from one to the other",
+            "{} contains {}, but {} stores {}; choose a format with a common type (\"opendr data formats --json\")",
             from.name,
             names(from),
             to.name,

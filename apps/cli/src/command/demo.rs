@@ -1,4 +1,4 @@
-//! `opendr demo`: people in a photograph, from nothing.
+//! `opendr demo`: detects people in a photograph, with a downloaded model and image.
 
 use std::path::{Path, PathBuf};
 
@@ -11,18 +11,20 @@ use opendr::zoo::{ItemKind, Zoo};
 use opendr::{Error, Result, vision};
 
 use crate::exit::Outcome;
-use crate::progress_bar::Bar;
+use crate::progress_bar::ProgressBar;
 use crate::timings::Timings;
 use crate::{loading, report, stdout};
 
 pub fn grammar() -> Command {
     Command::new("demo")
-        .about("Find people in a photograph: gets a model and a picture, prints and draws what it sees")
+        .about(
+            "Detect people in a photograph: downloads a model and an image, prints and draws the predictions",
+        )
         .arg(
             Arg::new("picture")
                 .value_parser(value_parser!(PathBuf))
-                .value_name("PICTURE")
-                .help("A picture of yours; a public-domain photograph otherwise"),
+                .value_name("IMAGE")
+                .help("Image to process [default: a public-domain photograph]"),
         )
         .arg(
             Arg::new("out")
@@ -31,20 +33,20 @@ pub fn grammar() -> Command {
                 .default_value("opendr-demo.png")
                 .value_parser(value_parser!(PathBuf))
                 .value_name("FILE")
-                .help("Where to write the annotated picture"),
+                .help("Image file to write the annotated image to"),
         )
         .args(loading::flags())
-        .after_help("Examples:\n  opendr demo\n  opendr demo street.jpg --out seen.png")
+        .after_help("Examples:\n  opendr demo\n  opendr demo street.jpg --out boxes.png")
 }
 
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     stdout::print(format_args!("runtime: {}", describe(loading::device(matches)?)?))?;
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let zoo = loading::zoo(matches)?;
-    let spec = shown_in_demo(&zoo, ItemKind::Model)?;
+    let spec = demo_item(&zoo, ItemKind::Model)?;
     let picture = match matches.get_one::<PathBuf>("picture") {
         Some(path) => path.clone(),
-        None => zoo.get(&shown_in_demo(&zoo, ItemKind::Sample)?, &bar)?,
+        None => zoo.get(&demo_item(&zoo, ItemKind::Sample)?, &bar)?,
     };
     let mut image = vision::open(&picture)?;
     let mut learner = loading::load(&spec, &ParamMap::new(), matches, &bar)?;
@@ -54,13 +56,13 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     outputs.iter().for_each(|(_, value)| draw(&mut image, value, &Style::default()));
     let out = matches.get_one::<PathBuf>("out").map_or(Path::new(""), PathBuf::as_path);
     vision::save(&image, out)?;
-    stdout::print(format_args!("annotated picture: {}", out.display()))?;
+    stdout::print(format_args!("annotated image: {}", out.display()))?;
     Ok(Outcome::Done)
 }
 
-/// The item whose card says that the demonstration shows it.
-fn shown_in_demo(zoo: &Zoo, kind: ItemKind) -> Result<String> {
+/// Returns the item that its card selects for the demonstration.
+fn demo_item(zoo: &Zoo, kind: ItemKind) -> Result<String> {
     let mut items = zoo.items().filter(|item| item.variant.demo && item.card.kind == kind);
     let item = items.next().map(|item| item.to_string());
-    item.ok_or_else(|| Error::internal(format!("no {kind:?} card is marked for the demonstration")))
+    item.ok_or_else(|| Error::internal(format!("no {kind:?} card sets `demo`")))
 }

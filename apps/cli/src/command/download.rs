@@ -1,4 +1,4 @@
-//! `opendr download`: models into the cache, or into a folder.
+//! `opendr download`: downloads models into the cache or a folder.
 
 use std::path::PathBuf;
 
@@ -6,27 +6,27 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::Result;
 
 use crate::exit::Outcome;
-use crate::progress_bar::{Bar, interrupted};
+use crate::progress_bar::{ProgressBar, interrupted};
 use crate::{loading, stdout};
 
 pub fn grammar() -> Command {
     Command::new("download")
-        .about("Get models into the cache, resumed where a download broke off and checked by sha256")
+        .about("Download models into the cache; interrupted downloads resume, and files are checked by SHA-256")
         .arg(
             Arg::new("model")
                 .num_args(1..)
                 .value_name("LEARNER[/VARIANT]")
-                .help("What to get (see \"opendr models\")")
+                .help("Model to download (see \"opendr models\")")
                 .required_unless_present("all")
                 .conflicts_with("all"),
         )
-        .arg(Arg::new("all").long("all").action(ArgAction::SetTrue).help("Everything in the zoo"))
+        .arg(Arg::new("all").long("all").action(ArgAction::SetTrue).help("Download everything in the zoo"))
         .arg(
             Arg::new("to")
                 .long("to")
                 .value_parser(value_parser!(PathBuf))
                 .value_name("DIR")
-                .help("Also copy into this folder, which can then serve as OPENDR_MODEL_REPOSITORY"),
+                .help("Also copy into this folder, for use as OPENDR_MODEL_REPOSITORY"),
         )
         .args([loading::offline(), loading::quiet()])
         .after_help(
@@ -36,7 +36,7 @@ pub fn grammar() -> Command {
 
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let zoo = loading::zoo(matches)?;
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let specs: Vec<String> = if matches.get_flag("all") {
         zoo.items().map(|item| item.to_string()).collect()
     } else {

@@ -1,4 +1,4 @@
-//! `opendr eval`: a learner, or a file of its answers, over a data set.
+//! `opendr eval`: evaluates a learner on a data set, or a policy in an environment.
 
 use std::path::PathBuf;
 
@@ -11,40 +11,38 @@ use opendr::learner::Entry;
 use opendr::metrics::{self, MetricEntry};
 use opendr::params::ParamMap;
 use opendr::rl::EvaluationProtocol;
-use opendr::{ActingStream, Pipeline, Progress, Result, Statistics};
+use opendr::{Pipeline, PolicyController, Progress, Result, Statistics};
 
 use crate::exit::Outcome;
-use crate::progress_bar::Bar;
+use crate::progress_bar::ProgressBar;
 use crate::{
     class_flags, dataset_flags, environment_flags, learner_flags, loading, named_value, stdout, then_flag,
 };
 
 const EXAMPLES: &str = "\
 Examples:
-  opendr eval LEARNER coco/ --split val2017 --out evaluated/   numbers, curves, sheets of pictures
-  opendr eval LEARNER VOC2012/ --limit 500 --json              one object of JSON
+  opendr eval LEARNER coco/ --split val2017 --out evaluated/   metrics, curves, contact sheets
+  opendr eval LEARNER VOC2012/ --limit 500 --json              a JSON object
   opendr eval LEARNER/VARIANT labelled/ --format yolo --skip-broken
   opendr eval LEARNER coco/ --metric-param use_classes=false
-  opendr eval nanodet MOT17/train/ --then byte_track           a pipeline, by the metric of its last learner
-  opendr eval LEARNER mine/ --classes lorry=truck,tram=train   classes that the two sides call differently
-  opendr eval ppo --env CartPole-v1 --episodes 500             a policy, in an environment
+  opendr eval nanodet MOT17/train/ --then byte_track           a pipeline, by its last learner's metric
+  opendr eval LEARNER mine/ --classes lorry=truck,tram=train   classes whose names differ
+  opendr eval ppo --env CartPole-v1 --episodes 500             a policy in an environment
 
-An evaluation with --out that was broken off goes on from there when it is called again.";
+An interrupted evaluation with --out resumes when the same command runs again.";
 
 pub fn grammar() -> Command {
     Command::new("eval")
-        .about("Measure a learner on a data set, by the metric of its task")
+        .about("Evaluate a learner on a data set by the metric of its task")
         .arg(loading::learner())
         .arg(dataset_flags::dataset())
         .args(dataset_flags::flags())
         .args(metric_flags())
         .args(class_flags::flags())
         .arg(then_flag::flag())
-        .arg(
-            Arg::new("resamples").long("resamples").value_parser(value_parser!(usize)).value_name("N").help(
-                "Bootstrap resamples for the interval of the main number; 0 leaves it out [default: 200]",
-            ),
-        )
+        .arg(Arg::new("resamples").long("resamples").value_parser(value_parser!(usize)).value_name("N").help(
+            "Bootstrap resamples for the confidence interval of the main metric; 0 omits it [default: 200]",
+        ))
         .arg(
             Arg::new("limit")
                 .long("limit")
@@ -56,33 +54,33 @@ pub fn grammar() -> Command {
         .after_help(EXAMPLES)
 }
 
-/// The flags of what measures.
+/// Returns the flags of commands that compute a metric.
 pub fn metric_flags() -> [Arg; 4] {
     let names: Vec<_> = metrics::metrics().iter().map(|entry| entry.name).collect();
     [
-        Arg::new("metric").long("metric").value_name("NAME").help(format!(
-            "What to measure by: {} (docs/metrics.md); eval takes the task's own by default",
-            names.join(", ")
-        )),
+        Arg::new("metric")
+            .long("metric")
+            .value_name("NAME")
+            .help(format!("Metric: {} (docs/metrics.md); eval uses the task's by default", names.join(", "))),
         Arg::new("metric-param")
             .long("metric-param")
             .action(ArgAction::Append)
             .value_name("NAME=VALUE")
-            .help("A parameter of the metric (docs/metrics.md)"),
+            .help("Parameter of the metric (docs/metrics.md); may be repeated"),
         Arg::new("out")
             .long("out")
             .short('o')
             .value_parser(value_parser!(PathBuf))
             .value_name("DIR")
-            .help("Write answers, report.json, figures and sheets of samples into this folder"),
-        Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one object of JSON"),
+            .help("Write predictions, report.json, figures and contact sheets into this folder"),
+        Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print a JSON object"),
     ]
 }
 
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
     let entry = loading::entry(spec)?;
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     if environment_flags::is_policy(entry) {
         return in_environment(spec, entry, matches, &bar);
     }
@@ -105,31 +103,36 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let (learner, all_params) = then_flag::describe(spec, &params, matches)?;
     let model = matches.get_one::<PathBuf>("model").map(|path| path.display().to_string());
     let subject = Subject { learner, model, params: all_params };
-    let count = loading::how_many(matches, Some(job.dataset.len() as u64))?;
+    let count = loading::copies(matches, Some(job.dataset.len() as u64))?;
     let load = || loading::load(spec, &params, matches, &bar);
     let outcome = if then_flag::is_given(matches) {
         let pipeline = || then_flag::pipeline(entry, load()?.as_ref(), matches, &bar);
-        let mut pipelines = loading::side_by_side(count, pipeline)?;
+        let mut pipelines = loading::load_copies(count, pipeline)?;
         let ports = pipelines.first().map(|pipeline| pipeline.ports().to_vec()).unwrap_or_default();
         let classes = pipelines.first().map(Pipeline::classes).unwrap_or_default();
         job.run_pipelines(&mut pipelines, &ports, classes, subject, &bar)?
     } else {
-        job.run(&mut loading::side_by_side(count, load)?, entry, subject, &bar)?
+        job.run(&mut loading::load_copies(count, load)?, entry, subject, &bar)?
     };
-    tell(&outcome, matches, &job.problems, &bar)
+    print_outcome(&outcome, matches, &job.problems, &bar)
 }
 
-/// Measures a policy in its environment, or in the one that is named.
-fn in_environment(spec: &str, entry: &'static Entry, matches: &ArgMatches, bar: &Bar) -> Result<Outcome> {
+/// Evaluates a policy in the named environment, or in the one it was trained in.
+fn in_environment(
+    spec: &str,
+    entry: &'static Entry,
+    matches: &ArgMatches,
+    bar: &ProgressBar,
+) -> Result<Outcome> {
     let learner = loading::load(spec, &learner_flags::params(entry, matches)?, matches, bar)?;
     let source = environment_flags::source(matches, Some(learner.as_ref()))?;
     let mut environment = source.make()?;
-    let mut acting = ActingStream::new(learner.stream()?, entry, environment.spec())?;
+    let mut acting = PolicyController::new(learner.stream()?, entry, environment.spec())?;
     let mut protocol = EvaluationProtocol::default();
     if let Some(episodes) = matches.get_one::<u64>("episodes") {
         protocol.episodes = *episodes;
     }
-    let report = opendr::eval_in(&mut acting, environment.as_mut(), &protocol, bar)?;
+    let report = opendr::evaluate_policy(&mut acting, environment.as_mut(), &protocol, bar)?;
     let statistics = Statistics::from(&report);
     if matches.get_flag("json") {
         stdout::print_json(&statistics)?;
@@ -140,20 +143,25 @@ fn in_environment(spec: &str, entry: &'static Entry, matches: &ArgMatches, bar: 
     Ok(Outcome::Done)
 }
 
-/// The metric's parameters that the user set.
+/// Returns the metric's parameters that the user set.
 ///
 /// # Errors
-/// `InvalidParam` for one that the metric does not have, or a wrong value.
+/// `InvalidParam` for an unknown parameter or a wrong value.
 pub fn metric_params(metric: &MetricEntry, matches: &ArgMatches) -> Result<ParamMap> {
     let given = matches.get_many::<String>("metric-param").into_iter().flatten();
     given.map(|text| named_value::parse("metric-param", text, metric.name, metric.params)).collect()
 }
 
-/// Prints an outcome, and what was left out and written.
+/// Prints an outcome, the skipped samples and the written files.
 ///
 /// # Errors
 /// `Io` when standard output cannot be written.
-pub fn tell(outcome: &Evaluated, matches: &ArgMatches, problems: &Problems, bar: &Bar) -> Result<Outcome> {
+pub fn print_outcome(
+    outcome: &Evaluated,
+    matches: &ArgMatches,
+    problems: &Problems,
+    bar: &ProgressBar,
+) -> Result<Outcome> {
     if matches.get_flag("json") {
         stdout::print_json(outcome)?;
     } else {

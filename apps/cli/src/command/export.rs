@@ -1,4 +1,4 @@
-//! `opendr export`: a model as others want it.
+//! `opendr export`: writes a model as a folder, a zip or ONNX.
 
 use std::path::PathBuf;
 
@@ -7,23 +7,23 @@ use opendr::Result;
 use opendr::model::Model;
 
 use crate::exit::Outcome;
-use crate::progress_bar::Bar;
+use crate::progress_bar::ProgressBar;
 use crate::{loading, stdout};
 
 const EXAMPLES: &str = "\
 Examples:
   opendr export runs/mine/model --out detector.onnx    the network alone
-  opendr export runs/mine/model --out detector.zip     the container in one file
-  opendr export LEARNER/VARIANT --out detector         ... as a folder, of a pretrained model";
+  opendr export runs/mine/model --out detector.zip     the container as one file
+  opendr export LEARNER/VARIANT --out detector         a pretrained model as a folder";
 
 pub fn grammar() -> Command {
     Command::new("export")
-        .about("Write a model as a folder, a zip, or the bare ONNX")
+        .about("Write a model as a folder, a zip, or an ONNX file")
         .arg(
             Arg::new("source")
                 .required(true)
                 .value_name("LEARNER[/VARIANT]|CONTAINER")
-                .help("A pretrained model, or a container of your own"),
+                .help("Pretrained model, or path of a container"),
         )
         .arg(
             Arg::new("out")
@@ -33,13 +33,13 @@ pub fn grammar() -> Command {
                 .required(true)
                 .value_parser(value_parser!(PathBuf))
                 .value_name("FILE")
-                .help("Where to write it: NAME.onnx, NAME.zip, or a folder"),
+                .help("Path to write: NAME.onnx, NAME.zip, or a folder"),
         )
         .arg(
             Arg::new("zip")
                 .long("zip")
                 .action(ArgAction::SetTrue)
-                .help("Write a zip whatever the name; .zip is appended where it is missing"),
+                .help("Write a zip; .zip is appended to the name where it is missing"),
         )
         .args([loading::offline(), loading::quiet()])
         .after_help(EXAMPLES)
@@ -51,7 +51,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     if matches.get_flag("zip") && output.extension().is_none_or(|extension| extension != "zip") {
         output.as_mut_os_string().push(".zip");
     }
-    let path = loading::container(source, matches, &Bar::new(matches.get_flag("quiet")))?;
+    let path = loading::container(source, matches, &ProgressBar::new(matches.get_flag("quiet")))?;
     opendr::export(&Model::open(path)?, &output)?;
     stdout::print(output.display())?;
     Ok(Outcome::Done)

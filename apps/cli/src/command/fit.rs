@@ -1,4 +1,4 @@
-//! `opendr fit`: a learner learns from a data set.
+//! `opendr fit`: trains a learner on a data set or in an environment.
 
 use std::path::PathBuf;
 
@@ -9,22 +9,23 @@ use opendr::params::ParamMap;
 use opendr::{FitData, FitEnvironments, FitOptions, Fitted, Progress, Result};
 
 use crate::exit::Outcome;
-use crate::progress_bar::Bar;
+use crate::progress_bar::ProgressBar;
 use crate::{class_flags, dataset_flags, environment_flags, learner_flags, loading, stdout};
 
 const EXAMPLES: &str = "\
 Examples:
-  opendr fit LEARNER coco/ --val-split val2017                 train, and measure after each epoch
-  opendr fit LEARNER train/ --val val/ --out runs/mine      --epochs 50 and all others: see LEARNER --help
-  opendr fit LEARNER train/ --out runs/mine --resume        go on after Ctrl-C or a power cut
-  opendr fit LEARNER/VARIANT labelled/                         from a pretrained model
-  opendr fit LEARNER photos/ --teacher nanodet                 learn from the answers of another learner
-  opendr fit ppo --env CartPole-v1                             a policy learns by acting; see ppo --help
+  opendr fit LEARNER coco/ --val-split val2017                 train, and evaluate after each epoch
+  opendr fit LEARNER train/ --val val/ --out runs/mine         write into a folder of your own
+  opendr fit LEARNER train/ --out runs/mine --resume           resume after Ctrl-C or a power cut
+  opendr fit LEARNER/VARIANT labelled/                         fine-tune a pretrained model
+  opendr fit LEARNER photos/ --teacher nanodet                 distil the predictions of another learner
+  opendr fit ppo --env CartPole-v1                             train a policy in an environment
+  opendr fit LEARNER --help                                    list the learner's flags, such as --epochs
 
-Without --out everything goes to runs/LEARNER-DATE; --resume without it takes the last of these. The trained model lies in
-the output folder under model/: opendr infer LEARNER --model OUTPUT/model street.jpg";
+Without --out the output folder is runs/LEARNER-DATE; --resume without it uses the last of these. The trained model is in
+model/ of the output folder: opendr infer LEARNER --model OUTPUT/model street.jpg";
 
-/// The folder of curves in the output folder.
+/// Folder of the curves within the output folder.
 const LOGS: &str = "log";
 
 pub fn grammar() -> Command {
@@ -47,7 +48,7 @@ pub fn grammar() -> Command {
             Arg::new("pretrained")
                 .long("pretrained")
                 .action(ArgAction::SetTrue)
-                .help("Begin with the learner's pretrained model; so does LEARNER/VARIANT, or --model"),
+                .help("Start from the learner's pretrained model; LEARNER/VARIANT and --model do so too"),
         )
         .args(loading::flags())
         .after_help(EXAMPLES)
@@ -59,16 +60,16 @@ fn val_flags() -> [Arg; 3] {
             .long("val")
             .value_parser(value_parser!(PathBuf))
             .value_name("DATASET")
-            .help("Measure on this data set after each epoch"),
+            .help("Evaluate on this data set after each epoch"),
         Arg::new("val-format")
             .long("val-format")
             .default_value("auto")
             .value_name("FORMAT")
-            .help("What --val is; by default recognised"),
+            .help("Format of --val; by default detected"),
         Arg::new("val-split")
             .long("val-split")
             .value_name("NAME")
-            .help("The part to measure on: of --val or, without it, of DATASET"),
+            .help("Split to evaluate on: of --val or, without it, of DATASET"),
     ]
 }
 
@@ -80,76 +81,75 @@ fn output_flags() -> [Arg; 4] {
             .short('o')
             .value_parser(value_parser!(PathBuf))
             .value_name("DIR")
-            .help("The folder of checkpoints and model [default: runs/LEARNER-DATE]"),
+            .help("Folder of checkpoints and model [default: runs/LEARNER-DATE]"),
         Arg::new("logging-path")
             .long("logging-path")
             .value_parser(value_parser!(PathBuf))
             .value_name("DIR")
-            .help("The folder of TensorBoard's event files and curves [default: OUTPUT/log]"),
+            .help("Folder of TensorBoard event files and curves [default: OUTPUT/log]"),
         Arg::new("resume")
             .long("resume")
             .action(ArgAction::SetTrue)
-            .help("Go on from the last checkpoint in the output folder"),
-        Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one object of JSON"),
+            .help("Resume from the last checkpoint in the output folder"),
+        Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print a JSON object"),
     ]
 }
 
 fn teacher_flags() -> [Arg; 6] {
     [
-        Arg::new("teacher")
-            .long("teacher")
-            .value_name("LEARNER[/VARIANT]")
-            .help("Learn from this learner's answers; DATASET may then be a folder of pictures"),
+        Arg::new("teacher").long("teacher").value_name("LEARNER[/VARIANT]").help(
+            "Train on this learner's predictions (distillation); DATASET may then be a folder of images",
+        ),
         Arg::new("teacher-threshold")
             .long("teacher-threshold")
             .value_parser(value_parser!(f32))
             .value_name("NUMBER")
             .requires("teacher")
-            .help("Drop the teacher's answers below this score [default: 0.5]"),
+            .help("Drop the teacher's predictions below this score [default: 0.5]"),
         Arg::new("teacher-classes")
             .long("teacher-classes")
             .value_delimiter(',')
             .value_name("NAME,...")
             .requires("teacher")
-            .help("Learn these classes only [default: those of DATASET, or the teacher's]"),
+            .help("Train on these classes only [default: those of DATASET, or the teacher's]"),
         Arg::new("teacher-map")
             .long("teacher-map")
             .value_delimiter(',')
             .value_name("TEACHER=CLASS,...")
             .requires("teacher")
-            .help("Which class of the teacher is which of these, where their names do not match"),
+            .help("Map classes of the teacher to classes of the training, where their names differ"),
         Arg::new("teacher-by-number")
             .long("teacher-by-number")
             .action(ArgAction::SetTrue)
             .requires("teacher")
-            .help("Take the numbers of the teacher's classes as they are, whatever their names are"),
+            .help("Match the teacher's classes by index and ignore their names"),
         Arg::new("keep-empty")
             .long("keep-empty")
             .action(ArgAction::SetTrue)
             .requires("teacher")
-            .help("Keep the pictures in which the teacher finds nothing"),
+            .help("Keep the images without a prediction of the teacher"),
     ]
 }
 
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
     let entry = loading::entry(spec)?;
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let params = learner_flags::params(entry, matches)?;
     let device = loading::device(matches)?;
     let options = options(entry.spec.name, learner_flags::fit_params(entry, matches)?, matches)?;
-    let begins_with_model =
+    let starts_from_model =
         spec.contains('/') || matches.contains_id("model") || matches.get_flag("pretrained");
     let fits = entry.capabilities.fit || entry.capabilities.fit_in;
-    let mut learner = match begins_with_model && fits {
+    let mut learner = match starts_from_model && fits {
         true => loading::load(spec, &params, matches, &bar)?,
         false => entry.make(&params, device)?,
     };
     if environment_flags::is_policy(entry) {
         let source = environment_flags::source(matches, Some(learner.as_ref()))?;
         let environments = FitEnvironments { env: &source, val_env: None };
-        let fitted = opendr::fit_in(learner.as_mut(), entry, environments, &options, &bar)?;
-        return tell(&fitted, matches, &bar);
+        let fitted = opendr::fit_policy(learner.as_mut(), entry, environments, &options, &bar)?;
+        return print_fitted(&fitted, matches, &bar);
     }
     let val = matches.get_one::<PathBuf>("val");
     let val = val.map(|path| ExternalDataset::new(path, word(matches, "val-format").unwrap_or_default()));
@@ -160,7 +160,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         teacher: word(matches, "teacher").map(|teacher| load_teacher(&teacher, matches, &bar)).transpose()?,
     };
     let fitted = opendr::fit(learner.as_mut(), entry, data, &options, &bar)?;
-    tell(&fitted, matches, &bar)
+    print_fitted(&fitted, matches, &bar)
 }
 
 fn options(name: &str, params: ParamMap, matches: &ArgMatches) -> Result<FitOptions> {
@@ -190,8 +190,8 @@ fn word(matches: &ArgMatches, flag: &str) -> Option<String> {
     matches.get_one(flag).cloned()
 }
 
-/// The pretrained learner that is learned from.
-fn load_teacher(spec: &str, matches: &ArgMatches, bar: &Bar) -> Result<Teacher> {
+/// Loads the pretrained teacher.
+fn load_teacher(spec: &str, matches: &ArgMatches, bar: &ProgressBar) -> Result<Teacher> {
     let threshold = matches.get_one("teacher-threshold").copied();
     let device = loading::device(matches)?;
     opendr::teacher_with(spec, threshold, device, |params| {
@@ -199,8 +199,8 @@ fn load_teacher(spec: &str, matches: &ArgMatches, bar: &Bar) -> Result<Teacher> 
     })
 }
 
-/// Prints how it ended, where the model lies, and how to go on.
-fn tell(fitted: &Fitted, matches: &ArgMatches, bar: &Bar) -> Result<Outcome> {
+/// Prints the outcome, the path of the model, and how to resume.
+fn print_fitted(fitted: &Fitted, matches: &ArgMatches, bar: &ProgressBar) -> Result<Outcome> {
     if matches.get_flag("json") {
         stdout::print_json(fitted)?;
     } else {
@@ -208,7 +208,7 @@ fn tell(fitted: &Fitted, matches: &ArgMatches, bar: &Bar) -> Result<Outcome> {
     }
     if !fitted.complete {
         let output = fitted.output.display();
-        bar.note(&format!("go on with the same command and --out {output} --resume"));
+        bar.note(&format!("resume with the same command and --out {output} --resume"));
     }
     Ok(if fitted.skipped == 0 { Outcome::Done } else { Outcome::SomeFailed })
 }

@@ -1,4 +1,4 @@
-//! `opendr import`: files of other programs become a container.
+//! `opendr import`: converts model files of other formats into a container.
 
 use std::path::PathBuf;
 
@@ -12,24 +12,24 @@ use crate::{learner_flags, loading, stdout};
 
 const EXAMPLES: &str = "\
 Examples:
-  opendr import whisper model.safetensors tokenizer.json --out small     as transformers saved it
-  opendr import whisper encoder_model.onnx decoder_model.onnx tokenizer.json --out small   as Optimum did
-  opendr import whisper model.bin tokenizer.json --out small             as CTranslate2 did
+  opendr import whisper model.safetensors tokenizer.json --out small     saved by transformers
+  opendr import whisper encoder_model.onnx decoder_model.onnx tokenizer.json --out small   by Optimum
+  opendr import whisper model.bin tokenizer.json --out small             by CTranslate2
   opendr import LEARNER detector.tflite --classes names.txt --out mine
-  opendr import LEARNER net.param net.bin --out mine                     of ncnn
-  opendr infer whisper talk.wav --model small                               then run it";
+  opendr import LEARNER net.param net.bin --out mine                     from ncnn
+  opendr infer whisper talk.wav --model small                          run the result";
 
 pub fn grammar() -> Command {
     Command::new("import")
-        .about("Make a container of an ONNX, TensorFlow Lite, TensorFlow.js or ncnn model, or of a Whisper's weights")
-        .arg(loading::learner().value_name("LEARNER").help("What shall run it (see \"opendr models\")"))
+        .about("Convert an ONNX, TensorFlow Lite, TensorFlow.js or ncnn model, or Whisper weights, into a container")
+        .arg(loading::learner().value_name("LEARNER").help("Learner that runs the model (see \"opendr models\")"))
         .arg(
             Arg::new("files")
                 .required(true)
                 .num_args(1..)
                 .value_parser(value_parser!(PathBuf))
                 .value_name("FILE")
-                .help("The model first, then what belongs to it: weights, a tokeniser"),
+                .help("Model file first, then its further files: weights, a tokeniser"),
         )
         .arg(
             Arg::new("out")
@@ -38,21 +38,21 @@ pub fn grammar() -> Command {
                 .required(true)
                 .value_parser(value_parser!(PathBuf))
                 .value_name("DIR")
-                .help("The container to write: a folder, or NAME.zip"),
+                .help("Container to write: a folder, or NAME.zip"),
         )
         .arg(
             Arg::new("classes")
                 .long("classes")
                 .value_parser(value_parser!(PathBuf))
                 .value_name("FILE")
-                .help("Names of the classes, one a line, in the order of the network's output"),
+                .help("File of class names, one per line, in the order of the network's output"),
         )
         .arg(
             Arg::new("image-size")
                 .long("image-size")
                 .value_parser(image_size)
                 .value_name("HEIGHTxWIDTH")
-                .help("Size of pictures, where the model leaves it open"),
+                .help("Input size of images, where the model has a dynamic shape"),
         )
         .arg(
             Arg::new("outputs")
@@ -85,7 +85,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let device = loading::device(matches)?;
     import_files(manifest, &files, &options, &output, |model| {
         let loaded = entry.make(&params, device).and_then(|mut learner| learner.load(model.path()));
-        loaded.context(|| format!("{} does not take this model", entry.spec.name))
+        loaded.context(|| format!("{} cannot load this model", entry.spec.name))
     })?;
     stdout::print(output.display())?;
     Ok(Outcome::Done)
@@ -95,5 +95,5 @@ fn image_size(text: &str) -> Result<(usize, usize), String> {
     let size =
         text.split_once('x').and_then(|(height, width)| Some((height.parse().ok()?, width.parse().ok()?)));
     size.filter(|(height, width)| *height > 0 && *width > 0)
-        .ok_or_else(|| format!("{text:?} is no size; give e.g. 256x320"))
+        .ok_or_else(|| format!("{text:?} is not a size; write HEIGHTxWIDTH, such as 256x320"))
 }

@@ -1,4 +1,4 @@
-//! The commands, one file each.
+//! The subcommands, one file each.
 
 #[cfg(feature = "ros")]
 mod bag;
@@ -31,23 +31,23 @@ use crate::{environment_flags, learner_flags, loading, recordings};
 
 const EXAMPLES: &str = "\
 Examples:
-  opendr demo                                       find people in a photograph
-  opendr models                                     what there is
-  opendr infer LEARNER street.jpg --out seen.png    run one on a picture
-  opendr infer LEARNER dance.mp4 --json             ... on a video, as JSON lines
-  opendr infer LEARNER drive.bag --out found.mcap   ... on a recording of a robot
-  opendr infer LEARNER --help                       its parameters
-  opendr eval LEARNER coco/ --out evaluated/        how good one is
-  opendr fit LEARNER coco/ --val-split val2017      train one
-  opendr fit ppo --env CartPole-v1                  train a policy in an environment
-  opendr sim view CartPole-v1 --learner ppo         film it
-  opendr ros2 run LEARNER --image /camera/image_raw run one as a node of ROS 2
-  opendr data check coco/                           whether a data set is sound";
+  opendr demo                                         detect people in a photograph
+  opendr models                                       list learners and models
+  opendr infer LEARNER street.jpg --out boxes.png     predict on an image
+  opendr infer LEARNER dance.mp4 --json               ... on a video, as lines of JSON
+  opendr infer LEARNER drive.bag --out boxes.mcap     ... on a ROS recording
+  opendr infer LEARNER --help                         list the parameters of a learner
+  opendr eval LEARNER coco/ --out evaluated/          measure a learner on a data set
+  opendr fit LEARNER coco/ --val-split val2017        train a learner
+  opendr fit ppo --env CartPole-v1                    train a policy in an environment
+  opendr sim view CartPole-v1 --learner ppo           record a video of its episodes
+  opendr ros2 run LEARNER --image /camera/image_raw   run a learner as a ROS 2 node
+  opendr data check coco/                             check a data set";
 
-/// The grammar. A command that runs a learner gets the flags of the one that `arguments` name.
+/// Builds the command-line grammar. A subcommand that runs a learner gets the flags of the learner that `arguments` name.
 ///
 /// # Errors
-/// `NotFound` when they name none that there is.
+/// `NotFound` for an unknown learner.
 pub fn grammar(arguments: &[OsString]) -> Result<Command> {
     let mut commands = vec![
         infer::grammar(),
@@ -79,7 +79,7 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
         let add = match name.to_str() {
             Some("fit" | "tune") => learner_flags::add_for_fit,
             Some("bench") => learner_flags::add_for_bench,
-            // Data sets have further inputs in their samples, files of models none.
+            // Samples of data sets contain the further inputs; model files need none.
             Some("eval" | "import" | "optimize") => learner_flags::with_params,
             _ => learner_flags::add,
         };
@@ -106,10 +106,10 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
         .subcommands(commands))
 }
 
-/// Runs the command.
+/// Runs the subcommand.
 ///
 /// # Errors
-/// Whatever kept it from running to its end.
+/// The error of the subcommand.
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let Some((name, matches)) = matches.subcommand() else { return Ok(Outcome::Done) };
     loading::with_threads(matches, || match name {
@@ -138,9 +138,9 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     })
 }
 
-/// The learner that is named by the first word after `command` which is neither a flag nor a flag's value.
+/// Returns the learner named by the first word after `command` that is neither a flag nor a flag's value.
 ///
-/// The flags that a learner brings are not known yet; all of them take a value.
+/// The learner's own flags are not known at this point; all of them take a value.
 fn named_learner(command: &Command, words: &[OsString]) -> Result<Option<&'static Entry>> {
     if !command.get_positionals().any(|argument| argument.get_id() == loading::LEARNER) {
         return Ok(None);
@@ -158,7 +158,7 @@ fn named_learner(command: &Command, words: &[OsString]) -> Result<Option<&'stati
     Ok(None)
 }
 
-/// Whether `word` is a flag without a value.
+/// Returns whether `word` is a flag without a value.
 fn is_switch(command: &Command, word: &OsStr) -> bool {
     let name = word.to_string_lossy();
     let takes_none = |action: &ArgAction| !action.takes_values();
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn grammar_of_every_learner_is_sound() {
+    fn grammar_of_every_learner_is_valid() {
         for entry in opendr::registry().entries() {
             for command in ["infer", "bench", "eval", "fit", "import", "tune"] {
                 grammar(&words(&format!("opendr {command} {}", entry.spec.name))).unwrap().debug_assert();

@@ -1,4 +1,4 @@
-//! `opendr models`: what there is.
+//! `opendr models`: lists the models of the zoo.
 
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use opendr::model::Licence;
@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::exit::Outcome;
 use crate::stdout;
 
-/// Longer cells of the table are cut; `--json` has them whole.
+/// Maximum width of a cell in characters; longer text is cut, except with `--json`.
 const WIDEST: usize = 24;
 const COLUMNS: usize = 10;
 
@@ -19,9 +19,9 @@ pub fn grammar() -> Command {
     };
     Command::new("models")
         .about("List the models with task, size, licence and source")
-        .arg(Arg::new("task").long("task").value_name("TASK").help("Only models for this task"))
-        .arg(switch("commercial", "Only models whose licences allow commercial use"))
-        .arg(switch("cached", "Only models that are on this machine"))
+        .arg(Arg::new("task").long("task").value_name("TASK").help("List only models for this task"))
+        .arg(switch("commercial", "List only models whose licences allow commercial use"))
+        .arg(switch("cached", "List only models in the cache"))
         .arg(switch("json", "Print a JSON array"))
         .after_help("Examples:\n  opendr models --task face_detection\n  opendr models --commercial --json")
 }
@@ -32,9 +32,9 @@ struct Row<'a> {
     default: bool,
     task: Option<Task>,
     description: &'a str,
-    /// Bytes of the model's own files.
+    /// Size of the model's files in bytes.
     bytes: u64,
-    /// Bytes that a download takes: the package around the files, where there is one.
+    /// Size of the download in bytes: that of the package which contains the files, if there is one.
     download_bytes: u64,
     licence: &'a Licence,
     source: String,
@@ -49,7 +49,7 @@ struct Row<'a> {
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let task = matches.get_one::<String>("task").map(|name| name.parse::<Task>()).transpose()?;
     let zoo = Zoo::new(ZooOptions::from_env()?)?;
-    // Cards of learners that this build does not have are left out.
+    // Cards of learners that this build does not contain are omitted.
     let learners: Vec<_> = opendr::registry().entries().iter().map(|entry| entry.spec.name).collect();
     let models = zoo.items().filter(|item| item.card.kind == ItemKind::Model);
     let models = models.filter(|item| learners.contains(&item.card.learner.as_str()));
@@ -84,7 +84,7 @@ fn row<'a>(zoo: &Zoo, item: Item<'a>) -> Row<'a> {
         real_time_factor: speed.and_then(|speed| speed.real_time_factor),
         p50_ms: speed.and_then(|speed| speed.p50_ms),
         peak_mb: speed.map(|speed| speed.peak_mb),
-        measured_on: speed.map(|speed| speed.on.as_str()),
+        measured_on: speed.map(|speed| speed.measured_on.as_str()),
     }
 }
 
@@ -101,7 +101,7 @@ fn table(rows: &[Row<'_>]) -> String {
         text += padded.join("  ").trim_end();
         text += "\n";
     }
-    text + "* is taken when no variant is named"
+    text + "* default variant"
 }
 
 fn cells(row: &Row<'_>) -> [String; COLUMNS] {

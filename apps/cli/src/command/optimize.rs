@@ -1,4 +1,4 @@
-//! `opendr optimize`: a smaller and faster model.
+//! `opendr optimize`: quantises a model to INT8 or converts it to FP16.
 
 use std::path::{Path, PathBuf};
 
@@ -7,49 +7,52 @@ use opendr::dataset::ExternalDataset;
 use opendr::model::Model;
 use opendr::optimize::{OptimizeJob, OptimizeOptions};
 use opendr::params::{Field, ParamValue, Params};
-use opendr::{Opening, Progress, Result};
+use opendr::{DatasetOpener, Progress, Result};
 
 use crate::exit::Outcome;
-use crate::progress_bar::Bar;
+use crate::progress_bar::ProgressBar;
 use crate::{dataset_flags, learner_flags, loading, stdout};
 
 const EXAMPLES: &str = "\
 Examples:
-  opendr optimize nanodet --fp16 --out half                          half the size
-  opendr optimize nanodet --int8 --calibration photos/ --out small   a quarter of the size, and faster
+  opendr optimize nanodet --fp16 --out half                          FP16, half the size
+  opendr optimize nanodet --int8 --calibration photos/ --out small   INT8, a quarter of the size
   opendr optimize runs/mine/model --int8 --calibration coco/ --calibration-split train2017 \\
-    --validation coco/ --validation-split val2017 --out small        ... with the accuracy before and after
+    --validation coco/ --validation-split val2017 --out small        ... with the metric before and after
 
-What is written is a model as any other: opendr infer LEARNER --model small street.jpg";
+The output is an ordinary model container: opendr infer LEARNER --model small street.jpg";
 
-/// The parameter that `--int8` and `--fp16` stand for, and one whose name the flag of the data set has.
+/// Parameter that `--int8` and `--fp16` set.
 const PRECISION: &str = "precision";
+/// Parameter whose flag is `--calibration-method`, since `--calibration` names the data set.
 const METHOD: &str = "calibration";
 
 pub fn grammar() -> Command {
     let rules = rules().map(|field| {
-        let flag = learner_flags::param_flag("Rules of --int8", field);
+        let flag = learner_flags::param_flag("Options of --int8", field);
         if field.name == METHOD { flag.long("calibration-method") } else { flag }
     });
     Command::new("optimize")
-        .about("Make a model smaller and faster: weights in 8 or 16 bits")
+        .about("Quantise a model to INT8, or convert it to FP16")
         .arg(
             Arg::new("source")
                 .required(true)
                 .value_name("LEARNER[/VARIANT]|CONTAINER")
-                .help("A pretrained model, or a container of your own"),
+                .help("Pretrained model, or path of a container"),
         )
         .args(["int8", "fp16"].map(|name| {
-            let help =
-                format!("Weights {}", if name == "int8" { "and values in 8 bits" } else { "in 16 bits" });
+            let help = format!(
+                "Convert to {}",
+                if name == "int8" { "8-bit weights and activations" } else { "16-bit weights" }
+            );
             Arg::new(name).long(name).action(ArgAction::SetTrue).help(help)
         }))
         .group(ArgGroup::new(PRECISION).args(["int8", "fp16"]).required(true))
         .args(data_flags(
             "calibration",
-            "Pictures that --int8 takes the ranges of values from; a folder will do",
+            "Images from which --int8 measures the ranges of activations; a folder is enough",
         ))
-        .args(data_flags("validation", "Measure on this data set before and after"))
+        .args(data_flags("validation", "Evaluate on this data set before and after"))
         .arg(
             Arg::new("out")
                 .long("out")
@@ -58,16 +61,16 @@ pub fn grammar() -> Command {
                 .required(true)
                 .value_parser(value_parser!(PathBuf))
                 .value_name("DIR")
-                .help("Where to write the model"),
+                .help("Folder to write the model into"),
         )
-        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one object of JSON"))
+        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print a JSON object"))
         .arg(dataset_flags::skip_broken_flag())
         .args(rules)
         .args([loading::device_flag(), loading::threads(), loading::offline(), loading::quiet()])
         .after_help(EXAMPLES)
 }
 
-/// A data set, its format and its part.
+/// Returns the flags of a data set: path, format and split.
 fn data_flags(name: &'static str, help: &'static str) -> [Arg; 3] {
     let [data, format, split] = data_ids(name);
     [
@@ -76,8 +79,8 @@ fn data_flags(name: &'static str, help: &'static str) -> [Arg; 3] {
             .long(format)
             .default_value("auto")
             .value_name("FORMAT")
-            .help(format!("What --{name} is; by default recognised")),
-        Arg::new(split).long(split).value_name("NAME").help(format!("The part of --{name}")),
+            .help(format!("Format of --{name}; by default detected")),
+        Arg::new(split).long(split).value_name("NAME").help(format!("Split of --{name}")),
     ]
 }
 
@@ -90,16 +93,18 @@ fn data_ids(name: &str) -> [&'static str; 3] {
 
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let source = matches.get_one::<String>("source").map_or("", String::as_str);
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let path = loading::container(source, matches, &bar)?;
     let entry = loading::entry(&Model::open(&path)?.manifest().learner)?;
     let options = options(matches)?;
     let problems = dataset_flags::problems(matches);
-    let opening = |annotated| Opening { entry, annotated, problems: &problems, progress: &bar };
-    let [seen, measured] = ["calibration", "validation"].map(|name| external(name, matches));
-    let part = |name| matches.get_one::<String>(data_ids(name)[2]).map(String::as_str);
-    let calibration = seen.as_ref().map(|seen| opening(false).to_train(seen.into(), part("calibration")));
-    let validation = measured.as_ref().map(|data| opening(true).to_measure(data.into(), part("validation")));
+    let opening = |annotated| DatasetOpener { entry, annotated, problems: &problems, progress: &bar };
+    let [images, dataset] = ["calibration", "validation"].map(|name| external(name, matches));
+    let split = |name| matches.get_one::<String>(data_ids(name)[2]).map(String::as_str);
+    let calibration =
+        images.as_ref().map(|data| opening(false).open_training(data.into(), split("calibration")));
+    let validation =
+        dataset.as_ref().map(|data| opening(true).open_validation(data.into(), split("validation")));
     let (calibration, validation) = (calibration.transpose()?, validation.transpose()?);
     let output = matches.get_one::<PathBuf>("out").map_or(Path::new(""), PathBuf::as_path);
     let report = OptimizeJob {
@@ -122,7 +127,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// The parameters that have flags of their own.
+/// Returns the parameters that have their own flags.
 fn rules() -> impl Iterator<Item = &'static Field> {
     OptimizeOptions::FIELDS.iter().filter(|field| field.name != PRECISION)
 }
@@ -134,7 +139,7 @@ fn options(matches: &ArgMatches) -> Result<OptimizeOptions> {
     OptimizeOptions::from_map(&params)
 }
 
-/// The data set of `--calibration` or `--validation`.
+/// Returns the data set of `--calibration` or `--validation`.
 fn external(name: &str, matches: &ArgMatches) -> Option<ExternalDataset> {
     let [data, format, _] = data_ids(name);
     let path = matches.get_one::<PathBuf>(data)?;

@@ -1,4 +1,4 @@
-//! `opendr runtime`: what runs networks here.
+//! `opendr runtime`: the runtimes that execute networks on this machine.
 
 use clap::{ArgMatches, Command};
 use opendr::Result;
@@ -6,18 +6,18 @@ use opendr::inference::{OnnxRuntime, SessionOptions, describe, runtimes};
 use opendr::zoo::{ZooOptions, install_onnx_runtime};
 
 use crate::exit::Outcome;
-use crate::progress_bar::Bar;
+use crate::progress_bar::ProgressBar;
 use crate::{loading, stdout};
 
 pub fn grammar() -> Command {
     Command::new("runtime")
-        .about("Show which runtime runs networks and why, or install ONNX Runtime")
+        .about("Show which runtime executes networks and why, or install ONNX Runtime")
         .subcommand(
-            Command::new("list").about("Every runtime that was found, with its devices (the default)"),
+            Command::new("list").about("List the available runtimes with their devices (the default)"),
         )
         .subcommand(
             Command::new("install")
-                .about("Get ONNX Runtime's library with pip into the cache")
+                .about("Download ONNX Runtime's library with pip into the cache")
                 .args([loading::offline(), loading::quiet()]),
         )
         .disable_help_subcommand(true)
@@ -39,7 +39,7 @@ fn list() -> Result<()> {
         stdout::print(format_args!("found: {} on {}", runtime.describe(), devices.join(", ")))?;
     }
     for skipped in OnnxRuntime::skipped() {
-        stdout::print(format_args!("passed over: {skipped}"))?;
+        stdout::print(format_args!("skipped: {skipped}"))?;
     }
     Ok(())
 }
@@ -47,7 +47,7 @@ fn list() -> Result<()> {
 fn install(matches: &ArgMatches) -> Result<()> {
     let mut options = ZooOptions::from_env()?;
     options.offline |= matches.get_flag("offline");
-    let installed = install_onnx_runtime(&options, &Bar::new(matches.get_flag("quiet")))?;
+    let installed = install_onnx_runtime(&options, &ProgressBar::new(matches.get_flag("quiet")))?;
     stdout::print(&installed)?;
     stdout::print(format_args!("in use: {}", describe(SessionOptions::default())?))
 }

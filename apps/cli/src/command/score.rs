@@ -1,35 +1,35 @@
-//! `opendr score`: a file of answers against a data set.
+//! `opendr score`: evaluates a file of predictions against a data set.
 
 use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgMatches, Command, value_parser};
 use opendr::dataset::ExternalDataset;
 use opendr::datasets::{self, OpenOptions, Problems};
-use opendr::evaluation::{self, Answers, ClassMatching, Evaluation, Lines, Subject};
+use opendr::evaluation::{self, ClassMatching, Evaluation, FilePredictions, Lines, Subject};
 use opendr::metrics::{self, MetricEntry};
 use opendr::{Error, Result, inference};
 
 use crate::command::eval;
 use crate::exit::Outcome;
-use crate::progress_bar::Bar;
+use crate::progress_bar::ProgressBar;
 use crate::{class_flags, dataset_flags, loading};
 
 const EXAMPLES: &str = "\
 Examples:
   opendr score results.json coco/annotations/instances_val2017.json --metric coco_detection
-  opendr score answers.jsonl coco/ --metric coco_detection      lines of \"opendr infer --json\"
-  opendr score tracker/ MOT17/train/ --metric hota              files of the data set's own format
+  opendr score predictions.jsonl coco/ --metric coco_detection  lines of \"opendr infer --json\"
+  opendr score tracker/ MOT17/train/ --metric hota              files in the data set's own format
   opendr score results/ KITTI/ --metric kitti --answers-format kitti";
 
 pub fn grammar() -> Command {
     Command::new("score")
-        .about("Measure answers that were written into files")
+        .about("Evaluate predictions that were written into files")
         .arg(
             Arg::new("answers")
                 .required(true)
-                .value_name("ANSWERS")
+                .value_name("PREDICTIONS")
                 .value_parser(value_parser!(PathBuf))
-                .help("COCO results, lines of JSON, or a data set whose annotations are the answers"),
+                .help("COCO results, lines of JSON, or a data set whose annotations are the predictions"),
         )
         .arg(dataset_flags::dataset())
         .args(dataset_flags::flags())
@@ -37,7 +37,7 @@ pub fn grammar() -> Command {
             Arg::new("answers-format")
                 .long("answers-format")
                 .value_name("FORMAT")
-                .help("The format of the answers; by default the data set's"),
+                .help("Format of the predictions [default: that of DATASET]"),
         )
         .args(eval::metric_flags())
         .args(class_flags::flags())
@@ -51,7 +51,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         Error::invalid_param(format!("name a metric with --metric; there are {}", names.join(", ")))
     })?;
     let metric = metrics::find(name)?;
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let problems = dataset_flags::problems(matches);
     let external = dataset_flags::external(matches);
     let path = matches.get_one::<PathBuf>("answers").cloned().unwrap_or_default();
@@ -64,12 +64,15 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         if let Some(folder) = matches.get_one::<PathBuf>("out") {
             outcome.write_report(folder)?;
         }
-        return eval::tell(&outcome, matches, &problems, &bar);
+        return eval::print_outcome(&outcome, matches, &problems, &bar);
     }
-    let dataset = evaluation::open_for(metric, &external, split, &problems)?;
+    let dataset = evaluation::open_for_metric(metric, &external, split, &problems)?;
     let answers = match path.extension().and_then(|extension| extension.to_str()) {
-        Some("jsonl") => Answers::Lines(Lines::open(&path, dataset.as_ref(), &problems)?),
-        _ => Answers::from_dataset(open(&path, &external, metric, matches, &problems)?, dataset.as_ref()),
+        Some("jsonl") => FilePredictions::Lines(Lines::open(&path, dataset.as_ref(), &problems)?),
+        _ => FilePredictions::from_dataset(
+            open(&path, &external, metric, matches, &problems)?,
+            dataset.as_ref(),
+        ),
     };
     let subject = Subject { learner: path.display().to_string(), ..Subject::default() };
     let evaluation = Evaluation {
@@ -84,20 +87,20 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         ..Evaluation::new(subject, metric, &problems)
     };
     let outcome = evaluation.score(&answers, dataset.as_ref())?;
-    eval::tell(&outcome, matches, &problems, &bar)
+    eval::print_outcome(&outcome, matches, &problems, &bar)
 }
 
-/// The answers as a data set.
+/// Opens the predictions as a data set.
 fn open(
     path: &Path,
-    truth: &ExternalDataset,
+    ground_truth: &ExternalDataset,
     metric: &MetricEntry,
     matches: &ArgMatches,
     problems: &Problems,
 ) -> Result<Box<dyn opendr::dataset::DatasetIterator>> {
     let format = match matches.get_one::<String>("answers-format") {
         Some(format) => format,
-        None => datasets::format_of(truth)?.name,
+        None => datasets::format_of(ground_truth)?.name,
     };
     let options = OpenOptions { split: None, target: Some(metric.prediction) };
     datasets::open(&ExternalDataset::new(path, format), &options, problems)

@@ -1,69 +1,69 @@
-//! `opendr sim`: the environments, looked at.
+//! `opendr sim`: lists the environments and records videos of them.
 
 use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgMatches, Command, value_parser};
 use opendr::environment::{Controller, Environment, EnvironmentSource, ResetOptions, Space, Step};
-use opendr::simulation::{Film, RegisteredSource, Registry};
-use opendr::{ActingStream, Error, Progress, Random, Result, Unit};
+use opendr::simulation::{Recording, RegisteredSource, Registry};
+use opendr::{Error, PolicyController, Progress, Random, Result, Unit};
 
 use crate::exit::Outcome;
-use crate::progress_bar::Bar;
+use crate::progress_bar::ProgressBar;
 use crate::{environment_flags, loading, stdout};
 
 const EXAMPLES: &str = "\
 Examples:
-  opendr sim list                                               what there is
-  opendr sim list UavDepthCorridor-v1                           its spaces and parameters
-  opendr sim view CartPole-v1                                   an episode of actions by chance, as CartPole-v1.gif
-  opendr sim view CartPole-v1 --learner ppo --out cart.mp4      a policy at work (mp4 wants ffmpeg)
+  opendr sim list                                               list the environments
+  opendr sim list UavDepthCorridor-v1                           list its spaces and parameters
+  opendr sim view CartPole-v1                                   an episode of random actions, as CartPole-v1.gif
+  opendr sim view CartPole-v1 --learner ppo --out cart.mp4      an episode of a policy (mp4 needs ffmpeg)
   opendr sim view UavDepthCorridor-v1 --env-param max_obstacles=10 --seed 7 --out flight.png";
 
 const ID: &str = "id";
 
 pub fn grammar() -> Command {
     let view = Command::new("view")
-        .about("Film an environment: actions by chance, or of a policy")
-        .arg(Arg::new(ID).required(true).value_name("ID").help("The environment (\"opendr sim list\")"))
+        .about("Record a video of an environment, with random actions or a policy")
+        .arg(Arg::new(ID).required(true).value_name("ID").help("Environment (see \"opendr sim list\")"))
         .args([
             Arg::new("out")
                 .long("out")
                 .short('o')
                 .value_parser(value_parser!(PathBuf))
-                .value_name("FILM")
-                .help("The file to write: .gif, .mp4, or .png for a picture a step [default: ID.gif]"),
+                .value_name("FILE")
+                .help("File to write: .gif, .mp4, or .png for one image per step [default: ID.gif]"),
             Arg::new("learner")
                 .long("learner")
                 .value_name("LEARNER[/VARIANT]")
-                .help("The policy that acts; without it, chance does"),
+                .help("Policy that acts [default: random actions]"),
             Arg::new("episodes")
                 .long("episodes")
                 .default_value("1")
                 .value_parser(value_parser!(u64).range(1..=1000))
                 .value_name("N")
-                .help("How many episodes"),
+                .help("Number of episodes"),
             Arg::new("seed")
                 .long("seed")
                 .default_value("0")
                 .value_parser(value_parser!(u64))
                 .value_name("N")
-                .help("What the first episode begins with"),
+                .help("Seed of the first episode; each further episode adds 1"),
             Arg::new("rate")
                 .long("rate")
                 .value_parser(value_parser!(f64))
                 .value_name("HZ")
-                .help("Pictures a second [default: as fast as the world's own time, at most 30]"),
+                .help("Frames per second [default: 30]"),
             environment_flags::param_flag(),
         ])
         .args(loading::flags());
     Command::new("sim")
-        .about("Look at the environments in which policies learn")
+        .about("List the environments for reinforcement learning and record videos of them")
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommands([
-            Command::new("list")
-                .about("The environments that there are")
-                .arg(Arg::new(ID).value_name("ID").help("Only this one, with its spaces and parameters")),
+            Command::new("list").about("List the environments").arg(
+                Arg::new(ID).value_name("ID").help("List the spaces and parameters of this environment"),
+            ),
             view,
         ])
         .after_help(EXAMPLES)
@@ -82,7 +82,7 @@ fn list(matches: &ArgMatches) -> Result<Outcome> {
     let Some(id) = matches.get_one::<String>(ID) else {
         for id in registry.ids() {
             let spec = registry.get(id)?.make(&Default::default())?.spec().clone();
-            stdout::print(format_args!("{id:28} sees {}, does {}", spec.observation, spec.action))?;
+            stdout::print(format_args!("{id:28} observation {}, action {}", spec.observation, spec.action))?;
         }
         return Ok(Outcome::Done);
     };
@@ -111,7 +111,7 @@ fn list(matches: &ArgMatches) -> Result<Outcome> {
 }
 
 fn view(matches: &ArgMatches) -> Result<Outcome> {
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let id = matches.get_one::<String>(ID).map_or("", String::as_str);
     let source = RegisteredSource::new(id, &environment_flags::params(id, matches)?)?;
     let mut environment = source.make()?;
@@ -119,31 +119,31 @@ fn view(matches: &ArgMatches) -> Result<Outcome> {
     let mut acting: Box<dyn Controller> = match matches.get_one::<String>("learner") {
         Some(spec) => {
             let learner = loading::load(spec, &Default::default(), matches, &bar)?;
-            Box::new(ActingStream::new(learner.stream()?, loading::entry(spec)?, environment.spec())?)
+            Box::new(PolicyController::new(learner.stream()?, loading::entry(spec)?, environment.spec())?)
         }
-        None => by_chance(environment.spec().action.clone(), first),
+        None => random_controller(environment.spec().action.clone(), first),
     };
     let default = PathBuf::from(format!("{}.gif", source.id()));
     let out = matches.get_one::<PathBuf>("out").unwrap_or(&default);
     let rate = matches.get_one::<f64>("rate").copied().unwrap_or(30.0);
-    let mut film = Film::create(out, rate)?;
+    let mut film = Recording::create(out, rate)?;
     let episodes = matches.get_one::<u64>("episodes").copied().unwrap_or(1);
     bar.begin("episodes", Some(episodes), Unit::Items);
     for seed in (first..).take(usize::try_from(episodes).unwrap_or(1)) {
         if bar.stopped() {
             break;
         }
-        let told = episode(&mut *environment, &mut *acting, seed, &mut film, &bar);
-        stdout::print(told.inspect_err(|_| bar.end())?)?;
+        let line = episode(&mut *environment, &mut *acting, seed, &mut film, &bar);
+        stdout::print(line.inspect_err(|_| bar.end())?)?;
         bar.advance(1);
     }
     bar.end();
     film.finish()?;
-    bar.note(&format!("written: {}", written(out)));
+    bar.note(&format!("written: {}", written_files(out)));
     Ok(Outcome::Done)
 }
 
-fn written(out: &Path) -> String {
+fn written_files(out: &Path) -> String {
     match out.extension() {
         Some(extension) if extension == "png" => {
             format!("{}-00001.png and so on", out.with_extension("").display())
@@ -152,7 +152,7 @@ fn written(out: &Path) -> String {
     }
 }
 
-fn by_chance(actions: Space, seed: u64) -> Box<dyn Controller> {
+fn random_controller(actions: Space, seed: u64) -> Box<dyn Controller> {
     let mut random = Random::new(seed);
     Box::new(move |_: &[f32], action: &mut [f32]| {
         actions.sample_into(&mut random, action);
@@ -160,25 +160,25 @@ fn by_chance(actions: Space, seed: u64) -> Box<dyn Controller> {
     })
 }
 
-/// Films an episode; a line on it.
+/// Records an episode and returns a summary line.
 fn episode(
     environment: &mut dyn Environment,
     acting: &mut dyn Controller,
     seed: u64,
-    film: &mut Film,
-    bar: &Bar,
+    film: &mut Recording,
+    bar: &ProgressBar,
 ) -> Result<String> {
     let spec = environment.spec().clone();
-    let (mut seen, mut action) = (vec![0.0; spec.observation.len()], vec![0.0; spec.action.len()]);
-    environment.reset(Some(seed), &ResetOptions::new(), &mut seen)?;
+    let (mut observation, mut action) = (vec![0.0; spec.observation.len()], vec![0.0; spec.action.len()]);
+    environment.reset(Some(seed), &ResetOptions::new(), &mut observation)?;
     acting.reset();
     let (mut earned, mut length) = (0.0, 0u64);
-    let no_pictures = || Error::unsupported(format!("{} draws no pictures", spec.id));
-    film.write(&environment.render()?.ok_or_else(no_pictures)?)?;
+    let no_render = || Error::unsupported(format!("{} does not render", spec.id));
+    film.write(&environment.render()?.ok_or_else(no_render)?)?;
     loop {
-        acting.act(&seen, &mut action)?;
-        let step = environment.step(&action, &mut seen)?;
-        film.write(&environment.render()?.ok_or_else(no_pictures)?)?;
+        acting.act(&observation, &mut action)?;
+        let step = environment.step(&action, &mut observation)?;
+        film.write(&environment.render()?.ok_or_else(no_render)?)?;
         (earned, length) = (earned + step.reward, length + 1);
         if step.is_over() || bar.stopped() {
             return Ok(format!("seed {seed}: return {earned:.2} in {length} steps, {}", ending(&step)));
@@ -190,7 +190,7 @@ fn ending(step: &Step) -> String {
     let how = match (step.terminated, step.truncated) {
         (true, _) => "terminated",
         (_, true) => "truncated",
-        _ => "broken off",
+        _ => "interrupted",
     };
     step.info.iter().fold(how.to_owned(), |text, (name, value)| format!("{text}, {name} {value}"))
 }

@@ -1,4 +1,4 @@
-//! `opendr tune`: the parameters of a training, or of a learner as it is, searched.
+//! `opendr tune`: searches the hyperparameters of a training, or the parameters of inference.
 
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -12,26 +12,26 @@ use opendr::tuning::{StudyRecord, line_from_study, table_from_study};
 use opendr::{Error, FitOptions, Progress, Result, Silent, TuneData, TuneOptions, Tuned};
 
 use crate::exit::Outcome;
-use crate::progress_bar::Bar;
+use crate::progress_bar::ProgressBar;
 use crate::{dataset_flags, environment_flags, learner_flags, loading, stdout};
 
 const EXAMPLES: &str = "\
 Examples:
   opendr tune ppo --env CartPole-v1 --search learning_rate=1e-5..1e-2 --search n_steps=32,64,128,256 --length 50000
   opendr tune image_classifier digits/ --val-split test --search lr --search width=8,16,32 --length 500
-  opendr tune ppo --env CartPole-v1 --search gamma --out runs/tuned --trials 100     go on in the same folder
-  opendr tune byte_track MOT17/ --split train --search new_threshold --search track_buffer=10..60    nothing is trained
+  opendr tune ppo --env CartPole-v1 --search gamma --out runs/tuned --trials 100     resume in the same folder
+  opendr tune byte_track MOT17/ --split train --search new_threshold --search track_buffer=10..60    no training
   opendr tune nanodet coco/ --split val2017 --answers --search iou_threshold
 
-A trial is paused where others do better, and goes on from its checkpoint when it turns out to be worth it. OUTPUT/study.log
-is a journal that Optuna reads. Ctrl-C leaves the study whole; the same command goes on. Several processes may share it.";
+A trial pauses while others have better values, and may resume later from its checkpoint. OUTPUT/study.log is a journal that
+Optuna reads. After Ctrl-C the same command resumes the study. Several processes may share one study.";
 
-/// Trials in the table that is shown meanwhile.
+/// Number of trials in the live table.
 const LIVE_ROWS: usize = 12;
 
 pub fn grammar() -> Command {
     Command::new("tune")
-        .about("Search the parameters of a learner's training, or of the learner as it is")
+        .about("Search the hyperparameters of a learner's training, or the parameters of its inference")
         .arg(loading::learner())
         .arg(dataset_flags::dataset())
         .args(dataset_flags::flags())
@@ -39,16 +39,16 @@ pub fn grammar() -> Command {
             Arg::new("val-split")
                 .long("val-split")
                 .value_name("NAME")
-                .help("The part of DATASET to measure a training on"),
+                .help("Split of DATASET on which each training is evaluated"),
         )
         .arg(Arg::new("answers").long("answers").action(ArgAction::SetTrue).conflicts_with("val-split").help(
-            "Train nothing: search the learner's own parameters, measured on DATASET; so it is for learners that do not train",
+            "Search the learner's own parameters, evaluated on DATASET, without training; the default for learners that do not train",
         ))
         .arg(
             Arg::new("metric")
                 .long("metric")
                 .value_name("NAME")
-                .help("What to measure by when nothing is trained [default: the task's own]"),
+                .help("Metric of a search without training [default: the task's metric]"),
         )
         .args(search_flags())
         .args(loading::flags())
@@ -66,53 +66,53 @@ fn search_flags() -> [Arg; 10] {
             .long("search")
             .action(ArgAction::Append)
             .value_name("NAME[=LOW..HIGH|=A,B]")
-            .help("A parameter of the training (or of the learner), over its own range, another, or some values; once for each"),
-        number("trials", "30", "Configurations in all, those of earlier calls counted"),
-        number("tuning-seeds", "3", "Seeds of each configuration that comes to the end"),
-        number("length", "100000", "Steps of a whole training"),
-        number("points", "9", "Measurements in the course of a training"),
-        number("jobs", "1", "Trials at a time"),
+            .help("Parameter of the training (or of the learner) to search: over its own range, a given range, or listed values; may be repeated"),
+        number("trials", "30", "Total number of configurations, including those of earlier calls"),
+        number("tuning-seeds", "3", "Seeds of each configuration that completes"),
+        number("length", "100000", "Steps of a complete training"),
+        number("points", "9", "Evaluations during a training"),
+        number("jobs", "1", "Trials that run at the same time"),
         Arg::new("pruner")
             .long("pruner")
             .default_value("asha")
             .value_parser(["asha", "median", "hyperband", "none"])
-            .help("Who stops or pauses trials"),
+            .help("Pruner that stops or pauses trials"),
         Arg::new("timeout")
             .long("timeout")
             .value_parser(value_parser!(f64))
             .value_name("SECONDS")
-            .help("Begin nothing after this time"),
+            .help("Start no new work after this time"),
         Arg::new("out")
             .long("out").alias("output")
             .short('o')
             .value_parser(value_parser!(PathBuf))
             .value_name("DIR")
-            .help("The folder of the study [default: runs/tune-LEARNER-DATE]"),
-        Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one object of JSON"),
+            .help("Folder of the study [default: runs/tune-LEARNER-DATE]"),
+        Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print a JSON object"),
     ]
 }
 
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
     let entry = loading::entry(spec)?;
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let options = options(entry, matches)?;
     let output = match matches.get_one::<PathBuf>("out") {
         Some(output) => output.clone(),
         None => FitOptions::default().output_folder(&format!("tune-{}", entry.spec.name))?,
     };
     bar.note(&format!("output: {}", output.display()));
-    let told = Mutex::new(String::new());
+    let last_line = Mutex::new(String::new());
     let watch = |study: &StudyRecord, number: usize| {
         if bar.is_live() {
             return bar.status(&format!("\n{}", table_from_study(study, LIVE_ROWS)));
         }
-        // On its way with a further seed a trial stands where it stood.
-        let (line, mut told) =
-            (line_from_study(study, number), told.lock().unwrap_or_else(PoisonError::into_inner));
-        if line != *told {
+        // A trial that continues with another seed yields the same line.
+        let (line, mut last_line) =
+            (line_from_study(study, number), last_line.lock().unwrap_or_else(PoisonError::into_inner));
+        if line != *last_line {
             bar.note(&line);
-            *told = line;
+            *last_line = line;
         }
     };
     let tuned = if environment_flags::is_policy(entry) {
@@ -125,11 +125,11 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         let external = dataset_flags::external(matches);
         let split = dataset_flags::split(matches);
         let metric = matches.get_one::<String>("metric").map(String::as_str);
-        // Got once, with its bar; what comes after it is in the cache.
+        // The first load downloads the model with a progress bar; later loads use the cache.
         loading::load(spec, &options.params, matches, &bar)?;
         let make = |params: &ParamMap| loading::load(spec, params, matches, &Silent);
         let dataset = DatasetRef::External(&external);
-        let data = TuneData::Answers { make: &make, dataset, split: split.as_deref(), metric };
+        let data = TuneData::Inference { make: &make, dataset, split: split.as_deref(), metric };
         opendr::tune(entry, data, &options, &output, &watch, &bar)?
     } else {
         let external = dataset_flags::external(matches);
@@ -137,7 +137,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         let data = dataset(&external, split.as_deref(), val_split.map(String::as_str))?;
         opendr::tune(entry, data, &options, &output, &watch, &bar)?
     };
-    tell(&tuned, matches, &bar)
+    print_tuned(&tuned, matches, &bar)
 }
 
 fn dataset<'a>(
@@ -146,7 +146,7 @@ fn dataset<'a>(
     val_split: Option<&'a str>,
 ) -> Result<TuneData<'a>> {
     let val_split = val_split.ok_or_else(|| {
-        Error::invalid_param("name the part to measure on by --val-split: what is trained on tells nothing")
+        Error::invalid_param("no split to evaluate on; name one other than the training split by --val-split")
     })?;
     let dataset = DatasetRef::External(external);
     Ok(TuneData::Dataset { dataset, val_dataset: dataset, split, val_split: Some(val_split) })
@@ -164,7 +164,7 @@ fn options(entry: &'static opendr::learner::Entry, matches: &ArgMatches) -> Resu
         params: learner_flags::params(entry, matches)?,
         trials: small("trials"),
         seeds: small("tuning-seeds"),
-        length,
+        steps: length,
         interval: length.div_ceil(number("points")),
         pruner: matches.get_one::<String>("pruner").cloned().unwrap_or_default(),
         jobs: small("jobs"),
@@ -174,14 +174,14 @@ fn options(entry: &'static opendr::learner::Entry, matches: &ArgMatches) -> Resu
     })
 }
 
-fn tell(tuned: &Tuned, matches: &ArgMatches, bar: &Bar) -> Result<Outcome> {
+fn print_tuned(tuned: &Tuned, matches: &ArgMatches, bar: &ProgressBar) -> Result<Outcome> {
     if matches.get_flag("json") {
         stdout::print_json(tuned)?;
     } else {
         stdout::print(tuned.to_string().trim_end())?;
     }
     if !tuned.complete {
-        bar.note("stopped: the same command goes on");
+        bar.note("stopped; the same command resumes");
     }
     Ok(Outcome::Done)
 }

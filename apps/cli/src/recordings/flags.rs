@@ -1,4 +1,4 @@
-//! The flags of recordings.
+//! Flags of recordings.
 
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command};
@@ -8,30 +8,30 @@ use opendr::{Error, Result};
 
 const HEADING: &str = "Recordings";
 
-/// Which topics are read, and how answers are recorded.
+/// Returns the flags of topics to read and of the written recording.
 pub fn flags() -> [Arg; 4] {
     let flag = |name: &'static str| Arg::new(name).long(name).help_heading(HEADING);
     [
         flag("topic").action(ArgAction::Append).value_name("[PORT=]TOPIC").help(
-            "The topic to read, where several fit; again for each further input, as PORT=TOPIC, matched by stamps",
+            "Topic to read, where several have a fitting type; PORT=TOPIC for each further input, matched by stamps; may be repeated",
         ),
         flag("bag-format")
             .value_name("FORMAT")
             .requires("out")
             .value_parser(PossibleValuesParser::new(BagFormat::ALL.map(BagFormat::name)))
-            .help("Record the answers into --out in this format; .bag and .mcap tell theirs by their names"),
+            .help("Record the predictions into --out in this format; by default from the extension .bag or .mcap"),
         flag("with-input")
             .action(ArgAction::SetTrue)
             .requires("out")
-            .help("Record what was answered besides the answers"),
+            .help("Record the inputs besides the predictions"),
         flag("overwrite")
             .action(ArgAction::SetTrue)
             .requires("out")
-            .help("Replace a recording that is there already"),
+            .help("Replace an existing recording"),
     ]
 }
 
-/// Lets further inputs come from topics instead of files.
+/// Allows topics instead of files for the further inputs.
 pub fn ports_by_topic(command: Command, entry: &'static Entry) -> Command {
     let needed = entry.ports.iter().skip(1).filter(|port| !port.optional || port.init);
     needed.fold(command, |command, port| {
@@ -39,10 +39,10 @@ pub fn ports_by_topic(command: Command, entry: &'static Entry) -> Command {
     })
 }
 
-/// A topic of `recording` for each port that has one, the first port's first.
+/// Returns the topics of the ports, the first port's first.
 ///
 /// # Errors
-/// `InvalidParam` for a port that there is none of or that is named twice, else as [`Recording::topic_for`].
+/// `InvalidParam` for an unknown port or one that is named twice, else as [`Recording::topic_for`].
 pub fn port_topics(
     entry: &'static Entry,
     recording: &Recording,
@@ -57,7 +57,10 @@ pub fn port_topics(
         };
         let port = port.ok_or_else(|| {
             let names: Vec<_> = entry.ports.iter().map(|port| port.name).collect();
-            Error::invalid_param(format!("--topic {word}: no such input; there are {}", names.join(", ")))
+            Error::invalid_param(format!(
+                "--topic {word} names an unknown input; the learner has {}",
+                names.join(", ")
+            ))
         })?;
         if named.iter().any(|(other, _)| other.name == port.name) {
             let name = port.name;
@@ -73,8 +76,8 @@ pub fn port_topics(
             continue;
         }
         let how = || match at {
-            0 => "--topic TOPIC chooses".to_owned(),
-            _ => format!("--topic {}=TOPIC chooses", port.name),
+            0 => "choose one with --topic TOPIC".to_owned(),
+            _ => format!("choose one with --topic {}=TOPIC", port.name),
         };
         let chosen = recording.topic_for(port.value_type, topic).map_err(|error| error.context(how()))?;
         let need = match (at, port.init, port.optional) {

@@ -1,36 +1,24 @@
-//! Recordings as inputs: each message of the first port's topic is a frame.
+//! Recordings as inputs: each message on the first port's topic is a frame.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::ArgMatches;
-use opendr::bags::{Recorded, Recording, Set, Sets, is_recording};
+use opendr::bags::{Recording, SyncedSet, SyncedSets, is_recording};
 use opendr::learner::Entry;
 use opendr::vision::{Frame, VideoInfo};
 use opendr::{Error, Result, Value};
 
 use super::flags::port_topics;
-use crate::inputs::{Datum, Item, Next};
+use crate::item::{Datum, Item, Next};
+use crate::recorded_set::RecordedSet;
 use crate::report::Report;
 
-/// Frames a second of a recording that does not tell.
+/// Frame rate of a recording without a duration, in hertz.
 const RATE: f64 = 25.0;
 
-/// What a recording has beside the datum of the first port.
-pub struct RecordedSet {
-    /// The further ports' values by their names.
-    pub further: Vec<(&'static str, Value)>,
-    /// When the first port's message was recorded, nanoseconds.
-    pub log_time_ns: i64,
-    /// Whether nothing follows in its recording.
-    pub is_last: bool,
-    /// The messages that the values were read from.
-    pub messages: Vec<Recorded>,
-    pub recording: Arc<Recording>,
-}
-
-/// Recordings, one after the other.
+/// Items of several recordings in sequence.
 pub struct Recordings {
     waiting: VecDeque<Opened>,
     given: u64,
@@ -40,21 +28,21 @@ struct Opened {
     recording: Arc<Recording>,
     path: Arc<Path>,
     ports: Vec<&'static str>,
-    sets: Sets,
-    /// The set after the one that is given out.
-    ahead: Option<Result<Set>>,
+    sets: SyncedSets,
+    /// The set after the current one.
+    ahead: Option<Result<SyncedSet>>,
     info: Arc<VideoInfo>,
-    /// Of the first port's topic, as the index tells.
+    /// Number of messages on the first port's topic, from the index of the recording.
     messages: u64,
     number: u64,
-    told: bool,
+    reported: bool,
 }
 
 impl Recordings {
-    /// Opens `inputs` where they are recordings; `None` where they are not.
+    /// Opens `inputs` if they are recordings; returns `None` if they are not.
     ///
     /// # Errors
-    /// `InvalidInput` for recordings among other inputs; what keeps the only one from being read.
+    /// `InvalidInput` for recordings among other inputs; the error of a single recording that cannot be read.
     pub fn open(
         entry: &'static Entry,
         inputs: &[&PathBuf],
@@ -65,13 +53,13 @@ impl Recordings {
         if count == 0 {
             return match matches.contains_id("topic") {
                 true => {
-                    Err(Error::invalid_param("--topic chooses among topics, and no input is a recording"))
+                    Err(Error::invalid_param("--topic needs a recording, but no input is one; omit --topic"))
                 }
                 false => Ok(None),
             };
         }
         if count < inputs.len() {
-            let message = "recordings and other inputs together; read them by a command each";
+            let message = "recordings and other inputs cannot be mixed; use one command for each";
             return Err(Error::invalid_input(message));
         }
         let mut waiting = VecDeque::new();
@@ -80,8 +68,7 @@ impl Recordings {
                 Ok(opened) => {
                     if !opened.recording.bag().is_complete() {
                         let path = input.display();
-                        let message =
-                            format!("{path} was cut off or is damaged; it is read as far as it goes");
+                        let message = format!("{path} is truncated or damaged; it is read up to the damage");
                         report.failure(Some(input), &Error::format(message))?;
                     }
                     waiting.push_back(opened);
@@ -91,12 +78,12 @@ impl Recordings {
             }
         }
         if waiting.is_empty() {
-            return Err(Error::not_found("none of the inputs can be read; the reasons are above"));
+            return Err(Error::not_found("none of the inputs can be read; the errors are above"));
         }
         Ok(Some(Self { waiting, given: 0 }))
     }
 
-    /// How many frames there will be, as far as indices tell.
+    /// Returns the number of frames according to the indices of the recordings.
     pub fn len_hint(&self) -> u64 {
         self.waiting.iter().fold(0, |sum, opened| sum.saturating_add(opened.messages))
     }
@@ -110,34 +97,48 @@ impl Opened {
         let topic = recording.topics().into_iter().find(|topic| topic.name == first);
         let messages = topic.map_or(0, |topic| topic.messages);
         let (ports, topics): (Vec<_>, Vec<_>) = topics.into_iter().unzip();
-        let mut sets = Sets::open(&recording, topics)?;
+        let mut sets = SyncedSets::open(&recording, topics)?;
         let ahead = sets.next();
         let span = recording.bag().start_ns().zip(recording.bag().end_ns());
         let duration_s = span.map(|(start, end)| end.saturating_sub(start) as f64 * 1e-9);
         let rate = duration_s.map_or(RATE, |seconds| (messages.saturating_sub(1)) as f64 / seconds);
         let rate = if rate.is_normal() { rate.clamp(0.1, 240.0) } else { RATE };
-        let info = Arc::new(VideoInfo { rate, frames: Some(messages), duration_s });
-        Ok(Self { recording, path: path.into(), ports, sets, ahead, info, messages, number: 0, told: false })
+        let info = Arc::new(VideoInfo { frame_rate: rate, frames: Some(messages), duration_s });
+        Ok(Self {
+            recording,
+            path: path.into(),
+            ports,
+            sets,
+            ahead,
+            info,
+            messages,
+            number: 0,
+            reported: false,
+        })
     }
 
-    fn next(&mut self) -> Option<Result<Set>> {
+    fn next(&mut self) -> Option<Result<SyncedSet>> {
         let next = self.ahead.take()?;
         self.ahead = self.sets.next();
         Some(next)
     }
 
-    fn item(&self, set: Set, index: u64) -> Result<Item> {
-        let Set { values, messages, log_time_ns, .. } = set;
+    fn item(&self, set: SyncedSet, index: u64) -> Result<Item> {
+        let SyncedSet { values, messages, log_time_ns, .. } = set;
         let number = self.number;
         let mut values = self.ports.iter().copied().zip(values);
         let first = values.next().and_then(|(_, value)| value);
-        let first = first.ok_or_else(|| Error::internal("a set without the first port"))?;
+        let first = first.ok_or_else(|| Error::internal("a set without a value for the first port"))?;
         let further = values.filter_map(|(port, value)| Some((port, value?))).collect();
         let path = self.path.clone();
         let datum = match first {
-            Value::Image(image) => {
-                Datum::Frame(Frame { image, path, index, number, video: Some(self.info.clone()) })
-            }
+            Value::Image(image) => Datum::Frame(Frame {
+                image,
+                path,
+                item_index: index,
+                frame_index: number,
+                video: Some(self.info.clone()),
+            }),
             value => Datum::Value { value: Box::new(value), path, index, number, is_of_stream: true },
         };
         let messages = messages.into_iter().flatten().collect();
@@ -146,16 +147,16 @@ impl Opened {
         Ok(Item { datum, from_files: Vec::new(), recorded: Some(Box::new(recorded)) })
     }
 
-    /// What to say at the end of the recording.
-    fn remark(&mut self) -> Option<Error> {
+    /// Returns the error to report at the end of the recording, if messages had no match.
+    fn unmatched_error(&mut self) -> Option<Error> {
         let unmatched = self.sets.unmatched();
-        if unmatched == 0 || std::mem::replace(&mut self.told, true) {
+        if unmatched == 0 || std::mem::replace(&mut self.reported, true) {
             return None;
         }
         let first = self.ports.first().copied().unwrap_or_default();
         let further = self.ports.get(1..).unwrap_or_default().join(", ");
         Some(Error::invalid_input(format!(
-            "{}: {unmatched} messages for {first} had none for {further} within 20 ms and were left out",
+            "{}: {unmatched} messages for {first} had none for {further} within 20 ms and were skipped",
             self.path.display()
         )))
     }
@@ -182,9 +183,9 @@ impl Iterator for Recordings {
                     return next;
                 }
                 None => {
-                    let remark = opened.remark();
+                    let unmatched = opened.unmatched_error();
                     self.waiting.pop_front();
-                    if let Some(error) = remark {
+                    if let Some(error) = unmatched {
                         return failed(error);
                     }
                 }

@@ -1,50 +1,50 @@
-//! Answers recorded as messages on the topics that a node would answer on.
+//! Recording of predictions, as messages on the topics that a node publishes.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::ArgMatches;
-use opendr::bags::{Answers, BagFormat, WriteOptions, is_recording};
+use opendr::bags::{BagFormat, RecordingWriter, WriteOptions, is_recording};
 use opendr::learner::{Entry, Outputs};
 use opendr::ros::default_topics;
 use opendr::target::Classes;
 use opendr::{Error, Result, ResultExt, Value};
 
-use crate::inputs::Item;
+use crate::item::Item;
 
-/// Between two pictures that have no stamps, and after each file: 25 a second.
+/// Time between two images without stamps, and after each file, in nanoseconds (25 Hz).
 const STEP_NS: i64 = 40_000_000;
 
-/// A recording of answers.
+/// A recording of predictions.
 pub struct RecordingSink {
     entry: &'static Entry,
     out: PathBuf,
     options: WriteOptions,
-    /// Once it is begun.
-    answers: Option<Answers>,
+    /// The open file, after [`Self::begin`].
+    answers: Option<RecordingWriter>,
     with_input: bool,
     classes_written: bool,
     clock: FileClock,
 }
 
 impl RecordingSink {
-    /// The recording that `--out` and `--bag-format` name; `None` when they name none.
+    /// Returns the recording that `--out` and `--bag-format` name; `None` if they name none.
     ///
     /// # Errors
-    /// `InvalidParam` when it would replace an input, or flags do not fit.
+    /// `InvalidParam` when the recording would replace an input, or flags conflict.
     pub fn new(entry: &'static Entry, matches: &ArgMatches, inputs: &[&PathBuf]) -> Result<Option<Self>> {
         let Some(out) = matches.get_one::<PathBuf>("out") else { return Ok(None) };
         let named = matches.get_one::<String>("bag-format").map(|name| name.parse::<BagFormat>());
-        let Some(format) = named.transpose()?.or_else(|| Answers::format_of(out)) else {
+        let Some(format) = named.transpose()?.or_else(|| RecordingWriter::format_of(out)) else {
             if matches.get_flag("with-input") || matches.get_flag("overwrite") {
                 return Err(Error::invalid_param(format!(
-                    "{} is no recording: name it .bag or .mcap, or choose a --bag-format",
+                    "{} has no recording format: name it .bag or .mcap, or choose a --bag-format",
                     out.display()
                 )));
             }
             if is_recording(out) {
                 return Err(Error::invalid_param(format!(
-                    "{} is of a recording of rosbag 2: name its folder, and choose --bag-format bag2_sqlite or bag2_mcap",
+                    "{} is a file of a rosbag 2 recording: name its folder, and choose --bag-format bag2_sqlite or bag2_mcap",
                     out.display()
                 )));
             }
@@ -60,7 +60,7 @@ impl RecordingSink {
         if out.exists() && !matches.get_flag("overwrite") {
             let out = out.display();
             return Err(Error::invalid_param(format!(
-                "{out} is there already; choose another name, or --overwrite it"
+                "{out} already exists; choose another name, or replace it with --overwrite"
             )));
         }
         let options = WriteOptions { overwrite: matches.get_flag("overwrite"), ..WriteOptions::new(format) };
@@ -75,19 +75,19 @@ impl RecordingSink {
         }))
     }
 
-    /// Begins the file; before, nothing is written, so that a command that does not come so far leaves nothing.
+    /// Creates the file. Nothing is written before, so that a command that fails earlier leaves no file.
     ///
     /// # Errors
-    /// As [`Answers::create`].
+    /// As [`RecordingWriter::create`].
     pub fn begin(&mut self) -> Result<()> {
-        self.answers = Some(Answers::create(&self.out, self.options)?);
+        self.answers = Some(RecordingWriter::create(&self.out, self.options)?);
         Ok(())
     }
 
-    /// Records what was found in an item, at the log time of its message; of a file, at its stamp.
+    /// Records the predictions of an item, at the log time of its message or, for files, at its stamp.
     ///
     /// # Errors
-    /// `Io` when the disk is full; otherwise what this answer has no place for, and the next can be written.
+    /// `Io` when the disk is full; `InvalidInput` for a value that has no message, after which others can be written.
     pub fn put(&mut self, item: &Item, outputs: &[Outputs], classes: &Classes) -> Result<()> {
         let time_ns = match &item.recorded {
             Some(recorded) => recorded.log_time_ns,
@@ -99,7 +99,7 @@ impl RecordingSink {
     fn record(&mut self, item: &Item, outputs: &[Outputs], classes: &Classes, time_ns: i64) -> Result<()> {
         let name = self.entry.spec.name;
         let Some(answers) = &mut self.answers else {
-            return Err(Error::internal("a recording before its begin"));
+            return Err(Error::internal("a recording was written before it was created"));
         };
         if !std::mem::replace(&mut self.classes_written, true) {
             answers.write_classes(&format!("/{name}/label_info"), classes, time_ns)?;
@@ -110,7 +110,7 @@ impl RecordingSink {
         for (output, value) in outputs.iter().flat_map(Outputs::iter) {
             let mut value = value.clone();
             let header = value.header_mut();
-            // Where a datum has no stamp, what is found is found again by the time of its picture.
+            // Predictions without a stamp get the time of their input, by which they can be matched.
             header.stamp_ns = header.stamp_ns.or(Some(time_ns));
             let header = header.clone();
             answers.write(&format!("/{name}/{output}"), value.as_value_ref(), time_ns)?;
@@ -125,30 +125,35 @@ impl RecordingSink {
     /// # Errors
     /// `Io` when the disk is full.
     pub fn finish(self) -> Result<()> {
-        let finished = self.answers.map_or(Ok(()), Answers::finish);
+        let finished = self.answers.map_or(Ok(()), RecordingWriter::finish);
         finished.context(|| format!("writing {}", self.out.display()))
     }
 }
 
-fn record_input(entry: &'static Entry, answers: &mut Answers, item: &Item, time_ns: i64) -> Result<()> {
+fn record_input(
+    entry: &'static Entry,
+    answers: &mut RecordingWriter,
+    item: &Item,
+    time_ns: i64,
+) -> Result<()> {
     if let Some(recorded) = &item.recorded {
         return recorded.messages.iter().try_for_each(|message| answers.copy(&recorded.recording, message));
     }
-    let usual = default_topics(entry);
-    let Some(topic) = usual.inputs.first() else { return Ok(()) };
+    let defaults = default_topics(entry);
+    let Some(topic) = defaults.inputs.first() else { return Ok(()) };
     let mut value = item.value().to_value();
     let header = value.header_mut();
     header.stamp_ns = header.stamp_ns.or(Some(time_ns));
     let name = format!("/{}", topic.topic);
     if let Value::Image(_) = &value {
-        // As small as in its file.
+        // Compressed, so that the message is about as small as the image file.
         let message = "sensor_msgs/msg/CompressedImage".parse()?;
         return answers.write_as(&format!("{name}/compressed"), value.as_value_ref(), message, time_ns);
     }
     answers.write(&name, value.as_value_ref(), time_ns)
 }
 
-/// Times of what has no log time: stamps of a video, steps for pictures; one file after the other.
+/// Log times of items from files: stamps of a video, fixed steps for images; files follow each other.
 #[derive(Default)]
 struct FileClock {
     path: Option<Arc<Path>>,
@@ -165,13 +170,13 @@ impl FileClock {
             self.base_ns = 0;
         }
         let mut time = stamp.map_or(next, |stamp| stamp.saturating_add(self.base_ns));
-        // The stamps of every video begin with 0.
+        // The stamps of each video begin at 0.
         if self.last_ns.is_some_and(|last| time <= last) {
             self.base_ns = next.saturating_sub(stamp.unwrap_or(0));
             time = next;
         }
         self.last_ns = Some(time);
-        // Rosbag 1 has no time 0.
+        // rosbag 1 does not allow time 0.
         time.max(1)
     }
 }

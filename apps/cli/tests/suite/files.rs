@@ -1,11 +1,11 @@
-//! `opendr infer` on what is no picture: series and sounds, each in a file.
+//! `opendr infer` on time series and audio files; `opendr import` and `opendr export` of such a learner.
 
 use crate::place::Place;
 
-/// A learner of series whose weights are in the program.
+/// A time-series learner whose weights are embedded.
 const LEARNER: &str = "gated_recurrent_unit";
 
-/// A beat: 140 moments of one measurement.
+/// A heartbeat of 140 samples.
 fn series() -> String {
     (0..140).map(|at| format!("{}\n", (at as f32 / 20.0).sin())).collect()
 }
@@ -30,13 +30,13 @@ fn a_file_is_a_series() {
 }
 
 #[test]
-fn what_is_none_is_told_and_the_rest_goes_on() {
+fn invalid_files_are_reported_and_the_rest_is_processed() {
     let place = Place::new();
     place.write("1.csv", series());
     place.write("2.csv", "1\nabc\n");
     let done = place.run(["infer", LEARNER, "2.csv", "none.csv", "1.csv", "--json"]);
     assert!(
-        done.stderr.contains("none.csv") && done.stderr.contains("line 2 has no number"),
+        done.stderr.contains("none.csv") && done.stderr.contains("line 2 has a column without a number"),
         "{}",
         done.stderr
     );
@@ -52,16 +52,16 @@ fn what_is_none_is_told_and_the_rest_goes_on() {
     let empty = place.run(["infer", LEARNER, "empty"]).ends_with(13);
     assert!(empty.stderr.contains("no file .csv"), "{}", empty.stderr);
     let drawn = place.run(["infer", LEARNER, "1.csv", "--out", "seen.png"]).ends_with(12);
-    assert!(drawn.stderr.contains("--out draws on pictures"), "{}", drawn.stderr);
+    assert!(drawn.stderr.contains("--out draws on images"), "{}", drawn.stderr);
 }
 
 #[test]
-fn a_bare_network_becomes_a_container_that_its_learner_takes() {
+fn a_bare_network_is_imported_into_a_container() {
     let place = Place::new();
     place.write("1.csv", series());
     place.write("names.txt", "healthy\n\n ill \n");
     place.run(["export", LEARNER, "--out", "net.onnx"]).ends_with(0);
-    // The word of older releases.
+    // The flag of older releases.
     place.run(["export", LEARNER, "--output", "old.onnx"]).ends_with(0);
     let import = ["import", LEARNER, "net.onnx", "--out", "mine", "--recurrent-unit", "64"];
     place.run(import.into_iter().chain(["--classes", "names.txt"])).ends_with(0);
@@ -72,9 +72,9 @@ fn a_bare_network_becomes_a_container_that_its_learner_takes() {
     let (wanted, own) = (answer(&[]), answer(&["--model", "mine"]));
     assert_eq!(own["confidence"], wanted["confidence"]);
     assert!(["healthy", "ill"].iter().any(|name| own.to_string().contains(name)), "{own}");
-    // What another learner does not take replaces nothing.
+    // A model that another learner cannot load replaces nothing.
     let refused = place.run(["import", "matchboxnet", "net.onnx", "--out", "mine"]);
-    assert!(refused.stderr.contains("matchboxnet does not take this model"), "{}", refused.stderr);
+    assert!(refused.stderr.contains("matchboxnet cannot load this model"), "{}", refused.stderr);
     refused.ends_with(17);
     assert_eq!(answer(&["--model", "mine"]), own);
     place.write("notes.txt", "no model");

@@ -1,4 +1,4 @@
-//! `opendr infer` on real and hostile pictures.
+//! `opendr infer` on real and malformed images.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -11,9 +11,9 @@ use opendr::data::PixelFormat;
 use opendr::vision;
 use serde_json::Value;
 
-/// A learner whose model the test data has.
+/// A learner whose model is in the test data.
 const LEARNER: &str = "yunet/640";
-/// More than any run here may take, 10^6 bytes.
+/// Upper bound of the memory of each run, in 10^6 bytes.
 const MEMORY_MB: f64 = 1000.0;
 
 fn pictures_of_coco(data: &Path, count: usize) -> Vec<PathBuf> {
@@ -104,7 +104,7 @@ fn missing_input_among_others_is_reported_and_the_rest_done() {
 }
 
 #[test]
-fn unusual_pictures_are_understood() {
+fn unusual_images_are_decoded() {
     let Some((place, data)) = Place::with_data() else { return };
     RgbImage::from_pixel(1, 1, Rgb([9, 8, 7])).save(place.path("dot.png")).unwrap();
     RgbImage::from_pixel(1, 3000, Rgb([9, 8, 7])).save(place.path("line.png")).unwrap();
@@ -197,7 +197,7 @@ fn input_is_never_written_over() {
 
 #[cfg(unix)]
 #[test]
-fn names_that_are_no_text_work() {
+fn names_that_are_not_utf8_work() {
     use std::os::unix::ffi::OsStrExt;
     let Some((place, data)) = Place::with_data() else { return };
     let name = OsStr::from_bytes(b"face-\xff.jpg");

@@ -1,15 +1,15 @@
-//! `opendr infer` on recordings, and recordings of its answers.
+//! `opendr infer` on recordings, and recordings of its predictions.
 
 use std::path::Path;
 
 use crate::place::Place;
-use opendr::bags::{Answers, BagFormat, PortTopic, Recording, Sets};
+use opendr::bags::{BagFormat, PortTopic, Recording, RecordingWriter, SyncedSets};
 use opendr::data::{Audio, Image, Timeseries};
 use opendr::model::{Manifest, ModelWriter};
 use opendr::target::{BoundingBox, BoundingBoxList};
 use opendr::{Header, Value, ValueType};
 
-/// A learner of series whose weights are in the program.
+/// A time-series learner whose weights are embedded.
 const LEARNER: &str = "gated_recurrent_unit";
 const START: i64 = 1_700_000_000_000_000_000;
 const STEP: i64 = 50_000_000;
@@ -20,7 +20,7 @@ fn beat(number: i64) -> Value {
 }
 
 fn record(path: &Path, format: BagFormat, topics: &[&str]) {
-    let mut answers = Answers::create(path, format).unwrap();
+    let mut answers = RecordingWriter::create(path, format).unwrap();
     for number in 0..20 {
         for topic in topics {
             answers.write(topic, beat(number).as_value_ref(), START + number * STEP + 3).unwrap();
@@ -48,7 +48,7 @@ fn every_format_is_read_and_written() {
         let recording = Recording::open(place.path(&out)).unwrap();
         assert_eq!(recording.bag().format(), format);
         let port = PortTopic::new(format!("/{LEARNER}/category"), ValueType::Category);
-        let sets: Vec<_> = Sets::open(&recording, vec![port]).unwrap().map(Result::unwrap).collect();
+        let sets: Vec<_> = SyncedSets::open(&recording, vec![port]).unwrap().map(Result::unwrap).collect();
         assert_eq!(sets.len(), 20);
         for (number, (set, line)) in sets.iter().zip(&lines).enumerate() {
             assert_eq!(set.log_time_ns, START + number as i64 * STEP + 3);
@@ -69,7 +69,7 @@ fn topics_are_named_where_several_fit() {
     for topic in ["/left", "right", "timeseries=/right"] {
         assert_eq!(place.run(named.iter().chain(&[topic])).ends_with(0).lines().len(), 20);
     }
-    let cases = [("/none", 13, "/left"), ("x=/left", 12, "there are timeseries")];
+    let cases = [("/none", 13, "/left"), ("x=/left", 12, "the learner has timeseries")];
     for (topic, code, wanted) in cases {
         let done = place.run(named.iter().chain(&[topic])).ends_with(code);
         assert!(done.stderr.contains(wanted), "{done:?}");
@@ -79,16 +79,16 @@ fn topics_are_named_where_several_fit() {
 }
 
 #[test]
-fn nothing_is_lost_by_a_name() {
+fn existing_files_are_not_replaced() {
     let place = Place::new();
     record(&place.path("a.bag"), BagFormat::Bag1, &["/beats"]);
     let before = std::fs::read(place.path("a.bag")).unwrap();
     let cases: &[(&[&str], &str)] = &[
         (&["--out", "a.bag", "--overwrite"], "is the input itself"),
-        (&["--out", "b.mcap"], "is there already"),
-        (&["--out", "seen.png"], "--out draws on pictures"),
+        (&["--out", "b.mcap"], "already exists"),
+        (&["--out", "seen.png"], "--out draws on images"),
         (&["--out", "x.db3"], "name its folder"),
-        (&["--out", "x", "--with-input"], "is no recording"),
+        (&["--out", "x", "--with-input"], "has no recording format"),
     ];
     place.write("b.mcap", "mine");
     for (flags, wanted) in cases {
@@ -104,18 +104,18 @@ fn nothing_is_lost_by_a_name() {
     place.write("mine/notes.txt", "mine");
     let folder = ["--out", "mine", "--bag-format", "bag2_sqlite", "--overwrite"];
     let done = place.run(["infer", LEARNER, "a.bag"].iter().chain(&folder)).ends_with(11);
-    assert!(done.stderr.contains("holds no recording"), "{done:?}");
-    // A command that does not come to an answer leaves nothing.
+    assert!(done.stderr.contains("contains other files but no recording"), "{done:?}");
+    // A command that fails before the first prediction leaves no file.
     place.run(["infer", LEARNER, "a.bag", "--out", "c.mcap", "--model", "none"]).ends_with(13);
     assert!(!place.path("c.mcap").exists());
 }
 
 #[test]
-fn pieces_of_sound_are_one_stream() {
+fn chunks_of_audio_are_one_stream() {
     let place = Place::new();
     let samples: Vec<f32> = (0..40_000).map(|at| (at as f32 / 9.0).sin() * 0.3).collect();
     let record = |name: &str, size: usize| {
-        let mut answers = Answers::create(place.path(name), BagFormat::Mcap).unwrap();
+        let mut answers = RecordingWriter::create(place.path(name), BagFormat::Mcap).unwrap();
         for (number, piece) in samples.chunks(size).enumerate() {
             let value = Value::from(Audio::new(piece.to_vec(), 1, 16_000).unwrap());
             answers.write("/audio", value.as_value_ref(), START + number as i64 * STEP).unwrap();
@@ -133,16 +133,16 @@ fn pieces_of_sound_are_one_stream() {
         categories.iter().map(|category| category["probabilities"].clone()).collect()
     };
     let (pieces, whole) = (categories("pieces.mcap"), categories("whole.mcap"));
-    // A second each, half a second after the one before.
+    // Windows of one second, half a second apart.
     assert_eq!(pieces.len(), 4);
     assert_eq!(probabilities(&pieces), probabilities(&whole));
-    // Each is stamped as the piece that completed it.
+    // Each has the stamp of the chunk that completed it.
     let stamps: Vec<_> =
         pieces.iter().map(|category| category["stamp_ns"].as_i64().unwrap() - START).collect();
     assert_eq!(stamps, [9, 14, 19, 24].map(|piece| piece * STEP));
 }
 
-/// The learner that every surface is tested with: boxes in pictures are counted, from a number that begins a stream.
+/// Runs the test learner of all surfaces, which counts boxes from an initial value per stream.
 #[test]
 fn further_inputs_come_from_topics() {
     if opendr::registry().find("counter").is_err() {
@@ -153,7 +153,7 @@ fn further_inputs_come_from_topics() {
     let mut model = ModelWriter::new(place.path("model"), Manifest::new("counter", "")).unwrap();
     model.add("bias.bin", &[0]).unwrap();
     model.finish().unwrap();
-    let mut answers = Answers::create(place.path("a.mcap"), BagFormat::Mcap).unwrap();
+    let mut answers = RecordingWriter::create(place.path("a.mcap"), BagFormat::Mcap).unwrap();
     let boxes = |count: usize, stamp: i64| {
         let list = vec![BoundingBox::new(0, 0.0, 0.0, 1.0, 1.0, 0.9); count];
         Value::from(BoundingBoxList { header: Header::new(stamp, "camera"), ..list.into() })
@@ -162,7 +162,7 @@ fn further_inputs_come_from_topics() {
         let stamp = START + number * STEP;
         let image = Image::from_rgb8(vec![0; 12], 2, 2).unwrap().with_header(Header::new(stamp, "camera"));
         answers.write("/image", Value::from(image).as_value_ref(), stamp).unwrap();
-        // The fourth picture has none.
+        // The fourth image has no boxes.
         if number != 3 {
             answers.write("/boxes", boxes(1, stamp + 5_000_000).as_value_ref(), stamp + 9 * STEP).unwrap();
         }
@@ -179,7 +179,7 @@ fn further_inputs_come_from_topics() {
     assert!(done.stderr.contains("1 messages for image had none for detections, first"), "{done:?}");
     let answered: Vec<_> = done.lines().into_iter().filter(|line| line["outputs"].is_object()).collect();
     let counts: Vec<_> = answered.iter().map(|line| &line["outputs"]["count"]["boxes"][0]["left"]).collect();
-    // Two boxes a telling, each counts twice; the last is what is told at the end.
+    // One prediction per two boxes, each counted twice; the last prediction comes at the end of the stream.
     assert_eq!(counts, [3.0 + 4.0, 1.0 + 4.0, 2.0]);
     let info = place.run(["bag", "info", "b.bag", "--json"]).ends_with(0).lines();
     let topics: Vec<_> = info[0]["topics"].as_array().unwrap().iter().collect();
@@ -188,7 +188,7 @@ fn further_inputs_come_from_topics() {
     assert_eq!([messages("/image"), messages("/boxes"), messages("/first")], [5, 5, 2]);
     assert_eq!(messages("/counter/count"), 3);
     let unclear = place.run(infer.iter().chain(&["--topic", "first=/first"])).ends_with(11);
-    assert!(unclear.stderr.contains("--topic detections=TOPIC chooses"), "{unclear:?}");
+    assert!(unclear.stderr.contains("choose one with --topic detections=TOPIC"), "{unclear:?}");
     let missing = place.run(infer).ends_with(2);
     assert!(missing.stderr.contains("--detections"), "{missing:?}");
 }

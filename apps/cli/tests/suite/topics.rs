@@ -1,4 +1,4 @@
-//! The page of topics is what the registry makes.
+//! The page of topics in the documentation matches the registry.
 
 use std::fmt::Write as _;
 
@@ -17,7 +17,7 @@ stands in [ros.md](ros.md). Names are relative to the node's namespace; `~` is t
 fn page() -> String {
     let mut page = HEAD.to_owned();
     let entries = opendr::registry().entries();
-    // The learner that every surface is tested with is in builds for tests alone.
+    // The test learner is part of test builds only.
     for entry in entries.iter().filter(|entry| entry.spec.name != "counter") {
         let topics = default_topics(entry);
         let rows = topics.inputs.len().max(topics.outputs.len());

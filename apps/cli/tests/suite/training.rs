@@ -1,4 +1,4 @@
-//! `opendr fit` and `opendr export` from outside, with the learner made for tests.
+//! `opendr fit` and `opendr export` as commands, with the test learner.
 
 use std::fs;
 use std::path::Path;
@@ -6,7 +6,8 @@ use std::path::Path;
 use crate::place::{Done, Place};
 use serde_json::{Value, json};
 
-/// A place with a data set of two parts, where sample `n` has `n` boxes; `None`, said, without the learner for tests.
+/// A place with a data set of two splits, where sample `n` has `n` boxes; prints a line and returns `None` without the test
+/// learner.
 fn place() -> Option<Place> {
     let place = Place::new();
     if place.run(["fit", "counter", "--help"]).code != 0 {
@@ -36,7 +37,7 @@ fn report(done: Done) -> Value {
 fn a_learner_is_trained_and_measured() {
     let Some(place) = place() else { return };
     let done = fit(&place, &["--epochs", "3", "--lr=2", "--out", "run", "--val-split", "val"]);
-    assert!(done.stderr.contains("training on the part \"train\" of data"), "{}", done.stderr);
+    assert!(done.stderr.contains("training on the split \"train\" of data"), "{}", done.stderr);
     let fitted = report(done);
     assert_eq!(fitted["curves"], json!({"loss": [3.0, 3.0, 3.0], "val_boxes": [2.5]}));
     assert_eq!(fitted["model"], "run/model");
@@ -51,7 +52,7 @@ fn a_learner_is_trained_and_measured() {
 }
 
 #[test]
-fn a_training_is_resumed_and_never_written_over() {
+fn a_training_is_resumed_and_never_overwritten() {
     let Some(place) = place() else { return };
     report(fit(&place, &["--out", "run"]));
     let refused = fit(&place, &["--out", "run"]).ends_with(11);
@@ -82,7 +83,7 @@ fn a_model_is_exported() {
     same("bias.bin");
     assert!(export("run/model", "a.onnx", &[]).ends_with(13).stderr.contains("names no ONNX file"));
     assert!(export("nonsense", "a.onnx", &[]).ends_with(13).stderr.contains("no learner \"nonsense\""));
-    assert!(export("run/model", "data", &[]).ends_with(11).stderr.contains("is no model"));
+    assert!(export("run/model", "data", &[]).ends_with(11).stderr.contains("is not a model"));
     let from = report(fit(&place, &["--out", "again", "--model", "folder"]));
     assert_eq!(from["complete"], true);
 }
@@ -95,7 +96,7 @@ fn the_bare_network_is_exported() {
 }
 
 #[test]
-fn a_model_is_made_smaller() {
+fn a_model_is_converted_to_fp16() {
     let Some((place, data)) = Place::with_data() else { return };
     let done = place.run(["optimize", "yunet/320", "--fp16", "--out", "half", "--json", "-q"]).ends_with(0);
     let report: Value = serde_json::from_str(&done.stdout).unwrap();
@@ -114,14 +115,14 @@ fn a_model_is_made_smaller() {
 }
 
 #[test]
-fn wrong_use_is_told() {
+fn wrong_usage_is_reported() {
     let Some(place) = place() else { return };
     for (flags, code, wanted) in [
         (&["--epochs", "0"][..], 12, "out of range"),
         (&["--epochs", "many"], 12, "epochs = many should be"),
         (&["--epoch", "1"], 2, "--epochs"),
         (&["--split", "nonsense"], 13, "nonsense"),
-        (&["--format", "imagenet"], 11, "learns from BoundingBoxList"),
+        (&["--format", "imagenet"], 11, "trains on BoundingBoxList"),
         (&["--val", "nowhere"], 13, "nowhere"),
         (&["--keep-empty"], 2, "--teacher"),
         (&["--teacher", "nonsense"], 13, "no learner \"nonsense\""),

@@ -1,4 +1,4 @@
-//! What needs no data: help, lists, and how wrong usage ends.
+//! Help, lists and wrong usage, which need no data.
 
 use std::process::Stdio;
 
@@ -10,7 +10,7 @@ fn models(place: &Place, flags: &[&str]) -> Vec<Value> {
     serde_json::from_str::<Value>(&done.stdout).unwrap().as_array().unwrap().clone()
 }
 
-/// The learners that the zoo has models for.
+/// Learners with models in the zoo.
 fn learners(place: &Place) -> Vec<String> {
     let name = |row: &Value| row["model"].as_str().unwrap().split('/').next().unwrap().to_owned();
     let mut learners: Vec<_> = models(place, &[]).iter().map(name).collect();
@@ -90,7 +90,7 @@ fn wrong_usage_says_what_is_wrong() {
         (&["infer", &format!("{learner}/nonsense"), picture], 13, "no variant"),
         (&["infer", learner, "/no/such.jpg"], 13, "/no/such.jpg"),
         (&["infer", learner, picture, "--model", "/no/such/model"], 13, "/no/such/model"),
-        (&["infer", learner, picture, picture, "--out", "one.png"], 12, "one.png is one picture"),
+        (&["infer", learner, picture, picture, "--out", "one.png"], 12, "one.png is one image"),
         (&["infer", learner, picture, "--json=/no/such/folder/x"], 13, "/no/such/folder/x"),
         (&["bench", learner, "--frames", "0"], 2, "--frames"),
         (&["download"], 2, "LEARNER"),
@@ -106,7 +106,7 @@ fn wrong_usage_says_what_is_wrong() {
 }
 
 #[test]
-fn what_is_not_there_offline_says_so() {
+fn missing_models_are_reported_offline() {
     let place = Place::new();
     let mut command = place.command(["demo"]);
     command.env("OPENDR_MODEL_REPOSITORY", "").env("OPENDR_RUNTIME", "builtin");

@@ -6,10 +6,10 @@ use std::process::Command;
 
 use crate::place::Place;
 
-/// A learner whose model the test data has.
+/// A learner whose model is in the test data.
 const LEARNER: &str = "yunet/640";
 
-/// A place with `clip.mp4`: a photograph with two faces, `frames` long at 10 frames a second.
+/// A place with `clip.mp4`: `frames` frames of a photograph with two faces, at 10 Hz.
 fn place_with_clip(frames: u32) -> Option<Place> {
     let (place, data) = Place::with_data()?;
     let made = Command::new("ffmpeg")
@@ -34,7 +34,7 @@ fn place_with_clip(frames: u32) -> Option<Place> {
     None
 }
 
-/// Width, height and frames of a video that plays to its end.
+/// Width, height and number of frames of a complete video.
 fn measure(video: &Path) -> [u32; 3] {
     let output = Command::new("ffprobe")
         .args(["-v", "error", "-count_frames", "-select_streams", "v", "-of", "csv=p=0"])
@@ -84,7 +84,7 @@ fn pictures_become_a_video_too() {
 }
 
 #[test]
-fn what_no_video_can_be_written_to_is_said_once() {
+fn wrong_video_outputs_are_reported_once() {
     let Some(place) = place_with_clip(6) else { return };
     let refused = place.run(["infer", LEARNER, "clip.mp4", "--out", "seen.png"]).ends_with(12);
     assert!(refused.stderr.contains("give a folder, or a video"), "{}", refused.stderr);

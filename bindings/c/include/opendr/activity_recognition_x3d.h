@@ -1,7 +1,7 @@
 #ifndef OPENDR_ACTIVITY_RECOGNITION_X3D_H
 #define OPENDR_ACTIVITY_RECOGNITION_X3D_H
 
-/* X3D's network by OpenDR's names; opendr_compat.h explains these headers. */
+/* X3D's network under OpenDR's names; opendr_compat.h explains these headers. */
 #include "network_model.h"
 #include "target.h"
 
@@ -11,9 +11,9 @@ typedef struct X3dModel {
     int framesPerClip;
     int inChannels;
     int batchSize;
-    float meanValue; /* inputs are level * imgScale + meanValue */
+    float meanValue; /* inputs are sample * imgScale + meanValue */
     float imgScale;
-    int features; /* numbers of the output: classes */
+    int features; /* number of outputs: classes */
 } X3dModelT;
 
 static inline void freeX3dModel(X3dModelT *model) {
@@ -21,8 +21,8 @@ static inline void freeX3dModel(X3dModelT *model) {
     memset(model, 0, sizeof *model);
 }
 
-/* Loads a network; modelPath "" or NULL takes the pretrained one. mode, "xs", "s", "m" or "l", gives the sizes that the
- * network leaves open. */
+/* Loads a network; modelPath "" or NULL loads the pretrained one. mode, "xs", "s", "m" or "l", determines the dynamic
+ * axes of the network. */
 static inline void loadX3dModel(const char *modelPath, char *mode, X3dModelT *model) {
     static const struct {
         const char *name;
@@ -56,8 +56,8 @@ static inline void loadX3dModel(const char *modelPath, char *mode, X3dModelT *mo
     }
 }
 
-/* Runs the network. The numbers of the tensor are in the order of the network's axes: channels before frames, or frames
- * before channels where it has four axes. */
+/* Runs the network. The tensor is in the order of the network's axes: channels before frames, or frames before channels for a
+ * network of four axes. */
 static inline void forwardX3d(X3dModelT *model, OpenDRTensorT *tensor, OpenDRTensorVectorT *vector) {
     opendr_compat_forward("forwardX3d", model->onnxSession, OPENDR_COMPAT_CHANNELS_FIRST, tensor, vector);
 }
@@ -67,7 +67,7 @@ static inline void initRandomOpenDRTensorX3d(OpenDRTensorT *tensor, X3dModelT *m
         model->modelSize);
 }
 
-/* As OpenDR 2 spelt it. */
+/* OpenDR 2's spelling. */
 static inline void initRandomOpendrTensorX3d(OpendrTensorT *tensor, X3dModelT *model) {
     initRandomOpenDRTensorX3d(tensor, model);
 }

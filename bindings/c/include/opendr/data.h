@@ -1,7 +1,7 @@
 #ifndef OPENDR_DATA_H
 #define OPENDR_DATA_H
 
-/* Pictures and tensors by OpenDR's names; opendr_compat.h explains these headers. */
+/* Images and tensors under OpenDR's names; opendr_compat.h explains these headers. */
 
 typedef struct OpenDRImage {
     void *data; /* an opendr_image */
@@ -9,7 +9,7 @@ typedef struct OpenDRImage {
 
 typedef struct OpenDRTensor {
     int batchSize, frames, channels, width, height;
-    float *data; /* height fastest */
+    float *data; /* the last axis, height, is contiguous */
 } OpenDRTensorT;
 
 typedef struct OpenDRTensorVector {
@@ -23,7 +23,7 @@ typedef struct OpenDRStringsVector {
     int size;
 } OpenDRStringsVectorT;
 
-/* As OpenDR 2 spelt them. */
+/* OpenDR 2's spelling. */
 typedef OpenDRImageT OpendrImageT;
 typedef OpenDRTensorT OpendrTensorT;
 typedef OpenDRTensorVectorT OpendrTensorVectorT;

@@ -1,29 +1,29 @@
 #ifndef OPENDR_FACE_RECOGNITION_H
 #define OPENDR_FACE_RECOGNITION_H
 
-/* Face recognition by OpenDR's names; opendr_compat.h explains these headers. */
+/* Face recognition under OpenDR's names; opendr_compat.h explains these headers. */
 #include "network_model.h"
 #include "target.h"
 
-/* The most bytes that decodeCategoryFaceRecognition() writes, the zero at the end counted. */
+/* Maximum number of bytes that decodeCategoryFaceRecognition() writes, including the terminating zero. */
 #define OPENDR_PERSON_NAME_SIZE 512
 
 typedef struct FaceRecognitionModel {
     void *onnxSession, *env, *sessionOptions; /* the same opendr_learner */
-    int modelSize; /* side of the network's input */
-    int resizeSize; /* the same: faces are turned upright and scaled at once */
-    float meanValue; /* 0 and 1: the network takes levels as they are */
+    int modelSize; /* width and height of the network's input */
+    int resizeSize; /* the same: faces are aligned and scaled in one step */
+    float meanValue; /* 0 and 1: the network takes unnormalised samples */
     float stdValue;
-    float threshold; /* cosine from which on a face is a person's */
-    int outputSize; /* numbers of a face */
-    void *database; /* NULL while no person is known, else the learner */
-    int *databaseIds; /* 0, 1, 2, ..., one a person; the numbers of their faces are the learner's */
+    float threshold; /* minimum cosine similarity of a face and a person */
+    int outputSize; /* length of an embedding */
+    void *database; /* NULL without enrolled persons, else the learner */
+    int *databaseIds; /* 0, 1, 2, ..., one per person; the learner has the embeddings */
     char **personNames;
     int nPersons;
-    int nFeatures; /* as nPersons */
+    int nFeatures; /* the same as nPersons */
 } FaceRecognitionModelT;
 
-/* Returns a text as JSON has it within quotes, to be freed; NULL where memory is short. */
+/* Returns a text escaped for a JSON string, which must be freed; NULL when out of memory. */
 static inline char *opendr_compat_json_quoted(const char *text) {
     char *quoted = (char *)malloc(6 * strlen(text) + 1);
     size_t end = 0;
@@ -46,7 +46,7 @@ static inline void opendr_compat_forget_persons(FaceRecognitionModelT *model) {
     model->nPersons = model->nFeatures = 0;
 }
 
-/* Makes the persons that the learner knows those of the model. */
+/* Copies the persons of the learner into the model. */
 static inline void opendr_compat_know_persons(FaceRecognitionModelT *model) {
     const opendr_learner *learner = (const opendr_learner *)model->onnxSession;
     size_t count = 0;
@@ -74,7 +74,7 @@ static inline void freeFaceRecognitionModel(FaceRecognitionModelT *model) {
     memset(model, 0, sizeof *model);
 }
 
-/* Loads a model container; modelPath "" or NULL takes the pretrained model. */
+/* Loads a model container; modelPath "" or NULL loads the pretrained model. */
 static inline void loadFaceRecognitionModel(const char *modelPath, FaceRecognitionModelT *model) {
     const char *path = modelPath != NULL && modelPath[0] != '\0' ? modelPath : NULL;
     opendr_learner *learner = NULL;
@@ -97,8 +97,8 @@ static inline void loadFaceRecognitionModel(const char *modelPath, FaceRecogniti
     opendr_network_free(&network);
 }
 
-/* Returns the person with the largest face in a picture and how sure that is. data is -1 for a person who is not known, and
- * where there is no face; confidence is 0 then. */
+/* Returns the person of the largest face in an image, with its score. data is -1 for an unknown person and if no face is
+ * detected; confidence is 0 then. */
 static inline OpenDRCategoryTargetT inferFaceRecognition(FaceRecognitionModelT *model, OpenDRImageT *image) {
     OpenDRCategoryTargetT target = {-1, 0.0f};
     opendr_bounding_box_list *faces = NULL;
@@ -124,8 +124,8 @@ static inline OpenDRCategoryTargetT inferFaceRecognition(FaceRecognitionModelT *
     return target;
 }
 
-/* Makes the persons known whose pictures lie in databaseFolder, in a folder of their name each, and writes the model with
- * them into the folder outputPath, over an earlier one. Pictures without a face are left out. */
+/* Enrols the persons whose images are in databaseFolder, in a folder with the name of each, and writes the model with them
+ * into the folder outputPath, over an existing one. Images without a face are skipped. */
 static inline void buildDatabaseFaceRecognition(const char *databaseFolder, const char *outputPath,
     FaceRecognitionModelT *model) {
     char *output = opendr_compat_json_quoted(outputPath != NULL ? outputPath : "");
@@ -135,7 +135,7 @@ static inline void buildDatabaseFaceRecognition(const char *databaseFolder, cons
     if (output != NULL && output[0] == '\0') {
         opendr_compat_fail("buildDatabaseFaceRecognition", "outputPath is empty; give a folder to write to");
     } else if (output != NULL && options != NULL) {
-        /* With "resume", what an earlier call left in the folder is written over. */
+        /* With "resume", the results of an earlier call in the folder are overwritten. */
         snprintf(options, size, "{\"output\": \"%s\", \"resume\": true, \"skip_broken\": true}", output);
         if (opendr_fit((const opendr_learner *)model->onnxSession, databaseFolder, "imagenet", options, NULL, NULL, &report)
             == OPENDR_OK)
@@ -148,8 +148,8 @@ static inline void buildDatabaseFaceRecognition(const char *databaseFolder, cons
     free(output);
 }
 
-/* Loads a database that buildDatabaseFaceRecognition() wrote, or a model container with persons. When it fails, nobody is
- * known: database is NULL. */
+/* Loads a database that buildDatabaseFaceRecognition() wrote, or a model container with persons. database is NULL if it
+ * fails. */
 static inline void loadDatabaseFaceRecognition(const char *databasePath, FaceRecognitionModelT *model) {
     const char *path = databasePath != NULL ? databasePath : "";
     opendr_learner *old = (opendr_learner *)model->onnxSession, *learner = NULL;
@@ -174,8 +174,8 @@ static inline void loadDatabaseFaceRecognition(const char *databasePath, FaceRec
     free(inner);
 }
 
-/* Writes the name of a person, at most OPENDR_PERSON_NAME_SIZE bytes with the zero; a longer name is cut between characters,
- * and "" stands for a person who is not known. */
+/* Writes the name of a person, at most OPENDR_PERSON_NAME_SIZE bytes including the zero; a longer name is truncated between
+ * characters, and an unknown person has the name "". */
 static inline void decodeCategoryFaceRecognition(FaceRecognitionModelT *model, OpenDRCategoryTargetT category,
     char *personName) {
     const char *name = category.data >= 0 && category.data < model->nPersons ? model->personNames[category.data] : "";

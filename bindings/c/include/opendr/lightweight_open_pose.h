@@ -1,7 +1,7 @@
 #ifndef OPENDR_LIGHTWEIGHT_OPEN_POSE_H
 #define OPENDR_LIGHTWEIGHT_OPEN_POSE_H
 
-/* Lightweight OpenPose's network by OpenDR's names; opendr_compat.h explains these headers. Poses are found by
+/* Lightweight OpenPose's network under OpenDR's names; opendr_compat.h explains these headers. For poses use
  * opendr_infer_lightweight_open_pose(). */
 #include "network_model.h"
 #include "target.h"
@@ -9,11 +9,11 @@
 typedef struct OpenPoseModel {
     void *onnxSession, *env, *sessionOptions; /* the same opendr_network */
     int modelSize;
-    float meanValue; /* inputs are level * imgScale + meanValue */
+    float meanValue; /* inputs are sample * imgScale + meanValue */
     float imgScale;
     int nRefinementStages;
-    int outputSize; /* outputs, two a stage */
-    int stride; /* 0: maps lie at every 8th pixel */
+    int outputSize; /* number of outputs, two per stage */
+    int stride; /* 0: the maps have stride 8 */
     int evenChannelOutput; /* channels of the first, third, ... output */
     int oddChannelOutput;
     int batchSize;
@@ -26,7 +26,7 @@ static inline void freeOpenPoseModel(OpenPoseModelT *model) {
     memset(model, 0, sizeof *model);
 }
 
-/* Loads a network; modelPath "" or NULL takes the pretrained one. */
+/* Loads a network; modelPath "" or NULL loads the pretrained one. */
 static inline void loadOpenPoseModel(const char *modelPath, OpenPoseModelT *model) {
     const opendr_network *network;
     memset(model, 0, sizeof *model);
@@ -59,8 +59,8 @@ static inline void initRandomOpenDRTensorOp(OpenDRTensorT *tensor, OpenPoseModel
     opendr_compat_random(tensor, model->batchSize, 1, 3, model->modelSize, model->modelSize);
 }
 
-/* Makes the network's input of a picture: the whole of it, in the middle, beside it 0. The channels are blue, green, red, and
- * red, green, blue for a model of this library. */
+/* Converts an image to the network's input: resized as a whole, centred, and padded with 0. The channels are BGR, or RGB for a
+ * model of this library. */
 static inline void initOpenDRTensorFromImgOp(OpenDRImageT *image, OpenDRTensorT *tensor, OpenPoseModelT *model) {
     const int sizes[5] = {1, 1, 3, model->modelSize, model->modelSize};
     opendr_preprocess how;
@@ -91,7 +91,7 @@ static inline void initOpenDRTensorFromImgOp(OpenDRImageT *image, OpenDRTensorT 
     free(numbers);
 }
 
-/* As OpenDR 2 spelt them. */
+/* OpenDR 2's spelling. */
 
 static inline void initRandomOpendrTensorOp(OpendrTensorT *tensor, OpenPoseModelT *model) {
     initRandomOpenDRTensorOp(tensor, model);

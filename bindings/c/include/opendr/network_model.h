@@ -1,19 +1,19 @@
 #ifndef OPENDR_NETWORK_MODEL_H
 #define OPENDR_NETWORK_MODEL_H
 
-/* What OpenDR's models that only run a network have in common. These names are not OpenDR's. */
+/* Shared functions of OpenDR's models that only run a network. These names are not OpenDR's. */
 #include <limits.h>
 
 #include "opendr_utils.h"
 
-/* Keeps why a call failed as the last error, and prints it. */
+/* Sets the last error to the message of a failed call, and prints it. */
 static inline void opendr_compat_fail(const char *caller, const char *message) {
     opendr_set_last_error(message);
     fprintf(stderr, "%s: %s\n", caller, message);
 }
 
-/* Opens an ONNX file, OpenDR's folder of one with its JSON, or a model container. A path of "" or NULL takes the pretrained
- * model of a learner; where learner is NULL there is none. Returns NULL when it fails. */
+/* Opens an ONNX file, OpenDR's folder of one with its JSON, or a model container. A path of "" or NULL loads the pretrained
+ * model of a learner; without a learner (NULL) there is none. Returns NULL if it fails. */
 static inline opendr_network *opendr_compat_open(const char *caller, const char *path, const char *device,
     const char *learner) {
     opendr_network *network = NULL;
@@ -21,7 +21,7 @@ static inline opendr_network *opendr_compat_open(const char *caller, const char 
     if (path != NULL && path[0] != '\0') {
         opendr_network_open(path, NULL, device, &network);
     } else if (learner == NULL) {
-        opendr_set_last_error("there is no pretrained model; give the path of an ONNX file of yours");
+        opendr_set_last_error("there is no pretrained model; give the path of an ONNX file of your own");
     } else if (opendr_load(learner, NULL, device, NULL, &loaded) == OPENDR_OK) {
         opendr_network_of(loaded, NULL, &network);
         opendr_learner_free(&loaded);
@@ -36,20 +36,20 @@ static inline void opendr_compat_close(void **network) {
     *network = NULL;
 }
 
-/* Returns a size that the network declares of its first input, or otherwise where it leaves it open. */
+/* Returns the length of an axis of the network's first input, or otherwise for a dynamic axis. */
 static inline int opendr_compat_input_side(const opendr_network *network, size_t axis, int otherwise) {
     opendr_tensor_info info;
     if (opendr_network_input(network, 0, &info) != OPENDR_OK || axis >= info.axes) return otherwise;
     return info.shape[axis] > 0 && info.shape[axis] <= INT_MAX ? (int)info.shape[axis] : otherwise;
 }
 
-/* Returns how many axes the network's first input has. */
+/* Returns the number of axes of the network's first input. */
 static inline size_t opendr_compat_input_axes(const opendr_network *network) {
     opendr_tensor_info info;
     return opendr_network_input(network, 0, &info) == OPENDR_OK ? info.axes : 0;
 }
 
-/* The same of an output, counted from its last axis. */
+/* The same for an output, with axes counted from the last. */
 static inline int opendr_compat_output_side(const opendr_network *network, size_t index, size_t from_last, int otherwise) {
     opendr_tensor_info info;
     size_t size;
@@ -58,7 +58,7 @@ static inline int opendr_compat_output_side(const opendr_network *network, size_
     return size > 0 && size <= INT_MAX ? (int)size : otherwise;
 }
 
-/* Whether the network is that of a container of this learner. */
+/* Returns whether the network is from a container of this learner. */
 static inline bool opendr_compat_is_of(const opendr_network *network, const char *learner) {
     opendr_string *manifest = NULL;
     bool is_of = opendr_network_manifest(network, &manifest) == OPENDR_OK
@@ -67,7 +67,7 @@ static inline bool opendr_compat_is_of(const opendr_network *network, const char
     return is_of;
 }
 
-/* Fills an initialised tensor with random numbers of -1 to 1; what was in it is freed. */
+/* Fills an initialised tensor with random numbers of -1 to 1; its previous content is freed. */
 static inline void opendr_compat_random(OpenDRTensorT *tensor, int batchSize, int frames, int channels, int width,
     int height) {
     const int sizes[5] = {batchSize, frames, channels, width, height};
@@ -78,14 +78,14 @@ static inline void opendr_compat_random(OpenDRTensorT *tensor, int batchSize, in
     free(numbers);
 }
 
-/* Which of OpenDR's orders a tensor of five axes has for the network. */
+/* Returns OpenDR's order of a tensor of five axes for the network. */
 typedef enum opendr_compat_order {
     OPENDR_COMPAT_FRAMES_FIRST,
     OPENDR_COMPAT_CHANNELS_FIRST
 } opendr_compat_order;
 
-/* Writes the shape of a tensor for a network of so many axes, 0 for any. Where these are fewer than five, the first axes of
- * size 1 are left out. Returns the number of axes. */
+/* Writes the shape of a tensor for a network of this number of axes, 0 for any. If it is below five, leading axes of size 1
+ * are dropped. Returns the number of axes. */
 static inline size_t opendr_compat_shape(const OpenDRTensorT *tensor, opendr_compat_order order, size_t axes,
     size_t shape[5]) {
     const int frames_first[5] = {tensor->batchSize, tensor->frames, tensor->channels, tensor->width, tensor->height};
@@ -99,8 +99,8 @@ static inline size_t opendr_compat_shape(const OpenDRTensorT *tensor, opendr_com
     return kept;
 }
 
-/* Writes a tensor of a network as OpenDR's five sizes: of four axes they are batch, channels, width, height; of fewer the
- * last ones; of more the first are multiplied. Returns whether they fit. */
+/* Writes the shape of a tensor of a network as OpenDR's five sizes: four axes are batch, channels, width, height; fewer axes
+ * are the last ones; of more, the first are multiplied. Returns whether the sizes fit. */
 static inline bool opendr_compat_sizes(const opendr_tensor *tensor, OpenDRTensorT *seen) {
     int *const all[5] = {&seen->batchSize, &seen->frames, &seen->channels, &seen->width, &seen->height};
     size_t sizes[5] = {1, 1, 1, 1, 1};
@@ -113,11 +113,11 @@ static inline bool opendr_compat_sizes(const opendr_tensor *tensor, OpenDRTensor
         if (sizes[i] > INT_MAX) return false;
         *all[i] = (int)sizes[i];
     }
-    seen->data = (float *)tensor->numbers; /* to be read alone */
+    seen->data = (float *)tensor->numbers; /* read-only */
     return true;
 }
 
-/* Runs a network on a tensor. What was in the initialised vector is freed; it is empty when the run fails. */
+/* Runs a network on a tensor. The previous content of the initialised vector is freed; the vector is empty if the run fails. */
 static inline void opendr_compat_forward(const char *caller, const void *network, opendr_compat_order order,
     const OpenDRTensorT *tensor, OpenDRTensorVectorT *vector) {
     const opendr_network *opened = (const opendr_network *)network;

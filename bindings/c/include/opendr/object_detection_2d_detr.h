@@ -1,18 +1,18 @@
 #ifndef OPENDR_OBJECT_DETECTION_2D_DETR_H
 #define OPENDR_OBJECT_DETECTION_2D_DETR_H
 
-/* A network of DETR by OpenDR's names; opendr_compat.h explains these headers. There is no pretrained one. */
+/* A network of DETR under OpenDR's names; opendr_compat.h explains these headers. There is no pretrained one. */
 #include "network_model.h"
 #include "target.h"
 
 typedef struct DetrModel {
     void *onnxSession, *env, *sessionOptions; /* the same opendr_network */
     int modelSize;
-    float meanValue[3]; /* inputs are (level / 255 + meanValue) * stdValue */
+    float meanValue[3]; /* inputs are (sample / 255 + meanValue) * stdValue */
     float stdValue[3];
     float threshold;
-    int features; /* objects of an output */
-    int outputSizes[2]; /* numbers of an object: classes, box */
+    int features; /* number of objects of an output */
+    int outputSizes[2]; /* length of an object's output: classes, box */
 } DetrModelT;
 
 static inline void freeDetrModel(DetrModelT *model) {
@@ -51,7 +51,7 @@ static inline void initRandomOpenDRTensorDetr(OpenDRTensorT *tensor, DetrModelT 
     opendr_compat_random(tensor, 1, 1, 3, model->modelSize, model->modelSize);
 }
 
-/* As OpenDR 2 spelt it. */
+/* OpenDR 2's spelling. */
 static inline void initRandomOpendrTensorDetr(OpendrTensorT *tensor, DetrModelT *model) {
     initRandomOpenDRTensorDetr(tensor, model);
 }

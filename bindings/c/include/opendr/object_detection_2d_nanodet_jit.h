@@ -1,22 +1,22 @@
 #ifndef OPENDR_OBJECT_DETECTION_2D_NANODET_JIT_H
 #define OPENDR_OBJECT_DETECTION_2D_NANODET_JIT_H
 
-/* NanoDet by OpenDR's names; opendr_compat.h explains these headers. */
+/* NanoDet under OpenDR's names; opendr_compat.h explains these headers. */
 #include "opendr_utils.h"
 #include "target.h"
 
 typedef struct NanodetModel {
     void *network; /* an opendr_learner */
     char *device;
-    int **colorList; /* NULL: drawBboxes() has colours of its own */
+    int **colorList; /* NULL: drawBboxes() has its own colours */
     int numberOfClasses;
     float scoreThreshold;
-    int inputSizes[2]; /* as asked for; 0 is the trained size */
+    int inputSizes[2]; /* as requested; 0 is the trained size */
     int keepRatio;
 } NanodetModelT;
 
-/* Loads a model container; modelPath "" or NULL takes the pretrained model. modelName is not used. The model's own size is
- * used: height and width other than 0 give a line on stderr. */
+/* Loads a model container; modelPath "" or NULL loads the pretrained model. modelName is not used. The model's own size is
+ * used: height or width other than 0 prints a warning to stderr. */
 static inline void loadNanodetModel(const char *modelPath, const char *modelName, const char *device, float scoreThreshold,
     int height, int width, NanodetModelT *model) {
     opendr_learner *learner = NULL;
@@ -42,7 +42,7 @@ static inline void loadNanodetModel(const char *modelPath, const char *modelName
     model->inputSizes[1] = width;
 }
 
-/* Returns the detections, to be freed with freeDetectionsVector(). */
+/* Returns the detections, which must be freed with freeDetectionsVector(). */
 static inline OpenDRDetectionVectorTargetT inferNanodet(NanodetModelT *model, OpenDRImageT *image) {
     OpenDRDetectionVectorTargetT vector;
     opendr_bounding_box_list *boxes = NULL;
@@ -72,14 +72,14 @@ static inline OpenDRDetectionVectorTargetT inferNanodet(NanodetModelT *model, Op
     return vector;
 }
 
-/* Draws the boxes onto the picture. There is no window: a show other than 1 gives a line on stderr. */
+/* Draws the boxes on the image. There is no window: a show other than 1 prints a warning to stderr. */
 static inline void drawBboxes(OpenDRImageT *image, NanodetModelT *model, OpenDRDetectionVectorTargetT *vector, int show) {
     opendr_bounding_box_list *boxes = NULL;
     size_t count = vector->size > 0 ? (size_t)vector->size : 0;
     opendr_bounding_box *items = (opendr_bounding_box *)calloc(count > 0 ? count : 1, sizeof *items);
     size_t kept = 0;
     if (items == NULL) return;
-    if (show != 1) fprintf(stderr, "drawBboxes: there is no window; save the picture with opendr_image_save()\n");
+    if (show != 1) fprintf(stderr, "drawBboxes: there is no window; save the image with opendr_image_save()\n");
     for (size_t i = 0; i < count; i++) {
         const OpenDRDetectionTargetT *target = &vector->startingPointer[i];
         const char *label = opendr_class_name((const opendr_learner *)model->network, target->name);

@@ -1,7 +1,7 @@
 #ifndef OPENDR_OBJECT_DETECTION_2D_YOLOV5_H
 #define OPENDR_OBJECT_DETECTION_2D_YOLOV5_H
 
-/* A network of YOLOv5 by OpenDR's names; opendr_compat.h explains these headers. Nothing finds boxes in its outputs yet. */
+/* A network of YOLOv5 under OpenDR's names; opendr_compat.h explains these headers. Its outputs are not decoded to boxes yet. */
 #include "network_model.h"
 #include "target.h"
 
@@ -13,7 +13,7 @@ typedef struct Yolov5Model {
     int **colorList; /* red, green and blue of each class */
     int numberOfClasses;
     int inputSizes[2]; /* width and height */
-    int isDynamicInputShape; /* as in OpenDR: 0 for a network that takes any size, 1 for one that does not */
+    int isDynamicInputShape; /* as in OpenDR: 0 for a network with dynamic input size, 1 for a fixed one */
 } Yolov5ModelT;
 
 static inline void freeYolov5Model(Yolov5ModelT *model) {
@@ -24,7 +24,7 @@ static inline void freeYolov5Model(Yolov5ModelT *model) {
     memset(model, 0, sizeof *model);
 }
 
-/* Opens modelPath/yolov5NAME.json, of several models in a folder, where there is one, else modelPath. */
+/* Opens modelPath/yolov5NAME.json, one of several models in a folder, if it exists, else modelPath. */
 static inline opendr_network *opendr_compat_open_yolov5(const char *modelPath, const char *modelName, const char *device) {
     const char *name = modelName != NULL ? modelName : "";
     const char *path = modelPath != NULL ? modelPath : "";
@@ -59,8 +59,8 @@ static inline void opendr_compat_label_yolov5(Yolov5ModelT *model, const char *m
     }
 }
 
-/* Loads a network from an ONNX file, or from OpenDR's folder, whose JSON has the classes. Thresholds of 0 are those of the
- * JSON; height and width of 0 are those that the network was trained with. */
+/* Loads a network from an ONNX file, or from OpenDR's folder, whose JSON has the classes. Thresholds of 0 are replaced by
+ * those of the JSON, height and width of 0 by those of the network's training. */
 static inline void loadYolov5Model(const char *modelPath, const char *modelName, const char *device, float confThreshold,
     float iouThreshold, int height, int width, Yolov5ModelT *model) {
     const opendr_network *network;
@@ -90,7 +90,7 @@ static inline void loadYolov5Model(const char *modelPath, const char *modelName,
     opendr_string_free(&manifest);
 }
 
-/* Returns an empty vector, and makes OPENDR_UNSUPPORTED the last error. */
+/* Returns an empty vector and sets the last error to OPENDR_UNSUPPORTED. */
 static inline OpenDRDetectionVectorTargetT inferYolov5(Yolov5ModelT *model, OpenDRImageT *image) {
     OpenDRDetectionVectorTargetT vector;
     (void)model;

@@ -1,7 +1,7 @@
 #ifndef OPENDR_OBJECT_TRACKING_2D_DEEP_SORT_H
 #define OPENDR_OBJECT_TRACKING_2D_DEEP_SORT_H
 
-/* DeepSORT's network of how persons look, by OpenDR's names; opendr_compat.h explains these headers. The tracker is
+/* DeepSORT's appearance network under OpenDR's names; opendr_compat.h explains these headers. The tracker is
  * opendr_infer_deep_sort(). */
 #include "network_model.h"
 #include "target.h"
@@ -11,9 +11,9 @@ typedef struct DeepSortModel {
     int modelSize[2]; /* width and height */
     int inChannels;
     int batchSize;
-    float meanValue[3]; /* inputs are (level / 255 + meanValue) * stdValue */
+    float meanValue[3]; /* inputs are (sample / 255 + meanValue) * stdValue */
     float stdValue[3];
-    int features; /* numbers of the output */
+    int features; /* length of the output */
 } DeepSortModelT;
 
 static inline void freeDeepSortModel(DeepSortModelT *model) {
@@ -21,7 +21,7 @@ static inline void freeDeepSortModel(DeepSortModelT *model) {
     memset(model, 0, sizeof *model);
 }
 
-/* Loads a network; modelPath "" or NULL takes the pretrained one. */
+/* Loads a network; modelPath "" or NULL loads the pretrained one. */
 static inline void loadDeepSortModel(const char *modelPath, DeepSortModelT *model) {
     static const float mean[3] = {-0.485f, -0.456f, -0.406f}, std[3] = {0.229f, 0.224f, 0.225f};
     const opendr_network *network;
@@ -45,12 +45,12 @@ static inline void forwardDeepSort(DeepSortModelT *model, OpenDRTensorT *tensor,
     opendr_compat_forward("forwardDeepSort", model->onnxSession, OPENDR_COMPAT_FRAMES_FIRST, tensor, vector);
 }
 
-/* As in OpenDR, the tensor's width is the picture's height: the sizes of a tensor are the network's axes in their order. */
+/* As in OpenDR, the tensor's width is the image's height: the sizes of a tensor are the network's axes in order. */
 static inline void initRandomOpenDRTensorDs(OpenDRTensorT *tensor, DeepSortModelT *model) {
     opendr_compat_random(tensor, model->batchSize, 1, model->inChannels, model->modelSize[1], model->modelSize[0]);
 }
 
-/* As OpenDR 2 spelt it. */
+/* OpenDR 2's spelling. */
 static inline void initRandomOpendrTensorDs(OpendrTensorT *tensor, DeepSortModelT *model) {
     initRandomOpenDRTensorDs(tensor, model);
 }

@@ -1,7 +1,7 @@
 #ifndef OPENDR_OPENDR_UTILS_H
 #define OPENDR_OPENDR_UTILS_H
 
-/* Loading and freeing by OpenDR's names; opendr_compat.h explains these headers. */
+/* Loading and freeing under OpenDR's names; opendr_compat.h explains these headers. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +10,7 @@
 #include "data.h"
 #include "target.h"
 
-/* Values out of the JSON of a model: "" or 0 where there is none. A text lives until the next such call of the thread. */
+/* Return values of the JSON of a model; "" or 0 if missing. A text is valid until the next such call of the thread. */
 
 static inline const char *jsonGetStringFromKey(const char *json, const char *key, int index) {
     return opendr_json_text(json, NULL, key, index);
@@ -28,7 +28,7 @@ static inline float jsonGetFloatFromKeyInInferenceParams(const char *json, const
     return (float)opendr_json_number(json, "inference_params", key, index);
 }
 
-/* As OpenDR 2 spelt them. */
+/* OpenDR 2's spelling. */
 
 static inline const char *jsonGetKeyString(const char *json, const char *key, int index) {
     return jsonGetStringFromKey(json, key, index);
@@ -42,9 +42,9 @@ static inline float jsonGetKeyFromInferenceParams(const char *json, const char *
     return jsonGetFloatFromKeyInInferenceParams(json, key, index);
 }
 
-/* Pictures. */
+/* Images. */
 
-/* Reads a picture; data is NULL where there is none. */
+/* Reads an image; data is NULL if it fails. */
 static inline void loadImage(const char *path, OpenDRImageT *image) {
     opendr_image *opened = NULL;
     if (opendr_image_open(path, &opened) != OPENDR_OK) fprintf(stderr, "loadImage: %s\n", opendr_last_error());
@@ -65,7 +65,7 @@ static inline void freeDetectionsVector(OpenDRDetectionVectorTargetT *vector) {
     vector->size = 0;
 }
 
-/* Copies detections into an initialised vector; what was in it is freed. */
+/* Copies detections into an initialised vector; its previous content is freed. */
 static inline void loadDetectionsVector(OpenDRDetectionVectorTargetT *vector, OpenDRDetectionTargetT *detections,
     int count) {
     size_t size = (size_t)(count > 0 ? count : 0) * sizeof *detections;
@@ -93,13 +93,13 @@ static inline void freeTensor(OpenDRTensorT *tensor) {
     initTensor(tensor);
 }
 
-/* Returns how many numbers a tensor of these sizes has; 0, and a line on stderr, where a size is not positive or they do not
- * fit in memory. */
+/* Returns the count of numbers of a tensor of these sizes; 0, with a warning on stderr, if a size is not positive or the
+ * tensor does not fit in memory. */
 static inline size_t opendr_compat_tensor_length(const int sizes[5]) {
     size_t length = 1;
     for (int i = 0; i < 5; i++) {
         if (sizes[i] <= 0 || length > SIZE_MAX / sizeof(float) / (size_t)sizes[i]) {
-            fprintf(stderr, "loadTensor: sizes are positive and fit in memory\n");
+            fprintf(stderr, "loadTensor: sizes must be positive and fit in memory\n");
             return 0;
         }
         length *= (size_t)sizes[i];
@@ -107,7 +107,7 @@ static inline size_t opendr_compat_tensor_length(const int sizes[5]) {
     return length;
 }
 
-/* Copies numbers into an initialised tensor; what was in it is freed. It is empty where a size is not positive. */
+/* Copies numbers into an initialised tensor; its previous content is freed. The tensor is empty if a size is not positive. */
 static inline void loadTensor(OpenDRTensorT *tensor, void *data, int batchSize, int frames, int channels, int width,
     int height) {
     const int sizes[5] = {batchSize, frames, channels, width, height};
@@ -135,7 +135,7 @@ static inline void freeTensorVector(OpenDRTensorVectorT *vector) {
     initTensorVector(vector);
 }
 
-/* Copies tensors into an initialised vector; what was in it is freed. */
+/* Copies tensors into an initialised vector; its previous content is freed. */
 static inline void loadTensorVector(OpenDRTensorVectorT *vector, OpenDRTensorT *tensors, int count) {
     size_t places = (size_t)(count > 0 ? count : 0);
     int *sizes = (int *)calloc(places > 0 ? places : 1, 5 * sizeof(int));
@@ -171,7 +171,7 @@ static inline void loadTensorVector(OpenDRTensorVectorT *vector, OpenDRTensorT *
     *vector = loaded;
 }
 
-/* Copies tensor number index of a vector into an initialised tensor, which is empty where there is none. */
+/* Copies tensor index of a vector into an initialised tensor, which is empty if the index is out of range. */
 static inline void iterTensorVector(OpenDRTensorT *tensor, OpenDRTensorVectorT *vector, int index) {
     if (index < 0 || index >= vector->nTensors) {
         freeTensor(tensor);
@@ -194,7 +194,7 @@ static inline void freeStringsVector(OpenDRStringsVectorT *vector) {
     initOpenDRStringsVector(vector);
 }
 
-/* Copies texts into an initialised vector; what was in it is freed. */
+/* Copies texts into an initialised vector; its previous content is freed. */
 static inline void loadOpenDRStringsVector(OpenDRStringsVectorT *vector, const char **texts, int count) {
     OpenDRStringsVectorT loaded;
     initOpenDRStringsVector(&loaded);

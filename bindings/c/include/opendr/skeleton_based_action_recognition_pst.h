@@ -1,7 +1,7 @@
 #ifndef OPENDR_SKELETON_BASED_ACTION_RECOGNITION_PST_H
 #define OPENDR_SKELETON_BASED_ACTION_RECOGNITION_PST_H
 
-/* A network over sequences of skeletons by OpenDR's names; opendr_compat.h explains these headers. There is no pretrained
+/* A network for skeleton sequences under OpenDR's names; opendr_compat.h explains these headers. There is no pretrained
  * one. */
 #include "network_model.h"
 #include "target.h"
@@ -41,12 +41,12 @@ static inline void forwardPst(PstModelT *model, OpenDRTensorT *tensor, OpenDRTen
     opendr_compat_forward("forwardPst", model->onnxSession, OPENDR_COMPAT_FRAMES_FIRST, tensor, vector);
 }
 
-/* As in OpenDR, the tensor's sizes are the network's axes in their order: samples, channels, frames, points, persons. */
+/* As in OpenDR, the tensor's sizes are the network's axes in order: samples, channels, frames, points, persons. */
 static inline void initRandomOpenDRTensorPst(OpenDRTensorT *tensor, PstModelT *model) {
     opendr_compat_random(tensor, model->batchSize, model->inChannels, model->features, model->nPoint, model->nPerson);
 }
 
-/* As OpenDR 2 spelt it. */
+/* OpenDR 2's spelling. */
 static inline void initRandomOpendrTensorPst(OpendrTensorT *tensor, PstModelT *model) {
     initRandomOpenDRTensorPst(tensor, model);
 }

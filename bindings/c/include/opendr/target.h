@@ -1,7 +1,7 @@
 #ifndef OPENDR_TARGET_H
 #define OPENDR_TARGET_H
 
-/* What learners find, by OpenDR's names; opendr_compat.h explains these headers. */
+/* Targets under OpenDR's names; opendr_compat.h explains these headers. */
 
 typedef struct OpenDRCategoryTarget {
     int data;
@@ -18,7 +18,7 @@ typedef struct OpenDRDetectionVectorTarget {
     int size;
 } OpenDRDetectionVectorTargetT;
 
-/* As OpenDR 2 spelt them. */
+/* OpenDR 2's spelling. */
 typedef OpenDRCategoryTargetT OpendrCategoryTargetT;
 typedef OpenDRDetectionTargetT OpendrDetectionTargetT;
 typedef OpenDRDetectionVectorTargetT OpendrDetectionVectorTargetT;

@@ -1,4 +1,4 @@
-//! Data that are numbers along axes: point clouds, time series, vectors, videos, skeletons.
+//! Data that are one array: point clouds, time series, vectors, videos, skeleton sequences.
 
 use std::ffi::c_char;
 
@@ -10,7 +10,7 @@ use crate::pointer::{place, slice, text};
 use crate::status::{guard, opendr_status};
 use crate::value::{AnyValue, opendr_value};
 
-/// The types that are numbers along axes, and what the axes are.
+/// The types that are one array, and the names of their axes.
 pub const ARRAYS: [(ValueType, &[&str]); 5] = [
     (ValueType::Video, &["channels", "time", "height", "width"]),
     (ValueType::PointCloud, &["points", "channels"]),
@@ -19,7 +19,7 @@ pub const ARRAYS: [(ValueType, &[&str]); 5] = [
     (ValueType::SkeletonSequence, &["samples", "channels", "frames", "joints", "persons"]),
 ];
 
-/// Makes a datum of the named type ("Vector", "PointCloud", ...) of length numbers, which are copied, last axis fastest.
+/// Creates a datum of the named type ("Vector", "PointCloud", ...) from length numbers in row-major order, which are copied.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_array_create(
     type_name: *const c_char,
@@ -34,10 +34,10 @@ pub unsafe extern "C" fn opendr_array_create(
         let (out, kind, shape) = unsafe {
             (Out::new(value, "value")?, text(type_name, "type_name")?.parse()?, slice(shape, axes, "shape")?)
         };
-        let wanted = shape.iter().try_fold(1usize, |count, side| count.checked_mul(*side));
-        if wanted != Some(length) {
+        let expected = shape.iter().try_fold(1usize, |count, side| count.checked_mul(*side));
+        if expected != Some(length) {
             return Err(Error::invalid_input(format!(
-                "an array of shape {shape:?} cannot have {length} numbers; give one per place"
+                "an array of shape {shape:?} cannot have {length} numbers; give one per element"
             )));
         }
         // SAFETY: the rules at the top of opendr.h.
@@ -47,8 +47,8 @@ pub unsafe extern "C" fn opendr_array_create(
     })
 }
 
-/// Shows the numbers of such a datum and the sizes of its axes; shape has room for axes sizes, as many as the type has.
-/// The numbers live as long as the datum.
+/// Writes a pointer to the numbers of such a datum and the lengths of its axes; shape has room for axes lengths, the number
+/// of axes of the type. The numbers are valid as long as the datum.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_array_read(
     value: *const opendr_value,
@@ -64,7 +64,7 @@ pub unsafe extern "C" fn opendr_array_read(
         let (data, sizes) = numbers_of_value(&unsafe { AnyValue::of(value, "value") }?.value)?;
         if sizes.len() != axes {
             return Err(Error::invalid_input(format!(
-                "{} axes do not fit into {axes}; give room for them",
+                "the datum has {} axes, and shape has room for {axes}; give room for all",
                 sizes.len()
             )));
         }
@@ -103,7 +103,7 @@ fn numbers_of_value(value: &Value) -> Result<(&[f32], Vec<usize>)> {
 fn fixed<const D: usize>(kind: ValueType, shape: &[usize]) -> Result<[usize; D]> {
     shape.try_into().map_err(|_| {
         Error::invalid_input(format!(
-            "a {} has {D} axes, not {}; give the size of each",
+            "a {} has {D} axes, not {}; give the length of each",
             kind.name(),
             shape.len()
         ))
@@ -113,5 +113,5 @@ fn fixed<const D: usize>(kind: ValueType, shape: &[usize]) -> Result<[usize; D]>
 #[cold]
 fn no_array(kind: ValueType) -> Error {
     let names: Vec<_> = ARRAYS.iter().map(|(known, _)| known.name()).collect();
-    Error::invalid_input(format!("a {} is no array; arrays are {}", kind.name(), names.join(", ")))
+    Error::invalid_input(format!("a {} is not an array; arrays are {}", kind.name(), names.join(", ")))
 }

@@ -1,4 +1,4 @@
-//! Sound.
+//! Audio.
 
 use opendr::data::Audio;
 
@@ -7,7 +7,7 @@ use crate::pointer::{place, slice};
 use crate::status::{guard, opendr_status};
 use crate::value::{AnyValue, opendr_audio, typed};
 
-/// Makes a sound of length samples in [-1, 1], which are copied, instant by instant (channels interleaved).
+/// Creates audio from length samples in [-1, 1], with interleaved channels, which are copied.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_audio_create(
     samples: *const f32,
@@ -24,7 +24,7 @@ pub unsafe extern "C" fn opendr_audio_create(
     })
 }
 
-/// Shows the samples of a sound, which live as long as it.
+/// Writes a pointer to the samples of audio, valid as long as the audio, and their format.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_audio_read(
     audio: *const opendr_audio,

@@ -1,4 +1,4 @@
-//! How lidar and camera stand to each other.
+//! Calibration of a lidar and a camera.
 
 use std::ffi::c_char;
 use std::fs::File;
@@ -15,19 +15,19 @@ use crate::value::{AnyValue, opendr_calibration, typed};
 /// Largest calibration file that is read; KITTI's have about a kilobyte.
 const MAX_BYTES: u64 = 1 << 20;
 
-/// The matrices of a calibration, row by row, as KITTI names them.
+/// The matrices of a calibration in row-major order, with KITTI's names.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct opendr_calibration_matrices {
-    /// Projection of the rectified camera frame into the left colour picture.
+    /// Projection of the rectified camera frame into the left colour image.
     pub p2: [[f64; 4]; 3],
     /// Rectifying rotation.
     pub r0_rect: [[f64; 3]; 3],
-    /// From the lidar's frame to the camera's, metres.
+    /// Transformation from the lidar frame to the camera frame, metres.
     pub tr_velo_to_cam: [[f64; 4]; 3],
 }
 
-/// Makes a calibration of its matrices.
+/// Creates a calibration from its matrices.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_calibration_create(
     matrices: *const opendr_calibration_matrices,
@@ -41,7 +41,9 @@ pub unsafe extern "C" fn opendr_calibration_create(
         let mut numbers =
             p2.iter().flatten().chain(r0_rect.iter().flatten()).chain(tr_velo_to_cam.iter().flatten());
         if !numbers.all(|number| number.is_finite()) {
-            return Err(Error::invalid_input("matrices have something else than finite numbers; give those"));
+            return Err(Error::invalid_input(
+                "matrices have elements that are NaN or infinite; give finite numbers",
+            ));
         }
         out.set(AnyValue::from(Calibration { header: Header::default(), p2, r0_rect, tr_velo_to_cam }));
         Ok(())

@@ -1,4 +1,4 @@
-//! Pictures.
+//! Images.
 
 use std::ffi::{c_char, c_void};
 
@@ -11,7 +11,7 @@ use crate::pointer::{path, place, reference, slice};
 use crate::status::{guard, opendr_status};
 use crate::value::{AnyValue, opendr_image, typed};
 
-/// The type of a picture's samples.
+/// The sample type of an image.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum opendr_samples {
@@ -23,7 +23,7 @@ pub enum opendr_samples {
     OPENDR_F32 = 2,
 }
 
-/// The channels of a picture in memory.
+/// The channels of an image in memory.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum opendr_pixel_format {
@@ -33,19 +33,19 @@ pub enum opendr_pixel_format {
     OPENDR_RGB = 1,
     /// Blue, green, red (OpenCV).
     OPENDR_BGR = 2,
-    /// Red, green, blue, opacity.
+    /// Red, green, blue, alpha.
     OPENDR_RGBA = 3,
-    /// Blue, green, red, opacity.
+    /// Blue, green, red, alpha.
     OPENDR_BGRA = 4,
 }
 
-/// The order of the axes of a picture in memory.
+/// The order of the axes of an image in memory.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum opendr_layout {
-    /// [height, width, channels]: pixels lie together (cameras, OpenCV).
+    /// [height, width, channels]: interleaved channels (cameras, OpenCV).
     OPENDR_HWC = 0,
-    /// [channels, height, width]: planes lie together (networks).
+    /// [channels, height, width]: planar channels (networks).
     OPENDR_CHW = 1,
 }
 
@@ -71,11 +71,11 @@ pub struct opendr_pixels {
     pub data: *const c_void,
     /// Bytes from the first sample to the end of the memory.
     pub size: usize,
-    /// Pixels a row.
+    /// Width in pixels.
     pub width: usize,
-    /// Rows.
+    /// Height in pixels.
     pub height: usize,
-    /// Bytes from one row to the next; 0 when rows follow each other without a gap. Planes are height rows.
+    /// Bytes from one row to the next; 0 for contiguous rows. A plane has height rows.
     pub row_stride: usize,
     /// One of opendr_samples.
     pub samples: i32,
@@ -85,7 +85,7 @@ pub struct opendr_pixels {
     pub layout: i32,
 }
 
-/// Reads a picture file: JPEG, PNG, BMP or WebP.
+/// Reads an image file: JPEG, PNG, BMP or WebP.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_image_open(
     path: *const c_char,
@@ -99,7 +99,7 @@ pub unsafe extern "C" fn opendr_image_open(
     })
 }
 
-/// Reads a picture from the bytes of a file.
+/// Decodes an image from the bytes of a file.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_image_decode(
     bytes: *const u8,
@@ -114,7 +114,7 @@ pub unsafe extern "C" fn opendr_image_decode(
     })
 }
 
-/// Makes a picture of pixels in memory, which are copied.
+/// Creates an image from pixels in memory, which are copied.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_image_create(
     pixels: *const opendr_pixels,
@@ -129,7 +129,8 @@ pub unsafe extern "C" fn opendr_image_create(
     })
 }
 
-/// Shows the pixels of a picture as they are stored; they live as long as the picture, and until it is drawn onto.
+/// Writes a pointer to the pixels of an image and their format. They are valid as long as the image, and until it is drawn
+/// on.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_image_read(
     image: *const opendr_image,
@@ -143,7 +144,7 @@ pub unsafe extern "C" fn opendr_image_read(
     })
 }
 
-/// Writes a picture file; the extension of its name tells the format: .jpg, .png, .bmp or .webp.
+/// Writes an image file in the format of its extension: .jpg, .png, .bmp or .webp.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_image_save(image: *const opendr_image, path: *const c_char) -> opendr_status {
     guard(|| {
@@ -155,7 +156,7 @@ pub unsafe extern "C" fn opendr_image_save(image: *const opendr_image, path: *co
 
 impl opendr_pixels {
     /// # Safety
-    /// `data` leads to `size` bytes.
+    /// `data` points to `size` bytes.
     unsafe fn to_image(self) -> Result<Image> {
         let format = from_number(&FORMATS, self.format, |known| *known as i32, "format")?;
         let layout = from_number(&LAYOUTS, self.layout, |known| *known as i32, "layout")?;
@@ -176,7 +177,7 @@ impl opendr_pixels {
         Image::new(pixels, self.width, self.height, format, layout)
     }
 
-    /// The samples without gaps between the rows, and whatever their alignment was.
+    /// Returns the samples without gaps between the rows; the source may be unaligned.
     fn packed<T, const N: usize>(
         &self,
         bytes: &[u8],
@@ -191,8 +192,8 @@ impl opendr_pixels {
         let row = in_row.and_then(|count| count.checked_mul(N)).unwrap_or(usize::MAX);
         let rows = rows.unwrap_or(usize::MAX);
         let stride = if self.row_stride == 0 { row } else { self.row_stride };
-        let wanted = rows.checked_sub(1).and_then(|gaps| gaps.checked_mul(stride)?.checked_add(row));
-        if row == 0 || stride < row || wanted.is_none_or(|wanted| wanted > bytes.len()) {
+        let needed = rows.checked_sub(1).and_then(|gaps| gaps.checked_mul(stride)?.checked_add(row));
+        if row == 0 || stride < row || needed.is_none_or(|needed| needed > bytes.len()) {
             return Err(Error::invalid_input(format!(
                 "pixels: {} bytes cannot hold {}x{} {format:?} pixels in rows {} bytes apart; give their true size",
                 bytes.len(),
@@ -226,10 +227,10 @@ impl opendr_pixels {
     }
 }
 
-/// What stands for a number of C's in a table.
+/// Returns the entry of a table for a number of C.
 ///
 /// # Errors
-/// `InvalidInput` when nothing does.
+/// `InvalidInput` for a number that is not in the table.
 pub(crate) fn from_number<C, R: Copy>(
     table: &[(C, R)],
     number: i32,
@@ -244,7 +245,7 @@ fn to_number<C: Copy, R: PartialEq>(table: &[(C, R)], value: R, number_of: impl 
     let known = table.iter().find(|(_, known)| *known == value);
     known
         .map(|(known, _)| number_of(*known))
-        .ok_or_else(|| Error::unsupported("C has no name for these pixels"))
+        .ok_or_else(|| Error::unsupported("the pixel format or layout is not available in C"))
 }
 
 #[cold]

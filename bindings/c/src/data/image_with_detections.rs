@@ -1,4 +1,4 @@
-//! Pictures with boxes found before.
+//! Images with detected boxes.
 
 use opendr::data::ImageWithDetections;
 
@@ -6,7 +6,7 @@ use crate::handle::Out;
 use crate::status::{guard, opendr_status};
 use crate::value::{AnyValue, opendr_bounding_box_list, opendr_image, opendr_image_with_detections, typed};
 
-/// Makes a picture with boxes; picture and boxes stay the caller's.
+/// Creates an image with boxes; the caller keeps image and boxes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_image_with_detections_create(
     image: *const opendr_image,
@@ -22,7 +22,7 @@ pub unsafe extern "C" fn opendr_image_with_detections_create(
     })
 }
 
-/// Gives new handles of the picture and of the boxes, to be freed.
+/// Creates new handles of the image and of the boxes, which must be freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_image_with_detections_read(
     both: *const opendr_image_with_detections,

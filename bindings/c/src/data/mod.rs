@@ -1,4 +1,4 @@
-//! Data: what learners are given. One file per type.
+//! Data types, the inputs of learners. One file per type.
 
 mod array;
 mod audio;

@@ -1,4 +1,4 @@
-//! What a policy sees.
+//! Observations, the inputs of policies.
 
 use std::ffi::c_char;
 
@@ -13,19 +13,19 @@ use crate::value::{AnyValue, opendr_observation};
 /// A named part of an observation.
 #[repr(C)]
 pub struct opendr_observation_part {
-    /// Its name.
+    /// Name of the part.
     pub name: *const c_char,
-    /// Its numbers, last axis fastest.
+    /// Numbers in row-major order.
     pub numbers: *const f32,
-    /// How many numbers there are.
+    /// Count of numbers.
     pub length: usize,
-    /// The sizes of its axes.
+    /// Length of each axis.
     pub shape: *const usize,
-    /// How many axes there are.
+    /// Number of axes.
     pub axes: usize,
 }
 
-/// Makes an observation of length numbers without parts, which are copied.
+/// Creates an observation without parts from length numbers, which are copied.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_observation_create(
     numbers: *const f32,
@@ -41,7 +41,7 @@ pub unsafe extern "C" fn opendr_observation_create(
     })
 }
 
-/// Makes an observation of named parts, which are copied.
+/// Creates an observation from named parts, which are copied.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_observation_create_parts(
     parts: *const opendr_observation_part,
@@ -58,7 +58,7 @@ pub unsafe extern "C" fn opendr_observation_create_parts(
     })
 }
 
-/// Shows all numbers of an observation in a row, which live as long as it.
+/// Writes a pointer to all numbers of an observation as a flat array, valid as long as the observation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_observation_read(
     observation: *const opendr_observation,
@@ -77,7 +77,7 @@ pub unsafe extern "C" fn opendr_observation_read(
     })
 }
 
-/// How many named parts an observation has; 0 for what is none.
+/// Returns the number of named parts of an observation; 0 if the handle is not an observation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_observation_part_count(observation: *const opendr_observation) -> usize {
     guard_value(0, || {
@@ -88,7 +88,7 @@ pub unsafe extern "C" fn opendr_observation_part_count(observation: *const opend
     })
 }
 
-/// Shows a part of an observation; what it points to lives as long as the observation.
+/// Writes a part of an observation into part; its pointers are valid as long as the observation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_observation_get(
     observation: *const opendr_observation,
@@ -102,7 +102,7 @@ pub unsafe extern "C" fn opendr_observation_get(
         let observation: &Observation = value.typed("observation")?;
         let (name, shape, numbers) = observation.parts().nth(index).ok_or_else(|| {
             let count = observation.parts().len();
-            Error::invalid_input(format!("there is no part {index}; there are {count}, counted from 0"))
+            Error::invalid_input(format!("part {index} is out of range; the observation has {count} parts"))
         })?;
         let part = opendr_observation_part {
             name: value.texts.keep(name),
@@ -119,7 +119,7 @@ pub unsafe extern "C" fn opendr_observation_get(
 
 impl opendr_observation_part {
     /// # Safety
-    /// What it points to is there.
+    /// Its pointers are valid.
     unsafe fn read<'a>(&self) -> Result<(&'a str, &'a [usize], &'a [f32])> {
         // SAFETY: the caller's promise.
         unsafe {

@@ -1,4 +1,4 @@
-//! Points in space beside a camera.
+//! Point clouds with the calibration of lidar and camera.
 
 use opendr::data::PointCloudWithCalibration;
 
@@ -9,8 +9,8 @@ use crate::value::{
     AnyValue, opendr_calibration, opendr_point_cloud, opendr_point_cloud_with_calibration, typed,
 };
 
-/// Makes a cloud with its calibration, which both stay the caller's. image_shape is the height and width of the camera's
-/// picture in pixels, or NULL.
+/// Creates a point cloud with its calibration; the caller keeps both. image_shape is the height and width of the camera's
+/// image in pixels, or NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_point_cloud_with_calibration_create(
     cloud: *const opendr_point_cloud,
@@ -35,8 +35,8 @@ pub unsafe extern "C" fn opendr_point_cloud_with_calibration_create(
     })
 }
 
-/// Gives new handles of the cloud and of the calibration, to be freed; height and width of the picture are 0 when they
-/// are not known.
+/// Creates new handles of the point cloud and of the calibration, which must be freed; height and width of the image are 0
+/// when unknown.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_point_cloud_with_calibration_read(
     both: *const opendr_point_cloud_with_calibration,

@@ -1,4 +1,4 @@
-//! Boxes in space: 3D detection.
+//! 3D boxes: 3D detection.
 
 use std::ffi::c_char;
 
@@ -11,33 +11,33 @@ use crate::target::{check_finite, class_of_name, name_of_class};
 use crate::texts::Texts;
 use crate::value::opendr_bounding_box_3d_list;
 
-/// A box in space, in the camera frame of KITTI: x right, y down, z ahead.
+/// A 3D box in the camera frame of KITTI: x right, y down, z forward.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct opendr_bounding_box_3d {
-    /// Class number; -1 when there is only a label.
+    /// Class index; -1 when there is only a label.
     pub class_index: i64,
-    /// What the class is called, NULL when that is not known. Given to a list, it counts when class_index is -1.
+    /// Name of the class; NULL when unknown. In an item given to a list, it is used when class_index is -1.
     pub label: *const c_char,
-    /// How much of the object lies outside the picture, 0 to 1; -1 when it is not known.
+    /// Fraction of the object outside the image, 0 to 1; -1 when unknown.
     pub truncated: f32,
-    /// 0 visible, 1 partly hidden, 2 mostly hidden, 3 or -1 not known.
+    /// 0 visible, 1 partly occluded, 2 largely occluded, 3 or -1 unknown.
     pub occluded: i32,
-    /// Angle under which the object is seen, radians.
+    /// Observation angle of the object, radians.
     pub alpha: f32,
-    /// The object in the picture, corners x0, y0, x1, y1, pixels.
+    /// The object in the image, corners x0, y0, x1, y1, pixels.
     pub bbox2d: [f32; 4],
     /// Length, height and width, metres.
     pub dimensions: [f32; 3],
-    /// x, y, z of the middle of its floor, metres.
+    /// x, y, z of the centre of the bottom face, metres.
     pub location: [f32; 3],
-    /// Turn about the vertical axis, radians; 0 looks along x.
+    /// Rotation about the vertical axis, radians; 0 faces along x.
     pub rotation_y: f32,
     /// Score.
     pub confidence: f32,
 }
 
-/// Makes a list of items, which are copied.
+/// Creates a list of items, which are copied.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_bounding_box_3d_list_create(
     items: *const opendr_bounding_box_3d,
@@ -48,7 +48,7 @@ pub unsafe extern "C" fn opendr_bounding_box_3d_list_create(
     guard(|| unsafe { list::create::<BoundingBox3DList, _>(items, count, list) })
 }
 
-/// How many boxes there are; 0 for what is no such list.
+/// Returns the number of boxes; 0 if the handle is not such a list.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_bounding_box_3d_list_count(
     list: *const opendr_bounding_box_3d_list,
@@ -57,7 +57,7 @@ pub unsafe extern "C" fn opendr_bounding_box_3d_list_count(
     guard_value(0, || unsafe { list::count::<BoundingBox3DList, _>(list) })
 }
 
-/// Shows an item of the list; what it points to lives as long as the list.
+/// Writes an item of the list into item; its pointers are valid as long as the list.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_bounding_box_3d_list_get(
     list: *const opendr_bounding_box_3d_list,
@@ -115,14 +115,14 @@ impl opendr_bounding_box_3d {
     }
 
     /// # Safety
-    /// What it points to is there.
+    /// Its pointers are valid.
     pub(super) unsafe fn to_bounding_box_3d(self) -> Result<BoundingBox3D> {
         let Self { truncated, occluded, alpha, bbox2d, dimensions, location, rotation_y, confidence, .. } =
             self;
         check_finite(&[truncated, alpha, rotation_y, confidence], "a box")?;
         check_finite(&bbox2d, "the corners of a box")?;
         check_finite(&dimensions, "the size of a box")?;
-        check_finite(&location, "the place of a box")?;
+        check_finite(&location, "the location of a box")?;
         // SAFETY: the caller's promise.
         let name = unsafe { name_of_class(self.class_index, self.label) }?;
         Ok(BoundingBox3D {

@@ -1,4 +1,4 @@
-//! Boxes in a picture: 2D detection.
+//! Boxes in an image: 2D detection.
 
 use std::ffi::c_char;
 
@@ -12,7 +12,7 @@ use crate::target::{check_finite, class_of_name, name_of_class};
 use crate::texts::Texts;
 use crate::value::opendr_bounding_box_list;
 
-/// A point in a picture, pixels.
+/// A point in an image, pixels.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct opendr_point {
@@ -22,13 +22,13 @@ pub struct opendr_point {
     pub y: f32,
 }
 
-/// A box in a picture. Outlines (segments) are in the JSON of the list.
+/// A box in an image. Masks (segments) are in the JSON of the list.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct opendr_bounding_box {
-    /// Class number; -1 when there is only a label.
+    /// Class index; -1 when there is only a label.
     pub class_index: i64,
-    /// What the class is called, NULL when that is not known. Given to a list, it counts when class_index is -1.
+    /// Name of the class; NULL when unknown. In an item given to a list, it is used when class_index is -1.
     pub label: *const c_char,
     /// Left edge, pixels.
     pub left: f32,
@@ -40,13 +40,13 @@ pub struct opendr_bounding_box {
     pub height: f32,
     /// Score, 0 to 1.
     pub confidence: f32,
-    /// Points that belong to the box (eyes, nose, corners of the mouth of a face).
+    /// Points of the object (eyes, nose, corners of the mouth of a face).
     pub landmarks: *const opendr_point,
-    /// How many there are.
+    /// Number of landmarks.
     pub landmark_count: usize,
 }
 
-/// Makes a list of items, which are copied.
+/// Creates a list of items, which are copied.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_bounding_box_list_create(
     items: *const opendr_bounding_box,
@@ -57,14 +57,14 @@ pub unsafe extern "C" fn opendr_bounding_box_list_create(
     guard(|| unsafe { list::create::<BoundingBoxList, _>(items, count, list) })
 }
 
-/// How many boxes there are; 0 for what is no such list.
+/// Returns the number of boxes; 0 if the handle is not such a list.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_bounding_box_list_count(list: *const opendr_bounding_box_list) -> usize {
     // SAFETY: the rules at the top of opendr.h.
     guard_value(0, || unsafe { list::count::<BoundingBoxList, _>(list) })
 }
 
-/// Shows an item of the list; what it points to lives as long as the list.
+/// Writes an item of the list into item; its pointers are valid as long as the list.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_bounding_box_list_get(
     list: *const opendr_bounding_box_list,
@@ -97,13 +97,13 @@ impl opendr_bounding_box {
     pub(super) fn new(found: &BoundingBox, classes: &Classes, texts: &Texts) -> Self {
         let (class_index, label) = class_of_name(&found.name, classes, texts);
         let BoundingBox { left, top, width, height, confidence, .. } = *found;
-        // Points lie in memory as pairs do.
+        // Points have the same memory layout as pairs.
         let (landmarks, landmark_count) = (found.landmarks.as_ptr().cast(), found.landmarks.len());
         Self { class_index, label, left, top, width, height, confidence, landmarks, landmark_count }
     }
 
     /// # Safety
-    /// What it points to is there.
+    /// Its pointers are valid.
     pub(super) unsafe fn to_bounding_box(self) -> Result<BoundingBox> {
         let Self { left, top, width, height, confidence, .. } = self;
         check_finite(&[left, top, width, height, confidence], "a box")?;

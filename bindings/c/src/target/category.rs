@@ -1,4 +1,4 @@
-//! One of several classes.
+//! Categories: the class of a whole input.
 
 use std::ffi::c_char;
 
@@ -10,23 +10,23 @@ use crate::pointer::{optional_text, place, reference, slice};
 use crate::status::{guard, opendr_status};
 use crate::value::{AnyValue, opendr_category};
 
-/// What a category says.
+/// The fields of a category.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct opendr_category_fields {
-    /// Class number.
+    /// Class index.
     pub class_index: i64,
-    /// What the class means, NULL when that is not known.
+    /// Name of the class; NULL when unknown.
     pub description: *const c_char,
-    /// Score of the class, 0 to 1; NaN when there is none.
+    /// Score of the class, 0 to 1; NaN if there is none.
     pub confidence: f32,
-    /// Score of every class.
+    /// Scores of all classes.
     pub probabilities: *const f32,
-    /// How many there are; 0 when the learner does not tell them.
+    /// Number of probabilities; 0 if the learner predicts none.
     pub probability_count: usize,
 }
 
-/// Makes a category; everything is copied.
+/// Creates a category; the fields are copied.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_category_create(
     fields: *const opendr_category_fields,
@@ -41,7 +41,7 @@ pub unsafe extern "C" fn opendr_category_create(
     })
 }
 
-/// Shows what a category says; what the fields point to lives as long as the category.
+/// Writes the fields of a category; their pointers are valid as long as the category.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_category_read(
     category: *const opendr_category,
@@ -67,7 +67,7 @@ pub unsafe extern "C" fn opendr_category_read(
 
 impl opendr_category_fields {
     /// # Safety
-    /// What it points to is there.
+    /// Its pointers are valid.
     unsafe fn to_category(self) -> Result<Category> {
         // SAFETY: the caller's promise.
         let (description, probabilities) = unsafe {

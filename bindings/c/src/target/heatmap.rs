@@ -1,4 +1,4 @@
-//! A class or a score for every place.
+//! Maps of class indices or scores.
 
 use std::ptr;
 
@@ -10,23 +10,23 @@ use crate::pointer::{place, reference, slice};
 use crate::status::{guard, opendr_status};
 use crate::value::{AnyValue, opendr_heatmap};
 
-/// The elements of a heat map, last axis fastest: either labels or scores, the other is NULL.
+/// The elements of a heatmap in row-major order: either labels or scores, the other is NULL.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct opendr_heatmap_fields {
-    /// Class numbers.
+    /// Class indices.
     pub labels: *const u32,
     /// Scores.
     pub scores: *const f32,
-    /// How many elements there are.
+    /// Number of elements.
     pub length: usize,
-    /// The sizes of the axes, e.g. height and width.
+    /// Length of each axis, e.g. height and width.
     pub shape: *const usize,
-    /// How many axes there are, 1 to 8.
+    /// Number of axes, 1 to 8.
     pub axes: usize,
 }
 
-/// Makes a heat map; everything is copied.
+/// Creates a heatmap; the elements are copied.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_heatmap_create(
     fields: *const opendr_heatmap_fields,
@@ -41,7 +41,7 @@ pub unsafe extern "C" fn opendr_heatmap_create(
     })
 }
 
-/// Shows the elements of a heat map, which live as long as it.
+/// Writes pointers to the elements of a heatmap, valid as long as the heatmap.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_heatmap_read(
     heatmap: *const opendr_heatmap,
@@ -65,14 +65,14 @@ pub unsafe extern "C" fn opendr_heatmap_read(
 
 impl opendr_heatmap_fields {
     /// # Safety
-    /// What it points to is there.
+    /// Its pointers are valid.
     unsafe fn to_heatmap(self) -> Result<Heatmap> {
         // SAFETY: the caller's promise.
         let shape = unsafe { slice(self.shape, self.axes, "shape") }?;
-        let wanted = shape.iter().try_fold(1usize, |count, side| count.checked_mul(*side));
-        if wanted != Some(self.length) {
+        let expected = shape.iter().try_fold(1usize, |count, side| count.checked_mul(*side));
+        if expected != Some(self.length) {
             return Err(Error::invalid_input(format!(
-                "a heat map of shape {shape:?} cannot have {} elements; give one per place",
+                "a heatmap of shape {shape:?} cannot have {} elements; give one per position",
                 self.length
             )));
         }
@@ -85,7 +85,7 @@ impl opendr_heatmap_fields {
                 (true, false) => {
                     Heatmap::from_scores(slice(self.scores, self.length, "scores")?.to_vec(), shape)
                 }
-                _ => Err(Error::invalid_input("a heat map has either labels or scores; give one of them")),
+                _ => Err(Error::invalid_input("a heatmap has either labels or scores; give one of them")),
             }
         }
     }

@@ -1,4 +1,4 @@
-//! What all lists of things found have in common.
+//! Functions for all lists of targets.
 
 use opendr::{Datum, Error, Result, Value};
 
@@ -7,32 +7,32 @@ use crate::pointer::{place, slice};
 use crate::texts::Texts;
 use crate::value::AnyValue;
 
-/// Most items of a list: more than any picture holds.
+/// Maximum number of items of a list.
 const MAX_ITEMS: usize = 1 << 24;
 
-/// A list of targets and how C sees its items.
+/// A list of targets and its items in the form of C.
 pub(super) trait List: Datum + Into<Value> + From<Vec<Self::Item>> {
-    /// What the list holds.
+    /// Type of the items.
     type Item;
-    /// What C calls an item.
+    /// Type of the items in C.
     type Plain;
 
     fn items(&self) -> &[Self::Item];
 
-    /// An item for C; texts and memory that it points to live as long as the list.
+    /// Converts an item for C; its texts and pointers are valid as long as the list.
     fn plain(&self, item: &Self::Item, texts: &Texts) -> Self::Plain;
 
-    /// An item from C.
+    /// Converts an item from C.
     ///
     /// # Safety
-    /// What it points to is there.
+    /// Its pointers are valid.
     unsafe fn item(plain: &Self::Plain) -> Result<Self::Item>;
 }
 
-/// Makes a list of items.
+/// Creates a list of items.
 ///
 /// # Safety
-/// `items` leads to `count` items, and all that they point to is there; `list` may be written to.
+/// `items` points to `count` items, whose pointers are valid; `list` may be written to.
 pub(super) unsafe fn create<L: List, P>(
     items: *const L::Plain,
     count: usize,
@@ -53,19 +53,19 @@ pub(super) unsafe fn create<L: List, P>(
     Ok(())
 }
 
-/// How many items a list has.
+/// Returns the number of items of a list.
 ///
 /// # Safety
-/// As [`crate::handle::held`].
+/// The same as for [`crate::handle::held`].
 pub(super) unsafe fn count<L: List, P>(list: *const P) -> Result<usize> {
     // SAFETY: the caller's promise.
     Ok(unsafe { AnyValue::of(list, "list") }?.typed::<L>("list")?.items().len())
 }
 
-/// Shows an item of a list.
+/// Writes an item of a list into `item`.
 ///
 /// # Safety
-/// As [`crate::handle::held`]; `item` is null or may be written to.
+/// The same as for [`crate::handle::held`]; `item` is null or may be written to.
 pub(super) unsafe fn get<L: List, P>(list: *const P, index: usize, item: *mut L::Plain) -> Result<()> {
     let place = place(item, "item")?;
     // SAFETY: the caller's promise.
@@ -73,7 +73,7 @@ pub(super) unsafe fn get<L: List, P>(list: *const P, index: usize, item: *mut L:
     let list = value.typed::<L>("list")?;
     let item = list.items().get(index).ok_or_else(|| {
         let count = list.items().len();
-        Error::invalid_input(format!("there is no item {index}; there are {count}, counted from 0"))
+        Error::invalid_input(format!("item {index} is out of range; the list has {count} items"))
     })?;
     // SAFETY: the caller's promise.
     unsafe { place.write(list.plain(item, &value.texts)) };

@@ -1,4 +1,4 @@
-//! Targets: what learners answer. One file per type.
+//! Target types, of predictions and annotations. One file per type.
 
 mod bounding_box_3d_list;
 mod bounding_box_list;
@@ -31,13 +31,13 @@ use opendr::{Error, Result};
 use crate::pointer::optional_text;
 use crate::texts::Texts;
 
-/// A class as C has it: its number, -1 for a label alone, and its label or null.
+/// Converts a class for C: its index, -1 if there is only a label, and its label or null.
 fn class_of_name(name: &Name, classes: &Classes, texts: &Texts) -> (i64, *const c_char) {
     let index = if let Name::Index(index) = name { *index } else { -1 };
     (index, texts.keep_optional(classes.label(name)))
 }
 
-/// A class from C: the label counts where there is no number.
+/// Converts a class from C: the label is used if there is no index.
 ///
 /// # Safety
 /// `label` is null or a text.
@@ -49,7 +49,7 @@ unsafe fn name_of_class(class_index: i64, label: *const c_char) -> Result<Name> 
     }
 }
 
-/// Refuses numbers that lie nowhere.
+/// Checks that numbers are finite.
 fn check_finite(numbers: &[f32], what: &str) -> Result<()> {
     if numbers.iter().all(|number| number.is_finite()) {
         return Ok(());
@@ -57,7 +57,7 @@ fn check_finite(numbers: &[f32], what: &str) -> Result<()> {
     Err(Error::invalid_input(format!("{what} has {numbers:?}; give finite numbers")))
 }
 
-/// A number that C writes -1 when it is not known.
+/// Converts an index of C, where -1 is unknown.
 fn known(number: i64) -> Option<i64> {
     (number >= 0).then_some(number)
 }

@@ -1,4 +1,4 @@
-//! Persons by their joints.
+//! Poses.
 
 use opendr::target::{Keypoint, Pose, PoseList, Skeleton};
 use opendr::{Error, Result};
@@ -11,7 +11,7 @@ use crate::target::{check_finite, known};
 use crate::texts::Texts;
 use crate::value::opendr_pose_list;
 
-/// The joints of a kind of body, and their order (docs/json.md).
+/// The skeleton of a pose: its joints and their order (docs/json.md).
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum opendr_skeleton {
@@ -29,16 +29,16 @@ pub enum opendr_skeleton {
     OPENDR_FACE478 = 5,
     /// JHMDB's 15 joints of a person.
     OPENDR_JHMDB15 = 6,
-    /// The 25 joints of a person that Kinect v2 tells, as NTU RGB+D numbers them.
+    /// Kinect v2's 25 joints of a person, in the order of NTU RGB+D.
     OPENDR_NTU25 = 7,
-    /// Where the two jaws of a gripper go to grasp a thing.
+    /// The positions of the two jaws of a gripper for a grasp.
     OPENDR_GRASP2 = 8,
 }
 
-// The numbers are the places in `Skeleton::ALL`.
+// The numbers are the indices in `Skeleton::ALL`.
 const _: () = assert!(Skeleton::ALL.len() == opendr_skeleton::OPENDR_GRASP2 as usize + 1);
 
-/// A point found in a picture, pixels; (-1, -1) means not found.
+/// A keypoint in an image, pixels; (-1, -1) means not detected.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct opendr_keypoint {
@@ -50,26 +50,26 @@ pub struct opendr_keypoint {
     pub confidence: f32,
 }
 
-// `opendr_pose` points to keypoints where they lie.
+// `opendr_pose` points to keypoints without a copy.
 const _: () = assert!(size_of::<Keypoint>() == size_of::<opendr_keypoint>());
 
-/// One person.
+/// The pose of one person or hand.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct opendr_pose {
     /// The joints in the order of the skeleton.
     pub keypoints: *const opendr_keypoint,
-    /// How many there are.
+    /// Number of keypoints.
     pub keypoint_count: usize,
-    /// Score of the whole, 0 to 1.
+    /// Score of the pose, 0 to 1.
     pub confidence: f32,
     /// One of opendr_skeleton.
     pub skeleton: i32,
-    /// The person's track; -1 when none is kept.
+    /// Id of the person's track; -1 if there is none.
     pub id: i64,
 }
 
-/// Makes a list of items, which are copied.
+/// Creates a list of items, which are copied.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_pose_list_create(
     items: *const opendr_pose,
@@ -80,14 +80,14 @@ pub unsafe extern "C" fn opendr_pose_list_create(
     guard(|| unsafe { list::create::<PoseList, _>(items, count, list) })
 }
 
-/// How many persons there are; 0 for what is no such list.
+/// Returns the number of persons; 0 if the handle is not such a list.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_pose_list_count(list: *const opendr_pose_list) -> usize {
     // SAFETY: the rules at the top of opendr.h.
     guard_value(0, || unsafe { list::count::<PoseList, _>(list) })
 }
 
-/// Shows an item of the list; what it points to lives as long as the list.
+/// Writes an item of the list into item; its pointers are valid as long as the list.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_pose_list_get(
     list: *const opendr_pose_list,
@@ -127,7 +127,7 @@ impl List for PoseList {
         let joints = skeleton.joints().len();
         if points.len() != joints {
             return Err(Error::invalid_input(format!(
-                "{} keypoints instead of {joints}; give one a joint",
+                "the pose has {} keypoints, and its skeleton {joints}; give one per joint",
                 points.len()
             )));
         }

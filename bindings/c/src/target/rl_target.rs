@@ -1,4 +1,4 @@
-//! What a policy does.
+//! Actions of policies.
 
 use opendr::target::RlTarget;
 
@@ -8,7 +8,7 @@ use crate::status::{guard, opendr_status};
 use crate::target::check_finite;
 use crate::value::{AnyValue, opendr_rl_target};
 
-/// Makes an action of count numbers, which are copied.
+/// Creates an action from count numbers, which are copied.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_rl_target_create(
     values: *const f32,
@@ -24,7 +24,7 @@ pub unsafe extern "C" fn opendr_rl_target_create(
     })
 }
 
-/// Shows the numbers of an action in a row, as the action space lays them out; they live as long as it.
+/// Writes a pointer to the numbers of an action as a flat array in the order of the action space, valid as long as the action.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_rl_target_read(
     target: *const opendr_rl_target,

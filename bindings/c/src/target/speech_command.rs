@@ -1,4 +1,4 @@
-//! A spoken command.
+//! Spoken commands.
 
 use std::ffi::c_char;
 
@@ -10,23 +10,23 @@ use crate::status::{guard, opendr_status};
 use crate::target::{check_finite, class_of_name, name_of_class};
 use crate::value::{AnyValue, opendr_speech_command};
 
-/// What a command says.
+/// The fields of a spoken command.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct opendr_speech_command_fields {
-    /// Class number; -1 when there is only a word.
+    /// Class index; -1 if there is only a word.
     pub class_index: i64,
-    /// The word, NULL when it is not known. Given to a command, it counts when class_index is -1.
+    /// The word; NULL when unknown. In fields given to a command, it is used when class_index is -1.
     pub label: *const c_char,
     /// Score, 0 to 1.
     pub confidence: f32,
-    /// Begin within the sound, seconds; NaN when it is not known.
+    /// Start within the audio, seconds; NaN when unknown.
     pub begin_s: f32,
-    /// End within the sound, seconds; NaN when it is not known.
+    /// End within the audio, seconds; NaN when unknown.
     pub end_s: f32,
 }
 
-/// Makes a command; everything is copied.
+/// Creates a command; the fields are copied.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_speech_command_create(
     fields: *const opendr_speech_command_fields,
@@ -45,7 +45,7 @@ pub unsafe extern "C" fn opendr_speech_command_create(
     })
 }
 
-/// Shows what a command says; the word lives as long as the command.
+/// Writes the fields of a command; the word is valid as long as the command.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_speech_command_read(
     command: *const opendr_speech_command,

@@ -1,4 +1,4 @@
-//! Boxes in space with an identity: 3D tracking.
+//! 3D boxes with an identity: 3D tracking.
 
 use opendr::Result;
 use opendr::target::{TrackingAnnotation3D, TrackingAnnotation3DList};
@@ -9,19 +9,19 @@ use crate::target::{known, opendr_bounding_box_3d};
 use crate::texts::Texts;
 use crate::value::opendr_tracking_annotation_3d_list;
 
-/// A box of one object that is followed through space.
+/// The 3D box of a tracked object at one time.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct opendr_tracking_annotation_3d {
-    /// Where it is.
+    /// The box.
     pub bounding_box_3d: opendr_bounding_box_3d,
-    /// The object's number, the same at every time; -1 when it is not known.
+    /// Identity of the object, the same at every time; -1 when unknown.
     pub id: i64,
-    /// Number of the cloud in its recording; -1 when it has none.
+    /// Index of the cloud in its recording; -1 if it has none.
     pub frame: i64,
 }
 
-/// Makes a list of items, which are copied.
+/// Creates a list of items, which are copied.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_tracking_annotation_3d_list_create(
     items: *const opendr_tracking_annotation_3d,
@@ -32,7 +32,7 @@ pub unsafe extern "C" fn opendr_tracking_annotation_3d_list_create(
     guard(|| unsafe { list::create::<TrackingAnnotation3DList, _>(items, count, list) })
 }
 
-/// How many tracks there are; 0 for what is no such list.
+/// Returns the number of tracks; 0 if the handle is not such a list.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_tracking_annotation_3d_list_count(
     list: *const opendr_tracking_annotation_3d_list,
@@ -41,7 +41,7 @@ pub unsafe extern "C" fn opendr_tracking_annotation_3d_list_count(
     guard_value(0, || unsafe { list::count::<TrackingAnnotation3DList, _>(list) })
 }
 
-/// Shows an item of the list; what it points to lives as long as the list.
+/// Writes an item of the list into item; its pointers are valid as long as the list.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_tracking_annotation_3d_list_get(
     list: *const opendr_tracking_annotation_3d_list,

@@ -9,19 +9,19 @@ use crate::target::{known, opendr_bounding_box};
 use crate::texts::Texts;
 use crate::value::opendr_tracking_annotation_list;
 
-/// A box of one object that is followed through a video.
+/// The box of a tracked object in one frame.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct opendr_tracking_annotation {
-    /// Where it is.
+    /// The box.
     pub bounding_box: opendr_bounding_box,
-    /// The object's number, the same in every picture; -1 when it is not known.
+    /// Identity of the object, the same in every frame; -1 when unknown.
     pub id: i64,
-    /// Number of the picture in its video; -1 when it has none.
+    /// Index of the frame in its video; -1 if it has none.
     pub frame: i64,
 }
 
-/// Makes a list of items, which are copied.
+/// Creates a list of items, which are copied.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_tracking_annotation_list_create(
     items: *const opendr_tracking_annotation,
@@ -32,7 +32,7 @@ pub unsafe extern "C" fn opendr_tracking_annotation_list_create(
     guard(|| unsafe { list::create::<TrackingAnnotationList, _>(items, count, list) })
 }
 
-/// How many tracks there are; 0 for what is no such list.
+/// Returns the number of tracks; 0 if the handle is not such a list.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_tracking_annotation_list_count(
     list: *const opendr_tracking_annotation_list,
@@ -41,7 +41,7 @@ pub unsafe extern "C" fn opendr_tracking_annotation_list_count(
     guard_value(0, || unsafe { list::count::<TrackingAnnotationList, _>(list) })
 }
 
-/// Shows an item of the list; what it points to lives as long as the list.
+/// Writes an item of the list into item; its pointers are valid as long as the list.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_tracking_annotation_list_get(
     list: *const opendr_tracking_annotation_list,

@@ -1,4 +1,4 @@
-//! What was said.
+//! Transcriptions of speech.
 
 use std::ffi::c_char;
 use std::ptr;
@@ -13,21 +13,21 @@ use crate::value::{
     AnyValue, opendr_base_transcription, opendr_vosk_transcription, opendr_whisper_transcription,
 };
 
-/// A part of a transcription. Tokens and measures are in the JSON of the transcription.
+/// A segment of a transcription. Tokens and scores are in the JSON of the transcription.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct opendr_whisper_segment {
-    /// Number of the segment.
+    /// Index of the segment.
     pub id: i64,
-    /// Begin within the sound, seconds.
+    /// Start within the audio, seconds.
     pub start_s: f32,
-    /// End within the sound, seconds.
+    /// End within the audio, seconds.
     pub end_s: f32,
-    /// The words.
+    /// The text.
     pub text: *const c_char,
 }
 
-/// Makes a transcription of words.
+/// Creates a transcription from its text.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_base_transcription_create(
     text: *const c_char,
@@ -41,16 +41,18 @@ pub unsafe extern "C" fn opendr_base_transcription_create(
     })
 }
 
-/// The words, NULL for what is no such transcription; they live as long as it.
+/// Returns the text, or NULL if the handle is not such a transcription; valid as long as the transcription.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_base_transcription_text(
     transcription: *const opendr_base_transcription,
 ) -> *const c_char {
     // SAFETY: the rules at the top of opendr.h.
-    guard_value(ptr::null(), || unsafe { words(transcription, |said: &BaseTranscription| &said.text) })
+    guard_value(ptr::null(), || unsafe {
+        text_of(transcription, |transcription: &BaseTranscription| &transcription.text)
+    })
 }
 
-/// Makes a transcription of words so far; finished tells whether the phrase is.
+/// Creates an intermediate or final transcription of a streaming recogniser; finished is whether the phrase is final.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_vosk_transcription_create(
     text: *const c_char,
@@ -66,28 +68,30 @@ pub unsafe extern "C" fn opendr_vosk_transcription_create(
     })
 }
 
-/// The words so far, NULL for what is no such transcription; they live as long as it.
+/// Returns the text so far, or NULL if the handle is not such a transcription; valid as long as the transcription.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_vosk_transcription_text(
     transcription: *const opendr_vosk_transcription,
 ) -> *const c_char {
     // SAFETY: the rules at the top of opendr.h.
-    guard_value(ptr::null(), || unsafe { words(transcription, |said: &VoskTranscription| &said.text) })
+    guard_value(ptr::null(), || unsafe {
+        text_of(transcription, |transcription: &VoskTranscription| &transcription.text)
+    })
 }
 
-/// Whether the phrase is finished: the words will not change any more.
+/// Returns whether the phrase is final: its text will not change any more.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_vosk_transcription_finished(
     transcription: *const opendr_vosk_transcription,
 ) -> bool {
     guard_value(false, || {
         // SAFETY: the rules at the top of opendr.h.
-        let said = unsafe { AnyValue::of(transcription, "transcription") }?;
-        Ok(said.typed::<VoskTranscription>("transcription")?.accept_waveform)
+        let value = unsafe { AnyValue::of(transcription, "transcription") }?;
+        Ok(value.typed::<VoskTranscription>("transcription")?.accept_waveform)
     })
 }
 
-/// Makes a transcription of words and its segments, which are copied.
+/// Creates a transcription from its text and segments, which are copied.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_whisper_transcription_create(
     text: *const c_char,
@@ -113,28 +117,30 @@ pub unsafe extern "C" fn opendr_whisper_transcription_create(
     })
 }
 
-/// The words, NULL for what is no such transcription; they live as long as it.
+/// Returns the text, or NULL if the handle is not such a transcription; valid as long as the transcription.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_whisper_transcription_text(
     transcription: *const opendr_whisper_transcription,
 ) -> *const c_char {
     // SAFETY: the rules at the top of opendr.h.
-    guard_value(ptr::null(), || unsafe { words(transcription, |said: &WhisperTranscription| &said.text) })
+    guard_value(ptr::null(), || unsafe {
+        text_of(transcription, |transcription: &WhisperTranscription| &transcription.text)
+    })
 }
 
-/// How many segments there are; 0 for what is no such transcription.
+/// Returns the number of segments; 0 if the handle is not such a transcription.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_whisper_transcription_count(
     transcription: *const opendr_whisper_transcription,
 ) -> usize {
     guard_value(0, || {
         // SAFETY: the rules at the top of opendr.h.
-        let said = unsafe { AnyValue::of(transcription, "transcription") }?;
-        Ok(said.typed::<WhisperTranscription>("transcription")?.segments.len())
+        let value = unsafe { AnyValue::of(transcription, "transcription") }?;
+        Ok(value.typed::<WhisperTranscription>("transcription")?.segments.len())
     })
 }
 
-/// Shows a segment; its words live as long as the transcription.
+/// Writes a segment into segment; its text is valid as long as the transcription.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_whisper_transcription_get(
     transcription: *const opendr_whisper_transcription,
@@ -148,7 +154,9 @@ pub unsafe extern "C" fn opendr_whisper_transcription_get(
         let segments = &value.typed::<WhisperTranscription>("transcription")?.segments;
         let WhisperSegment { id, start, end, text, .. } = segments.get(index).ok_or_else(|| {
             let count = segments.len();
-            Error::invalid_input(format!("there is no segment {index}; there are {count}, counted from 0"))
+            Error::invalid_input(format!(
+                "segment {index} is out of range; the transcription has {count} segments"
+            ))
         })?;
         let text = value.texts.keep(text);
         // SAFETY: the rules at the top of opendr.h.
@@ -158,16 +166,16 @@ pub unsafe extern "C" fn opendr_whisper_transcription_get(
 }
 
 /// # Safety
-/// As [`crate::handle::held`].
-unsafe fn words<D: Datum, P>(said: *const P, words: impl Fn(&D) -> &str) -> Result<*const c_char> {
+/// The same as for [`crate::handle::held`].
+unsafe fn text_of<D: Datum, P>(transcription: *const P, text: impl Fn(&D) -> &str) -> Result<*const c_char> {
     // SAFETY: the caller's promise.
-    let said = unsafe { AnyValue::of(said, "transcription") }?;
-    Ok(said.texts.keep(words(said.typed("transcription")?)))
+    let value = unsafe { AnyValue::of(transcription, "transcription") }?;
+    Ok(value.texts.keep(text(value.typed("transcription")?)))
 }
 
 impl opendr_whisper_segment {
     /// # Safety
-    /// `text` is a text.
+    /// `text` points to a text.
     unsafe fn to_segment(self) -> Result<WhisperSegment> {
         // SAFETY: the caller's promise.
         let text = unsafe { text(self.text, "the text of a segment") }?.to_owned();

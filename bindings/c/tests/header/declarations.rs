@@ -1,4 +1,4 @@
-//! What the library exports, as cbindgen reads it from the sources.
+//! Declarations of the exported functions and types, which cbindgen reads from the sources.
 
 use std::path::Path;
 
@@ -9,22 +9,23 @@ use crate::value_functions::c_name;
 
 const RULES: &str = "\
 /*
- * OpenDR in Rust: the C API. Made from the library; docs/c.md explains it.
+ * OpenDR in Rust: the C API. Generated from the library; docs/c.md explains it.
  *
- * The rules:
- *   - A function that answers opendr_status answers OPENDR_OK (0) or why it failed; opendr_last_error() tells it in words.
- *   - What a function writes to an opendr_X ** is a new handle, NULL when the call fails. Free it with opendr_X_free(),
- *     which takes the address of the variable and makes it NULL; freeing NULL is fine.
- *   - What a function points to (texts, numbers, pixels) belongs to the handle it was asked of, and lives as long as it.
- *   - What is handed in is copied, or only read during the call; it stays the caller's.
- *   - Texts are UTF-8. Paths are bytes as the system has them.
- *   - Learners, networks and sources may be used by several threads at once; values as long as nobody changes or frees them.
- *   - NULL, handles of another type, and lengths that cannot be are refused. That a pointer leads to as much memory as its
- *     length says, and that a handle is not used after it was freed, is the caller's promise.
+ * Rules:
+ *   - A function with the result opendr_status returns OPENDR_OK (0) or the kind of the error; opendr_last_error() returns its
+ *     message.
+ *   - A function writes a new handle to an opendr_X **, or NULL if the call fails. Free it with opendr_X_free(), which takes
+ *     the address of the variable and sets it to NULL; freeing NULL does nothing.
+ *   - Pointers that a function returns (texts, numbers, pixels) belong to the handle and are valid as long as the handle.
+ *   - Arguments are copied, or only read during the call; the caller keeps them.
+ *   - Texts are UTF-8. Paths are the bytes of the system's file names.
+ *   - Learners, networks and sources can be used by several threads at once; values as long as no thread changes or frees them.
+ *   - NULL, handles of another type and impossible lengths are errors. The caller guarantees that a pointer points to as much
+ *     memory as its length states, and that a handle is not used after it was freed.
  */
 ";
 
-/// The declarations of everything in the sources.
+/// Returns all declarations of the sources.
 pub fn render(sources: &Path) -> String {
     let handles: Vec<_> = ValueType::ALL.iter().map(|kind| c_name(*kind)).collect();
     let typedefs = handles.iter().map(|name| format!("typedef struct {name} {name};"));
@@ -49,7 +50,7 @@ pub fn render(sources: &Path) -> String {
     config.export.include = ["opendr_samples", "opendr_pixel_format", "opendr_layout", "opendr_skeleton"]
         .map(str::to_owned)
         .to_vec();
-    // It follows the modules itself; what it is given twice it declares twice.
+    // cbindgen follows the modules itself; a source given twice would be declared twice.
     let builder = Builder::new().with_config(config).with_src(sources.join("lib.rs"));
     let mut header = Vec::new();
     builder.generate().unwrap().write(&mut header);

@@ -1,4 +1,4 @@
-//! Functions of one learner each, over those of any learner.
+//! Functions for single learners, implemented with those for any learner.
 
 use std::fmt::Write;
 
@@ -11,11 +11,11 @@ use crate::value_functions::c_name;
 pub const INTRODUCTION: &str = "\
 /*
  * Learners. opendr_load_X() is opendr_load() with the learner's name; opendr_infer_X() is opendr_infer() with its inputs
- * and outputs. An output that is not wanted may be NULL.
+ * and outputs. An output that is not needed may be NULL.
  */
 ";
 
-/// Words that C or C++ keeps for itself.
+/// Keywords of C and C++.
 const KEYWORDS: [&str; 8] = ["class", "default", "delete", "new", "operator", "register", "template", "this"];
 
 /// `opendr_load_X` and `opendr_infer_X`.
@@ -55,7 +55,7 @@ fn parameter(field: &Field) -> String {
         write!(kind, ", one of {}", field.choices.join(", ")).unwrap();
     }
     if field.live {
-        kind += ", may change while it runs";
+        kind += ", live";
     }
     let doc = field.doc.split("\n\n").next().unwrap_or_default().replace('\n', " ");
     format!("  {} ({kind}, default {}): {doc}\n", field.name, field.default.value())
@@ -63,8 +63,8 @@ fn parameter(field: &Field) -> String {
 
 fn how(port: &Port) -> &'static str {
     match (port.init, port.optional) {
-        (true, _) => " Given with the first call of a stream, else NULL.",
-        (false, true) => " NULL leaves it out.",
+        (true, _) => " Given in the first call of a stream, otherwise NULL.",
+        (false, true) => " Optional: may be NULL.",
         (false, false) => "",
     }
 }

@@ -1,6 +1,6 @@
 /*
- * The same functions for each type X of values: opendr_X_free(), opendr_X_copy(), opendr_X_to_text(), opendr_X_stamp(),
- * opendr_X_set_stamp(), opendr_X_frame_id(), opendr_X_set_frame_id(); see opendr_value_free() and its neighbours.
+ * Functions of each data and target type X: opendr_X_free(), opendr_X_copy(), opendr_X_to_text(), opendr_X_stamp(),
+ * opendr_X_set_stamp(), opendr_X_frame_id(), opendr_X_set_frame_id(); see the functions opendr_value_free(), ... .
  */
 #define OPENDR_VALUE_FUNCTIONS(X) \
     static inline opendr_status X##_free(X **variable) { \
@@ -31,7 +31,7 @@
         return opendr_value_set_frame_id((opendr_value *)value, frame_id); \
     }
 
-/* For each type X of targets besides: opendr_X_to_json(), opendr_X_from_json() and opendr_X_draw(). */
+/* Further functions of each target type X: opendr_X_to_json(), opendr_X_from_json() and opendr_X_draw(). */
 #define OPENDR_TARGET_FUNCTIONS(X, name) \
     static inline opendr_status X##_to_json(const X *value, opendr_string **json) { \
         return opendr_value_to_json((const opendr_value *)value, json); \
@@ -46,7 +46,7 @@
         return opendr_value_draw((const opendr_value *)value, image); \
     }
 
-/* For each type X of numbers along axes besides: opendr_X_create() and opendr_X_read(); see opendr_array_create(). */
+/* Further functions of each array type X: opendr_X_create() and opendr_X_read(); see opendr_array_create(). */
 #define OPENDR_ARRAY_FUNCTIONS(X, name, axes) \
     static inline opendr_status X##_create(const float *numbers, size_t length, const size_t shape[axes], X **variable) { \
         opendr_value *value = NULL; \

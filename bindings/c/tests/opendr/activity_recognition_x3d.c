@@ -1,4 +1,4 @@
-/* A program as it was written for OpenDR 3.0's C API: activity_recognition_x3d MODEL */
+/* A program written for OpenDR 3.0's C API: activity_recognition_x3d MODEL */
 #undef NDEBUG
 #include <assert.h>
 

@@ -1,4 +1,4 @@
-/* A program as it was written for OpenDR 3.0's C API: face_recognition FOLDER DATABASE PICTURE ... */
+/* A program written for OpenDR 3.0's C API: face_recognition FOLDER DATABASE IMAGE ... */
 #undef NDEBUG
 #include <assert.h>
 
@@ -53,7 +53,7 @@ int main(int argc, char **argv) {
     assert(model.onnxSession != NULL && model.env != NULL && model.sessionOptions != NULL);
     assert(model.modelSize == 112 && model.outputSize == 256 && model.threshold > 0.3f && model.nPersons == 0);
 
-    /* Nobody is known yet. */
+    /* No person is enrolled yet. */
     loadImage(argv[3], &image);
     person = inferFaceRecognition(&model, &image);
     assert(person.data == -1 && person.confidence == 0.0f && model.database == NULL);
@@ -72,7 +72,7 @@ int main(int argc, char **argv) {
     decodeCategoryFaceRecognition(&model, person, name);
     assert(name[0] == '\0');
 
-    /* Built once more into the same place, and lost. */
+    /* Built again into the same model; a failed load leaves no database. */
     buildDatabaseFaceRecognition(argv[1], argv[2], &model);
     assert(model.database != NULL);
     loadDatabaseFaceRecognition("no/such/database", &model);

@@ -1,4 +1,4 @@
-/* A program as it was written for OpenDR 3.0's C API: lightweight_open_pose MODEL PICTURE */
+/* A program written for OpenDR 3.0's C API: lightweight_open_pose MODEL IMAGE */
 #undef NDEBUG
 #include <assert.h>
 #include <math.h>
@@ -29,7 +29,7 @@ int main(int argc, char **argv) {
 
     initOpenDRTensorFromImgOp(&image, &tensor, &model);
     assert(tensor.batchSize == 1 && tensor.channels == 3 && tensor.width == 256 && tensor.height == 256);
-    assert(fabsf(tensor.data[0]) < 1e-6f); /* a wide picture has a border above */
+    assert(fabsf(tensor.data[0]) < 1e-6f); /* a wide image is padded at the top */
     for (int i = 0; i < 3 * 256 * 256; i++) {
         lowest = tensor.data[i] < lowest ? tensor.data[i] : lowest;
         highest = tensor.data[i] > highest ? tensor.data[i] : highest;

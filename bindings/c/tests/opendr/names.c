@@ -14,7 +14,7 @@
 #include "skeleton_based_action_recognition_pst.h"
 #include "target.h"
 
-/* A function: what it returns, its name, what it takes. */
+/* A function: its return type, its name, its parameters. */
 #define FUNCTIONS(F) \
     F(const char *, jsonGetStringFromKey, (const char *, const char *, int)) \
     F(float, jsonGetFloatFromKey, (const char *, const char *, int)) \
@@ -115,7 +115,7 @@
     F(Yolov5Model, confThreshold, float) F(Yolov5Model, iouThreshold, float) F(Yolov5Model, labels, OpenDRStringsVectorT) \
     F(Yolov5Model, colorList, int **) F(Yolov5Model, numberOfClasses, int) F(Yolov5Model, isDynamicInputShape, int)
 
-/* An array: its structure, its name, the type of its items, how many there are. */
+/* An array: its structure, its name, the type and the number of its items. */
 #define ARRAYS(F) \
     F(NanodetModel, inputSizes, int, 2) \
     F(DetrModel, meanValue, float, 3) F(DetrModel, stdValue, float, 3) F(DetrModel, outputSizes, int, 2) \

@@ -1,4 +1,4 @@
-/* A program as it was written for OpenDR 3.0's C API: object_detection_2d_detr MODEL */
+/* A program written for OpenDR 3.0's C API: object_detection_2d_detr MODEL */
 #undef NDEBUG
 #include <assert.h>
 
@@ -27,7 +27,7 @@ int main(int argc, char **argv) {
     forwardDetr(&model, &tensor, &outputs);
     assert(outputs.nTensors == 2);
 
-    /* There is no pretrained one. */
+    /* There is no pretrained model. */
     loadDetrModel("", &missing);
     assert(missing.onnxSession == NULL && strstr(opendr_last_error(), "no pretrained model") != NULL);
     freeDetrModel(&missing);

@@ -1,4 +1,4 @@
-/* A program as it was written for OpenDR 3.0's C API: object_detection_2d_nanodet_jit PICTURE OUT.png */
+/* A program written for OpenDR 3.0's C API: object_detection_2d_nanodet_jit IMAGE OUT.png */
 #undef NDEBUG
 #include <assert.h>
 

@@ -1,4 +1,4 @@
-/* A program as it was written for OpenDR's C API after 3.0: object_detection_2d_yolov5 MODEL PICTURE */
+/* A program written for OpenDR's C API after 3.0: object_detection_2d_yolov5 MODEL IMAGE */
 #undef NDEBUG
 #include <assert.h>
 

@@ -1,4 +1,4 @@
-/* A program as it was written for OpenDR 3.0's C API: object_tracking_2d_deep_sort MODEL */
+/* A program written for OpenDR 3.0's C API: object_tracking_2d_deep_sort MODEL */
 #undef NDEBUG
 #include <assert.h>
 

@@ -1,4 +1,4 @@
-/* A program as it was written for OpenDR 3.0's C API: opendr_utils PICTURE */
+/* A program written for OpenDR 3.0's C API: opendr_utils IMAGE */
 #undef NDEBUG
 #include <assert.h>
 

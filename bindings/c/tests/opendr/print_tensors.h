@@ -1,14 +1,14 @@
-/* What the programs that run a network share. */
+/* Helper functions of the programs that run a network. */
 #include "opendr_utils.h"
 
-/* Replaces the numbers of a tensor by 0, 1/8, ... 7/8 over and over, which the test gives ONNX Runtime too. */
+/* Fills a tensor with 0, 1/8, ... 7/8 repeatedly, the input that the test gives ONNX Runtime, too. */
 static inline void fill(OpenDRTensorT *tensor) {
     size_t length = (size_t)tensor->batchSize * (size_t)tensor->frames * (size_t)tensor->channels * (size_t)tensor->width
         * (size_t)tensor->height;
     for (size_t i = 0; i < length; i++) tensor->data[i] = (float)(i % 8) / 8.0f;
 }
 
-/* A line for each tensor: its sizes, its first numbers, and the mean of all. */
+/* Prints one line per tensor: its shape, its first values and the mean of all values. */
 static inline void print_tensors(OpenDRTensorVectorT *vector) {
     for (int i = 0; i < vector->nTensors; i++) {
         OpenDRTensorT tensor;

@@ -1,4 +1,4 @@
-/* A program as it was written for OpenDR 3.0's C API: skeleton_based_action_recognition_pst MODEL */
+/* A program written for OpenDR 3.0's C API: skeleton_based_action_recognition_pst MODEL */
 #undef NDEBUG
 #include <assert.h>
 

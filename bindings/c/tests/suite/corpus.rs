@@ -1,4 +1,4 @@
-//! What the fuzzer of the C API found interesting never makes it fall.
+//! Runs the fuzzing corpus of the C API: no entry may crash it.
 
 #[path = "../../../../fuzz/c_calls.rs"]
 mod c_calls;

@@ -1,4 +1,4 @@
-//! The integration tests of this crate, one program: each program more is linked once more.
+//! Integration tests of this crate, in one program to link only once.
 
 #![allow(clippy::unwrap_used)]
 
@@ -15,7 +15,7 @@ fn last_error() -> String {
     unsafe { CStr::from_ptr(opendr_last_error()) }.to_str().unwrap().to_owned()
 }
 
-/// A call that must fail so, with these words in its message.
+/// Asserts that a call fails with the given status and that its message contains the given words.
 #[track_caller]
 fn refused(status: opendr_status, wanted: opendr_status, words: &str) {
     assert_eq!(status, wanted, "{}", last_error());

@@ -1,4 +1,4 @@
-//! Whatever a C program hands in, it gets a status: one test a case.
+//! Invalid arguments from a C program return a status: one test per case.
 
 use std::ffi::{CStr, CString, c_char};
 use std::ptr::{NonNull, null, null_mut};
@@ -172,9 +172,13 @@ fn handles_of_another_kind_are_refused() {
         assert_eq!(opendr_bounding_box_list_count(boxes), 0);
         assert!(last_error().contains("takes a BoundingBoxList, not a Image"), "{}", last_error());
         let mut json = null_mut();
-        refused(opendr_value_to_json(image.cast(), &mut json), OPENDR_UNSUPPORTED, "Image has no JSON form");
-        refused(opendr_value_draw(image.cast(), image), OPENDR_INVALID_INPUT, "onto itself");
-        // No handle at all: crooked, or leading to other bytes.
+        refused(
+            opendr_value_to_json(image.cast(), &mut json),
+            OPENDR_UNSUPPORTED,
+            "Image cannot be written as JSON",
+        );
+        refused(opendr_value_draw(image.cast(), image), OPENDR_INVALID_INPUT, "on itself");
+        // Invalid handles: misaligned pointers and pointers to other data.
         let bytes = [0u64; 4];
         let other = bytes.as_ptr().cast::<opendr_value>();
         refused(opendr_value_copy(other, &mut null_mut()), OPENDR_INVALID_INPUT, "another type, or freed");
@@ -215,11 +219,11 @@ fn what_is_empty_is_refused() {
         refused(status, OPENDR_INVALID_INPUT, "Observation is empty");
         let status = opendr_audio_create(null(), 0, 1, 16_000, (&raw mut value).cast());
         refused(status, OPENDR_INVALID_INPUT, "Audio is empty");
-        refused(opendr_value_from_json(null(), c"".as_ptr(), &mut value), OPENDR_FORMAT, "no JSON");
+        refused(opendr_value_from_json(null(), c"".as_ptr(), &mut value), OPENDR_FORMAT, "not a target");
         let mut list = null_mut();
         assert_eq!(opendr_bounding_box_list_create(null(), 0, &mut list), OPENDR_OK);
         let mut item = found();
-        refused(opendr_bounding_box_list_get(list, 0, &mut item), OPENDR_INVALID_INPUT, "there are 0");
+        refused(opendr_bounding_box_list_get(list, 0, &mut item), OPENDR_INVALID_INPUT, "has 0 items");
         assert_eq!(opendr_value_free((&raw mut list).cast()), OPENDR_OK);
     }
 }
@@ -259,7 +263,7 @@ fn huge_sizes_are_refused_before_anything_is_read() {
             let wide = opendr_pixels { row_stride: huge, ..pixels(&bytes, 1, 2) };
             assert_eq!(opendr_image_create(&wide, &mut image), OPENDR_INVALID_INPUT);
             let status = opendr_image_decode(bytes.as_ptr(), huge | 1 << 63, &mut image);
-            refused(status, OPENDR_INVALID_INPUT, "do not fit in memory");
+            refused(status, OPENDR_INVALID_INPUT, "exceeds the address space");
             let mut list = null_mut();
             let status = opendr_bounding_box_list_create(&found(), huge, &mut list);
             refused(status, OPENDR_INVALID_INPUT, "too long");
@@ -268,14 +272,14 @@ fn huge_sizes_are_refused_before_anything_is_read() {
             let status = opendr_array_create(name, [0.0].as_ptr(), 1, shape.as_ptr(), 2, &mut value);
             refused(status, OPENDR_INVALID_INPUT, "cannot have 1 numbers");
             let status = opendr_array_create(name, [0.0].as_ptr(), 1, shape.as_ptr(), usize::MAX, &mut value);
-            refused(status, OPENDR_INVALID_INPUT, "do not fit in memory");
+            refused(status, OPENDR_INVALID_INPUT, "exceeds the address space");
             let mut map = null_mut();
             let (labels, scores) = ([0u32].as_ptr(), null());
             let fields = opendr_heatmap_fields { labels, scores, length: 1, shape: shape.as_ptr(), axes: 2 };
             refused(opendr_heatmap_create(&fields, &mut map), OPENDR_INVALID_INPUT, "cannot have 1");
             let mut audio = null_mut();
             let status = opendr_audio_create([0.0].as_ptr(), 1, huge, 1, &mut audio);
-            refused(status, OPENDR_INVALID_INPUT, "no sound of");
+            refused(status, OPENDR_INVALID_INPUT, "not audio of");
         }
     }
 }
@@ -321,7 +325,7 @@ fn unknown_names_are_told_with_those_that_there_are() {
         }
         let json = c"{\"type\":\"PoseList\",\"poses\":[]}".as_ptr();
         let status = opendr_value_from_json(c"BoundingBoxList".as_ptr(), json, &mut value);
-        refused(status, OPENDR_INVALID_INPUT, "JSON of a PoseList where a BoundingBoxList");
+        refused(status, OPENDR_INVALID_INPUT, "of a PoseList, not of a BoundingBoxList");
         refused(opendr_value_from_json(c"Boxes".as_ptr(), json, &mut value), OPENDR_NOT_FOUND, "no type");
         let status = opendr_array_create(c"Image".as_ptr(), null(), 0, [0].as_ptr(), 1, &mut value);
         refused(status, OPENDR_INVALID_INPUT, "arrays are Video");
@@ -335,9 +339,9 @@ fn texts_that_are_no_utf8() {
     unsafe {
         let mut learner = null_mut();
         let status = opendr_load(odd.as_ptr(), null(), null(), null(), &mut learner);
-        refused(status, OPENDR_INVALID_INPUT, "no UTF-8");
+        refused(status, OPENDR_INVALID_INPUT, "not UTF-8");
         let mut image = image();
-        refused(opendr_value_set_frame_id(image.cast(), odd.as_ptr()), OPENDR_INVALID_INPUT, "no UTF-8");
+        refused(opendr_value_set_frame_id(image.cast(), odd.as_ptr()), OPENDR_INVALID_INPUT, "not UTF-8");
         let folder = std::env::temp_dir().join(format!("opendr-c-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
         let path = [folder.to_str().unwrap().as_bytes(), b"/caf\xe9.png"].concat();

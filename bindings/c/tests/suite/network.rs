@@ -1,4 +1,4 @@
-//! Networks through C give what sessions give.
+//! Networks run through C return the same outputs as sessions.
 
 use std::ffi::{CStr, CString};
 use std::fs;
@@ -13,13 +13,13 @@ use opendr_c::*;
 
 use crate::{last_error, refused};
 
-/// A network of 14 actions from 8 frames, `clip` `[8, 3, 48, 48]` to `logits` `[1, 14]`.
+/// Network that classifies 8 frames into 14 actions, `clip` `[8, 3, 48, 48]` to `logits` `[1, 14]`.
 fn stick_figures() -> PathBuf {
     Path::new(&std::env::var("CARGO_MANIFEST_DIR").unwrap())
         .join("../../models/weights/x3d/stick_figures.onnx")
 }
 
-/// A container of that network, removed at the end.
+/// Container with that network, removed on drop.
 struct Container(PathBuf);
 
 impl Container {
@@ -55,7 +55,7 @@ fn open(path: &Path) -> *mut opendr_network {
     network
 }
 
-/// A clip with changing numbers.
+/// Clip with varying values.
 fn clip() -> Vec<f32> {
     (0..8 * 3 * 48 * 48).map(|at| (at % 17) as f32 / 8.0 - 1.0).collect()
 }
@@ -70,7 +70,7 @@ fn tensor(name: Option<&CStr>, numbers: &[f32], shape: &[usize]) -> opendr_tenso
     }
 }
 
-/// Runs a network, and gives its only output.
+/// Runs a network and returns its only output.
 #[track_caller]
 fn run(network: *const opendr_network, name: Option<&CStr>) -> Vec<f32> {
     let (numbers, shape, mut tensors) = (clip(), [8, 3, 48, 48], null_mut());
@@ -84,7 +84,7 @@ fn run(network: *const opendr_network, name: Option<&CStr>) -> Vec<f32> {
         assert_eq!(CStr::from_ptr(output.name), c"logits");
         assert_eq!(std::slice::from_raw_parts(output.shape, output.axes), [1, 14]);
         let numbers = std::slice::from_raw_parts(output.numbers, output.length).to_vec();
-        refused(opendr_tensors_get(tensors, 1, &mut output), OPENDR_INVALID_INPUT, "there are 1");
+        refused(opendr_tensors_get(tensors, 1, &mut output), OPENDR_INVALID_INPUT, "there are 1 tensors");
         assert_eq!(opendr_tensors_free(&mut tensors), OPENDR_OK);
         assert!(tensors.is_null());
         numbers
@@ -141,8 +141,12 @@ fn a_network_tells_what_it_takes() {
         assert_eq!(std::slice::from_raw_parts(info.shape, info.axes), [8, 3, 48, 48]);
         assert_eq!(opendr_network_output(network, 0, &mut info), OPENDR_OK);
         assert_eq!(std::slice::from_raw_parts(info.shape, info.axes), [1, 14]);
-        refused(opendr_network_output(network, 1, &mut info), OPENDR_INVALID_INPUT, "there are 1");
-        refused(opendr_network_input(network, usize::MAX, &mut info), OPENDR_INVALID_INPUT, "there are 1");
+        refused(opendr_network_output(network, 1, &mut info), OPENDR_INVALID_INPUT, "there are 1 tensors");
+        refused(
+            opendr_network_input(network, usize::MAX, &mut info),
+            OPENDR_INVALID_INPUT,
+            "there are 1 tensors",
+        );
         assert_eq!(opendr_network_manifest(network, &mut json), OPENDR_OK);
         assert_eq!(CStr::from_ptr(opendr_string_text(json)), c"{}");
         assert_eq!(opendr_string_free(&mut json), OPENDR_OK);
@@ -175,8 +179,12 @@ fn wrong_inputs_are_refused() {
     refused(call(&[named, named]), OPENDR_INVALID_INPUT, "given twice");
     let unknown = opendr_tensor { name: c"image".as_ptr(), ..good };
     refused(call(&[unknown]), OPENDR_INVALID_INPUT, "no input \"image\"; it takes clip");
-    refused(call(&[opendr_tensor { name: c"\xff".as_ptr(), ..good }]), OPENDR_INVALID_INPUT, "no UTF-8");
-    refused(call(&[opendr_tensor { axes: 3, ..good }]), OPENDR_INVALID_INPUT, "elements given for a tensor");
+    refused(call(&[opendr_tensor { name: c"\xff".as_ptr(), ..good }]), OPENDR_INVALID_INPUT, "not UTF-8");
+    refused(
+        call(&[opendr_tensor { axes: 3, ..good }]),
+        OPENDR_INVALID_INPUT,
+        "elements do not match a tensor",
+    );
     refused(call(&[opendr_tensor { length: 5, ..good }]), OPENDR_INVALID_INPUT, "5 elements");
     refused(call(&[opendr_tensor { numbers: null(), ..good }]), OPENDR_INVALID_INPUT, "numbers of a tensor");
     refused(call(&[opendr_tensor { shape: null(), ..good }]), OPENDR_INVALID_INPUT, "shape of a tensor");
@@ -184,22 +192,26 @@ fn wrong_inputs_are_refused() {
         refused(
             call(&[opendr_tensor { length: huge, ..good }]),
             OPENDR_INVALID_INPUT,
-            "do not fit in memory",
+            "exceeds the address space",
         );
-        refused(call(&[opendr_tensor { axes: huge, ..good }]), OPENDR_INVALID_INPUT, "do not fit in memory");
+        refused(
+            call(&[opendr_tensor { axes: huge, ..good }]),
+            OPENDR_INVALID_INPUT,
+            "exceeds the address space",
+        );
         let shape = [huge, huge, huge, huge];
         let status = call(&[tensor(None, &numbers, &shape)]);
-        refused(status, OPENDR_INVALID_INPUT, "elements given for a tensor");
+        refused(status, OPENDR_INVALID_INPUT, "elements do not match a tensor");
     }
     let (few, other) = ([0.0; 6], [1, 2, 3]);
-    refused(call(&[tensor(None, &few, &other)]), OPENDR_INVALID_INPUT, "was given f32[1, 2, 3]");
+    refused(call(&[tensor(None, &few, &other)]), OPENDR_INVALID_INPUT, "received f32[1, 2, 3]");
     let many = [1; 9];
     refused(call(&[tensor(None, &few[..1], &many)]), OPENDR_INVALID_INPUT, "at most 8");
     // SAFETY: a network and a variable.
     unsafe {
         let mut tensors = null_mut();
         let status = opendr_network_run(network, &good, usize::MAX, &mut tensors);
-        refused(status, OPENDR_INVALID_INPUT, "do not fit in memory");
+        refused(status, OPENDR_INVALID_INPUT, "exceeds the address space");
         opendr_network_free(&mut network);
     }
 }
@@ -279,15 +291,19 @@ fn a_picture_becomes_an_input() {
         let mut call = |how: &opendr_preprocess, length: usize| {
             opendr_image_preprocess(image, how, numbers.as_mut_ptr(), length)
         };
-        refused(call(&how, 11), OPENDR_INVALID_INPUT, "11 numbers for an input of shape [1, 3, 2, 2]");
-        refused(call(&how, usize::MAX), OPENDR_INVALID_INPUT, "do not fit in memory");
+        refused(
+            call(&how, 11),
+            OPENDR_INVALID_INPUT,
+            "room for 11 numbers, and the input has the shape [1, 3, 2, 2]",
+        );
+        refused(call(&how, usize::MAX), OPENDR_INVALID_INPUT, "exceeds the address space");
         for (wrong, words) in [
-            (opendr_preprocess { format: 3, ..how }, "opacity"),
+            (opendr_preprocess { format: 3, ..how }, "alpha"),
             (opendr_preprocess { format: -1, ..how }, "opendr_format"),
             (opendr_preprocess { layout: 2, ..how }, "opendr_layout"),
             (opendr_preprocess { std: [1.0, 0.0, 1.0], ..how }, "no std of 0"),
             (opendr_preprocess { mean: [f32::NAN; 3], ..how }, "finite"),
-            (opendr_preprocess { pad: f32::INFINITY, ..how }, "pad inf"),
+            (opendr_preprocess { pad: f32::INFINITY, ..how }, "pad is inf"),
             (opendr_preprocess { width: usize::MAX, ..how }, "12 numbers"),
         ] {
             refused(call(&wrong, 12), OPENDR_INVALID_INPUT, words);

@@ -2,12 +2,12 @@
 
     import opendr
 
-    detector = opendr.learner("centernet")      # downloads once, checked by sha256
+    detector = opendr.learner("centernet")      # downloaded once, verified by SHA-256
     for box in detector.infer("street.jpg"):
         print(box.class_name, box.left, box.top, box.width, box.height, box.confidence)
 
 Modules and classes are those of OpenDR: ``opendr.engine.data``, ``opendr.engine.target``, ``opendr.engine.learners``,
-``opendr.engine.datasets``, ``opendr.perception.<task>``. NumPy is imported when the first array is asked for.
+``opendr.engine.datasets``, ``opendr.perception.<task>``. NumPy is imported when the first array is created.
 """
 
 from __future__ import annotations
@@ -57,10 +57,10 @@ __all__ = [
     "register",
 ]
 
-# After all others: what is a file stays one.
+# Last, so that modules with files take precedence.
 sys.meta_path.append(Finder)
 
-#: Where the names come from, imported when they are first asked for: `import opendr` alone costs nothing.
+#: The modules of the names, imported on first access, so that `import opendr` alone is fast.
 _HOMES = {
     "Pipeline": "opendr._pipeline",
     "Source": "opendr._source",
@@ -69,7 +69,7 @@ _HOMES = {
 }
 
 
-# Type checkers see the imports above: to them, no other name is there.
+# Type checkers use the imports above and report other names as missing.
 if not TYPE_CHECKING:
 
     def __getattr__(name):

@@ -1,4 +1,4 @@
-"""The command: ``python -m opendr``, or ``opendr`` as the wheel installs it."""
+"""The command: ``python -m opendr``, or the script ``opendr`` of the wheel."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from opendr import _opendr
 
 
 def main() -> int:
-    """Runs the command with the arguments of the process; its exit code.
+    """Runs the command with the arguments of the process and returns its exit code.
 
-    Learners of installed packages (entry points of the group ``opendr.learners``) are there too.
+    Learners of installed packages (entry points of the group ``opendr.learners``) are available.
     """
     from opendr._registered import register_installed
 

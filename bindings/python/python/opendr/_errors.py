@@ -1,14 +1,14 @@
-"""The exceptions: one class for each kind of error, also a subclass of Python's own nearest."""
+"""Exceptions: one class per kind of error, each also a subclass of the corresponding exception of Python."""
 
 from __future__ import annotations
 
 
 class OpenDRError(Exception):
-    """Whatever went wrong; the text says what, the values, and what to do next."""
+    """Base class of all errors; the message states what is wrong, the values, and what to do."""
 
 
 class InvalidInput(OpenDRError, ValueError):
-    """A datum, or what stands in it, is not what a learner takes."""
+    """A datum has a type or a content that a learner does not take."""
 
 
 class InvalidParam(OpenDRError, ValueError):
@@ -16,38 +16,38 @@ class InvalidParam(OpenDRError, ValueError):
 
 
 class NotFound(OpenDRError, FileNotFoundError):
-    """A file, model, learner or name is not there, or nothing is loaded yet."""
+    """A file, model, learner or name does not exist, or no model is loaded."""
 
 
 class IoError(OpenDRError, OSError):
-    """The system could not read or write."""
+    """Reading or writing failed."""
 
 
 class NetworkError(OpenDRError, ConnectionError):
-    """A server could not be reached, or did not answer as it should."""
+    """A server could not be reached, or its response was invalid."""
 
 
 class IntegrityError(OpenDRError, ValueError):
-    """A file is not the one that its checksum says."""
+    """The checksum of a file does not match."""
 
 
 class FormatError(OpenDRError, ValueError):
-    """A file is not of its format."""
+    """A file does not conform to its format."""
 
 
 class Unsupported(OpenDRError, NotImplementedError):
-    """A learner, runtime or system cannot do this."""
+    """A learner, runtime or system does not support this."""
 
 
 class DeviceError(OpenDRError, RuntimeError):
-    """A device is not there; the text lists those that are."""
+    """A device is not available; the message lists those that are."""
 
 
 class InternalError(OpenDRError, RuntimeError):
-    """A fault of the toolkit, or of a library or learner that it calls."""
+    """An error in the toolkit, or in a library or learner that it calls."""
 
 
-#: The class of each kind of error in the native half.
+#: The class of each kind of error of the native module.
 BY_KIND: dict[str, type[OpenDRError]] = {
     **{"InvalidInput": InvalidInput, "InvalidParam": InvalidParam, "NotFound": NotFound, "Io": IoError},
     **{"Network": NetworkError, "Integrity": IntegrityError, "Format": FormatError, "Unsupported": Unsupported},

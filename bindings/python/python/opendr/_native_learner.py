@@ -1,4 +1,4 @@
-"""The class that all compiled learners come from: one for all, since the registry tells what each takes."""
+"""The base classes of the native learners; parameters and inputs of each come from the registry."""
 
 from __future__ import annotations
 
@@ -12,8 +12,9 @@ from typing import Any, ClassVar, NoReturn, Optional, Union
 from opendr import _opendr
 from opendr._errors import InternalError, InvalidInput, Unsupported
 from opendr._older_names import under_older_name
-from opendr._upstream.arguments import by_name, methods, value_here
-from opendr._upstream.rows import Argument, arguments
+from opendr._python_learners import registered_name
+from opendr._upstream.arguments import by_name, value_here
+from opendr._upstream.rows import Argument
 from opendr._upstream.rows import Learner as Row
 from opendr.engine import data, target
 from opendr.engine._parameters import Parameter, parameters
@@ -22,29 +23,29 @@ from opendr.engine.learners import BaseLearner, Learner
 
 PathLike = Union[str, "os.PathLike[str]"]
 Table = dict[str, Any]
-#: What a path may stand for: pictures, videos and folders of frames, WAVE, tables (CSV, text, NPY), scans as KITTI has them.
-IN_FILES = ("Image", "Video", "Audio", "Timeseries", "Vector", "SkeletonSequence", "PointCloud")
-#: Data that no array alone can stand for.
+#: Data types that are read from a path: images, videos and folders of frames, WAVE, tables (CSV, text, NPY), scans of KITTI.
+READ_FROM_FILES = ("Image", "Video", "Audio", "Timeseries", "Vector", "SkeletonSequence", "PointCloud")
+#: Data types that cannot be created from one array.
 OF_SEVERAL_PARTS = ("Audio", "Calibration", "ImageWithDetections", "PointCloudWithCalibration")
 
 
 class NativeBase(BaseLearner):
-    """A learner of the registry; its class, parameters, inputs and outputs come from there.
+    """A learner of the registry, which defines its class, parameters, inputs and outputs.
 
-    It is empty after construction. ``download()`` and ``load()`` get it a pretrained model, ``load(path)`` one of your
-    own. One learner serves many threads: calls wait for each other, ``stream()`` gives each its own memory.
+    It has no model after construction: ``load()`` loads a pretrained model, ``load(path)`` one of your own. Threads may
+    share a learner: calls are serialised, and ``stream()`` returns an object with its own state.
     """
 
     _entry: ClassVar[Table]
-    #: OpenDR's row of this learner.
+    #: The row of this learner in the table of OpenDR's names.
     _row: ClassVar[Row] = Row()
-    #: The arguments of the constructor, by place.
-    _places: ClassVar[Sequence[Argument]] = ()
+    #: The positional arguments of the constructor.
+    _positional: ClassVar[Sequence[Argument]] = ()
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
-        given = by_name(type(self).__name__, self._places, args, kwargs, stacklevel=3)
+        given = by_name(type(self).__name__, self._positional, args, kwargs, stacklevel=3)
         idle = dict(self._entry["without_effect"])
-        #: OpenDR's arguments without effect; some name the folder that OpenDR's programs load from.
+        #: OpenDR's arguments without effect, some of which name the folder that OpenDR's programs load from.
         self._idle = {name: value for name, value in given.items() if name in idle}
         known = self._known(given, stacklevel=3)
         super().__init__(**{name: value for name, value in known.items() if value is not None})
@@ -61,37 +62,37 @@ class NativeBase(BaseLearner):
                 vars(self)[name] = handle.params()[name]
 
     def infer(self, *inputs: Any, **arguments: Any) -> Any:
-        """Answers one input, or each of several.
+        """Returns the prediction for one input, or for each of several.
 
         Args:
-            inputs: The inputs, in the order of the learner's ports; also by name. A picture may be an ``Image``, an
-                array (layout guessed by the rule of ``Image``), or the path of a file; so may a sound (WAVE), a series
-                (CSV, NPY) and a scan (KITTI's). A list of inputs gives the list of their answers, an iterator such as
-                a ``Source`` an iterator of them.
+            inputs: The inputs, in the order of the learner's ports; also by name. An image may be an ``Image``, an
+                array (layout guessed by the rule of ``Image``), or the path of a file; the same holds for audio (WAVE),
+                time series (CSV, NPY) and scans (KITTI). For a list of inputs the result is a list of predictions, for
+                an iterator such as a ``Source`` an iterator of predictions.
             arguments: Inputs by name, and live parameters for this call only.
 
         Returns:
-            The target; a named tuple of targets where the learner has several outputs. They carry the time stamp and
-            frame of the input.
+            The prediction, with the time stamp and frame id of the input; a named tuple where the learner has several
+            outputs.
 
         Raises:
-            FileNotFoundError: Nothing is loaded yet, or a file is not there.
-            TypeError: Something is of another type than the learner takes.
+            FileNotFoundError: Nothing is loaded yet, or a file does not exist.
+            TypeError: An argument is of another type than the learner takes.
             ValueError: A value is out of range.
-            opendr.InternalError: The network gave NaN or an infinite number; the text says where.
+            opendr.InternalError: The network returned NaN or an infinite number; the message says where.
         """
         ports, overrides = self._arguments(inputs, arguments)
         first = ports.get(self._entry["ports"][0]["name"])
         if isinstance(first, Iterator):
-            return self._each(ports, overrides)
+            return self._infer_each(ports, overrides)
         if isinstance(first, (list, tuple)):
             init = {port["name"] for port in self._entry["ports"] if port["init"]}
             items = {name: value for name, value in ports.items() if name not in init}
             lengths = {name: len(value) for name, value in items.items() if isinstance(value, (list, tuple))}
             if len(set(lengths.values())) > 1:
-                raise ValueError(f"the inputs differ in number: {lengths}; give as many of each")
-            return list(self._each(ports, overrides))
-        return self._one(self._handle, ports, overrides)
+                raise ValueError(f"the inputs have different lengths: {lengths}; give the same number of each")
+            return list(self._infer_each(ports, overrides))
+        return self._infer_one(self._handle, ports, overrides)
 
     def load(self, path: Optional[PathLike] = None, verbose: bool = False, *, variant: Optional[str] = None) -> bool:
         """Loads a model.
@@ -100,11 +101,11 @@ class NativeBase(BaseLearner):
             path: A model container: a folder, its ``model.json``, or a zip. None loads the pretrained model, which is
                 downloaded when it is not in the cache.
             verbose: Whether to show the progress of a download.
-            variant: Which of the pretrained models; the default one when left out.
+            variant: Variant of the pretrained model; by default the one that its card marks.
 
         Raises:
-            FileNotFoundError: It is not there.
-            ValueError: It is of another learner, or damaged.
+            FileNotFoundError: The model does not exist.
+            ValueError: The model belongs to another learner, or is damaged.
         """
         if path is None:
             self._handle.load_pretrained(variant, verbose)
@@ -132,31 +133,31 @@ class NativeBase(BaseLearner):
         *,
         variant: Optional[str] = None,
     ) -> str:
-        """Gets a pretrained model, or pictures to try it on.
+        """Downloads a pretrained model, or a sample image.
 
         Args:
-            path: Folder for a copy; None leaves it in the cache, where ``load()`` finds it.
-            mode: ``"pretrained"`` for the model, ``"images"`` for a sample picture.
+            path: Folder for a copy; None keeps it only in the cache, from which ``load()`` reads it.
+            mode: ``"pretrained"`` for the model, ``"images"`` for a sample image.
             verbose: Whether to show progress.
-            url: Not taken: models are named by cards; ``OPENDR_MODEL_REPOSITORY`` names a server of your own.
-            variant: Which of the pretrained models; the default one when left out.
+            url: Not supported: cards name the models; ``OPENDR_MODEL_REPOSITORY`` names a server of your own.
+            variant: Variant of the pretrained model; by default the one that its card marks.
 
         Returns:
-            What ``load`` takes: the model's folder (``path/<learner>/<variant>``, or what OpenDR called it, such as
-            ``path/ssd_default_person``); for images the picture's file.
+            The path for ``load``: the model's folder (``path/<learner>/<variant>``, or OpenDR's name of it, such as
+            ``path/ssd_default_person``); for ``"images"`` the file of the image.
 
         Raises:
-            ValueError: There is no such mode, or a file is not the one of the card.
+            ValueError: The mode is unknown, or the checksum of a file is not that of the card.
             ConnectionError: A server could not be reached.
         """
         if url is not None:
-            raise Unsupported("download takes no url; set OPENDR_MODEL_REPOSITORY to a server or folder of your own")
+            raise Unsupported("download does not support url; set OPENDR_MODEL_REPOSITORY to a server or folder of your own")
         folder = None if path is None else os.fspath(path)
         if mode == "pretrained":
             return os.fspath(_opendr.download(self._entry["name"], variant, folder, verbose))
         if mode == "images":
             return os.fspath(_sample(folder, verbose))
-        raise ValueError(f"download has no mode {mode!r}; there are 'pretrained' and 'images'")
+        raise ValueError(f"unknown mode {mode!r} of download; the modes are 'pretrained' and 'images'")
 
     def optimize(
         self,
@@ -169,30 +170,30 @@ class NativeBase(BaseLearner):
         verbose: bool = False,
         **options: Any,
     ) -> dict[str, Any]:
-        """Makes the loaded model smaller and faster, writes it as a container, and loads it.
+        """Quantises the loaded model to INT8 or converts it to FP16, writes it as a container, and loads it.
 
         Args:
-            target_device: Not taken: the result runs on every device.
+            target_device: Not supported: the result runs on every device.
             out: Folder for the container.
             precision: ``"int8"``: a quarter of the size, needs ``calibration``; ``"fp16"``: half the size.
-            calibration: What the learner looks at to find the ranges of its values; annotations are not needed.
-            validation: What it is measured on before and after.
+            calibration: Data set on which the ranges of the tensors are measured; annotations are not needed.
+            validation: Data set on which the accuracy before and after is measured.
             verbose: Whether to show progress and print the report.
             options: ``samples``, ``weight_bits``, ``keep_float``, ``max_drop``, ... as the flags of ``opendr optimize``; the
-                way ranges are found as ``method``.
+                calibration method as ``method``.
 
         Returns:
             ``bytes`` and ``accuracy`` before and after, and a report of the ``layers``.
 
         Raises:
-            FileNotFoundError: Nothing is loaded.
-            ValueError: Something is missing, or an option is wrong.
+            FileNotFoundError: No model is loaded.
+            ValueError: An argument is missing, or an option is invalid.
         """
         if target_device:
-            raise Unsupported(f"{type(self).__name__} cannot optimize for {target_device!r}; give out and precision")
+            raise Unsupported(f"{type(self).__name__} cannot be optimized for {target_device!r}; give out and precision")
         out = under_older_name(out, "out", options, "output")
         if out is None:
-            raise ValueError("optimize writes a model; give out, the folder for it")
+            raise ValueError("out is missing; give the folder for the optimized model")
         if "method" in options:
             options["calibration"] = options.pop("method")
         given = {"precision": precision, **options}
@@ -204,37 +205,37 @@ class NativeBase(BaseLearner):
         return outcome
 
     def reset(self) -> None:
-        """Forgets what was seen: the next input begins anew."""
+        """Resets the state: the next input begins a new stream."""
         self._handle.reset()
 
     def stream(self) -> Stream:
-        """A memory of its own over the same model, for another camera or thread.
+        """Returns a stream with its own state over the same model, for another camera or thread.
 
         Raises:
-            FileNotFoundError: Nothing is loaded.
+            FileNotFoundError: No model is loaded.
         """
         return Stream(self)
 
     def push(self, *piece: Any, **named: Any) -> list[Any]:
-        """Takes the next piece of the input; what it answers so far.
+        """Processes the next chunk of the input and returns the predictions that are ready.
 
         Raises:
-            opendr.Unsupported: This learner takes no pieces.
+            opendr.Unsupported: The learner does not process its input in chunks.
         """
         ports, _ = self._arguments(piece, named)
-        return [self._answer(outputs) for outputs in self._handle.push(self._values(ports))]
+        return [self._prediction(outputs) for outputs in self._handle.push(self._values(ports))]
 
     def flush(self) -> list[Any]:
-        """Ends the input that was taken in pieces; what is left to answer.
+        """Ends an input that was given in chunks and returns the remaining predictions.
 
         Raises:
-            opendr.Unsupported: This learner takes no pieces.
+            opendr.Unsupported: The learner does not process its input in chunks.
         """
-        return [self._answer(outputs) for outputs in self._handle.push(None)]
+        return [self._prediction(outputs) for outputs in self._handle.push(None)]
 
     @property
     def classes(self) -> list[str]:
-        """What class numbers mean: ``classes[0]`` is class 0; empty before ``load``."""
+        """Names of the class indices: ``classes[0]`` is class 0; empty before ``load``."""
         return self._handle.classes
 
     @property
@@ -243,23 +244,23 @@ class NativeBase(BaseLearner):
         return self._handle.is_ready
 
     def __reduce__(self) -> NoReturn:
-        raise TypeError(f"a {type(self).__name__} cannot be pickled or copied; save() it, and load() it there")
+        raise TypeError(f"a {type(self).__name__} cannot be pickled or copied; save() it and load() it there")
 
     def _fit_params(self, given: dict[str, Any]) -> dict[str, Any]:
-        """The parameters of the training: those of this call over those of the constructor."""
+        """Returns the parameters of the training: those of the constructor, overridden by those of this call."""
         names, known = [field["name"] for field in self._entry["fit_params"]], parameters(type(self))
-        # What was set, even where the attribute says what the loaded model has.
+        # The value that was set, even where the attribute returns that of the loaded model.
         params = {name: Parameter.__get__(known[name], self) for name in names}
         for name, value in self._known(given, stacklevel=4).items():
             if name not in names:
-                raise TypeError(f"fit has no argument {name!r}; parameters of the training: {', '.join(names)}")
+                raise TypeError(f"fit has no argument {name!r}; the parameters of the training are {', '.join(names)}")
             params[name] = value
         return params
 
     def _known(self, arguments: dict[str, Any], stacklevel: int) -> dict[str, Any]:
-        """Arguments under the names they have here; those without effect are left out, with a warning."""
+        """Renames OpenDR's arguments to those of this package and drops, with a warning, those without effect."""
         fields = [*self._entry["params"], *self._entry["fit_params"]]
-        renamed = {alias: field["name"] for field in fields for alias in field["aliases"]}
+        renamed = {alias: field["name"] for field in fields for alias in (*field["aliases"], *field["former"])}
         choices = {field["name"]: field["choices"] for field in fields}
         owner, idle = type(self).__name__, dict(self._entry["without_effect"])
         known: dict[str, Any] = {}
@@ -269,31 +270,31 @@ class NativeBase(BaseLearner):
                 warnings.warn(f"{owner}: {given} has no effect: {idle[given]}", UserWarning, stacklevel=stacklevel)
                 continue
             if name in known:
-                raise TypeError(f"{owner} got {name} twice (also as {given}); give it once")
+                raise TypeError(f"{owner} got {name} twice (once as {given}); give it once")
             here = value_here(owner, self._row, name, value, choices.get(name, ()), stacklevel + 1)
             if here is not None or value is None:
                 known[name] = here
         return known
 
     def _live_name(self, name: str) -> Optional[str]:
-        """The live parameter that ``name`` stands for, if any."""
+        """Returns the live parameter of this name or alias, or None."""
         live = (field for field in self._entry["params"] if field["live"])
-        return next((field["name"] for field in live if name in (field["name"], *field["aliases"])), None)
+        return next((field["name"] for field in live if name in (field["name"], *field["aliases"], *field["former"])), None)
 
     @contextlib.contextmanager
-    def _for_now(self, params: Mapping[str, Any]) -> Iterator[None]:
-        """Sets parameters for a while."""
-        kept = {name: getattr(self, name) for name in params}
+    def _temporarily(self, params: Mapping[str, Any]) -> Iterator[None]:
+        """Sets parameters within a ``with`` block."""
+        previous = {name: getattr(self, name) for name in params}
         try:
             for name, value in params.items():
                 setattr(self, name, value)
             yield
         finally:
-            for name, value in kept.items():
+            for name, value in previous.items():
                 setattr(self, name, value)
 
     def _arguments(self, inputs: tuple[Any, ...], named: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
-        """The inputs by port, and the parameters of this call."""
+        """Returns the inputs by port name, and the parameters of this call."""
         names = [port["name"] for port in self._entry["ports"]]
         if len(inputs) > len(names):
             raise TypeError(f"infer takes {len(names)} inputs ({', '.join(names)}), not {len(inputs)}")
@@ -304,19 +305,19 @@ class NativeBase(BaseLearner):
             if name in ports:
                 raise TypeError(f"infer got {name} twice; give it once")
             if name not in names and name not in live:
-                there = ", ".join([*names, *sorted(live)])
-                raise TypeError(f"infer has no argument {name!r}; there are {there}")
+                available = ", ".join([*names, *sorted(live)])
+                raise TypeError(f"infer has no argument {name!r}; its arguments are {available}")
             if name in names:
                 ports[name] = value
             else:
                 overrides[name] = known[name].checked(value)
-        # None stands for what is left out, where that may be.
+        # None is the same as leaving an optional input out.
         may_lack = {port["name"] for port in self._entry["ports"] if port["optional"] or port["init"]}
         return {name: value for name, value in ports.items() if value is not None or name not in may_lack}, overrides
 
-    def _each(self, ports: dict[str, Any], overrides: dict[str, Any]) -> Iterator[Any]:
-        """The answers to the first port's inputs one after the other; other ports go along item by item where they are
-        lists or iterators, init ports go with the first."""
+    def _infer_each(self, ports: dict[str, Any], overrides: dict[str, Any]) -> Iterator[Any]:
+        """Yields the prediction for each input of the first port. Other ports that are lists or iterators advance with it;
+        init ports are given with the first input."""
         table = self._entry["ports"]
         several = {
             port["name"]: iter(ports[port["name"]])
@@ -325,34 +326,34 @@ class NativeBase(BaseLearner):
         }
         same = {name: value for name, value in ports.items() if name not in several}
         for items in zip(*several.values()):
-            yield self._one(self._handle, {**same, **dict(zip(several, items))}, overrides)
+            yield self._infer_one(self._handle, {**same, **dict(zip(several, items))}, overrides)
             same = {port["name"]: same[port["name"]] for port in table if port["name"] in same and not port["init"]}
 
-    def _one(self, handle: Any, ports: dict[str, Any], overrides: dict[str, Any]) -> Any:
+    def _infer_one(self, handle: Any, ports: dict[str, Any], overrides: dict[str, Any]) -> Any:
         outputs = handle.infer(self._values(ports), overrides) if overrides else handle.infer(self._values(ports))
-        return self._answer(outputs)
+        return self._prediction(outputs)
 
     def _values(self, ports: dict[str, Any]) -> dict[str, Any]:
         types = {port["name"]: port["type"] for port in self._entry["ports"]}
         return {name: _value(value, name, types[name]) for name, value in ports.items()}
 
-    def _answer(self, outputs: list[Any]) -> Any:
+    def _prediction(self, outputs: list[Any]) -> Any:
         from opendr._schema import target_from_json
 
         try:
-            answers = [target_from_json(json, array) for _, json, array in outputs]
+            targets = [target_from_json(json, array) for _, json, array in outputs]
         except InvalidInput as error:
             raise InternalError(
-                f"{self._entry['name']} gave what is no target: {error}; mend the model, or its input"
+                f"{self._entry['name']} returned an invalid target: {error}; check the model and its input"
             ) from error
-        return answers[0] if len(answers) == 1 else self._outputs(*answers)
+        return targets[0] if len(targets) == 1 else self._outputs(*targets)
 
     #: The named tuple of several outputs.
     _outputs: ClassVar[Any] = None
 
 
 class NativeLearner(NativeBase, Learner):
-    """A learner of the registry that is measured, and where it can, trained on data sets."""
+    """A learner of the registry that is evaluated and, if it supports training, trained on data sets."""
 
     def eval(
         self,
@@ -369,29 +370,29 @@ class NativeLearner(NativeBase, Learner):
         verbose: bool = False,
         **metric_params: Any,
     ) -> dict[str, Any]:
-        """Measures the learner on a data set.
+        """Evaluates the learner on a data set.
 
         Args:
             dataset: An ``ExternalDataset``, or any ``DatasetIterator`` of pairs of datum and target (a tuple of data for
-                several inputs). Classes are matched by name; a data set of yours names its own in a list ``classes``.
-            metric: What to measure by (``opendr.metrics.names()``); by default the task's own.
-            split: The part of an ``ExternalDataset``.
-            limit: Only the first so many samples.
-            out: Folder for the predictions, ``report.json``, figures and a sheet of the worst samples; an evaluation that
-                was broken off goes on from there.
-            skip_broken: Whether what is broken is left out and listed, instead of ending it.
+                several inputs). Classes are matched by name; a data set of yours lists its class names in ``classes``.
+            metric: Name of the metric (``opendr.metrics.names()``); by default that of the task.
+            split: Split of an ``ExternalDataset``.
+            limit: Maximum number of samples, from the first on.
+            out: Folder for the predictions, ``report.json``, figures and a contact sheet of the samples with the lowest
+                scores; an interrupted evaluation resumes from it.
+            skip_broken: Whether broken samples are skipped and listed, instead of raising.
             classes: Classes of the data set by classes of the learner, where their names do not match.
-            by_number: Whether numbers of classes are compared, whatever their names are.
+            by_number: Whether classes are matched by index, regardless of their names.
             resamples: Bootstrap resamples for the interval of the main number; 0 leaves it out.
             verbose: Whether to show progress and print the outcome.
             metric_params: Parameters of the metric.
 
         Returns:
-            The numbers by name (``"map"``, ``"map50"``, ...; docs/metrics.md), and under ``"report"`` all there is:
-            tables, figures, the worst samples, what was left out.
+            The scalars by name (``"map"``, ``"map50"``, ...; docs/metrics.md), and under ``"report"`` the whole report:
+            tables, figures, the samples with the lowest scores, the skipped samples.
 
         Raises:
-            FileNotFoundError: Nothing is loaded, or the data set is not there.
+            FileNotFoundError: No model is loaded, or the data set does not exist.
             ValueError: Data set, learner and metric do not fit together, or a sample is broken.
         """
         out = under_older_name(out, "out", metric_params, "folder")
@@ -434,41 +435,41 @@ class NativeLearner(NativeBase, Learner):
         skip_broken: bool = False,
         **fit_params: Any,
     ) -> dict[str, Any]:
-        """Trains the learner, from the loaded model where there is one, and loads the result.
+        """Trains the learner, from the loaded model if there is one, and loads the result.
 
-        Ctrl-C saves what was done and raises ``KeyboardInterrupt``; ``resume`` goes on from there.
+        Ctrl-C saves a checkpoint and raises ``KeyboardInterrupt``; ``resume`` continues from it.
 
         Args:
             dataset: An ``ExternalDataset``, or any ``DatasetIterator`` of pairs of datum and target (a tuple of data for
-                several inputs); a data set of yours names its classes in a list ``classes``.
-            val_dataset: What to measure on after each epoch.
-            logging_path: Folder of TensorBoard's event files and of curves; empty: none.
-            silent: Whether to show nothing at all.
+                several inputs); a data set of yours lists its class names in ``classes``.
+            val_dataset: Data set for the evaluation after each epoch.
+            logging_path: Folder for TensorBoard's event files and curves; empty: none.
+            silent: Whether to print nothing at all.
             verbose: Whether to print the outcome.
-            out: Folder of checkpoints, report and, in ``model``, the trained container; by default ``temp_path`` or
+            out: Folder for checkpoints, report and, in ``model``, the trained container; by default ``temp_path`` or
                 else ``runs/NAME-DATE``.
-            resume: Whether to go on from the last checkpoint in ``out``, or in the last run of this learner.
-            split: The part of an ``ExternalDataset`` to train on; by default the one for that.
-            val_split: The part to measure on, of ``val_dataset`` or, without it, of ``dataset``.
-            limit: Only the first so many samples.
+            resume: Whether to resume from the last checkpoint in ``out``, or in the last run of this learner.
+            split: Split of an ``ExternalDataset`` to train on; by default its training split.
+            val_split: Split for the evaluation, of ``val_dataset`` or, without it, of ``dataset``.
+            limit: Maximum number of samples, from the first on.
             teacher: A loaded learner, or the name of a pretrained one (``"nanodet"``, ``"movenet/multipose"``), whose
-                answers are learned from; ``dataset`` may then be without annotations, or a folder of pictures.
-            teacher_threshold: The teacher's answers below this score are dropped; 0.5 by default.
-            teacher_classes: What is learned from the teacher; by default the classes of the data set, or the teacher's.
+                predictions are the annotations (distillation); ``dataset`` may then have none, or be a folder of images.
+            teacher_threshold: Score below which the teacher's predictions are dropped; 0.5 by default.
+            teacher_classes: Classes to learn from the teacher; by default those of the data set, or the teacher's.
             teacher_map: Classes to learn by classes of the teacher, where their names do not match.
-            teacher_by_number: Whether numbers of the teacher's classes are taken as they are, whatever their names are.
-            keep_empty: Whether pictures in which the teacher finds nothing are kept, as examples of nothing.
-            skip_broken: Whether what is broken is left out and listed, instead of ending it.
-            fit_params: Parameters of the training (docs/learners.md); by default those the constructor was given.
+            teacher_by_number: Whether the teacher's class indices are taken as they are, regardless of the names.
+            keep_empty: Whether images without a prediction of the teacher are kept, as negative examples.
+            skip_broken: Whether broken samples are skipped and listed, instead of raising.
+            fit_params: Parameters of the training (docs/learners.md); by default those of the constructor.
 
         Returns:
-            The curves (a list each, e.g. ``"loss"``) and numbers by name, and under ``"report"`` all there is: where the
-            model lies, what was left out.
+            The curves (a list each, e.g. ``"loss"``) and scalars by name, and under ``"report"`` the whole report: the path
+            of the model, the skipped samples.
 
         Raises:
-            opendr.Unsupported: This learner does not train, or this build has no training.
+            opendr.Unsupported: The learner cannot be trained, or this build has no training.
             ValueError: Data set, learner and parameters do not fit together, or a sample is broken.
-            OSError: Something cannot be written.
+            OSError: A file cannot be written.
         """
         place = under_older_name(out, "out", fit_params, "output") or self.temp_path or None
         options = {
@@ -503,22 +504,22 @@ class NativeLearner(NativeBase, Learner):
         *,
         silent: bool = True,
     ) -> dict[str, Any]:
-        """Makes persons known by reference pictures, for learners whose ``fit`` takes such (``create_new``).
+        """Enrols persons from reference images, for learners whose ``fit`` has the parameter ``create_new``.
 
         Args:
-            path: A folder with a folder of pictures for each person, called as the person is.
+            path: A folder with a folder of images for each person, whose name is the person's.
             save_path: Folder for the model with its references, in ``model``, and a report; by default ``temp_path`` or else
                 ``runs/NAME-DATE``. ``save(path)`` writes the model anywhere.
-            create_new: Whether the persons that the model knows are forgotten.
-            silent: Whether to show nothing.
+            create_new: Whether the persons of the loaded model are removed.
+            silent: Whether to print nothing.
 
         Returns:
-            ``persons``, ``pictures``, and under ``"report"`` all there is.
+            ``persons``, ``pictures``, and under ``"report"`` the whole report.
 
         Raises:
-            opendr.Unsupported: This learner takes no references.
-            FileNotFoundError: There is no folder.
-            ValueError: No model is loaded, or a person has no picture with a face.
+            opendr.Unsupported: The learner has no references.
+            FileNotFoundError: The folder does not exist.
+            ValueError: No model is loaded, or no face is detected in the images of a person.
         """
         from opendr.engine.datasets import ExternalDataset
 
@@ -529,131 +530,69 @@ class NativeLearner(NativeBase, Learner):
 
 
 class Stream:
-    """A memory of its own over the model of a learner."""
+    """A stream with its own state over the model of a learner."""
 
     def __init__(self, learner: NativeBase) -> None:
         self._learner = learner
         self._stream = learner._handle.stream()
 
     def infer(self, *inputs: Any, **named: Any) -> Any:
-        """Answers one input, as ``infer`` of the learner does."""
+        """Returns the prediction for one input, as ``infer`` of the learner."""
         ports, overrides = self._learner._arguments(inputs, named)
         if overrides:
-            raise TypeError(f"a stream takes no parameters ({', '.join(overrides)}); set them on the learner")
-        return self._learner._one(self._stream, ports, {})
+            raise TypeError(f"a stream has no parameters ({', '.join(overrides)}); set them on the learner")
+        return self._learner._infer_one(self._stream, ports, {})
 
     def push(self, *piece: Any, **named: Any) -> list[Any]:
-        """Takes the next piece of the input, as ``push`` of the learner does."""
+        """Processes the next chunk of the input, as ``push`` of the learner."""
         ports, _ = self._learner._arguments(piece, named)
-        return [self._learner._answer(outputs) for outputs in self._stream.push(self._learner._values(ports))]
+        return [self._learner._prediction(outputs) for outputs in self._stream.push(self._learner._values(ports))]
 
     def flush(self) -> list[Any]:
-        """Ends the input that was taken in pieces; what is left to answer."""
-        return [self._learner._answer(outputs) for outputs in self._stream.push(None)]
+        """Ends an input that was given in chunks and returns the remaining predictions."""
+        return [self._learner._prediction(outputs) for outputs in self._stream.push(None)]
 
     def reset(self) -> None:
-        """Forgets what was seen."""
+        """Resets the state."""
         self._stream.reset()
 
 
 def _value(value: Any, name: str, kind: str) -> Any:
-    """``value`` as the data or target class ``kind``."""
+    """Converts ``value`` to the data or target class ``kind``."""
     is_target = hasattr(target, kind)
-    wanted: Any = getattr(target if is_target else data, kind)
-    if isinstance(value, wanted):
+    kind_class: Any = getattr(target if is_target else data, kind)
+    if isinstance(value, kind_class):
         return value
-    if kind in IN_FILES and isinstance(value, (str, os.PathLike)):
+    if kind in READ_FROM_FILES and isinstance(value, (str, os.PathLike)):
         return _opendr.open_value(kind, os.fspath(value))
     if kind == "Audio" and isinstance(value, data.Timeseries):
-        return value  # Speech learners take it at the rate they are made for, as OpenDR's did.
+        return value  # Speech learners assume their own sample rate for it, as OpenDR's did.
     article = "an" if kind[0] in "AEIOU" else "a"
     if is_target or kind in OF_SEVERAL_PARTS:
         raise TypeError(f"{name} should be {article} {kind}, not {type(value).__name__}")
     if value is None or isinstance(value, (str, bytes)):
         raise TypeError(f"{name} should be {article} {kind} or an array of numbers, not {value!r:.100}")
-    return wanted(value)
+    return kind_class(value)
 
 
 def _teacher(teacher: Optional[Learner]) -> Any:
-    """A teacher as the native half takes it."""
+    """Converts a teacher to the argument of the native module."""
     if teacher is None:
         return None
     if isinstance(teacher, NativeBase):
         return teacher._handle
-    from opendr._registered import registered_name
-
     name = registered_name(type(teacher))
     if name is None:
-        raise TypeError(f"teacher should be a learner or a name, not {type(teacher).__name__}; register() a class of yours")
+        raise TypeError(f"teacher should be a learner or a name, not {type(teacher).__name__}; register() your own classes")
     return name, teacher
-
-
-class _Classes(Parameter):
-    """The classes that are to be trained, and once there is a model those that it has."""
-
-    def __init__(self, parameter: Parameter) -> None:
-        vars(self).update(vars(parameter))
-
-    def __get__(self, instance: Any, owner: Optional[type] = None) -> Any:
-        handle = None if instance is None else vars(instance).get("_handle")
-        return handle and handle.classes or super().__get__(instance, owner)
-
-
-def _alias(name: str) -> property:
-    """OpenDR's name of a parameter as an attribute."""
-    return property(lambda self: getattr(self, name), lambda self, value: setattr(self, name, value))
 
 
 def _sample(folder: Optional[str], verbose: bool) -> PathLike:
     import shutil
 
-    picture: PathLike = _opendr.sample("astronaut", verbose)
+    path: PathLike = _opendr.sample("astronaut", verbose)
     if folder is None:
-        return picture
+        return path
     os.makedirs(folder, exist_ok=True)
-    copy: PathLike = shutil.copy(picture, folder)
+    copy: PathLike = shutil.copy(path, folder)
     return copy
-
-
-def _parent(entry: Table, row: Row) -> type[NativeBase]:
-    from importlib import import_module
-
-    if row.mixin:
-        module, _, name = row.mixin.partition(":")
-        mixin: type[NativeBase] = getattr(import_module(module), name)
-        return mixin
-    if not entry["fit_in"]:
-        return NativeLearner
-    from opendr._native_learner_rl import NativeLearnerRL
-
-    return NativeLearnerRL
-
-
-def native_class(entry: Table, module: str) -> type[NativeBase]:
-    """The class of a learner of the registry."""
-    from collections import namedtuple
-
-    from opendr._reference import constructor, document, params_annotations
-    from opendr._upstream.modules import learner
-
-    row = learner(f"{entry['package']}.{entry['task']}", entry["class_name"]) or Row()
-    parent = _parent(entry, row)
-    names = [output["name"] for output in entry["outputs"]]
-    fields = [*entry["fit_params"], *entry["params"]]
-    namespace: dict[str, Any] = {
-        **{alias: _alias(field["name"]) for field in entry["fit_params"] for alias in field["aliases"]},
-        **methods(row, parent),
-        "__doc__": document(entry),
-        "__module__": module,
-        "__annotations__": params_annotations(entry),
-        "_entry": entry,
-        "_row": row,
-        "_places": arguments(row.init or " ".join(BaseLearner.__signature__.parameters)),
-        "_outputs": staticmethod(namedtuple(f"{entry['class_name']}Outputs", names)),
-        **{field["name"]: field["default"] for field in fields},
-    }
-    made: Any = type(entry["class_name"], (parent,), namespace)
-    made.__signature__ = constructor(made)
-    if "classes" in {field["name"] for field in fields}:
-        made.classes = _Classes(vars(made)["classes"])
-    return made  # type: ignore[no-any-return]

@@ -1,4 +1,4 @@
-"""The class that all compiled policies come from: they learn by acting in environments."""
+"""The base class of the native policies, which are trained in environments."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from opendr.engine.learners import LearnerRL
 
 
 class NativeLearnerRL(NativeBase, LearnerRL):
-    """A policy of the registry; ``infer`` takes an observation and gives the action.
+    """A policy of the registry; ``infer`` returns the action for an observation.
 
-    An environment is a name (``"CartPole-v1"``, ``opendr.simulation.environments()`` has them), an environment with
-    Gymnasium's interface, or a function that makes such ones: several are wanted where ``n_envs`` is above 1, and another
-    one to measure in.
+    An environment is given as a name (``"CartPole-v1"``; ``opendr.simulation.environments()`` lists them), an environment
+    with Gymnasium's interface, or a function that creates one. The function is necessary where ``n_envs`` is above 1 or
+    the evaluation needs an environment of its own.
     """
 
     def fit(
@@ -33,28 +33,28 @@ class NativeLearnerRL(NativeBase, LearnerRL):
         resume: bool = False,
         **fit_params: Any,
     ) -> dict[str, Any]:
-        """Trains the policy, from the loaded model where there is one, and loads the best that was measured.
+        """Trains the policy, from the loaded model if there is one, and loads the best one by evaluation.
 
-        Ctrl-C saves what was done and raises ``KeyboardInterrupt``; ``resume`` goes on from there.
+        Ctrl-C saves a checkpoint and raises ``KeyboardInterrupt``; ``resume`` continues from it.
 
         Args:
-            env: Where to act; None takes what the constructor was given, or the loaded model was trained in.
-            val_env: Where to measure on the way; None takes others of ``env``.
-            logging_path: Folder of TensorBoard's event files and of curves; empty: none.
-            silent: Whether to show nothing at all.
+            env: Environment of the training; None uses that of the constructor, or of the loaded model's training.
+            val_env: Environment of the evaluations during the training; None creates others of ``env``.
+            logging_path: Folder for TensorBoard's event files and curves; empty: none.
+            silent: Whether to print nothing at all.
             verbose: Whether to print the outcome.
-            env_params: Parameters of an environment that is named.
-            out: Folder of checkpoints, report and, in ``model``, the trained container; by default ``temp_path`` or
+            env_params: Parameters of an environment that is given by name.
+            out: Folder for checkpoints, report and, in ``model``, the trained container; by default ``temp_path`` or
                 else ``runs/NAME-DATE``.
-            resume: Whether to go on from the last checkpoint in ``out``, or in the last run of this learner.
-            fit_params: Parameters of the training (docs/learners.md); by default those the constructor was given.
+            resume: Whether to resume from the last checkpoint in ``out``, or in the last run of this learner.
+            fit_params: Parameters of the training (docs/learners.md); by default those of the constructor.
 
         Returns:
-            The curves (a list each, e.g. ``"val_return"``) and numbers by name, and under ``"report"`` all there is.
+            The curves (a list each, e.g. ``"val_return"``) and scalars by name, and under ``"report"`` the whole report.
 
         Raises:
             ValueError: Environment, policy and parameters do not fit together.
-            RuntimeError: The environment raised; what was learnt up to the last checkpoint is kept.
+            RuntimeError: The environment raised an exception; the last checkpoint is kept.
         """
         place = under_older_name(out, "out", fit_params, "output") or self.temp_path or None
         options = {
@@ -63,10 +63,10 @@ class NativeLearnerRL(NativeBase, LearnerRL):
             "logging_path": os.fspath(logging_path) if logging_path else None,
             "resume": resume or self.checkpoint_load_iter > 0,
         }
-        acting, measuring = self._environments(env, env_params), None
+        training, evaluation = self._environments(env, env_params), None
         if val_env is not None:
-            measuring = self._environments(val_env, env_params)
-        report, text = self._handle.fit_in(acting, measuring, json.dumps(options), silent)
+            evaluation = self._environments(val_env, env_params)
+        report, text = self._handle.fit_in(training, evaluation, json.dumps(options), silent)
         vars(self).update(self._handle.params())
         if verbose and not silent:
             print(text, end="")
@@ -82,49 +82,50 @@ class NativeLearnerRL(NativeBase, LearnerRL):
         first_seed: int = 1_000_000,
         verbose: bool = False,
     ) -> dict[str, Any]:
-        """Measures the policy on episodes that are always the same.
+        """Evaluates the policy on episodes with fixed seeds.
 
         Args:
-            env: Where to act; None takes what the loaded model was trained in.
-            env_params: Parameters of an environment that is named.
-            episodes: How many; episode ``i`` begins with the seed ``first_seed + i``.
-            first_seed: The seed of the first.
+            env: Environment of the episodes; None uses that of the loaded model's training.
+            env_params: Parameters of an environment that is given by name.
+            episodes: Number of episodes; episode ``i`` has the seed ``first_seed + i``.
+            first_seed: Seed of the first episode.
             verbose: Whether to show progress.
 
         Returns:
-            ``mean_return``, ``std_return``, ``mean_length``, ``episodes``, and where the environment tells it
+            ``mean_return``, ``std_return``, ``mean_length``, ``episodes``, and, if the environment reports success,
             ``success_rate`` with its 95 % interval, ``success_rate_low`` and ``success_rate_high``.
 
         Raises:
-            FileNotFoundError: Nothing is loaded.
-            ValueError: The environment is one of other spaces.
+            FileNotFoundError: No model is loaded.
+            ValueError: The environment has other spaces than the policy.
         """
         given = self._environments(env, env_params)
         numbers: dict[str, Any] = json.loads(self._handle.eval_in(given, episodes, first_seed, verbose))
         return numbers
 
     def _environments(self, env: Any, params: Optional[dict[str, Any]]) -> Any:
-        """An environment as the native half takes it: a name with parameters, or a function that makes bridges."""
+        """Converts an environment to the argument of the native module: a name with parameters, or a function that creates
+        bridges."""
         if env is None:
             env = self._handle.trained_in
             if env is None:
-                raise ValueError('no environment; give one, e.g. env="CartPole-v1"')
+                raise ValueError('no environment is given; give one, e.g. env="CartPole-v1"')
         if isinstance(env, str):
             return env, params or {}
         if params:
-            raise ValueError("env_params are for an environment that is named; give them to yours")
+            raise ValueError("env_params apply only to an environment given by name; pass them to your own environment")
         from opendr.simulation._bridge import Bridge
 
         if not hasattr(env, "step"):
             return lambda: Bridge(env())
-        left = [env]
+        unused = [env]
 
-        def only_one() -> Bridge:
-            if not left:
+        def single() -> Bridge:
+            if not unused:
                 raise Unsupported(
-                    "one environment was given and several are wanted; give a function that makes them, "
+                    "one environment is given and several are needed; give a function that creates them, "
                     'e.g. env=lambda: gymnasium.make("Hopper-v5")'
                 )
-            return Bridge(left.pop())
+            return Bridge(unused.pop())
 
-        return only_one
+        return single

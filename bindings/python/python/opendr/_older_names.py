@@ -1,4 +1,4 @@
-"""Names of arguments from before 0.1, which go on working until 1.0."""
+"""Names of arguments from before 0.1, which are accepted until 1.0."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 
 def under_older_name(value: Any, name: str, given: dict[str, Any], older: str) -> Any:
-    """Returns the argument ``name``, whose value may stand in ``given`` under its older name.
+    """Returns the argument ``name``, whose value may be in ``given`` under its older name.
 
     Raises:
         TypeError: Both are given.
@@ -14,5 +14,5 @@ def under_older_name(value: Any, name: str, given: dict[str, Any], older: str) -
     if older not in given:
         return value
     if value is not None:
-        raise TypeError(f"{name} and {older} are one argument; give {name}")
+        raise TypeError(f"{name} and {older} are the same argument; give only {name}")
     return given.pop(older)

@@ -1,4 +1,4 @@
-"""Learners one behind the other: a detector, a tracker, what looks at the tracks."""
+"""Pipelines: learners in sequence, such as a detector and a tracker."""
 
 from __future__ import annotations
 
@@ -13,31 +13,32 @@ from opendr.engine._ports import outputs_of, ports_of
 from opendr.engine.datasets import Dataset
 from opendr.engine.learners import BaseLearner
 
-#: Items that wait before a learner; more would only hold memory and age.
-_WAITING = 2
+#: Length of the queue before each learner; a longer one costs memory and latency.
+_QUEUE_LENGTH = 2
 _END = object()
 
 
 class Pipeline:
-    """Learners that each take what those before them answer::
+    """Learners in sequence, each of which takes the predictions of those before it::
 
         pipeline = opendr.Pipeline("nanodet", "posenet")
-        for frame, found in pipeline.run(opendr.Source("walk.mp4")):
-            print(found["boxes"], found["poses"])
+        for frame, predictions in pipeline.run(opendr.Source("walk.mp4")):
+            print(predictions["boxes"], predictions["poses"])
 
-    An input takes the newest answer of its type; what no learner before answers is an input of the pipeline, shared by all
-    that take it. Answers are a ``dict`` by the names of the outputs; where two are of one type, it has the later one.
+    An input takes the newest prediction of its type. An input whose type no earlier learner predicts is an input of the
+    pipeline, shared by all learners that have it. Predictions are a ``dict`` by the names of the outputs; of two outputs of
+    one type, it has the later one.
 
     Args:
         learners: Loaded learners, or names of pretrained ones (``"nanodet"``, ``"yunet/320"``).
 
     Raises:
-        ValueError: A learner takes nothing of what those before it take or answer.
+        ValueError: A learner takes neither an input nor a prediction of those before it.
     """
 
     def __init__(self, *learners: Union[BaseLearner, str]) -> None:
         if not learners:
-            raise ValueError("a pipeline of no learners; give at least one")
+            raise ValueError("the pipeline has no learners; give at least one")
         self._stages: list[_Stage] = []
         self.inputs: list[str] = []
         for one in learners:
@@ -47,7 +48,7 @@ class Pipeline:
             self._stages.append(stage)
 
     def infer(self, *inputs: Any, **named: Any) -> dict[str, Any]:
-        """Answers one set of inputs, in the order of ``inputs`` or by name.
+        """Returns the predictions for one set of inputs, in the order of ``inputs`` or by name.
 
         Raises:
             TypeError: An input is missing or unknown.
@@ -55,14 +56,14 @@ class Pipeline:
         return _merged(self._infer(self._named(inputs, named)))
 
     def run(self, items: Iterable[Any]) -> Iterator[tuple[Any, dict[str, Any]]]:
-        """Answers a stream of inputs, each learner on a thread of its own: the slowest sets the pace, not their sum. Items
-        are what the first input takes, or ``dict`` of inputs by name; each is given out again with its answers, in order.
+        """Yields each item of a stream with its predictions, in order. Each learner runs on a thread of its own, so the
+        slowest one determines the throughput. Items are values of the first input, or ``dict`` of inputs by name.
 
         Raises:
-            Exception: What reading or answering an item raised, in that item's place; the run is over then.
+            Exception: The exception of reading or processing an item, in place of that item; the run ends with it.
         """
         self.reset()
-        queues: list[queue.Queue[Any]] = [queue.Queue(_WAITING) for _ in range(len(self._stages) + 1)]
+        queues: list[queue.Queue[Any]] = [queue.Queue(_QUEUE_LENGTH) for _ in range(len(self._stages) + 1)]
         stop = threading.Event()
         work = [lambda: self._feed(items, queues[0], stop)]
         for at, stage in enumerate(self._stages):
@@ -74,8 +75,8 @@ class Pipeline:
             while (job := queues[-1].get()) is not _END:
                 if isinstance(job, BaseException):
                     raise job
-                item, _, answers = job
-                yield item, _merged(answers)
+                item, _, predictions = job
+                yield item, _merged(predictions)
         finally:
             stop.set()
             for thread in threads:
@@ -96,11 +97,11 @@ class Pipeline:
         verbose: bool = False,
         **metric_params: Any,
     ) -> dict[str, Any]:
-        """Measures the pipeline on a data set, by default by the metric of the last learner's task. Arguments and result are those of
-        ``eval`` of a learner.
+        """Evaluates the pipeline on a data set, by default with the metric of the last learner's task. Arguments and result are
+        those of ``eval`` of a learner.
 
         Raises:
-            FileNotFoundError: The data set is not there.
+            FileNotFoundError: The data set does not exist.
             ValueError: Data set, pipeline and metric do not fit together, or a sample is broken.
         """
         from opendr import _opendr
@@ -130,20 +131,20 @@ class Pipeline:
         )
 
     def _types(self) -> list[str]:
-        """The types of data that the pipeline takes, in the order of ``inputs``."""
+        """Returns the types of the inputs, in the order of ``inputs``."""
         types = {port["name"]: port["type"] for stage in self._stages for port in stage.ports if port["name"] in stage.given}
         return [types[name] for name in self.inputs]
 
     def reset(self) -> None:
-        """Forgets what all learners have seen."""
+        """Resets the state of all learners."""
         for stage in self._stages:
             stage.learner.reset()
 
     def _infer(self, given: dict[str, Any]) -> list[dict[str, Any]]:
-        answers: list[dict[str, Any]] = []
+        predictions: list[dict[str, Any]] = []
         for stage in self._stages:
-            answers.append(stage.infer(given, answers))
-        return answers
+            predictions.append(stage.infer(given, predictions))
+        return predictions
 
     def _named(self, inputs: tuple[Any, ...], named: dict[str, Any]) -> dict[str, Any]:
         if len(inputs) > len(self.inputs):
@@ -151,7 +152,7 @@ class Pipeline:
         given = {**dict(zip(self.inputs, inputs)), **named}
         unknown = [name for name in given if name not in self.inputs]
         if unknown:
-            raise TypeError(f"the pipeline has no input {unknown[0]!r}; there are {', '.join(self.inputs)}")
+            raise TypeError(f"the pipeline has no input {unknown[0]!r}; its inputs are {', '.join(self.inputs)}")
         return given
 
     def _feed(self, items: Iterable[Any], to: queue.Queue[Any], stop: threading.Event) -> None:
@@ -160,13 +161,13 @@ class Pipeline:
                 given = self._named((), item) if isinstance(item, dict) else self._named((item,), {})
                 if not _put(to, (item, given, []), stop):
                     return
-        except BaseException as error:  # It belongs to who takes the answers.
+        except BaseException as error:  # Raised in the thread that reads the results.
             _put(to, error, stop)
         _put(to, _END, stop)
 
 
 class _Stage:
-    """A learner and where its inputs come from."""
+    """A learner and the sources of its inputs."""
 
     def __init__(self, learner: BaseLearner) -> None:
         self.learner = learner
@@ -177,16 +178,16 @@ class _Stage:
         self.outputs = entry["outputs"] if entry else outputs_of(kind.infer, problems)
         if problems:
             raise TypeError(f"{kind.__name__}: {problems[0]}")
-        #: By input: the stage and the output that it takes.
+        #: Source of each input: the index of a stage and the name of its output.
         self.wires: dict[str, tuple[int, str]] = {}
 
     @property
     def given(self) -> list[str]:
-        """The inputs that the pipeline is given."""
+        """Names of the inputs that are inputs of the pipeline."""
         return [port["name"] for port in self.ports if port["name"] not in self.wires]
 
     def connect(self, before: list[_Stage]) -> None:
-        """Finds the newest answer for each input."""
+        """Connects each input to the newest output of its type."""
         for port in self.ports:
             for at, stage in enumerate(before):
                 fitting = [output["name"] for output in stage.outputs if output["type"] == port["type"]]
@@ -194,19 +195,19 @@ class _Stage:
                     self.wires[port["name"]] = (at, fitting[0])
         shared = {port["type"] for stage in before for port in stage.ports}
         if before and not self.wires and not all(port["type"] in shared for port in self.ports):
-            wanted = ", ".join(port["type"] for port in self.ports)
-            there = ", ".join(output["type"] for stage in before for output in stage.outputs)
+            inputs = ", ".join(port["type"] for port in self.ports)
+            outputs = ", ".join(output["type"] for stage in before for output in stage.outputs)
             raise ValueError(
-                f"{type(self.learner).__name__} takes {wanted}, and those before it answer {there}; "
-                "put one before it that answers what it takes"
+                f"{type(self.learner).__name__} takes {inputs}, and the learners before it return {outputs}; "
+                "put a learner before it that returns one of its inputs"
             )
 
     def infer(self, given: dict[str, Any], before: list[dict[str, Any]]) -> dict[str, Any]:
         inputs = {name: given[name] for name in self.given if name in given}
         inputs.update({name: before[at][output] for name, (at, output) in self.wires.items()})
-        answer = self.learner.infer(**inputs)
-        answers = answer if isinstance(answer, tuple) else (answer,)
-        return {output["name"]: one for output, one in zip(self.outputs, answers)}
+        returned = self.learner.infer(**inputs)
+        predictions = returned if isinstance(returned, tuple) else (returned,)
+        return {output["name"]: prediction for output, prediction in zip(self.outputs, predictions)}
 
 
 def _name(learner: BaseLearner) -> str:
@@ -224,10 +225,10 @@ def _serve(stage: _Stage, source: queue.Queue[Any], to: queue.Queue[Any], stop: 
         if isinstance(job, BaseException):
             _put(to, job, stop)
             return
-        _, given, answers = job
+        _, given, predictions = job
         try:
-            answers.append(stage.infer(given, answers))
-        except BaseException as error:  # It belongs to who takes the answers.
+            predictions.append(stage.infer(given, predictions))
+        except BaseException as error:  # Raised in the thread that reads the results.
             _put(to, error, stop)
             return
         if not _put(to, job, stop):
@@ -236,7 +237,7 @@ def _serve(stage: _Stage, source: queue.Queue[Any], to: queue.Queue[Any], stop: 
 
 
 def _put(to: queue.Queue[Any], job: Any, stop: threading.Event) -> bool:
-    """Whether there was room before the run was given up."""
+    """Puts a job into a queue; returns False if the run is stopped first."""
     while not stop.is_set():
         try:
             to.put(job, timeout=0.1)
@@ -255,10 +256,10 @@ def _get(source: queue.Queue[Any], stop: threading.Event) -> Any:
     return _END
 
 
-def _merged(answers: list[dict[str, Any]]) -> dict[str, Any]:
+def _merged(predictions: list[dict[str, Any]]) -> dict[str, Any]:
     merged: dict[str, Any] = {}
-    for answer in answers:
-        for name, value in answer.items():
+    for outputs in predictions:
+        for name, value in outputs.items():
             merged = {known: earlier for known, earlier in merged.items() if type(earlier) is not type(value)}
             merged[name] = value
     return merged

@@ -1,4 +1,4 @@
-"""What the registry's tables say, as Python's own: annotations, docstrings."""
+"""Annotations, signatures and docstrings of the learners, from the tables of the registry."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _TYPES: dict[str, Any] = {"float": float, "int": int, "bool": bool, "text": str,
 
 
 def params_annotations(entry: Table) -> dict[str, Any]:
-    """The parameters of a learner and of its training as annotations of its class."""
+    """Returns the annotations of a learner's class: its parameters and those of its training."""
     return {field["name"]: _annotation(field) for field in (*entry["fit_params"], *entry["params"])}
 
 
@@ -32,28 +32,28 @@ def _annotation(field: Table) -> Any:
 
 
 def constructor(cls: Any) -> inspect.Signature:
-    """The signature of a learner's constructor: the arguments by place, then all others by name."""
-    known = signature(cls, by_place=()).parameters
+    """Returns the signature of a learner's constructor: the positional arguments, then the keyword arguments."""
+    known = signature(cls, positional=()).parameters
     fields = (*cls._entry["fit_params"], *cls._entry["params"])
     renamed = {alias: field["name"] for field in fields for alias in field["aliases"]}
-    shown = {}
-    for argument in cls._places:
+    positional = {}
+    for argument in cls._positional:
         ours = known.get(renamed.get(argument.name, argument.name))
         default, hint = (None, Any) if ours is None else (ours.default, ours.annotation)
         kind = inspect.Parameter.POSITIONAL_OR_KEYWORD
-        shown[argument.name] = inspect.Parameter(argument.name, kind, default=default, annotation=hint)
-    return inspect.Signature([*shown.values(), *(known[name] for name in known if name not in shown)])
+        positional[argument.name] = inspect.Parameter(argument.name, kind, default=default, annotation=hint)
+    return inspect.Signature([*positional.values(), *(known[name] for name in known if name not in positional)])
 
 
 def document(entry: Table) -> str:
-    """The docstring of a learner's class."""
+    """Returns the docstring of a learner's class."""
     inputs = "\n".join(_line(port["name"], _port(port)) for port in entry["ports"])
     outputs = ", ".join(output["type"] for output in entry["outputs"])
     params = "\n".join(_line(field["name"], _param(field)) for field in entry["params"])
     idle = "\n".join(_line(name, f"no effect: {reason}.") for name, reason in entry["without_effect"])
     parts = [
         entry["about"],
-        f"Task: {entry['task']}. ``infer`` takes:\n\n{inputs}\n\nand gives: {outputs}.",
+        f"Task: {entry['task']}. ``infer`` takes:\n\n{inputs}\n\nand returns: {outputs}.",
         f"Args:\n{params}\n    others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.",
     ]
     if entry["fit_params"]:
@@ -61,13 +61,13 @@ def document(entry: Table) -> str:
         training = "\n".join(_line(field["name"], _param(field)) for field in entry["fit_params"] if field["name"] not in own)
         parts.append(f"Parameters of ``fit``, for one call or, given here, for all of them:\n{training}")
     if idle:
-        parts.append(f"Arguments of OpenDR that are taken and have no effect:\n{idle}")
+        parts.append(f"Arguments of OpenDR that are accepted and have no effect:\n{idle}")
     return "\n\n".join(parts)
 
 
 def _port(port: Table) -> str:
     notes = ["with the first input of a stream"] if port["init"] else []
-    notes += ["may be left out"] if port["optional"] and not port["init"] else []
+    notes += ["optional"] if port["optional"] and not port["init"] else []
     kind = f"{port['type']}{' (' + ', '.join(notes) + ')' if notes else ''}."
     return f"{kind} {inspect.cleandoc(port['doc'])}".rstrip()
 
@@ -80,7 +80,7 @@ def _param(field: Table) -> str:
     if field["choices"]:
         notes.append("one of " + ", ".join(map(repr, field["choices"])))
     if field["live"]:
-        notes.append("may change while running, also for one call of infer")
+        notes.append("live: may change while running, and for one call of infer")
     if field["aliases"]:
         notes.append("in OpenDR " + ", ".join(field["aliases"]))
     return f"{inspect.cleandoc(field['doc'])} ({'; '.join(notes)})"

@@ -1,114 +1,108 @@
-"""The learners of the registry as classes, and learners of one's own beside them."""
+"""Classes of the learners in the registry, native and written in Python."""
 
 from __future__ import annotations
 
 import sys
 import types
-from typing import Any, Optional, TypeVar
+from typing import Any, TypeVar
 
 from opendr import _opendr
 from opendr._errors import NotFound
+from opendr._python_learners import PYTHON_LEARNERS
 from opendr.engine.learners import BaseLearner, Learner
 
 T = TypeVar("T", bound=type[BaseLearner])
 
-#: OpenDR's functions that draw a type of target.
+#: OpenDR's drawing functions by target type.
 _DRAWING = {"BoundingBoxList": ("draw_bounding_boxes",), "PoseList": ("draw", "get_bbox")}
-#: The classes of learners written in Python, by name.
-_OWN: dict[str, type[BaseLearner]] = {}
 
 
 def task_modules(package: types.ModuleType) -> None:
-    """Makes the modules of a package of learners, one a task, with the task's learners and drawing functions."""
+    """Creates the modules of a package of learners: one per task, with the task's learners and drawing functions."""
     from opendr import _drawing
-    from opendr._native_learner import native_class
+    from opendr._native_class import native_class
     from opendr._upstream.modules import add_names
 
-    made = {}
+    created = {}
     for entry in _opendr.entries():
-        if entry["name"] in _OWN or package.__name__ != f"opendr.{entry['package']}":
+        if entry["name"] in PYTHON_LEARNERS or package.__name__ != f"opendr.{entry['package']}":
             continue
         name = f"{package.__name__}.{entry['task']}"
         module = sys.modules.get(name)
         if module is None:
             module = types.ModuleType(name, f"Learners of the task {entry['task']}.")
-            # Programs of OpenDR look for files beside a learner's module.
+            # Programs of OpenDR search for files next to a learner's module.
             module.__dict__.update(__all__=[], __path__=[], __file__=package.__file__)
-            made[name] = sys.modules[name] = module
+            created[name] = sys.modules[name] = module
             setattr(package, entry["task"], module)
         found = {entry["class_name"]: native_class(entry, name)}
         for output in entry["outputs"]:
             found.update({name: getattr(_drawing, name) for name in _DRAWING.get(output["type"], ())})
         module.__dict__.update(found)
         module.__dict__["__all__"] = sorted({*module.__dict__["__all__"], *found})
-    for module in made.values():
+    for module in created.values():
         add_names(module)
 
 
 def learners() -> dict[str, type[BaseLearner]]:
-    """The classes of all learners, by their names in the registry; those registered from Python are there too."""
+    """Returns the classes of all learners by their names in the registry, including those registered from Python."""
     import importlib
 
     classes: dict[str, type[BaseLearner]] = {}
     for entry in _opendr.entries():
-        package = None if entry["name"] in _OWN else importlib.import_module(f"opendr.{entry['package']}")
+        package = None if entry["name"] in PYTHON_LEARNERS else importlib.import_module(f"opendr.{entry['package']}")
         task = getattr(package, entry["task"], None)
-        found = _OWN.get(entry["name"]) or getattr(task, entry["class_name"], None)
+        found = PYTHON_LEARNERS.get(entry["name"]) or getattr(task, entry["class_name"], None)
         if found is not None:
             classes[entry["name"]] = found
     return classes
 
 
-def registered_name(cls: type) -> Optional[str]:
-    """The name under which a class was registered."""
-    return next((name for name, other in _OWN.items() if other is cls), None)
-
-
 def learner(spec: str, verbose: bool = True, **arguments: Any) -> Any:
-    """A learner by name, with its pretrained model, which is downloaded the first time.
+    """Creates a learner by name and loads its pretrained model, which is downloaded the first time.
 
     Args:
-        spec: A name such as ``"nanodet"``, with a variant where there are several: ``"yunet/320"``.
+        spec: A name such as ``"nanodet"``, optionally with a variant: ``"yunet/320"``.
         verbose: Whether to show the progress of a download.
-        arguments: Those of the class.
+        arguments: Arguments of the class.
 
     Raises:
-        FileNotFoundError: There is no such learner.
+        FileNotFoundError: The learner does not exist.
     """
     name, _, variant = spec.partition("/")
     classes = learners()
     if name not in classes:
-        raise NotFound(f"no learner {name!r}; there are {', '.join(classes)}")
-    if variant and name in _OWN:
-        raise NotFound(f"the learner {name!r} has no pretrained models; write {name!r}, and load() one of yours")
-    made: Any = classes[name](**arguments)
-    if name not in _OWN:
-        made.load(verbose=verbose, variant=variant or None)
-    return made
+        raise NotFound(f"unknown learner {name!r}; the learners are {', '.join(classes)}")
+    if variant and name in PYTHON_LEARNERS:
+        raise NotFound(f"the learner {name!r} has no pretrained models; use {name!r} and load() one of your own")
+    created: Any = classes[name](**arguments)
+    if name not in PYTHON_LEARNERS:
+        created.load(verbose=verbose, variant=variant or None)
+    return created
 
 
 def register(cls: T) -> T:
-    """Puts a learner written in Python into the registry, beside the compiled ones; also as a decorator.
+    """Adds a learner written in Python to the registry; usable as a decorator.
 
-    It then has a place in ``opendr.learners()`` and in ``python -m opendr``.
+    ``opendr.learners()`` and ``python -m opendr`` then include it.
 
     Args:
-        cls: A subclass of ``opendr.engine.learners.Learner``, see there.
+        cls: A subclass of ``opendr.engine.learners.Learner``.
 
     Raises:
-        TypeError: Something is missing in the class; the text says what.
+        TypeError: The class lacks something; the message lists what.
         ValueError: The name is taken.
     """
     from opendr.engine._declaration import tables_from_class
 
     tables = tables_from_class(cls)
     _opendr.register(cls, tables)
-    _OWN[tables["name"]] = cls
+    PYTHON_LEARNERS[tables["name"]] = cls
     return cls
 
 
 def register_installed() -> None:
-    """Registers the learners of installed packages; one that cannot be is warned of and left out."""
+    """Registers the learners of installed packages. One that fails is skipped with a warning."""
     from opendr import _entry_points
 
     for point in _entry_points.learner_entry_points():
@@ -119,16 +113,16 @@ def register_installed() -> None:
 
 
 def check_learner(name: str, model: str, scratch: str, calls: list[dict[str, Any]]) -> None:
-    """Runs the test that every learner passes: parameters, errors, repeatability, streams, saving.
+    """Runs the test that every learner passes: parameters, errors, determinism, streams, saving.
 
     Args:
         name: The learner's name in the registry.
-        model: A model of it.
-        scratch: A folder to write to.
-        calls: Inputs of one stream in order, by port; at least two, different, and each with a time stamp and frame.
+        model: Path of a model of the learner.
+        scratch: Folder for temporary files.
+        calls: Inputs of one stream in order, by port; at least two, which differ, each with a time stamp and a frame id.
 
     Raises:
-        opendr.InternalError: A promise is broken; the text says which.
+        opendr.InternalError: A check failed; the message says which.
     """
     _opendr.check_learner(name, model, scratch, calls)
 

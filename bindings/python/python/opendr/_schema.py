@@ -1,6 +1,6 @@
-"""Targets as the JSON objects of ``docs/json.md``, which is how they cross to the native half and back.
+"""Conversion of targets to and from the JSON objects of ``docs/json.md``, their form between Python and the native module.
 
-One function a type each way; the native half checks and completes what is written here.
+There are two functions per type; the native module checks the JSON and completes it.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Callable, Optional
 
 from opendr._errors import InvalidInput
 from opendr.engine import data, target
-from opendr.engine._checks import names_by_number
+from opendr.engine._checks import names_by_index
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -20,26 +20,26 @@ Fields = dict[str, Any]
 
 
 def dumps(value: target.BaseTarget) -> tuple[str, bool]:
-    """The JSON of a target, and whether it is one item, written as a list of only itself.
+    """Returns the JSON of a target, and whether it is a single item, which is written as a list of one.
 
     Raises:
-        TypeError: It is no target.
+        TypeError: The value is not a target.
         ValueError: A number is NaN or infinite.
     """
     if not isinstance(value, target.BaseTarget):
-        raise TypeError(f"a target is wanted, e.g. a BoundingBoxList, not {value!r:.200}")
+        raise TypeError(f"expected a target, e.g. a BoundingBoxList, not {value!r:.200}")
     whole = value._as_value()
     writer = next((_WRITERS[kind] for kind in type(whole).__mro__ if kind in _WRITERS), None)
     if writer is None:
-        raise TypeError(f"{type(value).__name__} has no JSON form")
+        raise TypeError(f"{type(value).__name__} cannot be written as JSON")
     return json.dumps({**_header(whole), **writer(whole)}, allow_nan=False), whole is not value
 
 
 def target_from_json(text: str, array: Optional[Any] = None) -> Any:
-    """The target that the native half wrote; ``array`` holds the numbers of a heat map.
+    """Returns the target of a JSON object of the native module; ``array`` has the values of a heatmap.
 
     Raises:
-        opendr.InvalidInput: A number is null, as JSON writes NaN and infinities.
+        opendr.InvalidInput: A number is null, which is JSON's form of NaN and infinities.
     """
     fields = json.loads(text)
     place = _null_in(fields) if "null" in text else None
@@ -53,7 +53,7 @@ def target_from_json(text: str, array: Optional[Any] = None) -> Any:
 
 
 def _null_in(value: Any) -> Optional[str]:
-    """Where in a JSON value the first null is, e.g. ``.boxes[3].left``."""
+    """Returns the path of the first null in a JSON value, e.g. ``.boxes[3].left``."""
     if value is None:
         return ""
     items: Iterable[tuple[str, Any]] = ()
@@ -69,7 +69,7 @@ def _null_in(value: Any) -> Optional[str]:
 
 
 def image_from_pixels(pixels: Any) -> data.Image:
-    """A picture in native memory as an :class:`Image`; NumPy sees it, read-only, when its ``data`` are asked for."""
+    """Returns an :class:`Image` of native memory; its ``data`` are a read-only view, created on first access."""
     image = data.Image.__new__(data.Image)
     image._data, image._pixels = None, pixels
     _set_header(image, pixels.timestamp, pixels.frame_id)
@@ -77,19 +77,19 @@ def image_from_pixels(pixels: Any) -> data.Image:
 
 
 def datum_from_parts(kind: str, parts: tuple[Any, ...], stamp_ns: Optional[int], frame_id: Optional[str]) -> Any:
-    """A datum of the class ``kind`` from the arguments of its constructor; arrays stay in native memory."""
+    """Returns a datum of the class ``kind`` from the arguments of its constructor; arrays stay in native memory."""
     value = getattr(data, kind)(*parts)
     _set_header(value, stamp_ns, frame_id)
     return value
 
 
 def heatmap_numbers(heatmap: target.Heatmap) -> NDArray[Any]:
-    """The numbers of a heat map as the native half takes them: uint32 classes, or float32 scores."""
+    """Returns the values of a heatmap in a type of the native module: uint32 class indices, or float32 scores."""
     import numpy as np
 
     numbers = heatmap.data
     if numbers.dtype.kind != "f" and numbers.size and int(numbers.max()) > 0xFFFFFFFF:
-        raise ValueError(f"a Heatmap of class numbers up to {numbers.max()}; give numbers below {1 << 32}")
+        raise ValueError(f"the Heatmap has class indices up to {numbers.max()}; give indices below {1 << 32}")
     return np.asarray(numbers, dtype=np.float32 if numbers.dtype.kind == "f" else np.uint32)
 
 
@@ -195,7 +195,7 @@ def _write_category(category: target.Category) -> Fields:
 
 def _write_heatmap(heatmap: target.Heatmap) -> Fields:
     fields: Fields = {"type": "Heatmap", "shape": [0], "scores": []}
-    names = names_by_number(heatmap.class_names or {})
+    names = names_by_index(heatmap.class_names or {})
     return {**fields, "classes": names} if names else fields
 
 
@@ -204,8 +204,8 @@ def _write_command(command: target.SpeechCommand) -> Fields:
     return fields if command.span_s is None else {**fields, "span_s": command.span_s}
 
 
-def _write_rl(chosen: target.RlTarget) -> Fields:
-    return {"type": "RlTarget", "values": chosen.data.tolist()}
+def _write_rl(action: target.RlTarget) -> Fields:
+    return {"type": "RlTarget", "values": action.data.tolist()}
 
 
 def _write_transcription(words: target.BaseTranscription) -> Fields:
@@ -242,7 +242,7 @@ def _class_name(fields: Fields, classes: list[str]) -> str:
 
 
 def _box_arguments(fields: Fields, classes: list[str]) -> Fields:
-    """What the constructors of boxes and tracks take alike."""
+    """Returns the arguments that the constructors of boxes and tracks have in common."""
     arguments = {name: fields[name] for name in ("name", "left", "top", "width", "height")}
     arguments |= {"score": fields.get("confidence", 0.0), "landmarks": fields.get("landmarks", ())}
     outline = fields.get("segment")

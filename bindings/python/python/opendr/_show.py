@@ -1,4 +1,4 @@
-"""Showing a picture: in a window where there can be one, else as a file."""
+"""Showing an image in a window if possible, else writing it as a file."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ from typing import Any
 from opendr.engine.data import Image
 
 _TITLE = "OpenDR"
-# A window library may end the whole process when its display does not answer: a process of its own tries.
+# A window library may abort the process when its display does not respond, so a separate process tries it.
 _PROBE = "import cv2; cv2.namedWindow('OpenDR'); cv2.waitKey(1); cv2.destroyAllWindows()"
 
 
-def show_picture(image: Image) -> None:
-    """Opens a window and waits for a key, or for the window to be closed; without OpenCV or a display, writes a file of
-    a new name into the current folder (else the folder for temporary files) and prints its path.
+def show_image(image: Image) -> None:
+    """Opens a window and waits for a key, or for the window to be closed. Without OpenCV or a display, writes a file with
+    an unused name into the current folder (else the folder for temporary files) and prints its path.
 
     Raises:
-        OSError: No file can be written.
+        OSError: The file cannot be written.
     """
     if window_works():
         _show_window(image.opencv())
     else:
-        print(f"picture written to {write_picture(image)}")
+        print(f"image written to {write_image(image)}")
 
 
 def window_works() -> bool:
-    """Whether OpenCV is installed with windows, and there is a display that answers."""
+    """Returns whether OpenCV is installed with support for windows and a display responds."""
     linux = sys.platform.startswith("linux")
     displays = (os.environ.get("DISPLAY", ""), os.environ.get("WAYLAND_DISPLAY", ""))
     if linux and not any(displays) or importlib.util.find_spec("cv2") is None or not sys.executable:
@@ -57,11 +57,11 @@ def _show_window(pixels: Any) -> None:
     cv2.destroyWindow(_TITLE)
 
 
-def write_picture(image: Image) -> str:
-    """Writes a PNG of a new name.
+def write_image(image: Image) -> str:
+    """Writes a PNG file with an unused name.
 
     Returns:
-        Its path, absolute.
+        The absolute path of the file.
 
     Raises:
         OSError: Neither the current folder nor that for temporary files can be written.

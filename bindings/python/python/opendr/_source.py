@@ -1,4 +1,4 @@
-"""Pictures, folders, videos and cameras as one iterator of images."""
+"""Image files, folders, videos and cameras as one iterator of images."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ PathLike = Union[str, "os.PathLike[str]"]
 
 
 class Source(Iterator[Image]):
-    """The images of picture files, folders, patterns (``"photos/**/*.jpg"``), videos and cameras (``"camera:0"``).
+    """The images of image files, folders, patterns (``"photos/**/*.jpg"``), videos and cameras (``"camera:0"``).
 
-    Videos are read by an installed ``ffmpeg``. Of files no frame is left out; of a camera you get the newest one.
-    A file that cannot be read raises when its turn comes; the next step of the iteration goes on with the next file.
+    Videos are decoded by an installed ``ffmpeg``. Every frame of a file is returned; a camera returns its newest frame.
+    A file that cannot be read raises when it is reached; the next step of the iteration continues with the next file.
 
     Args:
-        inputs: What to read, one after the other.
+        inputs: Files, folders, patterns and cameras, which are read in order.
 
     Raises:
-        FileNotFoundError: An input does not exist, or holds nothing to read.
-        opendr.Unsupported: It takes a program or system that is not there.
+        FileNotFoundError: An input does not exist, or contains nothing to read.
+        opendr.Unsupported: An input needs a program or system that is not available.
     """
 
     def __init__(self, *inputs: PathLike) -> None:
         self._frames = _opendr.Source([os.fspath(path) for path in inputs])
         #: The file or device of the last image; None before the first.
         self.path: Optional[str] = None
-        #: The last image's number in its video or camera, from 0; 0 for a picture file.
+        #: Index of the last image in its video or camera, from 0; 0 for an image file.
         self.number: int = 0
 
     def __next__(self) -> Image:
@@ -40,10 +40,10 @@ class Source(Iterator[Image]):
 
     @property
     def length(self) -> Optional[int]:
-        """How many images there will be; None when that is not known."""
+        """Number of images; None when unknown."""
         return self._frames.length
 
     @property
     def live(self) -> bool:
-        """Whether frames are dropped that nobody has time for."""
+        """Whether frames are dropped when the caller is slower than the source."""
         return self._frames.live

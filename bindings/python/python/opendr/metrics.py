@@ -1,4 +1,4 @@
-"""The field's metrics, beside any learner or none.
+"""Metrics for predictions of any source.
 
     from opendr.metrics import Metric
 
@@ -7,7 +7,7 @@
         metric.update(detector.infer(image), truth)
     print(metric.result()["map50"])
 
-Numbers equal those of the reference tools that docs/metrics.md names.
+Results are equal to those of the reference tools listed in docs/metrics.md.
 """
 
 from __future__ import annotations
@@ -26,25 +26,25 @@ __all__ = ["Metric", "evaluate", "names", "tables"]
 
 
 def names() -> list[str]:
-    """The metrics that there are."""
+    """Returns the names of the metrics."""
     return [table["name"] for table in _opendr.metrics()]
 
 
 def tables() -> list[dict[str, Any]]:
-    """What there is to know of each: ``name``, ``about``, the classes of ``prediction`` and ``truth``, ``numbers`` (name
-    and meaning), and ``params``."""
+    """Returns a table of each metric: ``name``, ``about``, the classes of ``prediction`` and ``truth`` (ground truth),
+    ``numbers`` (name and meaning of each scalar), and ``params``."""
     return _opendr.metrics()
 
 
 class Metric:
-    """An accumulator: answers and truths go in one after the other, numbers come out at any time.
+    """A metric: an accumulator over pairs of prediction and ground truth.
 
     Args:
         name: One of ``names()``.
-        params: Its parameters.
+        params: Parameters of the metric.
 
     Raises:
-        FileNotFoundError: There is no such metric.
+        FileNotFoundError: The metric does not exist.
         ValueError: A parameter is unknown or out of range.
     """
 
@@ -53,52 +53,53 @@ class Metric:
         self.name: str = name
 
     def update(self, prediction: BaseTarget, truth: BaseTarget, *, at: Optional[int] = None) -> float:
-        """Counts the answer to one sample.
+        """Adds the prediction for one sample.
 
         Args:
-            prediction: What the learner answered.
-            truth: What it should have answered.
-            at: The number of the sample, which settles ties; by default one after the other.
+            prediction: The prediction.
+            truth: The ground truth.
+            at: Index of the sample, which breaks ties; by default consecutive.
 
         Returns:
-            How good the answer is: 0 (worst) to 1.
+            The score of the prediction: 0 (worst) to 1.
 
         Raises:
-            ValueError: They are of other types than the metric's, or cannot be counted; nothing is counted then.
+            ValueError: The types are not those of the metric, or a value is invalid; nothing is added then.
         """
         return self._metric.update(prediction, truth, at)
 
     def end_sequence(self) -> None:
-        """Tells that the video or drive is over; what follows has nothing to do with it."""
+        """Ends the current sequence (video or drive); the next sample begins a new one."""
         self._metric.end_sequence()
 
     def merge(self, other: Metric) -> None:
-        """Counts what ``other`` counted, which begins anew.
+        """Adds the samples of ``other``, which is empty afterwards.
 
         Raises:
-            ValueError: It is another metric.
+            ValueError: ``other`` is of another metric.
         """
         self._metric.merge(other._metric)
 
     def result(self) -> dict[str, Any]:
-        """The numbers by name, and under ``"report"`` all there is: tables and figures."""
+        """Returns the scalars by name, and under ``"report"`` the whole report with tables and figures."""
         report = json.loads(self._metric.finish())
         return {**report.get("scalars", {}), "report": report}
 
 
 def evaluate(infer: Callable[..., Any], dataset: DatasetIterator, metric: str, **params: Any) -> dict[str, Any]:
-    """Measures any function on a data set.
+    """Evaluates a function on a data set.
 
     Classes are matched by name where predictions and data set name them (``classes`` of the data set and of lists of targets).
 
     Args:
-        infer: From the data of a sample to a target, or to a ``dict`` or tuple of targets with one of the metric's type.
-        dataset: Pairs of datum and target; a tuple of data for a function of several.
+        infer: Function from the data of a sample to a target, or to a ``dict`` or tuple of targets with one of the metric's
+            type.
+        dataset: Pairs of datum and target; a tuple of data for a function with several arguments.
         metric: One of ``names()``.
         params: Parameters of the metric.
 
     Returns:
-        As :meth:`Metric.result`.
+        The same as :meth:`Metric.result`.
 
     Raises:
         ValueError: Predictions, data set and metric do not fit together.
@@ -116,17 +117,17 @@ def evaluate_function(
     name: str = "",
     verbose: bool = False,
 ) -> dict[str, Any]:
-    """As :func:`evaluate`, with the options of an evaluation by name.
+    """Evaluates a function on a data set, with the options of an evaluation.
 
     Args:
-        infer: From the data of a sample to targets.
-        dataset: What to measure on.
+        infer: Function from the data of a sample to targets.
+        dataset: The data set.
         options: ``metric``, ``metric_params``, ``split``, ``limit``, ``out``, ``skip_broken``, ``classes``, ``by_number``,
             ``resamples``.
-        reset: What makes ``infer`` forget, before a sequence.
-        types: The types of data that ``infer`` takes, by default those of the first sample.
-        classes: What class numbers of predictions mean.
-        name: What the report calls what is measured.
+        reset: Function that resets the state of ``infer``, called before each sequence.
+        types: The types of the arguments of ``infer``, by default those of the first sample.
+        classes: Names of the class indices of predictions.
+        name: Name of the function in the report.
         verbose: Whether to show progress and print the outcome.
     """
     given = (list(types), list(classes), name, json.dumps(options), verbose)

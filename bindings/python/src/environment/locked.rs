@@ -1,4 +1,4 @@
-//! A state that one thread at a time works on, while others may run Python.
+//! State behind a mutex that is locked only without the GIL.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 
 use crate::error::ToPython;
 
+/// A mutex whose state is accessed with the GIL released, so that waiting threads do not block Python.
 pub struct Locked<S>(Mutex<S>);
 
 impl<S: Send> Locked<S> {
@@ -14,7 +15,7 @@ impl<S: Send> Locked<S> {
         Self(Mutex::new(state))
     }
 
-    /// Works on the state with the interpreter's lock released.
+    /// Calls `work` on the state with the GIL released.
     pub fn with<T: Send>(
         &self,
         py: Python<'_>,

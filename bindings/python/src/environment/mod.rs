@@ -1,4 +1,4 @@
-//! Environments both ways: those of the toolkit for Python, those of Python for the toolkit.
+//! Environments of the toolkit for Python, and environments of Python for the toolkit.
 
 mod locked;
 mod parts;
@@ -23,7 +23,7 @@ pub use single::Environment;
 pub use source::GivenEnvironments;
 pub use vector::VectorEnvironment;
 
-/// A dictionary for every environment of the registry: its spec, and what a user may set.
+/// Returns a dictionary for every environment of the registry: its spec and its parameters.
 #[pyfunction]
 pub fn environments(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
     let registry = Registry::builtin();
@@ -37,7 +37,7 @@ pub fn environments(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
     PyList::new(py, tables.collect::<PyResult<Vec<_>>>()?)
 }
 
-/// A spec as a dictionary.
+/// Converts a spec to a dictionary.
 fn spec_table<'py>(py: Python<'py>, spec: &EnvironmentSpec) -> PyResult<Bound<'py, PyDict>> {
     let table = PyDict::new(py);
     table.set_item("id", &spec.id)?;

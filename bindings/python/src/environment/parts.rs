@@ -1,4 +1,4 @@
-//! The arrays of a space: one for each part of a dictionary or tuple.
+//! Arrays of a space: one for each part of a dictionary or tuple.
 
 use opendr::environment::{Dtype, Space};
 use opendr::{Error, Result};
@@ -11,24 +11,24 @@ use super::shared_array::{Number, SharedArray};
 /// are several.
 pub struct Parts {
     parts: Vec<Part>,
-    /// Numbers of an element.
+    /// Count of numbers of an element.
     row: usize,
 }
 
 struct Part {
-    /// Place of the first number in an element.
+    /// Index of the part's first number in an element.
     from: usize,
     len: usize,
     array: Py<SharedArray>,
 }
 
 impl Parts {
-    /// Arrays that NumPy reads, each of its part's own type.
+    /// Creates arrays for NumPy to read, each with the element type of its part.
     pub fn of_observations(py: Python<'_>, space: &Space, count: Option<usize>) -> PyResult<Self> {
         Self::new(py, space, count, SharedArray::new)
     }
 
-    /// Arrays of single precision that NumPy writes.
+    /// Creates arrays of float32 for NumPy to write.
     pub fn of_actions(py: Python<'_>, space: &Space, count: Option<usize>) -> PyResult<Self> {
         Self::new(py, space, count, |_, shape| SharedArray::writable(Number::F32, shape))
     }
@@ -51,12 +51,12 @@ impl Parts {
         Ok(Self { parts, row: space.len() })
     }
 
-    /// The arrays, for NumPy.
+    /// Returns the arrays, for NumPy.
     pub fn arrays<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         PyList::new(py, self.parts.iter().map(|part| part.array.bind(py)))
     }
 
-    /// Writes elements, one after the other.
+    /// Writes consecutive elements into the arrays.
     pub fn write(&self, numbers: &[f32]) {
         for part in &self.parts {
             let array = part.array.get();
@@ -70,7 +70,7 @@ impl Parts {
         }
     }
 
-    /// Reads elements, one after the other.
+    /// Reads consecutive elements from the arrays.
     pub fn read(&self, numbers: &mut [f32]) {
         for part in &self.parts {
             let array = part.array.get();
@@ -85,7 +85,7 @@ impl Parts {
     }
 }
 
-/// Type, shape and count of numbers of every part that has no parts.
+/// Collects the type, shape and count of numbers of every leaf of a space.
 fn collect_leaves(space: &Space, leaves: &mut Vec<(Number, Vec<usize>, usize)>) -> Result<()> {
     let (number, shape) = match space {
         Space::Box { shape, dtype, .. } => (number_of_dtype(*dtype)?, shape.clone()),
@@ -94,7 +94,7 @@ fn collect_leaves(space: &Space, leaves: &mut Vec<(Number, Vec<usize>, usize)>) 
         Space::MultiBinary(shape) => (Number::I8, shape.clone()),
         Space::Dict(parts) => return parts.values().try_for_each(|part| collect_leaves(part, leaves)),
         Space::Tuple(parts) => return parts.iter().try_for_each(|part| collect_leaves(part, leaves)),
-        other => return Err(Error::unsupported(format!("{other} has no form in Python"))),
+        other => return Err(Error::unsupported(format!("the space {other} cannot be converted to Python"))),
     };
     leaves.push((number, shape, space.len()));
     Ok(())
@@ -106,6 +106,8 @@ fn number_of_dtype(dtype: Dtype) -> Result<Number> {
         Dtype::Float64 => Ok(Number::F64),
         Dtype::Uint8 => Ok(Number::U8),
         Dtype::Int64 => Ok(Number::I64),
-        other => Err(Error::unsupported(format!("numbers of type {} have no form in Python", other.name()))),
+        other => {
+            Err(Error::unsupported(format!("numbers of type {} cannot be converted to Python", other.name())))
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! An environment written in Python among those of the toolkit.
+//! An environment written in Python, for the toolkit.
 
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
@@ -16,9 +16,9 @@ use crate::array::ArrayMemory;
 use crate::error::{ToPython, error_from_exception};
 use crate::param::python_from_params;
 
-/// Any environment of Gymnasium, through an `opendr.simulation._bridge.Bridge` that puts observations into arrays and takes
-/// actions from there. What it raises is an error with the exception as its source, so that a training ends
-/// as it does for any other error: with its checkpoint.
+/// An environment of Gymnasium, by an `opendr.simulation._bridge.Bridge` that writes observations into arrays and reads
+/// actions from arrays. An exception becomes an error with the exception as its source, so that a training ends as it does
+/// for any other error: with its checkpoint.
 pub struct PythonEnvironment {
     spec: EnvironmentSpec,
     bridge: Py<PyAny>,
@@ -27,11 +27,11 @@ pub struct PythonEnvironment {
 }
 
 impl PythonEnvironment {
-    /// The environment behind a bridge.
+    /// Wraps the environment of a bridge.
     pub fn new(bridge: &Bound<'_, PyAny>) -> PyResult<Self> {
         let py = bridge.py();
         let spec = spec_of(&bridge.getattr("spec")?.cast_into::<PyDict>()?)?;
-        // The bridge writes observations and reads actions: as actions and observations of another's seen from Python.
+        // The bridge writes observations and reads actions, both as float32, hence `of_actions` for both.
         let observation = Parts::of_actions(py, &spec.observation, None)?;
         let action = Parts::of_actions(py, &spec.action, None)?;
         bridge.call_method1("share", (observation.arrays(py)?, action.arrays(py)?))?;
@@ -74,14 +74,16 @@ impl Environment for PythonEnvironment {
 
     fn render(&mut self) -> Result<Option<Image>> {
         self.call("rendering", |bridge| {
-            let picture = bridge.call_method0("render")?;
-            if picture.is_none() {
+            let image = bridge.call_method0("render")?;
+            if image.is_none() {
                 return Ok(None);
             }
-            let memory = ArrayMemory::of(&picture)?;
+            let memory = ArrayMemory::of(&image)?;
             let &[height, width, 3] = memory.shape() else {
                 let shape = memory.shape();
-                return Err(PyValueError::new_err(format!("render() gave {shape:?}, not height, width, 3")));
+                return Err(PyValueError::new_err(format!(
+                    "render() returned shape {shape:?}, not height, width, 3"
+                )));
             };
             let image = Image::new(memory.to_vec::<u8>()?, width, height, PixelFormat::Rgb, Layout::Hwc);
             image.map(Some).to_python(bridge.py())
@@ -91,7 +93,7 @@ impl Environment for PythonEnvironment {
 
 fn spec_of(table: &Bound<'_, PyDict>) -> PyResult<EnvironmentSpec> {
     let entry = |name: &str| {
-        table.get_item(name)?.ok_or_else(|| PyLookupError::new_err(format!("a spec without {name:?}")))
+        table.get_item(name)?.ok_or_else(|| PyLookupError::new_err(format!("the spec has no {name:?}")))
     };
     let space = |name: &str| space_from_python(entry(name)?.cast::<PyDict>()?);
     let mut spec =
@@ -104,15 +106,16 @@ fn spec_of(table: &Bound<'_, PyDict>) -> PyResult<EnvironmentSpec> {
 fn info_from_python(info: &Bound<'_, PyAny>) -> PyResult<Info> {
     let mut numbers = Info::default();
     for (key, number) in info.cast::<PyDict>()? {
-        if let Some(key) = lasting(&key.extract::<String>()?) {
+        if let Some(key) = static_name(&key.extract::<String>()?) {
             numbers.set(key, number.extract()?);
         }
     }
     Ok(numbers)
 }
 
-/// A name that stays for the life of the process. There is room for a thousand short ones; others are left out.
-fn lasting(name: &str) -> Option<&'static str> {
+/// Returns a leaked copy of a name, one for equal names. At most 1000 names of at most 100 bytes are kept; for others it returns
+/// `None`, so that leaked memory is bounded.
+fn static_name(name: &str) -> Option<&'static str> {
     static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
     let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(known) = names.get(name) {

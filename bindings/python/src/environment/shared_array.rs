@@ -1,4 +1,4 @@
-//! Memory that NumPy and the toolkit both see.
+//! Memory that NumPy and the toolkit share.
 
 use std::cell::UnsafeCell;
 
@@ -8,60 +8,60 @@ use pyo3::types::PyDict;
 
 use crate::array::{Element, array_interface};
 
-/// Numbers in native memory that stay where they are: `numpy.asarray(it)` sees them without a copy.
+/// An array at a fixed address in native memory; `numpy.asarray(array)` is a view of it.
 ///
-/// Observations are written here, for NumPy to read; actions by NumPy, to be read here. Elements are copied through raw
-/// pointers, so a thread of the user's that looks meanwhile sees a torn array at worst.
+/// The toolkit writes observations for NumPy to read; NumPy writes actions for the toolkit to read. Elements are copied through
+/// raw pointers, so a thread that reads meanwhile gets a torn array at worst.
 #[pyclass(frozen, module = "opendr._opendr")]
 pub struct SharedArray {
-    /// Words, so that any element is aligned.
+    /// Memory in words of 8 bytes, so that every element type is aligned.
     words: Box<[UnsafeCell<u64>]>,
     number: Number,
     shape: Vec<usize>,
     writable: bool,
 }
 
-// SAFETY: the words are touched through raw pointers only, by code that holds no reference to them.
+// SAFETY: the words are accessed through raw pointers only; no reference to them exists.
 unsafe impl Sync for SharedArray {}
 
-/// What the elements are.
+/// Element type of a shared array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Number {
-    /// Single precision.
+    /// float32.
     F32,
-    /// Double precision.
+    /// float64.
     F64,
-    /// Bytes.
+    /// uint8.
     U8,
-    /// Zeros and ones, in Gymnasium's type for them.
+    /// int8, Gymnasium's type of zeros and ones (`MultiBinary`).
     I8,
-    /// Whole numbers.
+    /// int64.
     I64,
-    /// Yes or no.
+    /// bool.
     Bool,
 }
 
-/// The most numbers of an array: 1 GB of the widest.
-const MOST: usize = 1 << 27;
+/// Maximum number of elements of an array: 1 GiB of the widest type.
+const MAX_ELEMENTS: usize = 1 << 27;
 
 impl SharedArray {
-    /// Zeros that only the toolkit writes.
+    /// Creates an array of zeros that NumPy cannot write.
     ///
     /// # Errors
     /// `InvalidParam` for more than 2^27 numbers.
     pub fn new(number: Number, shape: Vec<usize>) -> Result<Self> {
         let count = shape.iter().try_fold(1usize, |count, side| count.checked_mul(*side));
-        let count = count.filter(|count| *count <= MOST).ok_or_else(|| {
+        let count = count.filter(|count| *count <= MAX_ELEMENTS).ok_or_else(|| {
             Error::invalid_param(format!("an array of {shape:?} is too large; take fewer environments"))
         })?;
         let words = (count * number.size()).div_ceil(size_of::<u64>());
         Ok(Self { words: (0..words).map(|_| UnsafeCell::new(0)).collect(), number, shape, writable: false })
     }
 
-    /// Zeros that NumPy writes.
+    /// Creates an array of zeros that NumPy can write.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// The same as [`Self::new`].
     pub fn writable(number: Number, shape: Vec<usize>) -> Result<Self> {
         Ok(Self { writable: true, ..Self::new(number, shape)? })
     }
@@ -78,7 +78,7 @@ impl SharedArray {
         }
     }
 
-    /// Writes doubles from the first element on.
+    /// Writes float64 elements from the first element on.
     pub fn write_doubles(&self, numbers: impl Iterator<Item = f64>) {
         self.write_each(0, numbers);
     }
@@ -88,7 +88,7 @@ impl SharedArray {
         self.write_each(0, flags.map(u8::from));
     }
 
-    /// Reads as many single-precision elements as there is room, from element `at` on.
+    /// Reads float32 elements from element `at` on, at most as many as the array has.
     pub fn read(&self, at: usize, numbers: &mut [f32]) {
         let count = numbers.len().min(self.room::<f32>().saturating_sub(at));
         // SAFETY: `count` elements from `at` on lie within the words; any bytes are a number.

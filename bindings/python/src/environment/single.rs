@@ -1,4 +1,4 @@
-//! One environment for Python.
+//! The class `Environment` of Python: a single environment.
 
 use opendr::environment::{Environment as World, EnvironmentSpec, Info, ResetOptions};
 use opendr::simulation::Registry;
@@ -15,8 +15,8 @@ use crate::error::ToPython;
 use crate::param::params_from_python;
 use crate::pixels::Pixels;
 
-/// An environment whose observations and actions lie in arrays that it shares with NumPy: `step` reads the action there
-/// and leaves the observation there. `opendr.simulation.Environment` is Gymnasium's form of it.
+/// An environment whose observations and actions are arrays shared with NumPy: `step` reads the action from one and writes
+/// the observation to another. `opendr.simulation.Environment` wraps it in Gymnasium's interface.
 #[pyclass(frozen, module = "opendr._opendr")]
 pub struct Environment {
     state: Locked<State>,
@@ -49,7 +49,7 @@ impl Environment {
 
 #[pymethods]
 impl Environment {
-    /// The environment `id` of the registry.
+    /// Creates the environment `id` of the registry.
     #[new]
     fn new(py: Python<'_>, id: &str, params: &Bound<'_, PyDict>) -> PyResult<Self> {
         let params = params_from_python(params)?;
@@ -57,7 +57,8 @@ impl Environment {
         Self::of(py, world)
     }
 
-    /// An environment of Python as the learners of the toolkit see it; `bridge` is of `opendr.simulation`.
+    /// Wraps an environment of Python in the form that learners of the toolkit receive; `bridge` is an
+    /// `opendr.simulation._bridge.Bridge`.
     #[staticmethod]
     fn of_python(py: Python<'_>, bridge: &Bound<'_, PyAny>) -> PyResult<Self> {
         Self::of(py, Box::new(Checked::new(PythonEnvironment::new(bridge)?)))
@@ -69,19 +70,19 @@ impl Environment {
         spec_table(py, &self.spec)
     }
 
-    /// Where observations are, an array for each part of the space.
+    /// Arrays of the observation, one for each part of the space.
     #[getter]
     fn observation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         self.observation.arrays(py)
     }
 
-    /// Where actions are wanted, an array for each part of the space.
+    /// Arrays of the action, one for each part of the space, which the caller writes.
     #[getter]
     fn action<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         self.action.arrays(py)
     }
 
-    /// Begins an episode; what else is known.
+    /// Begins an episode. Returns Gymnasium's `info`.
     #[pyo3(signature = (seed=None, options=None))]
     fn reset<'py>(
         &self,
@@ -98,7 +99,7 @@ impl Environment {
         python_from_info(py, &info)
     }
 
-    /// Takes a step: reward, terminated, truncated, what else is known.
+    /// Takes a step. Returns reward, terminated, truncated, `info`.
     fn step<'py>(&self, py: Python<'py>) -> PyResult<(f64, bool, bool, Bound<'py, PyDict>)> {
         let step = self.state.with(py, |state| {
             self.action.read(&mut state.action);
@@ -109,18 +110,18 @@ impl Environment {
         Ok((step.reward, step.terminated, step.truncated, python_from_info(py, &step.info)?))
     }
 
-    /// A picture of the world as it is.
+    /// Renders the current state as an image.
     fn render(&self, py: Python<'_>) -> PyResult<Option<Pixels>> {
-        let picture = self.state.with(py, |state| state.world.render())?;
-        picture.map(Pixels::new).transpose().to_python(py)
+        let image = self.state.with(py, |state| state.world.render())?;
+        image.map(Pixels::new).transpose().to_python(py)
     }
 
-    /// The state of now as text.
+    /// Returns the current state as text.
     fn snapshot(&self, py: Python<'_>) -> PyResult<String> {
         self.state.with(py, |state| text_from_snapshot(&state.world.snapshot()?))
     }
 
-    /// Goes back to the state of a text.
+    /// Restores the state of a snapshot.
     fn restore(&self, py: Python<'_>, snapshot: &str) -> PyResult<()> {
         self.state.with(py, |state| state.world.restore(&snapshot_from_text(snapshot)?))
     }

@@ -1,4 +1,4 @@
-//! Environments that Python names or makes, for a learner to act in.
+//! Environments for trainings, named or created by Python.
 
 use opendr::environment::{Environment, EnvironmentSource};
 use opendr::simulation::RegisteredSource;
@@ -9,19 +9,20 @@ use super::python_environment::PythonEnvironment;
 use crate::error::{ToPython, error_from_exception};
 use crate::param::params_from_python;
 
-/// A name with parameters, or a function that makes bridges to environments written in Python.
+/// The environment argument of a learner's method: an id with parameters, or a function that returns bridges to environments
+/// written in Python.
 pub enum GivenEnvironments {
-    /// Of the registry.
+    /// An environment of the registry.
     Registered(RegisteredSource),
-    /// Made by Python.
-    Made(Py<PyAny>),
+    /// A Python function that returns a bridge.
+    Function(Py<PyAny>),
 }
 
 impl GivenEnvironments {
-    /// What a pair of id and parameters, or a function without arguments, makes.
+    /// Accepts a pair of id and parameters, or a function without arguments.
     pub fn from_python(object: &Bound<'_, PyAny>) -> PyResult<Self> {
         let Ok((id, params)) = object.extract::<(String, Bound<'_, PyDict>)>() else {
-            return Ok(Self::Made(object.clone().unbind()));
+            return Ok(Self::Function(object.clone().unbind()));
         };
         let params = params_from_python(&params)?;
         RegisteredSource::new(&id, &params).to_python(object.py()).map(Self::Registered)
@@ -32,9 +33,11 @@ impl EnvironmentSource for GivenEnvironments {
     fn make(&self) -> opendr::Result<Box<dyn Environment>> {
         match self {
             Self::Registered(source) => source.make(),
-            Self::Made(function) => Python::attach(|py| {
-                let made = function.bind(py).call0().and_then(|bridge| PythonEnvironment::new(&bridge));
-                made.map(|made| Box::new(made) as Box<dyn Environment>)
+            Self::Function(function) => Python::attach(|py| {
+                let environment =
+                    function.bind(py).call0().and_then(|bridge| PythonEnvironment::new(&bridge));
+                environment
+                    .map(|environment| Box::new(environment) as Box<dyn Environment>)
                     .map_err(|raised| error_from_exception(py, raised))
             }),
         }

@@ -1,4 +1,4 @@
-//! Spaces as plain Python, which `opendr/simulation/_spaces.py` turns into Gymnasium's and back.
+//! Spaces as plain Python objects, which `opendr/simulation/_spaces.py` converts to and from Gymnasium's.
 
 use opendr::environment::{Dtype, Space};
 use opendr::{Error, Result};
@@ -8,10 +8,10 @@ use pyo3::types::{PyDict, PyList, PyTuple};
 
 use crate::error::ToPython;
 
-/// Spaces in spaces; a description may hold itself.
+/// Maximum depth of nested spaces; bounded, since a dictionary may contain itself.
 const MAX_DEPTH: usize = 16;
 
-/// A space as a dictionary with its `type`; bounds that are all the same are one number.
+/// Converts a space to a dictionary with its `type`; equal bounds become one number.
 pub fn python_from_space<'py>(py: Python<'py>, space: &Space) -> PyResult<Bound<'py, PyDict>> {
     let table = PyDict::new(py);
     match space {
@@ -48,7 +48,9 @@ pub fn python_from_space<'py>(py: Python<'py>, space: &Space) -> PyResult<Bound<
             table.set_item("type", "Tuple")?;
             table.set_item("spaces", PyList::new(py, spaces?)?)?;
         }
-        other => return Err(PyValueError::new_err(format!("{other} has no form in Python"))),
+        other => {
+            return Err(PyValueError::new_err(format!("the space {other} cannot be converted to Python")));
+        }
     }
     Ok(table)
 }
@@ -62,17 +64,17 @@ fn bounds<'py>(py: Python<'py>, bounds: &[f32]) -> PyResult<Bound<'py, PyAny>> {
     }
 }
 
-/// The space that a dictionary describes.
+/// Converts a dictionary to a space.
 pub fn space_from_python(table: &Bound<'_, PyDict>) -> PyResult<Space> {
     space_at_depth(table, 0)
 }
 
 fn space_at_depth(table: &Bound<'_, PyDict>, depth: usize) -> PyResult<Space> {
     if depth == MAX_DEPTH {
-        return Err(PyValueError::new_err(format!("spaces in spaces, more than {MAX_DEPTH} deep")));
+        return Err(PyValueError::new_err(format!("spaces are nested more than {MAX_DEPTH} deep")));
     }
     let entry = |name: &str| {
-        table.get_item(name)?.ok_or_else(|| PyLookupError::new_err(format!("a space without {name:?}")))
+        table.get_item(name)?.ok_or_else(|| PyLookupError::new_err(format!("the space has no {name:?}")))
     };
     let kind: String = entry("type")?.extract()?;
     let space: Result<Space> = match kind.as_str() {
@@ -100,24 +102,27 @@ fn space_at_depth(table: &Bound<'_, PyDict>, depth: usize) -> PyResult<Space> {
             let parts = parts.map(|part| space_at_depth(part?.cast::<PyDict>()?, depth + 1));
             Ok(Space::Tuple(parts.collect::<PyResult<_>>()?))
         }
-        other => Err(Error::unsupported(format!("no learner takes a space of type {other}"))),
+        other => Err(Error::unsupported(format!("spaces of type {other} are not supported"))),
     };
     space.to_python(table.py())
 }
 
 fn box_space(low: &[f64], high: &[f64], shape: Vec<usize>, dtype: &str) -> Result<Space> {
-    let dtype = Dtype::from_name(dtype)
-        .ok_or_else(|| Error::unsupported(format!("numbers of type {dtype}; use float32 or uint8")))?;
+    let dtype = Dtype::from_name(dtype).ok_or_else(|| {
+        Error::unsupported(format!("numbers of type {dtype} are not supported; use float32 or uint8"))
+    })?;
     let single = |bounds: &[f64]| bounds.iter().map(|bound| *bound as f32).collect();
     Space::bounded(single(low), single(high), shape)?.with_dtype(dtype)
 }
 
 fn discrete(n: i64, start: i64) -> Result<Space> {
     match (u32::try_from(n), i32::try_from(start)) {
-        // Single precision tells whole numbers apart up to 2^24.
+        // float32 represents integers exactly up to 2^24.
         (Ok(n), Ok(start)) if n > 0 && start.unsigned_abs().saturating_add(n) <= 1 << 24 => {
             Ok(Space::Discrete { n, start })
         }
-        _ => Err(Error::unsupported(format!("{n} choices from {start}; there can be 2^24"))),
+        _ => Err(Error::unsupported(format!(
+            "a discrete space of {n} values from {start} is too large; the maximum is 2^24"
+        ))),
     }
 }

@@ -1,4 +1,4 @@
-//! Many environments for Python.
+//! The class `VectorEnvironment` of Python: several environments.
 
 use opendr::environment::{EnvironmentSpec, Info, ResetOptions};
 use opendr::simulation::Registry;
@@ -15,8 +15,8 @@ use super::spec_table;
 use crate::error::ToPython;
 use crate::param::params_from_python;
 
-/// Environments that are stepped together. All that goes in and comes out lies in arrays shared with NumPy; nothing is
-/// done in Python for each of them. `opendr.simulation.VectorEnvironment` is Gymnasium's form of it.
+/// Environments that are stepped together. Actions and results are arrays shared with NumPy; no Python code runs per
+/// environment. `opendr.simulation.VectorEnvironment` wraps it in Gymnasium's interface.
 #[pyclass(frozen, module = "opendr._opendr")]
 pub struct VectorEnvironment {
     state: Locked<State>,
@@ -35,12 +35,12 @@ struct State {
     actions: Vec<f32>,
 }
 
-/// Numbers by name: the name, a number for each environment, and whether it has one.
+/// Info values by name: the name, a value for each environment, and whether the environment has one.
 type Infos = Vec<(&'static str, Vec<f64>, Vec<bool>)>;
 
 #[pymethods]
 impl VectorEnvironment {
-    /// `count` environments `id` of the registry; `autoreset` is in Gymnasium's words.
+    /// Creates `count` environments `id` of the registry; `autoreset` is a mode of Gymnasium.
     #[new]
     fn new(
         py: Python<'_>,
@@ -74,49 +74,49 @@ impl VectorEnvironment {
         })
     }
 
-    /// Name, spaces and limits of each.
+    /// Name, spaces and limits of each environment.
     #[getter]
     fn spec<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         spec_table(py, &self.spec)
     }
 
-    /// Where observations are, an array for each part of the space.
+    /// Arrays of the observations, one for each part of the space.
     #[getter]
     fn observations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         self.observations.arrays(py)
     }
 
-    /// Where the last observations of ended episodes are, with autoreset in the same step.
+    /// Arrays of the final observations of ended episodes, in the mode `SameStep`.
     #[getter]
     fn final_observations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         self.final_observations.arrays(py)
     }
 
-    /// Where actions are wanted, an array for each part of the space.
+    /// Arrays of the actions, one for each part of the space, which the caller writes.
     #[getter]
     fn actions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         self.actions.arrays(py)
     }
 
-    /// Where rewards are.
+    /// Array of the rewards.
     #[getter]
     fn rewards(&self, py: Python<'_>) -> Py<SharedArray> {
         self.rewards.clone_ref(py)
     }
 
-    /// Where it is told which tasks ended.
+    /// Array of the flags `terminated`.
     #[getter]
     fn terminations(&self, py: Python<'_>) -> Py<SharedArray> {
         self.terminations.clone_ref(py)
     }
 
-    /// Where it is told which episodes were cut.
+    /// Array of the flags `truncated`.
     #[getter]
     fn truncations(&self, py: Python<'_>) -> Py<SharedArray> {
         self.truncations.clone_ref(py)
     }
 
-    /// Begins episodes, where `mask` says so; `seeds` is a number for each or none.
+    /// Begins episodes in the environments of `mask`, by default in all; `seeds` has a seed or `None` for each. Returns the infos.
     #[pyo3(signature = (seed=None, seeds=None, options=None, mask=None))]
     fn reset<'py>(
         &self,
@@ -131,7 +131,7 @@ impl VectorEnvironment {
             let seeds = match (&seeds, seed) {
                 (Some(seeds), _) => Seeds::Each(seeds),
                 (None, Some(seed)) => Seeds::From(seed),
-                (None, None) => Seeds::Chance,
+                (None, None) => Seeds::Random,
             };
             worlds.reset(seeds, &options, mask.as_deref(), batch)?;
             self.write(batch);
@@ -140,7 +140,7 @@ impl VectorEnvironment {
         python_from_infos(py, infos)
     }
 
-    /// Takes a step everywhere: what else is known, and of the ends of episodes, where observations were kept.
+    /// Takes a step in every environment. Returns the infos, and the final infos when episodes ended in the mode `SameStep`.
     fn step<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyDict>, Option<Bound<'py, PyDict>>)> {
         let (infos, ends) = self.state.with(py, |State { worlds, batch, actions }| {
             self.actions.read(actions);
@@ -158,12 +158,12 @@ impl VectorEnvironment {
         Ok((python_from_infos(py, infos)?, ends))
     }
 
-    /// The state of now as text.
+    /// Returns the current state as text.
     fn snapshot(&self, py: Python<'_>) -> PyResult<String> {
         self.state.with(py, |state| text_from_snapshot(&state.worlds.snapshot()?))
     }
 
-    /// Goes back to the state of a text.
+    /// Restores the state of a snapshot.
     fn restore(&self, py: Python<'_>, snapshot: &str) -> PyResult<()> {
         self.state.with(py, |state| state.worlds.restore(&snapshot_from_text(snapshot)?))
     }
@@ -184,15 +184,15 @@ fn autoreset_of_name(name: &str) -> Result<Autoreset> {
         "SameStep" => Ok(Autoreset::SameStep),
         "Disabled" => Ok(Autoreset::Disabled),
         _ => Err(Error::invalid_param(format!(
-            "autoreset mode {name:?}; there are \"NextStep\", \"SameStep\" and \"Disabled\""
+            "unknown autoreset mode {name:?}; the modes are \"NextStep\", \"SameStep\" and \"Disabled\""
         ))),
     }
 }
 
-/// Numbers of the environments that are `chosen`, by name.
-fn gathered(infos: &[Info], chosen: impl Fn(usize) -> bool) -> Infos {
+/// Gathers the info values of the `selected` environments, by name.
+fn gathered(infos: &[Info], selected: impl Fn(usize) -> bool) -> Infos {
     let mut gathered = Infos::new();
-    for (index, info) in infos.iter().enumerate().filter(|(index, _)| chosen(*index)) {
+    for (index, info) in infos.iter().enumerate().filter(|(index, _)| selected(*index)) {
         for (key, number) in info.iter() {
             let place = gathered.iter().position(|(name, ..)| *name == key).unwrap_or_else(|| {
                 gathered.push((key, vec![0.0; infos.len()], vec![false; infos.len()]));
@@ -205,7 +205,7 @@ fn gathered(infos: &[Info], chosen: impl Fn(usize) -> bool) -> Infos {
     gathered
 }
 
-/// By name, the numbers and who has one.
+/// Converts infos to a dictionary: by name, the values and the mask of environments that have one.
 fn python_from_infos(py: Python<'_>, infos: Infos) -> PyResult<Bound<'_, PyDict>> {
     let table = PyDict::new(py);
     for (key, numbers, has) in infos {

@@ -1,4 +1,4 @@
-"""Boxes in space become tracks."""
+"""Tracks of 3D boxes."""
 
 from opendr.engine.target import BoundingBox3D, BoundingBox3DList
 from opendr.perception.object_tracking_3d import ObjectTracking3DAb3dmotLearner

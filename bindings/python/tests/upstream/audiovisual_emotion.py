@@ -1,4 +1,4 @@
-"""An emotion by voice and face; the learner trains on the clips that it is given."""
+"""An emotion from voice and face; the learner is trained on the given clips."""
 
 import numpy as np
 from opendr.engine.data import Audio, Video

@@ -1,4 +1,4 @@
-"""A map of where something is in a large picture: it trains on pictures with boxes."""
+"""A map of objects in a large image; the learner is trained on images with boxes."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""Classes of pixels; the learner trains on CamVid and is measured on its other part."""
+"""Semantic segmentation; the learner is trained on one split of CamVid and evaluated on another."""
 
 import os
 

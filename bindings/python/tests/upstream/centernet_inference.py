@@ -1,4 +1,4 @@
-"""CenterNet with all the arguments that OpenDR's constructor has, by place."""
+"""CenterNet with all positional arguments of OpenDR's constructor."""
 
 from opendr.engine.data import Image
 from opendr.perception.object_detection_2d import CenterNetDetectorLearner

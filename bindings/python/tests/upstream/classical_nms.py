@@ -1,4 +1,4 @@
-"""Suppressions of OpenDR, on boxes of a detector and by themselves."""
+"""Non-maximum suppression of OpenDR, within a detector and on arrays."""
 
 import os
 
@@ -17,7 +17,7 @@ img = Image.open(os.path.join(os.environ["OPENDR_TEST_DATA"], "data/photos/bus.j
 usual = ssd.infer(img, threshold=0.3)
 cluster_nms = ClusterNMS(device="cpu", nms_type="default", cross_class=True)
 boxes = ssd.infer(img, threshold=0.3, custom_nms=cluster_nms)
-# Cluster-NMS ends where greedy suppression does.
+# Cluster-NMS converges to the result of greedy suppression.
 assert sorted(box.left for box in boxes) == sorted(box.left for box in usual)
 assert boxes[0].class_name == "person" and boxes.classes == ["person"]
 for other in (FastNMS(device="cpu"), SoftNMS("gaussian", "cpu"), ClusterNMS("diou", False, "cpu", 0.5, 200, 20)):

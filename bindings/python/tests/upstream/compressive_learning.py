@@ -1,4 +1,4 @@
-"""Pictures are sensed by few numbers and told apart."""
+"""Classification of images from few measurements."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""What a person does, told after every frame."""
+"""The action of a person, after every frame."""
 
 import numpy as np
 from opendr.engine.data import SkeletonSequence

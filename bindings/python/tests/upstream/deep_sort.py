@@ -1,4 +1,4 @@
-"""DeepSORT of pictures that carry their boxes, and of pictures and boxes apart."""
+"""DeepSORT with image and boxes as one input, and as two."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""Pictures with boxes: formats of the toolkit under OpenDR's names."""
+"""Images with boxes: formats of the toolkit under OpenDR's names."""
 
 import os
 

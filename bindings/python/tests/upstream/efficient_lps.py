@@ -1,4 +1,4 @@
-"""Classes and objects of a scan."""
+"""Panoptic segmentation of a scan."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""Classes and objects of a picture, drawn over it."""
+"""Panoptic segmentation of an image, drawn over it."""
 
 import os
 import sys

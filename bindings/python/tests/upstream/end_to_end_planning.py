@@ -1,4 +1,4 @@
-"""A policy that flies, made with the environment that it flies in."""
+"""A policy for a drone, whose constructor takes the environment."""
 
 import numpy as np
 from opendr.planning.end_to_end_planning import EndToEndPlanningRLLearner

@@ -1,4 +1,4 @@
-"""Targets: constructors by place, texts and conversions."""
+"""Targets: constructors with positional arguments, texts and conversions."""
 
 import numpy as np
 from opendr.engine.target import (

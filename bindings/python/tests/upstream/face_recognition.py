@@ -1,4 +1,4 @@
-"""Persons are made known by a folder of pictures, then recognised."""
+"""Persons are enrolled from a folder of images, then recognised."""
 
 import os
 import shutil
@@ -21,4 +21,4 @@ for person, file in (("1", "img2.jpg"), ("2", "img21.jpg")):
 try:
     recognizer.align("test_data", "aligned")
 except NotImplementedError as error:
-    assert "infer finds and aligns" in str(error)
+    assert "infer detects and aligns" in str(error)

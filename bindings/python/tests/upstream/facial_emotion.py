@@ -1,4 +1,4 @@
-"""The emotion of a face, the model loaded in OpenDR's order of arguments."""
+"""The emotion of a face, with OpenDR's order of arguments of `load`."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""PST-BLN trains on sequences of facial landmarks."""
+"""PST-BLN is trained on sequences of facial landmarks."""
 
 import numpy as np
 from opendr.engine.data import SkeletonSequence

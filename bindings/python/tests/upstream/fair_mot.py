@@ -1,4 +1,4 @@
-"""Persons are followed through frames whose numbers are given."""
+"""Persons are tracked in frames with given indices."""
 
 import os
 

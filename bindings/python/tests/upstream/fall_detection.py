@@ -1,4 +1,4 @@
-"""Falls, of the persons that a learner of poses finds, and of poses that are given."""
+"""Falls, from the poses of a pose estimator and from given poses."""
 
 import csv
 import os
@@ -24,7 +24,7 @@ for detection in detections:
     x, y, w, h = get_bbox(pose)
 assert any(category.data == -1 for category, _ in detections)
 
-# On one's side: neck, hips, knees and ankles in a row.
+# Lying on the side: neck, hips, knees and ankles in a line.
 lying = [[-1.0, -1.0]] * 18
 for joint, x in ((1, 10), (8, 60), (11, 62), (9, 90), (12, 92), (10, 120), (13, 122)):
     lying[joint] = [float(x), 100.0]

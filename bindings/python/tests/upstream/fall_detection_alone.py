@@ -1,4 +1,4 @@
-"""Without a pose estimator the fall detector finds the persons itself."""
+"""Without a pose estimator the fall detector detects persons itself."""
 
 import os
 
@@ -11,7 +11,7 @@ detector.load()
 img = Image.open(os.path.join(os.environ["OPENDR_TEST_DATA"], "data/photos/bus.jpg"))
 falls, poses = detector.infer(img)
 assert len(falls) == len(poses) >= 1 and set(detector.classes) == {"unknown", "fallen", "standing"}
-# The rule in Python says of the same poses what the native one says.
+# The rules in Python and in the native module agree on the same poses.
 detector.hold = 0.0
 detector.reset()
 falls, poses = detector.infer(img)

@@ -1,4 +1,4 @@
-"""A detector of two cameras trains on pairs of pictures; there is no pretrained one."""
+"""A detector of two cameras is trained on pairs of images; there is no pretrained one."""
 
 import json
 import os

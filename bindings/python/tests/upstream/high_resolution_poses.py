@@ -1,4 +1,4 @@
-"""Poses of a large picture in two passes."""
+"""Poses of a large image in two passes."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""Scans with boxes and tracks as KITTI has them."""
+"""Scans with boxes and tracks in KITTI's format."""
 
 import os
 import shutil

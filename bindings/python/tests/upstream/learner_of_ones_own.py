@@ -1,4 +1,4 @@
-"""A learner as OpenDR's documentation has it: a subclass with the common arguments by place."""
+"""A learner from OpenDR's documentation: a subclass with the common positional arguments."""
 
 import numpy as np
 from opendr.engine.data import Image
@@ -8,7 +8,7 @@ from opendr.engine.target import Category
 
 
 class Brightness(Learner):
-    """Tells whether a picture is bright."""
+    """Classifies images as bright or dark."""
 
     def fit(self, dataset, val_dataset=None, logging_path="", silent=True, verbose=True):
         self.threshold = float(np.mean([image.data.mean() for image, _ in dataset]) / 255)

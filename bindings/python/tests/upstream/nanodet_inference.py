@@ -1,4 +1,4 @@
-"""NanoDet, thresholds by place and by name: each holds for its call."""
+"""NanoDet, with thresholds by position and by name, each for one call."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""Poses are measured on COCO's annotations, also by the data set of OpenDR."""
+"""Poses are evaluated on COCO's annotations, also with OpenDR's data set class."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""A hand's gesture by colour and depth; the learner trains on the pairs that it is given."""
+"""A hand's gesture from colour and depth; the learner is trained on the given pairs."""
 
 import numpy as np
 from opendr.engine.data import Image

@@ -1,4 +1,4 @@
-"""Attention chooses among a detector's boxes."""
+"""Non-maximum suppression of a detector's boxes by attention."""
 
 import os
 

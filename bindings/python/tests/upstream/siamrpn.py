@@ -1,4 +1,4 @@
-"""One object is followed; one annotation a frame."""
+"""One object is tracked, with one annotation per frame."""
 
 import os
 

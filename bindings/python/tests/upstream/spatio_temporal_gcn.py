@@ -1,4 +1,4 @@
-"""What a person does by the moving skeleton."""
+"""The action of a person from the skeleton sequence."""
 
 import numpy as np
 from opendr.engine.data import SkeletonSequence
@@ -16,6 +16,6 @@ assert category.description in learner.classes
 try:
     SpatioTemporalGCNLearner(method_name="tagcn", device="cpu")
 except NotImplementedError as error:
-    assert "TAGCN is not here yet" in str(error)
+    assert "TAGCN is not available yet" in str(error)
 else:
     raise AssertionError("there is a TAGCN")

@@ -1,4 +1,4 @@
-"""Which word was spoken: three learners of OpenDR."""
+"""Recognition of spoken words: three learners of OpenDR."""
 
 import os
 import wave

@@ -1,4 +1,4 @@
-"""The detector of persons, as OpenDR's demo and paper call it."""
+"""The detector of persons, with the calls of OpenDR's demo and paper."""
 
 import os
 import sys

@@ -1,4 +1,4 @@
-"""A detector trains on a data set of Pascal VOC and is measured on part of another."""
+"""A detector is trained on a data set of Pascal VOC and evaluated on part of another."""
 
 import os
 

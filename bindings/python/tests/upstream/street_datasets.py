@@ -1,4 +1,4 @@
-"""Streets with classes: Cityscapes as it is published, and folders that OpenDR prepared."""
+"""Class maps of streets: Cityscapes as published, and folders prepared by OpenDR."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""Clips in folders of classes, and series that are made up."""
+"""Clips in folders of classes, and synthetic time series."""
 
 import os
 

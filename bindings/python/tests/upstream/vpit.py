@@ -1,4 +1,4 @@
-"""One car is followed in the scans of a lidar."""
+"""One car is tracked in lidar scans."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""Learners of OpenDR that are not here yet can be imported, and say what to use instead."""
+"""Learners of OpenDR that are not available yet can be imported, and name a replacement."""
 
 from opendr.control.mobile_manipulation import MobileRLLearner
 from opendr.control.multi_object_search import MultiObjectSearchRLLearner
@@ -29,6 +29,6 @@ for learner in (
     try:
         learner(device="cpu")
     except NotImplementedError as error:
-        assert str(error).startswith(f"{learner.__name__} is not here yet; "), error
+        assert str(error).startswith(f"{learner.__name__} is not available yet; "), error
     else:
         raise AssertionError(learner)

@@ -1,4 +1,4 @@
-"""What was said."""
+"""Transcription of speech."""
 
 import os
 

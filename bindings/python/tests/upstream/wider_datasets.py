@@ -1,4 +1,4 @@
-"""WIDER FACE and WiderPerson, in the folders that are unpacked."""
+"""WIDER FACE and WiderPerson, in the folders of their archives."""
 
 import os
 
@@ -35,6 +35,6 @@ with open("persons/val.txt", "w") as file:
 try:
     WiderPersonDataset("persons", ["val"])
 except ValueError as error:
-    assert "leads out of" in str(error)
+    assert "is outside" in str(error)
 else:
     raise AssertionError("a list may lead out of its folder")

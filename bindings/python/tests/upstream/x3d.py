@@ -1,4 +1,4 @@
-"""What persons do in a clip, and after every picture of it."""
+"""The activity in a clip, and after every frame of it."""
 
 from pathlib import Path
 

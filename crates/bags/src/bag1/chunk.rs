@@ -1,4 +1,4 @@
-//! Chunks: many messages' records, compressed as one.
+//! Chunks: records of many messages, compressed together.
 
 use bytes::Bytes;
 use opendr_engine::{Error, Result};
@@ -18,16 +18,16 @@ impl Layout for Connections {
         let header = Header::parse(&place.header)?;
         if header.op != op::CHUNK {
             return Err(Error::format(format!(
-                "the index points to a record of kind {}, not a chunk",
+                "the index points to a record of type {} instead of a chunk",
                 header.op
             )));
         }
-        let size = header.size.ok_or_else(|| Error::format("a chunk without its size"))?;
+        let size = header.size.ok_or_else(|| Error::format("a chunk has no size"))?;
         let bytes = source.read(place.data, place.data_len)?;
         decompress(header.compression.unwrap_or(b"none"), bytes, u64::from(size))
     }
 
-    fn learn(&mut self, records: &[u8], summary: &mut Summary) -> Result<()> {
+    fn read_channels(&mut self, records: &[u8], summary: &mut Summary) -> Result<()> {
         let mut at = 0;
         while at < records.len() {
             let (header, data) = split(records, at)?;
@@ -39,7 +39,7 @@ impl Layout for Connections {
         Ok(())
     }
 
-    fn load(&self, bytes: Bytes, wanted: impl Fn(usize, i64) -> bool) -> Result<Loaded> {
+    fn load(&self, bytes: Bytes, filter: impl Fn(usize, i64) -> bool) -> Result<Loaded> {
         let mut entries = Vec::new();
         let mut at = 0;
         while at < bytes.len() {
@@ -49,8 +49,8 @@ impl Layout for Connections {
                 continue;
             }
             let channel = self.channel(header.connection)?;
-            let log_time_ns = header.time_ns.ok_or_else(|| Error::format("a message without its time"))?;
-            if wanted(channel, log_time_ns) {
+            let log_time_ns = header.time_ns.ok_or_else(|| Error::format("a message has no time"))?;
+            if filter(channel, log_time_ns) {
                 let (channel, start, end) = (channel as u32, data.start, data.end);
                 entries.push(Entry { log_time_ns, publish_time_ns: None, channel, start, end });
             }

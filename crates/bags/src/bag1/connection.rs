@@ -1,4 +1,4 @@
-//! Connections: what this crate calls channels.
+//! Connections, which are the channels of this crate.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -9,14 +9,14 @@ use super::record::{Header, named};
 use crate::channel::{Channel, Encoding};
 use crate::storage::Summary;
 
-/// The bag's numbers of connections as indices of channels.
+/// Channel indices by connection number of the bag.
 #[derive(Default)]
 pub(super) struct Connections(HashMap<u32, usize>);
 
 impl Connections {
-    /// Takes in a connection's record; of a number that came before, the first record stays.
+    /// Adds the connection of a record; a record with a known number is ignored.
     pub fn add(&mut self, summary: &mut Summary, header: &Header, data: &[u8]) -> Result<()> {
-        let number = header.connection.ok_or_else(|| Error::format("a connection without its number"))?;
+        let number = header.connection.ok_or_else(|| Error::format("a connection has no number"))?;
         if let Entry::Vacant(entry) = self.0.entry(number) {
             entry.insert(summary.add(channel(header, data)?));
         }
@@ -24,9 +24,10 @@ impl Connections {
     }
 
     pub fn channel(&self, number: Option<u32>) -> Result<usize> {
-        let number = number.ok_or_else(|| Error::format("a message without its connection"))?;
-        let unknown =
-            || Error::format(format!("a message of connection {number}, which the bag does not have"));
+        let number = number.ok_or_else(|| Error::format("a message has no connection"))?;
+        let unknown = || {
+            Error::format(format!("a message refers to connection {number}, which the bag does not define"))
+        };
         self.0.get(&number).copied().ok_or_else(unknown)
     }
 
@@ -43,7 +44,7 @@ fn channel(header: &Header, data: &[u8]) -> Result<Channel> {
         match name {
             b"topic" if channel.topic.is_empty() => channel.topic = text(value),
             b"type" => channel.message_type = text(value),
-            // `*` is ROS 1's word for any type.
+            // ROS 1 writes `*` for any type.
             b"md5sum" => channel.type_hash = Some(text(value)).filter(|hash| hash != "*"),
             b"message_definition" => channel = channel.with_definition(text(value)),
             b"callerid" => channel.caller_id = Some(text(value)),
@@ -51,8 +52,8 @@ fn channel(header: &Header, data: &[u8]) -> Result<Channel> {
             _ => {}
         }
     }
-    // Some types are empty, but then their hash is known.
+    // The definition of an empty type is empty, but its hash is known.
     channel.definition =
-        channel.definition.filter(|told| !told.text.is_empty() || channel.type_hash.is_some());
+        channel.definition.filter(|definition| !definition.text.is_empty() || channel.type_hash.is_some());
     Ok(channel)
 }

@@ -1,4 +1,4 @@
-//! What a bag's end tells of its chunks, or a walk through the file where the end is missing.
+//! The index of a bag: read from its end, or rebuilt by scanning the file if it is missing.
 
 use std::collections::HashSet;
 
@@ -7,7 +7,7 @@ use opendr_engine::{Error, Result};
 use super::connection::Connections;
 use super::record::{Header, Place};
 use super::{MAGIC, op};
-use crate::chunked::{self, Chunked, Part, Stretch, TOGETHER};
+use crate::chunked::{self, Chunked, Extent, MAX_LOOSE_BYTES, Part};
 use crate::fields::Fields;
 use crate::source::{Source, Window};
 use crate::storage::Storage;
@@ -30,8 +30,8 @@ impl Index {
         if header.encryptor.is_some_and(|name| !name.is_empty()) {
             return Err(Error::unsupported("the bag is encrypted: decrypt it with `rosbag decrypt` first"));
         }
-        // An index that is not whole is as good as none: the chunks are all still there.
-        Self::from_end(source, &header).or_else(|_| Ok(Self::from_walk(source, place.end())))
+        // Without a valid index, the chunks are still there to scan.
+        Self::from_end(source, &header).or_else(|_| Ok(Self::from_scan(source, place.end())))
     }
 
     fn from_end(source: &Source, header: &Header) -> Result<Self> {
@@ -47,25 +47,25 @@ impl Index {
                 op::CONNECTION => index.layout.add(&mut index.summary, &header, &data)?,
                 op::CHUNK_INFO => {
                     if !seen.insert(header.chunk_pos) {
-                        return Err(Error::format("the index tells of a chunk twice"));
+                        return Err(Error::format("the index lists a chunk twice"));
                     }
                     index.add_info(&header, &data)?;
                 }
-                _ => return Err(Error::format(format!("a record of kind {} in the index", header.op))),
+                _ => return Err(Error::format(format!("a record of type {} in the index", header.op))),
             }
             at = place.end();
         }
-        let told = (header.connection_count, header.chunk_count);
+        let expected = (header.connection_count, header.chunk_count);
         let found = (Some(index.layout.len() as u32), Some(index.parts.len() as u32));
-        if at != source.len() || told != found {
-            return Err(Error::format("the index is not whole"));
+        if at != source.len() || expected != found {
+            return Err(Error::format("the index is incomplete"));
         }
         index.summary.is_complete = true;
         Ok(index)
     }
 
     fn add_info(&mut self, header: &Header, data: &[u8]) -> Result<()> {
-        let missing = || Error::format("a chunk's entry in the index lacks fields");
+        let missing = || Error::format("the index entry of a chunk lacks fields");
         let offset = header.chunk_pos.ok_or_else(missing)?;
         let (start, end) = header.start_ns.zip(header.end_ns).ok_or_else(missing)?;
         if header.count.ok_or_else(missing)? as usize != data.len() / 8 {
@@ -81,12 +81,12 @@ impl Index {
         if !channels.is_empty() {
             self.summary.cover(start, end);
         }
-        self.parts.push(Part { stretch: Stretch::Chunk { offset }, span: (start, end), channels });
+        self.parts.push(Part { extent: Extent::Chunk { offset }, span: (start, end), channels });
         Ok(())
     }
 
-    /// Reads record after record up to the first that is not whole.
-    fn from_walk(source: &Source, mut at: u64) -> Self {
+    /// Scans the file, record after record, up to the first incomplete one.
+    fn from_scan(source: &Source, mut at: u64) -> Self {
         let mut index = Self::default();
         let mut window = Window::new(source);
         let mut loose = None;
@@ -94,7 +94,7 @@ impl Index {
             let Ok(header) = Header::parse(&place.header) else { break };
             if place.end() > source.len() {
                 if header.op == op::CHUNK && header.compression == Some(b"none") {
-                    // Of a chunk that was cut, the messages before the cut are whole.
+                    // The messages before the cut of a truncated chunk are complete.
                     index.add_loose(source, loose.take());
                     at = place.data;
                     continue;
@@ -104,12 +104,12 @@ impl Index {
             match header.op {
                 op::CHUNK => {
                     index.add_loose(source, loose.take());
-                    index.add(source, Stretch::Chunk { offset: at });
+                    index.add(source, Extent::Chunk { offset: at });
                 }
                 op::MESSAGE | op::CONNECTION => {
                     let (offset, _) = loose.unwrap_or((at, 0));
                     loose = Some((offset, place.end() - offset));
-                    if place.end() - offset > TOGETHER {
+                    if place.end() - offset > MAX_LOOSE_BYTES {
                         index.add_loose(source, loose.take());
                     }
                 }

@@ -1,5 +1,5 @@
-//! rosbag 1, format 2.0: records of a header with named fields and of data, messages in chunks, an index at the
-//! end. Source: the ROS wiki, "Bags/Format/2.0".
+//! rosbag 1, format 2.0: records of a header with named fields and data, messages in chunks, an index at the end.
+//! Source: the ROS wiki, "Bags/Format/2.0".
 
 mod chunk;
 mod connection;
@@ -10,10 +10,10 @@ mod writer;
 pub(crate) use index::open;
 pub(crate) use writer::Bag1Writer;
 
-/// What a file starts with.
+/// First bytes of a file.
 pub(crate) const MAGIC: &[u8] = b"#ROSBAG V2.0\n";
 
-/// The kinds of records.
+/// Types of records.
 mod op {
     pub const MESSAGE: u8 = 2;
     pub const BAG: u8 = 3;
@@ -23,6 +23,6 @@ mod op {
     pub const CONNECTION: u8 = 7;
 }
 
-/// The bag's header and its padding without their lengths take this much, so that they can be written again at the
-/// end; `rosbag reindex` counts on just this.
+/// Size of the bag's header with its padding and without the two lengths, in bytes. The size is fixed, so that the
+/// header can be rewritten at the end; `rosbag reindex` relies on it.
 const BAG_HEADER: usize = 4096;

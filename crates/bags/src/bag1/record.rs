@@ -1,4 +1,4 @@
-//! A record: its header's length, the header, its data's length, the data.
+//! Records: length of the header, header, length of the data, data.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use opendr_engine::{Error, Result};
 use crate::fields::Fields;
 use crate::source::Window;
 
-/// The fields of a header that any reader here asks for.
+/// The fields of a header that the readers of this crate use.
 #[derive(Debug, Default, Clone, Copy)]
 pub(super) struct Header<'a> {
     pub op: u8,
@@ -54,7 +54,7 @@ impl<'a> Header<'a> {
     }
 }
 
-/// The `name=value` fields of a header, or of the data of a connection.
+/// Returns the `name=value` fields of a header, or of the data of a connection.
 pub(super) fn named(bytes: &[u8]) -> impl Iterator<Item = Result<(&[u8], &[u8])>> {
     let mut fields = Fields(bytes);
     std::iter::from_fn(move || {
@@ -63,7 +63,8 @@ pub(super) fn named(bytes: &[u8]) -> impl Iterator<Item = Result<(&[u8], &[u8])>
         }
         let split = |field: &'_ [u8]| field.iter().position(|byte| *byte == b'=');
         let field = fields.sized().and_then(|field| {
-            let at = split(field).ok_or_else(|| Error::format("a field of a record's header has no '='"))?;
+            let at =
+                split(field).ok_or_else(|| Error::format("a field in the header of a record has no '='"))?;
             Ok((field.get(..at).unwrap_or_default(), field.get(at + 1..).unwrap_or_default()))
         });
         if field.is_err() {
@@ -73,14 +74,14 @@ pub(super) fn named(bytes: &[u8]) -> impl Iterator<Item = Result<(&[u8], &[u8])>
     })
 }
 
-/// Seconds and nanoseconds of 32 bits each: always within 63 bits of nanoseconds.
+/// Reads a time: seconds and nanoseconds of 32 bits each, which always fit into 63 bits of nanoseconds.
 fn time_ns(value: &[u8]) -> Result<i64> {
     let mut fields = Fields(value);
     let seconds = fields.u32()?;
     Ok(i64::from(seconds) * 1_000_000_000 + i64::from(fields.u32()?))
 }
 
-/// The record at the front of `bytes` from `at`: its header and where its data is.
+/// Splits off the record of `bytes` at `at`: its header and the range of its data.
 pub(super) fn split(bytes: &[u8], at: usize) -> Result<(Header<'_>, Range<usize>)> {
     let mut fields = Fields(bytes.get(at..).unwrap_or_default());
     let before = fields.0.len();
@@ -90,7 +91,7 @@ pub(super) fn split(bytes: &[u8], at: usize) -> Result<(Header<'_>, Range<usize>
     Ok((header, end - data.len()..end))
 }
 
-/// A record in the file, of which only the header has been read.
+/// A record of the file, of which only the header has been read.
 pub(super) struct Place {
     pub header: Bytes,
     pub data: u64,
@@ -98,14 +99,16 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// Headers are small: a larger one is no header.
-    const LARGEST_HEADER: u32 = 1 << 24;
+    /// Largest valid length of a header, in bytes.
+    const MAX_HEADER_BYTES: u32 = 1 << 24;
 
     pub fn read(window: &mut Window, offset: u64) -> Result<Self> {
         let number = |bytes: Bytes| Fields(&bytes).u32();
         let len = number(window.read(offset, 4)?)?;
-        if len > Self::LARGEST_HEADER {
-            return Err(Error::format(format!("a record's header of {len} bytes at {offset}")));
+        if len > Self::MAX_HEADER_BYTES {
+            return Err(Error::format(format!(
+                "the header of the record at {offset} has {len} bytes, which is too long"
+            )));
         }
         let header = window.read(offset + 4, u64::from(len))?;
         let data = offset + 8 + u64::from(len);

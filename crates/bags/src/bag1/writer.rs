@@ -1,4 +1,4 @@
-//! Writes bags that ROS 1's own tools play.
+//! Writer of bags that the tools of ROS 1 can play.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -11,14 +11,14 @@ use crate::channel::Channel;
 use crate::compression::{Compression, compress};
 use crate::storage::StorageWriter;
 
-/// A bag being written. Chunks go to the file whole, with their own indices after them.
+/// A bag being written. Chunks are written whole, followed by their indices.
 pub(crate) struct Bag1Writer {
     file: File,
     compression: Compression,
     chunk_bytes: usize,
     connections: Vec<Connection>,
     chunk: Vec<u8>,
-    /// Times and offsets of the open chunk's messages by connection.
+    /// Times and offsets of the messages of the open chunk, by connection.
     open: BTreeMap<u32, Vec<(u64, u32)>>,
     chunks: Vec<ChunkInfo>,
 }
@@ -89,7 +89,7 @@ impl StorageWriter for Bag1Writer {
         let mut fields: Vec<(&str, &[u8])> = vec![
             ("topic", channel.topic.as_bytes()),
             ("type", channel.message_type.as_bytes()),
-            // ROS 1's word for a type that is not known.
+            // ROS 1 writes `*` for an unknown type.
             ("md5sum", channel.type_hash.as_deref().unwrap_or("*").as_bytes()),
             ("message_definition", definition.as_bytes()),
         ];
@@ -167,11 +167,11 @@ impl StorageWriter for Bag1Writer {
     }
 }
 
-/// Seconds in the low and nanoseconds in the high half: in the file, the seconds come first.
+/// Packs a time: seconds in the low half, nanoseconds in the high half. In the file, the seconds come first.
 fn ros_time(time_ns: i64) -> Result<u64> {
     let outside = || {
         Error::invalid_input(format!(
-            "a message at {time_ns} ns: rosbag 1 keeps times from 1 ns (its tools skip 0) to 2106; start the clock later"
+            "a message at {time_ns} ns: rosbag 1 supports times from 1 ns (its tools skip 0) to 2106; shift the clock"
         ))
     };
     let time = u64::try_from(time_ns).ok().filter(|time| *time > 0).ok_or_else(outside)?;
@@ -179,14 +179,14 @@ fn ros_time(time_ns: i64) -> Result<u64> {
     Ok(u64::from(seconds) | (time % 1_000_000_000) << 32)
 }
 
-/// A time as it sorts, from one as it is written, and back.
+/// Converts between a time as it is written and one that sorts by time.
 fn seconds_first(time: u64) -> u64 {
     time.rotate_left(32)
 }
 
 fn small(len: usize) -> Result<u32> {
     u32::try_from(len).map_err(|_| {
-        Error::invalid_input(format!("{len} bytes in one record: rosbag 1 keeps at most {} there", u32::MAX))
+        Error::invalid_input(format!("{len} bytes in one record: rosbag 1 supports at most {}", u32::MAX))
     })
 }
 
@@ -201,7 +201,7 @@ fn named(fields: &[(&str, &[u8])]) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// A record up to its data, of which `data_len` bytes are to follow.
+/// Returns a record up to its data, which has `data_len` bytes.
 fn header(fields: &[(&str, &[u8])], data_len: u32) -> Result<Vec<u8>> {
     let named = named(fields)?;
     let mut bytes = Vec::with_capacity(named.len() + 8);

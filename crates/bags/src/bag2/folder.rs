@@ -1,4 +1,4 @@
-//! A folder of rosbag2: what its files hold, as one recording.
+//! A folder of rosbag2: its files as one recording.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -13,12 +13,12 @@ use super::compressed::decompressed;
 use super::metadata::Metadata;
 use super::sqlite::Sqlite;
 use crate::mcap;
-use crate::recorded::{Recorded, Stream};
-use crate::selection::Wanted;
+use crate::recorded::{RecordedMessage, Stream};
+use crate::selection::Filter;
 use crate::source::Source;
 use crate::storage::{Storage, Summary};
 
-/// The file that tells what is in the folder.
+/// Name of the file with the metadata of the folder.
 pub(crate) const METADATA: &str = "metadata.yaml";
 
 /// An opened folder.
@@ -30,22 +30,23 @@ pub(crate) struct Folder {
 
 struct Parts {
     list: Vec<Part>,
-    /// Plain forms of compressed files, which go with the last reader.
+    /// Folder of the decompressed files, which is deleted with the last reader.
     _plain: Option<TempDir>,
 }
 
 struct Part {
     storage: Box<dyn Storage>,
-    /// Its channels as those of the whole.
+    /// Channel index in the whole recording for each channel of the file.
     channels: Vec<usize>,
 }
 
 impl Folder {
     pub fn open(path: &Path) -> Result<Self> {
-        let told = path.join(METADATA);
-        let metadata = told.exists().then(|| Metadata::read(&told)).transpose()?;
+        let metadata_path = path.join(METADATA);
+        let metadata = metadata_path.exists().then(|| Metadata::read(&metadata_path)).transpose()?;
         let mut files = match &metadata {
-            // Old recordings name the folder too; a name never leads out of it.
+            // Old recordings include the folder's name in paths. Only the file name is used, so no path leaves the
+            // folder.
             Some(metadata) => {
                 metadata.relative_file_paths.iter().filter_map(|file| inside(path, file)).collect()
             }
@@ -53,7 +54,7 @@ impl Folder {
         };
         if files.is_empty() {
             let folder = path.display();
-            return Err(Error::format(format!("{folder} has no files of a recording (.db3, .mcap)")));
+            return Err(Error::format(format!("{folder} contains no files of a recording (.db3, .mcap)")));
         }
         let mut plain = None;
         if metadata.as_ref().is_some_and(|metadata| metadata.is_compressed_by("file")) {
@@ -73,7 +74,7 @@ impl Folder {
         Ok(folder)
     }
 
-    /// Which storage it is of.
+    /// Returns whether the storage is SQLite.
     pub fn is_sqlite(&self) -> bool {
         self.is_sqlite
     }
@@ -93,11 +94,12 @@ impl Folder {
             } else {
                 let file = file.display();
                 return Err(Error::unsupported(format!(
-                    "{file} is neither SQLite nor MCAP: nothing else is read"
+                    "{file} is neither SQLite nor MCAP, the supported storages"
                 )));
             };
             let part = storage.summary();
-            // The files of SQLite were first told to be whole by the metadata of the folder.
+            // Without a metadata table in SQLite, the folder's metadata alone states that the recording is
+            // complete.
             summary.is_complete &= part.is_complete || is_sqlite;
             if let Some((start, end)) = part.span {
                 summary.cover(start, end);
@@ -120,18 +122,18 @@ impl Storage for Folder {
         &self.summary
     }
 
-    fn messages(&self, wanted: Wanted) -> Result<Stream> {
+    fn messages(&self, filter: Filter) -> Result<Stream> {
         let start = |part: &Part| part.storage.summary().span;
         let mut upcoming: Vec<_> =
             self.parts.list.iter().enumerate().filter_map(|(at, part)| Some((start(part)?.0, at))).collect();
-        if !wanted.in_file_order {
+        if !filter.in_file_order {
             upcoming.sort_unstable();
         }
         upcoming.reverse();
         let streams = self.parts.list.iter().map(|_| None).collect();
         Ok(Box::new(Merged {
             parts: self.parts.clone(),
-            wanted,
+            filter,
             upcoming,
             streams,
             heads: BinaryHeap::new(),
@@ -139,26 +141,26 @@ impl Storage for Folder {
     }
 }
 
-/// The messages of all files in order: a file is opened when its first message can be the next.
+/// Merges the messages of all files in order. A file is opened when its first message may be the next one.
 struct Merged {
     parts: Arc<Parts>,
-    wanted: Wanted,
+    filter: Filter,
     upcoming: Vec<(i64, usize)>,
-    streams: Vec<Option<(Stream, Option<Recorded>)>>,
+    streams: Vec<Option<(Stream, Option<RecordedMessage>)>>,
     heads: BinaryHeap<Reverse<(i64, usize)>>,
 }
 
 impl Merged {
-    fn step(&mut self) -> Result<Option<Recorded>> {
+    fn step(&mut self) -> Result<Option<RecordedMessage>> {
         while let Some(&(start, at)) = self.upcoming.last() {
             let is_early = self.heads.peek().is_some_and(|Reverse((time, _))| *time < start);
-            if is_early || (self.wanted.in_file_order && !self.heads.is_empty()) {
+            if is_early || (self.filter.in_file_order && !self.heads.is_empty()) {
                 break;
             }
             self.upcoming.pop();
             if let Some(part) = self.parts.list.get(at) {
-                let channels = part.channels.iter().map(|channel| self.wanted.channel(*channel)).collect();
-                let stream = part.storage.messages(Wanted { channels, ..self.wanted.clone() })?;
+                let channels = part.channels.iter().map(|channel| self.filter.channel(*channel)).collect();
+                let stream = part.storage.messages(Filter { channels, ..self.filter.clone() })?;
                 self.advance(at, stream)?;
             }
         }
@@ -174,7 +176,7 @@ impl Merged {
 
     fn advance(&mut self, at: usize, mut stream: Stream) -> Result<()> {
         let Some(message) = stream.next().transpose()? else { return Ok(()) };
-        // In the order of files, only one is open.
+        // In file order, only one file is open.
         self.heads.push(Reverse((message.log_time_ns, at)));
         if let Some(slot) = self.streams.get_mut(at) {
             *slot = Some((stream, Some(message)));
@@ -184,7 +186,7 @@ impl Merged {
 }
 
 impl Iterator for Merged {
-    type Item = Result<Recorded>;
+    type Item = Result<RecordedMessage>;
 
     fn next(&mut self) -> Option<Self::Item> {
         self.step().transpose()
@@ -201,11 +203,11 @@ fn known_compression(metadata: Option<&Metadata>) -> Result<()> {
         return Ok(());
     }
     Err(Error::unsupported(format!(
-        "the recording is compressed with {format:?}, of which only zstd is read: `ros2 bag convert` writes it plain"
+        "the recording is compressed with {format:?}; only zstd is supported: decompress it with `ros2 bag convert`"
     )))
 }
 
-/// The files of a recording whose end was not written, in the order of their numbers.
+/// Returns the files of a recording without metadata, in the order of their numbers.
 fn files_of(folder: &Path) -> Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder).context(|| format!("opening {}", folder.display()))? {

@@ -1,4 +1,4 @@
-//! `metadata.yaml`: versions 1 to 9 are read, 8 is written.
+//! `metadata.yaml`: reads versions 1 to 9, writes version 8.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -9,7 +9,7 @@ use serde::Deserialize;
 use crate::channel::Channel;
 use crate::storage::Summary;
 
-/// Of `metadata.yaml`, what the files themselves do not tell.
+/// The fields of `metadata.yaml` that the files themselves do not contain.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Metadata {
@@ -39,15 +39,15 @@ struct Root {
     rosbag2_bagfile_information: Metadata,
 }
 
-/// Larger files are no metadata.
-const LARGEST: u64 = 64 << 20;
+/// Largest size of a metadata file, in bytes.
+const MAX_BYTES: u64 = 64 << 20;
 
 impl Metadata {
     pub fn read(path: &Path) -> Result<Self> {
         let read = || {
             let size = std::fs::metadata(path)?.len();
-            if size > LARGEST {
-                return Err(Error::format(format!("{size} bytes: more than {LARGEST} are never read")));
+            if size > MAX_BYTES {
+                return Err(Error::format(format!("{size} bytes: the limit for metadata is {MAX_BYTES}")));
             }
             Self::from_yaml(&std::fs::read_to_string(path)?)
         };
@@ -56,11 +56,11 @@ impl Metadata {
 
     pub fn from_yaml(text: &str) -> Result<Self> {
         let root: Root = serde_saphyr::from_str(text)
-            .map_err(|error| Error::format("no metadata of rosbag2").with_source(error.to_string()))?;
+            .map_err(|error| Error::format("not the metadata of rosbag2").with_source(error.to_string()))?;
         Ok(root.rosbag2_bagfile_information)
     }
 
-    /// The hash of a channel's type, where only the metadata has it.
+    /// Returns the hash of the type of a channel, if the metadata has it.
     pub fn type_hash(&self, channel: &Channel) -> Option<String> {
         let topics = self.topics_with_message_count.iter().map(|topic| &topic.topic_metadata);
         let mut same =
@@ -68,16 +68,16 @@ impl Metadata {
         same.next()?.type_description_hash.clone().filter(|hash| !hash.is_empty())
     }
 
-    /// Whether `mode` (`file` or `message`) is how the recording was compressed.
+    /// Returns whether the recording is compressed by `mode` (`file` or `message`).
     pub fn is_compressed_by(&self, mode: &str) -> bool {
-        self.compression_mode.as_deref().is_some_and(|told| told.eq_ignore_ascii_case(mode))
+        self.compression_mode.as_deref().is_some_and(|own| own.eq_ignore_ascii_case(mode))
     }
 }
 
-/// The version written: the last with the quality of service as text, which every ROS 2 since Humble reads.
+/// Version that is written: the last with the quality of service as text, which ROS 2 reads since Humble.
 pub(super) const VERSION: u32 = 8;
 
-/// The metadata of a recording with one file, without the outermost name: as the storages keep it.
+/// Returns the metadata of a recording with one file without the outermost key, as the storages keep it.
 pub(super) fn to_yaml(storage: &str, file: &str, summary: &Summary) -> String {
     let (start, end) = summary.span.unwrap_or_default();
     let duration = end.saturating_sub(start);
@@ -112,7 +112,7 @@ pub(super) fn to_yaml(storage: &str, file: &str, summary: &Summary) -> String {
     )
 }
 
-/// The whole of `metadata.yaml`.
+/// Returns the content of `metadata.yaml`.
 pub(super) fn document(information: &str) -> String {
     let mut yaml = "rosbag2_bagfile_information:\n".to_owned();
     for line in information.lines() {
@@ -123,7 +123,7 @@ pub(super) fn document(information: &str) -> String {
     yaml
 }
 
-/// A double-quoted scalar.
+/// Returns a double-quoted scalar.
 fn quoted(text: &str) -> String {
     let mut out = "\"".to_owned();
     for character in text.chars() {
@@ -132,7 +132,7 @@ fn quoted(text: &str) -> String {
             '\\' => out += "\\\\",
             '\n' => out += "\\n",
             '\t' => out += "\\t",
-            // Control characters and the breaks that YAML 1.1 knows beside the line feed.
+            // Control characters, and the line breaks of YAML 1.1 besides the line feed.
             c if c.is_control() || matches!(c, '\u{2028}' | '\u{2029}' | '\u{feff}') => {
                 let _ = write!(out, "\\u{:04X}", u32::from(c));
             }

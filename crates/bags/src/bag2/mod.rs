@@ -5,6 +5,7 @@ mod folder;
 mod metadata;
 mod rows;
 mod sqlite;
+mod sqlite_error;
 mod sqlite_writer;
 mod writer;
 
@@ -12,5 +13,5 @@ pub(crate) use folder::{Folder, METADATA};
 pub(crate) use sqlite::Sqlite;
 pub(crate) use writer::{Bag2Writer, remove};
 
-/// What a SQLite file starts with.
+/// First bytes of a SQLite file.
 pub(crate) const SQLITE_MAGIC: &[u8] = b"SQLite format 3\0";

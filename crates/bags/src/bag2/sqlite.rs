@@ -9,29 +9,30 @@ use rusqlite::limits::Limit;
 use rusqlite::{Connection, OpenFlags, OptionalExtension};
 
 use super::rows::Rows;
+use super::sqlite_error::sqlite_error;
 use crate::channel::{Channel, Definition, Encoding, Language};
 use crate::recorded::Stream;
-use crate::selection::Wanted;
+use crate::selection::Filter;
 use crate::storage::{Storage, Summary};
 
-/// An opened file. Connections are made for each reading, since SQLite's are not shared.
+/// An opened file. Each reader has a connection of its own, since SQLite's connections cannot be shared.
 pub(crate) struct Sqlite {
     path: PathBuf,
-    /// The rows of `topics` as indices of channels.
+    /// Channel indices by id of the table `topics`.
     topics: HashMap<i64, usize>,
     is_zstd: bool,
     summary: Summary,
 }
 
 impl Sqlite {
-    /// `is_zstd`: every message's bytes are compressed.
+    /// Opens the file at `path`. `is_zstd`: the bytes of each message are compressed.
     pub fn open(path: &Path, is_zstd: bool) -> Result<Self> {
         let read = || -> Result<Self> {
             let database = connect(path)?;
             let mut storage =
                 Self { path: path.to_owned(), topics: HashMap::new(), is_zstd, summary: Summary::default() };
-            storage.read_topics(&database).map_err(refused)?;
-            storage.read_counts(&database).map_err(refused)?;
+            storage.read_topics(&database).map_err(sqlite_error)?;
+            storage.read_counts(&database).map_err(sqlite_error)?;
             Ok(storage)
         };
         read().context(|| format!("reading {}", path.display()))
@@ -73,7 +74,7 @@ impl Sqlite {
             let (start, end): (Option<i64>, Option<i64>) = (row.get(0)?, row.get(1)?);
             Ok(start.zip(end))
         })?;
-        // Since Iron the recorder leaves its metadata in the file when it ends.
+        // Since Iron, the recorder stores its metadata in the file when it finishes.
         let metadata = "SELECT 1 FROM metadata LIMIT 1";
         self.summary.is_complete = has_table(database, "metadata")?
             && database.query_row(metadata, [], |_| Ok(())).optional()?.is_some();
@@ -86,13 +87,13 @@ impl Storage for Sqlite {
         &self.summary
     }
 
-    fn messages(&self, wanted: Wanted) -> Result<Stream> {
-        let rows = || Rows::new(connect(&self.path)?, self.topics.clone(), &wanted, self.is_zstd);
+    fn messages(&self, filter: Filter) -> Result<Stream> {
+        let rows = || Rows::new(connect(&self.path)?, self.topics.clone(), &filter, self.is_zstd);
         Ok(Box::new(rows().context(|| format!("reading {}", self.path.display()))?))
     }
 }
 
-/// Opens a file from outside: nothing in it may run, nothing is written to it.
+/// Opens an untrusted file read-only, with triggers, views and schema functions disabled.
 fn connect(path: &Path) -> Result<Connection> {
     let open = || -> rusqlite::Result<Connection> {
         let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
@@ -104,10 +105,10 @@ fn connect(path: &Path) -> Result<Connection> {
         database.set_limit(Limit::SQLITE_LIMIT_LENGTH, i32::MAX)?;
         Ok(database)
     };
-    let database = open().map_err(refused)?;
+    let database = open().map_err(sqlite_error)?;
     for table in ["topics", "messages"] {
-        if !has_table(&database, table).map_err(refused)? {
-            return Err(Error::format(format!("no recording of rosbag2: there is no table {table:?}")));
+        if !has_table(&database, table).map_err(sqlite_error)? {
+            return Err(Error::format(format!("not a recording of rosbag2: it has no table {table:?}")));
         }
     }
     Ok(database)
@@ -130,20 +131,4 @@ fn definitions(database: &Connection) -> rusqlite::Result<HashMap<String, Defini
         Ok((row.get(0)?, Definition { language, text: row.get(2)? }))
     })?;
     rows.collect()
-}
-
-/// SQLite's refusals: a file that is no database or damaged is one of format, the rest is the system's.
-pub(super) fn refused(error: rusqlite::Error) -> Error {
-    use rusqlite::ErrorCode::{
-        CannotOpen, DatabaseBusy, DatabaseLocked, DiskFull, ReadOnly, SystemIoFailure,
-    };
-    match error.sqlite_error_code() {
-        Some(ReadOnly) => Error::io(
-            "the recording was cut off while it was written: open it once with `sqlite3 FILE .tables` to repair it",
-        ),
-        Some(CannotOpen | DatabaseBusy | DatabaseLocked | DiskFull | SystemIoFailure) => {
-            Error::io("SQLite refused").with_source(error)
-        }
-        _ => Error::format("SQLite cannot read the recording").with_source(error),
-    }
 }

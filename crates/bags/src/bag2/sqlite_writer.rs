@@ -1,4 +1,4 @@
-//! Writes the SQLite file of rosbag2, schema version 4.
+//! Writer of the SQLite file of rosbag2, schema version 4.
 
 use std::collections::HashSet;
 use std::path::Path;
@@ -7,7 +7,7 @@ use opendr_engine::{Error, Result};
 use rusqlite::Connection;
 
 use super::metadata::VERSION;
-use super::sqlite::refused;
+use super::sqlite_error::sqlite_error;
 use crate::channel::{Channel, Language};
 
 const SCHEMA: &str = "
@@ -23,26 +23,26 @@ CREATE INDEX timestamp_idx ON messages (timestamp ASC);
 INSERT INTO schema(schema_version, ros_distro) VALUES (4, 'opendr');
 ";
 
-/// A file being written. What was flushed stays readable when the program ends in the middle.
+/// A file being written. Flushed messages stay readable after a crash.
 pub(super) struct SqliteWriter {
     database: Connection,
     types: HashSet<String>,
     topics: i64,
-    /// Bytes of the open transaction; none is open at 0.
+    /// Bytes in the open transaction; 0 if none is open.
     open_bytes: usize,
     chunk_bytes: usize,
 }
 
 impl SqliteWriter {
     pub fn new(path: &Path, chunk_bytes: usize) -> Result<Self> {
-        let database = Connection::open(path).map_err(refused)?;
+        let database = Connection::open(path).map_err(sqlite_error)?;
         let prepare = || {
-            // With a log ahead of the file, a reader needs no repair after a crash.
+            // With a write-ahead log, the file needs no repair after a crash.
             database.pragma_update_and_check(None, "journal_mode", "wal", |_| Ok(()))?;
             database.pragma_update(None, "synchronous", "normal")?;
             database.execute_batch(SCHEMA)
         };
-        prepare().map_err(refused)?;
+        prepare().map_err(sqlite_error)?;
         Ok(Self { database, types: HashSet::new(), topics: 0, open_bytes: 0, chunk_bytes })
     }
 
@@ -51,7 +51,7 @@ impl SqliteWriter {
         self.topics += 1;
         let insert = "INSERT INTO topics VALUES(?1, ?2, ?3, 'cdr', ?4, ?5)";
         let row = (self.topics, &channel.topic, &channel.message_type, qos, hash);
-        self.database.execute(insert, row).map_err(refused)?;
+        self.database.execute(insert, row).map_err(sqlite_error)?;
         if let Some(definition) = &channel.definition
             && self.types.insert(channel.message_type.clone())
         {
@@ -60,7 +60,7 @@ impl SqliteWriter {
                           (topic_type, encoding, encoded_message_definition, type_description_hash) \
                           VALUES(?1, ?2, ?3, ?4)";
             let row = (&channel.message_type, language, &definition.text, hash);
-            self.database.execute(insert, row).map_err(refused)?;
+            self.database.execute(insert, row).map_err(sqlite_error)?;
         }
         Ok(())
     }
@@ -77,14 +77,14 @@ impl SqliteWriter {
             let insert = "INSERT INTO messages (topic_id, timestamp, data) VALUES(?1, ?2, ?3)";
             self.database.prepare_cached(insert)?.execute((topic, log_time_ns, bytes))
         };
-        write().map_err(refused)?;
+        write().map_err(sqlite_error)?;
         self.open_bytes += bytes.len() + 32;
         if self.open_bytes >= self.chunk_bytes { self.flush() } else { Ok(()) }
     }
 
     pub fn flush(&mut self) -> Result<()> {
         if self.open_bytes > 0 {
-            self.database.execute_batch("COMMIT").map_err(refused)?;
+            self.database.execute_batch("COMMIT").map_err(sqlite_error)?;
             self.open_bytes = 0;
         }
         Ok(())
@@ -93,8 +93,10 @@ impl SqliteWriter {
     pub fn finish(&mut self, metadata: &str) -> Result<()> {
         self.flush()?;
         let insert = "INSERT INTO metadata(metadata_version, metadata) VALUES(?1, ?2)";
-        self.database.execute(insert, (VERSION, metadata)).map_err(refused)?;
-        // The log's content moves into the file: other readers take it alone.
-        self.database.pragma_update_and_check(None, "journal_mode", "delete", |_| Ok(())).map_err(refused)
+        self.database.execute(insert, (VERSION, metadata)).map_err(sqlite_error)?;
+        // Moves the content of the log into the file, since other readers read the file alone.
+        self.database
+            .pragma_update_and_check(None, "journal_mode", "delete", |_| Ok(()))
+            .map_err(sqlite_error)
     }
 }

@@ -1,4 +1,4 @@
-//! Writes a folder of rosbag2.
+//! Writer of a folder of rosbag2.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -14,7 +14,7 @@ use crate::compression::Compression;
 use crate::mcap::McapWriter;
 use crate::storage::{StorageWriter, Summary};
 
-/// A folder being written; its metadata comes last.
+/// A folder being written. Its metadata is written last.
 pub(crate) struct Bag2Writer {
     folder: PathBuf,
     file: String,
@@ -28,14 +28,14 @@ enum Inner {
 }
 
 impl Bag2Writer {
-    /// In the folder `path`, which has to be there.
+    /// Writes SQLite into the folder `path`, which must exist.
     pub fn sqlite(path: &Path, chunk_bytes: usize) -> Result<Self> {
         let file = format!("{}_0.db3", name(path)?);
         let storage = Inner::Sqlite(SqliteWriter::new(&path.join(&file), chunk_bytes)?);
         Ok(Self { folder: path.to_owned(), file, storage, summary: Summary::default() })
     }
 
-    /// Likewise.
+    /// Writes MCAP into the folder `path`, which must exist.
     pub fn mcap(path: &Path, compression: Compression, chunk_bytes: usize) -> Result<Self> {
         let file = format!("{}_0.mcap", name(path)?);
         let target = File::create_new(path.join(&file))?;
@@ -85,7 +85,7 @@ impl StorageWriter for Bag2Writer {
                 information
             }
         };
-        // Whoever finds the metadata finds all of it.
+        // The renaming makes the metadata appear complete or not at all.
         let unfinished = self.folder.join("metadata.yaml.tmp");
         fs::write(&unfinished, document(&information))?;
         fs::rename(&unfinished, self.folder.join(METADATA))?;
@@ -93,11 +93,11 @@ impl StorageWriter for Bag2Writer {
     }
 }
 
-/// Removes a recording from its folder, and nothing else that may lie there.
+/// Removes the files of a recording from its folder; other files are kept.
 ///
 /// # Errors
 ///
-/// When the folder holds something but no recording.
+/// If the folder contains other files but no recording.
 pub(crate) fn remove(folder: &Path) -> Result<()> {
     let mut files = Vec::new();
     let mut others = 0;
@@ -113,13 +113,15 @@ pub(crate) fn remove(folder: &Path) -> Result<()> {
     }
     if files.is_empty() && others > 0 {
         let folder = folder.display();
-        return Err(Error::invalid_input(format!("{folder} holds no recording: it is not overwritten")));
+        return Err(Error::invalid_input(format!(
+            "{folder} contains other files but no recording, so it is not overwritten: choose another folder"
+        )));
     }
     files.iter().try_for_each(fs::remove_file).context(|| format!("overwriting {}", folder.display()))
 }
 
 fn name(path: &Path) -> Result<String> {
     let name = path.file_name().and_then(|name| name.to_str());
-    let unnamed = || Error::invalid_input(format!("{} names no folder in UTF-8", path.display()));
+    let unnamed = || Error::invalid_input(format!("the folder name of {} is not UTF-8", path.display()));
     name.map(str::to_owned).ok_or_else(unnamed)
 }

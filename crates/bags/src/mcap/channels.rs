@@ -1,4 +1,4 @@
-//! Schemas and channels.
+//! Schemas and channels of an MCAP file.
 
 use std::collections::HashMap;
 
@@ -9,7 +9,7 @@ use crate::channel::{Channel, Definition, Encoding, Language, normal_type};
 use crate::fields::Fields;
 use crate::storage::Summary;
 
-/// The file's schemas and its numbers of channels as indices of ours.
+/// Schemas of the file, and channel indices by channel number.
 #[derive(Default)]
 pub(super) struct Channels {
     schemas: HashMap<u16, Schema>,
@@ -22,7 +22,7 @@ struct Schema {
 }
 
 impl Channels {
-    /// Takes in the body of a schema's record; of a number that came before, the first record stays.
+    /// Adds the schema of a record body; a record with a known number is ignored.
     pub fn add_schema(&mut self, body: &[u8]) -> Result<()> {
         let mut fields = Fields(body);
         let (number, name, encoding) = (fields.u16()?, fields.text()?, fields.text()?);
@@ -40,7 +40,7 @@ impl Channels {
         Ok(())
     }
 
-    /// Takes in the body of a channel's record, likewise.
+    /// Adds the channel of a record body; a record with a known number is ignored.
     pub fn add_channel(&mut self, summary: &mut Summary, body: &[u8]) -> Result<()> {
         let mut fields = Fields(body);
         let (number, schema) = (fields.u16()?, fields.u16()?);
@@ -68,7 +68,7 @@ impl Channels {
 
     pub fn index(&self, number: u16) -> Result<usize> {
         let unknown =
-            || Error::format(format!("a message of channel {number}, which the file does not have"));
+            || Error::format(format!("a message refers to channel {number}, which the file does not define"));
         self.indices.get(&number).copied().ok_or_else(unknown)
     }
 

@@ -1,4 +1,4 @@
-//! Chunks: many records, compressed as one.
+//! Chunks: many records, compressed together.
 
 use bytes::Bytes;
 use opendr_engine::{Error, ErrorKind, Result};
@@ -7,7 +7,7 @@ use super::channels::Channels;
 use super::record::{Place, split, time_ns};
 use super::{MESSAGE_HEADER, op};
 use crate::chunked::Layout;
-use crate::compression::{LARGEST, decompress};
+use crate::compression::{MAX_BYTES, decompress};
 use crate::fields::Fields;
 use crate::in_order::{Entry, Loaded};
 use crate::source::{Source, Window};
@@ -19,11 +19,11 @@ impl Layout for Channels {
         let place = Place::read(&mut window, offset)?;
         if place.op != op::CHUNK {
             return Err(Error::format(format!(
-                "the index points to a record of kind {}, not a chunk",
+                "the index points to a record of type {} instead of a chunk",
                 place.op
             )));
         }
-        // Times, size, checksum and the compression's name fit into this.
+        // The times, size, checksum and name of the compression fit into this.
         let head = window.read(place.body, place.len.min(256))?;
         let mut fields = Fields(&head);
         fields.take(16)?;
@@ -31,17 +31,17 @@ impl Layout for Channels {
         let name = fields.sized()?;
         let len = fields.u64()?;
         let at = (head.len() - fields.0.len()) as u64;
-        if len > place.len - at || len > LARGEST {
-            return Err(Error::format(format!("a chunk of {} bytes is told to hold {len}", place.len)));
+        if len > place.len - at || len > MAX_BYTES {
+            return Err(Error::format(format!("a chunk of {} bytes states {len} bytes of data", place.len)));
         }
         let bytes = decompress(name, source.read(place.body + at, len)?, size)?;
         if checksum != 0 && crc32fast::hash(&bytes) != checksum {
-            return Err(Error::new(ErrorKind::Integrity, "the chunk differs from its checksum"));
+            return Err(Error::new(ErrorKind::Integrity, "the chunk does not match its checksum"));
         }
         Ok(bytes)
     }
 
-    fn learn(&mut self, records: &[u8], summary: &mut Summary) -> Result<()> {
+    fn read_channels(&mut self, records: &[u8], summary: &mut Summary) -> Result<()> {
         let mut at = 0;
         while at < records.len() {
             let (op, body) = split(records, at)?;
@@ -56,7 +56,7 @@ impl Layout for Channels {
         Ok(())
     }
 
-    fn load(&self, bytes: Bytes, wanted: impl Fn(usize, i64) -> bool) -> Result<Loaded> {
+    fn load(&self, bytes: Bytes, filter: impl Fn(usize, i64) -> bool) -> Result<Loaded> {
         let mut entries = Vec::new();
         let mut at = 0;
         while at < bytes.len() {
@@ -70,7 +70,7 @@ impl Layout for Channels {
             fields.u32()?;
             let log_time_ns = time_ns(fields.u64()?)?;
             let publish_time_ns = i64::try_from(fields.u64()?).ok();
-            if wanted(channel, log_time_ns) {
+            if filter(channel, log_time_ns) {
                 let (channel, start, end) = (channel as u32, body.start + MESSAGE_HEADER, body.end);
                 entries.push(Entry { log_time_ns, publish_time_ns, channel, start, end });
             }

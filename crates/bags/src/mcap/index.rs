@@ -1,4 +1,4 @@
-//! What a file's summary tells, or a walk through the file where there is none.
+//! The index of an MCAP file: read from its summary, or rebuilt by scanning the file if there is none.
 
 use std::collections::HashSet;
 
@@ -7,7 +7,7 @@ use opendr_engine::{Error, Result};
 use super::channels::Channels;
 use super::record::{Place, time_ns};
 use super::{FOOTER, MAGIC, op};
-use crate::chunked::{self, Chunked, Part, Stretch, TOGETHER};
+use crate::chunked::{self, Chunked, Extent, MAX_LOOSE_BYTES, Part};
 use crate::fields::Fields;
 use crate::source::{Source, Window};
 use crate::storage::Storage;
@@ -30,18 +30,18 @@ impl Index {
         let footer = footer(source).ok();
         let summary = footer.and_then(|at| Self::from_summary(source, at).ok());
         Ok(summary.unwrap_or_else(|| {
-            let mut index = Self::from_walk(source, header.end());
+            let mut index = Self::from_scan(source, header.end());
             index.summary.is_complete = footer.is_some();
             index
         }))
     }
 
-    /// Fails where the summary does not suffice: what it leaves out is then found by the walk.
+    /// Reads the summary. An insufficient summary is an error, after which the file is scanned.
     fn from_summary(source: &Source, footer: u64) -> Result<Self> {
         let mut window = Window::new(source);
         let mut at = Fields(&window.read(footer + 9, 8)?).u64()?;
         if at == 0 || at > footer {
-            return Err(Error::format("there is no summary"));
+            return Err(Error::format("the MCAP file has no summary"));
         }
         let mut index = Self::default();
         let mut statistics = None;
@@ -74,10 +74,10 @@ impl Index {
         fields.u16()?;
         let channels = fields.u32()? as usize;
         fields.take(8)?;
-        let told = fields.u32()? as usize;
-        // Messages outside of chunks are in no index.
-        if channels != self.layout.len() || told != chunks || (messages > 0 && chunks == 0) {
-            return Err(Error::format("the summary is not whole"));
+        let stated_chunks = fields.u32()? as usize;
+        // Messages outside of chunks are not indexed.
+        if channels != self.layout.len() || stated_chunks != chunks || (messages > 0 && chunks == 0) {
+            return Err(Error::format("the summary is incomplete"));
         }
         let (start, end) = (time_ns(fields.u64()?)?, time_ns(fields.u64()?)?);
         if messages > 0 {
@@ -91,7 +91,7 @@ impl Index {
             total = total.saturating_add(count);
         }
         if total != messages {
-            return Err(Error::format("the summary does not count messages by channel"));
+            return Err(Error::format("the summary has no message count for some channels"));
         }
         Ok(())
     }
@@ -100,7 +100,7 @@ impl Index {
         let span = (time_ns(fields.u64()?)?, time_ns(fields.u64()?)?);
         let offset = fields.u64()?;
         if !seen.insert(offset) {
-            return Err(Error::format("the summary tells of a chunk twice"));
+            return Err(Error::format("the summary lists a chunk twice"));
         }
         fields.u64()?;
         let mut offsets = Fields(fields.sized()?);
@@ -109,12 +109,12 @@ impl Index {
             channels.push(self.layout.index(offsets.u16()?)?);
             offsets.u64()?;
         }
-        self.parts.push(Part { stretch: Stretch::Chunk { offset }, span, channels });
+        self.parts.push(Part { extent: Extent::Chunk { offset }, span, channels });
         Ok(())
     }
 
-    /// Reads record after record up to the first that is not whole.
-    fn from_walk(source: &Source, mut at: u64) -> Self {
+    /// Scans the file, record after record, up to the first incomplete one.
+    fn from_scan(source: &Source, mut at: u64) -> Self {
         let mut index = Self::default();
         let mut window = Window::new(source);
         let mut loose = None;
@@ -125,12 +125,12 @@ impl Index {
             match place.op {
                 op::CHUNK => {
                     index.add_loose(source, loose.take());
-                    index.add(source, Stretch::Chunk { offset: at });
+                    index.add(source, Extent::Chunk { offset: at });
                 }
                 op::SCHEMA | op::CHANNEL | op::MESSAGE => {
                     let (offset, _) = loose.unwrap_or((at, 0));
                     loose = Some((offset, place.end() - offset));
-                    if place.end() - offset > TOGETHER {
+                    if place.end() - offset > MAX_LOOSE_BYTES {
                         index.add_loose(source, loose.take());
                     }
                 }
@@ -144,10 +144,10 @@ impl Index {
     }
 }
 
-/// Where the footer of a file that was finished is.
+/// Returns the offset of the footer of a finished file.
 fn footer(source: &Source) -> Result<u64> {
     let magic = MAGIC.len() as u64;
-    let missing = || Error::format("the MCAP file has no end");
+    let missing = || Error::format("the MCAP file has no footer");
     let at = source.len().checked_sub(magic + FOOTER).ok_or_else(missing)?;
     let place = Place::read(&mut Window::new(source), at)?;
     let end = source.read(source.len() - magic, magic)?;

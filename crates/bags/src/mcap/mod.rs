@@ -1,4 +1,4 @@
-//! MCAP: records of a kind, a length and a body; messages in chunks, a summary at the end.
+//! MCAP: records of a type, a length and a body; messages in chunks, a summary at the end.
 //! Source: the MCAP specification, version 0.
 
 mod channels;
@@ -10,10 +10,10 @@ mod writer;
 pub(crate) use index::open;
 pub(crate) use writer::McapWriter;
 
-/// What a file starts and ends with.
+/// First and last bytes of a file.
 pub(crate) const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
-/// The kinds of records.
+/// Types of records.
 mod op {
     pub const HEADER: u8 = 1;
     pub const FOOTER: u8 = 2;
@@ -30,8 +30,8 @@ mod op {
     pub const DATA_END: u8 = 15;
 }
 
-/// A message's body before its bytes: channel, sequence, log time, publish time.
+/// Bytes of a message record before the message: channel, sequence, log time, publish time.
 const MESSAGE_HEADER: usize = 2 + 4 + 8 + 8;
 
-/// The footer's record: kind and length, two places, a checksum.
+/// Bytes of the footer record: type and length, two offsets, a checksum.
 const FOOTER: u64 = 9 + 20;

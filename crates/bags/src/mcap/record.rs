@@ -1,4 +1,4 @@
-//! A record: its kind, its body's length, the body.
+//! Records: type, length of the body, body.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -9,19 +9,19 @@ use opendr_engine::{Error, Result};
 use crate::fields::Fields;
 use crate::source::Window;
 
-/// The record of `bytes` at `at`: its kind and where its body is.
+/// Splits off the record of `bytes` at `at`: its type and the range of its body.
 pub(super) fn split(bytes: &[u8], at: usize) -> Result<(u8, Range<usize>)> {
     let mut fields = Fields(bytes.get(at..).unwrap_or_default());
     let op = fields.u8()?;
     let len = fields.u64()?;
     let left = fields.0.len();
     let len = usize::try_from(len).ok().filter(|len| *len <= left).ok_or_else(|| {
-        Error::format(format!("a record of kind {op} ends early: {len} bytes are told, {left} follow"))
+        Error::format(format!("a record of type {op} is truncated: it states {len} bytes, {left} follow"))
     })?;
     Ok((op, at + 9..at + 9 + len))
 }
 
-/// A record in the file, of which only the kind and length have been read.
+/// A record of the file, of which only the type and length have been read.
 pub(super) struct Place {
     pub op: u8,
     pub body: u64,
@@ -34,7 +34,9 @@ impl Place {
         let mut fields = Fields(&bytes);
         let (op, len) = (fields.u8()?, fields.u64()?);
         let body = offset + 9;
-        body.checked_add(len).ok_or_else(|| Error::format(format!("a record of {len} bytes at {offset}")))?;
+        body.checked_add(len).ok_or_else(|| {
+            Error::format(format!("the record at {offset} states {len} bytes, which is too many"))
+        })?;
         Ok(Self { op, body, len })
     }
 
@@ -42,13 +44,13 @@ impl Place {
         self.body + self.len
     }
 
-    /// The body; kinds that are kept whole are small beside messages and chunks.
+    /// Reads the body. The record types that are read whole are small compared to messages and chunks.
     pub fn body(&self, window: &mut Window) -> Result<Bytes> {
         window.read(self.body, self.len)
     }
 }
 
-/// A map of texts after its length in bytes.
+/// Reads a map of texts preceded by its length in bytes.
 pub(super) fn texts(fields: &mut Fields) -> Result<BTreeMap<String, String>> {
     let mut inner = Fields(fields.sized()?);
     let mut map = BTreeMap::new();
@@ -58,12 +60,13 @@ pub(super) fn texts(fields: &mut Fields) -> Result<BTreeMap<String, String>> {
     Ok(map)
 }
 
-/// Nanoseconds that fit into 63 bits.
+/// Converts nanoseconds to 63 bits.
 pub(super) fn time_ns(value: u64) -> Result<i64> {
-    i64::try_from(value).map_err(|_| Error::format(format!("a time of {value} ns: later than the year 2262")))
+    i64::try_from(value)
+        .map_err(|_| Error::format(format!("a time of {value} ns is later than the year 2262")))
 }
 
-/// What records are put together from.
+/// Encoding of records.
 pub(super) trait Put {
     fn text(&mut self, text: &str);
     fn texts(&mut self, map: &BTreeMap<String, String>);

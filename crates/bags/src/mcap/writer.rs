@@ -1,4 +1,4 @@
-//! Writes MCAP files: chunks with their indices of messages, a summary at the end.
+//! Writer of MCAP files: chunks with message indices, a summary at the end.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -12,17 +12,17 @@ use crate::channel::{Channel, Encoding, Language};
 use crate::compression::{Compression, compress};
 use crate::storage::StorageWriter;
 
-/// A file being written. Chunks go to it whole.
+/// A file being written. Chunks are written whole.
 pub(crate) struct McapWriter {
     file: File,
     compression: Compression,
     chunk_bytes: usize,
     is_started: bool,
-    /// Records of schemas, which start at 1, and of channels.
+    /// Schemas; their ids start at 1.
     schemas: Vec<Schema>,
     channels: Vec<ChannelState>,
     chunk: Vec<u8>,
-    /// Times and offsets of the open chunk's messages by channel.
+    /// Times and offsets of the messages of the open chunk, by channel.
     open: BTreeMap<u16, Vec<(u64, u64)>>,
     chunk_indices: Vec<Vec<u8>>,
     metadata_indices: Vec<Vec<u8>>,
@@ -36,7 +36,7 @@ struct Schema {
 }
 
 struct ChannelState {
-    /// The bodies of its records, its schema's first.
+    /// Types and bodies of its records, first the schema's, then the channel's.
     records: [(u8, Vec<u8>); 2],
     is_written: bool,
     messages: u64,
@@ -60,7 +60,7 @@ impl McapWriter {
         }
     }
 
-    /// Writes the file's header, which tells what kind of messages are to come.
+    /// Writes the header of the file, whose profile states the kind of messages.
     fn start(&mut self, profile: &str) -> Result<()> {
         if !self.is_started {
             self.is_started = true;
@@ -74,7 +74,7 @@ impl McapWriter {
         Ok(())
     }
 
-    /// Adds texts about the file under a name, e.g. rosbag2's metadata.
+    /// Adds named texts about the file, e.g. the metadata of rosbag2.
     pub fn add_metadata(&mut self, name: &str, texts: &BTreeMap<String, String>) -> Result<()> {
         self.start("ros2")?;
         self.write_chunk()?;
@@ -107,7 +107,7 @@ impl McapWriter {
             self.schemas.len() - 1
         });
         let number =
-            u16::try_from(at + 1).map_err(|_| Error::invalid_input("MCAP keeps at most 65535 types"))?;
+            u16::try_from(at + 1).map_err(|_| Error::invalid_input("MCAP supports at most 65535 types"))?;
         let mut body = number.to_le_bytes().to_vec();
         body.text(&channel.message_type);
         body.text(language);
@@ -189,7 +189,7 @@ impl StorageWriter for McapWriter {
     fn add_channel(&mut self, channel: &Channel) -> Result<()> {
         self.start(if channel.encoding == Encoding::Ros1 { "ros1" } else { "ros2" })?;
         let number = u16::try_from(self.channels.len())
-            .map_err(|_| Error::invalid_input("MCAP keeps at most 65536 channels"))?;
+            .map_err(|_| Error::invalid_input("MCAP supports at most 65536 channels"))?;
         let (schema, schema_body) = self.schema(channel)?;
         let hash = if channel.encoding == Encoding::Ros1 { "md5sum" } else { "topic_type_hash" };
         let latching = channel.is_latching.then(|| "1".to_owned());
@@ -214,7 +214,7 @@ impl StorageWriter for McapWriter {
     fn write(&mut self, channel: usize, log_time_ns: i64, publish_time_ns: i64, bytes: &[u8]) -> Result<()> {
         let unsigned = |time: i64| {
             u64::try_from(time).map_err(|_| {
-                Error::invalid_input(format!("a message at {time} ns: MCAP keeps no times before 1970"))
+                Error::invalid_input(format!("a message at {time} ns: MCAP supports no times before 1970"))
             })
         };
         let (log, publish) = (unsigned(log_time_ns)?, unsigned(publish_time_ns)?);
@@ -246,7 +246,7 @@ impl StorageWriter for McapWriter {
         self.start("")?;
         self.write_chunk()?;
         let mut bytes = Vec::new();
-        // A checksum of 0 is one that was not taken: every chunk has its own.
+        // A checksum of 0 means none: each chunk has its own.
         bytes.record(op::DATA_END, &0_u32.to_le_bytes());
         self.file.write_all(&bytes)?;
 

@@ -1,4 +1,4 @@
-//! Recordings that were cut off, damaged or made to harm.
+//! Truncated, damaged and malicious recordings.
 
 use std::fs;
 
@@ -7,7 +7,7 @@ use opendr_engine::ErrorKind;
 use proptest::prelude::*;
 use tempfile::tempdir;
 
-/// Three chunks with two channels.
+/// Returns a recording of three chunks with two channels.
 fn small(format: BagFormat, compression: Compression) -> Vec<u8> {
     let folder = tempdir().unwrap();
     let path = folder.path().join("small");
@@ -25,7 +25,7 @@ fn small(format: BagFormat, compression: Compression) -> Vec<u8> {
     fs::read(path).unwrap()
 }
 
-/// How many messages come before the end or an error.
+/// Returns the number of messages before the end or an error.
 fn messages(bytes: Vec<u8>) -> Option<usize> {
     let bag = Bag::from_bytes(bytes).ok()?;
     assert_eq!(bag.channels().len(), bag.message_counts().len());
@@ -37,7 +37,7 @@ fn messages(bytes: Vec<u8>) -> Option<usize> {
 const BOTH: [BagFormat; 2] = [BagFormat::Bag1, BagFormat::Mcap];
 
 #[test]
-fn cut_anywhere_the_whole_chunks_are_read() {
+fn complete_chunks_of_a_truncated_file_are_read() {
     for format in BOTH {
         for compression in [Compression::None, Compression::Lz4] {
             let whole = small(format, compression);
@@ -73,7 +73,7 @@ fn no_changed_byte_does_harm() {
 }
 
 #[test]
-fn mcap_tells_a_changed_message() {
+fn a_changed_message_of_mcap_is_detected() {
     let mut bytes = small(BagFormat::Mcap, Compression::None);
     let at = bytes.windows(40).position(|window| window == [3; 40]).unwrap();
     bytes[at] = 4;
@@ -104,7 +104,7 @@ fn a_recording_that_is_still_written_is_read() {
 }
 
 #[test]
-fn files_that_are_no_recordings_are_told() {
+fn files_that_are_no_recordings_are_errors() {
     let folder = tempdir().unwrap();
     let kind = |name: &str, bytes: &[u8]| {
         let path = folder.path().join(name);
@@ -120,7 +120,7 @@ fn files_that_are_no_recordings_are_told() {
     assert_eq!(Bag::open(folder.path()).unwrap_err().kind(), ErrorKind::Format);
 }
 
-/// A bag's record: fields, then data.
+/// Returns a record of a bag: fields, then data.
 fn record(fields: &[(&str, &[u8])], data: &[u8]) -> Vec<u8> {
     let mut header = Vec::new();
     for (name, value) in fields {
@@ -145,7 +145,7 @@ fn bag_of(records: &[Vec<u8>], index_pos: u64, connections: u32, chunks: u32) ->
 }
 
 #[test]
-fn an_index_that_leads_round_is_not_followed() {
+fn cyclic_and_contradictory_indices_are_not_followed() {
     let header_len = bag_of(&[], 0, 0, 0).len() as u64;
     let about = b"\x08\0\0\0type=a/B";
     let connection = record(&[("op", &[7]), ("conn", &[0; 4]), ("topic", b"/a")], about);
@@ -172,7 +172,7 @@ fn an_index_that_leads_round_is_not_followed() {
     let bag = Bag::from_bytes(bag_of(&whole, index_pos, 1, 1)).unwrap();
     assert!(bag.is_complete());
     assert_eq!(bag.messages().unwrap().count(), 1);
-    // The chunk's place told twice, a chunk that is the index itself, an index that is the chunk, counts that lie.
+    // A chunk listed twice, a chunk that is the index itself, an index that is the chunk, wrong counts.
     let twice = [chunk.clone(), connection.clone(), info(header_len), info(header_len)];
     assert!(!Bag::from_bytes(bag_of(&twice, index_pos, 1, 2)).unwrap().is_complete());
     let itself = [chunk.clone(), connection.clone(), info(index_pos)];

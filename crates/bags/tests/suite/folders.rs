@@ -1,9 +1,9 @@
-//! Folders of rosbag2 as others leave them: old, odd, damaged.
+//! Folders of rosbag2 of old versions, unusual and damaged ones.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use opendr_bags::{Bag, BagFormat, BagWriter, Channel, Encoding, Recorded, Selection, WriteOptions};
+use opendr_bags::{Bag, BagFormat, BagWriter, Channel, Encoding, RecordedMessage, Selection, WriteOptions};
 use opendr_engine::ErrorKind;
 use rusqlite::Connection;
 use tempfile::{TempDir, tempdir};
@@ -25,7 +25,7 @@ fn written(format: BagFormat) -> (TempDir, PathBuf) {
     (folder, path)
 }
 
-fn read(path: &Path) -> Vec<Recorded> {
+fn read(path: &Path) -> Vec<RecordedMessage> {
     Bag::open(path).unwrap().messages().unwrap().map(Result::unwrap).collect()
 }
 
@@ -78,7 +78,7 @@ fn views_in_place_of_tables_are_refused() {
 }
 
 #[test]
-fn values_of_wrong_types_are_told() {
+fn values_of_wrong_types_are_errors() {
     for sql in [
         "UPDATE messages SET data = 1.5 WHERE id = 50",
         "UPDATE messages SET timestamp = 'noon' WHERE id = 50",
@@ -92,7 +92,7 @@ fn values_of_wrong_types_are_told() {
 }
 
 #[test]
-fn metadata_leads_nowhere_else() {
+fn paths_in_the_metadata_stay_inside_the_folder() {
     let (folder, path) = written(BagFormat::Bag2Mcap);
     let metadata = path.join("metadata.yaml");
     let text = fs::read_to_string(&metadata).unwrap();
@@ -137,7 +137,7 @@ fn a_database_whose_writer_was_killed_is_read() {
     writer.write(0, 5, b"kept").unwrap();
     writer.flush().unwrap();
     writer.write(0, 6, b"lost").unwrap();
-    // What a kill leaves: the files as they are now, the log among them.
+    // The files as a killed process leaves them, with the log.
     fs::remove_dir_all(&path).unwrap();
     fs::create_dir(&path).unwrap();
     for entry in fs::read_dir(&other).unwrap().flatten() {
@@ -163,7 +163,7 @@ fn messages_of_compressed_files_outlive_their_recording() {
         fs::write(path.join("metadata.yaml"), text.replace(name, &format!("{name}.zstd"))).unwrap();
         let messages = Bag::open(&path).unwrap().messages().unwrap();
         assert_eq!(messages.map(Result::unwrap).collect::<Vec<_>>(), whole);
-        // A cut one is told.
+        // A truncated file is an error.
         fs::write(path.join(format!("{name}.zstd")), &packed[..packed.len() / 2]).unwrap();
         assert_eq!(Bag::open(&path).unwrap_err().kind(), ErrorKind::Format);
     }

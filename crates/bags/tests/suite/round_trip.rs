@@ -1,9 +1,9 @@
-//! What is written in each format is read back.
+//! Recordings of each format are written and read back.
 
 use std::path::Path;
 
 use opendr_bags::{
-    Bag, BagFormat, BagWriter, Channel, Compression, Encoding, Recorded, Selection, WriteOptions,
+    Bag, BagFormat, BagWriter, Channel, Compression, Encoding, RecordedMessage, Selection, WriteOptions,
 };
 use opendr_engine::ErrorKind;
 use tempfile::{TempDir, tempdir};
@@ -26,13 +26,13 @@ fn channels(format: BagFormat) -> Vec<Channel> {
     vec![talk, Channel::new("/empty", "std_msgs/Empty", encoding(format))]
 }
 
-/// Bytes of message `number`: from none to more than a chunk.
+/// Returns the bytes of message `number`, from none to more than a chunk.
 fn bytes(number: i64) -> Vec<u8> {
     let len = [0, 1, 5, 300, 20_000][number as usize % 5];
     (0..len).map(|at: i64| (at * number / 3) as u8).collect()
 }
 
-/// Times go back and forth, as they do when several nodes publish.
+/// Returns times that are not in order, as when several nodes publish.
 fn time(number: i64) -> i64 {
     1_700_000_000_000_000_000 + (number ^ 5) * 1_000_003
 }
@@ -69,7 +69,7 @@ fn written(options: WriteOptions) -> (TempDir, std::path::PathBuf) {
     (folder, path)
 }
 
-fn read(bag: &Bag, selection: &Selection) -> Vec<Recorded> {
+fn read(bag: &Bag, selection: &Selection) -> Vec<RecordedMessage> {
     bag.select(selection).unwrap().map(Result::unwrap).collect()
 }
 
@@ -100,14 +100,14 @@ fn every_format_comes_back() {
 }
 
 #[test]
-fn a_selection_is_what_a_filter_leaves() {
+fn a_selection_equals_filtering_all_messages() {
     for options in options() {
         let (_folder, path) = written(options);
         let bag = Bag::open(&path).unwrap();
         let all = read(&bag, &Selection::default());
         let (start, end) = (time(100), time(333));
-        let of_topic = |message: &&Recorded| message.channel == 1;
-        let in_time = |message: &&Recorded| (start..=end).contains(&message.log_time_ns);
+        let of_topic = |message: &&RecordedMessage| message.channel == 1;
+        let in_time = |message: &&RecordedMessage| (start..=end).contains(&message.log_time_ns);
         let topic = Selection::topics(["/empty", "/nowhere"]);
         assert_eq!(read(&bag, &topic), all.iter().filter(of_topic).cloned().collect::<Vec<_>>());
         let times = Selection { start_ns: Some(start), end_ns: Some(end), ..topic };
@@ -123,7 +123,7 @@ fn a_selection_is_what_a_filter_leaves() {
 }
 
 #[test]
-fn an_empty_recording_is_one() {
+fn an_empty_recording_can_be_read() {
     for format in BagFormat::ALL {
         let folder = tempdir().unwrap();
         let path = folder.path().join("empty");
@@ -172,7 +172,7 @@ fn a_folder_of_other_things_is_never_overwritten() {
     let options = WriteOptions { overwrite: true, ..BagFormat::Bag2Sqlite.into() };
     assert!(BagWriter::create(folder.path(), options).is_err());
     assert!(folder.path().join("thesis.tex").exists());
-    // Beside a recording it stays as well.
+    // It stays beside a recording as well.
     let path = folder.path().join("bag");
     write(&path, BagFormat::Bag2Mcap.into());
     std::fs::write(path.join("notes.txt"), "text").unwrap();
@@ -182,7 +182,7 @@ fn a_folder_of_other_things_is_never_overwritten() {
 }
 
 #[test]
-fn what_a_format_does_not_keep_is_refused() {
+fn what_a_format_does_not_support_is_an_error() {
     let folder = tempdir().unwrap();
     for (format, encoding) in [
         (BagFormat::Bag1, Encoding::Cdr),
@@ -215,9 +215,10 @@ fn mcap_keeps_the_time_of_publishing() {
     let folder = tempdir().unwrap();
     let mut writer = BagWriter::create(folder.path().join("a.mcap"), BagFormat::Mcap).unwrap();
     let channel = writer.add_channel(channels(BagFormat::Mcap).remove(0)).unwrap();
-    let message = Recorded { channel: 9, log_time_ns: 7, publish_time_ns: Some(3), bytes: "hi".into() };
+    let message =
+        RecordedMessage { channel: 9, log_time_ns: 7, publish_time_ns: Some(3), bytes: "hi".into() };
     writer.copy(channel, &message).unwrap();
     writer.finish().unwrap();
     let read = read(&Bag::open(folder.path().join("a.mcap")).unwrap(), &Selection::default());
-    assert_eq!(read, [Recorded { channel, ..message }]);
+    assert_eq!(read, [RecordedMessage { channel, ..message }]);
 }

@@ -8,9 +8,10 @@ use opendr_engine::environment::{Controller, Environment as _, EnvironmentSpec, 
 use opendr_engine::{Random, Result};
 use opendr_kernels::Compute;
 use opendr_rl::{
-    Beginning, BehaviourCloningConfig, Bounds, Demonstrations, Head, NetworkConfig, Policy, clone_behaviour,
+    BehaviourCloningConfig, Bounds, Demonstrations, Head, NetworkConfig, ParameterInit, Policy,
+    clone_behaviour,
 };
-use opendr_simulation::Registered as _;
+use opendr_simulation::RegisteredEnvironment as _;
 use opendr_simulation::quad_track::{CONTROL_PERIOD, MAX_ACCELERATION, QuadTrack, QuadTrackParams};
 
 use crate::settings::Settings;
@@ -72,7 +73,7 @@ pub fn train(seed: u64, settings: &Settings) -> Result<Base> {
     let envelope = Envelope::of(&observations, LAYOUT.len, 0.0)?;
     let bounds = Bounds { low: vec![-MAX_ACCELERATION; 3], high: vec![MAX_ACCELERATION; 3] };
     let mut policy = Policy::new(&spec, Head::Squashed(bounds), &NetworkConfig::default(), Some(10.0))?;
-    policy.initialise(Beginning::Orthogonal(0.1), 0.0, &mut Random::at([seed, 3]));
+    policy.initialise(ParameterInit::Orthogonal(0.1), 0.0, &mut Random::from_key([seed, 3]));
     let demonstrations = Demonstrations::new(&spec, observations, actions)?;
     let compute = Compute::single();
     let mut loss = 0.0;
@@ -94,7 +95,7 @@ pub fn train(seed: u64, settings: &Settings) -> Result<Base> {
 
 /// Observations of nominal flights with spread errors, and the conventional law's commands.
 fn imitated(track: &mut QuadTrack, seed: u64) -> Result<(Vec<f32>, Vec<f32>, Vec<f32>)> {
-    let (mut law, mut random) = (conventional()?, Random::at([seed, 1]));
+    let (mut law, mut random) = (conventional()?, Random::from_key([seed, 1]));
     let (mut observation, mut action) = (vec![0.0; LAYOUT.len], [0.0; 3]);
     let (mut observations, mut actions, mut visited) = (Vec::new(), Vec::new(), Vec::new());
     for flight in 0..12 {

@@ -18,7 +18,7 @@ pub fn options(pairs: &[(&str, f64)]) -> ResetOptions {
 
 /// A random plant: everything that the environment can change, at once.
 pub fn random_plant(seed: u64) -> ResetOptions {
-    let mut random = Random::at([seed, 77]);
+    let mut random = Random::from_key([seed, 77]);
     let mut between = |low: f64, high: f64| low + (high - low) * random.unit();
     options(&[
         ("mass_factor", between(0.75, 1.4)),

@@ -4,7 +4,7 @@ use opendr_engine::data::{Image, PixelFormat};
 use opendr_engine::environment::{Controller, Environment as _};
 use opendr_engine::{Error, Result};
 use opendr_simulation::quad_track::{QuadTrack, QuadTrackParams};
-use opendr_simulation::{Film, Registered as _};
+use opendr_simulation::{Recording, RegisteredEnvironment as _};
 
 use crate::base::{Frozen, train};
 use crate::cases::{CASES, options};
@@ -29,7 +29,7 @@ pub fn write(path: &str, settings: &Settings) -> Result<()> {
         track.reset(Some(3), &options(&pairs), &mut seen)?;
         flights.push((track, seen));
     }
-    let mut film = Film::create(path, 10.0)?;
+    let mut film = Recording::create(path, 10.0)?;
     let mut action = [0.0; 3];
     for step in 0..100 * SECONDS {
         for ((track, seen), controller) in flights.iter_mut().zip(&mut controllers) {

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use opendr_engine::environment::{Controller, Environment as _, ResetOptions};
 use opendr_engine::{Error, Result};
-use opendr_simulation::Registered as _;
+use opendr_simulation::RegisteredEnvironment as _;
 use opendr_simulation::quad_track::{QuadTrack, QuadTrackParams};
 
 /// What is measured in a flight of 60 s whose plant changes at 20 s.

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use opendr_engine::Result;
 use opendr_engine::environment::{Controller, Environment as _, ResetOptions};
-use opendr_simulation::Registered as _;
+use opendr_simulation::RegisteredEnvironment as _;
 use opendr_simulation::quad_track::{QuadTrack, QuadTrackParams};
 
 use crate::base::{Base, Frozen, train, tuned_pid};

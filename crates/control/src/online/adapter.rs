@@ -84,7 +84,7 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
     /// outside `envelope`, where one is given, nothing is learned.
     ///
     /// # Errors
-    /// `InvalidParam` for parameters out of range and a layout that does not fit the action space.
+    /// `InvalidParam` for parameters out of range and a layout that does not fit the action space, else those of the policy.
     pub fn new(
         base: P,
         conventional: impl Controller + Send + 'static,
@@ -124,10 +124,17 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
             delayed: vec![0.0; axes],
             cut: vec![0.0; axes],
         };
+        let mut adapted = base.clone();
+        // The policy makes its buffers here, so that the first update allocates nothing either.
+        let (zeros, mut action) = (vec![0.0; layout.len], vec![0.0; axes]);
+        adapted.act(&zeros, &mut action)?;
+        for last_layer_only in [true, false] {
+            adapted.backward(&vec![0.0; axes], last_layer_only, &mut vec![0.0; count])?;
+        }
         Ok(Self {
             layout,
             monitor: Monitor::new(params.monitor, axes, f64::from(params.period)),
-            adapted: base.clone(),
+            adapted,
             conventional: Box::new(conventional),
             envelope,
             preconditioner: None,
@@ -153,6 +160,7 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
             return Err(Error::invalid_param("a preconditioner of another network; make one from this base"));
         }
         self.buffers.direction = vec![0.0; count];
+        self.buffers.product = vec![0.0; count / self.layout.axes];
         self.preconditioner = Some(preconditioner);
         Ok(self)
     }

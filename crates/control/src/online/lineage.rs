@@ -4,7 +4,7 @@ use std::path::Path;
 
 use opendr_engine::model::{Manifest, Model, ModelWriter, Sha256};
 use opendr_engine::{Error, Result};
-use opendr_rl::{POLICY, Policy};
+use opendr_rl::{POLICY_FILE, Policy};
 use serde::{Deserialize, Serialize};
 
 use super::{AdaptablePolicy as _, NeuralPolicy, OnlineAdapter};
@@ -55,7 +55,7 @@ impl OnlineAdapter<NeuralPolicy> {
         manifest.lineage.source = format!("policy {base}, adapted online on {adapted_on}");
         let unwritable = |error| Error::internal("an adaptation has no JSON form").with_source(error);
         let mut writer = ModelWriter::new(path, manifest)?;
-        writer.add(POLICY, &self.adapted().policy().to_bytes()?)?;
+        writer.add(POLICY_FILE, &self.adapted().policy().to_bytes()?)?;
         writer.add(ADAPTATION, &serde_json::to_vec_pretty(&adaptation).map_err(unwritable)?)?;
         writer.add("events.json", &serde_json::to_vec_pretty(self.log()).map_err(unwritable)?)?;
         writer.finish()
@@ -75,7 +75,7 @@ impl OnlineAdapter<NeuralPolicy> {
                 adaptation.base
             )));
         }
-        let policy = Policy::from_bytes(&model.file(POLICY)?)?;
+        let policy = Policy::from_bytes(&model.file(POLICY_FILE)?)?;
         self.restore_parameters(NeuralPolicy::new(policy)?.parameters())?;
         Ok(adaptation)
     }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use opendr_engine::{Error, Result};
 use opendr_kernels::Compute;
-use opendr_rl::{Acting, Policy, PolicyMemory};
+use opendr_rl::{ActionMode, Policy, PolicyMemory};
 
 /// A policy with commands that are differentiable in its parameters, or in those of its last layer.
 pub trait AdaptablePolicy: Clone {
@@ -73,7 +73,7 @@ impl AdaptablePolicy for NeuralPolicy {
     }
 
     fn act(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()> {
-        self.policy.act(&self.compute, observation, Acting::Deterministic, &mut self.memory, action)
+        self.policy.act(&self.compute, observation, ActionMode::Deterministic, &mut self.memory, action)
     }
 
     fn backward(&mut self, daction: &[f32], last_layer_only: bool, gradients: &mut [f32]) -> Result<()> {

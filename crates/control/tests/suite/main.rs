@@ -5,4 +5,4 @@
 mod online;
 
 #[global_allocator]
-static ALLOCATOR: opendr_test_allocator::Counting = opendr_test_allocator::Counting;
+static ALLOCATOR: opendr_test_allocator::CountingAllocator = opendr_test_allocator::CountingAllocator;

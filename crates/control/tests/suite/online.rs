@@ -2,13 +2,13 @@
 
 use opendr_control::online::{
     AdaptablePolicy, AdaptationParams, EventKind, FreezeReason, LearningSignal, MonitorParams, NeuralPolicy,
-    OnlineAdapter,
+    OnlineAdapter, Preconditioner,
 };
 use opendr_control::{PidGains, TrackingLayout, TrackingPid};
 use opendr_engine::environment::{Controller, Environment as _, ResetOptions};
 use opendr_engine::{Random, Result};
-use opendr_rl::{Beginning, Bounds, Head, NetworkConfig, Policy};
-use opendr_simulation::Registered as _;
+use opendr_rl::{Bounds, Head, NetworkConfig, ParameterInit, Policy};
+use opendr_simulation::RegisteredEnvironment as _;
 use opendr_simulation::quad_track::{CONTROL_PERIOD, QuadTrack, QuadTrackParams};
 use opendr_test_allocator::allocations_of_thread;
 
@@ -149,28 +149,50 @@ fn network(track: &QuadTrack) -> NeuralPolicy {
     let bounds = Bounds { low: vec![-8.0; 3], high: vec![8.0; 3] };
     let mut policy =
         Policy::new(track.spec(), Head::Squashed(bounds), &NetworkConfig::default(), None).unwrap();
-    policy.initialise(Beginning::Orthogonal(0.1), 0.0, &mut Random::new(1));
+    policy.initialise(ParameterInit::Orthogonal(0.1), 0.0, &mut Random::new(1));
     NeuralPolicy::new(policy).unwrap()
 }
 
+/// With every learning signal, and with the preconditioner, as the protocol flies.
 #[test]
 fn steps_allocate_nothing() {
     let mut track = QuadTrack::new(&QuadTrackParams::default()).unwrap();
-    let params = AdaptationParams { band: 0.5, ..params() };
-    let mut adapter =
-        OnlineAdapter::new(network(&track), law(), LAYOUT, &track.spec().action, None, params).unwrap();
     let (mut seen, mut action) = ([0.0; 17], [0.0; 3]);
-    track.reset(Some(1), &options(&[("mass_factor", 1.3), ("change_at", 1.0)]), &mut seen).unwrap();
-    let mut before = 0;
-    for step in 0..2000 {
-        if step == 50 {
-            before = allocations_of_thread();
-        }
-        adapter.act(&seen, &mut action).unwrap();
+    let heavy = options(&[("mass_factor", 1.3), ("change_at", 1.0)]);
+    let mut flown = Vec::new();
+    track.reset(Some(2), &options(&[]), &mut seen).unwrap();
+    for _ in 0..500 {
+        law().act(&seen, &mut action).unwrap();
+        flown.extend_from_slice(&seen);
         track.step(&action, &mut seen).unwrap();
     }
-    assert_eq!(allocations_of_thread() - before, 0);
-    assert!(adapter.steps()[1] > 500);
+    let preconditioner =
+        Preconditioner::of(&mut network(&track), &flown, &LAYOUT, true, [0.01, 5.0]).unwrap();
+    for (signal, preconditioned) in [
+        (LearningSignal::ExpertRule, false),
+        (LearningSignal::FeedbackError, false),
+        (LearningSignal::ReferenceModel, false),
+        (LearningSignal::ReferenceModel, true),
+    ] {
+        let params = AdaptationParams { band: 0.5, signal, ..params() };
+        let mut adapter =
+            OnlineAdapter::new(network(&track), law(), LAYOUT, &track.spec().action, None, params).unwrap();
+        if preconditioned {
+            adapter = adapter.with_preconditioner(preconditioner.clone()).unwrap();
+        }
+        track.reset(Some(1), &heavy, &mut seen).unwrap();
+        let mut before = 0;
+        for step in 0..2000 {
+            if step == 1 {
+                before = allocations_of_thread();
+            }
+            adapter.act(&seen, &mut action).unwrap();
+            track.step(&action, &mut seen).unwrap();
+        }
+        let after = allocations_of_thread();
+        assert!(adapter.steps()[1] > 300, "{signal:?}: {:?}", adapter.steps());
+        assert_eq!(after - before, 0, "{signal:?} {preconditioned}");
+    }
 }
 
 #[test]

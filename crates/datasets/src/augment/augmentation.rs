@@ -1,37 +1,37 @@
-//! What an augmentation is.
+//! The traits of augmentations.
 
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::{Field, ParamMap, Params};
 use opendr_engine::{Error, Random, Result};
 
-use crate::augment::Others;
+use crate::augment::OtherSamples;
 
-/// Changes samples at random.
+/// Random change of samples.
 pub trait Augment: Send + Sync {
-    /// Changes `sample`, data and target together. All chance comes from `random`; `others` are the unchanged samples of
-    /// the data set, for augmentations that mix several.
+    /// Changes `sample`, its data and target together. All randomness comes from `random`. `others` gives the
+    /// unchanged samples of the data set, for augmentations that mix several.
     ///
     /// # Errors
-    /// `InvalidInput` when the sample has nothing that could be changed so; `Unsupported` when its target cannot follow;
-    /// whatever reading another sample ends in. The sample is then of no use.
-    fn apply(&self, sample: &mut Sample, random: &mut Random, others: &Others<'_>) -> Result<()>;
+    /// `InvalidInput` if the sample has no data of the type that is changed, `Unsupported` if its target cannot be
+    /// changed accordingly, and errors of reading other samples. The sample is invalid after an error.
+    fn apply(&self, sample: &mut Sample, random: &mut Random, others: &OtherSamples<'_>) -> Result<()>;
 }
 
 impl<A: Augment + ?Sized> Augment for Box<A> {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, others: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, others: &OtherSamples<'_>) -> Result<()> {
         (**self).apply(sample, random, others)
     }
 }
 
-/// An augmentation with a name and parameters, for surfaces to offer.
+/// Augmentation with a name and parameters, which other languages and the command line offer.
 pub trait Augmentation: Augment + Params {
-    /// The name, as users write it, e.g. `"random_crop"`.
+    /// Name of the augmentation on the command line, e.g. `"random_crop"`.
     const NAME: &'static str;
-    /// In one line.
+    /// Description in one line.
     const ABOUT: &'static str;
 }
 
-/// One augmentation without its type.
+/// An augmentation of the registry.
 pub struct AugmentEntry {
     /// As [`Augmentation::NAME`].
     pub name: &'static str,
@@ -39,12 +39,13 @@ pub struct AugmentEntry {
     pub about: &'static str,
     /// Its parameters.
     pub fields: &'static [Field],
-    /// Makes it; the defaults stand where `params` say nothing. `InvalidParam` for what does not fit.
+    /// Creates the augmentation from parameters, with defaults for the missing ones; `InvalidParam` for an invalid
+    /// parameter.
     pub make: fn(params: &ParamMap) -> Result<Box<dyn Augment>>,
 }
 
 impl AugmentEntry {
-    /// The entry of an augmentation.
+    /// Returns the entry of an augmentation.
     pub(super) const fn of<A: Augmentation>() -> Self {
         Self {
             name: A::NAME,
@@ -59,7 +60,7 @@ impl AugmentEntry {
     }
 }
 
-/// Checks every parameter, and that no `min_...` is over its `max_...`.
+/// Checks every parameter, and that no `min_...` exceeds its `max_...`.
 pub(super) fn check<A: Augmentation>(augmentation: &A) -> Result<()> {
     augmentation.check()?;
     let params = augmentation.to_map();
@@ -69,7 +70,7 @@ pub(super) fn check<A: Augmentation>(augmentation: &A) -> Result<()> {
             && low.as_float() > high.as_float()
         {
             return Err(Error::invalid_param(format!(
-                "{name} = {low} is over its largest value, {high}; give less"
+                "{name} = {low} exceeds {high}, the upper limit; set it lower"
             )));
         }
     }

@@ -1,7 +1,8 @@
-//! Augmentation: samples changed at random, data and target together. One file each.
+//! Augmentation: random changes of samples, data and target together. One file for each augmentation.
 //!
-//! An [`Augment`] takes all its chance from the [`Random`](opendr_engine::Random) it is given, so that a sample comes out
-//! the same whichever thread works on it. What cannot follow a change (a 3D box when its picture is turned) is refused, never left behind.
+//! An [`Augment`] takes all randomness from the [`Random`](opendr_engine::Random) it receives, so a sample does not
+//! depend on the thread that processes it. A target that cannot be changed like the data (a 3D box when its image
+//! is rotated) is an error.
 
 mod audio;
 mod augmentation;
@@ -15,11 +16,11 @@ mod series;
 pub use audio::{AudioGain, AudioNoise, AudioShift};
 pub use augmentation::{Augment, AugmentEntry, Augmentation};
 pub use cloud::{CloudFlip, CloudRotate, CloudScale, DropPoints, JitterPoints, PasteObjects};
-pub use others::Others;
+pub use others::OtherSamples;
 pub use picture::{
-    Affine, Blur, Border, CentreCrop, Colour, CutOut, Flip, FlipDirection, Grey, IouCrop, Letterbox, MixUp,
-    Mosaic, PictureMap, PixelNoise, RandomCrop, RandomResizedCrop, RandomScale, Resize, Rotate, picture_size,
-    transform,
+    Affine, AffineMap, Blur, Border, CentreCrop, Colour, CutOut, Flip, FlipDirection, Grey, IouCrop,
+    Letterbox, MixUp, Mosaic, PixelNoise, RandomCrop, RandomResizedCrop, RandomScale, Resize, Rotate,
+    image_size, transform,
 };
 pub use pipeline::Pipeline;
 pub use registry::{augmentations, find_augmentation};

@@ -3,30 +3,30 @@
 use opendr_engine::dataset::{DatasetIterator, Sample};
 use opendr_engine::{Error, Random, Result};
 
-/// The unchanged samples of the data set that a sample is of.
+/// The unchanged samples of the data set.
 #[derive(Clone, Copy, Default)]
-pub struct Others<'a>(Option<&'a dyn DatasetIterator>);
+pub struct OtherSamples<'a>(Option<&'a dyn DatasetIterator>);
 
-impl<'a> Others<'a> {
-    /// The samples of `dataset`.
+impl<'a> OtherSamples<'a> {
+    /// Returns the samples of `dataset`.
     pub fn of(dataset: &'a dyn DatasetIterator) -> Self {
         Self(Some(dataset))
     }
 
-    /// No other samples.
+    /// Returns an empty set of samples.
     pub fn none() -> Self {
         Self(None)
     }
 
-    /// One of them, each as likely as the others; it may be the very sample that is being changed.
+    /// Returns a random sample with uniform probability, which may be the one that is being changed.
     ///
     /// # Errors
-    /// `InvalidInput` when there are none; else as [`DatasetIterator::get`].
+    /// `InvalidInput` if there are none; otherwise as [`DatasetIterator::get`].
     pub fn pick(&self, random: &mut Random) -> Result<Sample> {
         match self.0 {
             Some(dataset) if !dataset.is_empty() => dataset.get(random.below(dataset.len())),
             _ => Err(Error::invalid_input(
-                "there are no other samples to mix in; apply this augmentation through a loader",
+                "no other samples are available to mix; apply this augmentation through a loader",
             )),
         }
     }

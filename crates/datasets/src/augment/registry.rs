@@ -1,10 +1,10 @@
-//! Which augmentations there are: one line each.
+//! The list of augmentations.
 
 use opendr_engine::{Error, Result};
 
 use crate::augment::*;
 
-/// Every augmentation.
+/// Returns all augmentations.
 pub const fn augmentations() -> &'static [AugmentEntry] {
     const {
         &[
@@ -41,14 +41,14 @@ pub const fn augmentations() -> &'static [AugmentEntry] {
     }
 }
 
-/// The augmentation called `name`.
+/// Returns the augmentation `name`.
 ///
 /// # Errors
-/// `NotFound`, with the names that there are.
+/// `NotFound`, with the list of names.
 pub fn find_augmentation(name: &str) -> Result<&'static AugmentEntry> {
     augmentations().iter().find(|entry| entry.name == name).ok_or_else(|| {
         let names: Vec<_> = augmentations().iter().map(|entry| entry.name).collect();
-        Error::not_found(format!("no augmentation {name:?}; there are {}", names.join(", ")))
+        Error::not_found(format!("no augmentation {name:?}; choose one of {}", names.join(", ")))
     })
 }
 

@@ -1,21 +1,21 @@
-//! COCO's category numbers, which have gaps, and the class numbers of targets, which have none.
+//! Category ids of COCO, which have gaps, and the class indices of targets, which have none.
 
 use opendr_engine::target::Classes;
 
 use super::record::CategoryRecord;
 
-/// The categories of a data set, in the order of their numbers, as pycocotools takes them.
+/// The categories of a data set in the order of their ids, as in pycocotools.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Categories {
     ids: Vec<i64>,
     classes: Classes,
-    /// Key points of each class, 0 where it has none.
+    /// Number of keypoints of each class, 0 if it has none.
     keypoints: Vec<usize>,
     things: Vec<bool>,
 }
 
 impl Categories {
-    /// In the order of their numbers; of two with the same number the first counts.
+    /// Sorts by id; the first of two categories with the same id is kept.
     pub fn new(mut records: Vec<CategoryRecord>) -> Self {
         records.sort_by_key(|record| record.id);
         records.dedup_by_key(|record| record.id);
@@ -28,27 +28,27 @@ impl Categories {
         }
     }
 
-    /// The class number of a category.
+    /// Returns the class index of a category.
     pub fn class(&self, id: i64) -> Option<usize> {
         self.ids.binary_search(&id).ok()
     }
 
-    /// The category of each class.
+    /// Returns the category ids by class index.
     pub fn ids(&self) -> &[i64] {
         &self.ids
     }
 
-    /// The names of the classes.
+    /// Returns the names of the classes.
     pub fn classes(&self) -> &Classes {
         &self.classes
     }
 
-    /// How many key points an object of a class has; 0 when the file does not tell.
+    /// Returns the number of keypoints of a class; 0 if the file does not state it.
     pub fn keypoints(&self, class: usize) -> usize {
         self.keypoints.get(class).copied().unwrap_or(0)
     }
 
-    /// Whether objects of a class are told apart.
+    /// Returns whether instances of a class are distinguished (a thing class).
     pub fn is_thing(&self, class: usize) -> bool {
         self.things.get(class).copied().unwrap_or(true)
     }

@@ -1,4 +1,4 @@
-//! A COCO file that is written entry by entry: annotations wait in a file of their own for the pictures to end.
+//! A COCO file written entry by entry: annotations are kept in a file of their own until all images are written.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
@@ -13,19 +13,19 @@ use serde_json::{Value as Json, json};
 use crate::class_table::ClassTable;
 use crate::picture_files::Placed;
 
-/// The file; what is unfinished when it is dropped is removed.
+/// The file being written; an unfinished one is removed when dropped.
 pub(super) struct FileWriter {
     file: PathBuf,
-    /// The file, up to its pictures.
+    /// The file, up to its images.
     main: BufWriter<File>,
     annotations: BufWriter<File>,
     pictures: u64,
-    /// How many annotations there are.
+    /// Number of annotations.
     pub count: u64,
 }
 
 impl FileWriter {
-    /// Begins `file` and makes its folder.
+    /// Creates `file` and its folder.
     pub fn new(file: &Path) -> Result<Self> {
         let begin = || -> Result<_> {
             if let Some(folder) = file.parent() {
@@ -91,7 +91,7 @@ impl Drop for FileWriter {
     }
 }
 
-/// Where a part of the file is until the whole is there.
+/// Returns the path of a part of the file while it is written.
 fn unfinished(file: &Path, part: &str) -> PathBuf {
     let mut name = file.file_name().unwrap_or_default().to_owned();
     name.push(format!(".{part}.partial"));
@@ -101,28 +101,28 @@ fn unfinished(file: &Path, part: &str) -> PathBuf {
 /// The categories of a file that is written.
 pub(super) struct CategoryIds {
     classes: ClassTable,
-    /// The data set's own.
+    /// Ids of the data set.
     ids: Vec<i64>,
 }
 
 impl CategoryIds {
-    /// Those of a data set.
+    /// Starts with the categories of a data set.
     pub fn new(dataset: &dyn DatasetIterator) -> Self {
         Self { classes: ClassTable::new(&dataset.classes()), ids: dataset.class_ids() }
     }
 
-    /// The category of a class; `own` are the names that its target gives.
+    /// Returns the category id of a class; `own` are the class names of its target.
     pub fn category(&mut self, name: &Name, own: &Classes) -> Result<i64> {
         let number = self.classes.number(name, own)?;
         Ok(self.id(number))
     }
 
-    /// Ids and names.
+    /// Returns ids and names.
     pub fn iter(&self) -> impl Iterator<Item = (i64, &str)> {
         self.classes.names().iter().enumerate().map(|(number, name)| (self.id(number), name.as_str()))
     }
 
-    /// Classes without an id of the data set's own get the next ones, from 1.
+    /// Returns the id of a class; classes without an id in the data set get the next ones, from 1.
     fn id(&self, number: usize) -> i64 {
         let (count, most) = (self.ids.len(), self.ids.iter().copied().max().unwrap_or(0));
         self.ids.get(number).copied().unwrap_or_else(|| most + 1 + number.saturating_sub(count) as i64)

@@ -1,4 +1,4 @@
-//! Where what stands in a COCO file: one pass over it, a few bytes kept of each entry.
+//! Index of a COCO file, made in one pass, with a few bytes for each entry.
 
 use std::collections::HashSet;
 use std::fs::File;
@@ -13,20 +13,20 @@ use super::categories::Categories;
 use super::record::PictureRecord;
 use crate::{Problem, Problems};
 
-/// A picture of the file.
+/// An image of the file.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Picture {
     pub id: i64,
     pub offset: u64,
     pub length: u32,
-    /// Width and height in pixels; 0 when the file does not tell.
+    /// Width and height in pixels; 0 if the file does not state them.
     pub size: [u32; 2],
 }
 
 /// An annotation of the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Annotation {
-    /// Number of the picture among [`Index::pictures`].
+    /// Index of the image in [`Index::pictures`].
     pub picture: u32,
     pub length: u32,
     pub offset: u64,
@@ -35,42 +35,42 @@ pub(super) struct Annotation {
 /// The index of a COCO file.
 #[derive(Debug, Default)]
 pub(super) struct Index {
-    /// In the order of the file.
+    /// Images in the order of the file.
     pub pictures: Vec<Picture>,
-    /// By picture, then in the order of the file.
+    /// Annotations by image, then in the order of the file.
     pub annotations: Vec<Annotation>,
     pub categories: Categories,
-    /// Numbers of the pictures by their ids.
+    /// Image indices sorted by image id.
     by_id: Vec<u32>,
 }
 
-/// What an annotation is read as while it is indexed.
+/// The type as which an annotation is read for the index.
 pub(super) trait Entry: for<'de> Deserialize<'de> {
-    /// Of its picture.
+    /// Returns the id of its image.
     fn image_id(&self) -> i64;
-    /// Of the annotation, where it has one.
+    /// Returns the id of the annotation, if it has one.
     fn id(&self) -> Option<i64>;
-    /// What is wrong with it, by key.
+    /// Checks the annotation; an error has the invalid key and a message.
     fn check(&self, size: [u32; 2], categories: &Categories) -> Result<(), (&'static str, String)>;
 }
 
-/// A stretch of the file that is read after what it depends on.
+/// A part of the file that is read after the parts it depends on.
 struct Later {
     offset: u64,
     line: u64,
 }
 
 impl Index {
-    /// Reads the file at `path`, its annotations as `E`; broken entries are reported and left out.
+    /// Reads the file at `path` with annotations of type `E`; invalid entries are reported and skipped.
     ///
-    /// Entries depend on categories, which COCO writes last: annotations that come too early are passed over, and
-    /// read when the rest is known.
+    /// Annotations depend on categories, which COCO writes last: annotations that precede them are skipped, and
+    /// read in a second pass.
     pub fn new<E: Entry>(path: &Path, problems: &Problems) -> Result<Self> {
         let file = File::open(path).context(|| format!("opening {}", path.display()))?;
         Self::from_reader::<E, _>(file, path, problems)
     }
 
-    /// As [`Index::new`], from any reader; `path` is what problems call it.
+    /// Reads from any reader, as [`Index::new`]; `path` is used in messages.
     pub fn from_reader<E: Entry, R: Read + Seek>(
         reader: R,
         path: &Path,
@@ -85,12 +85,12 @@ impl Index {
     fn read<E: Entry, R: Read + Seek>(&mut self, scan: &Scan<'_>, mut reader: R) -> Result<()> {
         let mut json = JsonStream::new(&mut reader);
         let (mut seen, mut later) = (HashSet::new(), None);
-        json.begin_object().context(|| "a COCO file holds one object (a list is a file of results)")?;
+        json.begin_object().context(|| "a COCO file contains one object (a list is a file of results)")?;
         while let Some(key) = json.key()? {
             let ready = seen.contains("images") && seen.contains("categories");
             match key.as_str() {
                 "images" | "annotations" | "categories" if seen.contains(&key) => {
-                    return Err(json.error(&format!("a second key {key:?}; join the files anew")));
+                    return Err(json.error(&format!("the key {key:?} occurs twice; merge the files again")));
                 }
                 "images" => self.read_pictures(scan, &mut json)?,
                 "categories" => self.categories = scan.categories(&mut json)?,
@@ -105,7 +105,7 @@ impl Index {
         }
         json.end()?;
         if let Some(key) = ["images", "annotations", "categories"].iter().find(|key| !seen.contains(**key)) {
-            return Err(Error::format(format!("there is no key {key:?}; COCO files have one")));
+            return Err(Error::format(format!("the key {key:?} is missing; COCO files need it")));
         }
         if let Some(Later { offset, line }) = later {
             reader.seek(SeekFrom::Start(offset))?;
@@ -122,7 +122,7 @@ impl Index {
             let piece = json.value()?;
             let at = self.pictures.len();
             if at > u32::MAX as usize {
-                return Err(Error::unsupported("more than 2^32 pictures; split the file"));
+                return Err(Error::unsupported("more than 2^32 images; split the file"));
             }
             match picture(&piece) {
                 Ok(picture) => self.pictures.push(picture),
@@ -137,7 +137,7 @@ impl Index {
             (first.id == second.id).then_some(second)
         });
         again.into_iter().try_for_each(|picture| {
-            let message = format!("a second picture with id {}; give each its own", picture.id);
+            let message = format!("the image id {} occurs twice; ids must be unique", picture.id);
             scan.problems.report(Problem::at_byte(scan.path, picture.offset, message))
         })
     }
@@ -166,7 +166,7 @@ impl Index {
         ids.sort_unstable();
         ids.chunk_by(|a, b| a == b).filter(|same| same.len() > 1).try_for_each(|same| {
             let (count, id) = (same.len(), same[0]);
-            let message = format!("{count} annotations have the id {id}; give each its own");
+            let message = format!("{count} annotations have the id {id}; ids must be unique");
             scan.problems.report(Problem::at_key(scan.path, "annotations", message))
         })
     }
@@ -182,7 +182,7 @@ impl Index {
             Some((id, picture)) if id == image_id => picture,
             _ => self
                 .picture(image_id)
-                .ok_or_else(|| ("image_id", format!("there is no picture {image_id}")))?,
+                .ok_or_else(|| ("image_id", format!("the file has no image {image_id}")))?,
         };
         *latest = Some((image_id, picture));
         entry.check(self.pictures[picture as usize].size, &self.categories)?;
@@ -196,7 +196,7 @@ impl Index {
         self.by_id.get(found).copied().filter(|at| key(at) == Some(id))
     }
 
-    /// The annotations of picture number `at`.
+    /// Returns the annotations of image `at`.
     pub fn annotations_of(&self, at: usize) -> &[Annotation] {
         let start = self.annotations.partition_point(|annotation| (annotation.picture as usize) < at);
         let rest = &self.annotations[start..];
@@ -211,7 +211,7 @@ fn picture(piece: &JsonPiece<'_>) -> Result<Picture> {
     Ok(Picture { id: record.id, offset: piece.offset, length: piece.bytes.len() as u32, size })
 }
 
-/// The file that is read, and whom to tell what is broken in it.
+/// The file being read, and where its problems are reported.
 struct Scan<'a> {
     path: &'a Path,
     problems: &'a Problems,
@@ -219,7 +219,7 @@ struct Scan<'a> {
 
 impl Scan<'_> {
     fn report(&self, piece: &JsonPiece<'_>, key: String, message: String) -> Result<()> {
-        // Errors of parsing tell line and byte themselves.
+        // Parsing errors contain line and byte already.
         let place = match message.starts_with("line ") {
             true => String::new(),
             false => format!("line {}, byte {}: ", piece.line, piece.offset),

@@ -1,4 +1,4 @@
-//! COCO with a picture of the infrared beside each picture in colour.
+//! COCO with an infrared image for each colour image.
 
 use std::path::{Path, PathBuf};
 
@@ -10,19 +10,19 @@ use super::Coco;
 use crate::picture_files::is_picture;
 use crate::{Format, OpenOptions, Problems, Recognition};
 
-/// A COCO data set whose samples are of two pictures: in colour, as annotated, and of the infrared. Both show the same view.
+/// A COCO data set whose samples have two images of one view: the annotated colour image and an infrared image.
 #[derive(Debug)]
 pub struct CocoInfrared {
     coco: Coco,
     folder: PathBuf,
 }
 
-/// The folder of the pictures of the infrared.
+/// Folder of the infrared images.
 const FOLDER: &str = "infrared";
 
 impl CocoInfrared {
-    /// The picture of the infrared that goes with sample number `index`: of the same name in the folder of the same part, or
-    /// in `infrared` itself; its ending may differ.
+    /// Returns the infrared image of sample `index`: of the same name in the folder of the same part, or in
+    /// `infrared` itself; its extension may differ.
     fn infrared_path(&self, index: usize) -> Result<PathBuf> {
         let colour = self.coco.picture_path(index)?;
         let part = self.coco.folder.file_name().unwrap_or_default();
@@ -40,14 +40,14 @@ impl CocoInfrared {
             }
         }
         Err(Error::not_found(format!(
-            "{} has no picture of the infrared: there is none of its name in {}",
+            "{} has no infrared image: add one of its name to {}",
             colour.display(),
             self.folder.display()
         )))
     }
 }
 
-/// Where pictures of the infrared lie, beside the annotations or above them.
+/// Returns the folder of the infrared images, beside the annotations or above them.
 fn folder_of(path: &Path) -> Option<PathBuf> {
     let above = if path.is_file() { path.parent()? } else { path };
     let above = if above.ends_with("annotations") { above.parent()? } else { above };
@@ -80,8 +80,8 @@ impl DatasetIterator for CocoInfrared {
         self.coco.path(index)
     }
 
-    fn picture_size(&self, index: usize) -> Option<[u32; 2]> {
-        self.coco.picture_size(index)
+    fn image_size(&self, index: usize) -> Option<[u32; 2]> {
+        self.coco.image_size(index)
     }
 
     fn classes(&self) -> Classes {
@@ -99,25 +99,21 @@ impl DatasetIterator for CocoInfrared {
 
 impl Format for CocoInfrared {
     const NAME: &'static str = "coco_infrared";
-    const ABOUT: &'static str =
-        "COCO instances of pairs: a picture in colour and one of the infrared, of one view";
+    const ABOUT: &'static str = "COCO instances of image pairs: colour and infrared, of one view";
     const LAYOUT: &'static str = "as coco, and for val2017/a.jpg infrared/val2017/a.png (or infrared/a.png)";
     const TARGETS: &'static [ValueType] = &[ValueType::BoundingBoxList];
 
     fn recognise(path: &Path) -> Recognition {
         match folder_of(path) {
             Some(_) => Coco::recognise(path),
-            None => Recognition::No(format!("a folder {FOLDER:?} beside the annotations or the pictures")),
+            None => Recognition::No(format!("a folder {FOLDER:?} beside the annotations or the images")),
         }
     }
 
     fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         let coco = Coco::open(path, options, problems)?;
         let folder = folder_of(path).ok_or_else(|| {
-            Error::not_found(format!(
-                "{} has no folder {FOLDER:?} with pictures of the infrared",
-                path.display()
-            ))
+            Error::not_found(format!("{} has no folder {FOLDER:?} with infrared images", path.display()))
         })?;
         Ok(Self { coco, folder })
     }
@@ -134,7 +130,7 @@ mod tests {
         "categories": [{"id": 5, "name": "fire"}]}"#;
 
     #[test]
-    fn pictures_come_in_pairs() {
+    fn samples_have_image_pairs() {
         let scratch = TemporaryFolder::new();
         scratch.write("annotations/instances_train.json", ANNOTATIONS);
         for (name, width, height) in [("train/a.png", 40, 30), ("train/b.png", 20, 20), ("train/c.png", 8, 8)]

@@ -1,4 +1,4 @@
-//! Which files of a folder are a COCO data set's.
+//! Location of the files of a COCO data set.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -6,14 +6,20 @@ use std::path::{Path, PathBuf};
 
 use opendr_engine::{Error, Result};
 
-/// Parts of a data set, the first that is there is taken.
+/// Parts of a data set; the first existing one is used.
 const SPLITS: [&str; 6] = ["val", "valid", "validation", "test", "minival", "train"];
 
-/// Bytes of a file that tell what it is.
+/// Bytes read to recognise a file.
 const HEAD: u64 = 1 << 16;
 
-/// The annotation files at `path`: itself, those of its folder `annotations`, its own, or (as Roboflow exports)
-/// those of its parts. Sorted.
+/// Returns whether the name of a file has one of these beginnings.
+pub(super) fn name_begins(file: &Path, beginnings: &[&str]) -> bool {
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    beginnings.iter().any(|beginning| name.starts_with(beginning))
+}
+
+/// Returns the sorted annotation files at `path`: itself, those of its folder `annotations`, its own, or (as
+/// exported by Roboflow) those of its parts.
 pub(super) fn annotation_files(path: &Path) -> Vec<PathBuf> {
     if path.is_file() {
         return if is_json(path) { vec![path.to_owned()] } else { Vec::new() };
@@ -35,7 +41,7 @@ fn is_json(file: &Path) -> bool {
     file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) && file.is_file()
 }
 
-/// The part that an annotation file is of: `instances_val2017.json` is of `val2017`.
+/// Returns the part of an annotation file: `instances_val2017.json` is of `val2017`.
 pub(super) fn split_of(file: &Path) -> String {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy();
     if stem == "_annotations.coco" {
@@ -47,7 +53,8 @@ pub(super) fn split_of(file: &Path) -> String {
     split.unwrap_or(&stem).to_owned()
 }
 
-/// The file of `split`, or by default the only one, or that of val, test or train; of several kinds, the first.
+/// Returns the file of `split`. By default, returns the only one, or that of val, test or train; of several kinds,
+/// the first.
 pub(super) fn choose<'a>(files: &'a [PathBuf], split: Option<&str>, kinds: &[&str]) -> Result<&'a PathBuf> {
     let kind = |file: &Path| {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
@@ -69,22 +76,22 @@ pub(super) fn choose<'a>(files: &'a [PathBuf], split: Option<&str>, kinds: &[&st
         let mut splits: Vec<_> = files.iter().map(|file| split_of(file)).collect();
         splits.dedup();
         let (wanted, there) = (split.unwrap_or("any"), splits.join(", "));
-        Error::not_found(format!("no annotation file of the part {wanted:?}; there are: {there}"))
+        Error::not_found(format!("no annotation file of the part {wanted:?}; the parts are: {there}"))
     })
 }
 
-/// Whether the beginning of a file is that of an object with one of `keys`.
+/// Returns whether a file starts with an object that has one of `keys`.
 pub(super) fn begins_with_key(file: &Path, keys: &[&str]) -> bool {
     let text = head(file);
     text.starts_with('{') && keys.iter().any(|key| text.contains(&format!("\"{key}\"")))
 }
 
-/// Whether a file is a list, as files of results are.
+/// Returns whether a file contains a list, as files of results do.
 pub(super) fn begins_as_list(file: &Path) -> bool {
     head(file).starts_with('[')
 }
 
-/// The beginning of a file; nothing when it cannot be read.
+/// Returns the first bytes of a file; empty if it cannot be read.
 fn head(file: &Path) -> String {
     let mut bytes = Vec::new();
     let read = File::open(file).and_then(|file| file.take(HEAD).read_to_end(&mut bytes));
@@ -92,7 +99,8 @@ fn head(file: &Path) -> String {
     text.trim_start_matches('\u{feff}').trim_start().to_owned()
 }
 
-/// The folder that holds the picture `name` of the annotation file `file`; that of the first guess when none does.
+/// Returns the folder of the image `name` of the annotation file `file`; the most likely folder if none contains
+/// it.
 pub(super) fn picture_folder(root: &Path, file: &Path, name: &Path) -> PathBuf {
     let split = split_of(file);
     let beside = file.parent().unwrap_or(Path::new(""));

@@ -1,7 +1,7 @@
-//! COCO: boxes, outlines and key points in one JSON file, pictures in a folder.
+//! COCO: boxes, masks and keypoints in one JSON file, images in a folder.
 //!
-//! The file may be far bigger than memory: one pass checks every entry and keeps where it stands; entries are parsed
-//! when their picture is asked for.
+//! The file may be much larger than memory: one pass checks every entry and stores its offset, and entries are
+//! parsed when their image is read.
 
 mod annotation;
 mod categories;
@@ -35,13 +35,13 @@ use record::AnnotationRecord;
 pub use results::coco_results;
 use source::Source;
 
-/// Keys that only an annotation file begins with.
+/// First keys of an annotation file.
 const KEYS: [&str; 4] = ["images", "annotations", "categories", "licenses"];
 
-/// A COCO data set of instances or key points.
+/// A COCO data set of instances or keypoints.
 ///
-/// Class numbers are the positions of COCO's category ids in ascending order; [`DatasetIterator::class_ids`] has the
-/// ids.
+/// Class indices are the positions of COCO's category ids in ascending order; [`DatasetIterator::class_ids`]
+/// returns the ids.
 #[derive(Debug)]
 pub struct Coco {
     folder: PathBuf,
@@ -59,7 +59,7 @@ impl Entry for AnnotationRecord {
         self.id
     }
 
-    fn check(&self, size: [u32; 2], categories: &categories::Categories) -> Result<(), annotation::Wrong> {
+    fn check(&self, size: [u32; 2], categories: &categories::Categories) -> Result<(), annotation::Fault> {
         self.check(size, categories)
     }
 }
@@ -68,7 +68,7 @@ impl Coco {
     fn picture(&self, at: usize) -> Result<&Picture> {
         let count = self.index.pictures.len();
         let picture = self.index.pictures.get(at);
-        picture.ok_or_else(|| Error::not_found(format!("there is no sample {at} among {count}")))
+        picture.ok_or_else(|| Error::not_found(format!("no sample {at} in a data set of {count}")))
     }
 
     fn picture_path(&self, at: usize) -> Result<PathBuf> {
@@ -95,7 +95,7 @@ impl Coco {
     }
 }
 
-/// Indexes the annotation file in `bytes`, as instances and as panoptic segments. For the fuzzers.
+/// Indexes the annotation file in `bytes`, as instances and as panoptic segments, for the fuzzers.
 pub(crate) fn index_bytes(bytes: &[u8]) {
     let (problems, path) = (Problems::skipping(), Path::new("a.json"));
     let _ = Index::from_reader::<AnnotationRecord, _>(Cursor::new(bytes), path, &problems);
@@ -103,20 +103,22 @@ pub(crate) fn index_bytes(bytes: &[u8]) {
 }
 
 impl Coco {
-    /// The JSON file of the annotations that [`Coco::open`](Format::open) reads.
+    /// Returns the JSON file of annotations that [`Coco::open`](Format::open) reads.
     ///
     /// # Errors
-    /// `NotFound` when there is none, or none of the part.
+    /// `NotFound` if there is none, or none of the part.
     pub fn annotation_file(path: &Path, options: &OpenOptions) -> Result<PathBuf> {
         let mut files = locate::annotation_files(path);
         if !path.is_file() {
-            files.retain(|file| !name_begins(file, &["captions_", "panoptic_", "stuff_", "image_info_"]));
-            // Results may lie beside annotations; what is broken is kept, to be told.
+            files.retain(|file| {
+                !locate::name_begins(file, &["captions_", "panoptic_", "stuff_", "image_info_"])
+            });
+            // Files of results may be beside annotations. Broken files are kept, to be reported.
             files.retain(|file| !locate::begins_as_list(file));
         }
         if files.is_empty() {
-            let wanted = "no annotation file (*.json)";
-            return Err(Error::not_found(format!("{wanted} in {} or its annotations/", path.display())));
+            let missing = "no annotation file (*.json)";
+            return Err(Error::not_found(format!("{missing} in {} or its annotations/", path.display())));
         }
         let kinds = match options.target {
             Some(ValueType::PoseList) => ["person_keypoints_", "instances_"],
@@ -125,11 +127,6 @@ impl Coco {
         let file = locate::choose(&files, options.split.as_deref(), &kinds);
         file.cloned().context(|| path.display().to_string())
     }
-}
-
-fn name_begins(file: &Path, beginnings: &[&str]) -> bool {
-    let name = file.file_name().unwrap_or_default().to_string_lossy();
-    beginnings.iter().any(|beginning| name.starts_with(beginning))
 }
 
 impl Dataset for Coco {}
@@ -162,7 +159,7 @@ impl DatasetIterator for Coco {
         self.picture_path(index).ok()
     }
 
-    fn picture_size(&self, index: usize) -> Option<[u32; 2]> {
+    fn image_size(&self, index: usize) -> Option<[u32; 2]> {
         self.picture(index).ok().map(|picture| picture.size).filter(|size| !size.contains(&0))
     }
 
@@ -182,15 +179,16 @@ impl DatasetIterator for Coco {
 impl Format for Coco {
     const NAME: &'static str = "coco";
     const ALIASES: &'static [&'static str] = &["ms_coco", "coco_detection", "coco_keypoints"];
-    const ABOUT: &'static str = "COCO instances (boxes, polygons, masks by runs, crowds) and key points";
+    const ABOUT: &'static str = "COCO instances (boxes, polygons, RLE masks, crowds) and keypoints";
     const LAYOUT: &'static str = "annotations/instances_val2017.json (or person_keypoints_val2017.json, or one JSON \
                                   file), val2017/*.jpg (or images/val2017, images, or beside the file)";
     const TARGETS: &'static [ValueType] = &[ValueType::BoundingBoxList, ValueType::PoseList];
 
     fn recognise(path: &Path) -> Recognition {
         let files = locate::annotation_files(path);
-        let by_name =
-            |file: &PathBuf| name_begins(file, &["instances_", "person_keypoints_", "_annotations.coco"]);
+        let by_name = |file: &PathBuf| {
+            locate::name_begins(file, &["instances_", "person_keypoints_", "_annotations.coco"])
+        };
         let own = |file: &&PathBuf| {
             locate::begins_with_key(file, &KEYS) && !locate::begins_with_key(file, &["segments_info"])
         };
@@ -208,12 +206,14 @@ impl Format for Coco {
     fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         let file = &Self::annotation_file(path, options)?;
         let target = match options.target {
-            None if name_begins(file, &["person_keypoints_"]) => ValueType::PoseList,
+            None if locate::name_begins(file, &["person_keypoints_"]) => ValueType::PoseList,
             None | Some(ValueType::BoundingBoxList) => ValueType::BoundingBoxList,
             Some(ValueType::PoseList) => ValueType::PoseList,
             Some(other) => {
                 let other = other.name();
-                return Err(Error::unsupported(format!("COCO is read as boxes or poses, not as {other}")));
+                return Err(Error::unsupported(format!(
+                    "COCO annotations are read as boxes or poses, not as {other}"
+                )));
             }
         };
         let index = Index::new::<AnnotationRecord>(file, problems)?;

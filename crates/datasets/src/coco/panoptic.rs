@@ -1,4 +1,4 @@
-//! COCO panoptic: which pixel belongs to which thing or stuff, a PNG for each picture, told apart in one JSON file.
+//! COCO panoptic: masks of things and stuff, a PNG for each image, described in one JSON file.
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use opendr_engine::{Error, Progress, Result, ResultExt, Value, ValueType};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use super::annotation::{Wrong, check_box};
+use super::annotation::{Fault, check_box};
 use super::categories::Categories;
 use super::file_writer::{CategoryIds, FileWriter};
 use super::index::{Entry, Index, Picture};
@@ -23,11 +23,11 @@ use crate::label_png::{IGNORED, LabelMap};
 use crate::picture_files::{PictureWriter, Placed, open_picture, split_name, write_each};
 use crate::{Format, OpenOptions, Problems, Recognition, WriteOptions};
 
-/// What the class is multiplied with in maps of labels, as the metric of panoptic quality takes them.
+/// Factor of the class in label maps, as in the panoptic quality metric.
 const LABEL_DIVISOR: u32 = 1000;
 
-/// A COCO panoptic data set: a box with its mask for every segment, things and stuff, or a map of labels (class times
-/// 1000 plus number of the object; class 255 where there is no segment).
+/// A COCO panoptic data set: a box with its mask for every segment, things and stuff, or a label map (class times
+/// 1000 plus instance index; class 255 outside of segments).
 #[derive(Debug)]
 pub struct CocoPanoptic {
     folder: PathBuf,
@@ -67,23 +67,26 @@ impl Entry for Record {
     }
 
     fn id(&self) -> Option<i64> {
-        // One for each picture.
+        // One entry for each image.
         Some(self.image_id)
     }
 
-    fn check(&self, size: [u32; 2], categories: &Categories) -> Result<(), Wrong> {
+    fn check(&self, size: [u32; 2], categories: &Categories) -> Result<(), Fault> {
         member_path(&self.file_name).map_err(|error| ("file_name", error.to_string()))?;
         let mut ids = HashSet::new();
         self.segments_info.iter().try_for_each(|segment| {
             let (id, category) = (segment.id, segment.category_id);
             if id == 0 || id >= 1 << 24 || !ids.insert(id) {
-                return Err(("segments_info", format!("id {id} is given twice, or is no colour but black")));
+                return Err((
+                    "segments_info",
+                    format!("id {id} occurs twice, or is not a valid colour other than black"),
+                ));
             }
             if categories.class(category).is_none() {
                 let count = categories.ids().len();
                 return Err((
                     "segments_info",
-                    format!("category_id {category} is none of the {count} categories"),
+                    format!("category_id {category} is not one of the {count} categories"),
                 ));
             }
             check_box(segment.bbox, size)
@@ -100,15 +103,15 @@ impl CocoPanoptic {
         Ok(self.folder.join(member_path(&self.source.file_name(self.picture(index)?)?)?))
     }
 
-    /// The segments of a picture and the map of their pixels.
+    /// Returns the segments of an image and the map of their pixels.
     fn segments(&self, index: usize) -> Result<(Record, SegmentMap)> {
-        let mut found = None;
+        let mut annotation = None;
         self.source.annotations(self.index.annotations_of(index), |record: Record| {
-            found = Some(record);
+            annotation = Some(record);
             Ok(())
         })?;
-        let record =
-            found.ok_or_else(|| Error::format(format!("picture {} has no annotation", self.name(index))))?;
+        let record = annotation
+            .ok_or_else(|| Error::format(format!("image {} has no annotation", self.name(index))))?;
         let path = self.masks.join(member_path(&record.file_name)?);
         let ids: Vec<_> = record.segments_info.iter().map(|segment| segment.id).collect();
         let image = open_picture(&path, self.picture(index)?.size)?;
@@ -132,7 +135,7 @@ impl CocoPanoptic {
         Ok(BoundingBoxList { image_id: Some(self.picture(index)?.id), classes: self.classes(), ..boxes })
     }
 
-    /// Class times 1000 plus number of the object: from 1, 0 for crowds and for stuff.
+    /// Returns the label map: class times 1000 plus instance index from 1, which is 0 for crowds and stuff.
     fn label_map(&self, index: usize) -> Result<Heatmap> {
         let (record, map) = self.segments(index)?;
         let (mut labels, mut counts) = (Vec::new(), HashMap::new());
@@ -142,7 +145,7 @@ impl CocoPanoptic {
             let object = if *iscrowd { 0 } else { std::mem::replace(next, *next + 1) };
             if object >= LABEL_DIVISOR {
                 return Err(Error::unsupported(format!(
-                    "over {LABEL_DIVISOR} objects of a class; read boxes"
+                    "a class has over {LABEL_DIVISOR} objects; read boxes instead"
                 )));
             }
             labels.push(class as u32 * LABEL_DIVISOR + object);
@@ -181,7 +184,7 @@ impl DatasetIterator for CocoPanoptic {
         self.picture_path(index).ok()
     }
 
-    fn picture_size(&self, index: usize) -> Option<[u32; 2]> {
+    fn image_size(&self, index: usize) -> Option<[u32; 2]> {
         self.picture(index).ok().map(|picture| picture.size).filter(|size| !size.contains(&0))
     }
 
@@ -199,22 +202,22 @@ impl DatasetIterator for CocoPanoptic {
 }
 
 fn is_panoptic(file: &Path) -> bool {
-    super::name_begins(file, &["panoptic_"]) || locate::begins_with_key(file, &["segments_info"])
+    locate::name_begins(file, &["panoptic_"]) || locate::begins_with_key(file, &["segments_info"])
 }
 
 impl Format for CocoPanoptic {
     const NAME: &'static str = "coco_panoptic";
     const ALIASES: &'static [&'static str] = &["panoptic"];
     const ABOUT: &'static str =
-        "COCO panoptic: masks of things and stuff as PNG files, told apart in one JSON file";
+        "COCO panoptic: masks of things and stuff as PNG files, described in one JSON file";
     const LAYOUT: &'static str =
         "annotations/panoptic_val2017.json, annotations/panoptic_val2017/*.png, val2017/*.jpg";
     const TARGETS: &'static [ValueType] = &[ValueType::BoundingBoxList, ValueType::Heatmap];
 
     fn recognise(path: &Path) -> Recognition {
         let files = locate::annotation_files(path);
-        // Beside instances it must be asked for.
-        let other = files.iter().any(|file| super::name_begins(file, &["instances_", "person_keypoints_"]));
+        // Beside instances, the format must be named by the user.
+        let other = files.iter().any(|file| locate::name_begins(file, &["instances_", "person_keypoints_"]));
         match files.iter().take(64).any(|file| is_panoptic(file)) {
             true if other => Recognition::Possible,
             true => Recognition::Certain,
@@ -243,7 +246,7 @@ impl Format for CocoPanoptic {
         };
         let index = Index::new::<Record>(file, problems)?;
         if target == ValueType::Heatmap && index.categories.ids().len() > IGNORED as usize {
-            return Err(Error::unsupported("over 255 categories do not fit a map of labels; read boxes"));
+            return Err(Error::unsupported("label maps support at most 255 categories; read boxes instead"));
         }
         let source = Source::new(file)?;
         let first = index.pictures.first().map(|picture| source.file_name(picture)).transpose()?;
@@ -251,7 +254,7 @@ impl Format for CocoPanoptic {
         Ok(Self { folder, masks: file.with_extension(""), index, source, target })
     }
 
-    /// Boxes need masks by runs. Data sets do not tell things from stuff: all are written as things.
+    /// Writes boxes with RLE masks. Data sets do not distinguish things from stuff: all are written as things.
     fn write(
         dataset: &dyn DatasetIterator,
         path: &Path,
@@ -267,9 +270,7 @@ impl Format for CocoPanoptic {
         std::fs::create_dir_all(&masks).context(|| format!("making {}", masks.display()))?;
         write_each(dataset, problems, progress, |index| {
             let Some(Value::BoundingBoxList(list)) = dataset.target(index)? else {
-                return Err(Error::invalid_input(
-                    "panoptic masks are made of boxes with masks, no other targets",
-                ));
+                return Err(Error::invalid_input("panoptic masks need boxes with masks, no other targets"));
             };
             let placed = pictures.place(index)?;
             let file_name = Path::new(&placed.name).with_extension("png").to_string_lossy().into_owned();
@@ -297,7 +298,7 @@ fn write_masks(
             Some(Segmentation::Rle(rle)) if rle.size() == [height, width] => rle,
             _ => {
                 return Err(Error::invalid_input(format!(
-                    "box {at} has no mask by runs of its picture's size; panoptic masks are made of these"
+                    "box {at} has no RLE mask of its image's size, which panoptic masks need"
                 )));
             }
         };
@@ -328,7 +329,7 @@ mod tests {
         CocoPanoptic::open(path, &OpenOptions { split: None, target }, &Problems::strict())
     }
 
-    /// Two segments of a picture of 3x2 pixels, and a pixel of none.
+    /// Two segments of an image of 3x2 pixels, and a pixel outside of both.
     fn small(segments: &str) -> TemporaryFolder {
         let folder = TemporaryFolder::new();
         let json = format!(
@@ -369,13 +370,13 @@ mod tests {
     }
 
     #[test]
-    fn broken_segments_are_told() {
+    fn broken_segments_are_reported() {
         let error = |from: &str, to: &str| {
             let folder = small(&SEGMENTS.replace(from, to));
             open(folder.path(), None).and_then(|dataset| dataset.get(0)).unwrap_err().to_string()
         };
         assert!(error("184", "185").contains("annotations[0].segments_info: line 1, byte"));
-        assert!(error("\"id\":2", "\"id\":1").contains("id 1 is given twice"));
+        assert!(error("\"id\":2", "\"id\":1").contains("id 1 occurs twice"));
         assert!(
             error("\"id\":2", "\"id\":3")
                 .contains("a.png: segment 2 at column 0, row 1 is not in segments_info")

@@ -1,4 +1,4 @@
-//! The entries of COCO's files.
+//! Entries of COCO files.
 
 use std::borrow::Cow;
 
@@ -25,7 +25,7 @@ pub(super) struct CategoryRecord {
     pub name: Option<String>,
     #[serde(default)]
     pub keypoints: Vec<String>,
-    /// Of panoptic files: whether its objects are told apart.
+    /// In panoptic files: whether instances are distinguished.
     #[serde(default = "yes", deserialize_with = "flag")]
     pub isthing: bool,
 }
@@ -34,7 +34,7 @@ fn yes() -> bool {
     true
 }
 
-/// An entry of `annotations` of instances or key points.
+/// An entry of `annotations` of instances or keypoints.
 #[derive(Debug, Deserialize)]
 pub(super) struct AnnotationRecord {
     #[serde(default)]
@@ -53,7 +53,7 @@ pub(super) struct AnnotationRecord {
     pub keypoints: Vec<f32>,
 }
 
-/// 0, 1, false or true.
+/// Deserialises 0, 1, false or true.
 pub(super) fn flag<'de, D: Deserializer<'de>>(deserializer: D) -> Result<bool, D::Error> {
     #[derive(Deserialize)]
     #[serde(untagged)]
@@ -68,7 +68,7 @@ pub(super) fn flag<'de, D: Deserializer<'de>>(deserializer: D) -> Result<bool, D
     }
 }
 
-/// Polygons or runs; errors stay those of the numbers inside, which an untagged enum would hide.
+/// Deserialises polygons or RLE. Errors are those of the numbers inside, which an untagged enum would hide.
 fn segmentation<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Segmentation>, D::Error> {
     struct Visitor;
 
@@ -76,7 +76,7 @@ fn segmentation<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Seg
         type Value = Option<Segmentation>;
 
         fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-            f.write_str("a list of polygons or a mask by runs")
+            f.write_str("a list of polygons or an RLE mask")
         }
 
         fn visit_unit<E>(self) -> Result<Self::Value, E> {

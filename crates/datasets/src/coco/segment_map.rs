@@ -1,4 +1,4 @@
-//! The pixels of panoptic segments, and their picture: a colour is a number (red + 256 green + 65536 blue).
+//! Pixels of panoptic segments and their image, whose colours are ids (red + 256 green + 65536 blue).
 
 use std::collections::HashMap;
 
@@ -6,25 +6,25 @@ use opendr_engine::data::{Image, PixelFormat};
 use opendr_engine::target::Rle;
 use opendr_engine::{Error, Result};
 
-/// Which segment each pixel belongs to.
+/// Segment of each pixel.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct SegmentMap {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Number of the segment from 0, row by row.
+    /// Segment index from 0, row by row.
     pub places: Vec<Option<u32>>,
     count: usize,
 }
 
 impl SegmentMap {
-    /// Reads a picture whose colours are `ids`, and black.
+    /// Reads an image whose colours are `ids` and black.
     ///
     /// # Errors
-    /// `Format` for another colour, and for an id without a pixel.
+    /// `Format` for another colour, and for an id without pixels.
     pub fn new(image: &Image, ids: &[u32]) -> Result<Self> {
         let numbers: HashMap<u32, u32> = ids.iter().copied().zip(0..).collect();
         let (rgb, width) = (image.hwc_u8(PixelFormat::Rgb), image.width());
-        let mut seen = vec![false; ids.len()];
+        let mut has_pixels = vec![false; ids.len()];
         let mut places = Vec::with_capacity(rgb.len() / 3);
         let mut latest = (0, None);
         for (at, [red, green, blue]) in rgb.as_chunks().0.iter().copied().enumerate() {
@@ -40,17 +40,17 @@ impl SegmentMap {
                 latest = (id, number);
             }
             if let Some(number) = latest.1 {
-                seen[number as usize] = true;
+                has_pixels[number as usize] = true;
             }
             places.push(latest.1);
         }
-        if let Some(missing) = seen.iter().position(|seen| !seen) {
+        if let Some(missing) = has_pixels.iter().position(|has_pixels| !has_pixels) {
             return Err(Error::format(format!("segment {} of segments_info has no pixel", ids[missing])));
         }
         Ok(Self { size: [width as u32, image.height() as u32], places, count: ids.len() })
     }
 
-    /// Lays masks over one another, the last on top.
+    /// Draws masks over each other, the last on top.
     pub fn from_masks(masks: &[&Rle], [width, height]: [u32; 2]) -> Result<Self> {
         let mut places = vec![None; width as usize * height as usize];
         for (number, rle) in (0..).zip(masks) {
@@ -61,7 +61,7 @@ impl SegmentMap {
         Ok(Self { size: [width, height], places, count: masks.len() })
     }
 
-    /// The mask of each segment.
+    /// Returns the mask of each segment.
     pub fn masks(&self) -> Result<Vec<Rle>> {
         let [width, height] = self.size.map(|side| side as usize);
         let mut runs: Vec<(Vec<u32>, u32)> = vec![(Vec::new(), 0); self.count];
@@ -86,7 +86,7 @@ impl SegmentMap {
         runs.into_iter().map(mask).collect()
     }
 
-    /// As a picture: segment number 0 has the colour 1, and so on.
+    /// Converts to an image: segment 0 has the colour 1, and so on.
     pub fn image(&self) -> Result<Image> {
         let colour = |place: &Option<u32>| {
             let [red, green, blue, _] = place.map_or(0, |number| number + 1).to_le_bytes();
@@ -102,7 +102,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn masks_and_pictures_tell_the_same() {
+    fn masks_and_images_agree() {
         let masks = [[true, true, false, false, true, false], [false, false, false, true, false, true]];
         let masks = masks.map(|mask| Rle::from_mask(&mask, 2, 3).unwrap());
         let map = SegmentMap::from_masks(&[&masks[0], &masks[1]], [3, 2]).unwrap();

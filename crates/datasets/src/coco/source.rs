@@ -1,4 +1,4 @@
-//! Entries of a COCO file that are read when they are asked for.
+//! Reading of single entries of a COCO file.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -11,13 +11,13 @@ use serde::Deserialize;
 use super::index::{Annotation, Picture};
 use super::record::PictureRecord;
 
-/// Bytes between two entries that are read along, instead of reading twice.
+/// Largest gap between two entries that are read together, in bytes.
 const GAP: u64 = 1 << 12;
 
-/// Bytes that are read at once, unless one entry is longer.
-const MOST: u64 = 1 << 20;
+/// Most bytes that are read at once, unless one entry is longer.
+const MAX_READ: u64 = 1 << 20;
 
-/// An indexed COCO file. Reads are short, so threads take turns.
+/// An indexed COCO file. Reads are short, so threads share a lock.
 #[derive(Debug)]
 pub(super) struct Source {
     path: PathBuf,
@@ -30,14 +30,14 @@ impl Source {
         Ok(Self { path: path.to_owned(), file: Mutex::new(file) })
     }
 
-    /// The file name of a picture.
+    /// Returns the file name of an image.
     pub fn file_name(&self, picture: &Picture) -> Result<String> {
         let bytes = self.read(picture.offset, picture.length.into())?;
         let record: PictureRecord = self.parse(&bytes, picture.offset)?;
         Ok(record.file_name.into_owned())
     }
 
-    /// Hands each annotation to `each`; those that lie close together are read together.
+    /// Calls `each` with each annotation; nearby annotations are read together.
     pub fn annotations<T: for<'de> Deserialize<'de>>(
         &self,
         mut annotations: &[Annotation],
@@ -46,7 +46,7 @@ impl Source {
         let end = |annotation: &Annotation| annotation.offset + u64::from(annotation.length);
         while let Some(first) = annotations.first() {
             let near = annotations.windows(2).take_while(|pair| {
-                pair[1].offset - end(&pair[0]) <= GAP && end(&pair[1]) - first.offset <= MOST
+                pair[1].offset - end(&pair[0]) <= GAP && end(&pair[1]) - first.offset <= MAX_READ
             });
             let (together, rest) = annotations.split_at(near.count() + 1);
             let bytes = self.read(first.offset, together.last().map_or(0, end) - first.offset)?;
@@ -61,7 +61,7 @@ impl Source {
 
     fn parse<'a, T: Deserialize<'a>>(&self, bytes: &'a [u8], offset: u64) -> Result<T> {
         let parsed = JsonPiece { bytes, offset, line: 1 }.parse();
-        parsed.context(|| format!("{} was changed while it was in use", self.path.display()))
+        parsed.context(|| format!("{} was modified while it was in use", self.path.display()))
     }
 
     fn read(&self, offset: u64, length: u64) -> Result<Vec<u8>> {

@@ -7,7 +7,7 @@ use crate::folder::{TemporaryFolder, real_data};
 
 const FILE: &str = "annotations/instances_val2017.json";
 
-/// Two pictures, the annotations not in their order, gaps in the category ids, and a key that nobody knows.
+/// Two images, unordered annotations, gaps in the category ids, and an unknown key.
 const SMALL: &str = r#"{"info": {"about": "a \"]}\" b"},
 "images": [{"id": 139, "file_name": "a.png", "width": 40, "height": 30, "license": 1},
            {"id": 7, "file_name": "b.png", "width": 20, "height": 20}],
@@ -38,7 +38,7 @@ fn boxes(coco: &Coco, at: usize) -> BoundingBoxList {
     }
 }
 
-/// Problems of opening `text`, in skip mode; strict mode must refuse it with the first.
+/// Returns the problems of opening `text` in skip mode; strict mode must fail with the first.
 fn problems_of(text: &str) -> Vec<String> {
     let scratch = TemporaryFolder::new();
     let path = scratch.write("a.json", text);
@@ -61,7 +61,7 @@ fn pictures_have_their_annotations() {
     let coco = open(scratch.path(), &Problems::strict()).unwrap();
     assert_eq!((coco.len(), coco.class_ids()), (2, vec![18, 90]));
     assert_eq!(coco.classes().iter().collect::<Vec<_>>(), ["dog", "toothbrush"]);
-    assert_eq!((coco.name(1), coco.id(1), coco.picture_size(0)), ("b.png".into(), Some(7), Some([40, 30])));
+    assert_eq!((coco.name(1), coco.id(1), coco.image_size(0)), ("b.png".into(), Some(7), Some([40, 30])));
     let first = boxes(&coco, 0);
     assert_eq!(first.boxes, [BoundingBox::new(0, 0.0, 0.0, 40.0, 30.0, 1.0)]);
     let second = boxes(&coco, 1);
@@ -96,7 +96,7 @@ fn what_is_written_is_read() {
 }
 
 #[test]
-fn results_have_the_files_own_numbers() {
+fn results_have_the_ids_of_the_file() {
     let scratch = small();
     let coco = open(scratch.path(), &Problems::strict()).unwrap();
     let mut found = BoundingBoxList::from(vec![BoundingBox::new(1, 1.0, 2.0, 3.0, 4.0, 0.5)]);
@@ -142,7 +142,7 @@ fn poses_keep_visibility_and_region() {
 }
 
 #[test]
-fn broken_entries_are_told_with_their_place() {
+fn broken_entries_are_reported_with_their_place() {
     let broken = SMALL
         .replace("\"image_id\": 139", "\"image_id\": 140")
         .replace("[1, 2, 3.25, 4]", "[1, NaN, 3.25, 4]")
@@ -152,27 +152,27 @@ fn broken_entries_are_told_with_their_place() {
     assert!(found[0].contains("annotations[0]") && found[0].contains("line 5, byte 2"), "{found:?}");
     assert!(found[0].contains("key \"bbox[1]\""), "{found:?}");
     assert!(
-        found[1].contains("annotations[1].image_id: line 7") && found[1].contains("no picture 140"),
+        found[1].contains("annotations[1].image_id: line 7") && found[1].contains("no image 140"),
         "{found:?}"
     );
     assert!(found[2].contains("annotations[2].segmentation") && found[2].contains("40x10"), "{found:?}");
 }
 
 #[test]
-fn broken_files_are_told() {
+fn broken_files_are_reported() {
     let one = |from: &str, to: &str| {
         assert!(SMALL.contains(from), "{from}");
         let found = problems_of(&SMALL.replace(from, to));
         assert_eq!(found.len(), 1, "{found:?}");
         found[0].clone()
     };
-    assert!(one("\"category_id\": 90", "\"category_id\": 91").contains("91 is none of the 2 categories"));
-    assert!(one("[1, 2, 3.25, 4]", "[100, 2, 3.25, 4]").contains("outside of its picture of 20x20"));
+    assert!(one("\"category_id\": 90", "\"category_id\": 91").contains("91 is not one of the 2 categories"));
+    assert!(one("[1, 2, 3.25, 4]", "[100, 2, 3.25, 4]").contains("outside of its image of 20x20"));
     assert!(one("[1, 2, 3.25, 4]", "[1, 2, -3.25, 4]").contains("annotations[0].bbox"));
     assert!(one("[1, 2, 3.25, 4]", "[1, 2, 3.25]").contains("bbox"));
     assert!(one("[1.5, 2, 4, 2, 4, 6]", "[1.5, 2, 4]").contains("a polygon of 3 numbers"));
     assert!(one("[5, 390, 5]", "[5, 390]").contains("fill 395 pixels"));
-    assert!(one("\"area\": 6.5", "\"area\": -6.5").contains("-6.5 is no number of square pixels"));
+    assert!(one("\"area\": 6.5", "\"area\": -6.5").contains("-6.5 is not a valid number of square pixels"));
     assert!(one("\"area\": 6.5", "\"area\": 1e60").contains("area"));
     assert!(one("\"id\": 3, ", "\"id\": 1, ").contains("2 annotations have the id 1"));
     assert!(one("\"images\"", "\"pictures\"").contains("images"));
@@ -186,7 +186,7 @@ fn broken_files_are_told() {
 }
 
 #[test]
-fn broken_pictures_fail_alone() {
+fn broken_images_affect_no_others() {
     let scratch = small();
     std::fs::remove_file(scratch.path().join("val2017/a.png")).unwrap();
     scratch.picture("val2017/b.png", 21, 20);
@@ -220,7 +220,7 @@ fn parts_are_chosen() {
     other.write("test_b.json", SMALL);
     assert!(Coco::annotation_file(other.path(), &OpenOptions::default()).unwrap().ends_with("test_b.json"));
     let error = id(Some("test")).unwrap_err().to_string();
-    assert!(error.contains("there are: val2017, train2017") || error.contains("val2017"), "{error}");
+    assert!(error.contains("the parts are: val2017, train2017") || error.contains("val2017"), "{error}");
 }
 
 #[test]

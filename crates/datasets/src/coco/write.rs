@@ -1,4 +1,4 @@
-//! Any boxes and poses as COCO.
+//! Writer of boxes and poses as COCO.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use super::file_writer::{CategoryIds, FileWriter};
 use crate::picture_files::{PictureWriter, Placed, split_name, write_each};
 use crate::{Problems, WriteOptions};
 
-/// COCO's names of the joints of [`Skeleton::Coco17`].
+/// COCO's names of the keypoints of [`Skeleton::Coco17`].
 const JOINTS: [&str; 17] = [
     "nose",
     "left_eye",
@@ -50,7 +50,7 @@ struct AnnotationEntry<'a> {
 }
 
 /// Writes `dataset` as `path/annotations/instances_SPLIT.json` (poses: `person_keypoints_SPLIT.json`) and
-/// `path/SPLIT/*`; to a path that ends with `.json`, only the annotations.
+/// `path/SPLIT/*`. If `path` ends with `.json`, only the annotations are written.
 pub(super) fn write(
     dataset: &dyn DatasetIterator,
     path: &Path,
@@ -77,10 +77,8 @@ pub(super) fn write(
             Some(pictures) => pictures.place(index)?,
             None => Placed {
                 name: dataset.name(index),
-                size: dataset.picture_size(index).ok_or_else(|| {
-                    Error::invalid_input(
-                        "the size of the picture is not known; write to a folder, not to a file",
-                    )
+                size: dataset.image_size(index).ok_or_else(|| {
+                    Error::invalid_input("the image size is unknown; write to a folder instead of a file")
                 })?,
             },
         };
@@ -97,7 +95,7 @@ struct CocoWriter<'a> {
 }
 
 impl CocoWriter<'_> {
-    /// Whether a target can be written, found out before its picture is.
+    /// Checks that a target can be written, before its image is written.
     fn check(&mut self, target: Option<&Value>) -> Result<()> {
         match target {
             None => Ok(()),
@@ -110,13 +108,15 @@ impl CocoWriter<'_> {
                 let points = pose.keypoints.iter().filter(|point| point.confidence > 0.0);
                 let wrong = points.into_iter().find(|point| !point.x.is_finite() || !point.y.is_finite());
                 if let Some(point) = wrong {
-                    return Err(Error::invalid_input(format!("a key point at {point} cannot be written")));
+                    return Err(Error::invalid_input(format!(
+                        "the keypoint at {point} is not finite and cannot be written"
+                    )));
                 }
                 pose.region.as_deref().map_or(Ok(()), check_finite)
             }),
             Some(other) => {
                 let found = other.as_value_ref().value_type().name();
-                Err(Error::invalid_input(format!("COCO holds boxes and poses, no {found}")))
+                Err(Error::invalid_input(format!("COCO supports boxes and poses, not {found}")))
             }
         }
     }
@@ -151,8 +151,9 @@ impl CocoWriter<'_> {
         if let Some(pose) = pose {
             self.joints.get_or_insert((pose.keypoints.len(), pose.skeleton));
         }
-        let visible =
-            |numbers: &Vec<f32>| numbers.iter().skip(2).step_by(3).filter(|seen| **seen > 0.0).count();
+        let labelled = |numbers: &Vec<f32>| {
+            numbers.iter().skip(2).step_by(3).filter(|visibility| **visibility > 0.0).count()
+        };
         self.file.annotation(&AnnotationEntry {
             id: self.file.count + 1,
             image_id,
@@ -161,7 +162,7 @@ impl CocoWriter<'_> {
             area: segment.map_or(bbox[2] * bbox[3], |segment| segment.area),
             iscrowd: segment.is_some_and(|segment| segment.iscrowd).into(),
             segmentation: segment.map_or(&no_outline, |segment| &segment.segmentation),
-            num_keypoints: keypoints.as_ref().map(visible),
+            num_keypoints: keypoints.as_ref().map(labelled),
             keypoints,
         })
     }
@@ -179,7 +180,7 @@ impl CocoWriter<'_> {
     }
 }
 
-/// The class of a person: that of its region, or the first.
+/// Returns the class of a person: that of its region, or the first.
 fn name_of(pose: &Pose) -> Name {
     pose.region.as_ref().map_or(Name::Index(0), |region| region.name.clone())
 }
@@ -198,7 +199,7 @@ fn check_finite(found: &BoundingBox) -> Result<()> {
     Err(Error::invalid_input(format!("a box with NaN or infinite numbers cannot be written: {found:#}")))
 }
 
-/// x, y and visibility (0 not labelled, 1 hidden, 2 visible) of each joint.
+/// Returns x, y and visibility (0 not labelled, 1 occluded, 2 visible) of each keypoint.
 fn numbers_from_pose(pose: &Pose) -> Vec<f32> {
     let numbers = |point: &opendr_engine::target::Keypoint| match point.confidence {
         visible if visible > 0.5 => [point.x, point.y, 2.0],

@@ -1,4 +1,4 @@
-//! A folder for one test, gone after it.
+//! A folder for one test, deleted afterwards.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -25,14 +25,14 @@ impl TemporaryFolder {
         self
     }
 
-    /// Writes a file and the folders above it; where it lies.
+    /// Writes a file and the folders above it, and returns its path.
     pub(crate) fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
         let path = self.0.join(name);
         super::write_file(&path, bytes.as_ref()).unwrap();
         path
     }
 
-    /// Writes a picture, its pixels told apart by their place; where it lies.
+    /// Writes an image whose pixels depend on their position, and returns its path.
     pub(crate) fn picture(&self, name: &str, width: usize, height: usize) -> PathBuf {
         let path = self.write(name, "");
         let samples = (0..width * height * 3).map(|at| (at % 251) as u8).collect();
@@ -41,7 +41,7 @@ impl TemporaryFolder {
         path
     }
 
-    /// Writes a small picture.
+    /// Writes a small image.
     pub(crate) fn with_picture(self, name: &str) -> Self {
         let image = opendr_engine::data::Image::from_rgb8(vec![200; 4 * 3 * 3], 4, 3).unwrap();
         fs::create_dir_all(self.0.join(name).parent().unwrap()).unwrap();
@@ -56,7 +56,7 @@ impl Drop for TemporaryFolder {
     }
 }
 
-/// The folder of real data, where there is one.
+/// Returns the folder of real test data, if it exists.
 pub(crate) fn real_data(name: &str) -> Option<PathBuf> {
     let Some(root) = std::env::var_os("OPENDR_TEST_DATA") else {
         println!("skipped: no OPENDR_TEST_DATA");

@@ -48,7 +48,7 @@ fn class(hands: &Hands, index: usize) -> (i64, String) {
 }
 
 #[test]
-fn subjects_show_gestures() {
+fn subjects_have_gestures() {
     let folder = hands();
     assert_eq!(Hands::recognise(folder.path()), Recognition::Certain);
     let all = open(&folder, None).unwrap();
@@ -65,15 +65,15 @@ fn subjects_show_gestures() {
 }
 
 #[test]
-fn broken_labels_are_told_by_line() {
+fn broken_labels_are_reported_by_line() {
     for (line, wanted) in [
-        ("color_1.png,color_1.png,[1 2 3 4]", "Subject1.txt:4: has 1 boxes where the first line names 2"),
+        ("color_1.png,color_1.png,[1 2 3 4]", "Subject1.txt:4: has 1 boxes, but the first line has 2"),
         (
             "color_1.png,color_1.png,[0 0 0 0],[1 2 x 4]",
             "Subject1.txt:4: has \"[1 2 x 4]\" as the box of Punch",
         ),
-        ("color_1.png,color_1.png,[0 0 0 0],[0 0 0 0]", "Subject1.txt:4: shows no gesture"),
-        ("color_9.png,color_1.png,[0 0 0 0],[1 2 3 4]", "Subject1.txt:4: names "),
+        ("color_1.png,color_1.png,[0 0 0 0],[0 0 0 0]", "Subject1.txt:4: has no gesture"),
+        ("color_9.png,color_1.png,[0 0 0 0],[1 2 3 4]", "Subject1.txt:4: refers to "),
         ("..,color_1.png,[0 0 0 0],[1 2 3 4]", "Subject1.txt:4: the file name \"..\""),
         ("x", "Subject1.txt:4: has 1 fields instead of 4"),
     ] {
@@ -105,5 +105,7 @@ fn what_is_written_is_read() {
     };
     assert_eq!(samples(&again), samples(&hands));
     std::fs::remove_file(again.depth_path(0).unwrap()).unwrap();
-    assert!(open(&copy, Some("train")).unwrap_err().to_string().contains("is missing beside its colours"));
+    assert!(
+        open(&copy, Some("train")).unwrap_err().to_string().contains("is missing beside its colour image")
+    );
 }

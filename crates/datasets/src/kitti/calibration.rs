@@ -1,4 +1,4 @@
-//! Calibration files, checked: a wrong one sends a robot where nothing is.
+//! Calibration files with checks, since a wrong calibration misplaces every object.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -10,53 +10,53 @@ use crate::Problem;
 use crate::fields::lines;
 use crate::folder::read_text;
 
-/// How far the rows of a rotation may be from unit length and right angles.
+/// Largest deviation of the rows of a rotation from unit length and right angles.
 const ROTATION_TOLERANCE: f64 = 1e-3;
 
 /// Reads and checks the calibration at `path`.
 ///
 /// # Errors
-/// `NotFound` or `Io` when it cannot be read; those of [`calibration_from_kitti`].
+/// `NotFound` or `Io` if it cannot be read; otherwise as [`calibration_from_kitti`].
 pub fn open_kitti_calibration(path: impl AsRef<Path>) -> Result<Calibration> {
     let path = path.as_ref();
     calibration_from_kitti(&read_text(path)?, path)
 }
 
-/// Reads a calibration of the detection or tracking benchmark; `path` is for errors.
+/// Parses a calibration of the detection or tracking benchmark; `path` is used in errors.
 ///
-/// Every line of numbers is checked for their count and that they are finite; rotations for right angles, unit lengths
-/// and not to mirror; the projection for positive focal lengths.
+/// Each matrix must have the right number of finite values. Rotations are checked for right angles, unit lengths
+/// and a positive determinant, the projection for positive focal lengths.
 ///
 /// # Errors
-/// `Format` with file and line, or the matrix that is missing.
+/// `Format` with file and line, or the missing matrix.
 pub fn calibration_from_kitti(text: &str, path: &Path) -> Result<Calibration> {
     let (mut p2, mut r0_rect, mut tr_velo_to_cam) = (None, None, None);
     for (number, line) in lines(text) {
-        let wrong = |message: String| Problem::at_line(path, number, message);
+        let problem = |message: String| Problem::at_line(path, number, message);
         let mut words = line.split_whitespace();
         let name = words.next().unwrap_or_default().trim_end_matches(':');
         let twelve = |words| numbers::<12>(name, words).map(|flat| rows::<4, 12>(&flat));
         match name {
             "P0" | "P1" | "P2" | "P3" => {
                 let matrix =
-                    twelve(words).and_then(|matrix| check_projection(name, matrix)).map_err(wrong)?;
+                    twelve(words).and_then(|matrix| check_projection(name, matrix)).map_err(problem)?;
                 p2 = if name == "P2" { Some(matrix) } else { p2 };
             }
             "R0_rect" | "R_rect" => {
                 let matrix = numbers::<9>(name, words).map(|flat| rows::<3, 9>(&flat));
-                r0_rect = Some(matrix.and_then(|matrix| check_rotation(name, matrix)).map_err(wrong)?);
+                r0_rect = Some(matrix.and_then(|matrix| check_rotation(name, matrix)).map_err(problem)?);
             }
             "Tr_velo_to_cam" | "Tr_velo_cam" | "Tr_imu_to_velo" | "Tr_imu_velo" => {
-                let matrix = twelve(words).map_err(wrong)?;
+                let matrix = twelve(words).map_err(problem)?;
                 let turned = matrix.map(|[a, b, c, _]| [a, b, c]);
-                check_rotation(name, turned).map_err(wrong)?;
+                check_rotation(name, turned).map_err(problem)?;
                 tr_velo_to_cam = if name.starts_with("Tr_velo") { Some(matrix) } else { tr_velo_to_cam };
             }
             _ => {}
         }
     }
     let missing =
-        |name: &str| Problem::at_key(path, name, "this matrix is missing; give a whole KITTI calibration");
+        |name: &str| Problem::at_key(path, name, "this matrix is missing; use a complete KITTI calibration");
     Ok(Calibration {
         header: Header::default(),
         p2: p2.ok_or_else(|| missing("P2"))?,
@@ -88,7 +88,7 @@ fn check_rotation(name: &str, matrix: [[f64; 3]; 3]) -> Result<[[f64; 3]; 3], St
     let determinant = dot(x, cross);
     if determinant.abs() < ROTATION_TOLERANCE {
         return Err(format!(
-            "{name} is singular (determinant {determinant:.2e}) and no rotation; calibrate again"
+            "{name} is singular (determinant {determinant:.2e}), not a rotation; calibrate again"
         ));
     }
     let lengths = [dot(x, x) - 1.0, dot(y, y) - 1.0, dot(z, z) - 1.0];
@@ -96,7 +96,7 @@ fn check_rotation(name: &str, matrix: [[f64; 3]; 3]) -> Result<[[f64; 3]; 3], St
     let worst = lengths.iter().chain(&angles).fold(0f64, |worst, error| worst.max(error.abs()));
     if worst > ROTATION_TOLERANCE || determinant < 0.0 {
         return Err(format!(
-            "{name} is no rotation (off by {worst:.2e}, determinant {determinant:.3}); calibrate again"
+            "{name} is not a rotation (error {worst:.2e}, determinant {determinant:.3}); calibrate again"
         ));
     }
     Ok(matrix)
@@ -108,11 +108,12 @@ fn check_projection(name: &str, matrix: [[f64; 4]; 3]) -> Result<[[f64; 4]; 3], 
         return Ok(matrix);
     }
     Err(format!(
-        "{name} has focal lengths {fx} and {fy} and depth scale {depth}, which must be over 0; calibrate again"
+        "{name} has focal lengths {fx} and {fy} and depth scale {depth}, which must be positive; calibrate again"
     ))
 }
 
-/// Writes a calibration as KITTI has it: four cameras, of which only the second is known, and no inertial unit.
+/// Converts a calibration to KITTI's text: all four cameras have the projection of the second, and the IMU has the
+/// identity.
 pub fn kitti_from_calibration(calibration: &Calibration) -> String {
     let mut text = String::new();
     let mut line = |name: &str, numbers: &mut dyn Iterator<Item = f64>| {
@@ -125,7 +126,7 @@ pub fn kitti_from_calibration(calibration: &Calibration) -> String {
     }
     line("R0_rect", &mut calibration.r0_rect.into_iter().flatten());
     line("Tr_velo_to_cam", &mut calibration.tr_velo_to_cam.into_iter().flatten());
-    let still = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
-    line("Tr_imu_to_velo", &mut still.into_iter());
+    let identity = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    line("Tr_imu_to_velo", &mut identity.into_iter());
     text
 }

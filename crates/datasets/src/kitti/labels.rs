@@ -8,33 +8,35 @@ use opendr_engine::target::{
 
 use crate::fields::Fields;
 
-/// What KITTI calls its objects; `Person` is the tracking benchmark's `Person_sitting`.
+/// Classes of KITTI. The tracking benchmark has `Person` in place of `Person_sitting`.
 const CLASSES: [&str; 10] =
     ["Car", "Van", "Truck", "Pedestrian", "Person_sitting", "Person", "Cyclist", "Tram", "Misc", IGNORED];
-/// A region in which objects are not labelled.
+/// Class of a region in which objects are not labelled.
 pub(super) const IGNORED: &str = "DontCare";
-/// What KITTI writes where nothing is known.
+/// Values that KITTI writes for an unknown location and angle.
 pub(super) const UNKNOWN_PLACE: f32 = -1000.0;
 pub(super) const UNKNOWN_ANGLE: f32 = -10.0;
+/// Largest frame number of a sequence; a larger one is an error in the file.
+pub(super) const MAX_FRAMES: i64 = 10_000_000;
 
-/// A line of the detection benchmark; what is wrong with it otherwise.
+/// Parses a line of the detection benchmark.
 pub(super) fn object_from_line(line: &str) -> Result<BoundingBox3D, String> {
     let fields = Fields::of(line);
     fields.expect(15..=16)?;
     object(&fields, 0)
 }
 
-/// A line of the tracking benchmark; what is wrong with it otherwise.
+/// Parses a line of the tracking benchmark.
 pub(super) fn track_from_line(line: &str) -> Result<TrackingAnnotation3D, String> {
     let fields = Fields::of(line);
     fields.expect(17..=18)?;
     let (frame, id) = (fields.whole(0)?, fields.whole(1)?);
-    if !(0..=super::tracking::MAX_FRAMES).contains(&frame) {
-        return Err(format!("is of frame {frame}; number frames from 0"));
+    if !(0..=MAX_FRAMES).contains(&frame) {
+        return Err(format!("has frame {frame}; number frames from 0"));
     }
     let bounding_box_3d = object(&fields, 2)?;
     if id < 0 && bounding_box_3d.name != Name::from(IGNORED) {
-        return Err(format!("gives the object number {id}; number objects from 0"));
+        return Err(format!("has object id {id}; number objects from 0"));
     }
     Ok(TrackingAnnotation3D { bounding_box_3d, id, frame: Some(frame) })
 }
@@ -57,27 +59,31 @@ fn object(fields: &Fields<'_>, first: usize) -> Result<BoundingBox3D, String> {
 
 fn check(found: &BoundingBox3D, name: &str) -> Result<(), String> {
     if !CLASSES.contains(&name) {
-        return Err(format!("has class {name:.40?}; KITTI has {}", CLASSES.join(", ")));
+        return Err(format!("has class {name:.40?}; the classes of KITTI are {}", CLASSES.join(", ")));
     }
     let [x0, y0, x1, y1] = found.bbox2d;
     if x1 < x0 || y1 < y0 {
-        return Err(format!("has a box from ({x0}, {y0}) to ({x1}, {y1}); give left, top, right and bottom"));
+        return Err(format!(
+            "has a box from ({x0}, {y0}) to ({x1}, {y1}); write left, top, right and bottom"
+        ));
     }
-    // Boxes that are known in the picture only have -1 or 0 throughout.
+    // Boxes that are known in the image only have dimensions of -1 or 0.
     let [length, height, width] = found.dimensions;
     let flat = found.dimensions.iter().all(|side| *side == -1.0) || found.dimensions == [0.0; 3];
     if name != IGNORED && !flat && found.dimensions.iter().any(|side| *side <= 0.0) {
-        return Err(format!("has a box {height} high, {width} wide and {length} long; give metres over 0"));
+        return Err(format!(
+            "has a box {height} high, {width} wide and {length} long; sizes in metres must be positive"
+        ));
     }
     for (what, angle) in [("alpha", found.alpha), ("rotation_y", found.rotation_y)] {
         if angle.abs() > TAU && angle != UNKNOWN_ANGLE {
-            return Err(format!("has {what} {angle}; give radians from -pi to pi"));
+            return Err(format!("has {what} {angle}; angles are in radians from -pi to pi"));
         }
     }
     Ok(())
 }
 
-/// The boxes in the picture.
+/// Returns the boxes in the image.
 pub(super) fn flat_from_boxes(boxes: &BoundingBox3DList) -> BoundingBoxList {
     let flat = |found: &BoundingBox3D| {
         BoundingBox::from_corners(0, found.bbox2d, found.confidence).named(found.name.clone())
@@ -88,7 +94,7 @@ pub(super) fn flat_from_boxes(boxes: &BoundingBox3DList) -> BoundingBoxList {
     }
 }
 
-/// A box of the picture of which nothing else is known, as KITTI writes it.
+/// Converts a box in the image to a line of KITTI, in which the 3D fields are unknown.
 pub(super) fn box_from_flat(found: &BoundingBox, name: Name) -> BoundingBox3D {
     BoundingBox3D {
         name,

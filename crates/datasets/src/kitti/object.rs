@@ -16,8 +16,8 @@ const FOLDERS: [&str; 3] = ["label_2", "image_2", "velodyne"];
 
 /// KITTI's detection benchmark: a sample is a scene with its boxes.
 ///
-/// With boxes in space go clouds with their calibration, with boxes in the picture go pictures. Regions in which nothing
-/// is labelled are boxes called `DontCare`. The test part has no targets.
+/// Samples with 3D boxes have clouds with their calibration, samples with boxes in the image have images. Regions
+/// without labels are boxes of the class `DontCare`. The test part has no targets.
 #[derive(Debug)]
 pub struct Kitti {
     root: PathBuf,
@@ -28,7 +28,7 @@ pub struct Kitti {
 }
 
 impl Kitti {
-    /// The names of the scenes, e.g. `000007`.
+    /// Returns the names of the scenes, e.g. `000007`.
     pub fn ids(&self) -> &[String] {
         &self.ids
     }
@@ -48,7 +48,7 @@ impl Kitti {
         Ok(boxes)
     }
 
-    /// The scenes of a list in `ImageSets`, or all that the folders have.
+    /// Returns the scenes of a list in `ImageSets`, or all scenes in the folders.
     fn list(root: &Path, above: &Path, part: Option<&str>, problems: &Problems) -> Result<Vec<String>> {
         let set = part.and_then(|part| path_inside(&above.join("ImageSets"), &format!("{part}.txt")).ok());
         if let Some(path) = set.filter(|path| path.is_file()) {
@@ -64,7 +64,7 @@ impl Kitti {
         if matches!(part, Some("train" | "val" | "trainval")) {
             let path = above.join("ImageSets").join(format!("{}.txt", part.unwrap_or_default()));
             return Err(Error::not_found(format!(
-                "no list {}; write it, or ask for \"training\"",
+                "the list {} is missing; create it, or use the part \"training\"",
                 path.display()
             )));
         }
@@ -85,17 +85,17 @@ fn header(id: &str) -> Header {
     Header { frame_id: Some(id.into()), ..Header::default() }
 }
 
-/// The files of scene `id`; tells of those that others have and it has not.
+/// Returns the files of scene `id`; reports missing files of folders that exist.
 fn scene(root: &Path, id: &str, pictures: &[String], problems: &Problems) -> Result<Option<Scene>> {
-    let mut whole = true;
+    let mut is_complete = true;
     let mut file = |folder: &str, name: String| {
         let path = root.join(folder).join(name);
         if path.is_file() {
             return Ok(Some(path));
         }
         if root.join(folder).is_dir() {
-            whole = false;
-            problems.report(Problem::new(path, "is missing, though others are there; add it"))?;
+            is_complete = false;
+            problems.report(Problem::new(path, "is missing, but other files of its folder exist; add it"))?;
         }
         Ok::<_, Error>(None)
     };
@@ -109,7 +109,7 @@ fn scene(root: &Path, id: &str, pictures: &[String], problems: &Problems) -> Res
         cloud: file("velodyne", format!("{id}.bin"))?,
         calibration: file("calib", format!("{id}.txt"))?,
     };
-    Ok(whole.then_some(scene))
+    Ok(is_complete.then_some(scene))
 }
 
 impl Dataset for Kitti {}
@@ -149,9 +149,9 @@ impl DatasetIterator for Kitti {
 impl Format for Kitti {
     const NAME: &'static str = "kitti";
     const ALIASES: &'static [&'static str] = &["kitti_object", "kitti_detection"];
-    const ABOUT: &'static str = "KITTI's detection benchmark: boxes in space over lidar and pictures";
+    const ABOUT: &'static str = "KITTI's detection benchmark: 3D boxes in lidar scans and images";
     const LAYOUT: &'static str = "[training|testing/] with label_2/000000.txt, image_2/000000.png, velodyne/000000.bin and \
-                                  calib/000000.txt, as far as they are there; ImageSets/train.txt and val.txt for these parts";
+                                  calib/000000.txt, as far as they exist; ImageSets/train.txt and val.txt for these parts";
     const TARGETS: &'static [ValueType] = &[ValueType::BoundingBox3DList, ValueType::BoundingBoxList];
 
     fn recognise(path: &Path) -> Recognition {
@@ -170,7 +170,7 @@ impl Format for Kitti {
         let target = wanted_target(options.target, Self::TARGETS)?;
         let part = options.split.as_deref();
         let root = folder_with(path, part, &FOLDERS)?.ok_or_else(|| {
-            Error::not_found(format!("no KITTI data in {}; it should have {}", path.display(), Self::LAYOUT))
+            Error::not_found(format!("no KITTI data in {}; the layout is {}", path.display(), Self::LAYOUT))
         })?;
         let above = if root == path { root.as_path() } else { path };
         let pictures = files_in(&root.join("image_2"), PICTURES);

@@ -58,32 +58,32 @@ fn scenes_have_clouds_or_pictures() {
 }
 
 #[test]
-fn wrong_calibrations_are_told_by_line() {
+fn wrong_calibrations_are_reported_by_line() {
     for (from, to, wanted) in [
         ("R0_rect", "R1_rect", "c.txt at R0_rect: this matrix is missing"),
         ("700 0 600", "700 0", "c.txt:2: P2 has 11 numbers instead of 12"),
         ("700 0 600", "700 nan 600", "c.txt:2: P2 has \"nan\" instead of a finite number"),
         ("P2: 700", "P2: 0", "c.txt:2: P2 has focal lengths 0 and 700"),
         ("R0_rect: 1 0 0 0 1 0", "R0_rect: 1 0 0 1 0 0", "c.txt:3: R0_rect is singular"),
-        ("R0_rect: 1 0 0 0 1 0", "R0_rect: 0 1 0 1 0 0", "c.txt:3: R0_rect is no rotation"),
-        ("0 -1 0 0", "0 -2 0 0", "c.txt:4: Tr_velo_to_cam is no rotation"),
+        ("R0_rect: 1 0 0 0 1 0", "R0_rect: 0 1 0 1 0 0", "c.txt:3: R0_rect is not a rotation"),
+        ("0 -1 0 0", "0 -2 0 0", "c.txt:4: Tr_velo_to_cam is not a rotation"),
     ] {
         let error = calibration_from_kitti(&CALIBRATION.replace(from, to), Path::new("c.txt")).unwrap_err();
         assert!(error.to_string().starts_with(wanted), "{error}");
     }
     let read = calibration_from_kitti(CALIBRATION, Path::new("c.txt")).unwrap();
     assert_eq!(calibration_from_kitti(&kitti_from_calibration(&read), Path::new("c.txt")).unwrap(), read);
-    // The tracking benchmark calls its matrices otherwise.
+    // The tracking benchmark has other names of matrices.
     let tracking = CALIBRATION.replace("R0_rect:", "R_rect").replace("velo_to_cam:", "velo_cam");
     assert_eq!(calibration_from_kitti(&tracking, Path::new("c.txt")).unwrap(), read);
 }
 
 #[test]
-fn broken_scenes_are_told() {
+fn broken_scenes_are_reported() {
     for (name, bytes, wanted) in [
         ("label_2/000001.txt", &b"Car 1 2"[..], "000001.txt:1: has 3 fields instead of 15 to 16"),
-        ("velodyne/000001.bin", &[0; 20], "000001.bin at byte 16: 20 bytes are no whole number"),
-        ("velodyne/000001.bin", &[0xff; 16], "000001.bin at byte 0: point 0 has a coordinate"),
+        ("velodyne/000001.bin", &[0; 20], "000001.bin at byte 16: 20 bytes are not a multiple of 16"),
+        ("velodyne/000001.bin", &[0xff; 16], "000001.bin at byte 0: point 0 has a value"),
         ("calib/000001.txt", b"P2: 1", "000001.txt:1: P2 has 1 numbers"),
     ] {
         let folder = scenes().with(&format!("training/{name}"), bytes);
@@ -118,8 +118,8 @@ fn wrong_lines_are_refused() {
         assert!(error.starts_with(wanted), "{error}");
     }
     assert!(track_from_line(&format!("0 -1 {IGNORED}")).is_ok());
-    assert!(track_from_line(&format!("0 -1 {CAR}")).unwrap_err().starts_with("gives the object number -1"));
-    assert!(track_from_line(&format!("-1 0 {CAR}")).unwrap_err().starts_with("is of frame -1"));
+    assert!(track_from_line(&format!("0 -1 {CAR}")).unwrap_err().starts_with("has object id -1"));
+    assert!(track_from_line(&format!("-1 0 {CAR}")).unwrap_err().starts_with("has frame -1"));
 }
 
 #[test]
@@ -133,7 +133,7 @@ fn what_is_written_is_read() {
         assert_eq!(again.len(), 2);
         let mut data = kitti.get(1).unwrap().data;
         if let Value::PointCloudWithCalibration(scan) = &mut data[0] {
-            // The pictures go with boxes in the picture only.
+            // Only boxes in the image have images as data.
             scan.image_shape = None;
         }
         assert_eq!(again.get(1).unwrap().data, data, "{target:?}");
@@ -142,7 +142,7 @@ fn what_is_written_is_read() {
 }
 
 #[test]
-fn recordings_follow_one_another() {
+fn sequences_follow_one_another() {
     let labels = format!("1 3 {CAR}\n0 3 {CAR}\n1 -1 {IGNORED}\n1 -1 {IGNORED}\n");
     let folder = TemporaryFolder::new()
         .with("training/label_02/0000.txt", &labels)
@@ -161,8 +161,8 @@ fn recordings_follow_one_another() {
     assert!(matches!(sample.data[..], [Value::Image(_)]));
     assert!(tracks.get(5).is_err());
     for (line, wanted) in [
-        (format!("0 3 {CAR}\n"), "0000.txt:5: has object 3 a second time"),
-        (format!("7 3 {CAR}\n"), "0000.txt: labels frame 7, but the last that was taken is 1"),
+        (format!("0 3 {CAR}\n"), "0000.txt:5: has object 3 twice"),
+        (format!("7 3 {CAR}\n"), "0000.txt: labels frame 7, but the last recorded frame is 1"),
     ] {
         std::fs::write(folder.path().join("training/label_02/0000.txt"), format!("{labels}{line}")).unwrap();
         let error = open(&Problems::strict()).unwrap_err();

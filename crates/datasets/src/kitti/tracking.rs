@@ -11,23 +11,21 @@ use opendr_engine::{Error, Header, Result, Value, ValueType};
 
 use crate::fields::lines;
 use crate::folder::{PICTURES, files_in, folders_in, past_end, read_text};
-use crate::kitti::labels::{flat_from_boxes, track_from_line};
+use crate::kitti::labels::{MAX_FRAMES, flat_from_boxes, track_from_line};
 use crate::kitti::{Scene, folder_with, wanted_target};
 use crate::{Format, OpenOptions, Problem, Problems, Recognition};
 
 const FOLDERS: [&str; 3] = ["label_02", "image_02", "velodyne"];
-/// Of one recording: a larger number is a mistake.
-pub(super) const MAX_FRAMES: i64 = 10_000_000;
 const FRAMES_PER_SECOND: f64 = 10.0;
 
-/// KITTI's tracking benchmark: a sample is an instant of a recording with its objects.
+/// KITTI's tracking benchmark: a sample is a frame of a sequence with its objects.
 ///
-/// The samples are the instants of one recording after the other; their header has the name of the recording as frame id
-/// and the time since its begin (ten instants a second). Data go with targets as in [`Kitti`](crate::Kitti).
+/// The samples are the frames of one sequence after the other. Their header has the name of the sequence as frame
+/// id and the time since its start (10 frames per second). Data depend on the target as in [`Kitti`](crate::Kitti).
 #[derive(Debug)]
 pub struct KittiTracking {
     recordings: Vec<Recording>,
-    /// Number of the first sample of each recording.
+    /// Index of the first sample of each sequence.
     starts: Vec<usize>,
     len: usize,
     target: ValueType,
@@ -40,7 +38,7 @@ struct Recording {
     pictures: Vec<String>,
     clouds: Vec<String>,
     calibration: Option<PathBuf>,
-    /// In the order of their frames; none in the test part.
+    /// Sorted by frame; `None` in the test part.
     tracks: Option<Vec<TrackingAnnotation3D>>,
     len: usize,
 }
@@ -57,14 +55,16 @@ impl Recording {
         let calibration = Some(root.join("calib").join(format!("{name}.txt"))).filter(|path| path.is_file());
         let last = |names: &[String]| names.iter().filter_map(|name| frame_of(name)).max();
         let labelled = tracks.iter().flatten().filter_map(|track| track.frame).max();
-        let taken = last(&pictures).max(last(&clouds));
-        if let (Some(labelled), Some(taken)) = (labelled, taken.filter(|taken| Some(*taken) < labelled)) {
+        let recorded = last(&pictures).max(last(&clouds));
+        if let (Some(labelled), Some(recorded)) =
+            (labelled, recorded.filter(|recorded| Some(*recorded) < labelled))
+        {
             let message = format!(
-                "labels frame {labelled}, but the last that was taken is {taken}; add what is missing"
+                "labels frame {labelled}, but the last recorded frame is {recorded}; add the missing frames"
             );
             problems.report(Problem::new(labels, message))?;
         }
-        let len = taken.or(labelled).map_or(0, |last| last as usize + 1);
+        let len = recorded.or(labelled).map_or(0, |last| last as usize + 1);
         Ok(Self { name: name.to_owned(), root: root.to_owned(), pictures, clouds, calibration, tracks, len })
     }
 
@@ -93,7 +93,7 @@ impl Recording {
     }
 }
 
-/// The number that a file is called by.
+/// Returns the frame number of a file name.
 fn frame_of(name: &str) -> Option<i64> {
     let number = name.split_once('.')?.0.parse().ok()?;
     (0..=MAX_FRAMES).contains(&number).then_some(number)
@@ -105,7 +105,7 @@ fn read_tracks(path: &Path, problems: &Problems) -> Result<Vec<TrackingAnnotatio
     for (number, line) in lines(&text) {
         let track = track_from_line(line).and_then(|track| {
             match track.id >= 0 && !seen.insert((track.frame, track.id)) {
-                true => Err(format!("has object {} a second time in its frame", track.id)),
+                true => Err(format!("has object {} twice in its frame", track.id)),
                 false => Ok(track),
             }
         });
@@ -119,7 +119,7 @@ fn read_tracks(path: &Path, problems: &Problems) -> Result<Vec<TrackingAnnotatio
 }
 
 impl KittiTracking {
-    /// Recording and frame of sample `index`.
+    /// Returns the index, the sequence and the frame of sample `index`.
     fn place(&self, index: usize) -> Result<(usize, &Recording, i64)> {
         let found = || {
             let at = self.starts.partition_point(|start| *start <= index).checked_sub(1)?;
@@ -187,9 +187,9 @@ fn flat_from_tracks(tracks: &TrackingAnnotation3DList) -> TrackingAnnotationList
 impl Format for KittiTracking {
     const NAME: &'static str = "kitti_tracking";
     const ABOUT: &'static str =
-        "KITTI's tracking benchmark: recordings of lidar and pictures with objects followed in space";
+        "KITTI's tracking benchmark: sequences of lidar scans and images with 3D tracks";
     const LAYOUT: &'static str = "[training|testing/] with label_02/0000.txt, image_02/0000/000000.png, \
-                                  velodyne/0000/000000.bin and calib/0000.txt, as far as they are there";
+                                  velodyne/0000/000000.bin and calib/0000.txt, as far as they exist";
     const TARGETS: &'static [ValueType] = &[
         ValueType::TrackingAnnotation3DList,
         ValueType::TrackingAnnotationList,
@@ -207,11 +207,7 @@ impl Format for KittiTracking {
     fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         let target = wanted_target(options.target, Self::TARGETS)?;
         let root = folder_with(path, options.split.as_deref(), &FOLDERS)?.ok_or_else(|| {
-            Error::not_found(format!(
-                "no KITTI tracks in {}; they should have {}",
-                path.display(),
-                Self::LAYOUT
-            ))
+            Error::not_found(format!("no KITTI tracks in {}; the layout is {}", path.display(), Self::LAYOUT))
         })?;
         let labels = files_in(&root.join("label_02"), &["txt"]);
         let names: Vec<_> = match labels.is_empty() {

@@ -1,4 +1,4 @@
-//! Any boxes as KITTI's detection benchmark.
+//! Writer of boxes in the format of KITTI's detection benchmark.
 
 use std::fs;
 use std::path::Path;
@@ -13,7 +13,7 @@ use crate::kitti::{kitti_from_calibration, velodyne_from_cloud};
 use crate::picture_files::write_each;
 use crate::{Problems, WriteOptions};
 
-/// Scenes are numbered anew from 0.
+/// Writes `dataset`; scenes are numbered from 0.
 pub(super) fn write(
     dataset: &dyn DatasetIterator,
     path: &Path,
@@ -48,7 +48,9 @@ fn write_scene(sample: &Sample, folder: &Path, index: usize, from: Option<&Path>
             }
             other => {
                 let name = other.as_value_ref().value_type().name();
-                return Err(Error::invalid_input(format!("KITTI holds pictures and clouds, no {name}")));
+                return Err(Error::invalid_input(format!(
+                    "KITTI supports images and point clouds, not {name}"
+                )));
             }
         }
     }
@@ -56,7 +58,7 @@ fn write_scene(sample: &Sample, folder: &Path, index: usize, from: Option<&Path>
     Ok(())
 }
 
-/// Lines of fifteen fields: truth has no score.
+/// Returns lines of fifteen fields, since annotations have no score.
 fn label_text(target: &Value) -> Result<String> {
     let boxes = match target {
         Value::BoundingBox3DList(boxes) => {
@@ -72,7 +74,7 @@ fn label_text(target: &Value) -> Result<String> {
         }
         other => {
             let name = other.as_value_ref().value_type().name();
-            return Err(Error::invalid_input(format!("KITTI holds boxes, no {name}")));
+            return Err(Error::invalid_input(format!("KITTI supports boxes, not {name}")));
         }
     };
     let numbers = boxes.boxes.iter().flat_map(|found| {
@@ -80,7 +82,7 @@ fn label_text(target: &Value) -> Result<String> {
         found.bbox2d.into_iter().chain(found.dimensions).chain(found.location).chain(angles)
     });
     if !numbers.clone().all(f32::is_finite) {
-        return Err(Error::invalid_input("a box has a number that is NaN or infinite; drop it"));
+        return Err(Error::invalid_input("a box has a value that is NaN or infinite; remove it"));
     }
     let text = boxes.kitti_text();
     let lines = text.lines().filter_map(|line| line.rsplit_once(' '));

@@ -37,12 +37,12 @@ fn pairs_of_lfw_are_read() {
 }
 
 #[test]
-fn broken_lists_are_told_by_line() {
+fn broken_lists_are_reported_by_line() {
     for (line, wanted) in [
         ("Ann 1", "pairs.txt:6: has 2 fields instead of 3 or 4"),
-        ("Ann x 2", "pairs.txt:6: has \"x\" instead of the number of a picture"),
+        ("Ann x 2", "pairs.txt:6: has \"x\" instead of an image number"),
         ("../Ann 1 2", "pairs.txt:6: the file name"),
-        ("Ann 1 9", "pairs.txt:6: names "),
+        ("Ann 1 9", "pairs.txt:6: refers to "),
     ] {
         let text = std::fs::read_to_string(faces().path().join("pairs.txt")).unwrap();
         let folder = faces().with("pairs.txt", format!("{text}{line}\n"));

@@ -1,28 +1,28 @@
-//! How samples become a batch.
+//! Collation of samples into batches.
 
 use opendr_engine::Result;
 use opendr_engine::dataset::Sample;
 
-/// How samples become a batch; it runs on the loader's threads.
+/// Collates samples into a batch, on the threads of the loader.
 pub trait Collate: Send + Sync + 'static {
-    /// A batch.
+    /// Type of a batch.
     type Batch: Send + 'static;
 
-    /// A batch without samples, with room for `capacity`.
+    /// Creates an empty batch with room for `capacity` samples.
     fn start(&self, capacity: usize) -> Self::Batch;
 
-    /// Adds a sample after the others.
+    /// Appends a sample.
     ///
     /// # Errors
-    /// When the sample does not go into such a batch, which then is as it was.
+    /// If the sample does not fit into the batch, which is then unchanged.
     fn add(&self, batch: &mut Self::Batch, sample: Sample) -> Result<()>;
 }
 
-/// Batches that are lists of samples.
+/// Batches as lists of samples.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Samples;
+pub struct SampleBatches;
 
-impl Collate for Samples {
+impl Collate for SampleBatches {
     type Batch = Vec<Sample>;
 
     fn start(&self, capacity: usize) -> Vec<Sample> {

@@ -1,40 +1,30 @@
-//! One way through a data set.
+//! Iteration over the batches of an epoch.
 
 use std::ops::ControlFlow;
 use std::panic::resume_unwind;
 use std::sync::Arc;
 use std::thread::{self, Builder, JoinHandle};
 
-use opendr_engine::{Error, Result};
+use opendr_engine::Result;
 
-use crate::loader::desk::{Desk, Job};
-use crate::loader::{Collate, Samples};
+use crate::loader::queue::{Job, WorkQueue};
+use crate::loader::{Collate, SampleBatches, Skipped};
 
 /// A batch of an epoch.
 #[derive(Debug, Clone)]
 pub struct Batch<B> {
-    /// The samples, as they were collated.
+    /// The collated samples.
     pub content: B,
-    /// Their numbers in the data set.
+    /// Sample indices in the data set.
     pub indices: Vec<usize>,
-    /// The epoch.
+    /// Number of the epoch.
     pub epoch: u64,
-    /// Samples of the epoch up to and with this batch: where to [resume](crate::loader::Loader::resume).
+    /// Number of samples of the epoch up to and including this batch; the position to
+    /// [resume](crate::loader::Loader::resume).
     pub next_position: usize,
 }
 
-/// A sample that was left out because it is broken.
-#[derive(Debug)]
-pub struct Skipped {
-    /// Its number in the data set.
-    pub index: usize,
-    /// What the data set calls it.
-    pub name: String,
-    /// Why.
-    pub error: Error,
-}
-
-/// Which batch comes next, and what was left out so far.
+/// Reading position of an epoch, and the skipped samples so far.
 #[derive(Debug, Default)]
 pub(super) struct Reading {
     next: usize,
@@ -42,23 +32,23 @@ pub(super) struct Reading {
 }
 
 impl Reading {
-    /// The next batch that is not empty: made right here when this thread is `alone`.
+    /// Returns the next batch that is not empty; it is made on this thread if this is the only one (`alone`).
     pub(super) fn next<C: Collate>(
         &mut self,
-        desk: &Desk<'_, C>,
+        queue: &WorkQueue<'_, C>,
         alone: bool,
     ) -> Option<Result<Batch<C::Batch>>> {
-        while self.next < desk.job.batches() {
+        while self.next < queue.job.batches() {
             let number = self.next;
             self.next += 1;
-            let outcome = if alone { desk.work(number) } else { desk.wait_for(number) };
+            let outcome = if alone { queue.work(number) } else { queue.wait_for(number) };
             let loaded = match outcome.unwrap_or_else(|panic| resume_unwind(panic)) {
                 Ok(loaded) => loaded,
                 Err(error) => return Some(Err(error)),
             };
             self.skipped.extend(loaded.skipped);
             if !loaded.indices.is_empty() {
-                let (epoch, next_position) = (desk.job.epoch, desk.job.end(number));
+                let (epoch, next_position) = (queue.job.epoch, queue.job.end(number));
                 let (content, indices) = (loaded.content, loaded.indices);
                 return Some(Ok(Batch { content, indices, epoch, next_position }));
             }
@@ -67,29 +57,29 @@ impl Reading {
     }
 }
 
-/// The batches of an epoch, in order, made ahead by threads that end with it.
+/// Iterator over the batches of an epoch, in order, prepared by threads that end with it.
 ///
-/// A sample that cannot be read or augmented is an error in place of its batch (unless such are skipped), after which the
-/// next batch comes; a panic of a thread goes on in whoever asks for the batch.
-pub struct Epoch<C: Collate = Samples> {
-    desk: Arc<Desk<'static, C>>,
+/// A sample that cannot be read or augmented is an error in place of its batch (unless broken samples are skipped),
+/// after which the next batch follows. A panic of a thread resumes in the thread that requests the batch.
+pub struct Epoch<C: Collate = SampleBatches> {
+    queue: Arc<WorkQueue<'static, C>>,
     threads: Vec<JoinHandle<()>>,
     reading: Reading,
 }
 
 impl<C: Collate> Epoch<C> {
     pub(super) fn start(job: Job<'static, C>) -> Self {
-        let desk = Arc::new(Desk::new(job));
+        let queue = Arc::new(WorkQueue::new(job));
         let start = |_| {
-            let desk = Arc::clone(&desk);
-            // Where no thread can be had, the others do its work, or whoever asks.
-            Builder::new().name(THREAD_NAME.to_owned()).spawn(move || desk.serve()).ok()
+            let queue = Arc::clone(&queue);
+            // If a thread cannot be created, the others or the requesting thread do its work.
+            Builder::new().name(THREAD_NAME.to_owned()).spawn(move || queue.serve()).ok()
         };
-        let threads = (0..desk.helpers()).filter_map(start).collect();
-        Self { desk, threads, reading: Reading::default() }
+        let threads = (0..queue.helpers()).filter_map(start).collect();
+        Self { queue, threads, reading: Reading::default() }
     }
 
-    /// What was left out so far, in the epoch's order.
+    /// Returns the skipped samples so far, in the order of the epoch.
     pub fn skipped(&self) -> &[Skipped] {
         &self.reading.skipped
     }
@@ -99,19 +89,19 @@ impl<C: Collate> Iterator for Epoch<C> {
     type Item = Result<Batch<C::Batch>>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        self.reading.next(&self.desk, self.threads.is_empty())
+        self.reading.next(&self.queue, self.threads.is_empty())
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        (0, Some(self.desk.job.batches() - self.reading.next))
+        (0, Some(self.queue.job.batches() - self.reading.next))
     }
 }
 
 impl<C: Collate> Drop for Epoch<C> {
     fn drop(&mut self) {
-        self.desk.stop();
+        self.queue.stop();
         for thread in self.threads.drain(..) {
-            // A thread's panics were caught; they have gone to whoever asked for the batch.
+            // Panics of the thread were caught and resumed in the requesting thread.
             let _ = thread.join();
         }
     }
@@ -119,21 +109,21 @@ impl<C: Collate> Drop for Epoch<C> {
 
 const THREAD_NAME: &str = "opendr-loader";
 
-/// Hands the batches of a job to `each` on this thread, while threads that end before this returns make them ahead.
+/// Calls `each` with the batches of a job on this thread, while scoped threads prepare them.
 pub(super) fn each_batch<C: Collate>(
     job: Job<'_, C>,
     mut each: impl FnMut(Batch<C::Batch>) -> Result<ControlFlow<()>>,
 ) -> Result<Vec<Skipped>> {
-    let desk = &Desk::new(job);
+    let queue = &WorkQueue::new(job);
     thread::scope(|scope| {
-        // Stopped on the way out, be it an error or a panic of `each`; the scope would wait for ever otherwise.
-        let _stop = Stop(desk);
+        // Stops the threads also after an error or panic of `each`, since the scope would wait for them forever.
+        let _stop = Stop(queue);
         let start = |_: &usize| {
-            Builder::new().name(THREAD_NAME.to_owned()).spawn_scoped(scope, || desk.serve()).is_ok()
+            Builder::new().name(THREAD_NAME.to_owned()).spawn_scoped(scope, || queue.serve()).is_ok()
         };
-        let alone = (0..desk.helpers()).filter(start).count() == 0;
+        let alone = (0..queue.helpers()).filter(start).count() == 0;
         let mut reading = Reading::default();
-        while let Some(batch) = reading.next(desk, alone) {
+        while let Some(batch) = reading.next(queue, alone) {
             if each(batch?)?.is_break() {
                 break;
             }
@@ -142,8 +132,8 @@ pub(super) fn each_batch<C: Collate>(
     })
 }
 
-/// Stops the work at a desk when it is dropped.
-struct Stop<'a, 'd, C: Collate>(&'a Desk<'d, C>);
+/// Stops the work when it is dropped.
+struct Stop<'a, 'd, C: Collate>(&'a WorkQueue<'d, C>);
 
 impl<C: Collate> Drop for Stop<'_, '_, C> {
     fn drop(&mut self) {

@@ -1,4 +1,4 @@
-//! Batches of pictures as a network takes them.
+//! Batches of images as network inputs.
 
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
@@ -8,16 +8,17 @@ use opendr_vision::{InputGeometry, Preprocess};
 
 use crate::loader::Collate;
 
-/// Makes [`ImageBatch`]es of samples whose first datum is a picture. The memory of batches that were dropped is used again.
+/// Collates samples whose first datum is an image into [`ImageBatch`]es, with reuse of the memory of dropped
+/// batches.
 pub struct ImageBatches {
     preprocess: Preprocess,
     free: Arc<Memories>,
 }
 
-/// Memories of batches that were dropped.
+/// Memory of dropped batches.
 type Memories = Mutex<Vec<Vec<f32>>>;
 
-/// Pictures as one tensor, and their targets.
+/// Images as one tensor, with their targets.
 pub struct ImageBatch {
     values: Vec<f32>,
     shape: [usize; 4],
@@ -27,9 +28,9 @@ pub struct ImageBatch {
 }
 
 impl ImageBatches {
-    /// Batches of what `preprocess` makes of each picture.
+    /// Creates batches of images processed by `preprocess`.
     pub fn new(preprocess: Preprocess) -> Self {
-        // The loader has its threads already.
+        // The loader already uses several threads.
         Self { preprocess: preprocess.threads(1), free: Arc::default() }
     }
 }
@@ -55,9 +56,7 @@ impl Collate for ImageBatches {
             Some(Value::Image(image)) => image,
             Some(Value::ImageWithDetections(both)) => &both.image,
             _ => {
-                return Err(Error::invalid_input(
-                    "a sample without a picture does not go into a batch of them",
-                ));
+                return Err(Error::invalid_input("the sample has no image, which batches of images need"));
             }
         };
         let at = batch.len() * self.preprocess.len();
@@ -71,32 +70,33 @@ impl Collate for ImageBatches {
 }
 
 impl ImageBatch {
-    /// How many pictures there are.
+    /// Returns the number of images.
     pub fn len(&self) -> usize {
         self.shape[0]
     }
 
-    /// Whether there is none.
+    /// Returns whether there are no images.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// `[pictures, channels, height, width]`, or `[pictures, height, width, channels]`, as the preprocessing lays them.
+    /// Returns the shape: `[images, channels, height, width]`, or `[images, height, width, channels]`, by the
+    /// layout of the preprocessing.
     pub fn shape(&self) -> [usize; 4] {
         self.shape
     }
 
-    /// The pictures, one after the other.
+    /// Returns the values of the images, one image after the other.
     pub fn values(&self) -> &[f32] {
         &self.values[..self.shape.iter().product()]
     }
 
-    /// The target of each picture, in pixels of the augmented picture.
+    /// Returns the target of each image, in pixels of the augmented image.
     pub fn targets(&self) -> &[Option<Value>] {
         &self.targets
     }
 
-    /// Where each augmented picture lies in its part of the tensor.
+    /// Returns the location of each augmented image in its part of the tensor.
     pub fn geometries(&self) -> &[InputGeometry] {
         &self.geometries
     }

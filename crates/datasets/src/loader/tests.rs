@@ -13,7 +13,7 @@ use crate::augment::{Blur, Colour, Flip, Mosaic, PixelNoise, RandomResizedCrop, 
 
 const THREADS: [usize; 4] = [0, 1, 2, 4];
 
-/// Pictures that are told apart by their pixels; counts how many were read.
+/// Images with distinct pixels, and a counter of reads.
 struct Pictures {
     count: usize,
     broken: Vec<usize>,
@@ -50,7 +50,7 @@ impl DatasetIterator for Pictures {
 }
 
 fn options(threads: usize) -> LoaderOptions {
-    LoaderOptions { batch_size: 4, threads, ahead: 3, seed: 11, ..LoaderOptions::default() }
+    LoaderOptions { batch_size: 4, threads, prefetch: 3, seed: 11, ..LoaderOptions::default() }
 }
 
 fn loader(pictures: Pictures, threads: usize) -> Loader<'static> {
@@ -88,7 +88,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
 }
 
 #[test]
-fn epochs_have_all_samples_in_orders_of_their_own() {
+fn epochs_have_all_samples_in_different_orders() {
     for threads in THREADS {
         let loader = loader(Pictures::new(22), threads);
         let [first, second] = [0, 1].map(|epoch| indices(loader.epoch(epoch)));
@@ -106,7 +106,7 @@ fn epochs_have_all_samples_in_orders_of_their_own() {
 }
 
 #[test]
-fn an_epoch_goes_on_where_it_was_left() {
+fn an_epoch_resumes_at_its_position() {
     let loader =
         loader(Pictures::new(22), 2).augment(Pipeline::default().then(PixelNoise::default()).unwrap());
     let whole: Vec<_> = loader.epoch(3).map(|batch| batch.unwrap()).collect();
@@ -123,7 +123,7 @@ fn an_epoch_goes_on_where_it_was_left() {
 }
 
 #[test]
-fn no_more_is_read_ahead_than_agreed_and_dropping_ends_it() {
+fn reading_ahead_is_bounded_and_ends_when_dropped() {
     for threads in [1, 2, 4] {
         let pictures = Pictures::new(4000);
         let read = Arc::clone(&pictures.read);
@@ -131,14 +131,14 @@ fn no_more_is_read_ahead_than_agreed_and_dropping_ends_it() {
         let mut epoch = loader.epoch(0);
         for handed in 1..=40 {
             epoch.next().unwrap().unwrap();
-            // Whoever trains is slow: the threads would run ahead if they could.
+            // The training is slow: without a bound, the threads would read ahead.
             std::thread::yield_now();
             assert!(read.load(Ordering::SeqCst) <= (handed + 3) * 4);
         }
         drop(epoch);
         let after = read.load(Ordering::SeqCst);
         assert!(after <= (40 + 3) * 4);
-        // The threads were joined: the loader alone holds what they shared.
+        // The threads were joined: only the loader still holds the shared data.
         assert_eq!(Arc::strong_count(&loader.dataset), 1);
         assert_eq!(read.load(Ordering::SeqCst), after);
     }
@@ -164,7 +164,7 @@ fn broken_samples_are_errors_in_place_or_skipped_and_listed() {
 }
 
 #[test]
-fn a_panic_comes_to_whoever_asks_in_its_place() {
+fn a_panic_resumes_in_place_of_its_batch() {
     for threads in THREADS {
         let pictures = Pictures { panics: Some(9), ..Pictures::new(22) };
         let loader = Loader::new(pictures, LoaderOptions { shuffle: false, ..options(threads) }).unwrap();
@@ -176,7 +176,7 @@ fn a_panic_comes_to_whoever_asks_in_its_place() {
 }
 
 #[test]
-fn batches_of_pictures_are_tensors() {
+fn batches_of_images_are_tensors() {
     let scaling = Preprocess::new(24, 18).normalise([0.0; 3], [255.0; 3]);
     let loader = loader(Pictures { broken: vec![3], ..Pictures::new(10) }, 2);
     let loader = Loader { options: LoaderOptions { skip_broken: true, ..loader.options.clone() }, ..loader }
@@ -201,7 +201,7 @@ fn batches_of_pictures_are_tensors() {
 }
 
 #[test]
-fn options_out_of_range_are_refused() {
+fn options_out_of_range_are_errors() {
     let wrong = LoaderOptions { batch_size: 0, ..LoaderOptions::default() };
     assert_eq!(Loader::new(Pictures::new(3), wrong).err().unwrap().kind(), ErrorKind::InvalidParam);
 }
@@ -221,7 +221,7 @@ fn borrowed_data_sets_are_loaded_too() {
         assert_eq!(skipped.unwrap().len(), wanted.iter().filter(|index| **index == 2).count());
         wanted.retain(|index| *index != 2);
         assert_eq!(seen, wanted);
-        // Neither an error nor a panic of whoever trains leaves threads behind.
+        // Neither an error nor a panic of the training leaves threads behind.
         let enough = loader.for_each(0, 0, |_| Err(Error::invalid_input("enough")));
         assert_eq!(enough.unwrap_err().message(), "enough");
         let panic = catch_unwind(AssertUnwindSafe(|| loader.for_each(0, 0, |_| panic!("enough"))));

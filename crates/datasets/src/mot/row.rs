@@ -1,10 +1,10 @@
-//! A line of the MOT Challenge's files.
+//! Lines of the files of the MOT Challenge.
 
 use opendr_engine::target::{BoundingBox, Classes, TrackingAnnotation};
 
 use crate::fields::Fields;
 
-/// The classes of the MOT Challenge by their numbers, from 1.
+/// Classes of the MOT Challenge by their numbers, from 1.
 pub(super) const CLASSES: [&str; 14] = [
     "unknown",
     "pedestrian",
@@ -22,44 +22,44 @@ pub(super) const CLASSES: [&str; 14] = [
     "crowd",
 ];
 pub(super) const PEDESTRIAN: i64 = 1;
-/// No video of this many pictures is annotated by hand: a larger number is a mistake.
+/// Largest frame number; a larger one is an error in the file.
 pub(super) const MAX_FRAMES: i64 = 10_000_000;
 
-/// What a file of rows is.
+/// Kind of a file of rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum RowKind {
-    /// `gt.txt`: every object has an identity.
+    /// `gt.txt`, in which every object has an identity.
     Truth,
-    /// `det.txt`: no object has one.
+    /// `det.txt`, without identities.
     Detections,
 }
 
-/// One object in one picture, as a line of `gt.txt` or `det.txt` tells it.
+/// An object in a frame, as a line of `gt.txt` or `det.txt`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotRow {
-    /// Number of the picture, from 1.
+    /// Frame number, from 1.
     pub frame: i64,
-    /// The object's number; -1 in detections.
+    /// Identity of the object; -1 in detections.
     pub id: i64,
-    /// Left edge, pixels, as written: the challenge counts them from 1.
+    /// Left edge in pixels, as in the file: the challenge counts pixels from 1.
     pub left: f32,
-    /// Upper edge, pixels.
+    /// Upper edge in pixels.
     pub top: f32,
-    /// Pixels to the right edge.
+    /// Width in pixels.
     pub width: f32,
-    /// Pixels to the lower edge.
+    /// Height in pixels.
     pub height: f32,
-    /// In truth 0 for what is not to be considered and 1 for the rest; in detections the score.
+    /// In ground truth 0 for ignored objects and 1 for the others; in detections the score.
     pub confidence: f32,
-    /// Class, 1 to 13; 1 (pedestrian) where the file has none.
+    /// Class, 1 to 13; 1 (pedestrian) if the file has none.
     pub class: i64,
-    /// How much of the object is seen, 0..=1; 1 where the file does not tell.
+    /// Visible share of the object, 0 to 1; 1 if the file does not state it.
     pub visibility: f32,
 }
 
 impl MotRow {
-    /// Reads a line of 6 to 10 fields; the eighth and ninth of 8 or 9 are class and visibility, the last three of 10
-    /// are places in the world, which are left out. What is wrong with it otherwise.
+    /// Parses a line of 6 to 10 fields. The eighth and ninth of 8 or 9 fields are class and visibility; the last
+    /// three of 10 are world coordinates, which are ignored.
     pub(super) fn parse(line: &str, kind: RowKind) -> Result<Self, String> {
         let fields = Fields::of(line);
         fields.expect(6..=10)?;
@@ -82,25 +82,25 @@ impl MotRow {
     fn check(&self, kind: RowKind) -> Result<(), String> {
         let Self { frame, id, width, height, class, visibility, .. } = self;
         if !(1..=MAX_FRAMES).contains(frame) {
-            return Err(format!("is of picture {frame}; number pictures from 1"));
+            return Err(format!("has frame {frame}; number frames from 1"));
         }
         if kind == RowKind::Truth && *id < 0 {
-            return Err(format!("gives the object number {id}; number the objects of the truth from 0 or 1"));
+            return Err(format!("has object id {id}; number the objects of the ground truth from 0 or 1"));
         }
         if *width <= 0.0 || *height <= 0.0 {
-            return Err(format!("has a box of {width} x {height} pixels; give the size, not a corner"));
+            return Err(format!("has a box of {width} x {height} pixels; write the size, not a corner"));
         }
         if !(1..CLASSES.len() as i64).contains(class) {
-            return Err(format!("has class {class}; the challenge has 1 to {}", CLASSES.len() - 1));
+            return Err(format!("has class {class}; the classes are 1 to {}", CLASSES.len() - 1));
         }
-        // VisDrone and others write -1 for what they do not know.
+        // VisDrone and others write -1 for unknown values.
         if !(-1.0..=1.0).contains(visibility) {
-            return Err(format!("has visibility {visibility}; give a share from 0 to 1"));
+            return Err(format!("has visibility {visibility}; it must be from 0 to 1"));
         }
         Ok(())
     }
 
-    /// As a target: the class by its number, the confidence as it stands (0 for what is not to be considered).
+    /// Converts to a target with the class by its number and the confidence unchanged (0 for ignored objects).
     pub fn annotation(&self) -> TrackingAnnotation {
         let Self { left, top, width, height, confidence, class, .. } = *self;
         TrackingAnnotation {
@@ -111,7 +111,7 @@ impl MotRow {
     }
 }
 
-/// What the class numbers of the challenge mean.
+/// Returns the class names of the challenge.
 pub(super) fn classes() -> Classes {
     CLASSES.into_iter().collect()
 }

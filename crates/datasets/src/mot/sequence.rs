@@ -1,4 +1,4 @@
-//! One video of the MOT Challenge with its truth and detections.
+//! Videos of the MOT Challenge with ground truth and detections.
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use crate::folder::{PICTURES, files_in, name_of, path_inside, read_text};
 use crate::mot::row::{MAX_FRAMES, MotRow, RowKind};
 use crate::{Problem, Problems};
 
-/// One video: its pictures, where they are there, and the rows of its files.
+/// One video: its images, if they exist, and the rows of its files.
 #[derive(Debug, Clone)]
 pub struct MotSequence {
     name: String,
@@ -23,13 +23,13 @@ pub struct MotSequence {
 
 #[derive(Debug, Clone)]
 enum Frames {
-    /// Files by the numbers in their names.
+    /// Image files by the numbers in their names.
     Pictures(Vec<(i64, PathBuf)>),
-    /// Without pictures: 1 to the last that is told of.
+    /// Number of frames without images: the highest frame number of the rows.
     Count(i64),
 }
 
-/// What `seqinfo.ini` says.
+/// Content of `seqinfo.ini`.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct SequenceInfo {
     pub(super) name: Option<String>,
@@ -46,7 +46,7 @@ impl Default for SequenceInfo {
 }
 
 impl SequenceInfo {
-    /// Reads `key=value` lines; wrong ones are told with their number and left out.
+    /// Parses `key=value` lines; wrong lines are reported with their number and skipped.
     pub(super) fn parse(text: &str, mut wrong: impl FnMut(u64, String) -> Result<()>) -> Result<Self> {
         let mut info = Self::default();
         let mut size = [0; 2];
@@ -73,7 +73,7 @@ impl SequenceInfo {
                 _ => true,
             };
             if !fits {
-                wrong(number, format!("has {value:.40?} as {key}, which cannot be; mend it"))?;
+                wrong(number, format!("has {value:.40?} as {key}, which is invalid; fix it"))?;
             }
         }
         info.image_size = (!size.contains(&0)).then_some(size);
@@ -81,13 +81,13 @@ impl SequenceInfo {
     }
 }
 
-/// Sets `place`, when there is something to set it to.
+/// Sets `place` to a value, and returns whether there is one.
 fn keep<T>(place: &mut T, value: Option<T>) -> bool {
     value.map(|value| *place = value).is_some()
 }
 
 impl MotSequence {
-    /// Reads the lists of the sequence in `folder`.
+    /// Reads the files of the sequence in `folder`.
     pub(super) fn open_folder(folder: &Path, problems: &Problems) -> Result<Self> {
         let path = folder.join("seqinfo.ini");
         let info = match path.is_file() {
@@ -107,14 +107,14 @@ impl MotSequence {
         sequence.frame_rate = info.frame_rate;
         sequence.image_size = info.image_size;
         if images.is_dir() {
-            sequence.take_pictures(&images, info.length, problems)?;
+            sequence.add_images(&images, info.length, problems)?;
         } else if let (Frames::Count(count), Some(length)) = (&mut sequence.frames, info.length) {
             *count = length;
         }
         Ok(sequence)
     }
 
-    /// A file of rows without pictures.
+    /// Reads a file of rows without images.
     pub(super) fn open_file(path: &Path, problems: &Problems) -> Result<Self> {
         let name = name_of(path);
         let name = name.rsplit_once('.').map_or(name.as_str(), |(stem, _)| stem);
@@ -132,15 +132,15 @@ impl MotSequence {
         Self { name, frame_rate: 30.0, image_size: None, frames, truth, detections }
     }
 
-    /// Takes the pictures in `folder`, whose names are their numbers.
-    fn take_pictures(&mut self, folder: &Path, length: Option<i64>, problems: &Problems) -> Result<()> {
+    /// Adds the images in `folder`, whose names are their frame numbers.
+    fn add_images(&mut self, folder: &Path, length: Option<i64>, problems: &Problems) -> Result<()> {
         let mut pictures = Vec::new();
         for name in files_in(folder, PICTURES) {
             let path = folder.join(&name);
             let stem = name.split_once('.').map_or(name.as_str(), |(stem, _)| stem);
             match stem.parse().ok().filter(|frame| (1..=MAX_FRAMES).contains(frame)) {
                 Some(frame) => pictures.push((frame, path)),
-                None => problems.report(Problem::new(path, "its name is no number from 1; rename it"))?,
+                None => problems.report(Problem::new(path, "its name is not a number from 1; rename it"))?,
             }
         }
         pictures.sort_unstable();
@@ -148,37 +148,38 @@ impl MotSequence {
         for (frame, path) in &pictures {
             if *frame != last + 1 {
                 let missing =
-                    format!("the picture before it is number {last}; add or renumber what is missing");
+                    format!("the image before it is number {last}; add the missing images or renumber");
                 problems.report(Problem::new(path, missing))?;
             }
             last = *frame;
         }
         pictures.dedup_by_key(|(frame, _)| *frame);
         if length.is_some_and(|length| length != last) {
-            let told = length.unwrap_or_default();
-            let message = format!("seqLength is {told}, but the last picture is number {last}; mend either");
+            let stated = length.unwrap_or_default();
+            let message =
+                format!("seqLength is {stated}, but the last image is number {last}; fix one of them");
             problems.report(Problem::at_key(folder.with_file_name("seqinfo.ini"), "seqLength", message))?;
         }
         self.frames = Frames::Pictures(pictures);
         Ok(())
     }
 
-    /// The name of its folder or file.
+    /// Returns the name of its folder or file.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Pictures a second; 30 where it is not told.
+    /// Returns the frame rate in frames per second; 30 if it is not stated.
     pub fn frame_rate(&self) -> f64 {
         self.frame_rate
     }
 
-    /// `[width, height]` of the pictures in pixels, where it is told.
+    /// Returns `[width, height]` of the images in pixels, if stated.
     pub fn image_size(&self) -> Option<[u32; 2]> {
         self.image_size
     }
 
-    /// How many pictures it has.
+    /// Returns the number of frames.
     pub fn len(&self) -> usize {
         match &self.frames {
             Frames::Pictures(pictures) => pictures.len(),
@@ -186,12 +187,12 @@ impl MotSequence {
         }
     }
 
-    /// Whether it has no picture.
+    /// Returns whether there are no frames.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Number and file of picture `index`, from 0.
+    /// Returns frame number and image file of frame `index`, from 0.
     pub(super) fn frame(&self, index: usize) -> Option<(i64, Option<&Path>)> {
         match &self.frames {
             Frames::Pictures(pictures) => {
@@ -204,17 +205,17 @@ impl MotSequence {
         }
     }
 
-    /// The rows of `gt.txt` for picture number `frame`, those not to be considered among them.
-    pub fn truth(&self, frame: i64) -> &[MotRow] {
+    /// Returns the rows of `gt.txt` for frame number `frame`, including ignored objects.
+    pub fn ground_truth(&self, frame: i64) -> &[MotRow] {
         rows_of(&self.truth, frame)
     }
 
-    /// Whether `det.txt` has found anything in any picture.
+    /// Returns whether `det.txt` has any detections.
     pub fn has_detections(&self) -> bool {
         !self.detections.is_empty()
     }
 
-    /// The rows of `det.txt` for picture number `frame`.
+    /// Returns the rows of `det.txt` for frame number `frame`.
     pub fn detections(&self, frame: i64) -> &[MotRow] {
         rows_of(&self.detections, frame)
     }
@@ -226,17 +227,21 @@ fn rows_of(rows: &[MotRow], frame: i64) -> &[MotRow] {
     rows.get(start..end).unwrap_or_default()
 }
 
-/// The rows of a file in the order of their pictures.
+/// Reads the rows of a file, sorted by frame.
 fn read_rows(path: &Path, kind: RowKind, length: Option<i64>, problems: &Problems) -> Result<Vec<MotRow>> {
     let text = read_text(path)?;
     let (mut rows, mut seen) = (Vec::new(), HashSet::new());
     for (number, line) in lines(&text) {
         let row = MotRow::parse(line, kind).and_then(|row| {
             if length.is_some_and(|length| row.frame > length) {
-                return Err(format!("is of picture {} of {}", row.frame, length.unwrap_or_default()));
+                return Err(format!(
+                    "has frame {}, but the sequence has {}",
+                    row.frame,
+                    length.unwrap_or_default()
+                ));
             }
             if kind == RowKind::Truth && !seen.insert((row.frame, row.id)) {
-                return Err(format!("has object {} a second time in picture {}", row.id, row.frame));
+                return Err(format!("has object {} twice in frame {}", row.id, row.frame));
             }
             Ok(row)
         });

@@ -40,14 +40,14 @@ fn sequences_follow_one_another() {
     let mot = open(&folder, &Problems::strict()).unwrap();
     let names: Vec<_> = mot.sequences().iter().map(MotSequence::name).collect();
     assert_eq!((names, mot.len()), (vec!["A", "B"], 5));
-    assert_eq!([1, 2, 4].map(|index| mot.place(index).unwrap()), [(0, 1), (1, 0), (1, 2)]);
+    assert_eq!([1, 2, 4].map(|index| mot.sequence_and_frame(index).unwrap()), [(0, 1), (1, 0), (1, 2)]);
     assert_eq!(mot.sequences()[0].image_size(), Some([4, 3]));
     let first = tracks(&mot, 0);
     assert_eq!(first.mot_text(), "1,1,10,20,30,40,1,-1,-1,-1\n1,7,50,60,10,20,0,-1,-1,-1\n");
     assert_eq!(first.classes.label(&first.annotations[1].bounding_box.name), Some("distractor"));
     let second = mot.get(1).unwrap();
     assert_eq!(second.data[0].header(), &Header::new(100_000_000, "A"));
-    // What was found is data where tracks are wanted, and not where boxes are to be learned.
+    // Detections are data if tracks are the target, and not if boxes are to be learned.
     let sample = mot.get(0).unwrap();
     let Value::BoundingBoxList(found) = &sample.data[1] else { panic!("{sample:?}") };
     assert_eq!(found.boxes[0].corners(), [9.0, 19.0, 40.0, 60.0]);
@@ -55,18 +55,18 @@ fn sequences_follow_one_another() {
     let options = OpenOptions { target: Some(ValueType::BoundingBoxList), ..OpenOptions::default() };
     let boxes = Mot::open(folder.path(), &options, &Problems::strict()).unwrap();
     assert_eq!(boxes.get(0).unwrap().data.len(), 1);
-    assert_eq!(mot.sequences()[0].truth(2)[0].visibility, 0.75);
+    assert_eq!(mot.sequences()[0].ground_truth(2)[0].visibility, 0.75);
     assert!(mot.get(2).unwrap().data.is_empty());
     assert_eq!(tracks(&mot, 4).annotations[0].id, 4);
     assert_eq!(mot.detections(0).unwrap().boxes[0].confidence, 0.875);
     assert_eq!([0, 1, 2].map(|index| mot.sequence(index)), [Some(0), Some(0), Some(1)]);
-    assert_eq!((mot.name(1), mot.picture_size(1)), ("A/000002".to_owned(), Some([4, 3])));
+    assert_eq!((mot.name(1), mot.image_size(1)), ("A/000002".to_owned(), Some([4, 3])));
     assert!(mot.path(1).unwrap().ends_with("train/A/img1/000002.jpg") && mot.path(2).is_none());
     assert!(mot.get(5).is_err() && mot.detections(5).is_none());
 }
 
 #[test]
-fn parts_and_boxes_are_asked_for() {
+fn parts_and_boxes_are_selected() {
     let folder = challenge();
     let options = OpenOptions { split: Some("test".into()), target: Some(ValueType::BoundingBoxList) };
     let mot = Mot::open(folder.path(), &options, &Problems::strict()).unwrap();
@@ -96,17 +96,17 @@ fn bare_files_are_sequences() {
 }
 
 #[test]
-fn broken_rows_are_told_and_left_out() {
+fn broken_rows_are_reported_and_skipped() {
     for (line, wanted) in [
         ("1,2,3,4,5", "gt.txt:4: has 5 fields instead of 6 to 10"),
         ("1,2,3,4,nan,6,1,1,1", "gt.txt:4: has \"nan\" in field 5"),
         ("1,2,3,4,5,6,1,14,1", "gt.txt:4: has class 14"),
         ("1,2,3,4,5,6,1,1,1.5", "gt.txt:4: has visibility 1.5"),
-        ("0,2,3,4,5,6,1,1,1", "gt.txt:4: is of picture 0"),
-        ("9000000000,2,3,4,5,6,1,1,1", "gt.txt:4: is of picture 9000000000"),
-        ("3,2,3,4,5,6,1,1,1", "gt.txt:4: is of picture 3 of 2"),
-        ("1,-1,3,4,5,6,1,1,1", "gt.txt:4: gives the object number -1"),
-        ("1,7,3,4,5,6,1,1,1", "gt.txt:4: has object 7 a second time"),
+        ("0,2,3,4,5,6,1,1,1", "gt.txt:4: has frame 0"),
+        ("9000000000,2,3,4,5,6,1,1,1", "gt.txt:4: has frame 9000000000"),
+        ("3,2,3,4,5,6,1,1,1", "gt.txt:4: has frame 3, but the sequence has 2"),
+        ("1,-1,3,4,5,6,1,1,1", "gt.txt:4: has object id -1"),
+        ("1,7,3,4,5,6,1,1,1", "gt.txt:4: has object 7 twice"),
         ("1,2,3,4,0,6,1,1,1", "gt.txt:4: has a box of 0 x 6 pixels"),
     ] {
         let folder = challenge().with("train/A/gt/gt.txt", format!("{TRUTH}{line}\n"));
@@ -118,19 +118,19 @@ fn broken_rows_are_told_and_left_out() {
 }
 
 #[test]
-fn broken_folders_are_told() {
+fn broken_folders_are_reported() {
     for (name, text, wanted) in [
         ("train/A/seqinfo.ini", "imDir=../..\n", "seqinfo.ini:1: has \"../..\" as imDir"),
         ("train/A/seqinfo.ini", "seqLength=99999999999\n", "seqinfo.ini:1: has \"99999999999\" as seqLength"),
-        ("train/A/seqinfo.ini", "seqLength=3\n", "seqLength is 3, but the last picture is number 2"),
-        ("train/A/img1/000004.jpg", "", "the picture before it is number 2"),
-        ("train/A/img1/x.jpg", "", "its name is no number"),
+        ("train/A/seqinfo.ini", "seqLength=3\n", "seqLength is 3, but the last image is number 2"),
+        ("train/A/img1/000004.jpg", "", "the image before it is number 2"),
+        ("train/A/img1/x.jpg", "", "its name is not a number"),
     ] {
         let folder = challenge().with(name, text);
         let error = open(&folder, &Problems::strict()).unwrap_err();
         assert!(error.to_string().contains(wanted), "{error}");
     }
-    // A broken picture fails alone.
+    // A broken image affects no others.
     let folder = challenge().with("train/A/img1/000002.jpg", "no picture");
     let mot = open(&folder, &Problems::strict()).unwrap();
     assert!(mot.get(0).is_ok() && mot.get(1).is_err() && mot.get(2).is_ok());

@@ -1,4 +1,4 @@
-//! Any tracks as sequences of the MOT Challenge.
+//! Writer of tracks as sequences of the MOT Challenge.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use crate::mot::row::{CLASSES, PEDESTRIAN};
 use crate::picture_files::write_each;
 use crate::{Problems, WriteOptions};
 
-/// One sequence, as far as it is written.
+/// A sequence being written.
 #[derive(Default)]
 struct Unfinished {
     folder: PathBuf,
@@ -23,7 +23,7 @@ struct Unfinished {
     image_size: Option<[usize; 2]>,
 }
 
-/// Pictures are numbered anew from 1.
+/// Writes `dataset`; frames are numbered from 1.
 pub(super) fn write(
     dataset: &dyn DatasetIterator,
     path: &Path,
@@ -48,14 +48,14 @@ pub(super) fn write(
     current.map_or(Ok(()), Unfinished::finish)
 }
 
-/// Lines of nine fields; what is seen of an object is not known, hence 1.
+/// Returns lines of nine fields; the visibility is unknown and written as 1.
 fn truth_text(tracks: &TrackingAnnotationList, frame: i64) -> Result<String> {
     let mut text = String::new();
     for track in &tracks.annotations {
         let found = &track.bounding_box;
         if track.id < 0 || !track.mot().iter().all(|number| number.is_finite()) {
             return Err(Error::invalid_input(format!(
-                "{track:#} is no object of a truth; give it an identity"
+                "{track:#} cannot be written as ground truth; it needs an identity and finite values"
             )));
         }
         let label =
@@ -70,7 +70,7 @@ fn truth_text(tracks: &TrackingAnnotationList, frame: i64) -> Result<String> {
 }
 
 impl Unfinished {
-    /// A sequence with the name that the header of its first target has.
+    /// Starts a sequence, named by the frame id of its first target.
     fn begin(part: &Path, dataset: &dyn DatasetIterator, index: usize, sample: &Sample) -> Result<Self> {
         let named = sample.target.as_ref().and_then(|target| target.header().frame_id.clone());
         let number = dataset.sequence(index).unwrap_or(0);
@@ -87,7 +87,7 @@ impl Unfinished {
         link: bool,
     ) -> Result<()> {
         let Some(Value::TrackingAnnotationList(tracks)) = &sample.target else {
-            return Err(Error::invalid_input("no tracks; MOT holds a TrackingAnnotationList a sample"));
+            return Err(Error::invalid_input("the sample has no tracks; MOT needs a TrackingAnnotationList"));
         };
         let truth = truth_text(tracks, self.pictures + 1)?;
         if let Some(Value::Image(image)) = sample.data.first() {
@@ -95,13 +95,12 @@ impl Unfinished {
             write_picture(dataset.path(index).as_deref(), image, &file, link)?;
             self.image_size = Some([image.width(), image.height()]);
         }
-        let found = sample.data.iter().filter_map(|datum| match datum {
-            Value::BoundingBoxList(found) => Some(found),
+        let lists = sample.data.iter().filter_map(|datum| match datum {
+            Value::BoundingBoxList(list) => Some(list),
             _ => None,
         });
-        for one in found
-            .flat_map(|found| &found.boxes)
-            .filter(|one| one.corners().iter().all(|edge| edge.is_finite()))
+        for one in
+            lists.flat_map(|list| &list.boxes).filter(|one| one.corners().iter().all(|edge| edge.is_finite()))
         {
             let (frame, confidence) = (self.pictures + 1, one.confidence);
             // Writing to a String cannot fail.

@@ -1,13 +1,13 @@
-//! The head of an `.npy` file: what numbers follow, and in which order.
+//! Header of an `.npy` file: element type, shape and order.
 
 use opendr_engine::{Error, Result};
 
-/// Bytes within which a header must end; NumPy's own bound on the dictionary is 10,000.
+/// Largest size of a header in bytes; NumPy's own limit for the dictionary is 10,000.
 pub(super) const MAX_BYTES: u64 = 16 << 10;
 const MAX_AXES: usize = 32;
 const MAGIC: &[u8; 6] = b"\x93NUMPY";
 
-/// What one number of the array is.
+/// Element type of an array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NpyType {
     kind: Kind,
@@ -25,9 +25,9 @@ enum Kind {
 
 impl NpyType {
     pub(crate) fn from_descr(descr: &str) -> Result<Self> {
-        let refused = || {
+        let unsupported = || {
             Error::unsupported(format!(
-                "an array of type {descr:.40?} is not read; save it as integers or floats of 16 to 64 bits"
+                "arrays of type {descr:.40?} are not supported; save integers or floats of 16 to 64 bits"
             ))
         };
         let (order, rest) = match descr.as_bytes() {
@@ -39,23 +39,23 @@ impl NpyType {
             [b'i', size @ (b'1' | b'2' | b'4' | b'8')] => (Kind::Signed, *size),
             [b'u', size @ (b'1' | b'2' | b'4' | b'8')] => (Kind::Unsigned, *size),
             [b'f', size @ (b'2' | b'4' | b'8')] => (Kind::Float, *size),
-            _ => return Err(refused()),
+            _ => return Err(unsupported()),
         };
         let bytes = if kind == Kind::Bool { 1 } else { usize::from(bytes - b'0') };
         Ok(Self { kind, bytes, big_endian: order == b'>' })
     }
 
-    /// Bytes a number.
+    /// Returns the bytes per value.
     pub fn bytes(self) -> usize {
         self.bytes
     }
 
-    /// Whether the numbers are whole.
+    /// Returns whether the values are integers.
     pub fn is_integer(self) -> bool {
         self.kind != Kind::Float
     }
 
-    /// The numbers in `data`; integers over 2^53 are rounded.
+    /// Decodes the values of `data`; integers over 2^53 are rounded.
     pub(crate) fn numbers(self, data: &[u8]) -> Vec<f64> {
         data.chunks_exact(self.bytes).map(|bytes| self.number(bytes)).collect()
     }
@@ -89,7 +89,7 @@ fn f32_from_f16(half: u16) -> f32 {
     }
 }
 
-/// What an `.npy` file holds.
+/// Header of an `.npy` file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NpyHeader {
     number: NpyType,
@@ -99,12 +99,12 @@ pub struct NpyHeader {
 }
 
 impl NpyHeader {
-    /// Reads the header at the begin of `bytes`.
+    /// Parses the header at the start of `bytes`.
     ///
     /// # Errors
-    /// `Format` when there is none, `Unsupported` for other arrays than of plain numbers.
+    /// `Format` without a header, `Unsupported` for arrays of other types than numbers.
     pub fn parse(bytes: &[u8]) -> Result<Self> {
-        let wrong = || Error::format("does not begin as an .npy file; write it with numpy.save");
+        let wrong = || Error::format("does not start like an .npy file; write it with numpy.save");
         let rest = bytes.strip_prefix(MAGIC).ok_or_else(wrong)?;
         let (length, start) = match rest {
             [1, _, a, b, ..] => (usize::from(u16::from_le_bytes([*a, *b])), 10),
@@ -112,53 +112,53 @@ impl NpyHeader {
             [1..=3, ..] | [] => return Err(wrong()),
             [version, ..] => {
                 return Err(Error::unsupported(format!(
-                    "version {version} of .npy; save it with version 3 or less"
+                    "version {version} of .npy is not supported; save it with version 3 or less"
                 )));
             }
         };
         let data_offset = start + length.min(u32::MAX as usize);
         let text = bytes.get(start..data_offset).filter(|_| data_offset as u64 <= MAX_BYTES).ok_or_else(|| {
             Error::format(format!(
-                "a header of {length} bytes where {} are there and {MAX_BYTES} allowed; the file is damaged",
+                "the header states {length} bytes, but the file has {} and the limit is {MAX_BYTES}; the file is damaged",
                 bytes.len()
             ))
         })?;
         let mut literal = Literal { rest: text };
         let (descr, fortran_order, shape) = literal.dictionary().ok_or_else(|| {
-            let shown = String::from_utf8_lossy(text);
+            let text = String::from_utf8_lossy(text);
             Error::format(format!(
-                "the header {:.120?} is no dictionary of descr, fortran_order, shape",
-                shown.trim()
+                "the header {:.120?} is not a dictionary of descr, fortran_order, shape",
+                text.trim()
             ))
         })?;
         let number = NpyType::from_descr(&descr)?;
         let header = Self { number, shape, fortran_order, data_offset };
         header.byte_count().map(|_| header.clone()).ok_or_else(|| {
-            Error::format(format!("an array of shape {:?} is too large for any memory", header.shape))
+            Error::format(format!("an array of shape {:?} is too large for memory", header.shape))
         })
     }
 
-    /// What one number is.
+    /// Returns the element type.
     pub fn number(&self) -> NpyType {
         self.number
     }
 
-    /// Size of each axis.
+    /// Returns the size of each axis.
     pub fn shape(&self) -> &[usize] {
         &self.shape
     }
 
-    /// Whether the first axis runs fastest.
+    /// Returns whether the first axis varies fastest.
     pub fn fortran_order(&self) -> bool {
         self.fortran_order
     }
 
-    /// The byte at which the numbers begin.
+    /// Returns the byte offset of the values.
     pub fn data_offset(&self) -> usize {
         self.data_offset
     }
 
-    /// Bytes of all numbers; `None` when no memory could hold them.
+    /// Returns the bytes of all values; `None` if they exceed the address space.
     fn byte_count(&self) -> Option<u64> {
         let sides = self.shape.iter().try_fold(1usize, |count, side| count.checked_mul((*side).max(1)))?;
         let bytes = sides.checked_mul(self.number.bytes)?.checked_add(self.data_offset)?;
@@ -166,24 +166,24 @@ impl NpyHeader {
         isize::try_from(bytes).ok().map(|_| if empty { 0 } else { (bytes - self.data_offset) as u64 })
     }
 
-    /// Compares a file of `size` bytes with what its header promises.
+    /// Compares the header with a file of `size` bytes.
     ///
     /// # Errors
-    /// `Format` when numbers are missing.
+    /// `Format` if the file is too short.
     pub fn check_size(&self, size: u64) -> Result<()> {
-        let there = size.saturating_sub(self.data_offset as u64);
+        let available = size.saturating_sub(self.data_offset as u64);
         match self.byte_count() {
-            Some(wanted) if wanted <= there => Ok(()),
-            wanted => Err(Error::format(format!(
-                "an array of shape {:?} has {there} bytes instead of {}; the file is cut off",
+            Some(needed) if needed <= available => Ok(()),
+            needed => Err(Error::format(format!(
+                "an array of shape {:?} has {available} bytes instead of {}; the file is truncated",
                 self.shape,
-                wanted.unwrap_or(u64::MAX)
+                needed.unwrap_or(u64::MAX)
             ))),
         }
     }
 }
 
-/// The Python dictionary of a header, of which only strings, booleans and tuples of numbers are known.
+/// Parser of the Python dictionary of a header, with strings, booleans and tuples of numbers.
 struct Literal<'a> {
     rest: &'a [u8],
 }
@@ -211,7 +211,7 @@ impl Literal<'_> {
         Some((descr?, fortran_order?, shape?))
     }
 
-    /// The type, or the text of the list that describes a structure, to be shown.
+    /// Parses the type, or the text of a list that describes a structure, for error messages.
     fn descr(&mut self) -> Option<String> {
         self.blanks();
         if self.rest.first() != Some(&b'[') {

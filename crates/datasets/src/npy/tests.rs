@@ -29,7 +29,7 @@ fn every_type_is_read() {
 }
 
 #[test]
-fn fortran_order_is_turned() {
+fn fortran_order_is_converted() {
     let (shape, numbers) = array_from_npy(&file("|u1", "True", "(2, 3)", &[1, 4, 2, 5, 3, 6])).unwrap();
     assert_eq!((shape, numbers), (vec![2, 3], vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]));
 }
@@ -61,13 +61,13 @@ fn parts_are_read_alone() {
 #[test]
 fn broken_files_are_refused() {
     let cases = [
-        (b"\x93NUMPX\x01\0".to_vec(), "does not begin as an .npy file"),
-        (b"\x93NUMPY\x01\0\xff\xff{}".to_vec(), "a header of 65535 bytes"),
+        (b"\x93NUMPX\x01\0".to_vec(), "does not start like an .npy file"),
+        (b"\x93NUMPY\x01\0\xff\xff{}".to_vec(), "the header states 65535 bytes"),
         (b"\x93NUMPY\x09\0\0\0\0\0".to_vec(), "version 9"),
         (file("<f4", "False", "(3,)", &[0; 8]), "an array of shape [3] has 8 bytes instead of 12"),
         (file("<f8", "False", "(4611686018427387904, 4611686018427387904)", &[]), "an array of shape"),
         (file("<f8", "False", "(99999999999999999999,)", &[]), "the header"),
-        (file("|O", "False", "(1,)", &[0; 8]), "an array of type \"|O\" is not read"),
+        (file("|O", "False", "(1,)", &[0; 8]), "arrays of type \"|O\" are not supported"),
         (file("<f4", "Maybe", "(1,)", &[0; 4]), "the header"),
         (file("<f4", "False", "(-1,)", &[0; 4]), "the header"),
     ];

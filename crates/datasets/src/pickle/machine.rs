@@ -1,4 +1,4 @@
-//! The stack machine that a pickle is a program of, without the instructions that could run code.
+//! Stack machine of pickles, without the instructions that could execute code.
 
 use std::cell::Cell;
 use std::collections::HashMap;
@@ -6,12 +6,14 @@ use std::collections::HashMap;
 use opendr_engine::{Error, Result};
 
 use crate::npy::NpyType;
-use crate::pickle::{Id, Item, MAX_AXES, refused};
+use crate::pickle::item::{Id, Item};
 
-/// Values that are made, and that are kept for later.
+/// Largest number of axes of an array.
+const MAX_AXES: usize = 32;
+/// Largest number of values.
 const MAX_ITEMS: usize = 16 << 20;
-/// Bytes that may be copied, as a multiple of those of the file: what is kept can be asked for again and again.
-const MOST_COPIES: usize = 4;
+/// Limit of copied bytes as a multiple of the file size, since a pickle may copy a value many times.
+const MAX_COPIES: usize = 4;
 
 pub(super) struct Machine<'a> {
     pub(super) bytes: &'a [u8],
@@ -24,7 +26,7 @@ pub(super) struct Machine<'a> {
 }
 
 impl<'a> Machine<'a> {
-    /// Runs to the end; the last value is the pickle's.
+    /// Runs to the end and returns the last value.
     pub(super) fn run(&mut self) -> Result<Id> {
         loop {
             let start = self.at;
@@ -33,11 +35,13 @@ impl<'a> Machine<'a> {
                 return self.pop();
             }
             if self.items.len().max(self.memo.len()) > MAX_ITEMS {
-                return Err(Error::invalid_input(format!("over {MAX_ITEMS} values; divide the data set")));
+                return Err(Error::invalid_input(format!(
+                    "the pickle has over {MAX_ITEMS} values; split the data set"
+                )));
             }
             if !(self.scalar(code)? || self.collection(code)? || self.memory(code)? || self.object(code)?) {
                 return Err(Error::format(format!(
-                    "byte {start}: instruction {code:#04x} is not known to a pickle of data"
+                    "byte {start}: instruction {code:#04x} is not supported in pickles of data"
                 )));
             }
         }
@@ -51,17 +55,17 @@ impl<'a> Machine<'a> {
         let end = self.at.checked_add(count);
         let taken = end
             .and_then(|end| self.bytes.get(self.at..end))
-            .ok_or_else(|| self.wrong("the pickle is cut off"))?;
+            .ok_or_else(|| self.wrong("the pickle is truncated"))?;
         self.at += count;
         Ok(taken)
     }
 
     fn fixed<const N: usize>(&mut self) -> Result<[u8; N]> {
         let taken = self.take(N)?;
-        taken.try_into().map_err(|_| self.wrong("the pickle is cut off"))
+        taken.try_into().map_err(|_| self.wrong("the pickle is truncated"))
     }
 
-    /// A length of `N` bytes and as many bytes as it says.
+    /// Takes bytes preceded by their length of `N` bytes.
     fn counted<const N: usize>(&mut self) -> Result<&'a [u8]> {
         let mut length = [0; 8];
         let bytes: [u8; N] = self.fixed()?;
@@ -70,13 +74,13 @@ impl<'a> Machine<'a> {
         self.take(length)
     }
 
-    /// Counts bytes that are copied.
+    /// Counts copied bytes; fails over the limit.
     fn copy<'b>(&self, bytes: &'b [u8]) -> Result<&'b [u8]> {
         let copied = self.copied.get().saturating_add(bytes.len());
         self.copied.set(copied);
-        match copied <= self.bytes.len().saturating_mul(MOST_COPIES) {
+        match copied <= self.bytes.len().saturating_mul(MAX_COPIES) {
             true => Ok(bytes),
-            false => Err(self.wrong("the same bytes are used again and again")),
+            false => Err(self.wrong("the same bytes are copied too often")),
         }
     }
 
@@ -100,7 +104,7 @@ impl<'a> Machine<'a> {
         self.stack.pop().ok_or_else(|| self.wrong("a value is missing"))
     }
 
-    /// The values since the last mark.
+    /// Takes the values since the last mark.
     fn marked(&mut self) -> Result<Vec<Id>> {
         let mark = self.marks.pop().filter(|mark| *mark <= self.stack.len());
         let mark = mark.ok_or_else(|| self.wrong("a mark is missing"))?;
@@ -124,7 +128,7 @@ impl<'a> Machine<'a> {
                 let bytes = self.counted::<1>()?;
                 let mut word = [if bytes.last().is_some_and(|byte| *byte > 127) { 0xff } else { 0 }; 8];
                 if bytes.len() > word.len() {
-                    return Err(self.wrong("a whole number has over 64 bits"));
+                    return Err(self.wrong("an integer has over 64 bits"));
                 }
                 word.iter_mut().zip(bytes).for_each(|(to, from)| *to = *from);
                 Item::Whole(i64::from_le_bytes(word))
@@ -162,7 +166,7 @@ impl<'a> Machine<'a> {
                 let values = if code == b'a' { vec![self.pop()?] } else { self.marked()? };
                 match self.stack.last().and_then(|id| self.items.get_mut(*id)) {
                     Some(Item::List(list)) => list.extend(values),
-                    _ => return Err(self.wrong("values are added to what is no list")),
+                    _ => return Err(self.wrong("values are appended to something other than a list")),
                 }
             }
             b's' | b'u' => {
@@ -177,7 +181,7 @@ impl<'a> Machine<'a> {
                     Some(Item::Dictionary(entries)) => {
                         entries.extend(values.as_chunks::<2>().0.iter().map(|[key, value]| (*key, *value)));
                     }
-                    _ => return Err(self.wrong("values are set in what is no dictionary")),
+                    _ => return Err(self.wrong("values are set in something other than a dictionary")),
                 }
             }
             _ => return Ok(false),
@@ -201,7 +205,7 @@ impl<'a> Machine<'a> {
                 .memo
                 .get(&key)
                 .copied()
-                .ok_or_else(|| self.wrong("a value that was never kept is asked for"))?;
+                .ok_or_else(|| self.wrong("a value is read from the memo that was never stored"))?;
             self.stack.push(id);
         } else {
             let id = self.stack.last().copied().ok_or_else(|| self.wrong("a value is missing"))?;
@@ -219,7 +223,7 @@ impl<'a> Machine<'a> {
             0x93 => {
                 let (name, module) = (self.pop()?, self.pop()?);
                 let (Item::Text(module), Item::Text(name)) = (self.item(module), self.item(name)) else {
-                    return Err(self.wrong("a name is no text"));
+                    return Err(self.wrong("a name is not a text"));
                 };
                 self.copy(module.as_bytes()).and_then(|_| self.copy(name.as_bytes()))?;
                 let global = Item::Global(module.clone(), name.clone());
@@ -227,8 +231,8 @@ impl<'a> Machine<'a> {
             }
             b'R' => {
                 let (arguments, function) = (self.pop()?, self.pop()?);
-                let made = self.reduce(function, arguments)?;
-                self.push(made);
+                let value = self.reduce(function, arguments)?;
+                self.push(value);
             }
             b'b' => {
                 let state = self.pop()?;
@@ -239,23 +243,23 @@ impl<'a> Machine<'a> {
         Ok(true)
     }
 
-    /// The few functions that make plain data.
+    /// Evaluates the few functions that construct plain data.
     fn reduce(&self, function: Id, arguments: Id) -> Result<Item> {
         let (Item::Global(module, name), Item::List(arguments)) = (self.item(function), self.item(arguments))
         else {
-            return Err(self.wrong("something else than a name is called"));
+            return Err(self.wrong("something other than a name is called"));
         };
         let argument = |at: usize| arguments.get(at).map_or(&Item::None, |id| self.item(*id));
         match (module.as_str(), name.as_str()) {
             ("numpy", "dtype") => match argument(0) {
                 Item::Text(descr) => Ok(Item::Type(NpyType::from_descr(descr)?, descr.clone())),
-                _ => Err(self.wrong("a type of numbers has no name")),
+                _ => Err(self.wrong("an element type has no name")),
             },
             ("numpy.core.multiarray" | "numpy._core.multiarray", "_reconstruct") => Ok(Item::Unfilled),
             ("numpy.core.multiarray" | "numpy._core.multiarray", "scalar") => {
                 match (argument(0), argument(1)) {
                     (Item::Type(number, _), Item::Bytes(bytes)) => self.array(vec![1], *number, false, bytes),
-                    _ => Err(self.wrong("a number is no number")),
+                    _ => Err(self.wrong("a scalar has no type or no bytes")),
                 }
             }
             ("numpy.core.numeric" | "numpy._core.numeric", "_frombuffer") => match (argument(0), argument(1))
@@ -264,20 +268,20 @@ impl<'a> Machine<'a> {
                     let fortran_order = matches!(argument(3), Item::Text(order) if order == "F");
                     self.array(self.shape(argument(2))?, *number, fortran_order, bytes)
                 }
-                _ => Err(self.wrong("an array has no numbers")),
+                _ => Err(self.wrong("an array has no values")),
             },
             ("_codecs", "encode") => match argument(0) {
-                // Protocol 2 has no bytes: they are texts of Latin 1.
+                // Protocol 2 has no bytes: they are encoded as Latin-1 texts.
                 Item::Text(text) => {
                     self.copy(text.as_bytes())?;
                     let bytes: Result<Vec<u8>, _> =
                         text.chars().map(|letter| u8::try_from(u32::from(letter))).collect();
-                    bytes.map(Item::Bytes).map_err(|_| self.wrong("bytes are no bytes"))
+                    bytes.map(Item::Bytes).map_err(|_| self.wrong("a text of bytes is not Latin-1"))
                 }
-                _ => Err(self.wrong("bytes are no bytes")),
+                _ => Err(self.wrong("bytes are not encoded as a text")),
             },
             ("__builtin__" | "builtins", "bytes") => Ok(Item::Bytes(Vec::new())),
-            _ => Err(refused(&format!("{module}.{name}"))),
+            _ => Err(code_error(&format!("{module}.{name}"))),
         }
     }
 
@@ -292,17 +296,17 @@ impl<'a> Machine<'a> {
     }
 
     fn array(&self, shape: Vec<usize>, number: NpyType, fortran_order: bool, bytes: &[u8]) -> Result<Item> {
-        let wanted = shape.iter().try_fold(number.bytes(), |bytes, side| bytes.checked_mul(*side));
-        if wanted != Some(bytes.len()) {
+        let expected = shape.iter().try_fold(number.bytes(), |bytes, side| bytes.checked_mul(*side));
+        if expected != Some(bytes.len()) {
             return Err(self.wrong(&format!("an array of shape {shape:?} has {} bytes", bytes.len())));
         }
         Ok(Item::Array(shape, number, fortran_order, self.copy(bytes)?.to_vec()))
     }
 
-    /// Fills an array, or tells a type the order of its bytes.
+    /// Fills an array, or sets the byte order of a type.
     fn build(&mut self, state: Id) -> Result<()> {
         let target = self.stack.last().copied().ok_or_else(|| self.wrong("a value is missing"))?;
-        let Item::List(state) = self.item(state) else { return Err(self.wrong("a state is no tuple")) };
+        let Item::List(state) = self.item(state) else { return Err(self.wrong("a state is not a tuple")) };
         let part = |at: usize| state.get(at).map_or(&Item::None, |id| self.item(*id));
         let built = match self.item(target) {
             Item::Type(_, descr) => match part(1) {
@@ -310,19 +314,24 @@ impl<'a> Machine<'a> {
                     let descr = descr.clone();
                     Item::Type(NpyType::from_descr(&format!("{order}{descr}"))?, descr)
                 }
-                _ => return Err(self.wrong("a type of numbers has no order")),
+                _ => return Err(self.wrong("an element type has no byte order")),
             },
             Item::Unfilled => match (part(2), part(3), part(4)) {
                 (Item::Type(number, _), Item::Whole(order), Item::Bytes(bytes)) => {
                     self.array(self.shape(part(1))?, *number, *order != 0, bytes)?
                 }
-                _ => return Err(self.wrong("an array has no numbers")),
+                _ => return Err(self.wrong("an array has no values")),
             },
-            _ => return Err(refused("the state of an object")),
+            _ => return Err(code_error("the state of an object")),
         };
         if let Some(item) = self.items.get_mut(target) {
             *item = built;
         }
         Ok(())
     }
+}
+
+#[cold]
+fn code_error(what: &str) -> Error {
+    Error::unsupported(format!("the pickle refers to {what:.80?}, which is code; save its data as .npy"))
 }

@@ -16,19 +16,19 @@ fn values_are_read() {
 }
 
 #[test]
-fn code_and_broken_files_are_refused() {
+fn code_and_broken_files_are_errors() {
     for (bytes, wanted) in [
         (
             &b"\x80\x02cos\nsystem\nX\x02\x00\x00\x00ls\x85R."[..],
-            "the pickle names \"os.system\", which is code",
+            "the pickle refers to \"os.system\", which is code",
         ),
-        (b"\x80\x02cnumpy\ndtype\nX\x02\x00\x00\x00O8\x85R.", "an array of type \"O8\" is not read"),
-        (&PICKLED[..100], "byte 100: the pickle is cut off"),
-        (b"\x80\x02X\xff\xff\xff\xffab", "byte 7: the pickle is cut off"),
+        (b"\x80\x02cnumpy\ndtype\nX\x02\x00\x00\x00O8\x85R.", "arrays of type \"O8\" are not supported"),
+        (&PICKLED[..100], "byte 100: the pickle is truncated"),
+        (b"\x80\x02X\xff\xff\xff\xffab", "byte 7: the pickle is truncated"),
         (b"\x80\x02e.", "byte 3: a mark is missing"),
-        (b"\x80\x02h\x01.", "byte 4: a value that was never kept"),
+        (b"\x80\x02h\x01.", "byte 4: a value is read from the memo"),
         (b"garbage", "byte 0: instruction 0x67"),
-        (b"", "byte 0: the pickle is cut off"),
+        (b"", "byte 0: the pickle is truncated"),
     ] {
         let error = Pickle::parse(bytes).unwrap_err();
         assert!(error.to_string().starts_with(wanted), "{error}");
@@ -36,7 +36,7 @@ fn code_and_broken_files_are_refused() {
 }
 
 #[test]
-fn the_same_bytes_again_and_again_are_refused() {
+fn copying_the_same_bytes_too_often_is_an_error() {
     let mut bytes = b"\x80\x02]q\x00c_codecs\nencode\nq\x01X\x10\x27\0\0".to_vec();
     bytes.extend([b'a'; 10_000]);
     bytes.extend(*b"\x85q\x02R");
@@ -45,10 +45,10 @@ fn the_same_bytes_again_and_again_are_refused() {
     }
     bytes.push(b'.');
     let error = Pickle::parse(&bytes).unwrap_err();
-    assert!(error.to_string().contains("again and again"), "{error}");
+    assert!(error.to_string().contains("copied too often"), "{error}");
 }
 
-/// A list within itself is no endless work.
+/// A list that contains itself is parsed without an endless loop.
 #[test]
 fn cycles_cost_nothing() {
     let pickle = Pickle::parse(b"\x80\x02]q\x00h\x00a.").unwrap();

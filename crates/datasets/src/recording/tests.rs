@@ -1,7 +1,7 @@
 use opendr_engine::data::Image;
 use opendr_engine::target::{BoundingBox, BoundingBoxList};
 use opendr_engine::{Header, ValueRef};
-use opendr_recordings::{Answers, BagFormat, WriteOptions};
+use opendr_recordings::{BagFormat, RecordingWriter, WriteOptions};
 
 use super::*;
 use crate::folder::TemporaryFolder;
@@ -9,10 +9,10 @@ use crate::folder::TemporaryFolder;
 const START: i64 = 1_700_000_000_000_000_000;
 const STEP: i64 = 100_000_000;
 
-/// Ten pictures, boxes for every second one: stamped 3 ms later, recorded a second later.
+/// Records ten images, and boxes for every second one: stamped 3 ms later, recorded a second later.
 fn record(path: &Path, format: BagFormat, pictures: &[&str]) {
     let options = WriteOptions { chunk_bytes: 300, ..format.into() };
-    let mut answers = Answers::create(path, options).unwrap();
+    let mut answers = RecordingWriter::create(path, options).unwrap();
     for number in 0..10 {
         let stamp = START + number * STEP;
         let image = Image::from_rgb8(vec![number as u8; 4 * 2 * 3], 4, 2).unwrap();
@@ -36,7 +36,7 @@ fn open(path: &Path, split: Option<&str>) -> Result<AnnotatedRecording> {
 }
 
 #[test]
-fn annotations_find_their_pictures() {
+fn annotations_are_matched_with_images() {
     let folder = TemporaryFolder::new();
     for format in BagFormat::ALL {
         let extension = if format == BagFormat::Bag1 { ".bag" } else { ".mcap" };
@@ -52,7 +52,7 @@ fn annotations_find_their_pictures() {
             assert_eq!(image.header.stamp_ns, Some(START + at as i64 * 2 * STEP));
             let Some(Value::BoundingBoxList(list)) = sample.target else { panic!("no boxes") };
             assert_eq!(list.boxes[0].left, at as f32 * 2.0);
-            // Messages of ROS 1 have no names: what is none of a known class is -1 there.
+            // Messages of ROS 1 have no names: an unknown class is -1 there.
             if format != BagFormat::Bag1 {
                 assert_eq!(list.label(&list.boxes[0]), Some(if at == 0 { "person" } else { "car" }));
                 assert_eq!(list.boxes[0].name, Name::Index(i64::from(at == 0)));
@@ -64,7 +64,7 @@ fn annotations_find_their_pictures() {
 }
 
 #[test]
-fn topics_are_named_where_several_fit() {
+fn topics_must_be_selected_if_several_fit() {
     let folder = TemporaryFolder::new();
     let path = folder.path().join("a.mcap");
     record(&path, BagFormat::Mcap, &["/left", "/right"]);
@@ -81,7 +81,7 @@ fn topics_are_named_where_several_fit() {
 }
 
 #[test]
-fn what_is_cut_off_is_a_problem() {
+fn a_truncated_recording_is_a_problem() {
     let folder = TemporaryFolder::new();
     let path = folder.path().join("a.mcap");
     record(&path, BagFormat::Mcap, &["/image"]);
@@ -92,6 +92,6 @@ fn what_is_cut_off_is_a_problem() {
     let options = OpenOptions { target: Some(ValueType::BoundingBoxList), ..OpenOptions::default() };
     let dataset = AnnotatedRecording::open(&path, &options, &problems).unwrap();
     assert!((1..5).contains(&dataset.len()), "{}", dataset.len());
-    assert!(problems.list()[0].to_string().contains("cut off"));
+    assert!(problems.list()[0].to_string().contains("truncated"));
     assert!((0..dataset.len()).all(|at| dataset.get(at).is_ok()));
 }

@@ -1,4 +1,4 @@
-//! NTU RGB+D: a text file a recording.
+//! NTU RGB+D: a text file for each recording.
 //!
 //! Source: A. Shahroudy et al., NTU RGB+D, CVPR 2016; J. Liu et al., NTU RGB+D 120, TPAMI 2019.
 
@@ -13,11 +13,11 @@ use crate::folder::{files_in, has_extension, read_text};
 use crate::{Problem, Problems};
 
 const JOINTS: usize = 25;
-/// Of as many bodies as the sensor took for persons, those that move most.
+/// Number of persons that are kept: those that move most, of all bodies that the sensor detected.
 const PERSONS: usize = 2;
 const MAX_FRAMES: usize = 100_000;
 const MAX_BODIES: usize = 16;
-/// Subjects and cameras that are for training.
+/// Subjects of the training part; the next constant has its cameras.
 const TRAINING_SUBJECTS: [u32; 53] = [
     1, 2, 4, 5, 8, 9, 13, 14, 15, 16, 17, 18, 19, 25, 27, 28, 31, 34, 35, 38, 45, 46, 47, 49, 50, 52, 53, 54,
     55, 56, 57, 58, 59, 70, 74, 78, 80, 81, 82, 83, 84, 85, 86, 89, 91, 92, 93, 94, 95, 97, 98, 100, 103,
@@ -25,7 +25,7 @@ const TRAINING_SUBJECTS: [u32; 53] = [
 const TRAINING_CAMERAS: [u32; 2] = [2, 3];
 const CLASSES: u32 = 120;
 
-/// A file of NTU RGB+D by what its name says.
+/// A file of NTU RGB+D with the fields of its name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NtuFile {
     path: PathBuf,
@@ -35,7 +35,7 @@ pub struct NtuFile {
 }
 
 impl NtuFile {
-    /// Reads a name such as `S001C002P003R002A013.skeleton`; what is wrong with it otherwise.
+    /// Parses a name such as `S001C002P003R002A013.skeleton`.
     fn of(path: PathBuf, name: &str) -> Result<Self, String> {
         let number = |letter: char| {
             let digits = name.get(name.find(letter)? + 1..)?.get(..3)?;
@@ -43,35 +43,35 @@ impl NtuFile {
         };
         let numbers = || Some((number('C')?, number('P')?, number('A')?));
         let (camera, subject, action) =
-            numbers().ok_or("its name is not of the kind S001C001P001R001A001.skeleton; rename it")?;
+            numbers().ok_or("its name is not of the form S001C001P001R001A001.skeleton; rename it")?;
         if action == 0 || action > CLASSES {
-            return Err(format!("its name tells action {action}; there are 1 to {CLASSES}"));
+            return Err(format!("its name has action {action}; the actions are 1 to {CLASSES}"));
         }
         Ok(Self { path, camera, subject, action })
     }
 
-    /// Where it lies.
+    /// Returns the path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Class, from 0.
+    /// Returns the class index, from 0.
     pub fn class(&self) -> i64 {
         i64::from(self.action) - 1
     }
 
-    /// Number of the person that acts.
+    /// Returns the number of the acting person.
     pub fn subject(&self) -> u32 {
         self.subject
     }
 
-    /// Number of the camera.
+    /// Returns the number of the camera.
     pub fn camera(&self) -> u32 {
         self.camera
     }
 }
 
-/// Names of the files at `path`.
+/// Returns the names of the files at `path`.
 pub(super) fn files(path: &Path) -> Vec<String> {
     if path.is_dir() {
         return files_in(path, &["skeleton"]);
@@ -81,7 +81,7 @@ pub(super) fn files(path: &Path) -> Vec<String> {
     name.filter(|_| path.is_file()).map(str::to_owned).into_iter().collect()
 }
 
-/// The files of a part; those with other names are told.
+/// Returns the files of a part; files with invalid names are reported.
 pub(super) fn part(
     path: &Path,
     names: Vec<String>,
@@ -116,7 +116,7 @@ pub(super) fn part(
     Ok(files)
 }
 
-/// `A001` to `A120`, where no names lie beside the data.
+/// Returns the class names `A001` to `A120`, which are used if the data have none.
 pub(super) fn classes() -> Classes {
     (1..=CLASSES).map(|action| format!("A{action:03}")).collect()
 }
@@ -124,21 +124,21 @@ pub(super) fn classes() -> Classes {
 /// Reads the recording at `path`.
 ///
 /// # Errors
-/// `NotFound` or `Io` when it cannot be read; those of [`skeleton_from_ntu`].
+/// `NotFound` or `Io` if it cannot be read; otherwise as [`skeleton_from_ntu`].
 pub fn open_ntu(path: impl AsRef<Path>) -> Result<SkeletonSequence> {
     let path = path.as_ref();
     let wrong = |(line, message): (u64, String)| Problem::at_line(path, line, message).into();
     skeleton_from_ntu(&read_text(path)?).map_err(wrong)
 }
 
-/// One body: its number, and its joints in the frames in which it is seen.
+/// A body: its id, and its joints in the frames in which it is detected.
 struct Body {
     id: String,
     joints: Vec<(usize, [[f32; 3]; JOINTS])>,
 }
 
 impl Body {
-    /// How much it moves: the variance of its joints, in square metres.
+    /// Returns the amount of motion: the variance of the joints, in square metres.
     fn motion(&self) -> f64 {
         let count = self.joints.len() as f64;
         let variance = |joint: usize, axis: usize| {
@@ -153,32 +153,32 @@ impl Body {
     }
 }
 
-/// Reads the text of a `.skeleton` file: `[1, 3, frames, 25, 2]` in metres; of more bodies than two those that move
-/// most, of fewer the rest is 0.
+/// Parses the text of a `.skeleton` file: `[1, 3, frames, 25, 2]` in metres. Of more than two bodies, those that
+/// move most are kept; missing ones are 0.
 ///
 /// # Errors
-/// What is wrong and the number of its line.
+/// The line number and a message.
 pub fn skeleton_from_ntu(text: &str) -> Result<SkeletonSequence, (u64, String)> {
     let mut lines = lines(text);
     let mut last = 0;
     let mut next = |fields: std::ops::RangeInclusive<usize>| {
         let (number, line) =
-            lines.next().ok_or((last + 1, "the file is cut off here; get it again".to_owned()))?;
+            lines.next().ok_or((last + 1, "the file is truncated here; download it again".to_owned()))?;
         last = number;
-        let found = Fields::of(line);
-        found.expect(fields).map_err(|message| (number, message))?;
-        Ok::<_, (u64, String)>((number, found))
+        let parsed = Fields::of(line);
+        parsed.expect(fields).map_err(|message| (number, message))?;
+        Ok::<_, (u64, String)>((number, parsed))
     };
     let count = |(number, fields): (u64, Fields<'_>), most: usize, what: &str| {
         let count = fields.whole(0).map_err(|message| (number, message))?;
         let count = usize::try_from(count).ok().filter(|count| *count <= most);
-        count.map(|count| (number, count)).ok_or((number, format!("tells an impossible number of {what}")))
+        count.map(|count| (number, count)).ok_or((number, format!("has an invalid number of {what}")))
     };
     let (number, frames) = count(next(1..=1)?, MAX_FRAMES, "frames")?;
     let mut bodies: Vec<Body> = Vec::new();
     for frame in 0..frames {
-        let (_, seen) = count(next(1..=1)?, MAX_BODIES, "bodies")?;
-        for _ in 0..seen {
+        let (_, body_count) = count(next(1..=1)?, MAX_BODIES, "bodies")?;
+        for _ in 0..body_count {
             let (_, info) = next(1..=10)?;
             let id = info.text(0).unwrap_or_default().to_owned();
             let (at, joints) = count(next(1..=1)?, JOINTS, "joints")?;
@@ -199,7 +199,7 @@ pub fn skeleton_from_ntu(text: &str) -> Result<SkeletonSequence, (u64, String)> 
         }
     }
     if bodies.is_empty() {
-        return Err((number, "no frame has a body; drop the file".to_owned()));
+        return Err((number, "no frame has a body; remove the file".to_owned()));
     }
     bodies.sort_by(|a, b| b.motion().total_cmp(&a.motion()));
     let mut numbers = vec![0.0; 3 * frames * JOINTS * PERSONS];

@@ -1,4 +1,4 @@
-//! Poses in a pickle: JHMDB as DD-Net prepares it, and annotations of MMAction2.
+//! Poses in a pickle: JHMDB as prepared by DD-Net, and annotations of MMAction2.
 
 use std::path::Path;
 
@@ -6,12 +6,13 @@ use opendr_engine::data::SkeletonSequence;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, ResultExt};
 
+use super::sequence::finite_sequence;
 use crate::folder::{files_in, has_extension, name_of, read_bytes};
 use crate::pickle::{Pickle, Pickled};
 
 const MAX_BYTES: u64 = 1 << 30;
 
-/// The poses of a pickle, read whole.
+/// The poses of a pickle, in memory.
 #[derive(Debug)]
 pub(super) struct PickledPoses {
     pickle: Pickle,
@@ -27,7 +28,7 @@ enum Layout {
     Mmaction,
 }
 
-/// Names before `.pkl` at `path`.
+/// Returns the names before `.pkl` at `path`.
 pub(super) fn parts(path: &Path) -> Vec<String> {
     let names = match path.is_dir() {
         true => files_in(path, &["pkl"]),
@@ -37,7 +38,7 @@ pub(super) fn parts(path: &Path) -> Vec<String> {
 }
 
 impl PickledPoses {
-    /// Reads a pickle; where classes are names, those of `known` or all that there are, in order, number them.
+    /// Reads a pickle. Class names are numbered as in `known`, or in alphabetical order.
     pub(super) fn open(path: &Path, known: Option<&Classes>) -> Result<(Self, Classes)> {
         let read = || {
             let pickle = Pickle::parse(&read_bytes(path, MAX_BYTES)?)?;
@@ -59,7 +60,7 @@ impl PickledPoses {
             let classes = names(&labels, known);
             let numbers: Option<Vec<i64>> =
                 labels.iter().map(|label| label.whole().or_else(|| classes.index(label.text()?))).collect();
-            let numbers = numbers.ok_or_else(|| Error::format("has a label that is no class"))?;
+            let numbers = numbers.ok_or_else(|| Error::format("has a label that is not a class"))?;
             let poses = Self { classes: numbers, layout, pickle };
             let count = poses.list().len();
             if count != poses.classes.len() {
@@ -85,7 +86,7 @@ impl PickledPoses {
 
     pub(super) fn sequence(&self, index: usize) -> Result<SkeletonSequence> {
         let list = self.list();
-        let pose = list.get(index).ok_or_else(|| Error::not_found("there is none"))?;
+        let pose = list.get(index).ok_or_else(|| Error::not_found("no such sample"))?;
         let pose = if self.layout == Layout::Jhmdb { Some(*pose) } else { pose.get("keypoint") };
         let (shape, numbers) =
             pose.and_then(Pickled::array).ok_or_else(|| Error::format("has no array of joints"))?;
@@ -105,11 +106,11 @@ impl PickledPoses {
                 moved.extend((0..persons).filter_map(|person| numbers.get(at(person)).copied()));
             }
         }
-        super::sequence(&moved, [1, channels, frames, joints, persons])
+        finite_sequence(&moved, [1, channels, frames, joints, persons])
     }
 }
 
-/// Names of the classes, in alphabetical order; none where classes are numbers.
+/// Returns the class names in alphabetical order; empty if classes are numbers.
 fn names(labels: &[Pickled<'_>], known: Option<&Classes>) -> Classes {
     let mut names: Vec<_> = labels.iter().filter_map(|label| label.text()).collect();
     names.sort_unstable();

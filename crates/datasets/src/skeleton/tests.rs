@@ -1,11 +1,12 @@
 use opendr_engine::Silent;
+use opendr_engine::data::SkeletonSequence;
 use proptest::prelude::*;
 
 use super::*;
 use crate::folder::{TemporaryFolder, real_data};
 use crate::{npy_from_f32, npy_from_i64};
 
-/// Two frames; body 7 stands still in both, body 8 moves, body 9 is seen once.
+/// Two frames; body 7 stands still in both, body 8 moves, body 9 is in one frame.
 fn ntu() -> String {
     let body = |id: u32, x: f32| {
         let joints: String =
@@ -34,16 +35,16 @@ fn bodies_keep_their_place() {
     let at = |axis: usize, frame: usize, joint: usize, person: usize| {
         sequence.as_slice()[((axis * 2 + frame) * 25 + joint) * 2 + person]
     };
-    // Body 8 moves most; of the others the first in the file.
+    // Body 8 moves most; of the others, the first in the file is kept.
     assert_eq!([at(0, 0, 3, 0), at(0, 1, 3, 0), at(1, 1, 24, 0), at(2, 0, 0, 0)], [5.0, 7.0, 24.0, 0.5]);
     assert_eq!([at(0, 0, 0, 1), at(0, 1, 0, 1)], [5.0, 0.0]);
 }
 
 #[test]
-fn broken_recordings_are_told_by_line() {
+fn broken_recordings_are_reported_by_line() {
     for (from, to, line, wanted) in [
-        ("2\n3\n", "99999999999\n3\n", 1, "tells an impossible number of frames"),
-        ("2\n3\n", "2\n-3\n", 2, "tells an impossible number of bodies"),
+        ("2\n3\n", "99999999999\n3\n", 1, "has an invalid number of frames"),
+        ("2\n3\n", "2\n-3\n", 2, "has an invalid number of bodies"),
         ("\n25\n", "\n24\n", 4, "has 24 joints instead of 25"),
         ("5 0 0.5", "nan 0 0.5", 5, "has \"nan\" in field 1"),
         ("5 0 0.5 0 0 0 0 0 0 0 0 2", "5", 5, "has 1 fields instead of 3 to 12"),
@@ -52,12 +53,12 @@ fn broken_recordings_are_told_by_line() {
         assert!(at == line && message.starts_with(wanted), "{at}: {message}");
     }
     let text = ntu();
-    assert!(skeleton_from_ntu(&text[..text.len() - 30]).unwrap_err().1.starts_with("the file is cut off"));
+    assert!(skeleton_from_ntu(&text[..text.len() - 30]).unwrap_err().1.starts_with("the file is truncated"));
     assert!(skeleton_from_ntu("1\n0\n").unwrap_err().1.starts_with("no frame has a body"));
 }
 
 #[test]
-fn names_tell_class_and_part() {
+fn names_have_class_and_part() {
     let folder = TemporaryFolder::new()
         .with("S001C001P001R001A013.skeleton", ntu())
         .with("S001C002P003R002A060.skeleton", "x");
@@ -74,7 +75,7 @@ fn names_tell_class_and_part() {
     }
     assert!(open(&folder, Some("other")).is_err());
     let wrong = TemporaryFolder::new().with("S001C001P001R001A121.skeleton", ntu());
-    assert!(open(&wrong, None).unwrap_err().to_string().contains("its name tells action 121"));
+    assert!(open(&wrong, None).unwrap_err().to_string().contains("its name has action 121"));
 }
 
 #[test]
@@ -98,12 +99,12 @@ fn what_is_written_is_read() {
 }
 
 #[test]
-fn broken_arrays_are_told() {
+fn broken_arrays_are_reported() {
     let good = npy_from_f32(&[1.0, f32::NAN], &[2, 1, 1, 1, 1]).unwrap();
     for (data, labels, wanted) in [
         (npy_from_f32(&[1.0], &[1]).unwrap(), vec![0], "val_data.npy: has shape [1]"),
         (good.clone(), vec![0, 1, 2], "val_label.npy: has 3 classes for 2 samples"),
-        (good.clone(), vec![0, -1], "val_label.npy at sample 1: is class -1"),
+        (good.clone(), vec![0, -1], "val_label.npy at sample 1: has class -1"),
     ] {
         let folder = TemporaryFolder::new()
             .with("val_data.npy", data)
@@ -116,7 +117,7 @@ fn broken_arrays_are_told() {
         .with("val_label.npy", npy_from_i64(&[0, 1], &[2]).unwrap());
     let skeletons = open(&folder, None).unwrap();
     assert!(skeletons.get(0).is_ok());
-    assert!(skeletons.get(1).unwrap_err().to_string().contains("sample 1: number 0 is NaN"));
+    assert!(skeletons.get(1).unwrap_err().to_string().contains("sample 1: value 0 is NaN"));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Any skeletons as one array.
+//! Writer of skeletons as one array.
 
 use std::path::Path;
 
@@ -10,11 +10,11 @@ use crate::folder::{path_inside, write_file};
 use crate::picture_files::write_each;
 use crate::{Problems, WriteOptions, npy_from_f32, npy_from_i64};
 
-/// Numbers that are held until they are written: eight gigabytes.
+/// Largest number of values, which are collected in memory: 8 GiB.
 const MAX_NUMBERS: usize = 2 << 30;
 
-/// `PART_data.npy`, `PART_label.npy` and, where classes have names, `label_map.txt`. All recordings must have as many
-/// channels, joints and persons; shorter ones are filled up with zeros.
+/// Writes `PART_data.npy`, `PART_label.npy` and, if classes have names, `label_map.txt`. All recordings must have
+/// the same channels, joints and persons; shorter ones are padded with zeros.
 pub(super) fn write(
     dataset: &dyn DatasetIterator,
     path: &Path,
@@ -61,18 +61,16 @@ fn recording(
     let (Some(Value::SkeletonSequence(sequence)), Some(Value::Category(category))) =
         (sample.data.into_iter().next(), sample.target)
     else {
-        return Err(Error::invalid_input(
-            "no skeletons with a class; this format holds SkeletonSequence and Category",
-        ));
+        return Err(Error::invalid_input("the sample needs a SkeletonSequence and a Category"));
     };
     let side = |sequence: &SkeletonSequence| {
         let [samples, channels, _, joints, persons] = sequence.shape();
         [samples, channels, joints, persons]
     };
-    let wanted = first.map_or(side(&sequence), side);
-    if side(&sequence) != wanted || wanted.first() != Some(&1) {
+    let expected = first.map_or(side(&sequence), side);
+    if side(&sequence) != expected || expected.first() != Some(&1) {
         return Err(Error::invalid_input(format!(
-            "{:?} samples, channels, joints and persons instead of {wanted:?}, one sample each",
+            "{:?} samples, channels, joints and persons instead of {expected:?}, one sample each",
             side(&sequence)
         )));
     }

@@ -1,20 +1,20 @@
-//! Which part a clip belongs to, by its speaker.
+//! Assignment of clips to parts by their speaker.
 
 use opendr_engine::{Error, Result};
 
 /// Part of Speech Commands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SpeechSplit {
-    /// Four fifths.
+    /// 80 % of the speakers.
     Training,
-    /// A tenth.
+    /// 10 % of the speakers.
     Validation,
-    /// A tenth.
+    /// 10 % of the speakers.
     Testing,
 }
 
 impl SpeechSplit {
-    /// The part called `name`: `training`, `validation`, `testing`, or as other data sets call them.
+    /// Returns the part `name`: `training`, `validation`, `testing`, or a common alias.
     ///
     /// # Errors
     /// `NotFound` for another name.
@@ -33,8 +33,8 @@ impl SpeechSplit {
 const PERCENT: f64 = 10.0;
 const MAX_CLIPS_A_WORD: u64 = (1 << 27) - 1;
 
-/// Who speaks in a clip, by the name of its file: what stands before `_nohash_`, without the word that the test files
-/// put before it (`bird_653a48f5_nohash_0.wav`). Clips without a speaker, of noise, have their own name.
+/// Returns the speaker of a clip from its file name: the text before `_nohash_`, without the word that precedes it
+/// in the test files (`bird_653a48f5_nohash_0.wav`). Clips of noise, without a speaker, return their own name.
 pub fn speaker_of_clip(file_name: &str) -> &str {
     match file_name.split_once("_nohash_") {
         Some((speaker, _)) => speaker.rsplit('_').next().unwrap_or(speaker),
@@ -42,8 +42,8 @@ pub fn speaker_of_clip(file_name: &str) -> &str {
     }
 }
 
-/// The part of a clip by the name of its file: the SHA-1 of its [speaker](speaker_of_clip) decides, so that a speaker
-/// is in one part, and stays there when the data set grows (`which_set` of the paper's code).
+/// Returns the part of a clip from its file name. The SHA-1 of its [speaker](speaker_of_clip) decides, so that a
+/// speaker stays in one part when the data set grows (`which_set` of the paper's code).
 pub fn split_of_clip(file_name: &str) -> SpeechSplit {
     let [.., a, b, c, d] = sha1(speaker_of_clip(file_name).as_bytes());
     let last = u64::from(u32::from_be_bytes([a, b, c, d])) & MAX_CLIPS_A_WORD;
@@ -54,7 +54,7 @@ pub fn split_of_clip(file_name: &str) -> SpeechSplit {
     }
 }
 
-/// SHA-1 (RFC 3174): no protection, but what the rule of the data set is made of.
+/// Computes SHA-1 (RFC 3174), which the rule of the data set uses; it is not for security.
 fn sha1(message: &[u8]) -> [u8; 20] {
     let mut padded = message.to_vec();
     padded.push(0x80);

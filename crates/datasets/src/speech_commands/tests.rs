@@ -38,7 +38,7 @@ fn folders_are_words() {
 }
 
 #[test]
-fn lists_decide_on_parts() {
+fn lists_define_the_parts() {
     let folder = words()
         .with("validation_list.txt", "yes/b2_nohash_0.wav\n")
         .with("testing_list.txt", "no/a1_nohash_0.wav\n");
@@ -53,7 +53,7 @@ fn lists_decide_on_parts() {
     }
     for (line, wanted) in [
         ("yes/../../x.wav", "testing_list.txt:2: the file name"),
-        ("yes/zz_nohash_0.wav", "testing_list.txt:2: names \"yes/zz_nohash_0.wav\", which is missing"),
+        ("yes/zz_nohash_0.wav", "testing_list.txt:2: refers to \"yes/zz_nohash_0.wav\", which is missing"),
     ] {
         let folder = words()
             .with("validation_list.txt", "yes/b2_nohash_0.wav\n")
@@ -66,12 +66,12 @@ fn lists_decide_on_parts() {
 }
 
 #[test]
-fn a_broken_clip_fails_alone() {
+fn a_broken_clip_affects_no_others() {
     let folder = words().with("yes/b2_nohash_0.wav", &clip(0.25)[..45]);
     let words = open(&folder, None).unwrap();
     assert!(words.get(1).is_ok());
     assert!(words.get(2).unwrap_err().to_string().contains("b2_nohash_0.wav: byte 36: chunk \"data\""));
-    assert!(open(&TemporaryFolder::new(), None).unwrap_err().to_string().contains("it should have WORD/"));
+    assert!(open(&TemporaryFolder::new(), None).unwrap_err().to_string().contains("the layout is WORD/"));
 }
 
 #[test]
@@ -99,7 +99,7 @@ fn real_clips_are_read() {
         let Value::Audio(audio) = &words.get(index).unwrap().data[0] else { panic!() };
         assert_eq!((audio.sample_rate(), audio.array().shape()[1]), (16_000, 1));
     }
-    // The test set proper, by the rule of the paper.
+    // The test part of the data set, by the rule of the paper.
     let spoken: Vec<_> =
         (0..words.len()).map(|index| words.name(index)).filter(|name| !name.starts_with('_')).collect();
     let tested =

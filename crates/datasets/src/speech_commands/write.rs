@@ -1,4 +1,4 @@
-//! Any sound with its word as Speech Commands.
+//! Writer of audio with words as Speech Commands.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use crate::picture_files::write_each;
 use crate::speech_commands::SpeechSplit;
 use crate::{Problems, WavEncoding, WriteOptions, wav_from_audio};
 
-/// Writes 16-bit WAVE files, and the clips of the part into its list; what other lists name stays there.
+/// Writes 16-bit WAVE files, and the clips of the part into its list; the lists of other parts are kept.
 pub(super) fn write(
     dataset: &dyn DatasetIterator,
     path: &Path,
@@ -39,7 +39,7 @@ pub(super) fn write(
     Ok(())
 }
 
-/// A clip keeps the name of its file, which tells the speaker, where it has one.
+/// Writes a clip, under the name of its file if that contains the speaker.
 fn write_clip(
     dataset: &dyn DatasetIterator,
     index: usize,
@@ -49,7 +49,7 @@ fn write_clip(
 ) -> Result<String> {
     let sample = dataset.get(index)?;
     let Some(Value::Audio(audio)) = sample.data.first() else {
-        return Err(Error::invalid_input("no sound; Speech Commands holds Audio"));
+        return Err(Error::invalid_input("the sample has no audio, which Speech Commands needs"));
     };
     let word = match &sample.target {
         Some(Value::Category(category)) => {
@@ -61,7 +61,7 @@ fn write_clip(
         }
         _ => {
             return Err(Error::invalid_input(
-                "no word; Speech Commands holds a Category or SpeechCommand a sample",
+                "the sample has no word; Speech Commands needs a Category or SpeechCommand",
             ));
         }
     };

@@ -1,71 +1,74 @@
-//! One series a line, in both forms.
+//! Lines of one series, in both formats.
 
 use opendr_engine::data::Timeseries;
 use opendr_engine::target::Classes;
 
 const MAX_DIMENSIONS: usize = 4096;
 
-/// What the head of a `.ts` file says.
+/// Header of a `.ts` file.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct TsHeader {
     /// Name of the problem.
     pub name: String,
-    /// Features a time, where it is told.
+    /// Number of features per time step, if stated.
     pub dimensions: Option<usize>,
-    /// Times of every series, where all have as many.
+    /// Number of time steps of every series, if they have equal lengths.
     pub length: Option<usize>,
-    /// The classes in order; `None` when series have none.
+    /// Classes in order; `None` if series have none.
     pub classes: Option<Vec<String>>,
 }
 
 impl TsHeader {
-    /// Takes a line that begins with `@`; what is wrong with it otherwise.
+    /// Parses a line that starts with `@`.
     pub(super) fn take(&mut self, line: &str) -> Result<(), String> {
         if !line.starts_with('@') {
-            return Err("is no line of a head, and there was no @data; the file is damaged".to_owned());
+            return Err("is not a header line, but @data is missing; the file is damaged".to_owned());
         }
         let mut words = line.split_whitespace();
         let key = words.next().unwrap_or_default().to_lowercase();
         let rest: Vec<&str> = words.collect();
         let first = rest.first().copied().unwrap_or_default();
-        let truth = |text: &str| match text.to_lowercase().as_str() {
+        let boolean = |text: &str| match text.to_lowercase().as_str() {
             "true" => Ok(true),
             "false" => Ok(false),
             _ => Err(format!("has {text:.40?} instead of true or false")),
         };
         let whole = |most: usize| {
             let number = first.parse().ok().filter(|number| (1..=most).contains(number));
-            number.map(Some).ok_or_else(|| format!("has {first:.40?} instead of a whole number over 0"))
+            number.map(Some).ok_or_else(|| format!("has {first:.40?} instead of a positive integer"))
         };
         match key.as_str() {
             "@problemname" => self.name = rest.join(" "),
             "@timestamps" => {
-                if truth(first)? {
-                    return Err("has time stamps, which are not read; write evenly spaced values".to_owned());
+                if boolean(first)? {
+                    return Err(
+                        "has time stamps, which are not supported; write evenly spaced values".to_owned()
+                    );
                 }
             }
-            "@univariate" => self.dimensions = if truth(first)? { Some(1) } else { self.dimensions },
+            "@univariate" => self.dimensions = if boolean(first)? { Some(1) } else { self.dimensions },
             "@dimensions" | "@dimension" => self.dimensions = whole(MAX_DIMENSIONS)?,
             "@serieslength" => self.length = whole(usize::MAX)?,
             "@classlabel" => {
                 let named = rest.get(1..).unwrap_or_default().iter().map(|name| (*name).to_owned());
-                self.classes = truth(first)?.then(|| named.collect());
+                self.classes = boolean(first)?.then(|| named.collect());
             }
             "@targetlabel" => {
-                if truth(first)? {
+                if boolean(first)? {
                     return Err(
-                        "has numbers to be predicted, which are no classes; read it otherwise".to_owned()
+                        "has target values for regression instead of classes, which is not supported"
+                            .to_owned(),
                     );
                 }
             }
             "@data" | "@missing" | "@equallength" => {}
-            _ => return Err(format!("begins with {key:.40?}, which no .ts file has")),
+            _ => return Err(format!("starts with {key:.40?}, which is not a key of .ts files")),
         }
         Ok(())
     }
 }
 
-/// The label of a line, checked against those of the header.
+/// Returns the label of a line, checked against the header.
 pub(super) fn label(line: &str, header: Option<&TsHeader>) -> Result<Option<String>, String> {
     let Some(header) = header else {
         return Ok(fields(line).next().map(|label| whole_label(label.trim())));
@@ -74,18 +77,18 @@ pub(super) fn label(line: &str, header: Option<&TsHeader>) -> Result<Option<Stri
     let (_, label) = line.rsplit_once(':').ok_or("has no class after a colon")?;
     let label = label.trim();
     if !classes.is_empty() && !classes.iter().any(|class| class == label) {
-        return Err(format!("has class {label:.40?}; the header has {}", classes.join(", ")));
+        return Err(format!("has class {label:.40?}; the classes of the header are {}", classes.join(", ")));
     }
     Ok(Some(label.to_owned()))
 }
 
-/// `1` for `1.0000000e+00`, and labels that are no whole numbers as they stand.
+/// Returns `1` for `1.0000000e+00`; labels that are not integers are unchanged.
 fn whole_label(label: &str) -> String {
     let whole = label.parse().ok().filter(|number: &f64| number.fract() == 0.0 && number.abs() < 1e15);
     whole.map_or_else(|| label.to_owned(), |number| (number as i64).to_string())
 }
 
-/// The classes in order: of the header, else by value when all are numbers, else by name.
+/// Returns the classes in order: of the header, otherwise by value if all are numbers, otherwise by name.
 pub(super) fn classes<'a>(labels: impl Iterator<Item = &'a str>, header: Option<&TsHeader>) -> Classes {
     if let Some(named) = header.and_then(|header| header.classes.clone()).filter(|named| !named.is_empty()) {
         return named.into_iter().collect();
@@ -100,7 +103,7 @@ pub(super) fn classes<'a>(labels: impl Iterator<Item = &'a str>, header: Option<
     sorted.into_iter().collect()
 }
 
-/// Between tabs or commas or, where there are none, blanks.
+/// Splits at tabs or commas or, if there are none, at blanks.
 fn fields(line: &str) -> Box<dyn Iterator<Item = &str> + '_> {
     match line.chars().find(|mark| matches!(mark, ',' | '\t')) {
         Some(mark) => Box::new(line.trim_end_matches([mark, ' ']).split(mark)),
@@ -108,7 +111,7 @@ fn fields(line: &str) -> Box<dyn Iterator<Item = &str> + '_> {
     }
 }
 
-/// Whether a line is a label and at least two numbers.
+/// Returns whether a line is a label and at least two numbers.
 pub(super) fn looks_like_series(line: &str) -> bool {
     let mut fields = fields(line.trim()).skip(1);
     let number = |field: Option<&str>| field.is_some_and(|field| field.trim().parse::<f64>().is_ok());
@@ -118,17 +121,18 @@ pub(super) fn looks_like_series(line: &str) -> bool {
 fn value(field: &str) -> Result<f32, String> {
     match field.trim() {
         "?" | "NaN" | "nan" | "" => Ok(f32::NAN),
-        text => text.parse().ok().filter(|number: &f32| number.is_finite()).ok_or_else(|| {
-            format!("has {text:.40?} instead of a finite number or one that is missing (?, NaN)")
-        }),
+        text => {
+            text.parse().ok().filter(|number: &f32| number.is_finite()).ok_or_else(|| {
+                format!("has {text:.40?} instead of a finite number or a missing value (?, NaN)")
+            })
+        }
     }
 }
 
-/// Label and series of a line of numbers; what is wrong with it otherwise. Missing values are NaN, those at the end are
-/// no part of the series.
+/// Parses label and series of a line of numbers. Missing values are NaN; those at the end are dropped.
 ///
 /// # Errors
-/// What is wrong with the line.
+/// A message if the line is invalid.
 pub fn series_from_line(line: &str) -> Result<(String, Timeseries), String> {
     let mut fields = fields(line.trim());
     let label = fields.next().unwrap_or_default().trim().to_owned();
@@ -141,10 +145,10 @@ pub fn series_from_line(line: &str) -> Result<(String, Timeseries), String> {
     Ok((label, series))
 }
 
-/// The series of a line of a `.ts` file: features between colons, their values between commas; missing ones are NaN.
+/// Parses a line of a `.ts` file: features separated by colons, their values by commas; missing values are NaN.
 ///
 /// # Errors
-/// What is wrong with the line.
+/// A message if the line is invalid.
 pub fn series_from_ts_line(line: &str, header: &TsHeader) -> Result<Timeseries, String> {
     let line = line.trim();
     let features = match &header.classes {
@@ -159,19 +163,19 @@ pub fn series_from_ts_line(line: &str, header: &TsHeader) -> Result<Timeseries, 
         columns.push(feature.split(',').map(value).collect::<Result<Vec<_>, _>>()?);
     }
     if header.dimensions.is_some_and(|dimensions| dimensions != columns.len()) {
-        let told = header.dimensions.unwrap_or_default();
-        return Err(format!("has {} features where the header tells {told}", columns.len()));
+        let expected = header.dimensions.unwrap_or_default();
+        return Err(format!("has {} features, but the header states {expected}", columns.len()));
     }
     let length = columns.first().map_or(0, Vec::len);
     if let Some(other) = columns.iter().find(|column| column.len() != length) {
         return Err(format!(
-            "has features of {length} and {} values; fill up the shorter with ?",
+            "has features of {length} and {} values; pad the shorter one with ?",
             other.len()
         ));
     }
-    if header.length.is_some_and(|told| told != length) {
+    if header.length.is_some_and(|expected| expected != length) {
         return Err(format!(
-            "has {length} values where the header tells {}",
+            "has {length} values, but the header states {}",
             header.length.unwrap_or_default()
         ));
     }

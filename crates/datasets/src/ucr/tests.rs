@@ -52,13 +52,13 @@ fn tables_are_read() {
 }
 
 #[test]
-fn broken_files_are_told_by_line() {
+fn broken_files_are_reported_by_line() {
     for (from, to, wanted) in [
-        ("@data\n", "", "ts:9: is no line of a head"),
+        ("@data\n", "", "ts:9: is not a header line"),
         ("@timeStamps false", "@timeStamps true", "ts:3: has time stamps"),
-        ("@missing", "@mising", "ts:4: begins with \"@mising\""),
-        ("@dimensions 2", "@dimensions 0", "ts:6: has \"0\" instead of a whole number"),
-        (":run", ":swim", "ts:10: has class \"swim\"; the header has walk, run"),
+        ("@missing", "@mising", "ts:4: starts with \"@mising\""),
+        ("@dimensions 2", "@dimensions 0", "ts:6: has \"0\" instead of a positive integer"),
+        (":run", ":swim", "ts:10: has class \"swim\"; the classes of the header are walk, run"),
         ("1,2,?:4,5,6:run", "1,2", "ts:10: has no class"),
     ] {
         let folder = TemporaryFolder::new().with("Moves_TRAIN.ts", TS.replacen(from, to, 1));
@@ -68,8 +68,8 @@ fn broken_files_are_told_by_line() {
     for (from, to, wanted) in [
         ("1,2,?", "1,inf,?", "ts:10: has \"inf\" instead of a finite number"),
         ("1,2,?", "1,2", "ts:10: has features of 2 and 3 values"),
-        ("1,2,?:", "", "ts:10: has 1 features where the header tells 2"),
-        ("@equalLength false", "@seriesLength 9", "ts:10: has 3 values where the header tells 9"),
+        ("1,2,?:", "", "ts:10: has 1 features, but the header states 2"),
+        ("@equalLength false", "@seriesLength 9", "ts:10: has 3 values, but the header states 9"),
     ] {
         let folder = TemporaryFolder::new().with("Moves_TRAIN.ts", TS.replacen(from, to, 1));
         let error = open(&folder, None).unwrap().get(0).unwrap_err();
@@ -89,7 +89,7 @@ fn what_is_written_is_read() {
     let again = open(&copy, Some("train")).unwrap();
     assert_eq!(again.classes(), series.classes());
     for index in 0..2 {
-        // NaN differs from itself, its text does not.
+        // NaN is not equal to itself, but its text is.
         assert_eq!(format!("{:?}", sample(&again, index)), format!("{:?}", sample(&series, index)));
     }
 }

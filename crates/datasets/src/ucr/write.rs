@@ -1,4 +1,4 @@
-//! Any time series as a `.ts` file.
+//! Writer of time series as a `.ts` file.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -10,7 +10,7 @@ use crate::folder::{name_of, path_inside, write_file};
 use crate::picture_files::write_each;
 use crate::{Problems, WriteOptions};
 
-/// `NAME_TRAIN.ts`, called as the folder is; NaN becomes `?`.
+/// Writes `NAME_TRAIN.ts`, with the name of the folder; NaN becomes `?`.
 pub(super) fn write(
     dataset: &dyn DatasetIterator,
     path: &Path,
@@ -34,7 +34,7 @@ pub(super) fn write(
         shapes.push(shape);
         Ok(())
     })?;
-    // Numbers sort by value, and known classes keep theirs.
+    // Numbers are sorted by value; the classes of the data set keep their indices.
     classes
         .get_mut(named..)
         .into_iter()
@@ -59,7 +59,7 @@ pub(super) fn write(
     write_file(&file, (head + &text).as_bytes())
 }
 
-/// One word, as labels of `.ts` files have to be.
+/// Returns one word, as required for labels of `.ts` files.
 fn word(text: &str) -> String {
     let word: String =
         text.chars().map(|c| if c.is_whitespace() || matches!(c, ':' | ',') { '_' } else { c }).collect();
@@ -75,14 +75,15 @@ fn series_line(
     let (Some(Value::Timeseries(series)), Some(Value::Category(category))) =
         (sample.data.first(), &sample.target)
     else {
-        return Err(Error::invalid_input(
-            "no time series with a class; this format holds Timeseries and Category",
-        ));
+        return Err(Error::invalid_input("the sample needs a Timeseries and a Category"));
     };
     let shape = series.shape();
     let features = first.map_or(shape[1], |first| first[1]);
     if shape[1] != features {
-        return Err(Error::invalid_input(format!("{} features instead of {features}", shape[1])));
+        return Err(Error::invalid_input(format!(
+            "the series has {} features instead of {features}",
+            shape[1]
+        )));
     }
     let label = category.description.as_deref().map_or_else(|| category.class.to_string(), word);
     let value = |number: &f32| if number.is_finite() { number.to_string() } else { "?".to_owned() };

@@ -24,14 +24,14 @@ fn tables_of_every_kind_are_series() {
 }
 
 #[test]
-fn what_is_no_table_is_refused() {
+fn what_is_no_table_is_an_error() {
     let bad = [
         ("", "no numbers"),
         ("volt\n", "no numbers"),
         ("1,2\n3\n", "line 2 has 1 numbers"),
         ("1\n\n2,3\n", "line 3 has 2 numbers"),
-        ("1\nx\n", "line 2 has no number"),
-        ("1,x\n", "line 1 has no number"),
+        ("1\nx\n", "line 2 has a column without a number"),
+        ("1,x\n", "line 1 has a column without a number"),
         ("1\nNaN\n", "line 2 has NaN"),
         ("1\ninf\n", "line 2 has inf"),
     ];
@@ -44,7 +44,7 @@ fn what_is_no_table_is_refused() {
 }
 
 #[test]
-fn files_are_read_as_what_is_wanted() {
+fn files_are_read_as_the_requested_type() {
     let audio = Audio::new(vec![0.5, -0.5], 1, 8000).unwrap();
     let category = Value::Category(Category::new(1, Some(0.5)));
     let folder = TemporaryFolder::new()
@@ -54,7 +54,7 @@ fn files_are_read_as_what_is_wanted() {
     assert_eq!(open_value(ValueType::Audio, folder.path().join("yes.wav")).unwrap(), Value::Audio(audio));
     assert_eq!(open_value(ValueType::Category, folder.path().join("class.json")).unwrap(), category);
     let error = open_value(ValueType::PoseList, folder.path().join("class.json")).unwrap_err().to_string();
-    assert!(error.contains("Category where a PoseList"), "{error}");
+    assert!(error.contains("Category instead of a PoseList"), "{error}");
     let error = open_value(ValueType::Timeseries, folder.path().join("none.csv")).unwrap_err().to_string();
     assert!(error.contains("none.csv"), "{error}");
     assert!(open_value(ValueType::SkeletonSequence, folder.path().join("beat.csv")).is_err());

@@ -1,4 +1,4 @@
-//! An annotation file of Pascal VOC.
+//! Annotation files of Pascal VOC.
 
 use std::path::Path;
 
@@ -8,27 +8,27 @@ use roxmltree::{Document, Node, ParsingOptions};
 use crate::Problem;
 use crate::picture_box::leaves_picture;
 
-/// Elements of a file, far more than any has.
-const MOST_NODES: u32 = 1 << 20;
+/// Largest number of XML nodes of a file.
+const MAX_NODES: u32 = 1 << 20;
 
-/// What an annotation file tells.
+/// Content of an annotation file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Annotation {
-    /// Of the picture, where it is told.
+    /// File name of the image, if stated.
     pub filename: Option<String>,
-    /// Width and height in pixels, 0 when they are not told.
+    /// Width and height in pixels, 0 if not stated.
     pub size: [u32; 2],
-    /// Labelled by class; a difficult one is a crowd without an outline.
+    /// Objects with class labels; a difficult object is a crowd without mask.
     pub objects: Vec<BoundingBox>,
 }
 
 impl Annotation {
-    /// Reads `text`, which stands in `file`.
+    /// Parses `text`, the content of `file`.
     pub fn new(file: &Path, text: &str) -> Result<Self, Problem> {
         let options =
-            ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+            ParsingOptions { allow_dtd: false, nodes_limit: MAX_NODES, ..ParsingOptions::default() };
         let document = Document::parse_with_options(text, options).map_err(|error| {
-            Problem::at_line(file, u64::from(error.pos().row), format!("no XML as VOC writes it: {error}"))
+            Problem::at_line(file, u64::from(error.pos().row), format!("not the XML of VOC: {error}"))
         })?;
         let reader = Reader { file, document: &document };
         reader.annotation(document.root_element())
@@ -60,25 +60,23 @@ impl<'a> Reader<'a> {
     fn object(&self, object: Node<'a, 'a>, size: [u32; 2]) -> Result<BoundingBox, Problem> {
         let name = self.text(object, "name")?;
         if name.is_empty() {
-            return Err(self.wrong(object, "an object without a name".to_owned()));
+            return Err(self.wrong(object, "an object has no name".to_owned()));
         }
         let bounds = self.child(object, "bndbox")?;
         let corner = |tag| self.number(bounds, tag);
         let [x0, y0, x1, y1] = [corner("xmin")?, corner("ymin")?, corner("xmax")?, corner("ymax")?];
-        // Corners are pixels, counted from 1, and both inside of the box.
+        // Corners are pixel indices from 1, and both are inside the box.
         let found = BoundingBox::from_corners(name, [x0 - 1.0, y0 - 1.0, x1, y1], 1.0);
         if found.width < 0.0 || found.height < 0.0 {
             return Err(
-                self.wrong(bounds, format!("a box from {x0},{y0} to {x1},{y1}; give the least corner first"))
+                self.wrong(bounds, format!("a box from {x0},{y0} to {x1},{y1}; the minimum comes first"))
             );
         }
         if leaves_picture([found.left, found.top, found.width, found.height], size) {
             let [width, height] = size;
             return Err(self.wrong(
                 bounds,
-                format!(
-                    "a box from {x0},{y0} to {x1},{y1}, outside of its picture of {width}x{height} pixels"
-                ),
+                format!("a box from {x0},{y0} to {x1},{y1}, outside of its image of {width}x{height} pixels"),
             ));
         }
         let difficult =
@@ -101,12 +99,12 @@ impl<'a> Reader<'a> {
     fn number(&self, node: Node<'a, 'a>, tag: &str) -> Result<f32, Problem> {
         let text = self.text(node, tag)?;
         let number = text.parse().ok().filter(|number: &f32| number.is_finite());
-        number.ok_or_else(|| self.wrong(node, format!("<{tag}> is {text:.40?}, no finite number")))
+        number.ok_or_else(|| self.wrong(node, format!("<{tag}> is {text:.40?}, not a finite number")))
     }
 
     fn side(&self, node: Node<'a, 'a>, tag: &str) -> Result<u32, Problem> {
         let text = self.text(node, tag)?;
-        text.parse().map_err(|_| self.wrong(node, format!("<{tag}> is {text:.40?}, no number of pixels")))
+        text.parse().map_err(|_| self.wrong(node, format!("<{tag}> is {text:.40?}, not a number of pixels")))
     }
 
     fn wrong(&self, node: Node<'a, 'a>, message: String) -> Problem {

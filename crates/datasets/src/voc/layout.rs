@@ -1,16 +1,15 @@
-//! Which files lie where in a VOC data set.
+//! Files and folders of a VOC data set.
 
 use std::path::{Path, PathBuf};
 
 use opendr_engine::{Error, Result};
 
 use super::annotation::Annotation;
-use super::read_annotation;
 use crate::fields::lines;
 use crate::folder::{PICTURES, files_in, folders_in, path_inside, read_text};
 use crate::{Problem, Problems, Recognition};
 
-/// Names of parts, the first that is there is taken.
+/// Names of parts; the first existing one is used.
 const SPLITS: [&str; 4] = ["val", "test", "train", "trainval"];
 
 /// The folders of a data set.
@@ -21,7 +20,7 @@ pub(super) struct Layout {
     pub pictures: PathBuf,
 }
 
-/// The folder itself, or the newest year in a `VOCdevkit`.
+/// Returns the folder itself, or the newest year in a `VOCdevkit`.
 fn root_of(path: &Path) -> PathBuf {
     let folders = [path.join("VOCdevkit"), path.to_owned()];
     let years = folders.iter().filter_map(|folder| {
@@ -40,12 +39,12 @@ pub(super) fn recognise(path: &Path) -> Recognition {
         Recognition::Possible
     } else {
         Recognition::No(
-            "folders JPEGImages and Annotations (or SegmentationClass), or *.xml beside pictures".into(),
+            "folders JPEGImages and Annotations (or SegmentationClass), or *.xml beside images".into(),
         )
     }
 }
 
-/// Whether XML files lie beside their pictures, as labelling programs write them.
+/// Returns whether XML files are beside their images, as written by labelling programs.
 fn flat(root: &Path) -> bool {
     let files = files_in(root, &["xml"]);
     let annotated = |file: &String| {
@@ -68,7 +67,7 @@ impl Layout {
             return Ok(Self { annotations: root.clone(), pictures: root.clone(), root });
         }
         Err(Error::not_found(format!(
-            "no VOC data set at {}: neither Annotations nor SegmentationClass, nor *.xml beside pictures",
+            "no VOC data set at {}: neither Annotations nor SegmentationClass, nor *.xml beside images",
             path.display()
         )))
     }
@@ -77,7 +76,8 @@ impl Layout {
         self.annotations.is_dir()
     }
 
-    /// The names of the samples of a part, from `ImageSets`, or every annotation where there is no such list.
+    /// Returns the names of the samples of a part, from `ImageSets`, or of every annotation if there is no such
+    /// list.
     pub fn names(&self, split: Option<&str>, masks: bool, problems: &Problems) -> Result<Vec<String>> {
         let sets = self.root.join("ImageSets").join(if masks { "Segmentation" } else { "Main" });
         let lists = files_in(&sets, &["txt"]);
@@ -87,7 +87,7 @@ impl Layout {
             Some(split) => {
                 let parts: Vec<_> = SPLITS.into_iter().filter(|split| there(split)).collect();
                 let (parts, sets) = (parts.join(", "), sets.display());
-                return Err(Error::not_found(format!("no part {split:?} in {sets}; there are: {parts}")));
+                return Err(Error::not_found(format!("no part {split:?} in {sets}; the parts are: {parts}")));
             }
             None => SPLITS.into_iter().find(|split| there(split)),
         };
@@ -112,17 +112,17 @@ impl Layout {
         Ok(names)
     }
 
-    /// The annotation of a sample.
+    /// Reads the annotation of a sample.
     pub fn annotation(&self, name: &str) -> Result<Annotation, Problem> {
         read_annotation(&self.annotations.join(format!("{name}.xml")))
     }
 
-    /// The mask of a sample, in `SegmentationClass` or `SegmentationObject`.
+    /// Returns the mask file of a sample, in `SegmentationClass` or `SegmentationObject`.
     pub fn mask(&self, kind: &str, name: &str) -> PathBuf {
         self.root.join(kind).join(format!("{name}.png"))
     }
 
-    /// The file name of a sample's picture: its own, or what its annotation says.
+    /// Returns the file name of a sample's image: by the sample's name, otherwise by its annotation.
     pub fn picture(&self, name: &str, filename: Option<&str>) -> Result<String, Problem> {
         let own = PICTURES.iter().map(|end| format!("{name}.{end}"));
         if let Some(file) = own.into_iter().find(|file| self.pictures.join(file).is_file()) {
@@ -137,6 +137,12 @@ impl Layout {
             }
         }
         let folder = self.pictures.display();
-        Err(Problem::new(annotation, format!("its picture {name:?} is missing in {folder}")))
+        Err(Problem::new(annotation, format!("its image {name:?} is missing in {folder}")))
     }
+}
+
+/// Reads an annotation file.
+fn read_annotation(file: &Path) -> Result<Annotation, Problem> {
+    let text = read_text(file).map_err(|error| Problem::new(file, error.to_string()))?;
+    Annotation::new(file, &text)
 }

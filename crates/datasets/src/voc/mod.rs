@@ -1,4 +1,4 @@
-//! Pascal VOC: an XML file of boxes for each picture, and masks as PNG files with a palette.
+//! Pascal VOC: an XML file of boxes for each image, and masks as PNG files with a palette.
 
 pub(crate) mod annotation;
 mod layout;
@@ -15,14 +15,14 @@ use opendr_engine::target::{
 };
 use opendr_engine::{Error, Progress, Result, ResultExt, Value, ValueType};
 
-use crate::folder::{past_end, read_text};
+use crate::folder::past_end;
 use crate::label_png::{IGNORED, LabelMap, open_labels};
 use crate::picture_files::open_picture;
-use crate::{Format, OpenOptions, Problem, Problems, Recognition, WriteOptions};
+use crate::{Format, OpenOptions, Problems, Recognition, WriteOptions};
 use annotation::Annotation;
 use layout::Layout;
 
-/// The classes of the challenges; in masks, the background comes before them.
+/// Classes of the challenges; in masks, the background precedes them.
 pub(crate) const CLASSES: [&str; 20] = [
     "aeroplane",
     "bicycle",
@@ -46,12 +46,12 @@ pub(crate) const CLASSES: [&str; 20] = [
     "tvmonitor",
 ];
 
-/// A Pascal VOC data set: boxes (with outlines where `SegmentationObject` has them; difficult ones are crowds), or
-/// masks of classes (255 does not count).
+/// A Pascal VOC data set: boxes (with masks from `SegmentationObject`; difficult ones are crowds), or semantic
+/// masks (255 is ignored).
 #[derive(Debug)]
 pub struct Voc {
     layout: Layout,
-    /// Samples by name and file name of their picture.
+    /// Samples by name, with the file name of their image.
     samples: Vec<(String, String)>,
     classes: Classes,
     target: ValueType,
@@ -68,8 +68,9 @@ impl Voc {
         let classes = self.classes.clone();
         for found in &mut annotation.objects {
             let class = classes.label(&found.name).and_then(|name| classes.index(name));
-            found.name =
-                Name::Index(class.ok_or_else(|| Error::format("a class that was not there at first"))?);
+            found.name = Name::Index(class.ok_or_else(|| {
+                Error::format("the annotation was modified while it was in use: it has a new class")
+            })?);
         }
         let mask = self.layout.mask("SegmentationObject", name);
         if mask.is_file() {
@@ -88,7 +89,7 @@ impl Voc {
     }
 }
 
-/// Gives each object its pixels: object number `n` of the file has number `n + 1` in the mask.
+/// Sets the mask of each object: object `n` of the file has label `n + 1` in the mask image.
 fn outline(objects: &mut [BoundingBox], map: &LabelMap) -> Result<()> {
     let [width, height] = map.size;
     for (number, found) in (1..).zip(objects) {
@@ -167,7 +168,9 @@ impl Format for Voc {
             Some(ValueType::BoundingBoxList) => ValueType::BoundingBoxList,
             Some(other) => {
                 let other = other.name();
-                return Err(Error::unsupported(format!("VOC is read as boxes or masks, not as {other}")));
+                return Err(Error::unsupported(format!(
+                    "VOC annotations are read as boxes or masks, not as {other}"
+                )));
             }
         };
         let masks = target == ValueType::Heatmap;
@@ -208,10 +211,4 @@ impl Format for Voc {
     ) -> Result<()> {
         write::write(dataset, path, options, problems, progress)
     }
-}
-
-/// Reads an annotation file.
-fn read_annotation(file: &Path) -> Result<Annotation, Problem> {
-    let text = read_text(file).map_err(|error| Problem::new(file, error.to_string()))?;
-    Annotation::new(file, &text)
 }

@@ -54,7 +54,7 @@ fn what_is_written_is_read() {
 }
 
 #[test]
-fn masks_keep_their_numbers() {
+fn masks_keep_their_indices() {
     let (folder, other) = (small(), TemporaryFolder::new());
     let mask = LabelMap { size: [40, 30], labels: (0..1200).map(|at| [0, 15, 255][at % 3]).collect() };
     save_labels(&mask, &folder.path().join("SegmentationClass/a.png"), true).unwrap();
@@ -73,7 +73,7 @@ fn masks_keep_their_numbers() {
 }
 
 #[test]
-fn broken_files_are_told() {
+fn broken_files_are_reported() {
     let folder = small();
     let error = |from: &str, to: &str| {
         assert!(XML.contains(from), "{from}");
@@ -84,23 +84,23 @@ fn broken_files_are_told() {
     };
     assert!(error("</annotation>", "").contains("a.xml:"));
     assert!(error("<xmax>11</xmax>", "").contains("a.xml:6: <bndbox> has no <xmax>"));
-    assert!(error("<xmax>11<", "<xmax>NaN<").contains("\"NaN\", no finite number"));
+    assert!(error("<xmax>11<", "<xmax>NaN<").contains("\"NaN\", not a finite number"));
     assert!(error("<xmax>11<", "<xmax>0<").contains("a box from 2,3 to 0,22.5"));
     assert!(error("<xmin>2</xmin>", "<xmin>200</xmin>").contains("a box from 200"));
-    assert!(error("<width>40<", "<width>x<").contains("no number of pixels"));
+    assert!(error("<width>40<", "<width>x<").contains("not a number of pixels"));
     assert!(error("<name>dog</name>", "").contains("<object> has no <name>"));
     assert!(error("annotation>", "other>").contains("<other> instead of <annotation>"));
-    assert!(error("<annotation>", "<!DOCTYPE a [<!ENTITY b \"c\">]><annotation>").contains("no XML"));
+    assert!(error("<annotation>", "<!DOCTYPE a [<!ENTITY b \"c\">]><annotation>").contains("not the XML"));
     folder.write("Annotations/a.xml", XML.replace("<width>40", "<width>41"));
     let voc = open(folder.path(), None).unwrap();
     assert!(voc.get(0).unwrap_err().to_string().contains("40x30 pixels, its annotation is for 41x30"));
     folder.write("Annotations/a.xml", XML.replace("a.png", "../../a.png"));
     std::fs::remove_file(folder.path().join("JPEGImages/a.png")).unwrap();
-    assert!(open(folder.path(), None).unwrap_err().to_string().contains("leaves the folder"));
+    assert!(open(folder.path(), None).unwrap_err().to_string().contains("is outside of the folder"));
     folder.write("Annotations/a.xml", XML.replace("<xmax>11<", "<xmax>x<"));
     let problems = Problems::skipping();
     assert!(Voc::open(folder.path(), &OpenOptions::default(), &problems).unwrap().is_empty());
-    assert_eq!(problems.list()[0].place, Some(crate::Place::Line(6)));
+    assert_eq!(problems.list()[0].location, Some(crate::Location::Line(6)));
     folder.write("ImageSets/Main/val.txt", "../a\n");
     assert!(open(folder.path(), None).unwrap_err().to_string().contains("val.txt:1: the file name"));
 }
@@ -115,7 +115,7 @@ fn labelling_programs_write_files_beside_pictures() {
 }
 
 #[test]
-fn deep_files_are_refused() {
+fn deep_files_are_errors() {
     let deep = format!("<annotation>{}{}</annotation>", "<a>".repeat(300_000), "</a>".repeat(300_000));
     assert_eq!(
         Annotation::new(Path::new("a.xml"), &deep).map(|annotation| annotation.objects.len()).ok(),

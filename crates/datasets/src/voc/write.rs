@@ -1,4 +1,4 @@
-//! Any boxes, or masks of classes, as Pascal VOC.
+//! Writer of boxes, or semantic masks, as Pascal VOC.
 
 use std::fmt::Write;
 use std::fs::OpenOptions;
@@ -17,8 +17,7 @@ use crate::{Problems, WriteOptions};
 
 /// Writes `JPEGImages`, and `Annotations` with `ImageSets/Main`, or `SegmentationClass` with `ImageSets/Segmentation`.
 ///
-/// Of outlines only masks by runs are written (`SegmentationObject`), polygons are not; crowds are written as
-/// difficult objects.
+/// Only RLE masks are written (to `SegmentationObject`), polygons are not. Crowds are written as difficult objects.
 pub(super) fn write(
     dataset: &dyn DatasetIterator,
     path: &Path,
@@ -57,7 +56,9 @@ pub(super) fn write(
             }
             other => {
                 let found = other.map_or("nothing", |target| target.as_value_ref().value_type().name());
-                return Err(Error::invalid_input(format!("VOC holds boxes or masks of classes, no {found}")));
+                return Err(Error::invalid_input(format!(
+                    "VOC supports boxes or semantic masks, not {found}"
+                )));
             }
         }
         Ok(())
@@ -98,7 +99,7 @@ fn xml_from_boxes(
     );
     for (found, label) in list.boxes.iter().zip(labels) {
         let difficult = u8::from(found.segment.as_deref().is_some_and(|segment| segment.iscrowd));
-        // Corners are pixels, counted from 1, and both inside of the box.
+        // Corners are pixel indices from 1, and both are inside the box.
         let [x0, y0, x1, y1] = found.corners();
         let _ = writeln!(
             xml,
@@ -119,7 +120,7 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// The objects' masks by their numbers, where all of them are masks by runs.
+/// Returns the map of object masks, if all objects have RLE masks.
 fn object_map(list: &BoundingBoxList, [width, height]: [u32; 2]) -> Result<Option<LabelMap>> {
     let rle = |at: usize| match list.boxes[at].segment.as_deref().map(|segment| &segment.segmentation) {
         Some(Segmentation::Rle(rle)) if rle.size() == [height, width] => Some(rle),

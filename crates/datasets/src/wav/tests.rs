@@ -23,7 +23,7 @@ fn every_encoding_both_ways() {
 }
 
 #[test]
-fn loud_samples_are_cut() {
+fn loud_samples_are_clipped() {
     let loud = Audio::new(vec![2.0, -2.0], 1, 8000).unwrap();
     let read = |encoding| audio_from_wav(&wav_from_audio(&loud, encoding).unwrap()).unwrap();
     assert_eq!(read(WavEncoding::Pcm16).array().as_slice(), [32767.0 / 32768.0, -1.0]);
@@ -69,11 +69,11 @@ fn broken_files_are_refused() {
         (whole[..50].to_vec(), "byte 36: chunk \"data\" of 24 bytes has 6"),
         (whole[..30].to_vec(), "byte 12: chunk \"fmt \" of 16 bytes has 10"),
         (whole[..36].to_vec(), "ends at byte 36 without a chunk \"data\""),
-        (changed(0, b'X'), "does not begin with RIFF"),
+        (changed(0, b'X'), "the file does not start with RIFF"),
         (changed(22, 0), "byte 12: 0 channels"),
-        (changed(40, 20), "byte 44: 20 bytes are no whole number of 8-byte instants"),
-        (changed(20, 85), "byte 12: a sound of format 85"),
-        (not_a_number, "byte 48: sample 1 is no finite number"),
+        (changed(40, 20), "byte 44: 20 bytes are not a multiple of 8"),
+        (changed(20, 85), "byte 12: format 85"),
+        (not_a_number, "byte 48: sample 1 is not a finite number"),
     ] {
         let error = audio_from_wav(&bytes).unwrap_err();
         assert!(error.to_string().starts_with(wanted), "{error}");

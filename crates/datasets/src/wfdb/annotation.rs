@@ -1,66 +1,66 @@
-//! Annotation files in MIT format: beats and other events by their time.
+//! Annotation files in MIT format: beats and other events with their time.
 
 use opendr_engine::{Error, Result};
 
-/// Signs of annotation types by their numbers, as PhysioNet prints them; a blank where there is none.
+/// Symbols of annotation types by code, as in PhysioNet; a blank if there is none.
 const SYMBOLS: &[u8; 42] = b" NLRaVFJASEj/Q~ | sT*D\"=pB^t+u?![]en@xf()r";
-/// Numbers of words that add to the annotation before them.
+/// Codes of words that extend the preceding annotation.
 const SKIP: u8 = 59;
 const NUM: u8 = 60;
 const SUB: u8 = 61;
 const CHN: u8 = 62;
 const AUX: u8 = 63;
 const NOTE: u8 = 22;
-const LARGEST: u8 = 49;
+const MAX_CODE: u8 = 49;
 
-/// Something that is annotated.
+/// An annotation.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct WfdbAnnotation {
-    /// Instant, from 0.
+    /// Sample index, from 0.
     pub sample: i64,
-    /// Type number: 1 is a normal beat.
+    /// Type code: 1 is a normal beat.
     pub code: u8,
     /// Subtype.
     pub subtype: i8,
-    /// Signal.
+    /// Index of the signal.
     pub channel: u8,
-    /// Number of the annotator's own.
+    /// Number that is free for use by the annotator.
     pub number: i8,
     /// Text, e.g. a rhythm.
     pub text: String,
 }
 
 impl WfdbAnnotation {
-    /// The sign of the type, as PhysioNet prints it, e.g. `N`; `None` for types without one.
+    /// Returns the symbol of the type in PhysioNet, e.g. `N`; `None` for types without one.
     pub fn symbol(&self) -> Option<char> {
         SYMBOLS.get(usize::from(self.code)).map(|symbol| char::from(*symbol)).filter(|symbol| *symbol != ' ')
     }
 }
 
-/// Reads an annotation file in MIT format. Definitions (notes at the begin that start with `##`) are left out.
+/// Parses an annotation file in MIT format. Definitions (notes at the start that begin with `##`) are skipped.
 ///
 /// # Errors
-/// What is wrong, and at which byte.
+/// The byte offset and a message.
 pub fn annotations_from_atr(bytes: &[u8]) -> Result<Vec<WfdbAnnotation>, (u64, String)> {
     let mut annotations: Vec<WfdbAnnotation> = Vec::new();
     let (mut at, mut sample) = (0usize, 0i64);
     let (mut channel, mut number) = (0, 0);
-    let cut_off = |at: usize| (at as u64, "the file is cut off; get it again".to_owned());
+    let truncated = |at: usize| (at as u64, "the file is truncated; download it again".to_owned());
     loop {
         let word = |at: usize| Some(u16::from_le_bytes(*bytes.get(at..)?.first_chunk()?));
-        let first = word(at).ok_or_else(|| cut_off(at))?;
+        let first = word(at).ok_or_else(|| truncated(at))?;
         let (code, low) = ((first >> 10) as u8, first & 0x3ff);
         at += 2;
         let last = annotations.last_mut();
         match (code, last) {
             (0, _) if low == 0 => break,
             (SKIP, _) => {
-                // A long integer as the PDP-11 had it: the upper word first.
-                let (high, low) = word(at).zip(word(at + 2)).ok_or_else(|| cut_off(at))?;
+                // A long integer of the PDP-11: the upper word comes first.
+                let (high, low) = word(at).zip(word(at + 2)).ok_or_else(|| truncated(at))?;
                 sample += i64::from((u32::from(high) << 16 | u32::from(low)) as i32);
                 at += 4;
             }
-            (0..=LARGEST, _) => {
+            (0..=MAX_CODE, _) => {
                 sample += i64::from(low);
                 let annotation =
                     WfdbAnnotation { sample, code, channel, number, ..WfdbAnnotation::default() };
@@ -77,12 +77,15 @@ pub fn annotations_from_atr(bytes: &[u8]) -> Result<Vec<WfdbAnnotation>, (u64, S
             }
             (AUX, Some(last)) => {
                 let length = usize::from(low);
-                let text = bytes.get(at..at + length).ok_or_else(|| cut_off(at))?;
+                let text = bytes.get(at..at + length).ok_or_else(|| truncated(at))?;
                 last.text = String::from_utf8_lossy(text).trim_end_matches('\0').to_owned();
                 at += length + length % 2;
             }
             (code, _) => {
-                return Err((at as u64 - 2, format!("code {code} is no annotation; the file is damaged")));
+                return Err((
+                    at as u64 - 2,
+                    format!("code {code} is not an annotation; the file is damaged"),
+                ));
             }
         }
     }
@@ -100,20 +103,20 @@ pub fn annotations_from_atr(bytes: &[u8]) -> Result<Vec<WfdbAnnotation>, (u64, S
     Ok(annotations)
 }
 
-/// The bytes of an annotation file in MIT format.
+/// Returns the bytes of an annotation file in MIT format.
 ///
 /// # Errors
-/// `InvalidInput` for annotations that are not in the order of time, or over 255 bytes of text.
+/// `InvalidInput` for annotations that are not in order of time, or have over 255 bytes of text.
 pub fn atr_from_annotations(annotations: &[WfdbAnnotation]) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let (mut before, mut channel, mut number) = (0, 0, 0);
     for annotation in annotations {
         let WfdbAnnotation { sample, code, text, .. } = annotation;
         let step =
-            u32::try_from(sample - before).ok().filter(|_| (1..=LARGEST).contains(code) && text.len() < 256);
+            u32::try_from(sample - before).ok().filter(|_| (1..=MAX_CODE).contains(code) && text.len() < 256);
         let step = step.ok_or_else(|| {
             Error::invalid_input(format!(
-                "annotation {code} at sample {sample} after {before}; give types 1 to {LARGEST} in the order of time"
+                "annotation {code} at sample {sample} after {before}; annotations need codes 1 to {MAX_CODE} in order of time"
             ))
         })?;
         let mut word = |code: u8, low: u16| bytes.extend((u16::from(code) << 10 | low & 0x3ff).to_le_bytes());

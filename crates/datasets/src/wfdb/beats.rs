@@ -1,4 +1,4 @@
-//! Single beats by the classes of AAMI EC57.
+//! Single beats with the classes of AAMI EC57.
 
 use opendr_engine::data::Timeseries;
 use opendr_engine::target::{Category, Classes};
@@ -6,13 +6,13 @@ use opendr_engine::{Error, Result};
 
 use crate::wfdb::{WfdbAnnotation, WfdbHeader};
 
-/// Normal, supraventricular, ventricular, fusion, unknown or paced.
+/// Classes: normal, supraventricular, ventricular, fusion, unknown or paced.
 const CLASSES: [&str; 5] = ["N", "S", "V", "F", "Q"];
-/// Before and after the annotation, seconds.
+/// Length of a beat before and after the annotation, in seconds.
 const BEFORE_S: f64 = 0.25;
 const AFTER_S: f64 = 0.5;
 
-/// One beat.
+/// A beat.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Beat {
     pub(super) sample: i64,
@@ -30,7 +30,7 @@ pub(super) fn classes() -> Classes {
     CLASSES.into_iter().collect()
 }
 
-/// The class of a beat by its annotation; `None` for what is no beat.
+/// Returns the class of an annotated beat; `None` for annotations that are not beats.
 fn class_of(annotation: &WfdbAnnotation) -> Option<u8> {
     Some(match annotation.symbol()? {
         'N' | 'L' | 'R' | 'B' | 'e' | 'j' => 0,
@@ -42,20 +42,20 @@ fn class_of(annotation: &WfdbAnnotation) -> Option<u8> {
     })
 }
 
-/// The beats of all records.
+/// Beats of all records, with their record.
 #[derive(Debug)]
 pub(super) struct Beats(Vec<(usize, Beat)>);
 
 impl Beats {
-    /// The beats of records in order, those too near to an end left out; `None` when there is none.
+    /// Returns the beats of records in order, without those too close to an end; `None` if there are none.
     pub(super) fn of(records: impl Iterator<Item = (Vec<WfdbAnnotation>, WfdbHeader)>) -> Option<Self> {
         let mut beats = Vec::new();
         for (record, (annotations, header)) in records.enumerate() {
             let (before, after) = window(&header);
             let end = header.length.map_or(i64::MAX, |length| length as i64);
-            let whole = |sample: i64| sample >= before && sample.saturating_add(after) <= end;
-            let found = annotations.iter().filter(|annotation| whole(annotation.sample));
-            beats.extend(found.filter_map(|annotation| {
+            let is_complete = |sample: i64| sample >= before && sample.saturating_add(after) <= end;
+            let complete = annotations.iter().filter(|annotation| is_complete(annotation.sample));
+            beats.extend(complete.filter_map(|annotation| {
                 Some((record, Beat { sample: annotation.sample, class: class_of(annotation)? }))
             }));
         }
@@ -75,14 +75,15 @@ fn window(header: &WfdbHeader) -> (i64, i64) {
     ((BEFORE_S * header.frequency).round() as i64, (AFTER_S * header.frequency).round().max(1.0) as i64)
 }
 
-/// The part of a record around `sample`.
+/// Returns the part of a record around `sample`.
 pub(super) fn cut(signals: &Timeseries, header: &WfdbHeader, sample: i64) -> Result<Timeseries> {
     let (before, after) = window(header);
     let [_, features] = signals.shape();
     let place = |at: i64| usize::try_from(at).ok()?.checked_mul(features);
     let part = place(sample - before).zip(place(sample.saturating_add(after)));
     let part = part.and_then(|(start, end)| signals.as_slice().get(start..end));
-    let part =
-        part.ok_or_else(|| Error::format(format!("a beat at sample {sample} is not whole; drop it")))?;
+    let part = part.ok_or_else(|| {
+        Error::format(format!("the beat at sample {sample} is incomplete; remove its annotation"))
+    })?;
     Timeseries::new(part.to_vec(), [part.len() / features, features])
 }

@@ -1,67 +1,67 @@
-//! Header files: what signals a record has, and how they are written.
+//! Header files: the signals of a record and their format.
 
 use std::str::SplitWhitespace;
 
-/// Signals that a record may have; the largest of PhysioNet have some dozens.
+/// Largest number of signals; the largest records of PhysioNet have some dozens.
 const MAX_SIGNALS: usize = 1024;
 const MAX_SAMPLES_A_FRAME: usize = 1 << 16;
 /// Defaults of header(5).
 const FREQUENCY: f64 = 250.0;
 const GAIN: f64 = 200.0;
 
-/// What the header file of a record says.
+/// Content of the header file of a record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WfdbHeader {
     /// Name of the record.
     pub name: String,
-    /// Instants a second.
+    /// Sampling frequency in Hz.
     pub frequency: f64,
-    /// How many instants there are, where it is told.
+    /// Number of samples per signal, if stated.
     pub length: Option<usize>,
-    /// The signals in order.
+    /// Signals in order.
     pub signals: Vec<WfdbSignal>,
-    /// Lines that begin with `#`, without it.
+    /// Comments: the lines that start with `#`, without it.
     pub comments: Vec<String>,
 }
 
-/// How one signal is written.
+/// Format of a signal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WfdbSignal {
-    /// The file it lies in, beside the header.
+    /// Name of its file, beside the header.
     pub file: String,
     /// Format number of signal(5), e.g. 16 or 212.
     pub format: u16,
-    /// Samples an instant of the record; they are averaged.
+    /// Samples per frame of the record, which are averaged.
     pub samples_per_frame: usize,
-    /// Bytes of the file before the first sample.
+    /// Bytes in the file before the first sample.
     pub byte_offset: usize,
-    /// Samples by which the signal is late.
+    /// Delay of the signal in samples.
     pub skew: usize,
-    /// Steps of the converter a physical unit.
+    /// Converter steps per physical unit.
     pub gain: f64,
-    /// Step that is 0 physical units.
+    /// Converter step of 0 physical units.
     pub baseline: i64,
-    /// Physical unit, `mV` where it is not told.
+    /// Physical unit, `mV` if not stated.
     pub units: String,
-    /// First sample, from which formats of differences begin.
+    /// First sample, the start value of difference formats.
     pub initial_value: i64,
-    /// Sum of all samples, modulo 65536, where it is told.
+    /// Sum of all samples, modulo 65536, if stated.
     pub checksum: Option<i64>,
-    /// What it is of, e.g. `MLII`.
+    /// Description, e.g. `MLII`.
     pub description: String,
     /// Line of the header file, from 1.
     pub(super) line: u64,
 }
 
-/// What is wrong, and in which line, from 1.
-type Wrong = (u64, String);
+/// Line number, from 1, and error message.
+type LineError = (u64, String);
 
 impl WfdbHeader {
-    /// Reads the text of a header file.
+    /// Parses a header file.
     ///
     /// # Errors
-    /// What is wrong and the number of its line, from 1.
-    pub fn parse(text: &str) -> Result<Self, Wrong> {
+    /// The line number, from 1, and a message.
+    pub fn parse(text: &str) -> Result<Self, LineError> {
         let mut comments = Vec::new();
         let mut rows = Vec::new();
         for (number, line) in (1..).zip(text.lines()) {
@@ -83,7 +83,7 @@ impl WfdbHeader {
             let found = header.signals.len();
             return Err((
                 number,
-                format!("promises {count} signals where {found} lines follow; the file is cut off"),
+                format!("states {count} signals, but {found} lines follow; the file is truncated"),
             ));
         }
         header.comments = comments;
@@ -95,13 +95,13 @@ impl WfdbHeader {
         let name = words.next().unwrap_or_default().to_owned();
         if name.contains('/') {
             return Err(
-                "is a record of several segments, which are read one by one; open one of them".to_owned()
+                "is a record of several segments, which must be read one by one; open one of them".to_owned()
             );
         }
         let count = words.next().unwrap_or_default();
         let count: usize = count.parse().map_err(|_| format!("has {count:.40?} as the number of signals"))?;
         if count == 0 || count > MAX_SIGNALS {
-            return Err(format!("has {count} signals; 1 to {MAX_SIGNALS} are read"));
+            return Err(format!("has {count} signals; 1 to {MAX_SIGNALS} are supported"));
         }
         // A counter frequency and its base may follow the sampling frequency.
         let frequency = words.next().map_or(Ok(FREQUENCY), |word| {
@@ -110,12 +110,12 @@ impl WfdbHeader {
                 .parse()
                 .ok()
                 .filter(|number: &f64| number.is_finite() && *number > 0.0)
-                .ok_or_else(|| format!("has {word:.40?} as the sampling frequency; give a number over 0"))
+                .ok_or_else(|| format!("has {word:.40?} as the sampling frequency; it must be positive"))
         })?;
         let length = words
             .next()
             .map(|word| word.parse().map_err(|_| format!("has {word:.40?} as the number of samples")));
-        // 0 samples means that the number is not known.
+        // 0 samples means that the number is unknown.
         let length = length.transpose()?.filter(|length| *length > 0);
         Ok((Self { name, frequency, length, signals: Vec::new(), comments: Vec::new() }, count))
     }
@@ -139,7 +139,7 @@ impl WfdbSignal {
             description: String::new(),
             line: number,
         };
-        signal.set_format(words.next().ok_or("has no format; give e.g. 16")?)?;
+        signal.set_format(words.next().ok_or("has no format; write e.g. 16")?)?;
         let baseline = words.next().map_or(Ok(None), |gain| signal.set_gain(gain))?;
         let mut whole = |what: &str| next_whole(&mut words, what);
         let _resolution = whole("resolution")?;
@@ -152,11 +152,11 @@ impl WfdbSignal {
         Ok(signal)
     }
 
-    /// `FORMAT[xSAMPLES_A_FRAME][:SKEW][+BYTE_OFFSET]`.
+    /// Parses `FORMAT[xSAMPLES_A_FRAME][:SKEW][+BYTE_OFFSET]`.
     fn set_format(&mut self, word: &str) -> Result<(), String> {
         let end = word.find(|c: char| !c.is_ascii_digit()).unwrap_or(word.len());
         let (format, mut rest) = word.split_at(end);
-        let wrong = || format!("has {word:.40?} as the format; give e.g. 16, 212x2 or 16+24");
+        let wrong = || format!("has {word:.40?} as the format; write e.g. 16, 212x2 or 16+24");
         self.format = format.parse().map_err(|_| wrong())?;
         while let Some(mark) = rest.chars().next() {
             let after = rest.get(mark.len_utf8()..).unwrap_or_default();
@@ -175,9 +175,9 @@ impl WfdbSignal {
         if fits { Ok(()) } else { Err(wrong()) }
     }
 
-    /// `GAIN[(BASELINE)][/UNITS]`; a gain of 0 means that it is not known.
+    /// Parses `GAIN[(BASELINE)][/UNITS]`; a gain of 0 means that it is unknown.
     fn set_gain(&mut self, word: &str) -> Result<Option<i64>, String> {
-        let wrong = || format!("has {word:.40?} as the gain; give e.g. 200(1024)/mV");
+        let wrong = || format!("has {word:.40?} as the gain; write e.g. 200(1024)/mV");
         let (numbers, units) = word.split_once('/').unwrap_or((word, "mV"));
         let (gain, baseline) = match numbers.split_once('(') {
             Some((gain, rest)) => (gain, Some(rest.strip_suffix(')').ok_or_else(wrong)?)),
@@ -192,7 +192,7 @@ impl WfdbSignal {
         baseline.map(|number| number.parse().map_err(|_| wrong())).transpose()
     }
 
-    /// The physical value of a step of the converter.
+    /// Converts a converter step to the physical value.
     pub fn physical(&self, step: i64) -> f32 {
         ((step as f64 - self.baseline as f64) / self.gain) as f32
     }

@@ -1,26 +1,26 @@
-//! Signal files: samples packed into bits, several signals interleaved.
+//! Signal files: packed samples of several interleaved signals.
 
 use crate::wfdb::header::WfdbSignal;
 
-/// What is wrong, and at which byte.
-type Wrong = (u64, String);
+/// Byte offset and error message.
+type ByteError = (u64, String);
 
-/// Samples of signals that share a file (`group`, in the order of the header), in physical units, and how many there are
-/// of each; NaN where a sample is marked as invalid. `length` instants are wanted, or as many as there are.
+/// Decodes the signals that share a file (`group`, in the order of the header), in physical units, and returns them
+/// with their number of samples; invalid samples are NaN. Without a `length`, all samples are decoded.
 ///
-/// Signals with several samples an instant are averaged (in whole steps), late signals moved to their time (with NaN where nothing
-/// follows), as PhysioNet's `rdsamp` does without `-H`.
+/// Signals with several samples per frame are averaged (in whole steps), delayed signals are shifted (with NaN at
+/// the end), like PhysioNet's `rdsamp` without `-H`.
 ///
 /// # Errors
-/// What is wrong, and at which byte of the file.
+/// The byte offset and a message.
 pub fn wfdb_samples(
     group: &[WfdbSignal],
     length: Option<usize>,
     bytes: &[u8],
-) -> Result<(Vec<Vec<f32>>, usize), Wrong> {
+) -> Result<(Vec<Vec<f32>>, usize), ByteError> {
     let Some(first) = group.first() else { return Ok((Vec::new(), 0)) };
     if group.iter().any(|signal| signal.format != first.format) {
-        return Err((0, "signals of one file have different formats; mend the header".to_owned()));
+        return Err((0, "signals of one file have different formats; fix the header".to_owned()));
     }
     let offset = first.byte_offset;
     let body = bytes
@@ -28,22 +28,31 @@ pub fn wfdb_samples(
         .ok_or((bytes.len() as u64, "the file ends before its first sample".to_owned()))?;
     let frame: usize = group.iter().map(|signal| signal.samples_per_frame).sum();
     let packing = Packing::of(first.format).ok_or_else(|| {
-        (0, format!("format {} is not read; there are 8, 16, 24, 32, 61, 80, 160 and 212", first.format))
+        (
+            0,
+            format!(
+                "format {} is not supported; the formats are 8, 16, 24, 32, 61, 80, 160 and 212",
+                first.format
+            ),
+        )
     })?;
-    let there = packing.count(body.len()) / frame;
-    let wanted = length.unwrap_or(there);
-    let length = wanted.min(there);
+    let available = packing.count(body.len()) / frame;
+    let needed = length.unwrap_or(available);
+    let length = needed.min(available);
     let most_skew = group.iter().map(|signal| signal.skew).max().unwrap_or(0);
-    // Late signals are followed by what is missing at their end; some writers leave that out.
-    if wanted > there || there == 0 {
+    // Delayed signals have missing samples at their end, which some writers omit.
+    if needed > available || available == 0 {
         return Err((
             bytes.len() as u64,
-            format!("the file has {there} of {wanted} instants of {} signals; it is cut off", group.len()),
+            format!(
+                "the file has {available} of {needed} frames of {} signals; it is truncated",
+                group.len()
+            ),
         ));
     }
     let mut steps = vec![0i32; group.len()];
     let mut raw: Vec<Vec<i32>> = group.iter().map(|_| Vec::new()).collect();
-    let kept = length.saturating_add(most_skew).min(there);
+    let kept = length.saturating_add(most_skew).min(available);
     for (sum, signal) in steps.iter_mut().zip(group) {
         *sum = signal.initial_value as i32;
     }
@@ -54,7 +63,7 @@ pub fn wfdb_samples(
     Ok((columns.collect(), length))
 }
 
-/// Samples in the order of time, `samples_per_frame` an instant.
+/// Decodes samples in order of time, `samples_per_frame` in each frame.
 fn read_frames(
     group: &[WfdbSignal],
     packing: Packing,
@@ -80,17 +89,20 @@ fn read_frames(
     }
 }
 
-/// Compares sums with those of the header, where whole signals were read.
-fn check_sums(group: &[WfdbSignal], raw: &[Vec<i32>], frames: usize) -> Result<(), Wrong> {
+/// Compares checksums with those of the header, for signals that were read completely.
+fn check_sums(group: &[WfdbSignal], raw: &[Vec<i32>], frames: usize) -> Result<(), ByteError> {
     for (signal, raw) in group.iter().zip(raw) {
-        let Some(told) = signal.checksum else { continue };
+        let Some(expected) = signal.checksum else { continue };
         let whole = raw.len() == frames * signal.samples_per_frame;
         let sum = raw.iter().fold(0i32, |sum, step| sum.wrapping_add(*step)) as u16;
-        if whole && sum != told as u16 {
+        if whole && sum != expected as u16 {
             let description = &signal.description;
             return Err((
                 0,
-                format!("the sum of {description:.40?} is {sum}, not {}; the file is damaged", told as u16),
+                format!(
+                    "the checksum of {description:.40?} is {sum}, not {}; the file is damaged",
+                    expected as u16
+                ),
             ));
         }
     }
@@ -105,23 +117,23 @@ fn physical(signal: &WfdbSignal, raw: &[i32], invalid: Option<i32>, length: usiz
         if steps.iter().any(|step| Some(*step) == invalid) {
             return None;
         }
-        // Means are steps too: PhysioNet's library and package divide whole numbers.
+        // Means are whole steps: PhysioNet's library and package divide integers.
         let sum: i64 = steps.iter().copied().map(i64::from).sum();
         Some(signal.physical(sum / each as i64))
     };
     (0..length).map(|time| instant(time).unwrap_or(f32::NAN)).collect()
 }
 
-/// How samples lie in bytes.
+/// Packing of samples in bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Packing {
     /// Format 8: differences of one byte.
     Difference,
-    /// Formats 16, 160, 24, 32: so many bytes, least first; 160 from the middle.
+    /// Formats 16, 160, 24, 32: little-endian words; the values of 160 are offset by the middle.
     Little { bytes: usize, middle: i32 },
-    /// Format 61: two bytes, most first.
+    /// Format 61: two bytes, big-endian.
     Big,
-    /// Format 80: a byte, 128 in the middle.
+    /// Format 80: a byte with an offset of 128.
     Offset,
     /// Format 212: two samples of 12 bits in three bytes.
     Pairs,
@@ -142,7 +154,7 @@ impl Packing {
         })
     }
 
-    /// The step that marks an invalid sample.
+    /// Returns the step that marks an invalid sample.
     fn invalid(self) -> Option<i32> {
         match self {
             Self::Difference => None,
@@ -153,7 +165,7 @@ impl Packing {
         }
     }
 
-    /// Samples in so many bytes.
+    /// Returns the number of samples in `bytes`.
     fn count(self, bytes: usize) -> usize {
         match self {
             Self::Difference | Self::Offset => bytes,
@@ -174,7 +186,7 @@ impl Packing {
                 let source = body.get(bytes * at..bytes * (at + 1))?;
                 word.get_mut(..bytes)?.copy_from_slice(source);
                 let unused = 32 - 8 * bytes as u32;
-                // Unsigned words of format 160 count from 0.
+                // The unsigned words of format 160 start at 0.
                 let word = i32::from_le_bytes(word);
                 if middle != 0 { word - middle } else { word << unused >> unused }
             }
@@ -191,8 +203,8 @@ impl Packing {
     }
 }
 
-/// Bytes of format 16 and, per signal, gain, baseline and sum, for `[time, signals]` numbers: each signal uses the whole
-/// range of 16 bits, NaN becomes the invalid sample.
+/// Returns the bytes of format 16 and, for each signal, gain, baseline and checksum, for values `[time, signals]`.
+/// Each signal uses the whole range of 16 bits; NaN becomes the invalid sample.
 pub fn wfdb_from_timeseries(numbers: &[f32], signals: usize) -> (Vec<u8>, Vec<(f64, i64, u16)>) {
     let signals = signals.max(1);
     let scale = |signal: usize| {
@@ -219,6 +231,6 @@ pub fn wfdb_from_timeseries(numbers: &[f32], signals: usize) -> (Vec<u8>, Vec<(f
         sums.iter_mut().skip(signal).take(1).for_each(|sum| *sum = sum.wrapping_add(step as u16));
         bytes.extend(step.to_le_bytes());
     }
-    let told = scales.into_iter().zip(sums).map(|((gain, baseline), sum)| (gain, baseline, sum));
-    (bytes, told.collect())
+    let parameters = scales.into_iter().zip(sums).map(|((gain, baseline), sum)| (gain, baseline, sum));
+    (bytes, parameters.collect())
 }

@@ -9,7 +9,7 @@ fn signal(line: &str) -> WfdbSignal {
 }
 
 #[test]
-fn headers_tell_everything() {
+fn headers_are_parsed_completely() {
     let header = WfdbHeader::parse(
         "# first\nr 2 360/100(5) 650 0:0:0\n\nr.dat 212x2:4+24 200.5(-30)/mmHg 12 5 7 -9 0 ART line\nr.dat 16\n#x\n",
     );
@@ -35,10 +35,10 @@ fn headers_tell_everything() {
 }
 
 #[test]
-fn wrong_headers_are_told_by_line() {
+fn wrong_headers_are_reported_by_line() {
     for (text, line, wanted) in [
         ("", 1, "has no record line"),
-        ("# x\nr 2 100\nr.dat 16", 2, "promises 2 signals where 1 lines follow"),
+        ("# x\nr 2 100\nr.dat 16", 2, "states 2 signals, but 1 lines follow"),
         ("r 9999999999", 1, "has 9999999999 signals"),
         ("r -1", 1, "has \"-1\" as the number of signals"),
         ("r 1 nan\nr.dat 16", 1, "has \"nan\" as the sampling frequency"),
@@ -74,14 +74,14 @@ fn every_format_is_read() {
             "{format}: {columns:?}"
         );
         let (_, message) = wfdb_samples(&[signal(&format!("r.dat {format}"))], Some(4), bytes).unwrap_err();
-        assert!(message.contains("3 of 4 instants"), "{message}");
+        assert!(message.contains("3 of 4 frames"), "{message}");
     }
     let unknown = wfdb_samples(&[signal("r.dat 310")], None, &[0; 8]).unwrap_err();
-    assert!(unknown.1.starts_with("format 310 is not read"));
+    assert!(unknown.1.starts_with("format 310 is not supported"));
 }
 
 #[test]
-fn frames_are_averaged_and_late_signals_moved() {
+fn frames_are_averaged_and_delayed_signals_shifted() {
     let group = [signal("r.dat 16x2 1"), signal("r.dat 16:1 1")];
     let bytes: Vec<u8> =
         [1i16, 3, 10, 5, 7, 20, 9, 9, 30].iter().flat_map(|step| step.to_le_bytes()).collect();
@@ -107,7 +107,7 @@ fn annotations_both_ways() {
     let bytes = atr_from_annotations(&annotations).unwrap();
     assert_eq!(annotations_from_atr(&bytes).unwrap(), annotations);
     assert_eq!(annotations.iter().map(|one| one.symbol().unwrap()).collect::<String>(), "N+V/");
-    assert!(annotations_from_atr(&bytes[..bytes.len() - 2]).unwrap_err().1.contains("cut off"));
+    assert!(annotations_from_atr(&bytes[..bytes.len() - 2]).unwrap_err().1.contains("truncated"));
     assert!(annotations_from_atr(&[0, 0xfc, 0, 0]).unwrap_err().1.contains("code 63"));
     assert!(atr_from_annotations(&[annotated(5, 1), annotated(4, 1)]).is_err());
 }
@@ -132,7 +132,7 @@ fn records_both_ways() {
         let range = if at % 2 == 0 { 2.0 } else { 2e-3 };
         assert!((a - b).abs() <= range / 65_000.0, "{at}: {a} {b}");
     }
-    // Of four annotations one is whole and a beat.
+    // Of four annotations, one is a complete beat.
     let wfdb = Wfdb::open(folder.path(), &OpenOptions::default(), &Problems::strict()).unwrap();
     assert_eq!((wfdb.len(), wfdb.name(0)), (1, "r/60".to_owned()));
     let sample = wfdb.get(0).unwrap();
@@ -148,14 +148,14 @@ fn records_both_ways() {
 }
 
 #[test]
-fn broken_records_are_told() {
+fn broken_records_are_reported() {
     let good = || TemporaryFolder::new().with("a.hea", "a 1 100 2\na.dat 16\n").with("a.dat", [0; 4]);
     for (name, bytes, wanted) in [
-        ("a.hea", &b"a 1 100 2\n../a.dat 16\n"[..], "a.hea:2: the file name \"../a.dat\" leaves"),
+        ("a.hea", &b"a 1 100 2\n../a.dat 16\n"[..], "a.hea:2: the file name \"../a.dat\" is outside"),
         (
             "a.hea",
             b"a 1 100 99999999999\na.dat 16\n",
-            "a.dat at byte 4: the file has 2 of 99999999999 instants",
+            "a.dat at byte 4: the file has 2 of 99999999999 frames",
         ),
         ("a.dat", b"", "a.dat at byte 0: the file has 0 of 2"),
     ] {
@@ -171,8 +171,8 @@ fn broken_records_are_told() {
     assert_eq!((wfdb.len(), told.len()), (1, 2));
     assert!(
         told[0].ends_with("b.hea:1: has \"x\" as the number of signals")
-            && problems.list()[0].place.is_some()
-            && told[1].contains("c.atr: an annotation at sample 9 of 2")
+            && problems.list()[0].location.is_some()
+            && told[1].contains("c.atr: has an annotation at sample 9 of 2")
     );
     let list = good().with("RECORDS", "../a\n");
     let error = Wfdb::open(list.path(), &OpenOptions::default(), &Problems::strict()).unwrap_err();

@@ -1,4 +1,4 @@
-//! Any time series as WFDB records.
+//! Writer of time series as WFDB records.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -12,10 +12,10 @@ use crate::folder::{path_inside, write_file};
 use crate::picture_files::write_each;
 use crate::wfdb::{WfdbAnnotation, WfdbRecord, atr_from_annotations, wfdb_from_timeseries};
 
-/// Where a series tells no rate, one sample a second.
+/// Sampling frequency of series, which do not state one, in Hz.
 const FREQUENCY: f64 = 1.0;
 
-/// A record a sample, numbered; the list of them in `RECORDS`.
+/// Writes a record for each sample, named by its index, and their list `RECORDS`.
 pub(super) fn write(
     dataset: &dyn DatasetIterator,
     path: &Path,
@@ -27,7 +27,7 @@ pub(super) fn write(
         let name = format!("{index:06}");
         let sample = dataset.get(index)?;
         let Some(Value::Timeseries(series)) = sample.data.first() else {
-            return Err(Error::invalid_input("no time series; WFDB holds Timeseries"));
+            return Err(Error::invalid_input("the sample has no time series, which WFDB needs"));
         };
         write_files(path, &name, series, FREQUENCY, &[])?;
         list += &format!("{name}\n");
@@ -40,7 +40,7 @@ impl WfdbRecord {
     /// Writes the record into `folder` as `NAME.hea`, `NAME.dat` (format 16) and, with annotations, `NAME.atr`.
     ///
     /// # Errors
-    /// `InvalidInput` for a name that is none, or annotations out of order; `Io`.
+    /// `InvalidInput` for an invalid name, or annotations out of order; `Io`.
     pub fn save(&self, folder: impl AsRef<Path>) -> Result<()> {
         let header = &self.header;
         write_files(folder.as_ref(), &header.name, &self.signals, header.frequency, &self.annotations)?;
@@ -80,13 +80,15 @@ fn header_text<'a>(
         |text: &str| text.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_' || byte == b'-');
     if name.is_empty() || !plain(name) {
         return Err(Error::invalid_input(format!(
-            "{name:.40?} is no name of a record; give letters, digits, _ and -"
+            "{name:.40?} is not a valid name of a record; use letters, digits, _ and -"
         )));
     }
     let [length, signals] = series.shape();
-    let (_, told) = wfdb_from_timeseries(series.as_slice(), signals);
+    let (_, parameters) = wfdb_from_timeseries(series.as_slice(), signals);
     let mut text = format!("{name} {signals} {frequency} {length}\n");
-    for ((at, (gain, baseline, sum)), (units, description)) in told.into_iter().enumerate().zip(described) {
+    for ((at, (gain, baseline, sum)), (units, description)) in
+        parameters.into_iter().enumerate().zip(described)
+    {
         let first = series.as_slice().get(at).copied().unwrap_or(0.0);
         let first =
             if first.is_finite() { (f64::from(first) * gain).round() as i64 + baseline } else { -32768 };

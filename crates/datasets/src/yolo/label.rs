@@ -1,14 +1,14 @@
-//! A line of a YOLO label file: a class, then a box or an outline in fractions of the picture.
+//! Lines of YOLO label files: a class, then a box or a polygon in fractions of the image.
 
 use opendr_engine::target::{BoundingBox, Segment, Segmentation};
 
 use crate::fields::Fields;
 use crate::picture_box::leaves_picture;
 
-/// Fractions may be wrong by rounding.
+/// Tolerance of fractions for rounding errors.
 const SLACK: f32 = 0.01;
 
-/// Reads `class x y width height` (centre and size), the same with a score, or `class x0 y0 x1 y1 x2 y2 ...`.
+/// Parses `class x y width height` (centre and size), the same with a score, or `class x0 y0 x1 y1 x2 y2 ...`.
 pub(crate) fn box_from_line(
     line: &str,
     size: [u32; 2],
@@ -21,13 +21,13 @@ pub(crate) fn box_from_line(
         5 | 6 => {
             let [x, y, across, down] = fields.numbers(1)?;
             if across < 0.0 || down < 0.0 {
-                return Err(format!("has a box of {across} x {down}; give width and height"));
+                return Err(format!("has a box of {across} x {down}; width and height must be positive"));
             }
             let unit = [x - across / 2.0, y - down / 2.0, across, down];
             let in_pixels = [unit[0] * width, unit[1] * height, across * width, down * height];
             if leaves_picture(in_pixels, size) || across > 1.0 + SLACK || down > 1.0 + SLACK {
                 return Err(format!(
-                    "has a box outside of its picture ({x} {y} {across} {down}); give fractions of the picture, 0 to 1"
+                    "has a box outside of its image ({x} {y} {across} {down}); write fractions of the image, 0 to 1"
                 ));
             }
             let confidence = if fields.len() == 6 { fields.number(5)? } else { 1.0 };
@@ -38,14 +38,14 @@ pub(crate) fn box_from_line(
             let numbers = (1..count).map(|at| fields.number(at)).collect::<Result<Vec<_>, _>>()?;
             if let Some(outside) = numbers.iter().find(|number| !(-SLACK..=1.0 + SLACK).contains(*number)) {
                 return Err(format!(
-                    "has a corner outside of its picture ({outside}); give fractions of the picture, 0 to 1"
+                    "has a corner outside of its image ({outside}); write fractions of the image, 0 to 1"
                 ));
             }
             let corners = numbers.chunks_exact(2).flat_map(|point| [point[0] * width, point[1] * height]);
             Ok(box_around(class, corners.collect()))
         }
         count => {
-            Err(format!("has {count} fields; give a class and 4 numbers, or a class and 3 or more corners"))
+            Err(format!("has {count} fields; write a class and 4 numbers, or a class and 3 or more corners"))
         }
     }
 }
@@ -66,7 +66,7 @@ fn box_around(class: i64, polygon: Vec<f32>) -> BoundingBox {
     }
 }
 
-/// Square pixels inside, by the shoelace formula.
+/// Returns the area in square pixels, by the shoelace formula.
 fn polygon_area(polygon: &[f32]) -> f32 {
     let corner = |at: usize| {
         let start = at * 2 % polygon.len();
@@ -79,7 +79,8 @@ fn polygon_area(polygon: &[f32]) -> f32 {
     ((0..polygon.len() / 2).map(cross).sum::<f64>() / 2.0).abs() as f32
 }
 
-/// The line of a box, with its outline when `outlined` (its corners when it has none of polygons); `None` for a crowd.
+/// Returns the line of a box, or of its polygon if `outlined` (its corners if it has no polygons); `None` for a
+/// crowd.
 pub(crate) fn line_from_box(
     found: &BoundingBox,
     class: usize,
@@ -115,13 +116,13 @@ pub(crate) fn line_from_box(
     Some(line)
 }
 
-/// Nine digits, as few as tell the number.
+/// Rounds to nine decimals.
 fn rounded(number: f64) -> f64 {
     (number * 1e9).round() / 1e9
 }
 
-/// One outline of several: each is walked around, and reached from the first corner of all by a line that is walked
-/// twice.
+/// Joins several polygons into one: each is connected to the first corner by a line that is used in both
+/// directions.
 fn joined(polygons: &[Vec<f32>]) -> Vec<f32> {
     let Some((first, rest)) = polygons.split_first() else { return Vec::new() };
     let start = first.get(..2).unwrap_or_default();

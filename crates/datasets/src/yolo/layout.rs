@@ -1,4 +1,4 @@
-//! Which pictures and labels a YOLO data set has: by its `data.yaml`, or by its folders.
+//! Images and labels of a YOLO data set, by its `data.yaml` or its folders.
 
 use std::collections::{HashMap, HashSet};
 use std::fs;
@@ -12,30 +12,30 @@ use crate::folder::{folders_in, has_extension, names_in, path_inside, read_text}
 use crate::picture_files::is_picture;
 use crate::{Problem, Problems};
 
-/// Folders in folders that are followed.
-const DEEPEST: usize = 16;
+/// Largest depth of nested folders.
+const MAX_DEPTH: usize = 16;
 
-/// Names of parts, the first that is there is taken.
+/// Names of parts; the first existing one is used.
 const SPLITS: [&str; 3] = ["val", "test", "train"];
 
-/// A folder of pictures and that of their labels.
+/// A folder of images and the folder of their labels.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Folder {
     pub pictures: PathBuf,
     pub labels: PathBuf,
 }
 
-/// Every picture: number of its folder and name in it.
+/// All images: index of their folder and name in it.
 #[derive(Debug, Default)]
 pub(super) struct Layout {
     pub folders: Vec<Folder>,
     pub pictures: Vec<(u32, String)>,
     pub classes: Classes,
-    /// The numbers that label files give the classes, where they are not 0, 1, 2, ...
+    /// Class ids of the label files, if they are not 0, 1, 2, ...
     pub class_ids: Vec<i64>,
 }
 
-/// The folder that a data set lies in: `path` itself, the folder of its YAML file, or `object_detection` in it.
+/// Returns the folder of a data set: `path` itself, the folder of its YAML file, or `object_detection` in it.
 pub(super) fn root_of(path: &Path) -> PathBuf {
     if path.is_file() {
         return path.parent().unwrap_or(Path::new("")).to_owned();
@@ -45,7 +45,7 @@ pub(super) fn root_of(path: &Path) -> PathBuf {
     if !own && inner.join("labels").is_dir() { inner } else { path.to_owned() }
 }
 
-/// The YAML file of a data set that tells of pictures.
+/// Returns the YAML file of a data set.
 pub(super) fn yaml_file(path: &Path) -> Option<PathBuf> {
     if path.is_file() {
         return has_extension(&path.to_string_lossy(), &["yaml", "yml"]).then(|| path.to_owned());
@@ -62,7 +62,7 @@ pub(super) fn yaml_file(path: &Path) -> Option<PathBuf> {
 }
 
 impl Layout {
-    /// Finds the pictures of a part.
+    /// Lists the images of a part.
     pub fn new(path: &Path, split: Option<&str>, problems: &Problems) -> Result<Self> {
         let root = root_of(path);
         let mut layout = Self::default();
@@ -78,7 +78,7 @@ impl Layout {
         if keys.get("kpt_shape").is_some() {
             let file = file.display();
             return Err(Error::unsupported(format!(
-                "{file}: YOLO's key points are not read; convert them to COCO"
+                "{file}: YOLO's keypoints are not supported; convert them to COCO"
             )));
         }
         layout.name_classes(&file, &keys)?;
@@ -93,11 +93,10 @@ impl Layout {
                     .context(|| format!("{} at {part}", file.display()))?;
             }
             Ok(None) => {
-                return Err(
-                    Error::format("none of the keys val, test, train").context(file.display().to_string())
-                );
+                return Err(Error::format("the file has none of the keys val, test, train")
+                    .context(file.display().to_string()));
             }
-            // A part that only the folders know, e.g. "val2017".
+            // A part that exists only as a folder, e.g. "val2017".
             Err(error) => {
                 let folder = format!("images/{}", split.unwrap_or_default());
                 layout.add(&base, &folder, problems).map_err(|_| error)?;
@@ -113,7 +112,7 @@ impl Layout {
                 let mut numbered = Vec::new();
                 for (number, name) in names {
                     let number: i64 = number.parse().map_err(|_| {
-                        Problem::at_key(file, "names", format!("{number:.40?} is no class number"))
+                        Problem::at_key(file, "names", format!("{number:.40?} is not a class index"))
                     })?;
                     numbered.push((number, name.as_str()));
                 }
@@ -124,15 +123,18 @@ impl Layout {
                 }
             }
             _ => {
-                return Err(
-                    Problem::at_key(file, "names", "neither a list nor a table of class names").into()
-                );
+                return Err(Problem::at_key(
+                    file,
+                    "names",
+                    "it is neither a list nor a table of class names",
+                )
+                .into());
             }
         }
         Ok(())
     }
 
-    /// Adds the pictures of a folder, or those that a text file lists.
+    /// Adds the images of a folder, or those of a list in a text file.
     fn add(&mut self, base: &Path, entry: &str, problems: &Problems) -> Result<()> {
         let entry = inside(entry);
         let path = if entry.is_empty() {
@@ -143,11 +145,12 @@ impl Layout {
         if path.is_file() && has_extension(&entry, &["txt"]) {
             return self.add_list(base, &path, problems);
         }
-        // Several data sets may share the pictures beside them.
+        // Several data sets may share the images beside them.
         let beside = base.parent().map(|above| above.join(&entry)).filter(|_| !entry.is_empty());
         let pictures = [Some(path.clone()), beside].into_iter().flatten().find(|folder| folder.is_dir());
-        let pictures =
-            pictures.ok_or_else(|| Error::not_found(format!("no folder of pictures {}", path.display())))?;
+        let pictures = pictures.ok_or_else(|| {
+            Error::not_found(format!("the folder of images {} does not exist", path.display()))
+        })?;
         let labels = labels_of(base, &entry);
         let number = self.folders.len() as u32;
         let mut names = Vec::new();
@@ -177,20 +180,21 @@ impl Layout {
     }
 }
 
-/// `path` of the file where it is a folder inside of the file's; such paths mostly name the author's machine.
+/// Returns the `path` of the file if it is a folder inside the data set, since most files have a path of the
+/// author's computer.
 fn base_of(root: &Path, keys: &Keys) -> PathBuf {
     let named = keys.texts("path").first().and_then(|path| path_inside(root, path).ok());
     named.filter(|folder| folder.is_dir()).unwrap_or_else(|| root.to_owned())
 }
 
-/// A path without the steps that lead out of the folder, which exporters write (`../train/images`).
+/// Returns a path without leading `..`, which exporters write (`../train/images`).
 fn inside(entry: &str) -> String {
     let parts = Path::new(entry).components().skip_while(|part| !matches!(part, Component::Normal(_)));
     let parts = parts.filter(|part| !matches!(part, Component::CurDir));
     parts.map(|part| part.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/")
 }
 
-/// The folder of labels: the last `images` of the path becomes `labels`.
+/// Returns the folder of labels: the last `images` of the path becomes `labels`.
 fn labels_of(base: &Path, pictures: &str) -> PathBuf {
     let mut parts: Vec<&str> = pictures.split('/').collect();
     if let Some(images) = parts.iter().rposition(|part| *part == "images") {
@@ -203,13 +207,13 @@ fn choose(split: Option<&str>, parts: &[String]) -> Result<Option<String>> {
     let first = |wanted: &str| parts.iter().find(|part| *part == wanted || part.starts_with(wanted)).cloned();
     match split {
         None => Ok(SPLITS.iter().find_map(|split| first(split)).or_else(|| parts.first().cloned())),
-        Some(split) => first(split)
-            .map(Some)
-            .ok_or_else(|| Error::not_found(format!("no part {split:?}; there are: {}", parts.join(", ")))),
+        Some(split) => first(split).map(Some).ok_or_else(|| {
+            Error::not_found(format!("no part {split:?}; the parts are: {}", parts.join(", ")))
+        }),
     }
 }
 
-/// The pictures in a folder and the folders in it; links that lead back are reported.
+/// Lists the images in a folder and its subfolders; cycles of links are reported.
 fn walk(
     folder: &Path,
     within: &str,
@@ -218,9 +222,11 @@ fn walk(
     problems: &Problems,
 ) -> Result<()> {
     let real = fs::canonicalize(folder).context(|| format!("opening {}", folder.display()))?;
-    if above.len() >= DEEPEST || !above.insert(real.clone()) {
-        return problems
-            .report(Problem::new(folder, "a link to a folder above it, or folders too deep; remove it"));
+    if above.len() >= MAX_DEPTH || !above.insert(real.clone()) {
+        return problems.report(Problem::new(
+            folder,
+            "the folder is a link to a folder above it, or nested too deep; remove it",
+        ));
     }
     for name in names_in(folder)? {
         let path = folder.join(&name);

@@ -1,4 +1,4 @@
-//! YOLO: a text file of boxes or outlines beside each picture, in fractions of it.
+//! YOLO: a text file of boxes or polygons for each image, in fractions of its size.
 
 pub(crate) mod label;
 mod layout;
@@ -19,7 +19,7 @@ use crate::folder::{past_end, read_text};
 use crate::{Format, OpenOptions, Problem, Problems, Recognition, WriteOptions};
 use layout::Layout;
 
-/// A YOLO data set. A picture without a label file has no objects.
+/// A YOLO data set. An image without a label file has no objects.
 #[derive(Debug)]
 pub struct Yolo {
     layout: Layout,
@@ -55,8 +55,9 @@ impl Yolo {
             true => (number >= 0 && (count == 0 || number < count as i64)).then_some(number),
             false => ids.binary_search(&number).ok().map(|class| class as i64),
         };
-        class
-            .ok_or_else(|| format!("has class {number}, which is none of the {count} names of the YAML file"))
+        class.ok_or_else(|| {
+            format!("has class {number}, which is not one of the {count} classes of the YAML file")
+        })
     }
 }
 
@@ -98,9 +99,9 @@ impl DatasetIterator for Yolo {
 impl Format for Yolo {
     const NAME: &'static str = "yolo";
     const ALIASES: &'static [&'static str] = &["yolov5", "yolov8", "ultralytics", "coco128"];
-    const ABOUT: &'static str = "YOLO text files: boxes, or outlines, in fractions of the picture";
+    const ABOUT: &'static str = "YOLO text files: boxes or polygons, in fractions of the image";
     const LAYOUT: &'static str = "data.yaml (train, val, names), images/val/*.jpg, labels/val/*.txt (or val/images and \
-                                  val/labels, or lists of pictures)";
+                                  val/labels, or lists of images)";
     const TARGETS: &'static [ValueType] = &[ValueType::BoundingBoxList];
 
     fn recognise(path: &Path) -> Recognition {
@@ -124,7 +125,7 @@ impl Format for Yolo {
         if !labelled {
             let labels = yolo.layout.folders.first().map(|folder| folder.labels.display().to_string());
             return Err(Error::not_found(format!(
-                "none of the {} pictures of {} has a label file in {}",
+                "none of the {} images of {} has a label file in {}",
                 yolo.len(),
                 path.display(),
                 labels.unwrap_or_default()

@@ -46,7 +46,7 @@ fn fractions_become_pixels() {
 }
 
 #[test]
-fn outlines_are_read_and_written() {
+fn polygons_are_read_and_written() {
     let (folder, other) = (small(), TemporaryFolder::new());
     folder.write("labels/val/a.txt", "1 0.25 0.5 0.75 0.5 0.75 1\n");
     let yolo = open(folder.path(), Some("val")).unwrap();
@@ -65,7 +65,7 @@ fn outlines_are_read_and_written() {
 }
 
 #[test]
-fn broken_lines_are_told() {
+fn broken_lines_are_reported() {
     let folder = small();
     let error = |text: &str| {
         folder.write("labels/val/a.txt", text);
@@ -74,20 +74,21 @@ fn broken_lines_are_told() {
         error.rsplit_once("a.txt").unwrap().1.to_owned()
     };
     assert!(
-        error("0 .5 .5 .5 .5\n2 .5 .5 .5 .5").starts_with(":2: has class 2, which is none of the 2 names")
+        error("0 .5 .5 .5 .5\n2 .5 .5 .5 .5")
+            .starts_with(":2: has class 2, which is not one of the 2 classes")
     );
     assert!(error("-1 .5 .5 .5 .5").contains("class -1"));
     assert!(error("0 .5 .5 NaN .5").contains("\"NaN\" in field 4"));
-    assert!(error("0 1.5 .5 .5 .5").contains("outside of its picture"));
-    assert!(error("0 300 200 100 50").contains("fractions of the picture"));
+    assert!(error("0 1.5 .5 .5 .5").contains("outside of its image"));
+    assert!(error("0 300 200 100 50").contains("fractions of the image"));
     assert!(error("0 .5 .5 -.5 .5").contains("-0.5 x 0.5"));
     assert!(error("0 .5 .5 .5").contains("has 4 fields"));
     assert!(error("0 .1 .1 .2 .2 .3 7").contains("a corner outside"));
-    assert!(error("x .5 .5 .5 .5").contains("instead of a whole number"));
+    assert!(error("x .5 .5 .5 .5").contains("instead of an integer"));
 }
 
 #[test]
-fn lists_name_pictures_inside_only() {
+fn lists_are_limited_to_the_folder() {
     let folder = small();
     folder.write("data.yaml", "val: val.txt\nnames:\n  3: cat\n  1: dog\n");
     folder.write("val.txt", "./images/val/a.png\nimages/val/../../../x.png\n");
@@ -98,12 +99,12 @@ fn lists_name_pictures_inside_only() {
     assert_eq!((yolo.len(), problems.count(), yolo.class_ids()), (1, 1, vec![1, 3]));
     assert_eq!(boxes(&yolo, 0).unwrap().boxes[0].name, Name::Index(1));
     folder.write("data.yaml", "val: images/val\nkpt_shape: [17, 3]\nnames: [person]\n");
-    assert!(open(folder.path(), None).unwrap_err().to_string().contains("key points are not read"));
+    assert!(open(folder.path(), None).unwrap_err().to_string().contains("keypoints are not supported"));
 }
 
 #[cfg(unix)]
 #[test]
-fn links_that_lead_back_are_told() {
+fn cyclic_links_are_reported() {
     let folder = small();
     std::os::unix::fs::symlink("..", folder.path().join("images/val/more/loop")).unwrap();
     assert!(open(folder.path(), None).unwrap_err().to_string().contains("a link to a folder above it"));

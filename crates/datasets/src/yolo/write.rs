@@ -1,4 +1,4 @@
-//! Any boxes as YOLO's label files.
+//! Writer of boxes as YOLO's label files.
 
 use std::borrow::Cow;
 use std::fmt::Write;
@@ -16,8 +16,8 @@ use crate::{Problems, WriteOptions};
 
 /// Writes `images/SPLIT/*`, `labels/SPLIT/*.txt` and `data.yaml`.
 ///
-/// Trainers want boxes or outlines in all files of a data set: outlines are written when every object of the first
-/// picture that has any is outlined by polygons. YOLO knows no crowds; they are left out.
+/// Trainers expect either boxes or polygons in all files of a data set. Polygons are written if every object of the
+/// first image with objects has polygons. YOLO does not support crowds; they are skipped.
 pub(super) fn write(
     dataset: &dyn DatasetIterator,
     path: &Path,
@@ -54,7 +54,7 @@ fn boxes_of(target: Option<&Value>) -> Result<Cow<'_, BoundingBoxList>> {
         Some(Value::BoundingBoxList(list)) => Ok(Cow::Borrowed(list)),
         Some(other) => {
             let found = other.as_value_ref().value_type().name();
-            Err(Error::invalid_input(format!("YOLO's files hold boxes, no {found}")))
+            Err(Error::invalid_input(format!("YOLO supports boxes, not {found}")))
         }
     }
 }
@@ -71,7 +71,7 @@ fn yaml(path: &Path, split: &str, classes: &ClassTable) -> String {
     let there = folders_in(&path.join("images"));
     let named =
         |wanted: &str| there.iter().find(|part| part.starts_with(wanted)).map_or(split, String::as_str);
-    // Trainers want both keys.
+    // Trainers need both keys.
     let mut text = format!("train: images/{}\nval: images/{}\n", named("train"), named("val"));
     if let Some(test) = there.iter().find(|part| part.starts_with("test")) {
         let _ = writeln!(text, "test: images/{test}");

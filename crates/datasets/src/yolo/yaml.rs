@@ -1,4 +1,4 @@
-//! The part of YAML that YOLO's `data.yaml` is written in: keys with a text, a list, or a table of numbers and names.
+//! The subset of YAML of YOLO's `data.yaml`: keys with a text, a list, or a table of numbers and names.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use opendr_engine::Result;
 
 use crate::Problem;
 
-/// What stands behind a key.
+/// Value of a key.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Yaml {
     Text(String),
@@ -14,15 +14,15 @@ pub(crate) enum Yaml {
     Table(Vec<(String, String)>),
 }
 
-/// The keys of a file, in their order.
+/// Keys of a file, in order.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Keys(Vec<(String, Yaml)>);
 
 impl Keys {
-    /// Reads `text`, which stands in `file`.
+    /// Parses `text`, the content of `file`.
     ///
     /// # Errors
-    /// `Format`, with the line, for what is none of the above.
+    /// `Format`, with the line, for other YAML.
     pub fn new(file: &Path, text: &str) -> Result<Self> {
         let wrong = |line: usize, what: &str| Problem::at_line(file, line as u64 + 1, what);
         let lines: Vec<&str> = text.lines().map(without_comment).collect();
@@ -35,7 +35,7 @@ impl Keys {
             }
             let pair = line.split_once(':').filter(|_| !line.starts_with([' ', '\t', '-']));
             let (key, value) =
-                pair.ok_or_else(|| wrong(start, "no \"key: value\"; YOLO's data.yaml is made of these"))?;
+                pair.ok_or_else(|| wrong(start, "the line is not \"key: value\", as in YOLO's data.yaml"))?;
             let nested = lines[at..].iter().take_while(belongs).count();
             let inside = &lines[at..at + nested];
             at += nested;
@@ -44,31 +44,31 @@ impl Keys {
                 Some('|' | '>') => Yaml::Text(inside.join("\n")),
                 Some('[' | '{') => {
                     let mut flow = value.to_owned();
-                    // Lists in brackets may go on in lines of any indentation.
+                    // Lists in brackets may continue in lines of any indentation.
                     flow.extend(inside.iter().flat_map(|line| [" ", line.trim()]));
                     while !flow.ends_with([']', '}']) {
-                        let more =
-                            lines.get(at).ok_or_else(|| wrong(start, "a bracket that is not closed"))?;
+                        let more = lines.get(at).ok_or_else(|| wrong(start, "a bracket is not closed"))?;
                         flow.extend([" ", more.trim()]);
                         at += 1;
                     }
-                    flow_value(&flow).ok_or_else(|| wrong(start, "brackets that do not hold names"))?
+                    flow_value(&flow).ok_or_else(|| wrong(start, "the brackets do not contain names"))?
                 }
                 Some(_) => Yaml::Text(unquoted(value)),
-                None => block(inside)
-                    .map_err(|line| wrong(start + 1 + line, "neither \"- name\" nor \"0: name\""))?,
+                None => block(inside).map_err(|line| {
+                    wrong(start + 1 + line, "the line is neither \"- name\" nor \"0: name\"")
+                })?,
             };
             keys.push((unquoted(key), value));
         }
         Ok(Self(keys))
     }
 
-    /// What stands behind `key`.
+    /// Returns the value of `key`.
     pub fn get(&self, key: &str) -> Option<&Yaml> {
         self.0.iter().find(|(name, _)| name == key).map(|(_, value)| value)
     }
 
-    /// The texts behind `key`, where it has one or a list of them.
+    /// Returns the text of `key`, or its list of texts.
     pub fn texts(&self, key: &str) -> &[String] {
         match self.get(key) {
             Some(Yaml::Text(text)) => std::slice::from_ref(text),
@@ -77,13 +77,13 @@ impl Keys {
         }
     }
 
-    /// The keys.
+    /// Returns the keys.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.0.iter().map(|(name, _)| name.as_str())
     }
 }
 
-/// Whether a line belongs to the key above it.
+/// Returns whether a line belongs to the key above it.
 fn belongs(line: &&&str) -> bool {
     line.is_empty() || line.starts_with([' ', '\t', '-'])
 }
@@ -109,7 +109,7 @@ fn unquoted(text: &str) -> String {
     inside('"').or_else(|| inside('\'')).unwrap_or(text).to_owned()
 }
 
-/// `[a, b]` or `{0: a, 1: b}`.
+/// Parses `[a, b]` or `{0: a, 1: b}`.
 fn flow_value(text: &str) -> Option<Yaml> {
     let list = text.starts_with('[');
     let inside = if list {
@@ -138,7 +138,7 @@ fn flow_value(text: &str) -> Option<Yaml> {
     parts.into_iter().map(entry).collect::<Option<_>>().map(Yaml::Table)
 }
 
-/// Lines `- a`, or lines `0: a`; the number of the line that is neither.
+/// Parses lines `- a`, or lines `0: a`; the error is the index of a line that is neither.
 fn block(lines: &[&str]) -> Result<Yaml, usize> {
     let trimmed = || lines.iter().map(|line| line.trim()).enumerate().filter(|(_, line)| !line.is_empty());
     if trimmed().next().is_some_and(|(_, line)| line.starts_with('-')) {
@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn files_as_people_write_them() {
+    fn common_forms_of_files() {
         let text = "# COCO\npath: .  # here\ntrain: images/train\nval:\n  - a b\n  - 'c: d'\n\nnames:\n  0: person\n  1: \"hot dog\" # no cat\n\
                     download: |\n  import x\n  y: [\nnc: 2\n";
         let keys = keys(text).unwrap();
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_in_brackets_may_be_broken() {
+    fn lists_in_brackets_may_span_lines() {
         let list = |text: &str| keys(text).unwrap().texts("names").to_vec();
         assert_eq!(list("names: ['a', \"b, c\",\n 'd e']\nnc: 3"), ["a", "b, c", "d e"]);
         assert_eq!(list("names: [a,\nb]"), ["a", "b"]);
@@ -187,9 +187,9 @@ mod tests {
     #[test]
     fn errors_name_the_line() {
         let error = |text: &str| keys(text).unwrap_err().to_string();
-        assert!(error("path: .\nnonsense").starts_with("data.yaml:2: no \"key: value\""));
-        assert!(error("names:\n  0: a\n  b\n").starts_with("data.yaml:3: neither"));
+        assert!(error("path: .\nnonsense").starts_with("data.yaml:2: the line is not \"key: value\""));
+        assert!(error("names:\n  0: a\n  b\n").starts_with("data.yaml:3: the line is neither"));
         assert!(error("names: [a,\n b").starts_with("data.yaml:1: a bracket"));
-        assert!(error("names: [[a]]").starts_with("data.yaml:1: brackets"));
+        assert!(error("names: [[a]]").starts_with("data.yaml:1: the brackets"));
     }
 }

@@ -2,8 +2,8 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// Most pairs and least cost over all pairings, by trying them all.
-fn best_by_trying(costs: &[f64], rows: usize, columns: usize) -> (usize, f64) {
+/// Returns the most pairs and the least cost over all pairings, by brute force.
+fn best_by_brute_force(costs: &[f64], rows: usize, columns: usize) -> (usize, f64) {
     fn visit(costs: &[f64], columns: usize, row: usize, taken: u32) -> (usize, f64) {
         if row * columns >= costs.len() {
             return (0, 0.0);
@@ -33,12 +33,12 @@ fn check(costs: &[f64], rows: usize, columns: usize) {
     }
     assert!(pairs.windows(2).all(|pair| pair[0].0 != pair[1].0));
     let total: f64 = pairs.iter().map(|(row, column)| costs[row * columns + column]).sum();
-    let (count, least) = best_by_trying(costs, rows, columns);
+    let (count, least) = best_by_brute_force(costs, rows, columns);
     assert_eq!(pairs.len(), count, "{rows}x{columns} {costs:?}");
     assert!((total - least).abs() <= 1e-9 * (1.0 + least.abs()), "{total} is not {least}: {costs:?}");
 }
 
-/// Matrices up to 5x5: with many ties, and with a quarter of the pairs forbidden.
+/// Generates matrices up to 5x5, with many ties and a quarter of the pairs forbidden.
 fn matrix() -> impl Strategy<Value = (usize, usize, Vec<f64>)> {
     let cost = prop_oneof![
         2 => (-3..4i32).prop_map(f64::from),
@@ -52,14 +52,14 @@ fn matrix() -> impl Strategy<Value = (usize, usize, Vec<f64>)> {
 
 proptest! {
     #[test]
-    fn no_pairing_is_better((rows, columns, costs) in matrix()) {
+    fn pairing_is_optimal((rows, columns, costs) in matrix()) {
         check(&costs, rows, columns);
     }
 }
 
-/// SciPy 1.17's `linear_sum_assignment` on the same matrices.
+/// The results of SciPy 1.17's `linear_sum_assignment` on the same matrices.
 #[test]
-fn ties_fall_as_in_scipy() {
+fn ties_are_resolved_as_in_scipy() {
     assert_eq!(cheapest_pairs(&[1.0; 9], 3), [(0, 0), (1, 1), (2, 2)]);
     assert_eq!(cheapest_pairs(&[1.0; 6], 3), [(0, 0), (1, 1)]);
     assert_eq!(cheapest_pairs(&[1.0; 6], 2), [(0, 0), (1, 1)]);

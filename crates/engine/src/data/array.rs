@@ -1,4 +1,4 @@
-//! Numbers along axes: what most data are made of.
+//! Arrays of numbers, the payload of most data.
 
 use std::fmt;
 use std::sync::Arc;
@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::numpy_text::{Number, array_str};
 use crate::{Error, Result};
 
-/// Numbers along `D` axes, last axis fastest. Shared: cloning copies none. Printed as NumPy prints it.
+/// An array of `D` axes in row-major order. Clones share the numbers. `Display` prints it as NumPy does.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Array<const D: usize> {
     data: Arc<Vec<f32>>,
@@ -14,56 +14,56 @@ pub struct Array<const D: usize> {
 }
 
 impl<const D: usize> Array<D> {
-    /// An array over `data`, last axis fastest.
+    /// Creates an array over `data` in row-major order.
     ///
     /// # Errors
-    /// `InvalidInput` when `shape` does not ask for exactly as many numbers.
+    /// Returns `InvalidInput` if the length of `data` is not the product of `shape`.
     pub fn new(data: impl Into<Arc<Vec<f32>>>, shape: [usize; D]) -> Result<Self> {
         let data = data.into();
-        let wanted = shape.iter().try_fold(1usize, |count, side| count.checked_mul(*side));
-        if wanted != Some(data.len()) {
+        let expected = shape.iter().try_fold(1usize, |count, side| count.checked_mul(*side));
+        if expected != Some(data.len()) {
             let count = data.len();
             return Err(Error::invalid_input(format!(
-                "an array of shape {shape:?} cannot have {count} numbers; give one per place"
+                "an array of shape {shape:?} cannot have {count} numbers; give one per element"
             )));
         }
         Ok(Self { data, shape })
     }
 
-    /// Size of each axis.
+    /// Returns the size of each axis.
     pub fn shape(&self) -> [usize; D] {
         self.shape
     }
 
-    /// How many numbers there are.
+    /// Returns the number of elements.
     pub fn len(&self) -> usize {
         self.data.len()
     }
 
-    /// Whether there is no number.
+    /// Returns whether there are no elements.
     pub fn is_empty(&self) -> bool {
         self.data.is_empty()
     }
 
-    /// The numbers, last axis fastest.
+    /// Returns the elements in row-major order.
     pub fn as_slice(&self) -> &[f32] {
         &self.data
     }
 
-    /// The numbers, to change them; copies them first when a clone holds them too.
+    /// Returns the elements for modification; copies them first if a clone shares them.
     pub fn make_mut(&mut self) -> &mut [f32] {
         let data: &mut Vec<f32> = Arc::make_mut(&mut self.data);
         data
     }
 
-    /// The part at `index` of the first axis: a point of a cloud, an instant of a time series.
+    /// Returns the elements at `index` of the first axis: a point of a cloud, an instant of a time series.
     pub fn part(&self, index: usize) -> Option<&[f32]> {
         let size = self.shape.get(1..)?.iter().product::<usize>();
         let start = index.checked_mul(size)?;
         (index < self.shape[0]).then(|| self.data.get(start..start + size)).flatten()
     }
 
-    /// Gives the numbers back, for a source that fills the same memory again.
+    /// Returns the buffer, for sources that reuse it.
     pub fn into_data(self) -> Arc<Vec<f32>> {
         self.data
     }
@@ -75,22 +75,22 @@ impl<const D: usize> fmt::Display for Array<D> {
     }
 }
 
-/// A datum that is an [`Array`] with a header, refused when it is empty.
+/// Defines a datum that is a non-empty [`Array`] with a header.
 macro_rules! array_datum {
     ($(#[$doc:meta])* $name:ident, $axes:literal, $empty:literal) => {
         $(#[$doc])*
         #[derive(Debug, Clone, PartialEq)]
         pub struct $name {
-            /// When and where it was taken.
+            /// Time stamp and coordinate frame.
             pub header: $crate::Header,
             array: $crate::data::Array<$axes>,
         }
 
         impl $name {
-            /// A datum over `data`, last axis fastest.
+            /// Creates a datum over `data` in row-major order.
             ///
             /// # Errors
-            /// `InvalidInput` when there is no number, or `shape` does not ask for exactly as many.
+            /// Returns `InvalidInput` if `data` is empty or its length is not the product of `shape`.
             pub fn new(data: impl Into<std::sync::Arc<Vec<f32>>>, shape: [usize; $axes]) -> $crate::Result<Self> {
                 let array = $crate::data::Array::new(data, shape)?;
                 if array.is_empty() {
@@ -99,29 +99,29 @@ macro_rules! array_datum {
                 Ok(Self { header: $crate::Header::default(), array })
             }
 
-            /// The same datum with another header.
+            /// Sets the header.
             #[must_use]
             pub fn with_header(mut self, header: $crate::Header) -> Self {
                 self.header = header;
                 self
             }
 
-            /// The numbers with their shape.
+            /// Returns the array.
             pub fn array(&self) -> &$crate::data::Array<$axes> {
                 &self.array
             }
 
-            /// Size of each axis.
+            /// Returns the size of each axis.
             pub fn shape(&self) -> [usize; $axes] {
                 self.array.shape()
             }
 
-            /// The numbers, last axis fastest.
+            /// Returns the elements in row-major order.
             pub fn as_slice(&self) -> &[f32] {
                 self.array.as_slice()
             }
 
-            /// The numbers without the header.
+            /// Returns the array without the header.
             pub fn into_array(self) -> $crate::data::Array<$axes> {
                 self.array
             }
@@ -129,7 +129,7 @@ macro_rules! array_datum {
 
         impl $crate::data::Data for $name {}
 
-        /// OpenDR's text: the array as NumPy prints it; `{:#}` gives type and shape.
+        /// Writes OpenDR's text: the array as NumPy prints it; with `{:#}`, type and shape.
         impl std::fmt::Display for $name {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
                 if f.alternate() {

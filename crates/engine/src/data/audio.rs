@@ -1,4 +1,4 @@
-//! Sound.
+//! Audio.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -7,20 +7,20 @@ use std::sync::Arc;
 use crate::data::{Array, Data};
 use crate::{Error, Header, Result};
 
-/// Sound `[time, channels]`, each sample in [-1, 1].
+/// Audio `[time, channels]`, each sample in [-1, 1].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Audio {
-    /// When its first sample was taken, and where.
+    /// Time stamp of the first sample, and coordinate frame.
     pub header: Header,
     array: Array<2>,
     sample_rate: u32,
 }
 
 impl Audio {
-    /// Sound over `data`, instant by instant (interleaved channels), `sample_rate` instants a second.
+    /// Creates audio over `data` with interleaved channels, at `sample_rate` Hz.
     ///
     /// # Errors
-    /// `InvalidInput` when there is no sample, no channel, no rate, or an instant is not complete.
+    /// Returns `InvalidInput` if there is no sample or channel, the rate is 0, or a channel lacks samples.
     pub fn new(data: impl Into<Arc<Vec<f32>>>, channels: usize, sample_rate: u32) -> Result<Self> {
         let data = data.into();
         if data.is_empty() {
@@ -28,7 +28,7 @@ impl Audio {
         }
         if channels == 0 || sample_rate == 0 || data.len() % channels != 0 {
             return Err(Error::invalid_input(format!(
-                "{} samples are no sound of {channels} channels at {sample_rate} Hz; give as many of each channel",
+                "{} samples are not audio of {channels} channels at {sample_rate} Hz; give equally many for each channel",
                 data.len()
             )));
         }
@@ -36,7 +36,7 @@ impl Audio {
         Ok(Self { header: Header::default(), array: Array::new(data, shape)?, sample_rate })
     }
 
-    /// Sound from unsigned 8-bit PCM.
+    /// Creates audio from unsigned 8-bit PCM.
     ///
     /// # Errors
     /// As [`Audio::new`].
@@ -45,7 +45,7 @@ impl Audio {
         Self::new(data, channels, sample_rate)
     }
 
-    /// Sound from signed 16-bit PCM.
+    /// Creates audio from signed 16-bit PCM.
     ///
     /// # Errors
     /// As [`Audio::new`].
@@ -54,52 +54,52 @@ impl Audio {
         Self::new(data, channels, sample_rate)
     }
 
-    /// The same sound with another header.
+    /// Sets the header.
     #[must_use]
     pub fn with_header(mut self, header: Header) -> Self {
         self.header = header;
         self
     }
 
-    /// The samples with their shape.
+    /// Returns the samples as an array.
     pub fn array(&self) -> &Array<2> {
         &self.array
     }
 
-    /// The samples, instant by instant.
+    /// Returns the samples with interleaved channels.
     pub fn as_slice(&self) -> &[f32] {
         self.array.as_slice()
     }
 
-    /// Channels.
+    /// Returns the number of channels.
     pub fn channels(&self) -> usize {
         self.array.shape()[1]
     }
 
-    /// Instants a second.
+    /// Returns the sampling rate in Hz.
     pub fn sample_rate(&self) -> u32 {
         self.sample_rate
     }
 
-    /// Length in seconds.
+    /// Returns the duration in seconds.
     pub fn duration_s(&self) -> f64 {
         self.array.shape()[0] as f64 / f64::from(self.sample_rate)
     }
 
-    /// The mean of the channels; copies nothing when there is one.
+    /// Returns the mean of the channels; copies nothing if there is only one.
     pub fn mono(&self) -> Cow<'_, [f32]> {
         let channels = self.channels();
         if channels == 1 {
             return Cow::Borrowed(self.as_slice());
         }
-        let instants = self.as_slice().chunks_exact(channels);
-        instants.map(|instant| instant.iter().sum::<f32>() / channels as f32).collect()
+        let frames = self.as_slice().chunks_exact(channels);
+        frames.map(|frame| frame.iter().sum::<f32>() / channels as f32).collect()
     }
 }
 
 impl Data for Audio {}
 
-/// The samples as NumPy prints them; `{:#}` gives length, channels and rate.
+/// Writes the samples as NumPy prints them; with `{:#}`, duration, channels and rate.
 impl fmt::Display for Audio {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if f.alternate() {
@@ -116,18 +116,18 @@ mod tests {
 
     #[test]
     fn pcm_spans_minus_one_to_one() {
-        let sound = Audio::from_pcm8(&[0, 128, 64, 255], 2, 2).unwrap();
-        assert_eq!(sound.as_slice(), [-1.0, 0.0, -0.5, 127.0 / 128.0]);
-        assert_eq!(*sound.mono(), [-0.5, 63.0 / 256.0]);
-        assert_eq!(sound.duration_s(), 1.0);
-        let sound = Audio::from_pcm16(&[-32768, 16384], 1, 16_000).unwrap();
-        assert_eq!(*sound.mono(), [-1.0, 0.5]);
-        assert_eq!(format!("{sound:#}"), "Audio of 0.000 s, 1 channels at 16000 Hz\n");
-        assert_eq!(sound.to_string(), "[[-1. ]\n [ 0.5]]");
+        let audio = Audio::from_pcm8(&[0, 128, 64, 255], 2, 2).unwrap();
+        assert_eq!(audio.as_slice(), [-1.0, 0.0, -0.5, 127.0 / 128.0]);
+        assert_eq!(*audio.mono(), [-0.5, 63.0 / 256.0]);
+        assert_eq!(audio.duration_s(), 1.0);
+        let audio = Audio::from_pcm16(&[-32768, 16384], 1, 16_000).unwrap();
+        assert_eq!(*audio.mono(), [-1.0, 0.5]);
+        assert_eq!(format!("{audio:#}"), "Audio of 0.000 s, 1 channels at 16000 Hz\n");
+        assert_eq!(audio.to_string(), "[[-1. ]\n [ 0.5]]");
     }
 
     #[test]
-    fn incomplete_sound_is_refused() {
+    fn incomplete_audio_is_rejected() {
         for (count, channels, rate) in [(0, 1, 8000), (3, 2, 8000), (2, 0, 8000), (2, 1, 0)] {
             assert!(Audio::new(vec![0.0; count], channels, rate).is_err());
         }

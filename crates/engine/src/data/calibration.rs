@@ -1,4 +1,4 @@
-//! How lidar and camera stand to each other, as KITTI writes it.
+//! Calibration of a lidar and a camera, as in KITTI.
 
 use std::fmt;
 
@@ -6,22 +6,22 @@ use crate::data::Data;
 use crate::numpy_text::{Number, array_repr};
 use crate::{Error, Header, Result};
 
-/// The calibration of a lidar and a camera: from the lidar to the camera's frame, and from there to pixels.
+/// Calibration of a lidar and a camera: the transform from lidar to camera, and the projection to pixels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Calibration {
-    /// Of the camera.
+    /// Header of the camera.
     pub header: Header,
-    /// Projection of the rectified camera frame into the left colour picture (KITTI's `P2`).
+    /// Projection from the rectified camera frame to the left colour image (KITTI's `P2`).
     pub p2: [[f64; 4]; 3],
-    /// Rectifying rotation (KITTI's `R0_rect`).
+    /// Rectification rotation (KITTI's `R0_rect`).
     pub r0_rect: [[f64; 3]; 3],
-    /// From the lidar's frame to the camera's (KITTI's `Tr_velo_to_cam`), metres.
+    /// Transform from the lidar's to the camera's frame (KITTI's `Tr_velo_to_cam`), in metres.
     pub tr_velo_to_cam: [[f64; 4]; 3],
 }
 
 impl Calibration {
-    /// For clouds that come without one: lidar and camera in one place, and the focal length and centre that KITTI's
-    /// pictures of 1242 x 375 pixels have.
+    /// Creates a calibration for point clouds without one: lidar and camera at one position, with the focal length and
+    /// centre of KITTI's images of 1242 x 375 pixels.
     pub fn nominal() -> Self {
         Self {
             header: Header::default(),
@@ -31,10 +31,10 @@ impl Calibration {
         }
     }
 
-    /// Reads a calibration file of KITTI's detection or tracking benchmark.
+    /// Parses a calibration file of KITTI's detection or tracking benchmark.
     ///
     /// # Errors
-    /// `Format` with the number of the line, or the name of a matrix that is missing.
+    /// Returns `Format` with the line number, or the name of a missing matrix.
     pub fn from_kitti_text(text: &str) -> Result<Self> {
         let (mut p2, mut r0_rect, mut tr_velo_to_cam) = (None, None, None);
         for (index, line) in text.lines().enumerate() {
@@ -49,7 +49,7 @@ impl Calibration {
                 fields.map(|field| field.parse().ok().filter(|number: &f64| number.is_finite())).collect();
             let numbers = numbers.ok_or_else(|| {
                 Error::format(format!(
-                    "line {} has something else than finite numbers; mend the file",
+                    "line {} has fields that are not finite numbers; fix the file",
                     index + 1
                 ))
             })?;
@@ -63,14 +63,14 @@ impl Calibration {
         })
     }
 
-    /// A point of the lidar's frame in the rectified camera frame (x right, y down, z ahead), metres.
+    /// Transforms a point from the lidar's frame to the rectified camera frame (x right, y down, z forward), in metres.
     pub fn camera_from_lidar(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
-        let turned = self.tr_velo_to_cam.map(|[a, b, c, d]| a * x + b * y + c * z + d);
-        let [x, y, z] = turned;
+        let rotated = self.tr_velo_to_cam.map(|[a, b, c, d]| a * x + b * y + c * z + d);
+        let [x, y, z] = rotated;
         self.r0_rect.map(|[a, b, c]| a * x + b * y + c * z)
     }
 
-    /// The pixel `[x, y]` of a point of the rectified camera frame; `None` behind the camera.
+    /// Projects a point of the rectified camera frame to a pixel `[x, y]`; `None` behind the camera.
     pub fn image_from_camera(&self, [x, y, z]: [f64; 3]) -> Option<[f64; 2]> {
         let [u, v, depth] = self.p2.map(|[a, b, c, d]| a * x + b * y + c * z + d);
         (depth > 0.0).then(|| [u / depth, v / depth])
@@ -85,7 +85,7 @@ fn rows<const N: usize>(name: &str, matrix: Option<(usize, Vec<f64>)>) -> Result
     match (<[[f64; N]; 3]>::try_from(rows), rest) {
         (Ok(rows), []) => Ok(rows),
         _ => Err(Error::format(format!(
-            "line {line} gives {name} {} numbers instead of {}; mend the file",
+            "line {line} gives {name} {} numbers instead of {}; fix the file",
             numbers.len(),
             3 * N
         ))),
@@ -94,7 +94,7 @@ fn rows<const N: usize>(name: &str, matrix: Option<(usize, Vec<f64>)>) -> Result
 
 impl Data for Calibration {}
 
-/// Python's dictionary of the three matrices; `{:#}` names focal length and centre of the picture.
+/// Writes Python's dictionary of the three matrices; with `{:#}`, focal length and image centre.
 impl fmt::Display for Calibration {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if f.alternate() {
@@ -128,14 +128,14 @@ mod tests {
     }
 
     #[test]
-    fn broken_files_are_refused() {
-        for (from, to, wanted) in [
+    fn broken_files_are_rejected() {
+        for (from, to, expected) in [
             ("R0_rect", "R1_rect", "there is no matrix R0_rect"),
             ("700 0 600", "700 0", "line 2 gives P2 11 numbers instead of 12"),
-            ("700 0 600", "700 nan 600", "line 2 has something else than finite numbers"),
+            ("700 0 600", "700 nan 600", "line 2 has fields that are not finite numbers"),
         ] {
             let error = Calibration::from_kitti_text(&FILE.replace(from, to)).unwrap_err();
-            assert!(error.to_string().starts_with(wanted), "{error}");
+            assert!(error.to_string().starts_with(expected), "{error}");
         }
     }
 }

@@ -1,70 +1,36 @@
-//! Pictures: what users see is CHW RGB `u8`; what is stored may be any order, so that a camera frame is never
-//! transposed for nothing.
+//! Images. Users receive CHW RGB `u8`; the storage may have any layout, so that camera frames are not transposed
+//! needlessly.
 
 use std::fmt;
 use std::sync::Arc;
 
 use crate::data::image_view::{ImageView, Samples};
+use crate::data::pixel_format::PixelFormat;
 use crate::numpy_text::{Number, array_str};
 use crate::{Error, Header, Result};
 
-/// The channels of a pixel, in their order in memory.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum PixelFormat {
-    /// One channel: luminance, depth or infrared.
-    Grey,
-    /// Red, green, blue.
-    Rgb,
-    /// Blue, green, red (OpenCV's order).
-    Bgr,
-    /// Red, green, blue, opacity.
-    Rgba,
-    /// Blue, green, red, opacity.
-    Bgra,
-}
-
-impl PixelFormat {
-    /// How many channels a pixel has.
-    pub const fn channels(self) -> usize {
-        match self {
-            Self::Grey => 1,
-            Self::Rgb | Self::Bgr => 3,
-            Self::Rgba | Self::Bgra => 4,
-        }
-    }
-
-    /// Where red, green and blue lie among the channels.
-    pub const fn rgb_offsets(self) -> [usize; 3] {
-        match self {
-            Self::Grey => [0, 0, 0],
-            Self::Rgb | Self::Rgba => [0, 1, 2],
-            Self::Bgr | Self::Bgra => [2, 1, 0],
-        }
-    }
-}
-
-/// Which index runs fastest in memory.
+/// Order of the axes in memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Layout {
-    /// `[height, width, channels]`: pixels lie together (cameras, decoders, OpenCV).
+    /// `[height, width, channels]`: the channels of a pixel are adjacent (cameras, decoders, OpenCV).
     Hwc,
-    /// `[channels, height, width]`: planes lie together (networks, OpenDR's `numpy()`).
+    /// `[channels, height, width]`: each channel is a plane (networks, OpenDR's `numpy()`).
     Chw,
 }
 
-/// The samples of a picture. Shared: cloning an [`Image`] copies no pixels.
+/// The samples of an image. Clones of an [`Image`] share them.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Pixels {
-    /// 8 bits a sample, 0..=255.
+    /// 8 bits per sample, 0..=255.
     U8(Arc<Vec<u8>>),
-    /// 16 bits a sample: depth in millimetres, thermal counts.
+    /// 16 bits per sample: depth in millimetres, thermal counts.
     U16(Arc<Vec<u16>>),
-    /// Floats: depth in metres, or colours in the range their source gave.
+    /// Floats: depth in metres, or colours in the range of their source.
     F32(Arc<Vec<f32>>),
 }
 
 impl Pixels {
-    /// How many samples there are.
+    /// Returns the number of samples.
     pub fn len(&self) -> usize {
         match self {
             Self::U8(data) => data.len(),
@@ -73,7 +39,7 @@ impl Pixels {
         }
     }
 
-    /// Whether there is no sample.
+    /// Returns whether there are no samples.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -97,10 +63,10 @@ impl From<Vec<f32>> for Pixels {
     }
 }
 
-/// A picture with its time stamp and frame id. Cloning is cheap: the pixels are shared.
+/// An image with time stamp and frame id. Clones share the pixels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Image {
-    /// When and where it was taken.
+    /// Time stamp and coordinate frame.
     pub header: Header,
     pixels: Pixels,
     width: usize,
@@ -110,10 +76,10 @@ pub struct Image {
 }
 
 impl Image {
-    /// A picture of `width` x `height` pixels over samples stored as `format` and `layout` say.
+    /// Creates an image of `width` x `height` pixels over samples in the given `format` and `layout`.
     ///
     /// # Errors
-    /// `InvalidInput` when the number of samples is not `width * height * channels`, or a side is 0.
+    /// Returns `InvalidInput` if the number of samples is not `width * height * channels`, or a side is 0.
     pub fn new(
         pixels: impl Into<Pixels>,
         width: usize,
@@ -122,64 +88,64 @@ impl Image {
         layout: Layout,
     ) -> Result<Self> {
         let pixels = pixels.into();
-        let wanted = width.checked_mul(height).and_then(|area| area.checked_mul(format.channels()));
-        if wanted != Some(pixels.len()) || pixels.is_empty() {
+        let expected = width.checked_mul(height).and_then(|area| area.checked_mul(format.channels()));
+        if expected != Some(pixels.len()) || pixels.is_empty() {
             return Err(Error::invalid_input(format!(
-                "a {width}x{height} {format:?} picture needs {} samples, not {}; give at least one pixel",
-                wanted.map_or_else(|| "too many".to_owned(), |count| count.to_string()),
+                "a {width}x{height} {format:?} image needs {} samples, not {}; give at least one pixel",
+                expected.map_or_else(|| "too many".to_owned(), |count| count.to_string()),
                 pixels.len(),
             )));
         }
         Ok(Self { header: Header::default(), pixels, width, height, format, layout })
     }
 
-    /// A `u8` picture from `[height, width, 3]` RGB bytes.
+    /// Creates a `u8` image from `[height, width, 3]` RGB bytes.
     ///
     /// # Errors
-    /// `InvalidInput` when there are not `width * height * 3` bytes.
+    /// Returns `InvalidInput` if there are not `width * height * 3` bytes.
     pub fn from_rgb8(data: Vec<u8>, width: usize, height: usize) -> Result<Self> {
         Self::new(data, width, height, PixelFormat::Rgb, Layout::Hwc)
     }
 
-    /// The same picture with another header.
+    /// Sets the header.
     #[must_use]
     pub fn with_header(mut self, header: Header) -> Self {
         self.header = header;
         self
     }
 
-    /// Pixels a row.
+    /// Returns the width in pixels.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows.
+    /// Returns the height in pixels.
     pub fn height(&self) -> usize {
         self.height
     }
 
-    /// Order of the channels in memory.
+    /// Returns the order of the channels in memory.
     pub fn format(&self) -> PixelFormat {
         self.format
     }
 
-    /// Order of the axes in memory.
+    /// Returns the order of the axes in memory.
     pub fn layout(&self) -> Layout {
         self.layout
     }
 
-    /// Number of channels.
+    /// Returns the number of channels.
     pub fn channels(&self) -> usize {
         self.format.channels()
     }
 
-    /// The samples as they are stored.
+    /// Returns the samples as stored.
     pub fn pixels(&self) -> &Pixels {
         &self.pixels
     }
 
-    /// The `u8` samples, to change in place; copied first when another [`Image`] shares them. `None` when the
-    /// samples are of another type.
+    /// Returns the `u8` samples for modification; they are copied first if another [`Image`] shares them. Returns `None` if
+    /// the samples are of another type.
     pub fn bytes_mut(&mut self) -> Option<&mut [u8]> {
         match &mut self.pixels {
             Pixels::U8(data) => Some(Arc::make_mut(data).as_mut_slice()),
@@ -187,12 +153,12 @@ impl Image {
         }
     }
 
-    /// Gives the samples back, for a source that fills the same memory again.
+    /// Returns the samples, for sources that reuse the buffer.
     pub fn into_pixels(self) -> Pixels {
         self.pixels
     }
 
-    /// A strided view of the whole picture: what kernels read.
+    /// Returns a strided view of the image, the input of kernels.
     pub fn view(&self) -> ImageView<'_> {
         let samples = match &self.pixels {
             Pixels::U8(data) => Samples::U8(data),
@@ -206,27 +172,26 @@ impl Image {
         ImageView::from_parts(samples, self.width, self.height, self.format, [row, column, channel])
     }
 
-    /// A copy of the `u8` samples as `[height, width, channels]` in `format` (OpenCV's picture is `Bgr`).
+    /// Returns a `u8` copy as `[height, width, channels]` in `format` (OpenCV's images are `Bgr`).
     ///
-    /// Grey becomes three equal channels, opacity is dropped or set to 255, `u16` and `f32` samples are scaled
-    /// as [`ImageView::sample_u8`] says.
+    /// Grey is copied to all three channels, opacity is dropped or set to 255, `u16` and `f32` samples are scaled as by
+    /// [`ImageView::sample_u8`].
     pub fn hwc_u8(&self, format: PixelFormat) -> Vec<u8> {
         self.view().hwc_u8(format)
     }
 
-    /// A copy of the `u8` samples as `[channels, height, width]`, RGB (grey pictures keep their one channel):
-    /// OpenDR's `Image.numpy()`.
+    /// Returns a `u8` copy as `[channels, height, width]`, RGB (grey images keep one channel): OpenDR's `Image.numpy()`.
     pub fn chw_u8(&self) -> Vec<u8> {
         self.view().chw_u8()
     }
 
-    /// OpenDR's guess of an array's meaning from its shape alone: last axis 3 means HWC **BGR** (OpenCV), another
-    /// last axis smaller than both others means HWC RGB, everything else CHW RGB.
+    /// Guesses the layout of an array from its shape, as OpenDR does: last axis 3 means HWC **BGR** (OpenCV), another last
+    /// axis smaller than both others means HWC RGB, everything else CHW RGB.
     ///
     /// Returns layout, format, width and height of a `[a, b, c]` array.
     ///
     /// # Errors
-    /// `InvalidInput` when the number of channels is not 1, 3 or 4.
+    /// Returns `InvalidInput` if the number of channels is not 1, 3 or 4.
     pub fn guess_format(shape: [usize; 3]) -> Result<(Layout, PixelFormat, usize, usize)> {
         let [a, b, c] = shape;
         let (layout, channels, width, height) =
@@ -238,7 +203,7 @@ impl Image {
             (4, _) => PixelFormat::Rgba,
             _ => {
                 return Err(Error::invalid_input(format!(
-                    "an array of shape {shape:?} is no picture: 1, 3 or 4 channels are wanted, first or last"
+                    "an array of shape {shape:?} is not an image; the first or last axis must have 1, 3 or 4 channels"
                 )));
             }
         };
@@ -248,7 +213,7 @@ impl Image {
 
 impl crate::data::Data for Image {}
 
-/// OpenDR's text: `[channels, height, width]`, RGB, as NumPy prints it; `{:#}` gives size, channels and samples.
+/// Writes OpenDR's text: `[channels, height, width]`, RGB, as NumPy prints it; with `{:#}`, size, channels and sample type.
 impl fmt::Display for Image {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (width, height, format) = (self.width, self.height, self.format);
@@ -258,7 +223,7 @@ impl fmt::Display for Image {
                 Pixels::U16(_) => "u16",
                 Pixels::F32(_) => "f32",
             };
-            return writeln!(f, "{width}x{height} picture, {format:?}, {samples}");
+            return writeln!(f, "{width}x{height} image, {format:?}, {samples}");
         }
         let [row, column, channel] = self.view().strides();
         let [red, green, blue] = format.rgb_offsets();
@@ -281,7 +246,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn stored_order_does_not_show() {
+    fn storage_layout_does_not_affect_output() {
         // Two pixels: red-ish and blue-ish.
         let rgb = Image::from_rgb8(vec![1, 2, 3, 4, 5, 6], 2, 1).unwrap();
         let bgr = Image::new(vec![3u8, 2, 1, 6, 5, 4], 2, 1, PixelFormat::Bgr, Layout::Hwc).unwrap();
@@ -295,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn change_in_place_leaves_copies_alone() {
+    fn modification_in_place_keeps_clones() {
         let mut image = Image::from_rgb8(vec![1, 2, 3], 1, 1).unwrap();
         let before = image.clone();
         image.bytes_mut().unwrap()[0] = 9;
@@ -305,14 +270,14 @@ mod tests {
     }
 
     #[test]
-    fn wrong_number_of_samples_is_refused() {
+    fn wrong_number_of_samples_is_rejected() {
         assert!(Image::from_rgb8(vec![0; 5], 2, 1).is_err());
         assert!(Image::from_rgb8(Vec::new(), 0, 0).is_err());
         assert!(Image::from_rgb8(vec![0; 3], usize::MAX, usize::MAX).is_err());
     }
 
     #[test]
-    fn guess_is_opendrs() {
+    fn guess_is_that_of_opendr() {
         assert_eq!(Image::guess_format([480, 640, 3]).unwrap(), (Layout::Hwc, PixelFormat::Bgr, 640, 480));
         assert_eq!(Image::guess_format([3, 480, 640]).unwrap(), (Layout::Chw, PixelFormat::Rgb, 640, 480));
         assert_eq!(Image::guess_format([480, 640, 1]).unwrap(), (Layout::Hwc, PixelFormat::Grey, 640, 480));

@@ -1,13 +1,13 @@
-//! A borrowed, strided picture: what every kernel reads, whatever the order in memory.
+//! Strided views of images, the input of kernels.
 
-use crate::data::image::PixelFormat;
+use crate::data::pixel_format::PixelFormat;
 
 /// Borrowed samples of one type.
 #[derive(Debug, Clone, Copy)]
 pub enum Samples<'a> {
-    /// 8 bits a sample.
+    /// 8 bits per sample.
     U8(&'a [u8]),
-    /// 16 bits a sample.
+    /// 16 bits per sample.
     U16(&'a [u16]),
     /// Floats.
     F32(&'a [f32]),
@@ -23,9 +23,9 @@ impl Samples<'_> {
     }
 }
 
-/// A strided view of (part of) a picture.
+/// A strided view of an image or a part of it.
 ///
-/// Sample `(x, y, c)` lies at `y * strides[0] + x * strides[1] + c * strides[2]`, strides in samples.
+/// Sample `(x, y, c)` is at `y * strides[0] + x * strides[1] + c * strides[2]`, strides in samples.
 #[derive(Debug, Clone, Copy)]
 pub struct ImageView<'a> {
     samples: Samples<'a>,
@@ -36,7 +36,7 @@ pub struct ImageView<'a> {
 }
 
 impl<'a> ImageView<'a> {
-    /// Callers guarantee that the last sample lies within `samples`.
+    /// Creates a view. Callers guarantee that its last sample is within `samples`.
     pub(crate) fn from_parts(
         samples: Samples<'a>,
         width: usize,
@@ -51,32 +51,32 @@ impl<'a> ImageView<'a> {
         Self { samples, width, height, format, strides }
     }
 
-    /// Pixels a row.
+    /// Returns the width in pixels.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows.
+    /// Returns the height in pixels.
     pub fn height(&self) -> usize {
         self.height
     }
 
-    /// Order of the channels.
+    /// Returns the order of the channels.
     pub fn format(&self) -> PixelFormat {
         self.format
     }
 
-    /// The samples, beginning with the view's first.
+    /// Returns the samples, starting with the first of the view.
     pub fn samples(&self) -> Samples<'a> {
         self.samples
     }
 
-    /// Distance in samples to the next row, pixel and channel.
+    /// Returns the distances in samples to the next row, pixel and channel.
     pub fn strides(&self) -> [usize; 3] {
         self.strides
     }
 
-    /// The part of the view that starts at `(x, y)`, cut at the view's border; `None` when nothing is left.
+    /// Returns the part of the view from `(x, y)` on, clipped to the view; `None` if nothing is left.
     #[must_use]
     pub fn crop(&self, x: usize, y: usize, width: usize, height: usize) -> Option<Self> {
         let width = width.min(self.width.checked_sub(x)?);
@@ -93,10 +93,10 @@ impl<'a> ImageView<'a> {
         Some(Self { samples, width, height, ..*self })
     }
 
-    /// One sample as `u8`: `u16` by its high byte; floats are taken as 0..=1 and saturate, NaN is 0.
+    /// Returns one sample as `u8`: the high byte of `u16`; floats as 0..=1, saturated, NaN as 0.
     ///
     /// # Panics
-    /// When the position lies outside the view's memory.
+    /// Panics if the position is outside the memory of the view.
     #[inline]
     pub fn sample_u8(&self, x: usize, y: usize, channel: usize) -> u8 {
         let at = y * self.strides[0] + x * self.strides[1] + channel * self.strides[2];
@@ -107,7 +107,7 @@ impl<'a> ImageView<'a> {
         }
     }
 
-    /// A copy as `[height, width, channels]` in `format`; see [`crate::data::Image::hwc_u8`].
+    /// Returns a copy as `[height, width, channels]` in `format`; see [`crate::data::Image::hwc_u8`].
     pub fn hwc_u8(&self, format: PixelFormat) -> Vec<u8> {
         let mut out = Vec::with_capacity(self.width * self.height * format.channels());
         if let (Samples::U8(data), true) =
@@ -136,7 +136,7 @@ impl<'a> ImageView<'a> {
         out
     }
 
-    /// A copy as `[channels, height, width]`, RGB, opacity last; grey stays one channel.
+    /// Returns a copy as `[channels, height, width]`, RGB, opacity last; grey has one channel.
     pub fn chw_u8(&self) -> Vec<u8> {
         let rgb = self.format.rgb_offsets();
         let channels = self.format.channels();
@@ -151,7 +151,7 @@ impl<'a> ImageView<'a> {
     }
 }
 
-/// Luminance by ITU-R BT.601, as OpenCV and Pillow weigh it; equal channels stay what they are.
+/// Returns the luminance by ITU-R BT.601 with the weights of OpenCV and Pillow; equal channels are unchanged.
 pub(crate) fn grey_from_rgb([red, green, blue]: [u8; 3]) -> u8 {
     ((u32::from(red) * 19595 + u32::from(green) * 38470 + u32::from(blue) * 7471 + 0x8000) >> 16) as u8
 }
@@ -161,7 +161,7 @@ mod tests {
     use crate::data::{Image, Layout, PixelFormat};
 
     #[test]
-    fn crop_is_cut_at_the_border() {
+    fn crop_is_clipped_at_the_border() {
         let image = Image::new((0..12).collect::<Vec<u8>>(), 4, 3, PixelFormat::Grey, Layout::Hwc).unwrap();
         let crop = image.view().crop(2, 1, 9, 9).unwrap();
         assert_eq!((crop.width(), crop.height()), (2, 2));

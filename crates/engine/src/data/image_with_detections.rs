@@ -1,4 +1,4 @@
-//! A picture with boxes found before, for learners that look at these again.
+//! An image with detections, for learners that process detections further.
 
 use std::fmt;
 
@@ -6,19 +6,19 @@ use crate::Header;
 use crate::data::{Data, Image};
 use crate::target::BoundingBoxList;
 
-/// A picture with boxes in it.
+/// An image with detected boxes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImageWithDetections {
-    /// When and where it was taken; those of picture and boxes do not count.
+    /// Time stamp and coordinate frame; the headers of image and boxes are ignored.
     pub header: Header,
-    /// The picture.
+    /// The image.
     pub image: Image,
     /// The boxes (OpenDR's `boundingBoxList`).
     pub boxes: BoundingBoxList,
 }
 
 impl ImageWithDetections {
-    /// The picture with its boxes; the header is the picture's.
+    /// Creates the datum; its header is that of the image.
     pub fn new(image: Image, boxes: BoundingBoxList) -> Self {
         Self { header: image.header.clone(), image, boxes }
     }
@@ -26,7 +26,7 @@ impl ImageWithDetections {
 
 impl Data for ImageWithDetections {}
 
-/// OpenDR's text; `{:#}` gives the picture's size, then the boxes.
+/// Writes OpenDR's text; with `{:#}`, the size of the image, then the boxes.
 impl fmt::Display for ImageWithDetections {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if f.alternate() {

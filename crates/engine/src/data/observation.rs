@@ -1,4 +1,4 @@
-//! What a policy sees.
+//! Observations of environments.
 
 use std::fmt;
 use std::sync::Arc;
@@ -9,11 +9,11 @@ use crate::data::Data;
 use crate::numpy_text::{Number, array_repr, array_str};
 use crate::{Error, Header, Result};
 
-/// What an agent sees of its world: numbers in a row, with names and shapes for its parts where it has several
-/// (Gymnasium's `Dict` space). Cloning copies no numbers.
+/// An observation: a flat array, optionally divided into named parts with shapes (Gymnasium's `Dict` space). Clones share
+/// the numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observation {
-    /// When and where it was taken.
+    /// Time stamp and coordinate frame.
     pub header: Header,
     data: Arc<Vec<f32>>,
     parts: Arc<[Part]>,
@@ -33,10 +33,10 @@ impl Part {
 }
 
 impl Observation {
-    /// An observation without parts.
+    /// Creates an observation without parts.
     ///
     /// # Errors
-    /// `InvalidInput` when there is no number.
+    /// Returns `InvalidInput` if `data` is empty.
     pub fn from_data(data: impl Into<Arc<Vec<f32>>>) -> Result<Self> {
         let data = data.into();
         if data.is_empty() {
@@ -45,20 +45,20 @@ impl Observation {
         Ok(Self { header: Header::default(), data, parts: Arc::default() })
     }
 
-    /// An observation of named arrays, stored one after the other.
+    /// Creates an observation of named arrays, stored one after the other.
     ///
     /// # Errors
-    /// `InvalidInput` when there is no number, a name occurs twice, or a shape does not fit its numbers.
+    /// Returns `InvalidInput` if there are no numbers, a name occurs twice, or a shape does not fit its numbers.
     pub fn from_parts<'a>(
         parts: impl IntoIterator<Item = (&'a str, &'a [usize], &'a [f32])>,
     ) -> Result<Self> {
         let (mut data, mut layout) = (Vec::new(), Vec::<Part>::new());
         for (name, shape, numbers) in parts {
-            let wanted = shape.iter().try_fold(1usize, |count, side| count.checked_mul(*side));
-            if wanted != Some(numbers.len()) || layout.iter().any(|part| *part.name == *name) {
+            let expected = shape.iter().try_fold(1usize, |count, side| count.checked_mul(*side));
+            if expected != Some(numbers.len()) || layout.iter().any(|part| *part.name == *name) {
                 let count = numbers.len();
                 return Err(Error::invalid_input(format!(
-                    "part {name:?} of shape {shape:?} has {count} numbers; give one per place, and each name once"
+                    "part {name:?} of shape {shape:?} has {count} numbers; give one per element, and each name once"
                 )));
             }
             layout.push(Part { name: name.into(), shape: shape.into(), start: data.len() });
@@ -67,24 +67,24 @@ impl Observation {
         Ok(Self { parts: layout.into(), ..Self::from_data(data)? })
     }
 
-    /// The same observation with another header.
+    /// Sets the header.
     #[must_use]
     pub fn with_header(mut self, header: Header) -> Self {
         self.header = header;
         self
     }
 
-    /// All numbers in a row: what a policy network takes.
+    /// Returns all numbers, the input of a policy network.
     pub fn as_slice(&self) -> &[f32] {
         &self.data
     }
 
-    /// Shape and numbers of the part called `name`.
+    /// Returns shape and numbers of the part `name`.
     pub fn part(&self, name: &str) -> Option<(&[usize], &[f32])> {
         self.parts().find_map(|(part, shape, numbers)| (part == name).then_some((shape, numbers)))
     }
 
-    /// Name, shape and numbers of each part; nothing for an observation without parts.
+    /// Returns name, shape and numbers of each part; nothing for an observation without parts.
     pub fn parts(&self) -> impl ExactSizeIterator<Item = (&str, &[usize], &[f32])> {
         self.parts.iter().map(|part| {
             let numbers = self.data.get(part.start..part.start + part.len()).unwrap_or_default();
@@ -95,7 +95,7 @@ impl Observation {
 
 impl Data for Observation {}
 
-/// The array, or the dictionary of arrays, as Python prints it; `{:#}` gives names and shapes.
+/// Writes the array, or the dictionary of arrays, as Python prints it; with `{:#}`, names and shapes.
 impl fmt::Display for Observation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if f.alternate() {
@@ -119,24 +119,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn parts_lie_in_a_row() {
-        let seen = Observation::from_parts([
+    fn parts_are_contiguous() {
+        let observation = Observation::from_parts([
             ("lidar", &[2, 2][..], &[1.0, 2.0, 3.0, 4.0][..]),
             ("goal", &[1], &[0.5]),
         ]);
-        let seen = seen.unwrap();
-        assert_eq!(seen.as_slice(), [1.0, 2.0, 3.0, 4.0, 0.5]);
-        assert_eq!(seen.part("goal"), Some((&[1][..], &[0.5][..])));
-        assert_eq!(seen.part("other"), None);
+        let observation = observation.unwrap();
+        assert_eq!(observation.as_slice(), [1.0, 2.0, 3.0, 4.0, 0.5]);
+        assert_eq!(observation.part("goal"), Some((&[1][..], &[0.5][..])));
+        assert_eq!(observation.part("other"), None);
         assert_eq!(
-            seen.to_string(),
+            observation.to_string(),
             "{'lidar': array([[1., 2.],\n       [3., 4.]], dtype=float32), 'goal': array([0.5], dtype=float32)}"
         );
         assert_eq!(Observation::from_data(vec![0.5, 1.0]).unwrap().to_string(), "[0.5 1. ]");
     }
 
     #[test]
-    fn wrong_parts_are_refused() {
+    fn invalid_parts_are_rejected() {
         assert!(Observation::from_data(vec![]).is_err());
         assert!(Observation::from_parts([]).is_err());
         assert!(Observation::from_parts([("a", &[2][..], &[1.0][..])]).is_err());

@@ -1,4 +1,4 @@
-//! Points in space.
+//! Point clouds.
 
 use std::fmt;
 use std::sync::Arc;
@@ -6,74 +6,74 @@ use std::sync::Arc;
 use crate::data::{Array, Data, write_shape};
 use crate::{Error, Header, Result};
 
-/// Points `[points, channels]`: x, y, z in metres, then reflectance, then colours, as far as they are there.
+/// Points `[points, channels]`: x, y, z in metres, then reflectance and colours if present.
 ///
-/// A cloud without points is a cloud: a lidar may see nothing.
+/// An empty cloud is valid: a lidar may receive no returns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointCloud {
-    /// When and where it was taken.
+    /// Time stamp and coordinate frame.
     pub header: Header,
     array: Array<2>,
 }
 
 impl PointCloud {
-    /// A cloud over `data`, point by point.
+    /// Creates a cloud over `data`, point by point.
     ///
     /// # Errors
-    /// `InvalidInput` when a point has fewer than 3 channels, or `shape` does not ask for exactly as many numbers.
+    /// Returns `InvalidInput` if a point has fewer than 3 channels, or the length of `data` is not the product of `shape`.
     pub fn new(data: impl Into<Arc<Vec<f32>>>, shape: [usize; 2]) -> Result<Self> {
         if shape[1] < 3 {
             return Err(Error::invalid_input(format!(
-                "points of {} channels lie nowhere; give x, y and z first",
+                "points of {} channels have no position; give x, y and z first",
                 shape[1]
             )));
         }
         Ok(Self { header: Header::default(), array: Array::new(data, shape)? })
     }
 
-    /// The same cloud with another header.
+    /// Sets the header.
     #[must_use]
     pub fn with_header(mut self, header: Header) -> Self {
         self.header = header;
         self
     }
 
-    /// The numbers with their shape.
+    /// Returns the array.
     pub fn array(&self) -> &Array<2> {
         &self.array
     }
 
-    /// How many points there are.
+    /// Returns the number of points.
     pub fn len(&self) -> usize {
         self.array.shape()[0]
     }
 
-    /// Whether there is no point.
+    /// Returns whether there are no points.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Numbers a point.
+    /// Returns the number of channels per point.
     pub fn channels(&self) -> usize {
         self.array.shape()[1]
     }
 
-    /// `[points, channels]`.
+    /// Returns `[points, channels]`.
     pub fn shape(&self) -> [usize; 2] {
         self.array.shape()
     }
 
-    /// The numbers, point by point.
+    /// Returns the numbers, point by point.
     pub fn as_slice(&self) -> &[f32] {
         self.array.as_slice()
     }
 
-    /// Each point with all its channels.
+    /// Returns each point with all its channels.
     pub fn points(&self) -> impl ExactSizeIterator<Item = &[f32]> {
         self.as_slice().chunks_exact(self.channels())
     }
 
-    /// The numbers without the header.
+    /// Returns the array without the header.
     pub fn into_array(self) -> Array<2> {
         self.array
     }
@@ -81,7 +81,7 @@ impl PointCloud {
 
 impl Data for PointCloud {}
 
-/// OpenDR's text; `{:#}` gives type and shape.
+/// Writes OpenDR's text; with `{:#}`, type and shape.
 impl fmt::Display for PointCloud {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if f.alternate() {

@@ -1,25 +1,25 @@
-//! Points in space beside a camera.
+//! Point clouds with the calibration to a camera.
 
 use std::fmt;
 
 use crate::Header;
 use crate::data::{Calibration, Data, PointCloud};
 
-/// A cloud with the calibration between lidar and camera.
+/// A point cloud with the calibration between lidar and camera.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointCloudWithCalibration {
-    /// When and where it was taken; that of the cloud does not count.
+    /// Time stamp and coordinate frame; the header of the cloud is ignored.
     pub header: Header,
     /// The points.
     pub cloud: PointCloud,
-    /// Between lidar and camera (OpenDR's `calib`).
+    /// Calibration between lidar and camera (OpenDR's `calib`).
     pub calibration: Calibration,
-    /// `[height, width]` of the camera's picture, pixels.
+    /// `[height, width]` of the camera's image, in pixels.
     pub image_shape: Option<[usize; 2]>,
 }
 
 impl PointCloudWithCalibration {
-    /// The cloud with its calibration; the header is the cloud's.
+    /// Creates the datum; its header is that of the cloud.
     pub fn new(cloud: PointCloud, calibration: Calibration, image_shape: Option<[usize; 2]>) -> Self {
         Self { header: cloud.header.clone(), cloud, calibration, image_shape }
     }
@@ -27,7 +27,7 @@ impl PointCloudWithCalibration {
 
 impl Data for PointCloudWithCalibration {}
 
-/// OpenDR's text; `{:#}` gives type and shape.
+/// Writes OpenDR's text; with `{:#}`, type and shape.
 impl fmt::Display for PointCloudWithCalibration {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if f.alternate() {

@@ -1,10 +1,10 @@
-//! Clips for learners that look at many pictures at once.
+//! Video clips.
 
 use crate::data::array::array_datum;
 
 array_datum! {
-    /// A clip `[channels, time, height, width]`, channels in the order RGB.
+    /// A video clip `[channels, time, height, width]` with RGB channels.
     ///
-    /// A learner that looks at one picture after the other takes [`Image`](crate::data::Image)s instead.
+    /// Learners that process one image at a time take [`Image`](crate::data::Image)s instead.
     Video, 4, "Video is empty"
 }

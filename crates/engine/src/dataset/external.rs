@@ -12,17 +12,17 @@ pub struct ExternalDataset {
 }
 
 impl ExternalDataset {
-    /// The data set of format `dataset_type` at `path`.
+    /// Creates a reference to the data set of format `dataset_type` at `path`.
     pub fn new(path: impl Into<PathBuf>, dataset_type: impl Into<String>) -> Self {
         Self { path: path.into(), dataset_type: dataset_type.into().to_lowercase() }
     }
 
-    /// Its folder or file.
+    /// Returns its folder or file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Its format, in lower case.
+    /// Returns its format, in lower case.
     pub fn dataset_type(&self) -> &str {
         &self.dataset_type
     }

@@ -1,16 +1,16 @@
-//! Samples that pass through a function.
+//! A data set with a function applied to its samples.
 
 use crate::Result;
 use crate::dataset::{Dataset, DatasetIterator, Sample, forward};
 
-/// A data set whose samples pass through a function when they are read (OpenDR's `MappedDatasetIterator`).
+/// A data set that applies a function to each sample when it is read (OpenDR's `MappedDatasetIterator`).
 pub struct MappedDatasetIterator<D, F> {
     original: D,
     map_function: F,
 }
 
 impl<D: DatasetIterator, F: Fn(Sample) -> Result<Sample> + Send + Sync> MappedDatasetIterator<D, F> {
-    /// `map_function` over the samples of `original`.
+    /// Creates a data set of the samples of `original` after `map_function`.
     pub fn new(original: D, map_function: F) -> Self {
         Self { original, map_function }
     }
@@ -32,6 +32,6 @@ impl<D: DatasetIterator, F: Fn(Sample) -> Result<Sample> + Send + Sync> DatasetI
         (self.map_function)(self.original.get(index)?)
     }
 
-    // Not its files and sizes: they are of what the function was given.
+    // Paths and image sizes are not forwarded: they describe the samples before the function.
     forward!(names self, index => self.original, index);
 }

@@ -1,6 +1,7 @@
-//! What learners train on and are measured by.
+//! Data sets for training and evaluation.
 
 mod cached;
+mod dataset_ref;
 mod external;
 mod mapped;
 mod subset;
@@ -8,6 +9,7 @@ mod subset;
 use std::path::PathBuf;
 
 pub use cached::CachedDatasetIterator;
+pub use dataset_ref::DatasetRef;
 pub use external::ExternalDataset;
 pub use mapped::MappedDatasetIterator;
 pub use subset::Subset;
@@ -15,35 +17,35 @@ pub use subset::Subset;
 use crate::target::Classes;
 use crate::{Result, Value};
 
-/// Any data set.
+/// A data set of any kind.
 pub trait Dataset: Send + Sync {}
 
-/// A datum with its annotation.
+/// Inputs with their annotation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sample {
-    /// What the learner is given; several for a learner with several ports, in the order of the ports.
+    /// Inputs of the learner, in the order of its ports.
     pub data: Vec<Value>,
-    /// What it should answer.
+    /// Annotation: the expected prediction.
     pub target: Option<Value>,
 }
 
-/// A data set whose samples can be had one by one, from several threads at once.
+/// A data set with random access to its samples, from several threads at once.
 pub trait DatasetIterator: Dataset {
-    /// How many samples there are.
+    /// Returns the number of samples.
     fn len(&self) -> usize;
 
-    /// Whether there is none.
+    /// Returns whether there are no samples.
     fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Sample number `index`.
+    /// Returns sample `index`.
     ///
     /// # Errors
-    /// `NotFound` past the end; `Format` or `Io` for a sample that cannot be read.
+    /// Returns `NotFound` past the end; `Format` or `Io` if the sample cannot be read.
     fn get(&self, index: usize) -> Result<Sample>;
 
-    /// The target of sample number `index` without its data: no picture is decoded where that can be spared.
+    /// Returns the target of sample `index` without its data; where possible, no image is decoded.
     ///
     /// # Errors
     /// As [`DatasetIterator::get`].
@@ -51,66 +53,45 @@ pub trait DatasetIterator: Dataset {
         Ok(self.get(index)?.target)
     }
 
-    /// What reports call sample number `index`: the path of its file within the data set, or its number.
+    /// Returns the name of sample `index` for reports: the path of its file within the data set, or its index.
     fn name(&self, index: usize) -> String {
         index.to_string()
     }
 
-    /// The file that the first datum of sample number `index` is read from.
+    /// Returns the file of the first datum of sample `index`.
     fn path(&self, _index: usize) -> Option<PathBuf> {
         None
     }
 
-    /// Width and height in pixels of the picture of sample number `index`, where they are known without reading it.
-    fn picture_size(&self, _index: usize) -> Option<[u32; 2]> {
+    /// Returns width and height in pixels of the image of sample `index`, if they are known without reading it.
+    fn image_size(&self, _index: usize) -> Option<[u32; 2]> {
         None
     }
 
-    /// The sequence (video, drive) that sample number `index` is a frame of; `None` when samples have nothing to do with
-    /// each other. Frames of a sequence lie one after the other.
+    /// Returns the sequence (video, drive) that contains sample `index`; `None` if samples are independent. The frames of a
+    /// sequence are consecutive samples.
     fn sequence(&self, _index: usize) -> Option<usize> {
         None
     }
 
-    /// What class numbers in the targets mean.
+    /// Returns the classes of the targets.
     fn classes(&self) -> Classes {
         Classes::default()
     }
 
-    /// The number that the data set's own files give each class, e.g. COCO's category ids; empty when they are the class
-    /// numbers.
+    /// Returns the id of each class in the files of the data set, e.g. COCO's category ids; empty if the ids are the class
+    /// indices.
     fn class_ids(&self) -> Vec<i64> {
         Vec::new()
     }
 
-    /// The number that the data set's own files give sample number `index`, e.g. COCO's picture id.
+    /// Returns the id of sample `index` in the files of the data set, e.g. COCO's image id.
     fn id(&self, _index: usize) -> Option<i64> {
         None
     }
 }
 
-/// A data set as `fit` and `eval` take it.
-#[derive(Clone, Copy)]
-pub enum DatasetRef<'a> {
-    /// On disk, to be read by its format.
-    External(&'a ExternalDataset),
-    /// Samples made by a program.
-    Iterator(&'a dyn DatasetIterator),
-}
-
-impl<'a> From<&'a ExternalDataset> for DatasetRef<'a> {
-    fn from(dataset: &'a ExternalDataset) -> Self {
-        Self::External(dataset)
-    }
-}
-
-impl<'a> From<&'a dyn DatasetIterator> for DatasetRef<'a> {
-    fn from(dataset: &'a dyn DatasetIterator) -> Self {
-        Self::Iterator(dataset)
-    }
-}
-
-/// Hands everything that a wrapper does not change to what it wraps.
+/// Forwards the methods that a wrapper does not change to the wrapped data set.
 macro_rules! forward {
     ($self:ident, $index:ident => $inner:expr, $at:expr) => {
         $crate::dataset::forward!(names $self, $index => $inner, $at);
@@ -119,8 +100,8 @@ macro_rules! forward {
             $inner.path($at)
         }
 
-        fn picture_size(&$self, $index: usize) -> Option<[u32; 2]> {
-            $inner.picture_size($at)
+        fn image_size(&$self, $index: usize) -> Option<[u32; 2]> {
+            $inner.image_size($at)
         }
     };
     (names $self:ident, $index:ident => $inner:expr, $at:expr) => {

@@ -1,23 +1,23 @@
-//! Some samples of a data set, in an order of their own.
+//! A selection of the samples of a data set.
 
 use crate::dataset::{Dataset, DatasetIterator, Sample, forward};
 use crate::{Error, Random, Result, Value};
 
-/// What keeps the random numbers of one use apart from those of another with the same seed.
+/// Parts of the random keys, so that shuffle and split of one seed are independent.
 const SHUFFLE: u64 = 1;
 const SPLIT: u64 = 2;
 
-/// Some samples of a data set, in an order of their own.
+/// A selection of the samples of a data set, in a given order.
 pub struct Subset<D> {
     original: D,
     indices: Vec<usize>,
 }
 
 impl<D: DatasetIterator> Subset<D> {
-    /// The samples of `original` that `indices` name, in that order.
+    /// Creates a subset of the samples `indices` of `original`, in that order.
     ///
     /// # Errors
-    /// `InvalidInput` for an index past the end.
+    /// Returns `InvalidInput` for an index past the end.
     pub fn new(original: D, indices: Vec<usize>) -> Result<Self> {
         let count = original.len();
         match indices.iter().find(|index| **index >= count) {
@@ -26,20 +26,20 @@ impl<D: DatasetIterator> Subset<D> {
         }
     }
 
-    /// The first `count` samples, or all where there are fewer.
+    /// Creates a subset of the first `count` samples, or of all if there are fewer.
     pub fn first(original: D, count: usize) -> Self {
         let indices = (0..original.len().min(count)).collect();
         Self { original, indices }
     }
 
-    /// All samples in a random order that follows from `seed`.
+    /// Creates a random permutation of all samples, determined by `seed`.
     pub fn shuffled(original: D, seed: u64) -> Self {
         let mut indices: Vec<usize> = (0..original.len()).collect();
-        Random::at([seed, SHUFFLE]).shuffle(&mut indices);
+        Random::from_key([seed, SHUFFLE]).shuffle(&mut indices);
         Self { original, indices }
     }
 
-    /// The numbers of the samples in the data set that they are of.
+    /// Returns the indices of the samples in the original data set.
     pub fn indices(&self) -> &[usize] {
         &self.indices
     }
@@ -50,36 +50,36 @@ impl<D: DatasetIterator> Subset<D> {
         self.indices.get(index).copied().ok_or_else(missing)
     }
 
-    /// The number there, or one past the end of whatever the data set has.
+    /// Returns the original index, or an index past the end of any data set.
     fn at_or_none(&self, index: usize) -> usize {
         self.indices.get(index).copied().unwrap_or(usize::MAX)
     }
 }
 
 impl<'a, D: DatasetIterator + ?Sized> Subset<&'a D> {
-    /// Two parts without a sample in common, the first with `share` of the samples, drawn by `seed`; each in the order of the
-    /// data set. Frames of one sequence stay together.
+    /// Splits a data set at random into two disjoint parts, the first with the fraction `share` of the samples. The split is
+    /// determined by `seed`. Each part keeps the order of the data set, and the frames of a sequence stay in one part.
     ///
     /// # Errors
-    /// `InvalidParam` for a share that is not in 0..=1.
+    /// Returns `InvalidParam` if `share` is not in 0..=1.
     pub fn split(original: &'a D, share: f64, seed: u64) -> Result<[Self; 2]> {
         if !(0.0..=1.0).contains(&share) {
             return Err(Error::invalid_param(format!("share = {share} should be in 0..=1")));
         }
-        // The first sample of each group that stays together.
-        let mut begins: Vec<usize> = (0..original.len())
+        // The first sample of each sequence, and samples without one.
+        let mut starts: Vec<usize> = (0..original.len())
             .filter(|at| {
                 let sequence = original.sequence(*at);
                 *at == 0 || sequence.is_none() || sequence != original.sequence(at - 1)
             })
             .collect();
-        begins.push(original.len());
-        let mut groups: Vec<[usize; 2]> = begins.windows(2).map(|ends| [ends[0], ends[1]]).collect();
-        Random::at([seed, SPLIT]).shuffle(&mut groups);
-        let wanted = (share * original.len() as f64).round() as usize;
+        starts.push(original.len());
+        let mut groups: Vec<[usize; 2]> = starts.windows(2).map(|ends| [ends[0], ends[1]]).collect();
+        Random::from_key([seed, SPLIT]).shuffle(&mut groups);
+        let first_len = (share * original.len() as f64).round() as usize;
         let (mut first, mut second) = (Vec::new(), Vec::new());
         for [begin, end] in groups {
-            let part = if first.len() < wanted { &mut first } else { &mut second };
+            let part = if first.len() < first_len { &mut first } else { &mut second };
             part.extend(begin..end);
         }
         first.sort_unstable();

@@ -3,7 +3,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use super::*;
 use crate::target::Category;
 
-/// Sample `n` is of class `n`.
+/// A data set whose sample `n` is of class `n`.
 struct Numbers(usize, AtomicUsize);
 
 impl Dataset for Numbers {}
@@ -41,7 +41,7 @@ fn subsets_keep_names_and_order() {
 }
 
 #[test]
-fn parts_have_nothing_in_common_and_follow_from_the_seed() {
+fn splits_are_disjoint_and_follow_from_the_seed() {
     let numbers = Numbers(10, AtomicUsize::new(0));
     let [train, val] = Subset::split(&numbers, 0.7, 5).unwrap();
     assert_eq!((train.len(), val.len()), (7, 3));

@@ -1,16 +1,16 @@
-//! What acts without having learnt.
+//! Controllers: policies that are not trained.
 
 use crate::Result;
 
-/// Gives an action for an observation: a feedback law, a planner, a person. A closure of observation and action is one.
+/// Computes an action from an observation: a feedback law, a planner, a person. Closures implement it.
 pub trait Controller {
-    /// Forgets the episode; called when another begins.
+    /// Resets the state; called at the start of an episode.
     fn reset(&mut self) {}
 
-    /// Writes the action for an observation.
+    /// Writes the action for an observation into `action`.
     ///
     /// # Errors
-    /// `InvalidInput` for an observation of another space.
+    /// Returns `InvalidInput` for an observation of another space.
     fn act(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()>;
 }
 

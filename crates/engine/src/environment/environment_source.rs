@@ -1,18 +1,18 @@
-//! Where a policy's environments come from.
+//! Factories of environments.
 
 use crate::Result;
 use crate::environment::Environment;
 
-/// Makes environments of one kind, as many as a training wants: an id of a registry, a constructor of a program.
+/// A factory of environments of one kind: an id of a registry, or a constructor.
 pub trait EnvironmentSource: Send + Sync {
-    /// Makes one.
+    /// Creates an environment.
     ///
     /// # Errors
-    /// Those of the environment, and `Unsupported` where no further one can be made.
+    /// Returns errors of the environment, and `Unsupported` if no more can be created.
     fn make(&self) -> Result<Box<dyn Environment>>;
 }
 
-/// A constructor is a source.
+/// Closures that create an environment are sources.
 impl<F: Fn() -> Result<Box<dyn Environment>> + Send + Sync> EnvironmentSource for F {
     fn make(&self) -> Result<Box<dyn Environment>> {
         self()

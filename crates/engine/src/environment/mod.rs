@@ -1,4 +1,4 @@
-//! Worlds that policies act in, with the meaning of Gymnasium 1.x.
+//! Reinforcement-learning environments with the semantics of Gymnasium 1.x.
 
 mod controller;
 mod environment_source;
@@ -17,77 +17,77 @@ pub use snapshot::{Snapshot, StateReader};
 pub use space::{Dtype, Space};
 pub use spec::EnvironmentSpec;
 
-/// What a reset is asked for beside its seed, e.g. `low` and `high` of the initial state.
+/// Options of a reset, e.g. `low` and `high` of the initial state.
 pub type ResetOptions = crate::params::ParamMap;
 
-/// What a step earned and whether the episode is over. The observation lies where the caller wanted it.
+/// Reward and end of a step. The observation is in the buffer of the caller.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Step {
     /// The reward.
     pub reward: f64,
-    /// The task itself ended (goal, crash): no value lies behind this state.
+    /// Whether the task ended (goal, crash); the state after it has no value.
     pub terminated: bool,
-    /// The episode was cut from outside (time limit): the state still has a value.
+    /// Whether the episode was cut (time limit); the state after it still has a value.
     pub truncated: bool,
-    /// What else is known of the step.
+    /// Additional results of the step.
     pub info: Info,
 }
 
 impl Step {
-    /// Whether the next call must be a reset.
+    /// Returns whether the episode is over; the next call must be a reset.
     pub fn is_over(&self) -> bool {
         self.terminated || self.truncated
     }
 }
 
-/// A world: `reset`, then `step` until it is terminated or truncated.
+/// An environment: `reset`, then `step` until it is terminated or truncated.
 ///
-/// Observations and actions are numbers in a row, as their [`Space`] lays them out, in memory of the caller: a step
+/// Observations and actions are flat slices of numbers in the layout of their [`Space`], in buffers of the caller: a step
 /// allocates nothing.
 pub trait Environment: Send {
-    /// Name, spaces, limits.
+    /// Returns name, spaces and limits.
     fn spec(&self) -> &EnvironmentSpec;
 
-    /// Begins an episode and writes its first observation. A seed fixes everything random until the next one; without
-    /// a seed the stream of random numbers goes on (and begins by chance in a new environment).
+    /// Starts an episode and writes its first observation. A seed determines all random numbers until the next seed. Without
+    /// a seed the random generator continues; that of a new environment is seeded at random.
     ///
     /// # Errors
-    /// `InvalidInput` when `observation` has not the space's length, `InvalidParam` for options that do not fit.
+    /// Returns `InvalidInput` if `observation` does not have the length of the space, `InvalidParam` for invalid options.
     fn reset(&mut self, seed: Option<u64>, options: &ResetOptions, observation: &mut [f32]) -> Result<Info>;
 
-    /// Takes one step and writes the next observation.
+    /// Performs one step and writes the next observation.
     ///
     /// # Errors
-    /// `InvalidInput` when the action lies outside its space, before the first reset, and after the end of an episode.
+    /// Returns `InvalidInput` if the action is outside its space, before the first reset, and after the end of an episode.
     fn step(&mut self, action: &[f32], observation: &mut [f32]) -> Result<Step>;
 
-    /// Writes everything that decides the future, random numbers included.
+    /// Writes the complete state, including the random generator.
     ///
     /// # Errors
-    /// `Unsupported` where a world cannot be written.
+    /// Returns `Unsupported` if the environment has no snapshots.
     fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
         let _ = snapshot;
-        Err(Error::unsupported(format!("{} keeps no snapshots", self.spec().id)))
+        Err(Error::unsupported(format!("{} does not support snapshots", self.spec().id)))
     }
 
-    /// Takes back what [`Self::save_state`] wrote, in the same order.
+    /// Reads the state that [`Self::save_state`] wrote, in the same order.
     ///
     /// # Errors
-    /// `Unsupported` where a world cannot be written, `Format` when the snapshot is of something else.
+    /// Returns `Unsupported` if the environment has no snapshots, `Format` if the snapshot does not fit.
     fn load_state(&mut self, state: &mut StateReader<'_>) -> Result<()> {
         let _ = state;
-        Err(Error::unsupported(format!("{} keeps no snapshots", self.spec().id)))
+        Err(Error::unsupported(format!("{} does not support snapshots", self.spec().id)))
     }
 
-    /// A picture of the world as it is, where it can draw itself.
+    /// Returns an image of the current state, if the environment renders.
     ///
     /// # Errors
-    /// `InvalidInput` before the first reset.
+    /// Returns `InvalidInput` before the first reset.
     fn render(&mut self) -> Result<Option<Image>> {
         Ok(None)
     }
 
-    /// The state of now, to come back to: for planning, exact replay, checkpoints.
+    /// Returns a snapshot of the current state: for planning, exact replay and checkpoints.
     ///
     /// # Errors
     /// As [`Self::save_state`].
@@ -97,10 +97,10 @@ pub trait Environment: Send {
         Ok(snapshot)
     }
 
-    /// Goes back to a state: the same actions then have the same outcome, bit for bit.
+    /// Restores a state: the same actions then have the same results, bit for bit.
     ///
     /// # Errors
-    /// `InvalidInput` for a snapshot of another environment, else as [`Self::load_state`]. After an error the
+    /// Returns `InvalidInput` for a snapshot of another environment; otherwise as [`Self::load_state`]. After an error the
     /// environment must be reset.
     fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
         let mut state = snapshot.read(&self.spec().id)?;
@@ -109,7 +109,7 @@ pub trait Environment: Send {
     }
 }
 
-/// A boxed environment is one too, so that wrappers take both.
+/// Boxed environments are environments, so that wrappers accept both.
 impl<E: Environment + ?Sized> Environment for Box<E> {
     fn spec(&self) -> &EnvironmentSpec {
         (**self).spec()

@@ -1,26 +1,26 @@
-//! What is known of an environment before it is used.
+//! Description of an environment.
 
 use super::Space;
 
 /// Name, spaces and limits of an environment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnvironmentSpec {
-    /// Name and version, as in `CartPole-v1`: anything that changes returns gets a new version.
+    /// Name and version, as in `CartPole-v1`: every change that affects returns gets a new version.
     pub id: String,
-    /// What an observation looks like.
+    /// Space of the observations.
     pub observation: Space,
-    /// What an action looks like.
+    /// Space of the actions.
     pub action: Space,
-    /// After so many steps an episode is truncated; `None` is never.
+    /// Number of steps after which an episode is truncated; `None` for no limit.
     pub max_episode_steps: Option<u32>,
-    /// Smallest and largest reward of one step; infinite where it is not known.
+    /// Smallest and largest reward of a step; infinite if unknown.
     pub reward_range: (f64, f64),
-    /// The mean return at which the task counts as solved.
+    /// Mean return at which the task counts as solved.
     pub reward_threshold: Option<f64>,
 }
 
 impl EnvironmentSpec {
-    /// A spec without limits.
+    /// Creates a description without limits.
     pub fn new(id: impl Into<String>, observation: Space, action: Space) -> Self {
         Self {
             id: id.into(),
@@ -32,21 +32,21 @@ impl EnvironmentSpec {
         }
     }
 
-    /// The same with a time limit.
+    /// Sets the time limit.
     #[must_use]
     pub fn with_max_episode_steps(mut self, steps: u32) -> Self {
         self.max_episode_steps = Some(steps);
         self
     }
 
-    /// The same with a range of rewards.
+    /// Sets the range of rewards.
     #[must_use]
     pub fn with_reward_range(mut self, low: f64, high: f64) -> Self {
         self.reward_range = (low, high);
         self
     }
 
-    /// The same with a threshold for "solved".
+    /// Sets the return at which the task counts as solved.
     #[must_use]
     pub fn with_reward_threshold(mut self, threshold: f64) -> Self {
         self.reward_threshold = Some(threshold);

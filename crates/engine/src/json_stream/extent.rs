@@ -1,6 +1,6 @@
-//! Where a JSON value ends, found without parsing it.
+//! Search for the end of a JSON value without parsing it.
 
-/// How far the scan of one value has come; the text may be fed in blocks.
+/// State of the scan of one value; the text may be passed in blocks.
 #[derive(Default)]
 pub(super) struct Extent {
     depth: usize,
@@ -9,7 +9,7 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    /// The end of the value in `block`, the text after what was fed before; `None` when it goes on behind.
+    /// Returns the end of the value in `block`, which follows the previous blocks; `None` if the value continues after it.
     pub(super) fn of(&mut self, block: &[u8]) -> Option<usize> {
         let mut at = 0;
         while let Some(byte) = block.get(at).copied() {
@@ -33,12 +33,12 @@ impl Extent {
         None
     }
 
-    /// Whether the text may end here: only a number or word needs nothing to end it.
+    /// Returns whether the value may end with the text: only numbers and words have no delimiter of their own.
     pub(super) fn may_end(&self) -> bool {
         self.depth == 0 && !self.in_string
     }
 
-    /// Bytes up to and with the closing quotation mark, or all of them.
+    /// Returns the number of bytes up to and including the closing quotation mark, or of all.
     fn string(&mut self, text: &[u8]) -> usize {
         let mut at = 0;
         if self.escaped {

@@ -1,4 +1,4 @@
-//! A value of a JSON text with its place in the file.
+//! A value of a JSON text with its position in the file.
 
 use serde::Deserialize;
 
@@ -7,19 +7,19 @@ use crate::{Error, Result};
 /// The bytes of one JSON value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct JsonPiece<'a> {
-    /// The value as it stands in the file.
+    /// The text of the value.
     pub bytes: &'a [u8],
-    /// Where it begins, in bytes from the start of the file.
+    /// Position of the value in the file, in bytes.
     pub offset: u64,
-    /// The line it begins on, from 1.
+    /// Line on which the value begins, from 1.
     pub line: u64,
 }
 
 impl<'a> JsonPiece<'a> {
-    /// Reads the value.
+    /// Parses the value.
     ///
     /// # Errors
-    /// `Format`, naming line, byte and key: `line 3, byte 120, key "bbox[2]": ...`.
+    /// Returns `Format` with line, byte and key: `line 3, byte 120, key "bbox[2]": ...`.
     pub fn parse<T: Deserialize<'a>>(&self) -> Result<T> {
         serde_json::from_slice(self.bytes).map_err(|error| {
             let text = error.to_string();
@@ -28,7 +28,7 @@ impl<'a> JsonPiece<'a> {
         })
     }
 
-    /// An error at byte `place` of the value: `line 3, byte 120, key "bbox[2]": ...`.
+    /// Creates an error at byte `place` of the value: `line 3, byte 120, key "bbox[2]": ...`.
     pub fn error_at(&self, place: usize, what: &str) -> Error {
         let place = place.min(self.bytes.len());
         let lines = self.bytes[..place].iter().filter(|byte| **byte == b'\n').count();
@@ -38,7 +38,7 @@ impl<'a> JsonPiece<'a> {
         Error::format(format!("line {line}, byte {offset}{key}: {what}"))
     }
 
-    /// The byte of the value that `error` is about.
+    /// Returns the byte of the value at which `error` occurred.
     fn place(&self, error: &serde_json::Error) -> usize {
         let lines = self.bytes.split_inclusive(|byte| *byte == b'\n');
         let before: usize = lines.take(error.line().max(1) - 1).map(<[u8]>::len).sum();
@@ -46,13 +46,13 @@ impl<'a> JsonPiece<'a> {
     }
 }
 
-/// What an open bracket is at.
+/// Current key or index in an open object or array.
 enum Place {
     Key(String),
     Index(usize),
 }
 
-/// The keys that lead to byte `end` of a JSON text: `segmentation[0][3]`.
+/// Returns the path of keys to byte `end` of a JSON text: `segmentation[0][3]`.
 fn path_at(bytes: &[u8], end: usize) -> String {
     let (mut open, mut at) = (Vec::new(), 0);
     while at < end {
@@ -91,7 +91,7 @@ fn path_at(bytes: &[u8], end: usize) -> String {
     path
 }
 
-/// What stands before the closing quotation mark.
+/// Returns the text before the closing quotation mark.
 fn string(text: &[u8]) -> &[u8] {
     let mut escaped = false;
     let length = text.iter().position(|byte| {

@@ -3,7 +3,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::Result;
 
-/// Hands out `step` bytes at a time, so that every token is cut somewhere.
+/// A reader that returns `step` bytes at a time, so that every token is split somewhere.
 struct Slow<'a>(&'a [u8], usize);
 
 impl Read for Slow<'_> {
@@ -15,7 +15,7 @@ impl Read for Slow<'_> {
     }
 }
 
-/// Every element of every array under the keys of the object, with its offset and line.
+/// Returns every element of every array under the keys of the object, with its offset and line.
 fn elements(text: &[u8], step: usize) -> Result<Vec<(String, String, u64, u64)>> {
     let mut json = JsonStream::new(Slow(text, step));
     let mut found = Vec::new();
@@ -37,7 +37,7 @@ fn elements(text: &[u8], step: usize) -> Result<Vec<(String, String, u64, u64)>>
 }
 
 #[test]
-fn elements_have_their_places() {
+fn elements_have_offsets_and_lines() {
     let text = "\u{feff}{ \"-info\": {\"a]}\\\"\": [1, 2]},\n \"a\" : [ {\"x\": \"}\\\\\"} ,\n-1.5e3,null, \"],\" ], \"-b\":7,\"c\":[[],\n[[1]]]}\n";
     for step in 1..40 {
         let found = elements(text.as_bytes(), step).unwrap();
@@ -53,7 +53,7 @@ fn elements_have_their_places() {
 }
 
 #[test]
-fn errors_name_the_place() {
+fn errors_state_the_position() {
     let message = |text: &[u8]| elements(text, 3).unwrap_err().to_string();
     assert_eq!(message(b"[1]"), "line 1, byte 0: expected an object, found '['");
     assert_eq!(message(b"{\"a\": [1\n 2]}"), "line 2, byte 10: expected \",\" or ']', found '2'");
@@ -62,14 +62,17 @@ fn errors_name_the_place() {
     assert_eq!(message(b"{\"a\" []}"), "line 1, byte 5: expected \":\" after a key, found '['");
     assert_eq!(message(b"{\"a\": []} x"), "line 1, byte 10: expected the end of the file, found 'x'");
     let truncated = message(b"{\"a\": [{\"b\": [1, 2], \"c");
-    assert_eq!(truncated, "line 1, byte 7: the file ends inside the value that begins here; get it again");
+    assert_eq!(
+        truncated,
+        "line 1, byte 7: the file ends inside the value that begins here; copy or download it again"
+    );
     assert!(message(b"{\"a\": [1,").contains("the file ends where a value is expected"), "{truncated}");
     assert!(message(b"\xff\xfe{\0").contains("UTF-16"));
     assert!(message(b"").contains("the file ends where an object is expected"));
 }
 
 #[test]
-fn parse_errors_name_the_key() {
+fn parse_errors_state_the_key() {
     #[derive(Debug, serde::Deserialize)]
     #[allow(dead_code)]
     struct Record {
@@ -91,7 +94,7 @@ fn parse_errors_name_the_key() {
 }
 
 #[test]
-fn long_values_are_refused_or_passed_over() {
+fn long_values_are_rejected_or_skipped() {
     let long =
         format!("{{\"-a\": \"{0}\", \"b\": [\"{0}\"]}}", "x".repeat(JsonStream::<&[u8]>::MAX_VALUE + 9));
     let error = elements(long.as_bytes(), BLOCK).map(|found| found.len()).unwrap_err().to_string();
@@ -100,12 +103,12 @@ fn long_values_are_refused_or_passed_over() {
 
 proptest! {
     #[test]
-    fn any_bytes_are_refused_or_read(bytes in proptest::collection::vec(any::<u8>(), 0..60), step in 1usize..9) {
+    fn any_bytes_are_rejected_or_read(bytes in proptest::collection::vec(any::<u8>(), 0..60), step in 1usize..9) {
         let _ = elements(&bytes, step);
     }
 
     #[test]
-    fn mutated_text_is_refused_or_read(at in 0usize..66, byte in any::<u8>(), step in 1usize..9) {
+    fn mutated_text_is_rejected_or_read(at in 0usize..66, byte in any::<u8>(), step in 1usize..9) {
         let mut text = br#"{"-info": {"x": [1, "\"]"]}, "a": [{"b": "c\\"}, [1.5], null, -2]}"#.to_vec();
         let length = text.len();
         text[at % length] = byte;

@@ -1,4 +1,4 @@
-//! Learners that say how to move to see better.
+//! Learners for active perception.
 
 use crate::dataset::DatasetRef;
 use crate::environment::Environment;
@@ -7,16 +7,16 @@ use crate::model::Model;
 use crate::params::Params;
 use crate::{Result, Statistics};
 
-/// A perception learner whose targets carry an [`crate::target::Action`], trained on a data set and in an environment
-/// at once (the paper's `LearnerActive`).
+/// A perception learner whose targets contain a camera motion ([`crate::target::Action`]). It trains on a data set and in
+/// an environment together (the paper's `LearnerActive`).
 pub trait LearnerActive: Learner {
-    /// What a user may set of the training.
+    /// Parameters of the training.
     type FitParams: Params;
 
-    /// Trains perception on `dataset` and movement in `env`, and writes a container into [`FitJob::model`].
+    /// Trains perception on `dataset` and motion in `env`, and writes a container to [`FitJob::model`].
     ///
     /// # Errors
-    /// `InvalidInput` when data set or environment do not fit.
+    /// Returns `InvalidInput` if the data set or the environment does not fit the learner.
     fn fit(
         base: Option<&Model>,
         params: &Self::Params,
@@ -26,7 +26,7 @@ pub trait LearnerActive: Learner {
         job: &FitJob<'_>,
     ) -> Result<Statistics>;
 
-    /// The task's metrics with and without movement.
+    /// Returns the metrics of the task, with and without motion.
     ///
     /// # Errors
     /// As [`Learner::infer_into`].

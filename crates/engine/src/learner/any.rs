@@ -1,4 +1,4 @@
-//! Learners without their types: what surfaces hold.
+//! Type-erased learners, for the surfaces.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use crate::params::{ParamMap, ParamValue, Params};
 use crate::target::Classes;
 use crate::{Device, Error, Result, Statistics};
 
-/// A [`Handle`] of any learner: one dispatch per call, values by name.
+/// A [`Handle`] of any learner: one dynamic call per method, inputs and outputs by name.
 pub trait AnyLearner: Send {
     /// Loads a model container.
     ///
@@ -19,31 +19,31 @@ pub trait AnyLearner: Send {
     /// As [`Handle::load`].
     fn load(&mut self, path: &Path) -> Result<()>;
 
-    /// Writes a model container.
+    /// Writes the model as a container.
     ///
     /// # Errors
     /// As [`Handle::save`].
     fn save(&self, path: &Path) -> Result<()>;
 
-    /// Whether a model is loaded.
+    /// Returns whether a model is loaded.
     fn is_ready(&self) -> bool;
 
-    /// Answers named ports on the learner's own stream.
+    /// Predicts from named inputs, on the learner's own stream.
     ///
     /// # Errors
     /// As [`Stream::infer_ports`].
     fn infer(&mut self, ports: &Ports<'_>) -> Result<Outputs>;
 
-    /// Takes the next piece of the own stream; `None` ends the stream.
+    /// Processes the next piece of the own stream and passes each completed prediction to `emit`; `None` ends the stream.
     ///
     /// # Errors
-    /// `Unsupported` when the learner takes no pieces.
+    /// Returns `Unsupported` if the learner does not stream.
     fn push(&mut self, piece: Option<&Ports<'_>>, emit: &mut dyn FnMut(Outputs)) -> Result<()>;
 
-    /// Trains, and loads the result.
+    /// Trains on a data set, and loads the trained model.
     ///
     /// # Errors
-    /// `Unsupported` when the learner does not train.
+    /// Returns `Unsupported` if the learner does not train.
     fn fit(
         &mut self,
         fit_params: &ParamMap,
@@ -52,10 +52,10 @@ pub trait AnyLearner: Send {
         job: &FitJob<'_>,
     ) -> Result<Statistics>;
 
-    /// Trains in environments, and loads the result.
+    /// Trains in environments, and loads the trained model.
     ///
     /// # Errors
-    /// `Unsupported` when the learner is no policy that trains.
+    /// Returns `Unsupported` if the learner is not a policy that trains.
     fn fit_in(
         &mut self,
         fit_params: &ParamMap,
@@ -67,24 +67,24 @@ pub trait AnyLearner: Send {
         Err(Error::unsupported("this learner cannot fit in an environment"))
     }
 
-    /// Forgets what the own stream remembers.
+    /// Resets the state of the own stream.
     fn reset(&mut self);
 
-    /// A stream of its own for another camera, topic or thread.
+    /// Creates another stream, for another camera, topic or thread.
     ///
     /// # Errors
-    /// `NotFound` when nothing is loaded.
+    /// Returns `NotFound` if no model is loaded.
     fn stream(&self) -> Result<Box<dyn AnyStream>>;
 
-    /// The container that is loaded.
+    /// Returns the loaded container.
     fn model(&self) -> Option<&Model> {
         None
     }
 
-    /// The parameters.
+    /// Returns the parameters.
     fn params(&self) -> ParamMap;
 
-    /// What a parameter is where nobody sets it.
+    /// Returns the default of a parameter.
     fn default_of(&self, name: &str) -> Option<ParamValue>;
 
     /// Sets a parameter.
@@ -93,31 +93,31 @@ pub trait AnyLearner: Send {
     /// As [`Handle::set`].
     fn set(&mut self, name: &str, value: ParamValue) -> Result<()>;
 
-    /// What class numbers mean.
+    /// Returns the classes that the learner predicts.
     fn classes(&self) -> Classes;
 
-    /// The device asked for.
+    /// Returns the requested device.
     fn device(&self) -> Device;
 
-    /// What it can do besides `infer`.
+    /// Returns the optional capabilities of the learner.
     fn capabilities(&self) -> Capabilities;
 }
 
 /// A [`Stream`] of any learner.
 pub trait AnyStream: Send {
-    /// Answers named ports.
+    /// Predicts from named inputs.
     ///
     /// # Errors
     /// As [`Stream::infer_ports`].
     fn infer(&mut self, ports: &Ports<'_>) -> Result<Outputs>;
 
-    /// Takes the next piece; `None` ends the stream.
+    /// Processes the next piece and passes each completed prediction to `emit`; `None` ends the stream.
     ///
     /// # Errors
-    /// `Unsupported` when the learner takes no pieces.
+    /// Returns `Unsupported` if the learner does not stream.
     fn push(&mut self, piece: Option<&Ports<'_>>, emit: &mut dyn FnMut(Outputs)) -> Result<()>;
 
-    /// Forgets everything.
+    /// Resets the state.
     fn reset(&mut self);
 }
 
@@ -157,7 +157,7 @@ impl<L: Learner> AnyLearner for Typed<L> {
     }
 
     fn push(&mut self, piece: Option<&Ports<'_>>, emit: &mut dyn FnMut(Outputs)) -> Result<()> {
-        let push = self.abilities.push.ok_or_else(|| cannot::<L>("take its input in pieces"))?;
+        let push = self.abilities.push.ok_or_else(|| cannot::<L>("process its input in pieces"))?;
         push(self.handle.own_stream()?, piece, emit)
     }
 
@@ -228,7 +228,7 @@ impl<L: Learner> AnyStream for TypedStream<L> {
     }
 
     fn push(&mut self, piece: Option<&Ports<'_>>, emit: &mut dyn FnMut(Outputs)) -> Result<()> {
-        let push = self.push.ok_or_else(|| cannot::<L>("take its input in pieces"))?;
+        let push = self.push.ok_or_else(|| cannot::<L>("process its input in pieces"))?;
         push(&mut self.stream, piece, emit)
     }
 

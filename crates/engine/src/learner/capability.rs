@@ -1,4 +1,4 @@
-//! What a learner can do besides `infer`, found out by the compiler.
+//! Optional capabilities of learners, detected at compile time.
 
 use std::marker::PhantomData;
 
@@ -8,14 +8,14 @@ use crate::learner::{Fit, FitJob, Handle, Learner, LearnerRl, Outputs, Ports, St
 use crate::params::{Field, ParamMap, Params};
 use crate::{Result, Statistics};
 
-/// What a learner can do besides `infer`; surfaces show it and refuse the rest as `Unsupported`.
+/// Optional capabilities of a learner. A call of a missing one returns `Unsupported`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Capabilities {
-    /// `fit` trains it on a data set.
+    /// Whether `fit` trains on a data set.
     pub fit: bool,
-    /// `fit` trains it in an environment.
+    /// Whether `fit_in` trains in an environment.
     pub fit_in: bool,
-    /// `push` and `flush` take its input in pieces.
+    /// Whether `push` and `flush` process the input in pieces.
     pub streaming: bool,
 }
 
@@ -30,7 +30,7 @@ pub(crate) type FitInFn<L> = fn(
     &FitJob<'_>,
 ) -> Result<Statistics>;
 
-/// The optional abilities of `L` as plain functions.
+/// The optional capabilities of `L` as plain functions.
 #[doc(hidden)]
 pub struct Abilities<L: Learner> {
     pub(crate) push: Option<PushFn<L>>,
@@ -55,18 +55,18 @@ impl<L: Learner> Abilities<L> {
         }
     }
 
-    /// What a user may set of the training.
+    /// Returns the parameters of the training.
     pub(crate) fn fit_fields(&self) -> &'static [Field] {
         let fields = self.fit.map(|(_, fields)| fields);
         fields.or(self.fit_in.map(|(_, fields)| fields)).unwrap_or(&[])
     }
 }
 
-/// Asks the compiler whether `L` implements an optional trait.
+/// Detects whether `L` implements an optional trait.
 ///
-/// `(&Probe::<L>::new()).push()` finds [`ProbeStreaming`] when `L: Streaming`, and else, one reference further,
-/// [`ProbeFallback`]. It works because `learners!` names concrete types; so a learner says what it can do by
-/// implementing a trait and nowhere else.
+/// `(&Probe::<L>::new()).push()` resolves to [`ProbeStreaming`] if `L: Streaming`, and otherwise, one reference further,
+/// to [`ProbeFallback`]. This needs the concrete types that `learners!` names. A learner therefore declares a capability
+/// by implementing the trait and nowhere else.
 #[doc(hidden)]
 pub struct Probe<L>(PhantomData<L>);
 

@@ -1,5 +1,5 @@
-//! A test-only learner with two ports, an init port, `State`, two outputs, pieces and training. It finds nothing; it
-//! counts. Every surface is tested with it (feature `test-learner`).
+//! A learner for tests, with two ports, an init port, state, two outputs, streaming and training. It counts boxes. The
+//! tests of every surface use it (feature `test-learner`).
 
 use std::fs;
 use std::path::Path;
@@ -12,62 +12,62 @@ use crate::params::{ParamMap, Params};
 use crate::target::{BoundingBox, BoundingBoxList, PoseList};
 use crate::{Device, Error, Result, ResultExt, Statistics, Task, Unit, Value};
 
-/// The only file of its container: one byte, where counting begins.
+/// The only file of its container: one byte, the initial count.
 const BIAS: &str = "bias.bin";
-/// The file in a training's folder from which it resumes: the loss of each epoch so far.
+/// Checkpoint file of a training: the loss of each epoch so far.
 const CHECKPOINT: &str = "checkpoint.json";
 
-/// What a user may set.
+/// Parameters of [`Counter`].
 #[derive(Debug, Clone, Params)]
 pub struct CounterParams {
     /// Boxes below this score are dropped.
     #[param(default = 0.5, range = 0.0..=1.0, live)]
     pub threshold: f32,
-    /// What the count is multiplied with.
+    /// Factor of the count.
     #[param(default = 2, range = 1..=9)]
     pub factor: i64,
 }
 
-/// How it trains.
+/// Training parameters of [`Counter`].
 #[derive(Debug, Clone, Params)]
 pub struct CounterFitParams {
-    /// How often the data set is read.
+    /// Number of passes over the data set.
     #[param(default = 1, range = 1..=100, alias = "iters")]
     pub epochs: usize,
-    /// What the loss is multiplied with.
+    /// Factor of the loss.
     #[param(default = 1.0, range = 0.0..=10.0)]
     pub lr: f64,
 }
 
-/// A picture and the boxes to count.
+/// Inputs of [`Counter`].
 #[derive(Inputs)]
 pub struct CounterInputs<'a> {
-    /// A picture.
+    /// An image.
     pub image: &'a Image,
-    /// What was found in it.
+    /// The detections to count.
     pub detections: &'a BoundingBoxList,
-    /// Where to begin.
+    /// Boxes whose number is the initial count.
     #[port(init)]
     pub first: Option<&'a BoundingBoxList>,
 }
 
-/// The count.
+/// Outputs of [`Counter`].
 #[derive(Default, Targets)]
 pub struct CounterTargets {
     /// One box whose left edge is the count.
     pub count: BoundingBoxList,
-    /// Nothing.
+    /// An empty list.
     pub poses: PoseList,
 }
 
-/// What was counted so far.
+/// State of a stream: the initial count and the number of boxes so far.
 #[derive(Default)]
 pub struct CounterState {
     begin: f32,
-    seen: usize,
+    total: usize,
 }
 
-/// Counts the boxes that it is given.
+/// A learner that counts the boxes of its input.
 pub struct Counter {
     params: CounterParams,
     bias: f32,
@@ -106,8 +106,8 @@ impl Learner for Counter {
             state.begin = first.boxes.len() as f32;
         }
         let boxes = input.detections.boxes.iter();
-        state.seen += boxes.filter(|found| found.confidence >= self.params.threshold).count();
-        let count = state.begin + self.bias + state.seen as f32 * self.params.factor as f32;
+        state.total += boxes.filter(|detection| detection.confidence >= self.params.threshold).count();
+        let count = state.begin + self.bias + state.total as f32 * self.params.factor as f32;
         target.count.boxes.clear();
         target.count.boxes.push(BoundingBox::new(0, count, input.image.width() as f32, 1.0, 1.0, 1.0));
         Ok(())
@@ -123,7 +123,7 @@ impl Streaming for Counter {
     ) -> Result<()> {
         let mut target = CounterTargets::default();
         self.infer_into(state, piece, &mut target)?;
-        if state.seen.is_multiple_of(2) {
+        if state.total.is_multiple_of(2) {
             emit(target);
         }
         Ok(())
@@ -131,7 +131,7 @@ impl Streaming for Counter {
 
     fn flush(&self, state: &mut CounterState, emit: &mut dyn FnMut(CounterTargets)) -> Result<()> {
         let mut target = CounterTargets::default();
-        target.count.boxes.push(BoundingBox::new(0, state.seen as f32, 0.0, 0.0, 0.0, 0.0));
+        target.count.boxes.push(BoundingBox::new(0, state.total as f32, 0.0, 0.0, 0.0, 0.0));
         emit(target);
         Ok(())
     }
@@ -155,7 +155,7 @@ impl Fit for Counter {
         let steps = (fit_params.epochs * dataset.len()) as u64;
         job.progress.begin("training", Some(steps), Unit::Items);
         while losses.len() < fit_params.epochs {
-            let Some(boxes) = boxes_a_sample(dataset, job)? else { break };
+            let Some(boxes) = mean_boxes(dataset, job)? else { break };
             losses.push(boxes * fit_params.lr);
             job.progress.status(&format!("loss {boxes:.2}"));
             fs::create_dir_all(job.output)?;
@@ -164,7 +164,7 @@ impl Fit for Counter {
         job.progress.end();
         let mut statistics = Statistics::default();
         if let Some(val_dataset) = val_dataset
-            && let Some(boxes) = boxes_a_sample(val_dataset, job)?
+            && let Some(boxes) = mean_boxes(val_dataset, job)?
         {
             statistics.push("val_boxes", boxes);
         }
@@ -178,18 +178,18 @@ impl Fit for Counter {
 fn samples(dataset: DatasetRef<'_>) -> Result<&dyn DatasetIterator> {
     match dataset {
         DatasetRef::Iterator(dataset) => Ok(dataset),
-        DatasetRef::External(_) => Err(Error::invalid_input("a counter trains on samples only")),
+        DatasetRef::External(_) => Err(Error::invalid_input("a counter trains on a DatasetIterator only")),
     }
 }
 
-/// The mean number of boxes in the targets; `None` when the user stopped it.
-fn boxes_a_sample(dataset: &dyn DatasetIterator, job: &FitJob<'_>) -> Result<Option<f64>> {
+/// Returns the mean number of boxes per sample; `None` if the user stopped the training.
+fn mean_boxes(dataset: &dyn DatasetIterator, job: &FitJob<'_>) -> Result<Option<f64>> {
     let mut boxes = 0;
-    for at in 0..dataset.len() {
+    for index in 0..dataset.len() {
         if job.progress.stopped() {
             return Ok(None);
         }
-        boxes += match dataset.target(at)? {
+        boxes += match dataset.target(index)? {
             Some(Value::BoundingBoxList(list)) => list.boxes.len(),
             _ => 0,
         };
@@ -205,11 +205,11 @@ fn read_checkpoint(path: &Path) -> Result<Vec<f64>> {
     let context = || format!("reading {}", path.display());
     let text = fs::read_to_string(path).context(context)?;
     serde_json::from_str(&text)
-        .map_err(|error| Error::format("no list of numbers").with_source(error))
+        .map_err(|error| Error::format("not a list of numbers").with_source(error))
         .context(context)
 }
 
-/// Writes a container of the learner to `folder`: counting begins at `bias`, `params` replace defaults.
+/// Writes a container of the learner to `folder`, with the initial count `bias` and parameters `params`.
 ///
 /// # Errors
 /// As [`ModelWriter`].

@@ -1,4 +1,4 @@
-//! Learners that train.
+//! Training of learners on data sets.
 
 use std::path::{Path, PathBuf};
 
@@ -8,25 +8,25 @@ use crate::model::Model;
 use crate::params::Params;
 use crate::{Device, Progress, Result, Silent, Statistics};
 
-/// Where a training writes and to whom it reports.
+/// Output folder, device and progress of a training.
 #[derive(Clone, Copy)]
 pub struct FitJob<'a> {
-    /// The folder of the checkpoints and, in [`FitJob::model`], of the trained container.
+    /// Folder of the checkpoints and, in [`FitJob::model`], of the trained container.
     pub output: &'a Path,
-    /// Whether to go on from the last checkpoint in `output`, where there is one.
+    /// Whether to resume from the last checkpoint in `output`, if there is one.
     pub resume: bool,
-    /// The folder of event files and curves; `None` writes none (the paper's `logging_path`).
+    /// Folder of event files and curves; `None` writes none (the paper's `logging_path`).
     pub logging_path: Option<&'a Path>,
-    /// Where to train.
+    /// Device of the training.
     pub device: Device,
-    /// Whether samples that cannot be read are left out and told of, instead of ending the training.
+    /// Whether unreadable samples are skipped with a note; otherwise they end the training.
     pub skip_broken: bool,
-    /// To whom to report; it also says when the user wants to stop.
+    /// Receiver of the progress; it also reports whether the user stops the training.
     pub progress: &'a dyn Progress,
 }
 
 impl<'a> FitJob<'a> {
-    /// A silent job on the best device that writes to `output`.
+    /// Creates a job without progress, on the best device, that writes to `output`.
     pub fn new(output: &'a Path) -> Self {
         Self {
             output,
@@ -38,7 +38,7 @@ impl<'a> FitJob<'a> {
         }
     }
 
-    /// Where the trained container is written.
+    /// Returns the path of the trained container.
     pub fn model(&self) -> PathBuf {
         self.output.join("model")
     }
@@ -46,13 +46,13 @@ impl<'a> FitJob<'a> {
 
 /// A learner that trains on a data set.
 pub trait Fit: Learner {
-    /// What a user may set of the training: rate, epochs, batch size.
+    /// Parameters of the training: learning rate, epochs, batch size.
     type FitParams: Params;
 
-    /// Trains, from `base` where one is given, and writes the trained model as a container into [`FitJob::model`].
+    /// Trains, from `base` if it is given, and writes the trained model as a container to [`FitJob::model`].
     ///
     /// # Errors
-    /// `InvalidInput` when the data set does not fit the task; `Io` when nothing can be written.
+    /// Returns `InvalidInput` if the data set does not fit the task, `Io` if writing fails.
     fn fit(
         base: Option<&Model>,
         params: &Self::Params,
@@ -64,8 +64,8 @@ pub trait Fit: Learner {
 }
 
 impl<L: Fit> Handle<L> {
-    /// Trains, starting from the loaded model where there is one, and loads the result; when the user stopped it before
-    /// there was one, the handle is as it was.
+    /// Trains, starting from the loaded model if there is one, and loads the trained model. A training that the user stops
+    /// before it wrote a model leaves the handle unchanged.
     ///
     /// # Errors
     /// As [`Fit::fit`].
@@ -84,7 +84,7 @@ impl<L: Fit> Handle<L> {
 }
 
 impl<L: Learner> Handle<L> {
-    /// Loads what a training wrote; a training that was stopped may have written nothing.
+    /// Loads the model of a training; a stopped training may have written none.
     pub(super) fn load_trained(&mut self, job: &FitJob<'_>) -> Result<()> {
         let model = job.model();
         if model.exists() || !job.progress.stopped() { self.load(model) } else { Ok(()) }

@@ -1,4 +1,4 @@
-//! What users hold: empty after construction, ready after `load`.
+//! A learner as users hold it.
 
 use std::path::Path;
 use std::sync::{Arc, PoisonError, RwLock};
@@ -9,9 +9,9 @@ use crate::params::{ParamValue, Params};
 use crate::target::Classes;
 use crate::{Device, Error, Result, ResultExt};
 
-/// A learner through its life: empty after construction, ready after [`Handle::load`].
+/// A learner with its parameters, device and model: empty after construction, ready after [`Handle::load`].
 ///
-/// It has one stream of its own; [`Handle::stream`] gives more.
+/// It has one stream; [`Handle::stream`] creates more.
 pub struct Handle<L: Learner> {
     params: L::Params,
     device: Device,
@@ -24,10 +24,10 @@ struct Ready<L: Learner> {
 }
 
 impl<L: Learner> Handle<L> {
-    /// An empty handle.
+    /// Creates an empty handle.
     ///
     /// # Errors
-    /// `InvalidParam` when a parameter is out of range, or `OPENDR_DEVICE` names no device.
+    /// Returns `InvalidParam` if a parameter is out of range or `OPENDR_DEVICE` names no device.
     pub fn new(params: L::Params, device: Device) -> Result<Self> {
         params.check()?;
         Ok(Self { params, device: device.or_environment()?, ready: None })
@@ -35,16 +35,16 @@ impl<L: Learner> Handle<L> {
 
     /// Loads a model container (a folder, its `model.json`, or a zip).
     ///
-    /// Parameters that the container states replace those that still have their default.
+    /// Parameters of the container replace those that still have their default.
     ///
     /// # Errors
-    /// `NotFound`, `Format` or `Integrity` for a container that is missing, of another learner, or damaged.
+    /// Returns `NotFound`, `Format` or `Integrity` if the container is missing, damaged, or of another learner.
     pub fn load(&mut self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
         self.load_model(Model::open(path).context(|| format!("loading {}", L::SPEC.name))?)
     }
 
-    /// Loads an opened container.
+    /// Loads a container that is open already.
     ///
     /// # Errors
     /// As [`Handle::load`].
@@ -65,10 +65,10 @@ impl<L: Learner> Handle<L> {
         Ok(())
     }
 
-    /// Writes the model with the parameters in force as a container to the folder `path`.
+    /// Writes the model with the current parameters as a container to the folder `path`.
     ///
     /// # Errors
-    /// `NotFound` when nothing is loaded; `Io` when the folder cannot be written.
+    /// Returns `NotFound` if no model is loaded, `Io` if the folder cannot be written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         let model = &self.ready()?.model;
         let manifest =
@@ -81,20 +81,20 @@ impl<L: Learner> Handle<L> {
         Ok(())
     }
 
-    /// Whether a model is loaded.
+    /// Returns whether a model is loaded.
     pub fn is_ready(&self) -> bool {
         self.ready.is_some()
     }
 
-    /// Answers `input` on the handle's own stream.
+    /// Returns the prediction for `input`, on the handle's own stream.
     ///
     /// # Errors
-    /// `NotFound` when nothing is loaded, else as [`Learner::infer_into`].
+    /// Returns `NotFound` if no model is loaded; otherwise as [`Learner::infer_into`].
     pub fn infer(&mut self, input: L::Input<'_>) -> Result<L::Target> {
         self.own_stream()?.infer(input)
     }
 
-    /// Answers `target` to `input` on the handle's own stream; memory of `target` is used again.
+    /// Writes the prediction for `input` into `target`, on the handle's own stream; the memory of `target` is reused.
     ///
     /// # Errors
     /// As [`Handle::infer`].
@@ -102,7 +102,7 @@ impl<L: Learner> Handle<L> {
         self.own_stream()?.infer_into(input, target)
     }
 
-    /// Answers several inputs in order on the handle's own stream.
+    /// Returns the predictions for several inputs in order, on the handle's own stream.
     ///
     /// # Errors
     /// As [`Handle::infer`].
@@ -110,44 +110,45 @@ impl<L: Learner> Handle<L> {
         self.own_stream()?.infer_batch(inputs)
     }
 
-    /// A stream of its own, for another camera, topic or thread.
+    /// Creates another stream, for another camera, topic or thread.
     ///
     /// # Errors
-    /// `NotFound` when nothing is loaded.
+    /// Returns `NotFound` if no model is loaded.
     pub fn stream(&self) -> Result<Stream<L>> {
         Ok(Stream::new(self.ready()?.stream.learner().clone()))
     }
 
-    /// Forgets what the handle's own stream remembers.
+    /// Resets the state of the handle's own stream.
     pub fn reset(&mut self) {
         if let Some(ready) = &mut self.ready {
             ready.stream.reset();
         }
     }
 
-    /// The parameters.
+    /// Returns the parameters.
     pub fn params(&self) -> &L::Params {
         &self.params
     }
 
-    /// What a parameter is where nobody sets it: what the loaded model states, otherwise the learner's own default.
+    /// Returns the default of a parameter: that of the loaded model, otherwise that of the learner.
     pub fn default_of(&self, name: &str) -> Option<ParamValue> {
-        let field = L::Params::FIELDS.iter().find(|field| field.name == name)?;
-        let stated = self.model().and_then(|model| model.params().get(name));
+        let field = L::Params::FIELDS.iter().find(|field| field.is_called(name))?;
+        let mut names = std::iter::once(&field.name).chain(field.former);
+        let stated = self.model().and_then(|model| names.find_map(|name| model.params().get(*name)));
         Some(stated.cloned().unwrap_or_else(|| field.default.value()))
     }
 
-    /// The device asked for.
+    /// Returns the requested device.
     pub fn device(&self) -> Device {
         self.device
     }
 
-    /// The container that is loaded.
+    /// Returns the loaded container.
     pub fn model(&self) -> Option<&Model> {
         self.ready.as_ref().map(|ready| &ready.model)
     }
 
-    /// What class numbers mean; empty before `load`.
+    /// Returns the classes that the learner predicts; empty before `load`.
     pub fn classes(&self) -> Classes {
         match &self.ready {
             Some(ready) => ready.stream.learner().read().unwrap_or_else(PoisonError::into_inner).classes(),
@@ -155,15 +156,16 @@ impl<L: Learner> Handle<L> {
         }
     }
 
-    /// Sets a parameter; on a loaded learner only one that is `live`. Every stream sees it with its next call.
+    /// Sets a parameter. While a model is loaded, only `live` parameters can be set; every stream uses the new value from
+    /// its next call.
     ///
     /// # Errors
-    /// `InvalidParam` when it is unknown, of another type, out of range, or not live.
+    /// Returns `InvalidParam` if the parameter is unknown, of another type, out of range, or not live.
     pub fn set(&mut self, name: &str, value: ParamValue) -> Result<()> {
         let mut params = self.params.clone();
         params.set(name, value)?;
         if let Some(ready) = &self.ready {
-            if L::Params::FIELDS.iter().any(|field| field.name == name && !field.live) {
+            if L::Params::FIELDS.iter().any(|field| field.is_called(name) && !field.live) {
                 return Err(Error::invalid_param(format!(
                     "{name} cannot change while a model is loaded; set it on a new {} and load again",
                     L::SPEC.class
@@ -188,7 +190,7 @@ impl<L: Learner> Handle<L> {
     }
 }
 
-/// The error of a handle without a model: it names the three ways out.
+/// Returns the error of a handle without a model; its message names the three ways to get one.
 #[cold]
 pub fn empty_learner(class: &str) -> Error {
     Error::not_found(format!(

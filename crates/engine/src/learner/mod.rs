@@ -1,7 +1,7 @@
-//! The life cycle of every algorithm: construct, then `download`, `load` or `fit`, then `infer`.
+//! Learners: construction, then `download`, `load` or `fit`, then `infer`.
 //!
-//! An algorithm implements [`Learner`], and [`Fit`], [`Streaming`], [`LearnerRl`] or [`LearnerActive`] where it can;
-//! users hold a [`Handle`], surfaces an [`AnyLearner`] made by the [`Registry`].
+//! An algorithm implements [`Learner`], and [`Fit`], [`Streaming`], [`LearnerRl`] or [`LearnerActive`] if it can. Users
+//! hold a [`Handle`]; surfaces hold an [`AnyLearner`] from the [`Registry`].
 
 mod active;
 mod any;
@@ -41,45 +41,46 @@ use crate::params::Params;
 use crate::target::Classes;
 use crate::{Device, Result};
 
-/// An algorithm that answers targets to data.
+/// An algorithm that predicts targets from data.
 ///
-/// The learner itself never changes while it infers: what one stream (camera, topic, thread) remembers is its
-/// [`Learner::State`], so one learner serves many streams at once.
+/// A learner does not change during inference. Each stream (camera, topic, thread) has its own [`Learner::State`], so one
+/// learner serves many streams at once.
 pub trait Learner: Sized + Send + Sync + 'static {
-    /// Name, task, class.
+    /// Name, task and class name.
     const SPEC: Spec;
-    /// What a user may set.
+    /// Parameters of the inference.
     type Params: Params;
-    /// What it takes: `&'a Image`, or a `#[derive(Inputs)]` struct of named ports.
+    /// Input: `&'a Image`, or a `#[derive(Inputs)]` struct of named ports.
     type Input<'a>: Inputs<'a>;
-    /// What it answers: a target, or a `#[derive(Targets)]` struct of named outputs.
+    /// Prediction: a target, or a `#[derive(Targets)]` struct of named outputs.
     type Target: Targets;
-    /// What one stream remembers: tracks, history, windows. `()` when nothing.
+    /// State of one stream: tracks, history, windows; `()` for none.
     type State: Default + Send + 'static;
 
-    /// Makes a learner of a model container.
+    /// Creates a learner from a model container.
     ///
     /// # Errors
-    /// `Format` or `Integrity` when the container is not one of this learner, `Device` when the device is not there.
+    /// Returns `Format` or `Integrity` if the container does not fit this learner, `Device` if the device is not available.
     fn load(model: &Model, params: Self::Params, device: Device) -> Result<Self>;
 
-    /// The parameters in force.
+    /// Returns the current parameters.
     fn params(&self) -> &Self::Params;
 
-    /// The parameters in force, to change those that are `live`.
+    /// Returns the current parameters, to modify those that are `live`.
     fn params_mut(&mut self) -> &mut Self::Params;
 
-    /// What class numbers mean.
+    /// Returns the classes that the learner predicts.
     fn classes(&self) -> Classes {
         Classes::default()
     }
 
-    /// Answers `target` to `input`. Memory of `target` is used again; after the first frames nothing is allocated.
+    /// Writes the prediction for `input` into `target`. The memory of `target` is reused; after the first frames nothing is
+    /// allocated.
     ///
-    /// Time stamp and frame id of the target are set by the caller ([`Handle`], [`Stream`]).
+    /// The caller ([`Handle`], [`Stream`]) sets time stamp and frame id of the target.
     ///
     /// # Errors
-    /// `InvalidInput` when the input does not fit.
+    /// Returns `InvalidInput` if the input does not fit the learner.
     fn infer_into(
         &self,
         state: &mut Self::State,
@@ -87,10 +88,11 @@ pub trait Learner: Sized + Send + Sync + 'static {
         target: &mut Self::Target,
     ) -> Result<()>;
 
-    /// Answers several inputs of one stream, in order. Override where a batch is faster than a loop.
+    /// Returns the predictions for several inputs of one stream, in order. Learners override it if a batch is faster than a
+    /// loop.
     ///
     /// # Errors
-    /// As [`Learner::infer_into`], for the first input that fails.
+    /// Returns the error of the first input that fails, as [`Learner::infer_into`].
     fn infer_batch(
         &self,
         state: &mut Self::State,

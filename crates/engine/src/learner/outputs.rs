@@ -4,26 +4,26 @@ use std::fmt;
 
 use crate::{Datum, Header, Value, ValueRef, ValueType};
 
-/// One named output.
+/// A named output of a learner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Output {
-    /// Its name on every surface.
+    /// Name, the same on every surface.
     pub name: &'static str,
-    /// What it is.
+    /// Description.
     pub doc: &'static str,
-    /// Its type.
+    /// Type of the value.
     pub value_type: ValueType,
 }
 
-/// What a learner answers: one target, or a `#[derive(Targets)]` struct of targets.
+/// The prediction of a learner: one target, or a `#[derive(Targets)]` struct of targets.
 pub trait Targets: Default + Send + 'static {
-    /// The table of outputs.
+    /// Table of the outputs.
     const OUTPUTS: &'static [Output];
 
-    /// Shows each output by name.
+    /// Calls `visit` with the name and value of each output.
     fn visit<'a>(&'a self, visit: &mut dyn FnMut(&'static str, ValueRef<'a>));
 
-    /// Gives every output the stamp and frame of the input.
+    /// Sets time stamp and frame id of every output.
     fn set_header(&mut self, header: &Header);
 }
 
@@ -39,7 +39,7 @@ impl<T: Datum + Default> Targets for T {
     }
 }
 
-/// The outputs of one call through the dynamic interface.
+/// The outputs of one call of an [`AnyLearner`](crate::learner::AnyLearner).
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Outputs {
     values: Vec<(&'static str, Value)>,
@@ -52,23 +52,23 @@ impl Outputs {
         Self { values }
     }
 
-    /// The output called `name`.
+    /// Returns the output named `name`.
     pub fn get(&self, name: &str) -> Option<&Value> {
         self.values.iter().find(|(output, _)| *output == name).map(|(_, value)| value)
     }
 
-    /// The first output: the only one of most learners.
+    /// Returns the first output; most learners have only one.
     pub fn first(&self) -> Option<&Value> {
         self.values.first().map(|(_, value)| value)
     }
 
-    /// Every output with its name.
+    /// Returns all outputs with their names.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (&'static str, &Value)> {
         self.values.iter().map(|(name, value)| (*name, value))
     }
 }
 
-/// The outputs one after the other, as they print themselves: `{}` in OpenDR's words, `{:#}` for people.
+/// Writes the outputs in order: `{}` as OpenDR's text, `{:#}` in readable form.
 impl fmt::Display for Outputs {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.values.iter().try_for_each(|(_, value)| fmt::Display::fmt(value, f))

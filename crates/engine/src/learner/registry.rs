@@ -1,4 +1,4 @@
-//! Which learners there are.
+//! The registry of learners.
 
 use std::sync::{PoisonError, RwLock};
 
@@ -10,27 +10,27 @@ use crate::{Device, Error, Result};
 
 type Make = dyn Fn(&ParamMap, Device) -> Result<Box<dyn AnyLearner>> + Send + Sync;
 
-/// One learner of a [`Registry`]: its tables, and how to make one.
+/// A learner of a [`Registry`]: its tables and its constructor.
 pub struct Entry {
-    /// Name, task, class.
+    /// Name, task and class name.
     pub spec: Spec,
-    /// The parameters of `infer`.
+    /// Parameters of the inference.
     pub params: &'static [Field],
-    /// The parameters of `fit`; empty when it does not train.
+    /// Parameters of the training; empty if the learner does not train.
     pub fit_params: &'static [Field],
-    /// What it takes.
+    /// Table of the inputs.
     pub ports: &'static [Port],
-    /// What it answers.
+    /// Table of the outputs.
     pub outputs: &'static [Output],
-    /// Whether a stream remembers anything.
+    /// Whether streams have a state.
     pub stateful: bool,
-    /// What it can do besides `infer`.
+    /// Optional capabilities.
     pub capabilities: Capabilities,
     make: Box<Make>,
 }
 
 impl Entry {
-    /// The entry of a compiled learner; `learners!` calls it.
+    /// Creates the entry of a compiled learner; `learners!` calls it.
     #[doc(hidden)]
     pub fn of<L: Learner>(abilities: Abilities<L>) -> Self {
         Self {
@@ -48,8 +48,8 @@ impl Entry {
         }
     }
 
-    /// The entry of a learner that is not compiled in: `make` builds it, the tables say what it takes and answers.
-    pub fn added(
+    /// Creates the entry of a learner that is added at run time, from its tables and its constructor `make`.
+    pub fn dynamic(
         spec: Spec,
         params: &'static [Field],
         ports: &'static [Port],
@@ -69,50 +69,53 @@ impl Entry {
         }
     }
 
-    /// An empty learner with `params` over the defaults.
+    /// Creates an empty learner; `params` override the defaults.
     ///
     /// # Errors
-    /// `InvalidParam` for an unknown or wrong parameter.
+    /// Returns `InvalidParam` for an unknown parameter or an invalid value.
     pub fn make(&self, params: &ParamMap, device: Device) -> Result<Box<dyn AnyLearner>> {
         (self.make)(params, device)
     }
 }
 
-/// The learners of a program: those compiled in, and those added at run time.
+/// The learners of a program: compiled ones and those added at run time.
 #[derive(Default)]
 pub struct Registry {
     entries: RwLock<Vec<&'static Entry>>,
 }
 
 impl Registry {
-    /// A registry of `entries`; write it with [`learners!`](crate::learners).
+    /// Creates a registry of `entries`; the macro [`learners!`](crate::learners) calls it.
     pub fn new(entries: Vec<Entry>) -> Self {
         let entries = entries.into_iter().map(|entry| &*Box::leak(Box::new(entry))).collect();
         Self { entries: RwLock::new(entries) }
     }
 
-    /// Adds a learner; it stays for the life of the process.
+    /// Adds a learner for the lifetime of the process.
     ///
     /// # Errors
-    /// `InvalidParam` when the name is taken.
+    /// Returns `InvalidParam` if there is a learner of that name.
     pub fn add(&self, entry: Entry) -> Result<()> {
         let mut entries = self.entries.write().unwrap_or_else(PoisonError::into_inner);
         if entries.iter().any(|other| other.spec.name == entry.spec.name) {
-            return Err(Error::invalid_param(format!("there is a learner {:?} already", entry.spec.name)));
+            return Err(Error::invalid_param(format!(
+                "a learner {:?} is registered already; choose another name",
+                entry.spec.name
+            )));
         }
         entries.push(Box::leak(Box::new(entry)));
         Ok(())
     }
 
-    /// Every learner, in order of registration.
+    /// Returns all learners, in order of registration.
     pub fn entries(&self) -> Vec<&'static Entry> {
         self.entries.read().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// The learner called `name`, by its registry name or class name.
+    /// Returns the learner with this registry name or class name.
     ///
     /// # Errors
-    /// `NotFound`, with the names that there are.
+    /// Returns `NotFound` with the list of names if there is none.
     pub fn find(&self, name: &str) -> Result<&'static Entry> {
         let entries = self.entries();
         let found = entries.iter().find(|entry| entry.spec.name == name || entry.spec.class == name);
@@ -123,10 +126,10 @@ impl Registry {
     }
 }
 
-/// Makes a [`Registry`](crate::learner::Registry) of learner types: one line a learner. Learners may stand in groups,
-/// `#[cfg(feature = "stereo")] { SemiGlobalMatching }`, each compiled in or not.
+/// Creates a [`Registry`](crate::learner::Registry) of learner types, one per line. Learners may be grouped,
+/// `#[cfg(feature = "stereo")] { SemiGlobalMatching }`, and each group may have attributes.
 ///
-/// What each can do besides `infer` follows from the traits that it implements.
+/// The capabilities of each learner follow from the traits that it implements.
 #[macro_export]
 macro_rules! learners {
     ($($(#[$attribute:meta])* { $($learner:ty),* $(,)? }),* $(,)?) => {{

@@ -1,4 +1,4 @@
-//! Learners that train by acting.
+//! Reinforcement learners.
 
 use crate::data::Observation;
 use crate::environment::EnvironmentSource;
@@ -8,18 +8,18 @@ use crate::params::Params;
 use crate::target::RlTarget;
 use crate::{Result, Statistics};
 
-/// A policy: the input is an observation, the target an element of the action space, and training takes environments
-/// (the paper's `LearnerRL`).
+/// A policy: the input is an observation, the target an element of the action space. It trains in environments (the
+/// paper's `LearnerRL`).
 pub trait LearnerRl: for<'a> Learner<Input<'a> = &'a Observation, Target = RlTarget> {
-    /// What a user may set of the training.
+    /// Parameters of the training.
     type FitParams: Params;
 
-    /// Trains in environments that `env` makes, from `base` where one is given, and writes a container into
-    /// [`FitJob::model`]; `val_env` makes those in which it is measured on the way, else `env` does.
+    /// Trains in environments from `env`, starting from `base` if it is given, and writes a container to [`FitJob::model`].
+    /// Evaluations during the training use environments from `val_env` if it is given, otherwise from `env`.
     ///
     /// # Errors
-    /// `InvalidInput` when the spaces do not fit the policy, and those of the environment with the step at which they
-    /// came; what was learnt up to the last checkpoint is then kept.
+    /// Returns `InvalidInput` if the spaces do not fit the policy, and errors of the environment with the step at which they
+    /// occurred; the last checkpoint is then kept.
     fn fit(
         base: Option<&Model>,
         params: &Self::Params,
@@ -31,8 +31,8 @@ pub trait LearnerRl: for<'a> Learner<Input<'a> = &'a Observation, Target = RlTar
 }
 
 impl<L: LearnerRl> Handle<L> {
-    /// Trains in environments, starting from the loaded model where there is one, and loads the result; when the user
-    /// stopped it before there was one, the handle is as it was.
+    /// Trains in environments, starting from the loaded model if there is one, and loads the trained model. A training that
+    /// the user stops before it wrote a model leaves the handle unchanged.
     ///
     /// # Errors
     /// As [`LearnerRl::fit`].

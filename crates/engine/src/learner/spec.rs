@@ -1,27 +1,27 @@
-//! What a learner is called.
+//! Name and description of a learner.
 
 use crate::Task;
 
-/// The identity of a learner; a constant beside its code.
+/// Name, task and description of a learner; a constant beside its code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Spec {
-    /// Registry name, file name, command-line argument: `"nanodet"`.
+    /// Registry name, also the file name and the command-line argument: `"nanodet"`.
     pub name: &'static str,
-    /// What it is for.
+    /// Task of the learner.
     pub task: Task,
-    /// The class name on the object-oriented surfaces, OpenDR's where it had one: `"NanodetLearner"`.
+    /// Class name on the object-oriented surfaces, that of OpenDR if it has one: `"NanodetLearner"`.
     pub class: &'static str,
-    /// One sentence: what it is, when to use it.
+    /// One sentence: what the learner is and when to use it.
     pub about: &'static str,
-    /// Arguments that OpenDR's class of this name takes and that have no effect here, each with the reason.
+    /// Arguments of OpenDR's class of this name that have no effect here, each with the reason.
     pub without_effect: &'static [(&'static str, &'static str)],
 }
 
 impl Spec {
-    /// Why an argument of [`Spec::without_effect`] that OpenDR trains with has none.
-    pub const OF_TRAINING: &'static str = "it belongs to training, which this learner does not have";
+    /// Reason for training arguments in [`Spec::without_effect`].
+    pub const TRAINING_ONLY: &'static str = "it belongs to training, which this learner does not have";
 
-    /// A learner called `name`.
+    /// Creates the specification of a learner named `name`.
     pub const fn new(name: &'static str, task: Task) -> Self {
         Self { name, task, class: "", about: "", without_effect: &[] }
     }
@@ -32,13 +32,13 @@ impl Spec {
         Self { class, ..self }
     }
 
-    /// Sets OpenDR's arguments that have no effect here, each with the reason.
+    /// Sets the arguments of OpenDR that have no effect here, each with the reason.
     #[must_use]
     pub const fn without_effect(self, without_effect: &'static [(&'static str, &'static str)]) -> Self {
         Self { without_effect, ..self }
     }
 
-    /// Sets the sentence.
+    /// Sets the description.
     #[must_use]
     pub const fn about(self, about: &'static str) -> Self {
         Self { about, ..self }

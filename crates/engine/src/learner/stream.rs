@@ -1,11 +1,11 @@
-//! One camera, topic or thread in front of a shared learner.
+//! The state of one camera, topic or thread with a shared learner.
 
 use std::sync::{Arc, PoisonError, RwLock};
 
 use crate::learner::{Inputs, Learner, Outputs, Ports, Streaming, Targets};
 use crate::{Header, Result};
 
-/// One stream through a learner: its own state, the learner shared with others.
+/// One stream of inputs: a shared learner with a state of its own.
 pub struct Stream<L: Learner> {
     learner: Arc<RwLock<L>>,
     state: L::State,
@@ -22,7 +22,7 @@ impl<L: Learner> Stream<L> {
         &self.learner
     }
 
-    /// Answers `target` to `input`, with the input's stamp and frame.
+    /// Writes the prediction for `input` into `target`, with the stamp and frame of the input.
     ///
     /// # Errors
     /// As [`Learner::infer_into`].
@@ -33,7 +33,7 @@ impl<L: Learner> Stream<L> {
         learner.infer_into(&mut self.state, input, target)
     }
 
-    /// Answers `input`.
+    /// Returns the prediction for `input`.
     ///
     /// # Errors
     /// As [`Learner::infer_into`].
@@ -43,7 +43,7 @@ impl<L: Learner> Stream<L> {
         Ok(target)
     }
 
-    /// Answers several inputs in order.
+    /// Returns the predictions for several inputs, in order.
     ///
     /// # Errors
     /// As [`Learner::infer_batch`].
@@ -53,16 +53,16 @@ impl<L: Learner> Stream<L> {
         learner.infer_batch(&mut self.state, inputs)
     }
 
-    /// Answers named ports.
+    /// Writes the prediction for named inputs into `target`.
     ///
     /// # Errors
-    /// `InvalidInput` when a port is missing, unknown or of another type; else as [`Learner::infer_into`].
+    /// Returns `InvalidInput` if a port is missing, unknown or of another type; otherwise as [`Learner::infer_into`].
     pub fn infer_ports(&mut self, ports: &Ports<'_>, target: &mut L::Target) -> Result<()> {
         ports.check(<L::Input<'_> as Inputs<'_>>::PORTS, !self.begun)?;
         self.infer_into(L::Input::from_ports(ports)?, target)
     }
 
-    /// Forgets everything: the next answer is that of a fresh stream.
+    /// Resets the state: the next prediction is that of a new stream.
     pub fn reset(&mut self) {
         self.state = L::State::default();
         self.begun = false;
@@ -71,7 +71,7 @@ impl<L: Learner> Stream<L> {
 }
 
 impl<L: Streaming> Stream<L> {
-    /// Takes the next piece and hands on each target that it completes, with the piece's stamp and frame.
+    /// Processes the next piece and passes each completed target to `emit`, with the stamp and frame of the piece.
     ///
     /// # Errors
     /// As [`Streaming::push`].
@@ -86,7 +86,7 @@ impl<L: Streaming> Stream<L> {
         })
     }
 
-    /// The stream is over: hands on what is still pending.
+    /// Ends the stream and passes the pending targets to `emit`.
     ///
     /// # Errors
     /// As [`Streaming::flush`].

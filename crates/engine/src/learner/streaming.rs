@@ -1,12 +1,12 @@
-//! Learners that take a stream in pieces.
+//! Learners that process a stream in pieces.
 
 use crate::Result;
 use crate::learner::Learner;
 
-/// A learner whose input comes in pieces of any length (sound, heart signals): each piece may complete none, one or
-/// several targets. The same stream in one piece or in many gives the same targets.
+/// A learner whose input comes in pieces of any length (audio, heart signals). A piece may complete none, one or several
+/// targets. The targets do not depend on the lengths of the pieces.
 pub trait Streaming: Learner {
-    /// Takes the next piece and hands on each target that it completes.
+    /// Processes the next piece and passes each completed target to `emit`.
     ///
     /// # Errors
     /// As [`Learner::infer_into`].
@@ -17,7 +17,7 @@ pub trait Streaming: Learner {
         emit: &mut dyn FnMut(Self::Target),
     ) -> Result<()>;
 
-    /// The stream is over: hands on what is still pending.
+    /// Ends the stream and passes the pending targets to `emit`.
     ///
     /// # Errors
     /// As [`Learner::infer_into`].

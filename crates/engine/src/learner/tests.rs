@@ -1,4 +1,4 @@
-//! The learner that counts keeps the machinery honest.
+//! Tests of the learner interface with the counter.
 
 use crate::data::{Image, Layout, PixelFormat};
 use crate::dataset::{Dataset, DatasetIterator, Sample};
@@ -19,11 +19,11 @@ impl DatasetIterator for Samples {
     }
 
     fn get(&self, index: usize) -> Result<Sample> {
-        Ok(Sample { data: vec![picture(index as i64).into()], target: None })
+        Ok(Sample { data: vec![image(index as i64).into()], target: None })
     }
 }
 
-fn picture(stamp: i64) -> Image {
+fn image(stamp: i64) -> Image {
     let image = Image::new(vec![0u8; 4], 2, 2, PixelFormat::Grey, Layout::Hwc).unwrap();
     image.with_header(Header::new(stamp, "camera"))
 }
@@ -52,13 +52,13 @@ fn count(targets: &CounterTargets) -> f32 {
 }
 
 #[test]
-fn every_promise_is_kept() {
+fn counter_passes_check_learner() {
     let folder = scratch("check");
     write_model(&folder.join("model"), 1, &ParamMap::new()).unwrap();
     let registry = crate::learners![Counter];
     let call = |stamp, scores: &[f32]| -> Vec<(&'static str, Value)> {
         vec![
-            ("image", picture(stamp).into()),
+            ("image", image(stamp).into()),
             ("detections", boxes(scores).into()),
             ("first", boxes(scores).into()),
         ]
@@ -75,7 +75,7 @@ fn container_params_fill_defaults_only() {
     assert_eq!(handle.default_of("factor"), Some(ParamValue::Int(3)));
     let own = handle.default_of("threshold");
     assert_eq!(own, handle.params().to_map().remove("threshold"));
-    let (image, found) = (picture(1), boxes(&[0.9, 0.6]));
+    let (image, found) = (image(1), boxes(&[0.9, 0.6]));
     let input = || CounterInputs { image: &image, detections: &found, first: None };
     assert_eq!(count(&handle.infer(input()).unwrap()), 7.0);
     handle.set("threshold", ParamValue::Float(0.7)).unwrap();
@@ -90,7 +90,7 @@ fn container_params_fill_defaults_only() {
 #[test]
 fn pieces_and_batches_keep_stamps() {
     let handle = ready("pieces");
-    let (images, found) = ([picture(1), picture(2)], boxes(&[0.9]));
+    let (images, found) = ([image(1), image(2)], boxes(&[0.9]));
     let inputs = || {
         images
             .iter()
@@ -110,7 +110,7 @@ fn pieces_and_batches_keep_stamps() {
 }
 
 #[test]
-fn surfaces_see_what_it_can() {
+fn entries_list_capabilities() {
     let registry: Registry = crate::learners![Counter];
     let entry = registry.find("CounterLearner").unwrap();
     assert!(entry.capabilities.fit && entry.capabilities.streaming && entry.stateful);
@@ -128,7 +128,7 @@ fn surfaces_see_what_it_can() {
     let params = ParamMap::from([("epochs".to_owned(), 4.into())]);
     let statistics = learner.fit(&params, dataset.into(), None, &job).unwrap();
     assert_eq!(statistics.curves["loss"].len(), 4);
-    let (image, found) = (picture(1), boxes(&[0.9]));
+    let (image, found) = (image(1), boxes(&[0.9]));
     let ports = Ports::default().with("image", &image).with("detections", &found);
     let error = learner.infer(&ports).unwrap_err();
     assert!(error.to_string().contains("\"first\""), "{error}");
@@ -139,17 +139,17 @@ fn surfaces_see_what_it_can() {
 }
 
 #[test]
-fn a_model_of_another_learner_is_refused() {
+fn a_model_of_another_learner_is_rejected() {
     let folder = scratch("other");
     ModelWriter::new(folder.join("model"), Manifest::new("other", "")).unwrap().finish().unwrap();
     let mut handle = Handle::<Counter>::new(CounterParams::default(), Device::Cpu).unwrap();
     let error = handle.load(folder.join("model")).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::InvalidInput);
     assert!(error.to_string().contains("\"other\""), "{error}");
-    assert!(registry_refuses_twice());
+    assert!(registry_rejects_duplicates());
 }
 
-fn registry_refuses_twice() -> bool {
+fn registry_rejects_duplicates() -> bool {
     let registry = crate::learners![Counter];
-    registry.add(crate::learner::Entry::added(Counter::SPEC, &[], &[], &[], |_, _| unreachable!())).is_err()
+    registry.add(crate::learner::Entry::dynamic(Counter::SPEC, &[], &[], &[], |_, _| unreachable!())).is_err()
 }

@@ -1,107 +1,100 @@
-//! What `model.json` says.
+//! The manifest of a model, `model.json`.
 
 use std::collections::HashSet;
 
-use serde::de::{DeserializeOwned, IgnoredAny};
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use super::{Sha256, member_path, upstream};
+use super::{Sha256, member_path};
 use crate::params::ParamMap;
 use crate::target::Classes;
 use crate::{Error, Result, Task};
 
-/// The newest version of the format, which this code writes.
+/// Newest version of the format, which this crate writes.
 pub const FORMAT_VERSION: u32 = 1;
 
-/// `model.json`: everything about a model but its weights. Unknown fields are ignored.
+/// The contents of `model.json`: everything about a model except its weights. Unknown fields are ignored.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Manifest {
-    /// Version of the format; a newer one than [`FORMAT_VERSION`] is refused.
+    /// Version of the format; newer ones than [`FORMAT_VERSION`] are rejected.
     pub format_version: u32,
-    /// Registry name of the learner that reads the model, e.g. `"nanodet"`; empty when unknown.
+    /// Registry name of the learner that loads the model, e.g. `"nanodet"`; empty if unknown.
     #[serde(default)]
     pub learner: String,
-    /// Which of the learner's models it is, e.g. `"coco_416"`; empty when it is the user's own.
+    /// Name of the variant, e.g. `"coco_416"`; empty for a user's own model.
     #[serde(default)]
     pub variant: String,
-    /// What the model is for.
+    /// Task of the model.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub task: Option<Task>,
-    /// The learner's parameters that belong to these weights.
+    /// Parameters of the learner for these weights.
     #[serde(default)]
     pub params: ParamMap,
     /// Names of the classes, in the order of the outputs.
     #[serde(default)]
     pub classes: Classes,
-    /// Layout, size and normalisation of the inputs, as the learner wants them written.
+    /// Layout, size and normalisation of the inputs, in the form of the learner.
     #[serde(default)]
     pub inputs: Map<String, Value>,
-    /// The files of the model.
+    /// Files of the model.
     #[serde(default)]
     pub files: Vec<ModelFile>,
-    /// Under which terms it may be used.
+    /// Terms of use.
     #[serde(default)]
     pub licence: Licence,
-    /// What was measured, e.g. `{"coco128_val": {"map50": 0.533}}`.
+    /// Measured metrics, e.g. `{"coco128_val": {"map50": 0.533}}`.
     #[serde(default)]
     pub metrics: Map<String, Value>,
-    /// Where the model comes from.
+    /// Origin of the model.
     #[serde(default)]
     pub lineage: Lineage,
 }
 
-/// One file of a model.
+/// A file of a model.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct ModelFile {
     /// Name inside the container, with forward slashes.
     pub name: String,
-    /// Bytes; absent in OpenDR's own JSON only.
+    /// Size in bytes; absent only in OpenDR's own JSON.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size: Option<u64>,
-    /// Checksum; absent in OpenDR's own JSON only.
+    /// Checksum; absent only in OpenDR's own JSON.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sha256: Option<Sha256>,
 }
 
-/// Terms of use, as SPDX names where there is one; empty when unknown.
+/// Terms of use, as SPDX identifiers if there are; empty if unknown.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Licence {
-    /// Of the code and the network's definition.
+    /// Licence of the code and the network definition.
     pub code: String,
-    /// Of the weights.
+    /// Licence of the weights.
     pub weights: String,
-    /// Of the data that they were trained on.
+    /// Licence of the training data.
     pub data: String,
-    /// Whether commercial use is allowed; `None` when nobody has found out.
+    /// Whether commercial use is allowed; `None` if unknown.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub commercial: Option<bool>,
 }
 
-/// How a model came to be.
+/// Origin of a model.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Lineage {
-    /// Where the original was got.
+    /// Source of the original model.
     pub source: String,
-    /// What turned it into this form, with its version; empty when nothing had to.
+    /// Tool that converted the original, with its version; empty without conversion.
     pub importer: String,
-    /// The command that made it.
+    /// Command that created the model.
     pub command: String,
 }
 
-#[derive(Deserialize)]
-struct Probe {
-    format_version: Option<u32>,
-    model_paths: Option<IgnoredAny>,
-    framework: Option<IgnoredAny>,
-}
-
 impl Manifest {
-    /// An otherwise empty manifest of `learner`'s model `variant`.
+    /// Creates a manifest of `learner`'s model `variant`, otherwise empty.
     pub fn new(learner: impl Into<String>, variant: impl Into<String>) -> Self {
         Self {
             format_version: FORMAT_VERSION,
@@ -118,74 +111,51 @@ impl Manifest {
         }
     }
 
-    /// What [`inputs`](Self::inputs) say, read as a type of the learner's; `what` names it in the error.
+    /// Parses [`inputs`](Self::inputs) as a type of the learner; `what` names its contents in the error.
     ///
     /// # Errors
-    /// `Format` where they say something else.
+    /// Returns `Format` if they do not fit the type.
     pub fn read_inputs<T: DeserializeOwned>(&self, what: &str) -> Result<T> {
         serde_json::from_value(Value::Object(self.inputs.clone())).map_err(|error| {
-            Error::format(format!("the model's \"inputs\" do not tell {what}; train or get it anew"))
-                .with_source(error)
+            Error::format(format!(
+                "the model's \"inputs\" do not state {what}; train or download the model again"
+            ))
+            .with_source(error)
         })
     }
 
-    /// Replaces [`inputs`](Self::inputs) by what a type of the learner's says, for [`Manifest::read_inputs`].
+    /// Replaces [`inputs`](Self::inputs) by a value of a type of the learner, for [`Manifest::read_inputs`].
     ///
     /// # Errors
-    /// `Internal` for a type that has no names in JSON.
+    /// Returns `Internal` if the value is not a JSON object.
     pub fn write_inputs(&mut self, layout: &impl Serialize) -> Result<()> {
         self.inputs = match serde_json::to_value(layout) {
             Ok(Value::Object(inputs)) => inputs,
-            Ok(_) => return Err(Error::internal("a layout is no object")),
+            Ok(_) => return Err(Error::internal("a layout is not a JSON object")),
             Err(error) => return Err(Error::internal("a layout has no JSON form").with_source(error)),
         };
         Ok(())
     }
 
-    /// Reads `model.json`, or OpenDR's own JSON when it points to ONNX files.
+    /// Returns the text of `model.json`.
     ///
     /// # Errors
-    /// `Format` when it is neither, `Unsupported` when it is newer than this code or points to weights of PyTorch or
-    /// MXNet, `Integrity` when a file name leaves the folder.
-    pub fn from_json(json: &[u8]) -> Result<Self> {
-        let probe: Probe = parse(json)?;
-        match probe.format_version {
-            None if probe.model_paths.is_some() || probe.framework.is_some() => {
-                upstream::manifest_from_json(json)
-            }
-            None => {
-                Err(Error::format("no \"format_version\" and no \"model_paths\": this is no model's JSON"))
-            }
-            Some(newer @ FORMAT_VERSION..) if newer > FORMAT_VERSION => Err(Error::unsupported(format!(
-                "format version {newer}, but this OpenDR reads up to {FORMAT_VERSION}: update OpenDR"
-            ))),
-            Some(0) => Err(Error::format("format version 0: the first is 1")),
-            Some(_) => {
-                let manifest: Self = parse(json)?;
-                manifest.check_files()?;
-                Ok(manifest)
-            }
-        }
-    }
-
-    /// The text of `model.json`.
-    ///
-    /// # Errors
-    /// `Internal`, which a manifest read or built here never gives.
+    /// Returns `Internal` if the manifest cannot be written, which does not occur for manifests read or built here.
     pub fn to_json(&self) -> Result<Vec<u8>> {
         serde_json::to_vec_pretty(self)
             .map_err(|error| Error::internal("the manifest cannot be written as JSON").with_source(error))
     }
 
-    fn check_files(&self) -> Result<()> {
-        let mut seen = HashSet::new();
+    /// Checks that every file has a valid and unique name, a size and a checksum.
+    pub(super) fn check_files(&self) -> Result<()> {
+        let mut names = HashSet::new();
         for file in &self.files {
             member_path(&file.name)?;
             if file.size.is_none() || file.sha256.is_none() {
                 return Err(Error::format(format!("the file {:?} has no size or no sha256", file.name)));
             }
-            if !seen.insert(file.name.to_lowercase()) {
-                return Err(Error::format(format!("the file {:?} is named twice", file.name)));
+            if !names.insert(file.name.to_lowercase()) {
+                return Err(Error::format(format!("the file {:?} is listed twice", file.name)));
             }
         }
         Ok(())
@@ -193,5 +163,6 @@ impl Manifest {
 }
 
 pub(super) fn parse<'a, T: Deserialize<'a>>(json: &'a [u8]) -> Result<T> {
-    serde_json::from_slice(json).map_err(|error| Error::format("the JSON does not fit").with_source(error))
+    serde_json::from_slice(json)
+        .map_err(|error| Error::format("the JSON is not that of a model").with_source(error))
 }

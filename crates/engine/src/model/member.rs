@@ -1,14 +1,15 @@
-//! Names of files inside a container or archive, which may come from anyone.
+//! Names of files in containers and archives of unknown origin.
 
 use std::path::PathBuf;
 
 use crate::{Error, Result};
 
-/// The relative path that a member's name stands for: forward slashes, and never outside its folder on any system.
+/// Returns the relative path of a member. Its name has forward slashes, and the path never leaves its folder on any
+/// system.
 ///
 /// # Errors
-/// `Integrity` for a name that is absolute, holds `..`, a backslash, a colon (Windows drives and streams) or a
-/// control character, or is empty.
+/// Returns `Integrity` for a name that is empty or absolute, or contains `..`, a backslash, a colon (Windows drives and
+/// streams) or a control character.
 pub fn member_path(name: &str) -> Result<PathBuf> {
     let allowed = |part: &str| {
         !matches!(part, "" | "." | "..")
@@ -18,9 +19,9 @@ pub fn member_path(name: &str) -> Result<PathBuf> {
     if name.len() <= 1024 && name.split('/').all(allowed) {
         return Ok(name.split('/').collect());
     }
-    let shown: String = name.chars().take(80).collect();
+    let excerpt: String = name.chars().take(80).collect();
     Err(Error::integrity(format!(
-        "the file name {shown:?} could leave its folder: refused; use plain relative names with forward slashes"
+        "the file name {excerpt:?} could leave its folder; use plain relative names with forward slashes"
     )))
 }
 

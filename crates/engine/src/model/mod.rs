@@ -1,12 +1,13 @@
-//! The model container: a folder, or one zip, with `model.json` and the files that it names.
+//! Model containers: a folder, or a zip, with `model.json` and the files that it lists.
 //!
-//! Containers come from anyone. Nothing in one is ever run or unpickled, no name leaves its folder, sizes are checked
-//! before memory is taken, and every file is checked against its sha256 each time it is read: 15 MB take 10 to 20 ms
-//! on a processor with SHA instructions, so no stamp of an earlier check is trusted.
+//! Containers may come from unknown sources. Nothing in one is executed or unpickled, no name leaves its folder, sizes
+//! are checked before memory is allocated, and every file is checked against its sha256 on each read. The check takes 10
+//! to 20 ms for 15 MB on a CPU with SHA instructions, so no earlier check is relied on.
 //!
-//! A model of several networks that are models of their own (a face recogniser with the detector that finds the faces)
-//! carries them as parts: whole containers in folders of its own, whose files are among its files.
+//! A model of several networks that are models of their own (a face recogniser and its face detector) contains them as
+//! parts: whole containers in subfolders, whose files are among its files.
 
+mod from_json;
 mod manifest;
 mod member;
 mod part;
@@ -31,13 +32,13 @@ use crate::target::Classes;
 use crate::{Error, Result, ResultExt};
 use store::Store;
 
-/// The file that makes a folder a model.
+/// Name of the manifest file of a container.
 pub const MANIFEST_NAME: &str = "model.json";
 
-/// `model.json` may have at most so many bytes.
+/// Maximum size of `model.json`, in bytes.
 const MAX_MANIFEST_BYTES: u64 = 16 << 20;
 
-/// An opened container. Its manifest is read; its files are read when asked for.
+/// An open container. Its manifest is in memory; its files are read on request.
 #[derive(Debug, Clone)]
 pub struct Model {
     path: PathBuf,
@@ -49,7 +50,7 @@ impl Model {
     /// Opens a container: its folder, its JSON file (OpenDR's own too), or a zip of it.
     ///
     /// # Errors
-    /// `NotFound` when there is none at `path`, else as [`Manifest::from_json`].
+    /// Returns `NotFound` if there is none at `path`; otherwise as [`Manifest::from_json`].
     pub fn open(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         let found = fs::metadata(path).context(|| format!("no model at {}", path.display()))?;
@@ -75,45 +76,45 @@ impl Model {
         Ok(Self { path: path.to_owned(), manifest, store })
     }
 
-    /// Where it was opened.
+    /// Returns the path of the container.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// All that `model.json` says.
+    /// Returns the contents of `model.json`.
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
     }
 
-    /// Names of the classes, in the order of the outputs.
+    /// Returns the names of the classes, in the order of the outputs.
     pub fn classes(&self) -> &Classes {
         &self.manifest.classes
     }
 
-    /// The learner's parameters that belong to these weights.
+    /// Returns the parameters of the learner for these weights.
     pub fn params(&self) -> &ParamMap {
         &self.manifest.params
     }
 
-    /// Checks that the model was made for `learner`; one that names no learner (OpenDR's JSON) passes.
+    /// Checks that the model is one of `learner`. A model that names no learner (OpenDR's JSON) passes.
     ///
     /// # Errors
-    /// `InvalidInput` when it was made for another.
+    /// Returns `InvalidInput` if it is a model of another learner.
     pub fn check_learner(&self, learner: &str) -> Result<()> {
-        let made_for = &self.manifest.learner;
-        if made_for.is_empty() || made_for == learner {
+        let owner = &self.manifest.learner;
+        if owner.is_empty() || owner == learner {
             return Ok(());
         }
         Err(Error::invalid_input(format!(
-            "the model {} is made for the learner {made_for:?}, not for {learner:?}: load it with {made_for:?}",
+            "the model {} belongs to the learner {owner:?}, not to {learner:?}; load it with {owner:?}",
             self.path.display()
         )))
     }
 
-    /// The bytes of the file called `name`, checked against size and sha256.
+    /// Returns the bytes of the file `name`, checked against size and sha256.
     ///
     /// # Errors
-    /// `NotFound` when the model names no such file or it is missing, `Integrity` when it is damaged.
+    /// Returns `NotFound` if the model lists no such file or it is missing, `Integrity` if it is damaged.
     pub fn file(&self, name: &str) -> Result<Vec<u8>> {
         let file = self.manifest.files.iter().find(|file| file.name == name).ok_or_else(|| {
             let names: Vec<_> = self.manifest.files.iter().map(|file| file.name.as_str()).collect();
@@ -136,10 +137,10 @@ impl Model {
         read().context(|| format!("reading the model {}", self.path.display()))
     }
 
-    /// The bytes of the model's one ONNX file; those of its parts do not count.
+    /// Returns the bytes of the model's only ONNX file; files of parts do not count.
     ///
     /// # Errors
-    /// `NotFound` when it names none, `InvalidInput` when it names several, else as [`Model::file`].
+    /// Returns `NotFound` if it lists none, `InvalidInput` if it lists several; otherwise as [`Model::file`].
     pub fn onnx(&self) -> Result<Vec<u8>> {
         let is_onnx =
             |name: &str| Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case("onnx"));
@@ -150,14 +151,14 @@ impl Model {
                 Err(Error::not_found(format!("the model {} names no ONNX file", self.path.display())))
             }
             (Some(first), Some(second)) => Err(Error::invalid_input(format!(
-                "the model {} has several ONNX files ({first}, {second}, ...): ask for one by name",
+                "the model {} has several ONNX files ({first}, {second}, ...); name one",
                 self.path.display()
             ))),
         }
     }
 }
 
-/// The name of the JSON in a model's folder: `model.json`, or the only one there, as OpenDR saves them.
+/// Returns the name of the JSON in a model's folder: `model.json`, or the only JSON file, as OpenDR writes it.
 fn json_in_folder(folder: &Path) -> Result<String> {
     if folder.join(MANIFEST_NAME).is_file() {
         return Ok(MANIFEST_NAME.to_owned());
@@ -167,13 +168,13 @@ fn json_in_folder(folder: &Path) -> Result<String> {
     let names: Vec<String> = entries.filter(|name| name.ends_with(".json")).collect();
     match names.as_slice() {
         [name] => Ok(name.clone()),
-        [] => Err(Error::not_found(format!("no {MANIFEST_NAME} in the folder: this is no model"))),
-        _ => Err(Error::not_found(format!("no {MANIFEST_NAME} in the folder, but several others: name one"))),
+        [] => Err(Error::not_found(format!("no {MANIFEST_NAME} in the folder; it is not a model"))),
+        _ => Err(Error::not_found(format!("no {MANIFEST_NAME} in the folder, but several others; name one"))),
     }
 }
 
 fn starts_as_zip(path: &Path) -> Result<bool> {
-    // A pipe would block when opened; reading it as JSON refuses it.
+    // A pipe would block when opened; reading it as JSON returns an error.
     if !fs::metadata(path)?.is_file() {
         return Ok(false);
     }

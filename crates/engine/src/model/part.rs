@@ -5,15 +5,15 @@ use super::{MANIFEST_NAME, Manifest, Model, ModelFile, member_path};
 use crate::{Error, Result, ResultExt};
 
 impl Model {
-    /// Names of the models that this one carries as parts, e.g. `"detector"`: the folders in it with a `model.json`.
+    /// Returns the names of the models that this one contains as parts, e.g. `"detector"`: its folders with a `model.json`.
     pub fn parts(&self) -> impl Iterator<Item = &str> {
         parts_of(&self.manifest.files).filter(|name| !name.contains('/'))
     }
 
-    /// The model that this one carries as its part `name`; it may have parts again.
+    /// Returns the model that this one contains as the part `name`; it may have parts too.
     ///
     /// # Errors
-    /// `NotFound` when there is none, `Integrity` when it is damaged or the name leaves the folder, else as
+    /// Returns `NotFound` if there is none, `Integrity` if it is damaged or the name leaves the folder; otherwise as
     /// [`Manifest::from_json`].
     pub fn part(&self, name: &str) -> Result<Self> {
         let folder = member_path(name)?;
@@ -21,7 +21,7 @@ impl Model {
             let parts: Vec<_> = self.parts().collect();
             let parts = if parts.is_empty() { "none".to_owned() } else { parts.join(", ") };
             return Err(Error::not_found(format!(
-                "the model {} carries no part {name:?}; it carries {parts}: get the model again with its parts, from \
+                "the model {} contains no part {name:?}; it contains {parts}. Get the model with its parts from \
                  the zoo or from where it was saved",
                 self.path.display()
             )));
@@ -44,18 +44,18 @@ impl Model {
         Ok(Self { path: self.path.join(folder), manifest, store })
     }
 
-    /// The files that belong to none of the parts.
+    /// Returns the files outside of all parts.
     pub(super) fn own_files(&self) -> impl Iterator<Item = &ModelFile> {
         self.manifest.files.iter().filter(|file| !self.parts().any(|part| inside(part, &file.name).is_some()))
     }
 }
 
-/// The name that a file of the whole has in its part, if it is in there.
+/// Returns the name of a file within the part, if it is in the part.
 pub(super) fn inside<'a>(part: &str, name: &'a str) -> Option<&'a str> {
     name.strip_prefix(part)?.strip_prefix('/')
 }
 
-/// The folders with a manifest, those inside others too.
+/// Returns the folders with a manifest, nested ones too.
 pub(super) fn parts_of(files: &[ModelFile]) -> impl Iterator<Item = &str> {
     files.iter().filter_map(|file| file.name.strip_suffix(MANIFEST_NAME)?.strip_suffix('/'))
 }

@@ -1,4 +1,4 @@
-//! The checksum of a file.
+//! SHA-256 checksums.
 
 use std::fmt;
 use std::io::{self, Read};
@@ -9,21 +9,21 @@ use sha2::Digest;
 
 use crate::{Error, Result};
 
-/// A SHA-256 checksum; written as 64 hexadecimal digits.
+/// A SHA-256 checksum; its text is 64 hexadecimal digits.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct Sha256([u8; 32]);
 
 impl Sha256 {
-    /// The checksum of `bytes`.
+    /// Computes the checksum of `bytes`.
     pub fn of(bytes: &[u8]) -> Self {
         Self(sha2::Sha256::digest(bytes).into())
     }
 
-    /// The checksum of everything that `reader` still gives, and how many bytes that was.
+    /// Computes the checksum of the remaining bytes of `reader`, and returns it with their number.
     ///
     /// # Errors
-    /// Those of the reader.
+    /// Returns errors of the reader.
     pub fn of_reader(mut reader: impl Read) -> io::Result<(Self, u64)> {
         let mut hasher = Sha256Hasher::default();
         let mut buffer = vec![0; 1 << 16];
@@ -38,26 +38,26 @@ impl Sha256 {
     /// Checks that `bytes` have this checksum.
     ///
     /// # Errors
-    /// `Integrity` when they have another; `what` names them in the message.
+    /// Returns `Integrity` if they have another one; `what` names them in the message.
     pub fn check(&self, what: &str, bytes: &[u8]) -> Result<()> {
         self.check_equal(what, &Self::of(bytes))
     }
 
-    /// Checks that the checksum found is this one.
+    /// Checks that `found` is this checksum.
     ///
     /// # Errors
-    /// `Integrity` when it is another; `what` names the bytes in the message.
+    /// Returns `Integrity` if it is another one; `what` names the bytes in the message.
     pub fn check_equal(&self, what: &str, found: &Self) -> Result<()> {
         if self == found {
             return Ok(());
         }
         Err(Error::integrity(format!(
-            "{what} has the sha256 {found} instead of {self}: it is damaged or another version, get it again"
+            "{what} has the sha256 {found} instead of {self}: it is damaged or another version; download it again"
         )))
     }
 }
 
-/// Makes a [`Sha256`] from pieces.
+/// Computes a [`Sha256`] incrementally.
 #[derive(Clone, Default)]
 pub struct Sha256Hasher {
     state: sha2::Sha256,
@@ -71,17 +71,17 @@ impl Sha256Hasher {
         self.len += bytes.len() as u64;
     }
 
-    /// How many bytes were added.
+    /// Returns the number of bytes so far.
     pub fn len(&self) -> u64 {
         self.len
     }
 
-    /// Whether nothing was added.
+    /// Returns whether there were no bytes so far.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// The checksum of what was added so far.
+    /// Returns the checksum of the bytes so far.
     pub fn finish(&self) -> Sha256 {
         Sha256(self.state.clone().finalize().into())
     }
@@ -109,7 +109,7 @@ impl FromStr for Sha256 {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        let bad = || Error::format(format!("{text:?} is no sha256: it takes 64 hexadecimal digits"));
+        let bad = || Error::format(format!("{text:?} is not a sha256; give 64 hexadecimal digits"));
         if text.len() != 64 || !text.is_ascii() {
             return Err(bad());
         }
@@ -144,7 +144,7 @@ mod tests {
     const ABC: &str = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
 
     #[test]
-    fn known_answer_in_one_piece_and_in_three() {
+    fn known_checksum_in_one_piece_and_in_three() {
         assert_eq!(Sha256::of(b"abc").to_string(), ABC);
         let mut hasher = Sha256Hasher::default();
         b"abc".chunks(1).for_each(|piece| hasher.update(piece));
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn text_that_is_no_checksum_is_refused() {
+    fn invalid_text_is_rejected() {
         for text in ["", "00", &ABC[1..], &ABC.replace('b', "g"), &format!("é{}", &ABC[2..])] {
             assert_eq!(text.parse::<Sha256>().unwrap_err().kind(), ErrorKind::Format, "{text}");
         }

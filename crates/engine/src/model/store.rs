@@ -1,4 +1,4 @@
-//! Where a container's files lie, read with bounds.
+//! Access to the files of a container, with bounds on their size.
 
 use std::fs::{self, File};
 use std::io::{self, BufReader, Read};
@@ -10,13 +10,13 @@ use zip::result::ZipError;
 use super::member_path;
 use crate::{Error, Result, ResultExt};
 
-/// No single file of a model may be larger; ONNX's own format holds no more.
+/// Maximum size of a file of a model, in bytes; the limit of ONNX files.
 pub(super) const MAX_FILE_BYTES: u64 = 2 << 30;
 
 #[derive(Debug, Clone)]
 pub(super) enum Store {
     Folder(PathBuf),
-    /// `prefix` is the archive's one top folder with its slash, or empty.
+    /// `prefix` is the only top-level folder of the archive with its slash, or empty.
     Zip {
         path: PathBuf,
         prefix: String,
@@ -24,11 +24,11 @@ pub(super) enum Store {
 }
 
 impl Store {
-    /// Reads the file called `name`, which must have exactly `size` bytes.
+    /// Reads the file `name`, which must have exactly `size` bytes.
     pub(super) fn read_exactly(&self, name: &str, size: u64) -> Result<Vec<u8>> {
         if size > MAX_FILE_BYTES {
             return Err(Error::format(format!(
-                "{name:?} is said to have {size} bytes: at most {MAX_FILE_BYTES} are read"
+                "{name:?} is listed with {size} bytes, more than the limit of {MAX_FILE_BYTES}"
             )));
         }
         let found = match self {
@@ -43,7 +43,7 @@ impl Store {
         if found == size { Ok(bytes) } else { Err(wrong_size(name, found, size)) }
     }
 
-    /// Reads the file called `name`, which may have up to `limit` bytes.
+    /// Reads the file `name` of at most `limit` bytes.
     pub(super) fn read_at_most(&self, name: &str, limit: u64) -> Result<Vec<u8>> {
         match self {
             Self::Folder(folder) => read_file(&path_inside(folder, name)?, limit),
@@ -54,19 +54,19 @@ impl Store {
 
 fn wrong_size(name: &str, found: u64, expected: u64) -> Error {
     Error::integrity(format!(
-        "{name:?} has {found} bytes instead of {expected}: it is damaged or another version, get it again"
+        "{name:?} has {found} bytes instead of {expected}: it is damaged or another version; download it again"
     ))
 }
 
 fn path_inside(folder: &Path, name: &str) -> Result<PathBuf> {
     let folder = fs::canonicalize(folder).context(|| folder.display().to_string())?;
-    let wanted = folder.join(member_path(name)?);
-    let path = fs::canonicalize(&wanted).context(|| wanted.display().to_string())?;
+    let joined = folder.join(member_path(name)?);
+    let path = fs::canonicalize(&joined).context(|| joined.display().to_string())?;
     if path.starts_with(&folder) {
         return Ok(path);
     }
     Err(Error::integrity(format!(
-        "{name:?} is a link to {}, outside the model's folder: refused; copy the file into the folder",
+        "{name:?} is a link to {}, outside the folder of the model; copy the file into the folder",
         path.display()
     )))
 }
@@ -77,7 +77,7 @@ fn length_of(path: &Path) -> Result<u64> {
     if found.is_file() {
         Ok(found.len())
     } else {
-        Err(Error::format(format!("{} is no file", path.display())))
+        Err(Error::format(format!("{} is not a file", path.display())))
     }
 }
 
@@ -89,14 +89,14 @@ pub(super) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>> {
 }
 
 fn read_bounded(reader: impl Read, length: u64, limit: u64) -> Result<Vec<u8>> {
-    let too_large = || Error::format(format!("more than {limit} bytes: not read"));
+    let too_large = || Error::format(format!("more than {limit} bytes, the largest size allowed"));
     if length > limit {
         return Err(too_large());
     }
-    // A zip may claim any length: beyond this, room grows with what is really there.
+    // A zip may state any length: beyond this limit, the buffer grows with the data read.
     let mut bytes = Vec::with_capacity(length.min(64 << 20) as usize);
     reader.take(limit + 1).read_to_end(&mut bytes).map_err(|error| match error.kind() {
-        io::ErrorKind::InvalidData => Error::integrity("damaged, get it again").with_source(error),
+        io::ErrorKind::InvalidData => Error::integrity("damaged; download it again").with_source(error),
         _ => error.into(),
     })?;
     if bytes.len() as u64 > limit { Err(too_large()) } else { Ok(bytes) }
@@ -124,13 +124,13 @@ fn read_zipped(path: &Path, name: &str, limit: u64) -> Result<Vec<u8>> {
     let mut archive = open_zip(path)?;
     let entry = archive.by_name(name).map_err(|error| from_zip(path, error).context(name))?;
     if !entry.is_file() {
-        return Err(Error::format(format!("{name:?} in {} is no file", path.display())));
+        return Err(Error::format(format!("{name:?} in {} is not a file", path.display())));
     }
     let length = entry.size();
     read_bounded(entry, length, limit).context(|| format!("{name:?} in {}", path.display()))
 }
 
-/// The archive's folder that holds the file called `name`: the top, or the one folder in it.
+/// Returns the folder of the archive that contains the file `name`: the top level, or the only folder in it.
 pub(super) fn prefix_in_zip(path: &Path, name: &str) -> Result<String> {
     let archive = open_zip(path)?;
     let mut found = archive.file_names().filter_map(|entry| {
@@ -142,5 +142,5 @@ pub(super) fn prefix_in_zip(path: &Path, name: &str) -> Result<String> {
     let first = found.next();
     let best = found.fold(first, |best, next| best.min(Some(next)));
     best.map(|(_, prefix)| prefix)
-        .ok_or_else(|| Error::format(format!("no {name} in {}: this is no model", path.display())))
+        .ok_or_else(|| Error::format(format!("no {name} in {}; it is not a model", path.display())))
 }

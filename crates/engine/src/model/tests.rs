@@ -110,7 +110,7 @@ fn writer_replaces_models_only_and_leaves_nothing_when_dropped() {
 }
 
 #[test]
-fn damage_is_refused() {
+fn damage_is_detected() {
     let folder = Folder::new();
     let path = folder.join("model");
     let model = written(&path);
@@ -129,7 +129,7 @@ fn damage_is_refused() {
 }
 
 #[test]
-fn one_flipped_byte_in_a_zip_is_refused() {
+fn one_flipped_byte_in_a_zip_is_detected() {
     let folder = Folder::new();
     written(&folder.join("model.zip"));
     let mut bytes = fs::read(folder.join("model.zip")).unwrap();
@@ -140,7 +140,7 @@ fn one_flipped_byte_in_a_zip_is_refused() {
 }
 
 #[test]
-fn claims_that_do_not_hold_are_refused_before_memory_is_taken() {
+fn false_sizes_are_rejected_before_memory_is_allocated() {
     let folder = Folder::new();
     let file = |size: u64, name: &str| {
         json!({"format_version": 1, "files": [{"name": name, "size": size, "sha256": "00".repeat(32)}]})
@@ -166,7 +166,7 @@ fn claims_that_do_not_hold_are_refused_before_memory_is_taken() {
 
 #[cfg(unix)]
 #[test]
-fn link_out_of_the_folder_is_refused() {
+fn link_out_of_the_folder_is_rejected() {
     let folder = Folder::new();
     written(&folder.join("model"));
     folder.write("secret", b"network");
@@ -257,14 +257,14 @@ fn opendr_json_with_onnx_is_read() {
 }
 
 #[test]
-fn model_of_another_learner_is_refused() {
+fn model_of_another_learner_is_rejected() {
     let folder = Folder::new();
     let model = written(&folder.join("model"));
     assert!(model.check_learner("nanodet").is_ok());
     assert_eq!(kind_of(model.check_learner("yunet")), ErrorKind::InvalidInput);
 }
 
-/// A recogniser that carries a detector, which carries a landmark network.
+/// A recogniser with a detector as a part, which has a landmark network as a part.
 fn with_parts(folder: &Folder, path: &str) -> Model {
     let mut writer = ModelWriter::new(folder.join("landmarks"), Manifest::new("landmarks", "")).unwrap();
     writer.add("model.onnx", b"points").unwrap();
@@ -295,7 +295,7 @@ fn parts_are_models_in_folders_and_zips() {
 
         let error = whole.part("embedder").unwrap_err();
         assert_eq!(error.kind(), ErrorKind::NotFound);
-        assert!(error.to_string().contains("\"embedder\"; it carries detector"), "{error}");
+        assert!(error.to_string().contains("\"embedder\"; it contains detector"), "{error}");
         for name in ["", "..", "../detector", "/detector", "detector/../detector", "detector/"] {
             assert_eq!(kind_of(whole.part(name)), ErrorKind::Integrity, "{name:?}");
         }
@@ -305,7 +305,7 @@ fn parts_are_models_in_folders_and_zips() {
 }
 
 #[test]
-fn damaged_part_is_refused() {
+fn damaged_part_is_detected() {
     let folder = Folder::new();
     let whole = with_parts(&folder, "whole");
     fs::write(folder.join("whole/detector/model.onnx"), b"b0xes").unwrap();
@@ -323,7 +323,7 @@ fn damaged_part_is_refused() {
 }
 
 #[test]
-fn file_of_a_part_written_anew_is_stated_by_the_part_too() {
+fn replaced_file_of_a_part_is_updated_in_its_manifest() {
     let folder = Folder::new();
     let whole = with_parts(&folder, "whole");
     let mut writer = ModelWriter::new(folder.join("smaller.zip"), whole.manifest().clone()).unwrap();

@@ -1,4 +1,4 @@
-//! The JSON that OpenDR 3.0's learners write beside their weights.
+//! Reading of the JSON files that the learners of OpenDR 3.0 write beside their weights.
 
 use std::path::Path;
 
@@ -37,18 +37,18 @@ impl Default for Paths {
     }
 }
 
-/// The manifest that an OpenDR JSON amounts to. Its files have no size and no checksum, and its learner is unknown.
+/// Converts an OpenDR JSON to a manifest. Its files have no size and no checksum, and its learner is unknown.
 pub(super) fn manifest_from_json(json: &[u8]) -> Result<Manifest> {
     let metadata: Metadata = parse(json)?;
     let paths = match metadata.model_paths {
         Paths::One(path) => vec![path],
         Paths::Many(paths) => paths,
     };
-    // CoTransEnc writes the format "pth" for ONNX, so a file's own ending counts too.
+    // CoTransEnc writes the format "pth" for ONNX, so the extension of the files counts too.
     let is_onnx = |path: &String| path.to_ascii_lowercase().ends_with(".onnx");
     if metadata.format != "onnx" && (paths.is_empty() || !paths.iter().all(is_onnx)) {
         return Err(Error::unsupported(format!(
-            "OpenDR JSON with weights of {} in the format {:?}: OpenDR in Rust reads ONNX; in OpenDR 3.0 call \
+            "OpenDR JSON with weights of {} in the format {:?}; OpenDR in Rust reads ONNX. In OpenDR 3.0 call \
              optimize() and then save(), which writes ONNX, and load that",
             if metadata.framework.is_empty() { "an unnamed framework" } else { &metadata.framework },
             metadata.format,
@@ -68,7 +68,7 @@ pub(super) fn manifest_from_json(json: &[u8]) -> Result<Manifest> {
     Ok(manifest)
 }
 
-// Some learners write the path joined with the folder that their caller passed, so only the last part means anything.
+// Some learners write the path joined with the folder of the caller, so only the last component is valid.
 fn file_from_path(path: &str) -> Result<ModelFile> {
     let name = Path::new(path).file_name().and_then(|name| name.to_str()).unwrap_or_default();
     member_path(name)?;

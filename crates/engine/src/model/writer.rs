@@ -1,4 +1,4 @@
-//! Writing a container so that it is there whole or not at all.
+//! Atomic writing of containers.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -12,7 +12,7 @@ use super::part::{inside, parts_of};
 use super::{MANIFEST_NAME, Manifest, Model, ModelFile, Sha256, member_path};
 use crate::{Error, Result, ResultExt};
 
-/// Writes a container beside its final place and renames it there when it is complete.
+/// Writes a container to a temporary folder beside its path, and renames it when it is complete.
 ///
 /// ```
 /// # fn main() -> opendr_engine::Result<()> {
@@ -36,16 +36,19 @@ pub struct ModelWriter {
 static COUNTER: AtomicU64 = AtomicU64::new(0);
 
 impl ModelWriter {
-    /// Begins a container at `path`: a zip when it ends in `.zip`, else a folder. The manifest's list of files is
-    /// replaced by those added.
+    /// Starts a container at `path`: a zip if it ends in `.zip`, otherwise a folder. The list of files of the manifest is
+    /// replaced by the added files.
     ///
     /// # Errors
-    /// `InvalidInput` when something other than a model is at `path`, `Io` when the folder above cannot be written.
+    /// Returns `InvalidInput` if something other than a model is at `path`, `Io` if the parent folder is not writable.
     pub fn new(path: impl AsRef<Path>, mut manifest: Manifest) -> Result<Self> {
         let target = std::path::absolute(path)?;
         check_replaceable(&target)?;
         let (Some(parent), Some(name)) = (target.parent(), target.file_name()) else {
-            return Err(Error::invalid_input(format!("{} cannot be a model's folder", target.display())));
+            return Err(Error::invalid_input(format!(
+                "{} cannot be the folder of a model; give another path",
+                target.display()
+            )));
         };
         fs::create_dir_all(parent).context(|| parent.display().to_string())?;
         let count = COUNTER.fetch_add(1, Ordering::Relaxed);
@@ -59,7 +62,7 @@ impl ModelWriter {
     /// Adds a file.
     ///
     /// # Errors
-    /// `Integrity` when the name could leave the folder, `InvalidInput` when it is taken, `Io` when writing fails.
+    /// Returns `Integrity` if the name could leave the folder, `InvalidInput` if it exists already, `Io` if writing fails.
     pub fn add(&mut self, name: &str, bytes: &[u8]) -> Result<()> {
         let path = self.temporary.join(member_path(name)?);
         let taken = |file: &ModelFile| file.name.eq_ignore_ascii_case(name);
@@ -74,7 +77,7 @@ impl ModelWriter {
         Ok(())
     }
 
-    /// Adds a model as the part `name`, which [`Model::part`] opens, checking every file on the way.
+    /// Adds a model as the part `name` and checks all its files; [`Model::part`] opens it.
     ///
     /// # Errors
     /// As [`ModelWriter::add`] and [`Model::file`].
@@ -88,18 +91,18 @@ impl ModelWriter {
         self.add(&format!("{name}/{MANIFEST_NAME}"), &manifest.to_json()?)
     }
 
-    /// Puts the container in its place, where it replaces an older one, and opens it.
+    /// Moves the container to its path, where it replaces an older one, and opens it.
     ///
     /// # Errors
-    /// `Io` when writing or renaming fails.
+    /// Returns `Io` if writing or renaming fails.
     pub fn finish(self) -> Result<Model> {
         self.finish_checked(|_| Ok(()))
     }
 
-    /// As [`ModelWriter::finish`], once `check` accepts the finished model, which lies elsewhere until then.
+    /// Like [`ModelWriter::finish`], after `check` accepted the finished model in its temporary folder.
     ///
     /// # Errors
-    /// As [`ModelWriter::finish`], and what `check` returns; what is at the path stays then.
+    /// Returns the error of `check`, which leaves the path unchanged; otherwise as [`ModelWriter::finish`].
     pub fn finish_checked(mut self, check: impl FnOnce(&Model) -> Result<()>) -> Result<Model> {
         self.renew_parts()?;
         write_synced(&self.temporary.join(MANIFEST_NAME), &self.manifest.to_json()?)?;
@@ -114,8 +117,8 @@ impl ModelWriter {
         Model::open(&self.target)
     }
 
-    /// Lets the manifests of the parts state their files as they were added, which is not as they were when someone
-    /// wrote a smaller network in the place of a part's.
+    /// Updates the file lists in the manifests of parts. They are outdated if a file of a part was added in another version,
+    /// such as a quantised network.
     fn renew_parts(&mut self) -> Result<()> {
         let mut parts: Vec<_> = parts_of(&self.manifest.files).map(str::to_owned).collect();
         parts.sort_by_key(|part| std::cmp::Reverse(part.matches('/').count()));
@@ -147,7 +150,7 @@ impl ModelWriter {
 
     fn pack(&self, path: &Path) -> Result<()> {
         let mut archive = ZipWriter::new(io::BufWriter::new(File::create(path)?));
-        // Weights hardly shrink, and stored members load faster.
+        // Weights compress little, and stored members load faster.
         let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
         for name in self.manifest.files.iter().map(|file| file.name.as_str()).chain([MANIFEST_NAME]) {
             archive.start_file(name, options).map_err(io::Error::from)?;
@@ -177,7 +180,7 @@ impl ModelWriter {
 
 impl Drop for ModelWriter {
     fn drop(&mut self) {
-        // Gone already after a successful `finish`; a leftover only costs room.
+        // Removed already after a successful `finish`; a leftover only takes space.
         let _ = fs::remove_dir_all(&self.temporary);
     }
 }
@@ -198,10 +201,7 @@ fn check_replaceable(target: &Path) -> Result<()> {
     if free {
         return Ok(());
     }
-    Err(Error::invalid_input(format!(
-        "{} exists and is no model: name another place, so that nothing is lost",
-        target.display()
-    )))
+    Err(Error::invalid_input(format!("{} exists and is not a model; give another path", target.display())))
 }
 
 fn write_synced(path: &Path, bytes: &[u8]) -> Result<()> {

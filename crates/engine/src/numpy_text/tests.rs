@@ -1,6 +1,6 @@
 use super::{Number, array_repr, array_str, python_float};
 
-/// Shape, type, values (or none for 0, 1, 2, ...), and what NumPy 2.4 prints of it.
+/// Shape, type, values (or none for 0, 1, 2, ...), and the text of NumPy 2.4.
 type Case = (&'static [usize], &'static str, &'static [f64], &'static str);
 
 const CASES: &[Case] = &[
@@ -120,14 +120,14 @@ fn number(kind: &str, values: &[f64], at: usize) -> Number {
 }
 
 #[test]
-fn text_is_numpys() {
+fn text_is_that_of_numpy() {
     for (shape, kind, values, text) in CASES {
         assert_eq!(array_str(shape, &|at| number(kind, values, at)), *text);
     }
 }
 
 #[test]
-fn repr_is_numpys() {
+fn repr_is_that_of_numpy() {
     let values = &[0.5];
     let text = array_repr(&[1], &|at| number("f64", values, at));
     assert_eq!(text, "array([0.5])");
@@ -221,7 +221,7 @@ fn floats_as_python_prints_them() {
 }
 
 #[test]
-fn repr_leaves_a_place_for_its_bracket() {
+fn repr_reserves_a_character_for_its_parenthesis() {
     let text = array_repr(&[24], &|at| Number::Int((at % 3) as i64));
     assert_eq!(
         text,

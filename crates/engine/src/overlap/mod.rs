@@ -1,9 +1,9 @@
-//! How much boxes share: upright ones in a picture, turned ones on a plane, those that stand on it.
+//! Overlap of boxes: axis-aligned ones in an image, rotated rectangles on a plane, and 3D boxes that stand on it.
 //!
-//! Metrics, trackers and suppression in space measure by them.
+//! Metrics, trackers and 3D non-maximum suppression use these functions.
 
 mod rotated;
 mod upright;
 
-pub use rotated::{RotatedRectangle, StandingBox};
-pub use upright::{image_cover, image_distance_overlap, image_generalised_overlap, image_overlap};
+pub use rotated::{RotatedRectangle, UprightBox3D};
+pub use upright::{box_diou, box_giou, box_ioa, box_iou};

@@ -1,28 +1,28 @@
-//! Overlap of turned rectangles on a plane, and of boxes that stand on it.
+//! Overlap of rotated rectangles on a plane, and of 3D boxes with a vertical axis.
 
-/// A rectangle on a plane, turned about its middle.
+/// A rectangle on a plane, rotated about its center.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RotatedRectangle {
-    /// The middle.
+    /// Center of the rectangle.
     pub center: [f64; 2],
-    /// Length and width: the sides along its own first and second axis.
+    /// Length and width: the sides along its first and second axis.
     pub size: [f64; 2],
-    /// Turn from the plane's first axis towards its second, radians.
+    /// Rotation from the plane's first axis towards its second, in radians.
     pub angle: f64,
 }
 
 impl RotatedRectangle {
-    /// Length times width; 0 when a side is not positive.
+    /// Returns length times width; 0 if a side is not positive.
     pub fn area(&self) -> f64 {
         let [length, width] = self.size;
         if length > 0.0 && width > 0.0 { length * width } else { 0.0 }
     }
 
-    /// The area that it shares with `other`, exact but for rounding.
+    /// Returns the area of the intersection with `other`, exact except for rounding.
     ///
-    /// In the frame of `self` it is upright, so `other` is clipped by four axis-parallel lines (I. E. Sutherland,
+    /// `other` is moved into the frame of `self` and clipped by four axis-parallel lines (I. E. Sutherland,
     /// G. W. Hodgman, "Reentrant polygon clipping", Communications of the ACM 17, 1974).
-    pub fn shared_area(&self, other: &Self) -> f64 {
+    pub fn intersection_area(&self, other: &Self) -> f64 {
         if self.area() == 0.0 || other.area() == 0.0 || self.is_apart(other) {
             return 0.0;
         }
@@ -38,13 +38,13 @@ impl RotatedRectangle {
         polygon.area()
     }
 
-    /// Intersection over union; 0 for a rectangle without area.
-    pub fn overlap(&self, other: &Self) -> f64 {
-        let shared = self.shared_area(other);
+    /// Returns the intersection over union; 0 for a rectangle without area.
+    pub fn iou(&self, other: &Self) -> f64 {
+        let shared = self.intersection_area(other);
         if shared > 0.0 { shared / (self.area() + other.area() - shared) } else { 0.0 }
     }
 
-    /// The corners, counter-clockwise where the second axis is a quarter turn from the first.
+    /// Returns the corners, counter-clockwise if the second axis is a quarter turn from the first.
     fn corners(&self) -> [[f64; 2]; 4] {
         let (sin, cos) = self.angle.sin_cos();
         [[0.5, 0.5], [-0.5, 0.5], [-0.5, -0.5], [0.5, -0.5]].map(|[along, across]| {
@@ -53,7 +53,7 @@ impl RotatedRectangle {
         })
     }
 
-    /// Whether the circles about the two do not meet.
+    /// Returns whether the circumscribed circles of the two do not intersect.
     fn is_apart(&self, other: &Self) -> bool {
         let reach = |size: [f64; 2]| size[0].hypot(size[1]) / 2.0;
         let distance = (other.center[0] - self.center[0]).hypot(other.center[1] - self.center[1]);
@@ -61,44 +61,45 @@ impl RotatedRectangle {
     }
 }
 
-/// A box that stands upright on a plane, free to turn about the vertical axis.
+/// A 3D box with a vertical axis, rotated about that axis only.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StandingBox {
-    /// Its floor.
-    pub floor: RotatedRectangle,
-    /// Where it begins and ends along the vertical axis.
+pub struct UprightBox3D {
+    /// Base of the box, on the ground plane.
+    pub base: RotatedRectangle,
+    /// Lower and upper end along the vertical axis.
     pub vertical: [f64; 2],
 }
 
-impl StandingBox {
-    /// A box in the camera frame of KITTI (x right, y down, z ahead), as [`BoundingBox3D`](crate::target::BoundingBox3D)
-    /// has it: length, height and width, the middle of the floor, the turn about y. x and z are the plane, and height
-    /// counts up.
-    pub fn in_camera([length, height, width]: [f64; 3], [x, y, z]: [f64; 3], rotation_y: f64) -> Self {
-        // Turning about y, which points down, goes from z to x.
-        let floor = RotatedRectangle { center: [x, z], size: [length, width], angle: -rotation_y };
-        Self { floor, vertical: [-y, height - y] }
+impl UprightBox3D {
+    /// Creates a box from KITTI's camera frame (x right, y down, z forward), as in
+    /// [`BoundingBox3D`](crate::target::BoundingBox3D): length, height and width, the center of the base, the rotation about
+    /// y. The ground plane is x and z; the vertical axis points up.
+    pub fn from_kitti([length, height, width]: [f64; 3], [x, y, z]: [f64; 3], rotation_y: f64) -> Self {
+        // A rotation about y, which points down, goes from z to x.
+        let base = RotatedRectangle { center: [x, z], size: [length, width], angle: -rotation_y };
+        Self { base, vertical: [-y, height - y] }
     }
 
-    /// Area of the floor times height; 0 when a side is not positive.
+    /// Returns the area of the base times the height; 0 if a side is not positive.
     pub fn volume(&self) -> f64 {
-        self.floor.area() * (self.vertical[1] - self.vertical[0]).max(0.0)
+        self.base.area() * (self.vertical[1] - self.vertical[0]).max(0.0)
     }
 
-    /// Intersection over union of the volumes, given the area that the floors share; 0 for a box without volume.
-    pub fn overlap_with_shared_floor(&self, other: &Self, shared_floor: f64) -> f64 {
+    /// Returns the intersection over union of the volumes, given the intersection area of the bases; 0 for a box without
+    /// volume.
+    pub fn iou_with_base_intersection(&self, other: &Self, shared_floor: f64) -> f64 {
         let ([low, high], [other_low, other_high]) = (self.vertical, other.vertical);
         let shared = shared_floor * (high.min(other_high) - low.max(other_low)).max(0.0);
         if shared > 0.0 { shared / (self.volume() + other.volume() - shared) } else { 0.0 }
     }
 
-    /// Intersection over union of the volumes; 0 for a box without volume.
-    pub fn overlap(&self, other: &Self) -> f64 {
-        self.overlap_with_shared_floor(other, self.floor.shared_area(&other.floor))
+    /// Returns the intersection over union of the volumes; 0 for a box without volume.
+    pub fn iou(&self, other: &Self) -> f64 {
+        self.iou_with_base_intersection(other, self.base.intersection_area(&other.base))
     }
 }
 
-/// A convex polygon of at most eight corners: four, and one more for every line that clips it.
+/// A convex polygon of at most eight corners: four, and one more per clipping line.
 #[derive(Debug, Clone, Copy)]
 struct Polygon {
     corners: [[f64; 2]; 8],
@@ -119,7 +120,7 @@ impl Polygon {
         }
     }
 
-    /// The part where `sign` times the coordinate along `axis` is at most `limit`.
+    /// Returns the part where `sign` times the coordinate along `axis` is at most `limit`.
     fn below(&self, axis: usize, limit: f64, sign: f64) -> Self {
         let mut clipped = Self { len: 0, ..*self };
         let corners = &self.corners[..self.len];
@@ -141,7 +142,7 @@ impl Polygon {
         clipped
     }
 
-    /// Gauss's shoelace formula.
+    /// Returns the area by the shoelace formula.
     fn area(&self) -> f64 {
         let corners = &self.corners[..self.len];
         let nexts = corners.iter().cycle().skip(1);

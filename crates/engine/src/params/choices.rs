@@ -1,14 +1,14 @@
-//! Parameters that take one of a few words.
+//! Parameters with a fixed set of text values.
 
-/// Declares an enum whose variants are the words that a parameter takes.
+/// Declares an enum for a parameter with a fixed set of text values.
 ///
 /// ```
 /// opendr_engine::choices! {
-///     /// How boxes that overlap are thinned out.
+///     /// Method of non-maximum suppression.
 ///     pub enum Suppression {
-///         /// Drop all but the best.
+///         /// Overlapping boxes of lower scores are removed.
 ///         Hard = "hard",
-///         /// Lower the scores of the others.
+///         /// Their scores are lowered.
 ///         Soft = "soft",
 ///     }
 /// }
@@ -32,7 +32,7 @@ macro_rules! choices {
         }
 
         impl $name {
-            /// The word on every surface.
+            /// Returns the text of the value, the same on every surface.
             pub const fn name(self) -> &'static str {
                 match self { Self::$first => $first_word, $(Self::$variant => $word,)* }
             }

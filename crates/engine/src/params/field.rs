@@ -1,11 +1,11 @@
-//! One row of a table of parameters.
+//! The description of a parameter.
 
 use std::fmt;
 
 use crate::params::{ParamKind, ParamValue};
 use crate::{Error, Result};
 
-/// What numbers a field takes, both ends included.
+/// Range of a numeric parameter, both ends included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ParamRange {
     /// Smallest value.
@@ -20,57 +20,64 @@ impl fmt::Display for ParamRange {
     }
 }
 
-/// Where the default of a [`Field`] comes from.
+/// Default of a [`Field`].
 #[derive(Debug, Clone, Copy)]
 pub enum FieldDefault {
-    /// From the definition of a struct.
-    Made(fn() -> ParamValue),
-    /// From a learner that is registered at run time.
-    Given(&'static ParamValue),
+    /// A function, for the fields of a struct.
+    Function(fn() -> ParamValue),
+    /// A value, for learners that are registered at run time.
+    Value(&'static ParamValue),
 }
 
 impl FieldDefault {
-    /// The default.
+    /// Returns the default value.
     pub fn value(self) -> ParamValue {
         match self {
-            Self::Made(make) => make(),
-            Self::Given(value) => value.clone(),
+            Self::Function(make) => make(),
+            Self::Value(value) => value.clone(),
         }
     }
 }
 
-/// One parameter: all that any surface needs to know of it.
+/// Description of a parameter, for all surfaces.
 #[derive(Debug, Clone, Copy)]
 pub struct Field {
-    /// The name on every surface.
+    /// Name, the same on every surface.
     pub name: &'static str,
-    /// The documentation, from the field's doc comment.
+    /// Documentation: the doc comment of the field.
     pub doc: &'static str,
-    /// Its type.
+    /// Type of the value.
     pub kind: ParamKind,
-    /// Whether it may be absent.
+    /// Whether the value may be absent.
     pub optional: bool,
-    /// The words it takes, where it takes only some.
+    /// Allowed texts; empty if any text is allowed.
     pub choices: &'static [&'static str],
-    /// The numbers it takes.
+    /// Range of a number.
     pub range: Option<ParamRange>,
-    /// The unit of the number, e.g. `"px"`; empty when it has none.
+    /// Unit of a number, e.g. `"px"`; empty for none.
     pub unit: &'static str,
-    /// Whether a search should step by factors.
+    /// Whether hyperparameter searches sample it on a logarithmic scale.
     pub log_scale: bool,
-    /// Whether it may change while the learner runs.
+    /// Whether it can be set while a model is loaded.
     pub live: bool,
-    /// Other names that Python takes for it: those that it had in OpenDR.
+    /// Alternative names in Python: those of OpenDR.
     pub aliases: &'static [&'static str],
-    /// Its default.
+    /// Former names, which are still accepted on every surface and in saved models.
+    pub former: &'static [&'static str],
+    /// Default value.
     pub default: FieldDefault,
 }
 
 impl Field {
+    /// Returns whether `name` is the name or a former name of the parameter.
+    pub fn is_called(&self, name: &str) -> bool {
+        self.name == name || self.former.contains(&name)
+    }
+
     /// Checks type, range and choices.
     ///
     /// # Errors
-    /// `InvalidParam` with the name, the value and what is allowed.
+    /// Returns `InvalidParam` with the name, the value and the allowed values.
     pub fn check(&self, value: &ParamValue) -> Result<()> {
         if matches!(value, ParamValue::None) && self.optional {
             return Ok(());
@@ -113,22 +120,22 @@ impl Field {
         }
     }
 
-    /// Reads the value as a command line writes it; lists are separated by commas, `none` is absence.
+    /// Parses a value from the command line: lists are separated by commas, `none` is an absent value.
     ///
     /// # Errors
-    /// `InvalidParam` when the text is not of the field's type.
+    /// Returns `InvalidParam` if the text is not of the type of the field.
     pub fn parse(&self, text: &str) -> Result<ParamValue> {
-        let wrong = || self.wrong_type(&ParamValue::Text(text.to_owned()));
+        let mismatch = || self.wrong_type(&ParamValue::Text(text.to_owned()));
         if self.optional && text == "none" {
             return Ok(ParamValue::None);
         }
         match self.kind {
-            ParamKind::Float => text.parse().map(ParamValue::Float).map_err(|_| wrong()),
-            ParamKind::Int => text.parse().map(ParamValue::Int).map_err(|_| wrong()),
+            ParamKind::Float => text.parse().map(ParamValue::Float).map_err(|_| mismatch()),
+            ParamKind::Int => text.parse().map(ParamValue::Int).map_err(|_| mismatch()),
             ParamKind::Bool => match text {
                 "true" | "on" | "yes" | "1" => Ok(ParamValue::Bool(true)),
                 "false" | "off" | "no" | "0" => Ok(ParamValue::Bool(false)),
-                _ => Err(wrong()),
+                _ => Err(mismatch()),
             },
             ParamKind::Text => Ok(ParamValue::Text(text.to_owned())),
             ParamKind::List => Ok(ParamValue::List(text.split(',').map(ParamValue::guess).collect())),

@@ -1,4 +1,4 @@
-//! Tables of fields made of several, at compile time.
+//! Concatenation of tables of fields, at compile time.
 
 use crate::params::{Field, FieldDefault, ParamKind, ParamValue};
 
@@ -13,10 +13,11 @@ const NO_FIELD: Field = Field {
     log_scale: false,
     live: false,
     aliases: &[],
-    default: FieldDefault::Given(&ParamValue::None),
+    former: &[],
+    default: FieldDefault::Value(&ParamValue::None),
 };
 
-/// How many fields the tables have.
+/// Returns the number of fields in all tables.
 pub const fn count(tables: &[&[Field]]) -> usize {
     let (mut count, mut table) = (0, 0);
     while table < tables.len() {
@@ -26,7 +27,7 @@ pub const fn count(tables: &[&[Field]]) -> usize {
     count
 }
 
-/// The fields of all tables, one after the other, those named in `defaults` with that default.
+/// Concatenates the fields of all tables; `defaults` replaces the defaults of the fields that it names.
 pub const fn joined<const N: usize>(
     tables: &[&[Field]],
     defaults: &[(&'static str, FieldDefault)],
@@ -37,12 +38,12 @@ pub const fn joined<const N: usize>(
         let mut row = 0;
         while row < tables[table].len() {
             fields[at] = tables[table][row];
-            let mut change = 0;
-            while change < defaults.len() {
-                if same(fields[at].name, defaults[change].0) {
-                    fields[at].default = defaults[change].1;
+            let mut override_index = 0;
+            while override_index < defaults.len() {
+                if same(fields[at].name, defaults[override_index].0) {
+                    fields[at].default = defaults[override_index].1;
                 }
-                change += 1;
+                override_index += 1;
             }
             at += 1;
             row += 1;

@@ -1,8 +1,8 @@
-//! Parameters: the one place where a name, type, default, range and documentation stand.
+//! Parameters: name, type, default, range and documentation, defined once for all surfaces.
 //!
-//! `#[derive(Params)]` makes a static table of [`Field`]s and the glue to read and write them by name; Python keyword
+//! `#[derive(Params)]` generates a static table of [`Field`]s and the code to read and write them by name. Python keyword
 //! arguments and stubs, command-line flags, ROS parameters, C's JSON, the tuner's search space and the reference pages
-//! all come from that table.
+//! all use that table.
 
 mod choices;
 mod field;
@@ -25,12 +25,12 @@ use crate::{Error, Result};
 /// Parameters by name, as surfaces pass them.
 pub type ParamMap = BTreeMap<String, ParamValue>;
 
-/// A struct of parameters. Derive it; `Default` comes with the derive.
+/// A struct of parameters. It is derived; the derive implements `Default` too.
 ///
 /// ```
 /// use opendr_engine::params::{Params, ParamValue};
 ///
-/// /// What a user may set.
+/// /// Parameters of a detector.
 /// #[derive(Debug, Clone, Params)]
 /// pub struct MyParams {
 ///     /// Detections below this score are dropped.
@@ -48,21 +48,21 @@ pub type ParamMap = BTreeMap<String, ParamValue>;
 /// assert_eq!(MyParams::FIELDS[0].doc, "Detections below this score are dropped.");
 /// ```
 ///
-/// A struct's fields can stand among those of another, with defaults of their own there:
+/// The fields of a struct can be flattened into another one, with other defaults there:
 ///
 /// ```
 /// # use opendr_engine::params::{Params, ParamValue};
-/// # /// What a user may set.
+/// # /// Parameters of a detector.
 /// # #[derive(Debug, Clone, Params)]
 /// # pub struct MyParams {
 /// #     /// Side of the network's input in pixels.
 /// #     #[param(default = 416, range = 32..=2048, unit = "px")]
 /// #     pub size: usize,
 /// # }
-/// /// The same for large pictures.
+/// /// Parameters of a detector for large images.
 /// #[derive(Debug, Clone, Params)]
 /// pub struct LargeParams {
-///     /// What both have.
+///     /// Parameters of the detector.
 ///     #[param(flatten, size = 1024)]
 ///     pub inner: MyParams,
 /// }
@@ -71,21 +71,21 @@ pub type ParamMap = BTreeMap<String, ParamValue>;
 /// assert_eq!(LargeParams::FIELDS[0].default.value(), ParamValue::Int(1024));
 /// ```
 pub trait Params: Clone + Debug + Default + Send + Sync + 'static {
-    /// The table of fields, in order of declaration.
+    /// Table of fields, in order of declaration.
     const FIELDS: &'static [Field];
 
-    /// The value of field number `index`.
+    /// Returns the value of field `index`.
     #[doc(hidden)]
     fn get_at(&self, index: usize) -> ParamValue;
 
-    /// Sets field number `index`; `false` when the value is of the wrong type.
+    /// Sets field `index`; returns `false` if the value is of the wrong type.
     #[doc(hidden)]
     fn set_at(&mut self, index: usize, value: &ParamValue) -> bool;
 
-    /// The value of a field.
+    /// Returns the value of a field.
     ///
     /// # Errors
-    /// `InvalidParam` when there is no such field.
+    /// Returns `InvalidParam` if there is no such field.
     fn get(&self, name: &str) -> Result<ParamValue> {
         Ok(self.get_at(index_of(Self::FIELDS, name)?))
     }
@@ -93,7 +93,7 @@ pub trait Params: Clone + Debug + Default + Send + Sync + 'static {
     /// Sets a field.
     ///
     /// # Errors
-    /// `InvalidParam` when there is no such field, or the value is of the wrong type or out of range.
+    /// Returns `InvalidParam` if there is no such field, or the value is of the wrong type or out of range.
     fn set(&mut self, name: &str, value: ParamValue) -> Result<()> {
         let index = index_of(Self::FIELDS, name)?;
         let field = &Self::FIELDS[index];
@@ -101,7 +101,7 @@ pub trait Params: Clone + Debug + Default + Send + Sync + 'static {
         if self.set_at(index, &value) { Ok(()) } else { Err(field.wrong_type(&value)) }
     }
 
-    /// Sets a field from text, as it comes from a command line.
+    /// Sets a field from the text of a command line.
     ///
     /// # Errors
     /// As [`Params::set`].
@@ -113,18 +113,18 @@ pub trait Params: Clone + Debug + Default + Send + Sync + 'static {
     /// Checks every field against its range and choices.
     ///
     /// # Errors
-    /// `InvalidParam` for the first field that does not hold.
+    /// Returns `InvalidParam` for the first field with an invalid value.
     fn check(&self) -> Result<()> {
         Self::FIELDS.iter().enumerate().try_for_each(|(index, field)| field.check(&self.get_at(index)))
     }
 
-    /// All fields by name.
+    /// Returns all values by name.
     fn to_map(&self) -> ParamMap {
         let fields = Self::FIELDS.iter().enumerate();
         fields.map(|(index, field)| (field.name.to_owned(), self.get_at(index))).collect()
     }
 
-    /// The defaults with the values of `map` over them.
+    /// Creates parameters with the values of `map`, and defaults for the rest.
     ///
     /// # Errors
     /// As [`Params::set`].
@@ -135,15 +135,15 @@ pub trait Params: Clone + Debug + Default + Send + Sync + 'static {
     }
 }
 
-/// No parameters.
+/// An empty set of parameters.
 #[derive(Debug, Clone, Params)]
 pub struct NoParams {}
 
 fn index_of(fields: &[Field], name: &str) -> Result<usize> {
-    fields.iter().position(|field| field.name == name).ok_or_else(|| {
+    fields.iter().position(|field| field.is_called(name)).ok_or_else(|| {
         let names: Vec<_> = fields.iter().map(|field| field.name).collect();
         Error::invalid_param(match names.is_empty() {
-            true => format!("no parameter {name:?}; there are none here"),
+            true => format!("no parameter {name:?}; there are no parameters"),
             false => format!("no parameter {name:?}; there are {}", names.join(", ")),
         })
     })

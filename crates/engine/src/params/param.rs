@@ -1,21 +1,21 @@
-//! The Rust types that can stand in a struct of parameters.
+//! The Rust types of parameters.
 
 use std::fmt;
 
 use crate::params::ParamValue;
 
-/// The types as surfaces know them.
+/// Type of a parameter on the surfaces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ParamKind {
-    /// A number.
+    /// A floating-point number.
     Float,
-    /// A whole number.
+    /// An integer.
     Int,
-    /// Yes or no.
+    /// A boolean.
     Bool,
-    /// Text, possibly one of a few words.
+    /// Text, possibly from a fixed set.
     Text,
-    /// Several values.
+    /// A list of values.
     List,
 }
 
@@ -31,19 +31,19 @@ impl fmt::Display for ParamKind {
     }
 }
 
-/// A type that can stand in a struct of parameters.
+/// A type that can be a field of a struct of parameters.
 pub trait Param: Sized {
-    /// What surfaces see.
+    /// Type on the surfaces.
     const KIND: ParamKind;
-    /// Whether it may be absent.
+    /// Whether the value may be absent.
     const OPTIONAL: bool = false;
-    /// The words it takes, where it takes only some.
+    /// Allowed texts; empty if any text is allowed.
     const CHOICES: &'static [&'static str] = &[];
 
-    /// Reads the value; `None` when it is of the wrong type or does not fit.
+    /// Converts from a value; `None` if it is of the wrong type or does not fit.
     fn from_value(value: &ParamValue) -> Option<Self>;
 
-    /// Writes the value.
+    /// Converts to a value.
     fn to_value(&self) -> ParamValue;
 }
 
@@ -72,7 +72,7 @@ impl Param for f32 {
         value.as_float().map(|number| number as Self)
     }
 
-    // Through the shortest text, so that 0.35 stays 0.35 and does not become 0.3499999940395355.
+    // Through the shortest text: 0.35 remains 0.35 and does not become 0.3499999940395355.
     fn to_value(&self) -> ParamValue {
         ParamValue::Float(self.to_string().parse().unwrap_or_else(|_| f64::from(*self)))
     }

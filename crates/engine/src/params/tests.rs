@@ -4,7 +4,7 @@ crate::choices! {
     enum Mode { Fast = "fast", Exact = "exact" }
 }
 
-/// Everything a field can be.
+/// Fields of every type.
 #[derive(Debug, Clone, PartialEq, Params)]
 struct All {
     /// Detections below this score are dropped.
@@ -68,7 +68,7 @@ fn text_of_a_command_line() {
 }
 
 #[test]
-fn wrong_values_are_named() {
+fn wrong_values_are_rejected_by_name() {
     let mut all = All::default();
     for (name, value, part) in [
         ("threshold", ParamValue::Float(1.5), "threshold = 1.5 is out of range 0..=1"),
@@ -99,7 +99,7 @@ fn map_and_json_round_trip() {
     assert!(text.contains("\"threshold\":0.7,"), "{text}");
 }
 
-/// Fields before, within and after a struct that stands among them.
+/// Fields before, within and after a flattened struct.
 #[derive(Debug, Clone, Params)]
 struct Outer {
     /// Before.
@@ -113,7 +113,7 @@ struct Outer {
     after: i64,
 }
 
-/// Fields of their own.
+/// A struct to flatten.
 #[derive(Debug, Clone, Params)]
 struct Inner {
     /// A rate.
@@ -125,7 +125,7 @@ struct Inner {
 }
 
 #[test]
-fn flattened_fields_stand_among_the_others() {
+fn flattened_fields_are_in_order() {
     let names: Vec<_> = Outer::FIELDS.iter().map(|field| field.name).collect();
     assert_eq!(names, ["before", "rate", "name", "after"]);
     let mut params = Outer::default();

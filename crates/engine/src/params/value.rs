@@ -1,29 +1,29 @@
-//! A parameter's value on its way between surfaces.
+//! Values of parameters.
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// A value that every surface can pass.
+/// The value of a parameter, for all surfaces.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum ParamValue {
     /// Absent.
     None,
-    /// Yes or no.
+    /// Boolean.
     Bool(bool),
-    /// Whole number.
+    /// Integer.
     Int(i64),
-    /// Number.
+    /// Floating-point number.
     Float(f64),
     /// Text.
     Text(String),
-    /// Several values.
+    /// List of values.
     List(Vec<ParamValue>),
 }
 
 impl ParamValue {
-    /// The number, when it is one.
+    /// Returns the number, if it is one.
     pub fn as_float(&self) -> Option<f64> {
         match self {
             Self::Float(number) => Some(*number),
@@ -32,7 +32,7 @@ impl ParamValue {
         }
     }
 
-    /// The whole number; a float counts when it has no fraction.
+    /// Returns the integer, if it is one, or a float without a fraction.
     pub fn as_int(&self) -> Option<i64> {
         match self {
             Self::Int(number) => Some(*number),
@@ -41,7 +41,7 @@ impl ParamValue {
         }
     }
 
-    /// What a word of a command line most likely means.
+    /// Parses a word of a command line as an integer, otherwise as a float, otherwise as text.
     pub(crate) fn guess(word: &str) -> Self {
         let word = word.trim();
         if let Ok(number) = word.parse() {

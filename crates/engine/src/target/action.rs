@@ -1,4 +1,4 @@
-//! The paper's active-perception contract: how the robot should move to see better.
+//! Camera motions proposed by active perception (the paper's active-perception interface).
 
 use std::fmt;
 
@@ -6,16 +6,16 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Error, Result};
 
-/// Anything that can stand as the action of a target.
+/// A type that can be the action of a target.
 pub trait ActionBase: fmt::Debug + Send + Sync {
-    /// The deflection of each axis, each in [-1, 1]; 1 to 4 axes.
+    /// Returns the value of each axis in [-1, 1], 1 to 4 axes.
     fn axes(&self) -> &[f32];
 }
 
-/// A movement on a sphere around what is looked at: 1 to 4 axes, each in [-1, 1].
+/// A camera motion on a sphere around the observed object: 1 to 4 axes, each in [-1, 1].
 ///
-/// Axis 0 is azimuth, 1 elevation, 2 distance (positive is closer), 3 roll or zoom. Movements are relative; full
-/// deflection is the step that the rig states (Passalis et al., IROS 2022, section III).
+/// Axis 0 is azimuth, 1 elevation, 2 distance (positive is closer), 3 roll or zoom. Motions are relative; the value 1 is
+/// the step that the rig states (Passalis et al., IROS 2022, section III).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<f32>", into = "Vec<f32>")]
 pub struct Action {
@@ -24,14 +24,14 @@ pub struct Action {
 }
 
 impl Action {
-    /// An action over `axes`.
+    /// Creates an action from `axes`.
     ///
     /// # Errors
-    /// `InvalidInput` when there are not 1 to 4 axes, or one is outside [-1, 1] or NaN.
+    /// Returns `InvalidInput` if there are not 1 to 4 axes, or one is outside [-1, 1] or NaN.
     pub fn new(axes: &[f32]) -> Result<Self> {
         if axes.is_empty() || axes.len() > 4 || axes.iter().any(|axis| !(-1.0..=1.0).contains(axis)) {
             return Err(Error::invalid_input(format!(
-                "an action has 1 to 4 axes, each in [-1, 1], not {axes:?}; scale the movement to the rig's step"
+                "an action has 1 to 4 axes, each in [-1, 1], not {axes:?}; scale the motion to the rig's step"
             )));
         }
         let mut all = [0.0; 4];

@@ -1,4 +1,4 @@
-//! Boxes in a picture: 2D detection.
+//! Bounding boxes in an image, for 2D detection.
 
 use std::fmt;
 
@@ -10,60 +10,60 @@ use crate::numpy_text::{Number, array_str};
 use crate::target::json_number::null_as_nan;
 use crate::target::{Action, Classes, Name, Segment, mean};
 
-/// A box in a picture: left-top corner and size in pixels.
+/// A bounding box in an image: top left corner and size in pixels.
 ///
-/// With a [`Segment`] it is OpenDR's `CocoBoundingBox`. Printed, it is OpenDR's text (`mot()`, or `coco()` with a
-/// segment); `{:#}` gives a readable line.
+/// With a [`Segment`] it is OpenDR's `CocoBoundingBox`. `{}` writes OpenDR's text (`mot()`, or `coco()` with a segment),
+/// `{:#}` a readable line.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct BoundingBox {
-    /// Class number or label.
+    /// Class index or label.
     pub name: Name,
-    /// Left edge, pixels.
+    /// Left edge in pixels.
     #[serde(deserialize_with = "null_as_nan")]
     pub left: f32,
-    /// Upper edge, pixels.
+    /// Upper edge in pixels.
     #[serde(deserialize_with = "null_as_nan")]
     pub top: f32,
-    /// Pixels to the right edge.
+    /// Width in pixels.
     #[serde(deserialize_with = "null_as_nan")]
     pub width: f32,
-    /// Pixels to the lower edge.
+    /// Height in pixels.
     #[serde(deserialize_with = "null_as_nan")]
     pub height: f32,
     /// Score, 0..=1.
     #[serde(default, deserialize_with = "null_as_nan")]
     pub confidence: f32,
-    /// Points that belong to the box (eyes, nose, corners of the mouth of a face), `[x, y]` in pixels.
-    /// Up to five lie in place, so that filling a list of faces allocates nothing.
+    /// Landmarks of the object (eyes, nose and mouth corners of a face), `[x, y]` in pixels. Up to five are stored inline, so
+    /// that filling a list of faces allocates nothing.
     #[serde(default, skip_serializing_if = "SmallVec::is_empty", deserialize_with = "null_as_nan")]
     pub landmarks: SmallVec<[[f32; 2]; 5]>,
-    /// Outline of the object, where it is known.
+    /// Mask of the object, if known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub segment: Option<Box<Segment>>,
 }
 
 impl BoundingBox {
-    /// A box from its left-top corner and size.
+    /// Creates a box from its top left corner and size.
     pub fn new(name: impl Into<Name>, left: f32, top: f32, width: f32, height: f32, confidence: f32) -> Self {
         Self { name: name.into(), left, top, width, height, confidence, ..Self::default() }
     }
 
-    /// A box from two corners `[x0, y0, x1, y1]`.
+    /// Creates a box from two corners `[x0, y0, x1, y1]`.
     pub fn from_corners(name: impl Into<Name>, [x0, y0, x1, y1]: [f32; 4], confidence: f32) -> Self {
         Self::new(name, x0, y0, x1 - x0, y1 - y0, confidence)
     }
 
-    /// `[x0, y0, x1, y1]`.
+    /// Returns the corners `[x0, y0, x1, y1]`.
     pub fn corners(&self) -> [f32; 4] {
         [self.left, self.top, self.left + self.width, self.top + self.height]
     }
 
-    /// Square pixels; 0 when a side is negative or NaN.
+    /// Returns the area in square pixels; 0 if a side is negative or NaN.
     pub fn area(&self) -> f32 {
         self.width.max(0.0) * self.height.max(0.0)
     }
 
-    /// Score and place, after the label on a readable line.
+    /// Writes score and position, after the label of a readable line.
     pub(super) fn write_place(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { left, top, width, height, confidence, .. } = self;
         write!(f, " {confidence:.2} at left {left:.1} top {top:.1} width {width:.1} height {height:.1}")
@@ -86,31 +86,31 @@ impl fmt::Display for BoundingBox {
     }
 }
 
-/// The boxes found in one picture, best first.
+/// The bounding boxes in an image, best first.
 ///
-/// Printed, it is OpenDR's text (rows of `mot()`); `{:#}` gives a readable line per box.
+/// `{}` writes OpenDR's text (rows of `mot()`), `{:#}` a readable line per box.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct BoundingBoxList {
-    /// Of the picture.
+    /// Header of the image.
     #[serde(flatten)]
     pub header: Header,
     /// The boxes.
     pub boxes: Vec<BoundingBox>,
-    /// What class numbers mean.
+    /// Class names.
     #[serde(default, skip_serializing_if = "Classes::is_empty")]
     pub classes: Classes,
-    /// The picture's number in its data set, where it has one.
+    /// Id of the image in its data set, if it has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub image_id: Option<i64>,
-    /// How to move to see better.
+    /// Proposed camera motion for a better view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub action: Option<Action>,
 }
 
 impl BoundingBoxList {
-    /// The label of a box of this list: its own, or the class name under its number.
-    pub fn label<'a>(&'a self, found: &'a BoundingBox) -> Option<&'a str> {
-        self.classes.label(&found.name)
+    /// Returns the label of a box of this list: its own, or the name of its class index.
+    pub fn label<'a>(&'a self, bounding_box: &'a BoundingBox) -> Option<&'a str> {
+        self.classes.label(&bounding_box.name)
     }
 }
 
@@ -141,9 +141,9 @@ mod tests {
     use super::*;
     use crate::target::{Rle, Segmentation, Target};
 
-    /// Compared with what OpenDR 3.0.0 prints.
+    /// The texts are those of OpenDR 3.0.0.
     #[test]
-    fn texts_are_opendrs() {
+    fn texts_are_those_of_opendr() {
         let first = BoundingBox::new(0, 10.5, 20.0, 30.0, 40.25, 0.9);
         assert_eq!(first.to_string(), "[-1.   10.5  20.   30.   40.25  0.9 ]");
         let second = BoundingBox::new("person", -1.0, 2.0, 300.0, 4.0, 0.5);
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn outlined_boxes_are_printed_as_coco() {
+    fn boxes_with_masks_are_printed_as_coco() {
         let segmentation = Segmentation::Rle(Rle::new(2, 2, vec![1, 3]).unwrap());
         let segment = Some(Box::new(Segment { segmentation, area: 3.0, iscrowd: true }));
         let found = BoundingBox { segment, ..BoundingBox::new(1, 0.0, 0.0, 2.0, 2.0, 0.5) };

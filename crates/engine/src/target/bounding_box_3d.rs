@@ -1,4 +1,4 @@
-//! Boxes in space: 3D detection.
+//! Bounding boxes in space, for 3D detection.
 
 use std::fmt;
 
@@ -8,32 +8,32 @@ use crate::Header;
 use crate::target::json_number::null_as_nan;
 use crate::target::{Action, Classes, Name, mean};
 
-/// A box in space, in the camera frame of KITTI: x right, y down, z ahead.
+/// A 3D bounding box in the camera frame of KITTI: x right, y down, z forward.
 ///
-/// Printed, it is OpenDR's text (`kitti()`); `{:#}` gives a readable line.
+/// `{}` writes OpenDR's text (`kitti()`), `{:#}` a readable line.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct BoundingBox3D {
-    /// Class number or label.
+    /// Class index or label.
     pub name: Name,
-    /// How much of the object lies outside the picture, 0..=1; -1 when it is not known.
+    /// Fraction of the object outside the image, 0..=1; -1 if unknown.
     #[serde(default, deserialize_with = "null_as_nan")]
     pub truncated: f32,
-    /// 0 visible, 1 partly hidden, 2 mostly hidden, 3 or -1 not known.
+    /// Occlusion: 0 visible, 1 partly occluded, 2 mostly occluded, 3 or -1 unknown.
     #[serde(default)]
     pub occluded: i32,
-    /// Angle under which the object is seen, radians in [-pi, pi].
+    /// Observation angle of the object, radians in [-pi, pi].
     #[serde(default, deserialize_with = "null_as_nan")]
     pub alpha: f32,
-    /// The object in the picture, corners `[x0, y0, x1, y1]` in pixels.
+    /// Bounding box in the image, corners `[x0, y0, x1, y1]` in pixels.
     #[serde(default, deserialize_with = "null_as_nan")]
     pub bbox2d: [f32; 4],
     /// Length, height and width in metres: OpenDR's order, not that of KITTI's files.
     #[serde(deserialize_with = "null_as_nan")]
     pub dimensions: [f32; 3],
-    /// x, y, z of the middle of its floor, metres.
+    /// Center of the base, x, y, z in metres.
     #[serde(deserialize_with = "null_as_nan")]
     pub location: [f32; 3],
-    /// Turn about the vertical axis, radians in [-pi, pi]; 0 looks along x.
+    /// Rotation about the vertical axis, radians in [-pi, pi]; at 0 the object faces along x.
     #[serde(deserialize_with = "null_as_nan")]
     pub rotation_y: f32,
     /// Score.
@@ -42,7 +42,7 @@ pub struct BoundingBox3D {
 }
 
 impl BoundingBox3D {
-    /// Score and place, after the label on a readable line.
+    /// Writes score and position, after the label of a readable line.
     pub(super) fn write_place(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let ([x, y, z], [length, height, width]) = (self.location, self.dimensions);
         write!(
@@ -64,20 +64,20 @@ impl fmt::Display for BoundingBox3D {
     }
 }
 
-/// The boxes found in one cloud or picture.
+/// The 3D bounding boxes in a point cloud or image.
 ///
-/// Printed, it is OpenDR's text (`kitti()`); `{:#}` gives a readable line per box.
+/// `{}` writes OpenDR's text (`kitti()`), `{:#}` a readable line per box.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct BoundingBox3DList {
-    /// Of the cloud or picture.
+    /// Header of the point cloud or image.
     #[serde(flatten)]
     pub header: Header,
     /// The boxes.
     pub boxes: Vec<BoundingBox3D>,
-    /// What class numbers mean.
+    /// Class names.
     #[serde(default, skip_serializing_if = "Classes::is_empty")]
     pub classes: Classes,
-    /// How to move to see better.
+    /// Proposed camera motion for a better view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub action: Option<Action>,
 }

@@ -1,4 +1,4 @@
-//! One of several classes: recognition and classification.
+//! Classes of whole inputs, for recognition and classification.
 
 use std::fmt;
 use std::sync::Arc;
@@ -11,32 +11,32 @@ use crate::numpy_text::{Number, array_str, python_float};
 use crate::target::Action;
 use crate::target::json_number::null_as_nan;
 
-/// The class that a datum belongs to.
+/// The class of a datum.
 ///
-/// Printed, it is OpenDR's text, e.g. `Class 3 (cat) with confidence 0.9`; `{:#}` gives `cat 0.90`.
+/// `{}` writes OpenDR's text, e.g. `Class 3 (cat) with confidence 0.9`; `{:#}` writes `cat 0.90`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Category {
-    /// Of the datum.
+    /// Header of the datum.
     #[serde(flatten)]
     pub header: Header,
-    /// Class number (OpenDR's `data`).
+    /// Class index (OpenDR's `data`).
     pub class: i64,
-    /// What the class means.
+    /// Name of the class.
     #[serde(default, skip_serializing_if = "Option::is_none", with = "optional_text")]
     pub description: Option<Arc<str>>,
     /// Score of the class, 0..=1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub confidence: Option<f32>,
-    /// Score of every class, where the learner tells them (OpenDR's `confidence` as a vector).
+    /// Score of every class, if the learner provides them (OpenDR's `confidence` as a vector).
     #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "null_as_nan")]
     pub probabilities: Vec<f32>,
-    /// How to move to see better.
+    /// Proposed camera motion for a better view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub action: Option<Action>,
 }
 
 impl Category {
-    /// A class without further words.
+    /// Creates a category without name and scores.
     pub fn new(class: i64, confidence: Option<f32>) -> Self {
         Self { class, confidence, ..Self::default() }
     }

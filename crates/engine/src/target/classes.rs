@@ -1,4 +1,4 @@
-//! What the class numbers of a model mean.
+//! Class names of a model.
 
 use std::fmt;
 use std::sync::Arc;
@@ -7,23 +7,23 @@ use serde::{Deserialize, Serialize};
 
 use crate::target::Name;
 
-/// The class names of a model, shared by every target that it answers; cloning allocates nothing.
+/// The class names of a model, shared by all its predictions; clones allocate nothing.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "Vec<String>", into = "Vec<String>")]
 pub struct Classes(Option<Arc<[Arc<str>]>>);
 
 impl Classes {
-    /// The name of class `index`, where there is one.
+    /// Returns the name of class `index`, if there is one.
     pub fn name(&self, index: i64) -> Option<&Arc<str>> {
         self.0.as_deref()?.get(usize::try_from(index).ok()?)
     }
 
-    /// The number of the class called `name`.
+    /// Returns the index of the class `name`.
     pub fn index(&self, name: &str) -> Option<i64> {
         self.iter().position(|class| class == name).map(|index| index as i64)
     }
 
-    /// What a box calls its class: its own label, or the class name under its number.
+    /// Returns the label of a class: the label itself, or the name of the class index.
     pub fn label<'a>(&'a self, name: &'a Name) -> Option<&'a str> {
         match name {
             Name::Label(label) => Some(label),
@@ -31,7 +31,7 @@ impl Classes {
         }
     }
 
-    /// The label, or `class 3`.
+    /// Writes the label, or `class 3` if there is no name.
     pub(super) fn write_label(&self, name: &Name, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.label(name) {
             Some(label) => f.write_str(label),
@@ -39,17 +39,17 @@ impl Classes {
         }
     }
 
-    /// How many classes are named.
+    /// Returns the number of class names.
     pub fn len(&self) -> usize {
         self.0.as_deref().map_or(0, <[_]>::len)
     }
 
-    /// Whether no class is named.
+    /// Returns whether there are no class names.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The names in order.
+    /// Returns the names, in order.
     pub fn iter(&self) -> impl Iterator<Item = &str> {
         self.0.as_deref().unwrap_or_default().iter().map(AsRef::as_ref)
     }

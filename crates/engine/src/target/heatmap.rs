@@ -1,4 +1,4 @@
-//! A class or a score for every place: segmentation, heat maps.
+//! Maps of classes or scores, for segmentation and heatmaps.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -13,12 +13,12 @@ use crate::target::json_number::null_as_nan;
 use crate::target::{Action, Classes, Name};
 use crate::{Error, Header, Result};
 
-/// The elements of a [`Heatmap`], last axis fastest. Shared: cloning copies none.
+/// The elements of a [`Heatmap`] in row-major order. Clones share them.
 #[derive(Debug, Clone, PartialEq)]
 pub enum HeatmapValues {
-    /// Class (or instance) numbers.
+    /// Class or instance indices.
     Labels(Arc<Vec<u32>>),
-    /// Scores or other measures.
+    /// Scores or other values.
     Scores(Arc<Vec<f32>>),
 }
 
@@ -31,18 +31,18 @@ impl HeatmapValues {
     }
 }
 
-/// A map of class numbers (`[height, width]`) or of scores (any shape, e.g. `[classes, height, width]`).
+/// A map of class indices (`[height, width]`) or of scores (any shape, e.g. `[classes, height, width]`).
 ///
-/// Printed, it is the array as NumPy prints it; `{:#}` gives one line with the shares of the classes, or the
-/// range of the scores.
+/// `{}` writes the array as NumPy prints it; `{:#}` writes one line with the fractions of the classes, or the range of
+/// the scores.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "HeatmapJson", into = "HeatmapJson")]
 pub struct Heatmap {
-    /// Of the picture.
+    /// Header of the image.
     pub header: Header,
-    /// What class numbers mean.
+    /// Class names.
     pub classes: Classes,
-    /// How to move to see better.
+    /// Proposed camera motion for a better view.
     pub action: Option<Action>,
     values: HeatmapValues,
     shape: SmallVec<[usize; 4]>,
@@ -64,26 +64,26 @@ struct HeatmapJson {
 }
 
 impl Heatmap {
-    /// Label of a pixel of a prediction whose class the data set does not have.
+    /// Label of predicted pixels whose class is not in the data set.
     pub const NO_CLASS: u32 = u32::MAX;
 
-    /// A map over `values`, last axis fastest.
+    /// Creates a map over `values` in row-major order.
     ///
     /// # Errors
-    /// `InvalidInput` when `shape` does not ask for exactly as many elements, or for more than 8 axes.
+    /// Returns `InvalidInput` if the number of values is not the product of `shape`, or there are more than 8 axes.
     pub fn new(values: HeatmapValues, shape: &[usize]) -> Result<Self> {
-        let wanted = shape.iter().try_fold(1usize, |count, side| count.checked_mul(*side));
-        if wanted != Some(values.len()) || shape.is_empty() || shape.len() > 8 {
+        let expected = shape.iter().try_fold(1usize, |count, side| count.checked_mul(*side));
+        if expected != Some(values.len()) || shape.is_empty() || shape.len() > 8 {
             let count = values.len();
             return Err(Error::invalid_input(format!(
-                "a heat map of shape {shape:?} cannot have {count} elements; give one per place, 1 to 8 axes"
+                "a heatmap of shape {shape:?} cannot have {count} elements; give one per element, 1 to 8 axes"
             )));
         }
         let (header, classes) = (Header::default(), Classes::default());
         Ok(Self { header, classes, action: None, values, shape: shape.into() })
     }
 
-    /// A map of class numbers, `[height, width]`.
+    /// Creates a map of class indices, `[height, width]`.
     ///
     /// # Errors
     /// As [`Heatmap::new`].
@@ -91,7 +91,7 @@ impl Heatmap {
         Self::new(HeatmapValues::Labels(Arc::new(labels)), shape)
     }
 
-    /// A map of scores.
+    /// Creates a map of scores.
     ///
     /// # Errors
     /// As [`Heatmap::new`].
@@ -99,21 +99,21 @@ impl Heatmap {
         Self::new(HeatmapValues::Scores(Arc::new(scores)), shape)
     }
 
-    /// The elements, last axis fastest.
+    /// Returns the elements in row-major order.
     pub fn values(&self) -> &HeatmapValues {
         &self.values
     }
 
-    /// Size of each axis.
+    /// Returns the size of each axis.
     pub fn shape(&self) -> &[usize] {
         &self.shape
     }
 
-    /// Returns the class of every place and the shape of that map; of scores `[classes, ...]` the class of the highest, the first of
-    /// equal ones.
+    /// Returns a map of class indices and its shape; for scores `[classes, ...]`, the class with the highest score, the first
+    /// of equal ones.
     ///
     /// # Errors
-    /// `InvalidInput` for scores without an axis of classes, and for NaN.
+    /// Returns `InvalidInput` for scores without an axis of classes, and for NaN.
     pub fn class_labels(&self) -> Result<(Cow<'_, [u32]>, &[usize])> {
         let scores = match &self.values {
             HeatmapValues::Labels(labels) => return Ok((Cow::Borrowed(labels), &self.shape)),
@@ -124,8 +124,8 @@ impl Heatmap {
                 "a map without scores has no labels; give [classes, height, width]",
             ));
         };
-        if let Some(place) = scores.iter().position(|score| score.is_nan()) {
-            return Err(Error::invalid_input(format!("score {place} of the map is NaN; give numbers")));
+        if let Some(index) = scores.iter().position(|score| score.is_nan()) {
+            return Err(Error::invalid_input(format!("score {index} of the map is NaN; give numbers")));
         }
         let mut classes = scores.chunks(shape.iter().product());
         let mut best = classes.next().unwrap_or_default().to_vec();
@@ -140,8 +140,8 @@ impl Heatmap {
         Ok((Cow::Owned(labels), shape))
     }
 
-    /// Makes it a map of class numbers of `shape` and gives its elements to be written: its memory is used again
-    /// unless a clone still holds it.
+    /// Makes this a map of class indices with `shape` and returns its elements for writing. The buffer is reused unless a
+    /// clone shares it.
     pub fn labels_mut(&mut self, shape: &[usize]) -> &mut [u32] {
         self.shape = shape.into();
         let count = shape.iter().product();
@@ -154,7 +154,7 @@ impl Heatmap {
         labels
     }
 
-    /// As [`Heatmap::labels_mut`], for scores.
+    /// Like [`Heatmap::labels_mut`], for scores.
     pub fn scores_mut(&mut self, shape: &[usize]) -> &mut [f32] {
         self.shape = shape.into();
         let count = shape.iter().product();
@@ -227,9 +227,7 @@ impl TryFrom<HeatmapJson> for Heatmap {
             (Some(labels), None) => Self::from_labels(labels, &json.shape)?,
             (None, Some(scores)) => Self::from_scores(scores, &json.shape)?,
             _ => {
-                return Err(Error::format(
-                    "a heat map has either \"labels\" or \"scores\"; give one of them",
-                ));
+                return Err(Error::format("a heatmap has either \"labels\" or \"scores\"; give one of them"));
             }
         };
         Ok(Self { header: json.header, classes: json.classes, action: json.action, ..map })
@@ -270,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn memory_is_used_again() {
+    fn buffers_are_reused() {
         let mut map = Heatmap::default();
         let before = map.labels_mut(&[2, 3]).as_ptr();
         assert_eq!(map.labels_mut(&[3, 2]).as_ptr(), before);
@@ -281,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_shapes_are_refused() {
+    fn wrong_shapes_are_rejected() {
         assert!(Heatmap::from_labels(vec![0; 5], &[2, 3]).is_err());
         assert!(Heatmap::from_labels(vec![0], &[]).is_err());
         let json = r#"{"shape":[9223372036854775807,2],"labels":[1]}"#;

@@ -1,9 +1,9 @@
-//! Numbers that JSON cannot write: NaN and infinities are written `null`, and `null` is read as NaN.
+//! Numbers without a JSON form: NaN and infinities are written as `null`, and `null` is read as NaN.
 
 use serde::{Deserialize, Deserializer};
 use smallvec::SmallVec;
 
-/// Numbers, one by one or in lists, that may be `null`.
+/// Numbers, or arrays and lists of them, that may be `null`.
 pub(super) trait Nullable: Sized {
     type Json<'de>: Deserialize<'de>;
 
@@ -56,7 +56,7 @@ impl Nullable for SmallVec<[[f32; 2]; 5]> {
     }
 }
 
-/// For `#[serde(deserialize_with)]`.
+/// Deserialises numbers and reads `null` as NaN, for `#[serde(deserialize_with)]`.
 pub(super) fn null_as_nan<'de, T: Nullable, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
     T::Json::deserialize(deserializer).map(T::from_json)
 }

@@ -1,4 +1,4 @@
-//! A point found in a picture.
+//! Keypoints.
 
 use std::fmt;
 
@@ -7,14 +7,14 @@ use serde::{Deserialize, Serialize};
 use crate::numpy_text::python_float;
 use crate::target::json_number::null_as_nan;
 
-/// A point in a picture, in pixels; `(-1, -1)` means not found. Printed, it is `[x, y]`.
+/// A keypoint in an image, in pixels; `(-1, -1)` means not detected. `{}` writes `[x, y]`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[repr(C)] // The C API points to keypoints where they lie.
+#[repr(C)] // The C API points to keypoints in place.
 pub struct Keypoint {
-    /// Pixels from the left edge.
+    /// Distance from the left edge, in pixels.
     #[serde(deserialize_with = "null_as_nan")]
     pub x: f32,
-    /// Pixels from the upper edge.
+    /// Distance from the upper edge, in pixels.
     #[serde(deserialize_with = "null_as_nan")]
     pub y: f32,
     /// Score, 0..=1.
@@ -23,11 +23,11 @@ pub struct Keypoint {
 }
 
 impl Keypoint {
-    /// A point that was not found.
+    /// A keypoint that was not detected.
     pub const MISSING: Self = Self { x: -1.0, y: -1.0, confidence: 0.0 };
 
-    /// Whether the point was found.
-    pub fn is_found(&self) -> bool {
+    /// Returns whether the keypoint was detected.
+    pub fn is_detected(&self) -> bool {
         self.x >= 0.0 && self.y >= 0.0
     }
 }

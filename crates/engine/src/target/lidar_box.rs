@@ -1,32 +1,32 @@
-//! Boxes in the frame of a lidar, and their way to and from the camera's.
+//! 3D bounding boxes in the frame of a lidar, and their conversion to and from the camera frame.
 
 use crate::data::Calibration;
-use crate::overlap::{RotatedRectangle, StandingBox};
+use crate::overlap::{RotatedRectangle, UprightBox3D};
 use crate::target::BoundingBox3D;
 
-/// A box that stands upright in a lidar's frame: x ahead, y left, z up, metres.
+/// A 3D bounding box with a vertical axis in a lidar's frame: x forward, y left, z up, in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LidarBox {
-    /// The middle of its floor.
+    /// Center of the base.
     pub center: [f64; 3],
     /// Length, width and height.
     pub size: [f64; 3],
-    /// Where its front looks: from x towards y, radians.
+    /// Heading of the front: from x towards y, in radians.
     pub yaw: f64,
 }
 
-/// Nearer to the camera than this a corner has no place in the picture, metres.
+/// Minimum depth of a corner that is projected to the image, in metres.
 const NEAREST: f64 = 0.1;
 
 impl LidarBox {
-    /// Its floor with where it begins and ends along z.
-    pub fn standing_box(&self) -> StandingBox {
+    /// Converts to a base rectangle with an extent along z.
+    pub fn upright_box(&self) -> UprightBox3D {
         let ([x, y, z], [length, width, height]) = (self.center, self.size);
         let floor = RotatedRectangle { center: [x, y], size: [length, width], angle: self.yaw };
-        StandingBox { floor, vertical: [z, z + height] }
+        UprightBox3D { base: floor, vertical: [z, z + height] }
     }
 
-    /// The eight corners, those of the floor first.
+    /// Returns the eight corners, those of the base first.
     pub fn corners(&self) -> [[f64; 3]; 8] {
         let (sin, cos) = self.yaw.sin_cos();
         std::array::from_fn(|corner| {
@@ -38,11 +38,11 @@ impl LidarBox {
         })
     }
 
-    /// The box in the camera's frame, without name and score.
+    /// Converts to the camera frame, without name and score.
     ///
-    /// `bbox2d` is about its corners in the picture, as far as `image_shape` (`[height, width]`) reaches where that is
-    /// known, and -1 everywhere for a box behind the camera; `truncated` is the share of it that lies outside, -1 where
-    /// the picture's size is not known. What hides it is not known (3).
+    /// `bbox2d` encloses the projected corners, clipped to `image_shape` (`[height, width]`) if it is given, and is -1 for a
+    /// box behind the camera. `truncated` is the fraction outside the image, -1 without `image_shape`. The occlusion is
+    /// unknown (3).
     pub fn to_camera(&self, calibration: &Calibration, image_shape: Option<[usize; 2]>) -> BoundingBox3D {
         let [length, width, height] = self.size;
         let location = calibration.camera_from_lidar(self.center);
@@ -57,21 +57,21 @@ impl LidarBox {
             alpha: wrapped(rotation_y - location[0].atan2(location[2])) as f32,
             bbox2d: bbox2d.map(|edge| edge as f32),
             dimensions: [length, height, width].map(|side| side as f32),
-            location: location.map(|place| place as f32),
+            location: location.map(|coordinate| coordinate as f32),
             rotation_y: rotation_y as f32,
             ..BoundingBox3D::default()
         }
     }
 
-    /// The box in the lidar's frame of one in the camera's; `None` where a number of it is not finite.
+    /// Converts from the camera frame; `None` if a number is not finite.
     pub fn from_camera(found: &BoundingBox3D, calibration: &Calibration) -> Option<Self> {
         let zero = calibration.camera_from_lidar([0.0; 3]);
         let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| {
             let end = calibration.camera_from_lidar(axis);
             [0, 1, 2].map(|row| end[row] - zero[row])
         });
-        // The way back of a rotation is its transpose, whose rows these are.
-        let back = |place: [f64; 3]| axes.map(|[x, y, z]| x * place[0] + y * place[1] + z * place[2]);
+        // The inverse of a rotation is its transpose, whose rows these are.
+        let back = |point: [f64; 3]| axes.map(|[x, y, z]| x * point[0] + y * point[1] + z * point[2]);
         let location = found.location.map(f64::from);
         let center = back([0, 1, 2].map(|axis| location[axis] - zero[axis]));
         let (sin, cos) = f64::from(found.rotation_y).sin_cos();
@@ -90,8 +90,8 @@ impl LidarBox {
     fn in_image(&self, calibration: &Calibration, image_shape: Option<[usize; 2]>) -> ([f64; 4], f64) {
         let mut edges = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
         for corner in self.corners() {
-            let place = calibration.camera_from_lidar(corner);
-            let Some([x, y]) = calibration.image_from_camera(place).filter(|_| place[2] > NEAREST) else {
+            let point = calibration.camera_from_lidar(corner);
+            let Some([x, y]) = calibration.image_from_camera(point).filter(|_| point[2] > NEAREST) else {
                 continue;
             };
             edges = [edges[0].min(x), edges[1].min(y), edges[2].max(x), edges[3].max(y)];
@@ -108,7 +108,7 @@ impl LidarBox {
     }
 }
 
-/// An angle in [-pi, pi].
+/// Wraps an angle to [-pi, pi].
 fn wrapped(angle: f64) -> f64 {
     angle.sin().atan2(angle.cos())
 }
@@ -118,7 +118,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_car_ahead_by_hand() {
+    fn car_ahead() {
         // 10 metres ahead, 2 to the left, looking ahead: in the camera 2 to the left, and -90 degrees about y.
         let car = LidarBox { center: [10.0, 2.0, -1.7], size: [4.0, 1.6, 1.5], yaw: 0.0 };
         let found = car.to_camera(&Calibration::nominal(), Some([375, 1242]));
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn there_and_back() {
+    fn round_trip_through_the_camera_frame() {
         let mut calibration = Calibration::nominal();
         calibration.tr_velo_to_cam = [[0.0, -1.0, 0.0, 0.1], [0.0, 0.0, -1.0, -0.08], [1.0, 0.0, 0.0, -0.27]];
         let (sin, cos) = 0.01f64.sin_cos();
@@ -142,12 +142,12 @@ mod tests {
             let apart = car.center.iter().zip(again.center).chain(car.size.iter().zip(again.size));
             assert!(apart.map(|(a, b)| (a - b).abs()).all(|apart| apart < 1e-5), "{again:?}");
             assert!(wrapped(car.yaw - again.yaw).abs() < 1e-5);
-            assert!(car.standing_box().overlap(&again.standing_box()) > 0.999);
+            assert!(car.upright_box().iou(&again.upright_box()) > 0.999);
         }
     }
 
     #[test]
-    fn behind_the_camera_there_is_no_picture() {
+    fn boxes_behind_the_camera_have_no_image_box() {
         let behind = LidarBox { center: [-10.0, 2.0, -1.7], size: [4.0, 1.6, 1.5], yaw: 0.0 };
         let found = behind.to_camera(&Calibration::nominal(), Some([375, 1242]));
         assert_eq!((found.bbox2d, found.truncated), ([-1.0; 4], 1.0));

@@ -1,31 +1,31 @@
-//! What learners answer. One file per type.
+//! Target types, the predictions of learners and the annotations of data sets. One file per type.
 //!
-//! Printed with `{}`, a target gives OpenDR's own text; with `{:#}`, a readable line per item, each ended by a
-//! line feed. `docs/json.md` shows the JSON of each.
+//! `{}` writes a target as OpenDR's text; `{:#}` writes a readable line per item, each with a line feed.
+//! `docs/json.md` lists the JSON of each type.
 
 use std::fmt;
 
 use crate::Datum;
 use crate::numpy_text::{Number, array_str};
 
-/// Whatever can stand beside a datum, as an annotation or as an answer.
+/// A type that annotates a datum.
 ///
-/// Types that only annotate implement this and not [`Target`].
+/// Types that are annotations only implement this trait and not [`Target`].
 pub trait BaseTarget: Datum + fmt::Debug + fmt::Display {}
 
-/// What can be both an annotation and the answer of a learner.
+/// A type that is both an annotation and a prediction of a learner.
 pub trait Target: BaseTarget {
-    /// Score: that of the whole, or the mean over a list (0 when it is empty); `None` where there is none.
+    /// Returns the score: that of the whole, or the mean over a list (0 if it is empty); `None` if there is none.
     fn confidence(&self) -> Option<f32>;
 
-    /// How the robot should move to see better.
+    /// Returns the proposed camera motion for a better view.
     fn action(&self) -> Option<&Action>;
 
-    /// Sets the action.
+    /// Sets the proposed camera motion.
     fn set_action(&mut self, action: Option<Action>);
 }
 
-/// [`Target`] of a type with a field `action`, its score given by a closure.
+/// Implements [`Target`] for a type with a field `action`; the closure returns the score.
 macro_rules! target {
     ($type:ty, |$target:pat_param| $confidence:expr) => {
         impl $crate::target::BaseTarget for $type {}
@@ -88,13 +88,13 @@ pub use tracking_annotation::{TrackingAnnotation, TrackingAnnotationList};
 pub use tracking_annotation_3d::{TrackingAnnotation3D, TrackingAnnotation3DList};
 pub use transcription::{BaseTranscription, VoskTranscription, WhisperSegment, WhisperTranscription};
 
-/// Mean of scores, 0 when there is none.
+/// Returns the mean of the scores, 0 if there are none.
 fn mean(scores: impl ExactSizeIterator<Item = f32>) -> f32 {
     let count = scores.len().max(1);
     scores.sum::<f32>() / count as f32
 }
 
-/// A two-dimensional array as NumPy prints it.
+/// Writes a two-dimensional array as NumPy prints it.
 fn write_rows<const N: usize>(rows: &[[f32; N]], f: &mut fmt::Formatter<'_>) -> fmt::Result {
     f.write_str(&array_str(&[rows.len(), N], &|at| Number::F32(rows[at / N][at % N])))
 }

@@ -1,15 +1,15 @@
-//! The class of a box: a number or a word.
+//! The class of an object: an index or a label.
 
 use std::fmt;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-/// The class of a box: the number a network gives, or the label a data set writes (OpenDR's `name`).
+/// The class of an object: the index that a network predicts, or the label in a data set (OpenDR's `name`).
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Name {
-    /// Class number.
+    /// Class index.
     Index(i64),
     /// Class label.
     #[serde(with = "label")]

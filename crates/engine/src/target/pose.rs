@@ -1,4 +1,4 @@
-//! Persons by their joints.
+//! Poses: the keypoints of persons, hands and other bodies.
 
 use std::fmt;
 
@@ -10,36 +10,36 @@ use crate::numpy_text::python_float;
 use crate::target::json_number::null_as_nan;
 use crate::target::{Action, BoundingBox, Keypoint, Skeleton, mean};
 
-/// One person (or hand, or animal): its joints in a picture, in pixels, in the order of its [`Skeleton`].
+/// The keypoints of a person, hand or animal in an image, in pixels, in the order of its [`Skeleton`].
 ///
-/// Printed, it is OpenDR's text, a line per joint; `{:#}` gives one readable line.
+/// `{}` writes OpenDR's text, a line per joint; `{:#}` writes one readable line.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
-    /// The joints; 18 lie in place, so that filling a list of persons allocates nothing.
+    /// Keypoints; up to 18 are stored inline, so that filling a list of persons allocates nothing.
     pub keypoints: SmallVec<[Keypoint; 18]>,
-    /// Score of the whole, 0..=1.
+    /// Score of the pose, 0..=1.
     #[serde(default, deserialize_with = "null_as_nan")]
     pub confidence: f32,
-    /// The person's track, where one is kept.
+    /// Identity of the person, if it is tracked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub id: Option<i64>,
-    /// What the joints are.
+    /// Skeleton of the keypoints.
     #[serde(default)]
     pub skeleton: Skeleton,
-    /// The person's box, with outline, size and whether it is a crowd, where they are known: as COCO annotates persons.
+    /// Bounding box of the person with mask, area and crowd flag, if known, as in COCO.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub region: Option<Box<BoundingBox>>,
 }
 
 impl Pose {
-    /// The joint called `name` (OpenDR's names, e.g. `"l_wri"`).
+    /// Returns the keypoint of the joint `name` (OpenDR's names, e.g. `"l_wri"`).
     pub fn keypoint(&self, name: &str) -> Option<&Keypoint> {
         self.keypoints.get(self.skeleton.joint(name)?)
     }
 
-    /// `[left, top, width, height]` in pixels around the joints that were found.
+    /// Returns the box `[left, top, width, height]` around the detected keypoints, in pixels.
     pub fn bounding_box(&self) -> Option<[f32; 4]> {
-        let mut found = self.keypoints.iter().filter(|keypoint| keypoint.is_found());
+        let mut found = self.keypoints.iter().filter(|keypoint| keypoint.is_detected());
         let first = found.next()?;
         let [x0, y0, x1, y1] =
             found.fold([first.x, first.y, first.x, first.y], |[x0, y0, x1, y1], keypoint| {
@@ -52,7 +52,7 @@ impl Pose {
         if let Some(id) = self.id {
             write!(f, "#{id} ")?;
         }
-        let found = self.keypoints.iter().filter(|keypoint| keypoint.is_found()).count();
+        let found = self.keypoints.iter().filter(|keypoint| keypoint.is_detected()).count();
         let (body, joints) = (self.skeleton.body(), self.keypoints.len());
         write!(f, "{body} {:.2} with {found} of {joints} joints", self.confidence)?;
         if let Some([left, top, width, height]) = self.bounding_box() {
@@ -62,17 +62,17 @@ impl Pose {
     }
 }
 
-/// The persons found in one picture, best first.
+/// The poses in an image, best first.
 ///
-/// Printed, it is OpenDR's text of each, an empty line between; `{:#}` gives a readable line per person.
+/// `{}` writes OpenDR's text of each, separated by empty lines; `{:#}` writes a readable line per pose.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct PoseList {
-    /// Of the picture.
+    /// Header of the image.
     #[serde(flatten)]
     pub header: Header,
-    /// The persons.
+    /// Poses.
     pub poses: Vec<Pose>,
-    /// How to move to see better.
+    /// Proposed camera motion for a better view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub action: Option<Action>,
 }
@@ -96,7 +96,7 @@ impl fmt::Display for Pose {
         }
         writeln!(f, "Detection confidence: {}", python_float(self.confidence))?;
         writeln!(f, "Keypoints name-position:")?;
-        // OpenDR's learners give whole pixels as integers, everything else as floats.
+        // OpenDR's learners return whole pixels as integers, everything else as floats.
         let whole = self.keypoints.iter().all(|point| point.x.fract() == 0.0 && point.y.fract() == 0.0);
         for (joint, point) in self.skeleton.joints().iter().zip(&self.keypoints) {
             if whole {

@@ -1,4 +1,4 @@
-//! What a policy does.
+//! Actions of policies.
 
 use std::fmt;
 
@@ -9,18 +9,18 @@ use crate::numpy_text::{Number, array_str};
 use crate::target::Action;
 use crate::target::json_number::null_as_nan;
 
-/// The answer of a policy (the paper's `RLTarget`): an element of its action space.
+/// The prediction of a policy (the paper's `RLTarget`): an element of its action space.
 ///
-/// Printed, it is the array of its numbers.
+/// `{}` writes the array of its numbers.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct RlTarget {
-    /// Of the observation.
+    /// Header of the observation.
     #[serde(flatten)]
     pub header: Header,
-    /// The numbers of the element in a row, as the action space lays them out; of a discrete space its choice.
+    /// Numbers of the element in the layout of the action space; for a discrete space the choice.
     #[serde(deserialize_with = "null_as_nan")]
     pub values: Vec<f32>,
-    /// How to move to see better.
+    /// Proposed camera motion for a better view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub action: Option<Action>,
 }

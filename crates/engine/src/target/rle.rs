@@ -1,4 +1,4 @@
-//! Masks by runs, as COCO writes them.
+//! Run-length encoded masks, as in COCO.
 
 mod outline;
 mod overlap;
@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Error, Result};
 
-/// A mask of a picture by the lengths of its runs, column by column: first a run of background, then one of
-/// object, and so on (COCO's RLE).
+/// A mask as lengths of runs, column by column: first a run of background, then one of the object, and so on (COCO's
+/// RLE).
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "RleJson", into = "RleJson")]
 pub struct Rle {
@@ -17,7 +17,7 @@ pub struct Rle {
     counts: Vec<u32>,
 }
 
-/// COCO writes the runs as numbers (crowds) or packed into text.
+/// The JSON form. COCO writes the runs as numbers (crowds) or packed into text.
 #[derive(Serialize, Deserialize)]
 struct RleJson {
     size: [u32; 2],
@@ -32,25 +32,25 @@ enum Counts {
 }
 
 impl Rle {
-    /// A mask of `height` x `width` pixels from its runs.
+    /// Creates a mask of `height` x `width` pixels from its runs.
     ///
     /// # Errors
-    /// `InvalidInput` when the runs do not fill the picture.
+    /// Returns `InvalidInput` if the sum of the runs is not the number of pixels.
     pub fn new(height: u32, width: u32, counts: Vec<u32>) -> Result<Self> {
         let (area, filled) =
             (u64::from(height) * u64::from(width), counts.iter().copied().map(u64::from).sum::<u64>());
         if filled != area {
             return Err(Error::invalid_input(format!(
-                "the runs of a {height}x{width} mask fill {filled} pixels instead of {area}; give its own size"
+                "the runs of a {height}x{width} mask fill {filled} pixels instead of {area}; give the size of the mask"
             )));
         }
         Ok(Self { height, width, counts })
     }
 
-    /// The runs of a mask given as rows (`[height, width]`).
+    /// Encodes a mask in row-major order (`[height, width]`).
     ///
     /// # Errors
-    /// `InvalidInput` when there are not `height * width` pixels.
+    /// Returns `InvalidInput` if there are not `height * width` pixels.
     pub fn from_mask(mask: &[bool], height: u32, width: u32) -> Result<Self> {
         let (rows, columns) = (height as usize, width as usize);
         let (mut counts, mut inside, mut run) = (Vec::new(), false, 0u32);
@@ -67,30 +67,30 @@ impl Rle {
         Self::new(height, width, counts)
     }
 
-    /// `[height, width]` in pixels.
+    /// Returns `[height, width]` in pixels.
     pub fn size(&self) -> [u32; 2] {
         [self.height, self.width]
     }
 
-    /// Lengths of the runs, background first.
+    /// Returns the lengths of the runs, background first.
     pub fn counts(&self) -> &[u32] {
         &self.counts
     }
 
-    /// Pixels of the object.
+    /// Returns the number of pixels of the object.
     pub fn area(&self) -> u64 {
         self.counts.iter().skip(1).step_by(2).map(|run| u64::from(*run)).sum()
     }
 
-    /// The mask as rows (`[height, width]`).
+    /// Decodes the mask in row-major order (`[height, width]`).
     ///
     /// # Errors
-    /// `InvalidInput` for a mask of more than 2^28 pixels.
+    /// Returns `InvalidInput` for a mask of more than 2^28 pixels.
     pub fn mask(&self) -> Result<Vec<bool>> {
         let (rows, columns) = (self.height as usize, self.width as usize);
         if u64::from(self.height) * u64::from(self.width) > 1 << 28 {
             return Err(Error::invalid_input(format!(
-                "a mask of {rows}x{columns} pixels is too big to unpack; scale the picture down"
+                "a mask of {rows}x{columns} pixels is too large to decode; scale the image down"
             )));
         }
         let mut mask = vec![false; rows * columns];
@@ -102,7 +102,7 @@ impl Rle {
         Ok(mask)
     }
 
-    /// COCO's packed text: differences to the run before the last, five bits a character.
+    /// Returns COCO's packed text: differences to the run before the last, five bits per character.
     pub fn packed(&self) -> String {
         let mut text = String::new();
         for (index, run) in self.counts.iter().enumerate() {
@@ -121,15 +121,16 @@ impl Rle {
         text
     }
 
-    /// Reads COCO's packed text.
+    /// Parses COCO's packed text.
     ///
     /// # Errors
-    /// `Format` for text that is no such mask, `InvalidInput` when its runs do not fill the picture.
+    /// Returns `Format` for invalid text, `InvalidInput` if the sum of the runs is not the number of pixels.
     pub fn from_packed(height: u32, width: u32, text: &str) -> Result<Self> {
-        let wrong = || Error::format(format!("{text:.40?} is no packed COCO mask; write the mask again"));
+        let invalid =
+            || Error::format(format!("{text:.40?} is not a packed COCO mask; write the mask again"));
         let (mut counts, mut value, mut shift) = (Vec::<u32>::new(), 0i64, 0u32);
         for byte in text.bytes() {
-            let bits = byte.checked_sub(48).filter(|bits| *bits < 64 && shift <= 35).ok_or_else(wrong)?;
+            let bits = byte.checked_sub(48).filter(|bits| *bits < 64 && shift <= 35).ok_or_else(invalid)?;
             value |= i64::from(bits & 0x1f) << shift;
             shift += 5;
             if bits & 0x20 == 0 {
@@ -137,12 +138,12 @@ impl Rle {
                     value |= -1 << shift;
                 }
                 let before = if counts.len() > 2 { counts[counts.len() - 2] } else { 0 };
-                counts.push(u32::try_from(value + i64::from(before)).map_err(|_| wrong())?);
+                counts.push(u32::try_from(value + i64::from(before)).map_err(|_| invalid())?);
                 (value, shift) = (0, 0);
             }
         }
         if shift != 0 {
-            return Err(wrong());
+            return Err(invalid());
         }
         Self::new(height, width, counts)
     }
@@ -171,7 +172,7 @@ mod tests {
 
     /// The texts are those of pycocotools 2.0.
     #[test]
-    fn packed_as_pycocotools_packs() {
+    fn packed_text_is_that_of_pycocotools() {
         let mask: Vec<bool> = (0..6 * 9).map(|at| (at / 9 * 7 + at % 9 * 3) % 5 < 2).collect();
         let rle = Rle::from_mask(&mask, 6, 9).unwrap();
         assert_eq!(rle.packed(), "0120O00010O00010O00030M00010O00010O00010O0001");
@@ -182,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_masks_are_refused() {
+    fn wrong_masks_are_rejected() {
         assert!(Rle::new(2, 2, vec![1, 2]).is_err());
         assert!(Rle::from_mask(&[true; 3], 2, 2).is_err());
         assert!(Rle::new(u32::MAX, u32::MAX, vec![u32::MAX; 3]).is_err());

@@ -1,23 +1,23 @@
-//! The outline of an object: what makes a box OpenDR's `CocoBoundingBox`.
+//! Masks of objects, which make a box OpenDR's `CocoBoundingBox`.
 
 use serde::{Deserialize, Serialize};
 
 use crate::target::Rle;
 use crate::target::json_number::null_as_nan;
 
-/// Which pixels belong to an object, as COCO writes it.
+/// The pixels of an object, as in COCO.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Segmentation {
-    /// Outlines `[x0, y0, x1, y1, ...]` in pixels; an object that is partly hidden has several.
+    /// Polygons `[x0, y0, x1, y1, ...]` in pixels; a partly occluded object may have several.
     #[serde(deserialize_with = "null_as_nan")]
     Polygons(Vec<Vec<f32>>),
-    /// A mask by runs.
+    /// Run-length encoded mask.
     Rle(Rle),
 }
 
 impl Segmentation {
-    /// Whether no pixel is named.
+    /// Returns whether there are no polygons or runs.
     pub fn is_empty(&self) -> bool {
         match self {
             Self::Polygons(polygons) => polygons.is_empty(),
@@ -32,15 +32,15 @@ impl Default for Segmentation {
     }
 }
 
-/// The outline of an object, its size, and whether it is a crowd.
+/// The mask of an object, its area, and whether it is a crowd.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Segment {
-    /// The pixels.
+    /// Pixels of the object.
     pub segmentation: Segmentation,
-    /// Square pixels of the object (not of its box).
+    /// Area of the object (not of its box), in square pixels.
     #[serde(default, deserialize_with = "null_as_nan")]
     pub area: f32,
-    /// Whether it is a crowd: detections inside count neither as right nor as wrong.
+    /// Whether it is a crowd: detections inside count neither as true nor as false positives.
     #[serde(default)]
     pub iscrowd: bool,
 }

@@ -1,10 +1,10 @@
-//! Which joints a pose has, in which order, and which of them are joined by a bone.
+//! Skeletons: the joints of poses, their order, and the bones between them.
 
 mod face;
 
 use serde::{Deserialize, Serialize};
 
-/// The joints of a kind of body.
+/// The set of joints of a pose.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -20,13 +20,13 @@ pub enum Skeleton {
     LeftHand21,
     /// The same of a right hand.
     RightHand21,
-    /// MediaPipe's 478 points of a face: the mesh, then five of each iris, the one on the picture's left first.
+    /// MediaPipe's 478 points of a face: the mesh, then five of each iris, the iris on the left of the image first.
     Face478,
     /// JHMDB's 15 joints of a person.
     Jhmdb15,
-    /// The 25 joints of a person that Kinect v2 tells, as NTU RGB+D numbers them.
+    /// Kinect v2's 25 joints of a person, in the order of NTU RGB+D.
     Ntu25,
-    /// Where the two jaws of a gripper go to grasp a thing.
+    /// Positions of the two jaws of a gripper in a grasp.
     Grasp2,
 }
 
@@ -79,7 +79,7 @@ const HAND_BONES: &[[usize; 2]] = &[
 ];
 
 impl Skeleton {
-    /// Every skeleton.
+    /// All skeletons.
     pub const ALL: &'static [Self] = &[
         Self::Opendr18,
         Self::Coco17,
@@ -92,7 +92,7 @@ impl Skeleton {
         Self::Grasp2,
     ];
 
-    /// Its name, as JSON and messages write it.
+    /// Returns the name in JSON and messages.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Opendr18 => "opendr18",
@@ -107,7 +107,7 @@ impl Skeleton {
         }
     }
 
-    /// What has these joints, in words.
+    /// Returns the name of the body part, e.g. `"left hand"`.
     pub const fn body(self) -> &'static str {
         match self {
             Self::LeftHand21 => "left hand",
@@ -118,7 +118,7 @@ impl Skeleton {
         }
     }
 
-    /// What a mirror shows: a left hand becomes a right one.
+    /// Returns the skeleton of the mirrored body: a left hand becomes a right one.
     #[must_use]
     pub const fn mirrored(self) -> Self {
         match self {
@@ -128,7 +128,7 @@ impl Skeleton {
         }
     }
 
-    /// The names of the joints, in order; a trailing `_l`/`_r` is written as OpenDR writes it.
+    /// Returns the names of the joints in order, with OpenDR's prefixes `l_` and `r_`.
     pub const fn joints(self) -> &'static [&'static str] {
         match self {
             Self::Opendr18 => &[
@@ -189,7 +189,7 @@ impl Skeleton {
         }
     }
 
-    /// The bones: pairs of joint numbers.
+    /// Returns the bones: pairs of joint indices.
     pub const fn bones(self) -> &'static [[usize; 2]] {
         match self {
             Self::Opendr18 => &[
@@ -315,12 +315,12 @@ impl Skeleton {
         }
     }
 
-    /// The number of the joint called `name`.
+    /// Returns the index of the joint `name`.
     pub fn joint(self, name: &str) -> Option<usize> {
         self.joints().iter().position(|joint| *joint == name)
     }
 
-    /// The joint on the other side of the body; `None` for one in the middle.
+    /// Returns the same joint on the other side of the body; `None` for one in the middle.
     pub fn partner(self, joint: usize) -> Option<usize> {
         let (side, rest) = self.joints().get(joint)?.split_once('_')?;
         let other = match side {
@@ -340,10 +340,10 @@ mod tests {
     fn bones_join_joints() {
         for skeleton in Skeleton::ALL {
             let count = skeleton.joints().len();
-            let said: String = skeleton.name().chars().filter(char::is_ascii_digit).collect();
-            assert_eq!(said, count.to_string());
+            let digits: String = skeleton.name().chars().filter(char::is_ascii_digit).collect();
+            assert_eq!(digits, count.to_string());
             assert!(skeleton.bones().iter().flatten().all(|joint| *joint < count));
-            // Of a face, outlines are drawn, not all points.
+            // The bones of a face are outlines only.
             if *skeleton == Skeleton::Face478 {
                 continue;
             }
@@ -354,7 +354,7 @@ mod tests {
     }
 
     #[test]
-    fn every_side_has_its_other() {
+    fn partners_are_mutual() {
         for skeleton in Skeleton::ALL {
             for (joint, name) in skeleton.joints().iter().enumerate() {
                 match skeleton.partner(joint) {
@@ -366,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn bones_of_one_side_are_those_of_the_other() {
+    fn bones_are_symmetric() {
         // The points of a face have no side in their names.
         for skeleton in Skeleton::ALL.iter().filter(|skeleton| **skeleton != Skeleton::Face478) {
             let other = |joint: usize| skeleton.partner(joint).unwrap_or(joint);

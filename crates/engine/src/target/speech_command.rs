@@ -1,4 +1,4 @@
-//! A spoken command.
+//! Spoken commands.
 
 use std::fmt;
 
@@ -9,27 +9,27 @@ use crate::numpy_text::python_float;
 use crate::target::json_number::null_as_nan;
 use crate::target::{Action, Classes, Name};
 
-/// A command that was heard (of the paper; OpenDR 3.0 answers a `Category` instead).
+/// A recognised spoken command (of the paper; OpenDR 3.0 returns a `Category` instead).
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct SpeechCommand {
-    /// Of the sound.
+    /// Header of the audio.
     #[serde(flatten)]
     pub header: Header,
-    /// Class number or word.
+    /// Class index or word.
     pub command: Name,
     /// Score, 0..=1.
     #[serde(default, deserialize_with = "null_as_nan")]
     pub confidence: f32,
-    /// Begin and end within the sound, seconds.
+    /// Start and end within the audio, in seconds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub span_s: Option<[f32; 2]>,
-    /// How to move to hear better.
+    /// Proposed motion for better audio.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub action: Option<Action>,
 }
 
 impl SpeechCommand {
-    /// A command without its time.
+    /// Creates a command without its time.
     pub fn new(command: impl Into<Name>, confidence: f32) -> Self {
         Self { command: command.into(), confidence, ..Self::default() }
     }

@@ -1,4 +1,4 @@
-//! Boxes with an identity: 2D tracking.
+//! Bounding boxes with an identity, for 2D tracking.
 
 use std::fmt;
 
@@ -8,17 +8,17 @@ use crate::Header;
 use crate::numpy_text::{Number, array_str};
 use crate::target::{Action, BoundingBox, BoundingBoxList, Classes, mean};
 
-/// A box of one object that is followed through a video.
+/// The box of a tracked object in one frame.
 ///
-/// Printed, it is OpenDR's text (`mot()`); `{:#}` gives a readable line.
+/// `{}` writes OpenDR's text (`mot()`), `{:#}` a readable line.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct TrackingAnnotation {
-    /// Where it is.
+    /// Bounding box of the object.
     #[serde(flatten)]
     pub bounding_box: BoundingBox,
-    /// The object's number, the same in every picture; -1 when it is not known.
+    /// Identity of the object, the same in every frame; -1 if unknown.
     pub id: i64,
-    /// Number of the picture in its video, where it has one.
+    /// Index of the frame in its video, if it has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame: Option<i64>,
 }
@@ -41,26 +41,26 @@ impl fmt::Display for TrackingAnnotation {
     }
 }
 
-/// The followed objects of one picture, or of a whole video.
+/// The tracked objects of a frame, or of a whole video.
 ///
-/// Printed, it is OpenDR's text (rows of `mot()`); `{:#}` gives a readable line per object.
+/// `{}` writes OpenDR's text (rows of `mot()`), `{:#}` a readable line per object.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct TrackingAnnotationList {
-    /// Of the picture.
+    /// Header of the image.
     #[serde(flatten)]
     pub header: Header,
-    /// The objects.
+    /// Objects.
     pub annotations: Vec<TrackingAnnotation>,
-    /// What class numbers mean.
+    /// Class names.
     #[serde(default, skip_serializing_if = "Classes::is_empty")]
     pub classes: Classes,
-    /// How to move to see better.
+    /// Proposed camera motion for a better view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub action: Option<Action>,
 }
 
 impl TrackingAnnotationList {
-    /// The boxes without their identities.
+    /// Returns the boxes without their identities.
     pub fn bounding_box_list(&self) -> BoundingBoxList {
         BoundingBoxList {
             header: self.header.clone(),

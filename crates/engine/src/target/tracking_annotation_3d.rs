@@ -1,4 +1,4 @@
-//! Boxes in space with an identity: 3D tracking.
+//! 3D bounding boxes with an identity, for 3D tracking.
 
 use std::fmt;
 
@@ -7,17 +7,17 @@ use serde::{Deserialize, Serialize};
 use crate::Header;
 use crate::target::{Action, BoundingBox3D, BoundingBox3DList, Classes, mean};
 
-/// A box of one object that is followed through space.
+/// The 3D box of a tracked object in one frame.
 ///
-/// Printed, it is OpenDR's text (`kitti(True)`); `{:#}` gives a readable line.
+/// `{}` writes OpenDR's text (`kitti(True)`), `{:#}` a readable line.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct TrackingAnnotation3D {
-    /// Where it is.
+    /// Bounding box of the object.
     #[serde(flatten)]
     pub bounding_box_3d: BoundingBox3D,
-    /// The object's number, the same at every time; -1 when it is not known.
+    /// Identity of the object, the same in every frame; -1 if unknown.
     pub id: i64,
-    /// Number of the cloud in its recording, where it has one.
+    /// Index of the frame in its recording, if it has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame: Option<i64>,
 }
@@ -36,26 +36,26 @@ impl fmt::Display for TrackingAnnotation3D {
     }
 }
 
-/// The followed objects of one cloud, or of a whole recording.
+/// The tracked objects of a point cloud, or of a whole recording.
 ///
-/// Printed, it is OpenDR's text (`kitti(True)`); `{:#}` gives a readable line per object.
+/// `{}` writes OpenDR's text (`kitti(True)`), `{:#}` a readable line per object.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct TrackingAnnotation3DList {
-    /// Of the cloud or picture.
+    /// Header of the point cloud or image.
     #[serde(flatten)]
     pub header: Header,
-    /// The objects.
+    /// Objects.
     pub annotations: Vec<TrackingAnnotation3D>,
-    /// What class numbers mean.
+    /// Class names.
     #[serde(default, skip_serializing_if = "Classes::is_empty")]
     pub classes: Classes,
-    /// How to move to see better.
+    /// Proposed camera motion for a better view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub action: Option<Action>,
 }
 
 impl TrackingAnnotation3DList {
-    /// The boxes without their identities.
+    /// Returns the boxes without their identities.
     pub fn bounding_box_3d_list(&self) -> BoundingBox3DList {
         BoundingBox3DList {
             header: self.header.clone(),

@@ -1,4 +1,4 @@
-//! Every target type through JSON and back, and the examples of the documentation.
+//! JSON round trips of every target type, and the examples of the documentation.
 
 use std::sync::Arc;
 
@@ -15,18 +15,18 @@ const DOCUMENT: &str = include_str!("../../../../docs/json.md");
 /// NaN does not equal itself.
 #[test]
 fn examples_are_read_and_written() {
-    let mut seen = Vec::new();
+    let mut types = Vec::new();
     for block in DOCUMENT.split("```json\n").skip(1) {
         let example = block.split("```").next().unwrap();
         let value: Value =
             serde_json::from_str(example).unwrap_or_else(|error| panic!("{error} in {example}"));
-        let wanted: serde_json::Value = serde_json::from_str(example).unwrap();
+        let expected: serde_json::Value = serde_json::from_str(example).unwrap();
         let written = serde_json::to_string(&value).unwrap();
-        assert_eq!(serde_json::from_str::<serde_json::Value>(&written).unwrap(), wanted, "{written}");
-        seen.push(value.as_value_ref().value_type());
+        assert_eq!(serde_json::from_str::<serde_json::Value>(&written).unwrap(), expected, "{written}");
+        types.push(value.as_value_ref().value_type());
     }
     for target in ValueType::ALL.iter().filter(|value_type| value_type.is_target()) {
-        assert!(seen.contains(target), "docs/json.md shows no {}", target.name());
+        assert!(types.contains(target), "docs/json.md has no {}", target.name());
     }
 }
 
@@ -40,7 +40,7 @@ fn null_is_nan() {
 }
 
 #[test]
-fn unknown_fields_are_ignored_and_unknown_types_refused() {
+fn unknown_fields_are_ignored_and_unknown_types_rejected() {
     assert!(serde_json::from_str::<Value>(r#"{"type":"PoseList","poses":[],"later":1}"#).is_ok());
     for text in [r#"{"type":"Image"}"#, r#"{"poses":[]}"#, r#"{"type":"PoseList"}"#, "[]", "null"] {
         assert!(serde_json::from_str::<Value>(text).is_err(), "{text}");

@@ -1,4 +1,4 @@
-//! Label files from outside: nothing panics, and what is written reads back the same.
+//! Label files of unknown origin: nothing panics, and written files are read back unchanged.
 
 use opendr_engine::data::Calibration;
 use opendr_engine::target::*;

@@ -1,4 +1,4 @@
-//! The integration tests of this crate, one program: each program more is linked once more.
+//! The integration tests of this crate, in one program to link only once.
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,4 +1,4 @@
-//! The classes that the annotations of a data set have.
+//! The classes that occur in the annotations of a data set.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,31 +8,31 @@ use opendr_engine::{Value, ValueType};
 
 use super::synonyms::plain;
 
-/// Most samples whose annotations are read, evenly over the data set.
-const MOST_SAMPLES: usize = 2000;
-/// Most classes that are taken from numbered descriptions.
-const MOST_CLASSES: i64 = 1 << 16;
-/// Labels of regions in which nothing counts, in plain form.
+/// Maximum number of samples whose annotations are read, spaced evenly over the data set.
+const MAX_SAMPLES: usize = 2000;
+/// Maximum number of classes from numbered descriptions.
+const MAX_CLASSES: i64 = 1 << 16;
+/// Labels of regions that do not count, in normalised spelling.
 const NO_CLASS: [&str; 3] = ["dontcare", "ignored", "void"];
 
-/// The classes of a data set, and those of them that are annotated.
+/// The classes of a data set, and which of them are annotated.
 pub(crate) struct AnnotatedClasses {
-    /// Those that it names, or where it names none, those that its annotations name.
+    /// The classes that it names, or else those that its annotations name.
     pub classes: Classes,
-    /// Places of those that occur; `None` where that takes reading every picture.
+    /// Indices of those that occur; `None` where that would need reading every image.
     pub occurring: Option<Vec<usize>>,
 }
 
-/// Reads which classes a data set of targets of this type has.
+/// Reads the classes of a data set whose targets have this type.
 pub(crate) fn annotated_classes(dataset: &dyn DatasetIterator, target: ValueType) -> AnnotatedClasses {
     let classes = dataset.classes();
     if !reads_quickly(target) || dataset.is_empty() {
         return AnnotatedClasses { classes, occurring: None };
     }
-    let step = dataset.len().div_ceil(MOST_SAMPLES);
+    let step = dataset.len().div_ceil(MAX_SAMPLES);
     let (mut numbers, mut labels, mut described) = (BTreeSet::new(), BTreeSet::new(), BTreeMap::new());
     for at in (0..dataset.len()).step_by(step) {
-        // What is broken is reported when its sample is reached.
+        // Broken samples are reported when they are evaluated.
         let Ok(Some(target)) = dataset.target(at) else { continue };
         let mut add = |name: &Name, own: &Classes| match (own.label(name), name) {
             (Some(label), _) => drop(labels.insert(label.to_owned())),
@@ -76,7 +76,7 @@ pub(crate) fn annotated_classes(dataset: &dyn DatasetIterator, target: ValueType
     AnnotatedClasses { classes, occurring: Some(occurring).filter(|places| !places.is_empty()) }
 }
 
-/// Whether annotations are read without decoding pictures.
+/// Returns whether annotations are read without decoding images.
 fn reads_quickly(target: ValueType) -> bool {
     matches!(
         target,
@@ -88,9 +88,9 @@ fn reads_quickly(target: ValueType) -> bool {
     )
 }
 
-/// The list of descriptions by number.
+/// Returns the list of descriptions by number.
 fn numbered(described: &BTreeMap<i64, String>) -> Classes {
-    let Some((last, _)) = described.last_key_value().filter(|(last, _)| (0..MOST_CLASSES).contains(*last))
+    let Some((last, _)) = described.last_key_value().filter(|(last, _)| (0..MAX_CLASSES).contains(*last))
     else {
         return Classes::default();
     };

@@ -1,4 +1,4 @@
-//! From the classes of predictions to those of a data set, by their names.
+//! Matching of the classes of predictions with those of a data set, by name.
 
 mod annotated;
 mod report;
@@ -18,39 +18,39 @@ pub use synonyms::MatchedBy;
 use report::listed;
 use synonyms::{find, plain};
 
-/// What a user may say about classes.
+/// A user's settings of the class matching.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ClassMatching {
-    /// Classes of the data set by classes of the learner; they go before names.
+    /// Maps classes of the learner to classes of the data set; takes precedence over names.
     pub pairs: BTreeMap<String, String>,
-    /// Whether numbers are compared, whatever the names are.
+    /// Whether classes are compared by number, regardless of their names.
     pub by_number: bool,
 }
 
-/// What the labels of a map of classes mean.
+/// Meaning of the labels of a class map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MapLabels {
     /// Class numbers.
     Classes,
-    /// [`LABEL_DIVISOR`] times the class, plus the number of the object.
+    /// [`LABEL_DIVISOR`] times the class, plus the instance number.
     Segments,
 }
 
-/// The one place that maps classes: of categories and their probabilities, maps of classes and of segments, boxes, boxes in space
-/// and tracks. (Poses are compared by the names of their joints, see `opendr_metrics`.)
+/// Maps the classes of categories and their probabilities, semantic and panoptic maps, boxes, 3D boxes and tracks.
+/// (Poses are compared by the names of their keypoints, see `opendr_metrics`.)
 ///
-/// Classes are matched by the pairs that the user gave, by name (without case, spaces, hyphens and underscores), by the
-/// published synonyms, and by a published grouping of finer classes. Only where one side names no class at all, or the user
-/// asks for it, numbers are compared.
+/// Classes are matched by the user's pairs, by name (ignoring case, spaces, hyphens and underscores), by
+/// published synonyms, and by published groupings of finer classes. Classes are compared by number only if one side has no names or the
+/// user requests it.
 #[derive(Debug, Clone)]
 pub struct ClassMap {
     dataset: Classes,
     learner: Classes,
     matching: ClassMatching,
-    /// Label of a pixel whose class the data set does not have.
+    /// Label of pixels whose class the data set does not have.
     no_class: u32,
     map_labels: MapLabels,
-    /// Where each label of a prediction is found in the data set.
+    /// Index in the data set of each label of the predictions.
     known: HashMap<String, Option<usize>>,
     pairs: Vec<ClassPair>,
     learner_only: Vec<String>,
@@ -58,20 +58,20 @@ pub struct ClassMap {
     has_unnamed: bool,
 }
 
-/// What a class of a prediction is in the data set.
+/// Match of a predicted class.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Found {
-    /// This class.
+enum ClassMatch {
+    /// A class of the data set.
     Class(i64),
-    /// None: the place among the learner's classes that the data set does not have.
+    /// None: the index among the learner's classes that the data set does not have.
     Unmatched(usize),
 }
 
 impl ClassMap {
-    /// A map to the classes `dataset`. `learner` are those of the learner where they are known before its predictions.
+    /// Creates a map to the classes `dataset`. `learner` are those of the learner, if known before its predictions.
     ///
     /// # Errors
-    /// `InvalidParam` for a pair whose class neither side has.
+    /// `InvalidParam` for a pair with a class that its side does not have.
     pub fn new(learner: Classes, dataset: Classes, matching: &ClassMatching) -> Result<Self> {
         let mut map = Self {
             dataset,
@@ -89,13 +89,13 @@ impl ClassMap {
         Ok(map)
     }
 
-    /// The same map for maps of segments.
+    /// Sets the meaning of the labels of maps.
     #[must_use]
     pub fn with_labels(self, map_labels: MapLabels) -> Self {
         Self { map_labels, ..self }
     }
 
-    /// The same map, with a label of its own for pixels whose class the data set does not have.
+    /// Sets the label of pixels whose class the data set does not have.
     #[must_use]
     pub fn with_no_class(self, no_class: u32) -> Self {
         Self { no_class, ..self }
@@ -110,7 +110,7 @@ impl ClassMap {
             {
                 let there: Vec<_> = classes.iter().collect();
                 return Err(Error::invalid_param(format!(
-                    "the {side} has no class {name:?}; there are {}",
+                    "the {side} has no class {name:?}; its classes are {}",
                     listed(&there)
                 )));
             }
@@ -118,7 +118,7 @@ impl ClassMap {
         Ok(())
     }
 
-    /// Looks every name of a list up, so that what is missing is known before the first prediction.
+    /// Looks up all names of a list, so that missing classes are known before the first prediction.
     fn learn(&mut self, classes: &Classes) {
         if !self.dataset.is_empty() && !self.matching.by_number {
             for label in classes.iter() {
@@ -127,7 +127,7 @@ impl ClassMap {
         }
     }
 
-    /// The place of a class among those of the data set.
+    /// Returns the index of a class in the data set.
     fn place_of(&mut self, label: &str) -> Option<usize> {
         if let Some(place) = self.known.get(label) {
             return *place;
@@ -153,51 +153,53 @@ impl ClassMap {
         place
     }
 
-    /// What the class `name` of a prediction that names the classes `own` is in the data set.
-    fn found(&mut self, name: &Name, own: &Classes) -> Found {
+    /// Returns the match of the class `name` of a prediction with the classes `own`.
+    fn match_class(&mut self, name: &Name, own: &Classes) -> ClassMatch {
         let number = |name: &Name| match name {
             Name::Index(index) => Some(*index),
             Name::Label(_) => None,
         };
         if self.matching.by_number {
             let index = number(name).or_else(|| own.index(own.label(name)?));
-            return index.map_or(Found::Unmatched(0), Found::Class);
+            return index.map_or(ClassMatch::Unmatched(0), ClassMatch::Class);
         }
         let own = if own.is_empty() { self.learner.clone() } else { own.clone() };
         let label = match (own.label(name), name) {
             (Some(label), _) => label.to_owned(),
-            // Some are named, this one is not.
+            // Some classes are named, this one is not.
             (None, Name::Index(index)) if !own.is_empty() => format!("class {index}"),
             (None, Name::Index(index)) => {
-                // Without a name on this side a pair can still say what a number means.
+                // Without a name, a pair can still map the number.
                 let label = index.to_string();
                 if !self.matching.pairs.contains_key(&label) {
                     self.has_unnamed = true;
-                    return Found::Class(*index);
+                    return ClassMatch::Class(*index);
                 }
                 label
             }
             (None, Name::Label(label)) => label.to_string(),
         };
         match self.place_of(&label) {
-            Some(place) => Found::Class(place as i64),
-            None => Found::Unmatched(self.learner_only.iter().position(|other| *other == label).unwrap_or(0)),
+            Some(place) => ClassMatch::Class(place as i64),
+            None => {
+                ClassMatch::Unmatched(self.learner_only.iter().position(|other| *other == label).unwrap_or(0))
+            }
         }
     }
 
     /// Returns the number of a class in the data set; `None` when the data set does not have it.
     pub fn index(&mut self, name: &Name, own: &Classes) -> Option<i64> {
-        match self.found(name, own) {
-            Found::Class(index) => Some(index),
-            Found::Unmatched(_) => None,
+        match self.match_class(name, own) {
+            ClassMatch::Class(index) => Some(index),
+            ClassMatch::Unmatched(_) => None,
         }
     }
 
-    /// Puts a prediction into the classes of the data set. Objects of classes that the data set does not have are left out, since it
-    /// cannot tell whether they are right; pixels become no class, and a category one behind those of the data set.
+    /// Converts a prediction to the classes of the data set. Objects of other classes are dropped, since the data set has no ground
+    /// truth for them. Pixels of other classes get no class, and a category gets one after those of the data set.
     ///
     /// # Errors
-    /// `InvalidInput` when a category has probabilities of other classes than the learner names.
+    /// `InvalidInput` when the numbers of a category's probabilities and of the learner's classes differ.
     pub fn apply(&mut self, prediction: &mut Value) -> Result<()> {
         if self.dataset.is_empty() && !self.matching.by_number {
             return Ok(());
@@ -226,7 +228,7 @@ impl ClassMap {
         Ok(())
     }
 
-    /// Gives a list the names of the data set, where it has some, and returns its own.
+    /// Replaces the classes of a list by those of the data set, if it has names, and returns the original ones.
     fn replace_classes(&mut self, classes: &mut Classes) -> Classes {
         let own = std::mem::replace(classes, self.dataset.clone());
         self.learn(&own);
@@ -255,25 +257,25 @@ impl ClassMap {
         let count = category.probabilities.len();
         if has_names && count > 0 {
             if own.is_empty() {
-                // What the single probabilities are of is not said.
+                // The classes of the probabilities are unknown.
                 category.probabilities.clear();
             } else if own.len() == count {
                 category.probabilities = self.mapped_probabilities(&category.probabilities, &own);
             } else {
                 return Err(Error::invalid_input(format!(
-                    "the learner names {} classes and gives {count} probabilities; one of each class is needed",
+                    "the learner has {} classes and {count} probabilities; it must return one per class",
                     own.len()
                 )));
             }
         }
-        match self.found(&name, &own) {
-            Found::Class(index) => {
+        match self.match_class(&name, &own) {
+            ClassMatch::Class(index) => {
                 category.class = index;
                 if let Some(label) = self.dataset.name(index) {
                     category.description = Some(label.clone());
                 }
             }
-            Found::Unmatched(place) => {
+            ClassMatch::Unmatched(place) => {
                 category.class = (self.dataset.len() + place) as i64;
                 category.description = own.label(&name).map(Into::into).or(category.description.take());
             }
@@ -281,14 +283,14 @@ impl ClassMap {
         Ok(())
     }
 
-    /// Probabilities by the classes of the data set, then by those of the learner that the data set does not have. What several
-    /// classes of the learner give to one of the data set is added.
+    /// Returns the probabilities of the data set's classes, followed by those of the learner's other classes. Those of
+    /// several classes of the learner for one of the data set are added.
     fn mapped_probabilities(&mut self, probabilities: &[f32], own: &Classes) -> Vec<f32> {
         let mut mapped = vec![0.0; self.dataset.len() + self.learner_only.len()];
         for (class, probability) in (0..).zip(probabilities) {
-            let place = match self.found(&Name::Index(class), own) {
-                Found::Class(index) => usize::try_from(index).ok(),
-                Found::Unmatched(place) => Some(self.dataset.len() + place),
+            let place = match self.match_class(&Name::Index(class), own) {
+                ClassMatch::Class(index) => usize::try_from(index).ok(),
+                ClassMatch::Unmatched(place) => Some(self.dataset.len() + place),
             };
             if let Some(sum) = place.and_then(|place| mapped.get_mut(place)) {
                 *sum += probability;
@@ -304,7 +306,7 @@ impl ClassMap {
         let own = if map.classes.is_empty() { self.learner.clone() } else { map.classes.clone() };
         let is_map_of_classes = match map.values() {
             HeatmapValues::Labels(_) => true,
-            // Scores of every class: the class of the highest.
+            // Scores of every class become the class of the highest.
             HeatmapValues::Scores(_) => matches!(map.shape(), [classes, _, _] if *classes == own.len()),
         };
         if !is_map_of_classes {
@@ -328,7 +330,7 @@ impl ClassMap {
     }
 
     fn mapped_label(&mut self, class: u32, own: &Classes) -> Option<u32> {
-        // A label that is no class of the learner's, such as 255 where nothing is known, is none of the data set's.
+        // A label that is not a class of the learner, such as 255 for unknown, has none in the data set.
         own.name(class.into())?;
         self.index(&Name::Index(class.into()), own).and_then(|index| u32::try_from(index).ok())
     }
@@ -340,7 +342,7 @@ impl ClassMap {
         labels.iter().map(|label| table.get(*label as usize).copied().unwrap_or(self.no_class)).collect()
     }
 
-    /// Segments of one class of the learner may meet those of another in one class of the data set: objects are numbered anew.
+    /// Renumbers instances, since several classes of the learner may map to one of the data set.
     fn mapped_segments(&mut self, labels: &[u32], own: &Classes) -> Vec<u32> {
         let mut mapped = HashMap::<u32, u32>::new();
         let mut objects = HashMap::<u32, u32>::new();
@@ -360,7 +362,7 @@ impl ClassMap {
                         return class * LABEL_DIVISOR;
                     }
                     let number = objects.entry(class).or_default();
-                    // A picture with more objects of a class than labels can say shares the last number.
+                    // Instances beyond the maximum number share the last one.
                     *number = (*number + 1).min(LABEL_DIVISOR - 1);
                     class * LABEL_DIVISOR + *number
                 });
@@ -370,16 +372,16 @@ impl ClassMap {
             .collect()
     }
 
-    /// Whether a class number stands behind those of the data set: for a class that it does not have.
+    /// Returns whether a class index is beyond those of the data set: the index of a class that the data set does not have.
     pub fn is_beyond(&self, class: i64) -> bool {
         !self.dataset.is_empty() && !self.matching.by_number && class >= self.dataset.len() as i64
     }
 
-    /// The map that was used.
+    /// Returns the map that was used.
     pub fn report(&self) -> ClassReport {
         let names_nothing = self.pairs.is_empty() && self.learner_only.is_empty();
         let by_number = match () {
-            () if self.matching.by_number => Some(ByNumber::Asked),
+            () if self.matching.by_number => Some(ByNumber::Requested),
             () if self.dataset.is_empty() => Some(ByNumber::DatasetUnnamed),
             () if names_nothing && self.has_unnamed => Some(ByNumber::LearnerUnnamed),
             () => None,
@@ -397,13 +399,13 @@ impl ClassMap {
         }
     }
 
-    /// Checks that learner and data set speak of the same things. `annotated` are the classes that the annotations have, where they
-    /// are known: classes that a data set names and never uses do not count.
+    /// Checks that learner and data set have enough classes in common. `annotated` are the classes that occur in the annotations, where
+    /// known: classes that a data set names and never uses do not count.
     ///
     /// # Errors
-    /// `InvalidInput`, with the names of both, when the learner has classes that the data set does not have, and less than half of
-    /// the data set's classes are matched. (A learner all of whose classes are matched knows few things, but no others.) `remedy` says
-    /// what the user can do.
+    /// `InvalidInput`, with the names of both sides, when the learner has classes that the data set does not have, and less than half of
+    /// the data set's classes are matched. (A learner whose classes all match may have few of them.) `remedy` is the
+    /// advice to the user.
     pub fn check(&self, annotated: Option<&[usize]>, remedy: &str) -> Result<()> {
         let report = self.report();
         if report.by_number.is_some() || report.learner_only.is_empty() || !self.matching.pairs.is_empty() {

@@ -1,4 +1,4 @@
-//! Which classes were compared with which.
+//! Report of the matched classes.
 
 use std::fmt;
 
@@ -6,54 +6,54 @@ use serde::Serialize;
 
 use super::MatchedBy;
 
-/// Names that are printed of a list; the report in JSON has all.
+/// Maximum number of names that are printed of a list; the JSON has all.
 const PRINTED: usize = 24;
 
-/// Why numbers were compared.
+/// Why classes were compared by number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ByNumber {
-    /// The user asked for it.
-    Asked,
-    /// The data set names no classes.
+    /// The user requested it.
+    Requested,
+    /// The data set has no class names.
     DatasetUnnamed,
-    /// The predictions name no classes.
+    /// The predictions have no class names.
     LearnerUnnamed,
 }
 
-/// A class of the learner and the one of the data set that it was compared with.
+/// A class of the learner and the matching class of the data set.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct ClassPair {
     /// Name in the predictions.
     pub learner: String,
     /// Name in the data set.
     pub dataset: String,
-    /// How it was found.
+    /// How they were matched.
     pub by: MatchedBy,
 }
 
-/// The map that was used from a learner's classes to those of a data set.
+/// The matching of a learner's classes with those of a data set.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct ClassReport {
-    /// Why classes were compared by their numbers; `None` where they were compared by their names.
+    /// Why classes were compared by number; `None` if they were compared by name.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub by_number: Option<ByNumber>,
-    /// Classes that were compared.
+    /// Matched classes.
     pub pairs: Vec<ClassPair>,
-    /// Classes of the learner that the data set does not have. Objects of these classes are left out; a category or a pixel of
-    /// such a class is wrong.
+    /// Classes of the learner that the data set does not have. Their objects are dropped; categories and pixels of
+    /// these classes count as wrong.
     pub learner_only: Vec<String>,
-    /// Classes of the data set that the learner does not have: it cannot find them.
+    /// Classes of the data set that the learner does not have.
     pub dataset_only: Vec<String>,
 }
 
 impl ClassReport {
-    /// Whether there are classes to speak of.
+    /// Returns whether there are no classes to report.
     pub fn is_empty(&self) -> bool {
         self.by_number.is_none() && self.pairs.is_empty() && self.learner_only.is_empty()
     }
 
-    /// Classes of the data set.
+    /// Returns the number of classes of the data set.
     fn dataset_classes(&self) -> usize {
         let mut matched: Vec<&str> = self.pairs.iter().map(|pair| pair.dataset.as_str()).collect();
         matched.sort_unstable();
@@ -62,16 +62,16 @@ impl ClassReport {
     }
 }
 
-/// One or more lines for the screen.
+/// Prints one or more lines.
 impl fmt::Display for ClassReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.by_number {
-            Some(ByNumber::Asked) => return writeln!(f, "classes: compared by number, as asked"),
+            Some(ByNumber::Requested) => return writeln!(f, "classes: compared by number, as requested"),
             Some(ByNumber::DatasetUnnamed) => {
-                return writeln!(f, "classes: compared by number, since the data set names none");
+                return writeln!(f, "classes: compared by number, since the data set has no names");
             }
             Some(ByNumber::LearnerUnnamed) => {
-                return writeln!(f, "classes: compared by number, since the predictions name none");
+                return writeln!(f, "classes: compared by number, since the predictions have no names");
             }
             None => {}
         }
@@ -98,7 +98,7 @@ impl fmt::Display for ClassReport {
     }
 }
 
-/// Names one after the other, at most [`PRINTED`].
+/// Joins at most [`PRINTED`] names.
 pub(super) fn listed<T: AsRef<str>>(names: &[T]) -> String {
     let first: Vec<_> = names.iter().take(PRINTED).map(AsRef::as_ref).collect();
     match names.len().checked_sub(PRINTED) {

@@ -1,7 +1,7 @@
-//! Names of the same class in the published data sets of the field.
+//! Synonyms of classes in published data sets.
 
 /// Names of the same class in COCO, COCO panoptic, Pascal VOC, KITTI, Cityscapes, CamVid, ADE20K, Open Images, AffectNet and
-/// RAVDESS. A name may stand in several lines; those that come first are preferred.
+/// RAVDESS. A name may occur in several lines; earlier ones take precedence.
 const SYNONYMS: &[&[&str]] = &[
     &["airplane", "aeroplane"],
     &["rider", "cyclist", "bicyclist"],
@@ -41,14 +41,14 @@ const SYNONYMS: &[&[&str]] = &[
     &["surprise", "surprised"],
 ];
 
-/// A published grouping of finer classes: it applies to data sets that have all of its classes.
+/// A published grouping of finer classes; it applies to data sets with all of its classes.
 struct Grouping {
-    /// Each class with the finer ones that belong to it.
+    /// Each class with its finer classes.
     groups: &'static [(&'static str, &'static [&'static str])],
 }
 
-/// SegNet's grouping of CamVid's 32 classes into 11 (V. Badrinarayanan, A. Kendall, R. Cipolla, arXiv 1511.00561), with the names
-/// that Cityscapes has for the same classes.
+/// SegNet's grouping of CamVid's 32 classes into 11 (V. Badrinarayanan, A. Kendall, R. Cipolla, arXiv 1511.00561), with the names of
+/// the same classes in Cityscapes.
 const GROUPINGS: &[Grouping] = &[Grouping {
     groups: &[
         ("sky", &[]),
@@ -65,32 +65,32 @@ const GROUPINGS: &[Grouping] = &[Grouping {
     ],
 }];
 
-/// Letters and digits in lower case: names are compared without case, spaces, hyphens and underscores.
+/// Returns the letters and digits in lower case: names are compared without case, spaces, hyphens and underscores.
 pub(super) fn plain(label: &str) -> String {
     label.chars().filter(|letter| letter.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
 
-/// A name, and where it lists several (ADE20K's "car, auto, automobile"), each of them, in plain form.
+/// Returns the spellings of a name in normalised form; a name may list several (ADE20K's "car, auto, automobile").
 pub(super) fn spellings(label: &str) -> impl Iterator<Item = String> + '_ {
     let parts = label.split(',').filter(move |part| part.len() < label.len());
     std::iter::once(label).chain(parts).map(plain).filter(|name| !name.is_empty())
 }
 
-/// How a class was found in the data set.
+/// How a class was matched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MatchedBy {
-    /// By a pair that the user gave.
+    /// By a pair of the user.
     Pair,
     /// By its name.
     Name,
-    /// By another name of the same class.
+    /// By a synonym.
     Synonym,
-    /// As a part of a class, by a published grouping.
+    /// As a part of a class in a published grouping.
     Grouping,
 }
 
-/// Returns the first of `classes` that `label` names, given in the order of the data set.
+/// Returns the index of the first of `classes` that `label` matches, and how.
 pub(super) fn find<'a>(label: &str, classes: impl Iterator<Item = &'a str>) -> Option<(usize, MatchedBy)> {
     let known: Vec<Vec<String>> = classes.map(|class| spellings(class).collect()).collect();
     let named = |wanted: &str| known.iter().position(|spellings| spellings.iter().any(|name| name == wanted));
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn by_name_before_synonym_before_grouping() {
+    fn names_precede_synonyms_and_groupings() {
         let classes =
             ["aeroplane", "Traffic_Light", "pedestrian", "car, auto, automobile", "rider", "bicycle"];
         let cases = [
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn groupings_hold_for_their_own_data_set() {
+    fn groupings_apply_to_their_own_data_set() {
         assert_eq!(found("truck", &CAMVID), Some(("Car", MatchedBy::Grouping)));
         assert_eq!(found("wall", &CAMVID), Some(("Building", MatchedBy::Grouping)));
         assert_eq!(found("sidewalk", &CAMVID), Some(("Pavement", MatchedBy::Synonym)));

@@ -38,7 +38,7 @@ fn labels(map: &Value) -> &[u32] {
 }
 
 #[test]
-fn boxes_are_renamed_and_others_left_out() {
+fn boxes_are_renamed_and_others_dropped() {
     let mut map = map(&["pedestrian", "kite", "airplane"], &["cat", "Person", "aeroplane"]);
     let boxes = [0, 1, 2].map(|class| BoundingBox::new(class, 0.0, 0.0, 1.0, 1.0, 0.5));
     let mut prediction = Value::from(BoundingBoxList::from(boxes.to_vec()));
@@ -52,7 +52,7 @@ fn boxes_are_renamed_and_others_left_out() {
 }
 
 #[test]
-fn categories_take_their_probabilities_along() {
+fn categories_keep_their_probabilities() {
     let mut map = map(&["yes", "_silence_", "bed"], &["bed", "silence", "stop", "yes"]);
     let category = |class, probabilities: &[f32]| {
         Value::from(Category { probabilities: probabilities.to_vec(), ..Category::new(class, Some(0.75)) })
@@ -66,7 +66,7 @@ fn categories_take_their_probabilities_along() {
 }
 
 #[test]
-fn a_category_that_the_data_set_does_not_have_is_wrong_and_named() {
+fn an_unknown_category_is_wrong_and_named() {
     let mut map = map(&["a", "stranger", "b", "other"], &["b", "a"]);
     let probabilities = vec![0.0, 0.25, 0.25, 0.5];
     let mut prediction = Value::from(Category { probabilities, ..Category::new(3, Some(0.5)) });
@@ -78,7 +78,7 @@ fn a_category_that_the_data_set_does_not_have_is_wrong_and_named() {
 }
 
 #[test]
-fn pixels_of_several_classes_meet_in_one() {
+fn pixels_of_several_classes_merge_into_one() {
     let mut map = map(&["road", "rider", "bicycle", "moon"], &CAMVID);
     let mut heatmap = Heatmap::from_labels(vec![0, 1, 2, 3, 255], &[1, 5]).unwrap();
     heatmap.classes = classes(&["road", "rider", "bicycle", "moon"]);
@@ -95,7 +95,7 @@ fn scores_become_the_class_of_the_highest() {
     let mut prediction = Value::from(heatmap);
     map.apply(&mut prediction).unwrap();
     assert_eq!(labels(&prediction), [1, 0]);
-    // A map of depths is no map of classes.
+    // A depth map is not a class map.
     let depths = Value::from(Heatmap::from_scores(vec![1.0, 2.0], &[1, 2]).unwrap());
     let mut same = depths.clone();
     map.apply(&mut same).unwrap();
@@ -103,7 +103,7 @@ fn scores_become_the_class_of_the_highest() {
 }
 
 #[test]
-fn segments_that_meet_in_a_class_are_numbered_anew() {
+fn segments_that_merge_into_a_class_are_renumbered() {
     let mut map = map(&["road", "car", "truck"], &CAMVID).with_labels(MapLabels::Segments);
     let mut heatmap = Heatmap::from_labels(vec![0, 1001, 1001, 2001, 1002, 2001], &[2, 3]).unwrap();
     heatmap.classes = classes(&["road", "car", "truck"]);
@@ -113,15 +113,15 @@ fn segments_that_meet_in_a_class_are_numbered_anew() {
 }
 
 #[test]
-fn strangers_are_an_error_that_names_both() {
-    let strangers = map(&["cat", "dog", "kite"], &["gizmo", "widget", "cat"]);
-    let error = strangers.check(None, "Do this").unwrap_err().to_string();
+fn unknown_classes_are_an_error_that_names_both_sides() {
+    let unknown = map(&["cat", "dog", "kite"], &["gizmo", "widget", "cat"]);
+    let error = unknown.check(None, "Do this").unwrap_err().to_string();
     for part in ["only 1 of 3", "cat, dog, kite", "gizmo, widget, cat", "Do this"] {
         assert!(error.contains(part), "{part:?} is not in {error:?}");
     }
     // Only classes that occur count.
-    strangers.check(Some(&[2]), "").unwrap();
-    // One who knows persons alone knows no strangers.
+    unknown.check(Some(&[2]), "").unwrap();
+    // A learner whose only class matches is accepted.
     map(&["person"], &["gizmo", "widget", "person"]).check(None, "").unwrap();
 }
 
@@ -143,7 +143,7 @@ fn the_user_maps_or_compares_numbers() {
     let (learner, dataset) = sides();
     let mut numbered = ClassMap::new(learner, dataset, &matching).unwrap();
     assert_eq!(numbered.index(&Name::Index(0), &Classes::default()), Some(0));
-    assert_eq!(numbered.report().by_number, Some(ByNumber::Asked));
+    assert_eq!(numbered.report().by_number, Some(ByNumber::Requested));
     let wrong = ClassMatching { pairs: BTreeMap::from([("lorry".into(), "moon".into())]), by_number: false };
     let (learner, dataset) = sides();
     let error = ClassMap::new(learner, dataset, &wrong).unwrap_err().to_string();
@@ -151,14 +151,14 @@ fn the_user_maps_or_compares_numbers() {
 }
 
 #[test]
-fn sides_without_names_are_compared_by_number_and_say_so() {
+fn sides_without_names_are_compared_by_number_and_reported() {
     let nameless = map(&["cat"], &[]);
     assert_eq!(nameless.report().by_number, Some(ByNumber::DatasetUnnamed));
     let mut unnamed = map(&[], &["cat", "dog"]);
     assert_eq!(unnamed.report().by_number, None);
     assert_eq!(unnamed.index(&Name::Index(1), &Classes::default()), Some(1));
     assert_eq!(unnamed.report().by_number, Some(ByNumber::LearnerUnnamed));
-    // A number beside names is no class.
+    // A number in a list with names is not a class.
     let mut partly = map(&["cat"], &["cat", "dog"]);
     assert_eq!(partly.index(&Name::Index(1), &Classes::default()), None);
     assert_eq!(partly.report().learner_only, ["class 1"]);

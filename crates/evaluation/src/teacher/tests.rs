@@ -14,7 +14,7 @@ const PORTS: &[Port] =
     &[Port { name: "vector", doc: "", value_type: ValueType::Vector, optional: false, init: false }];
 const OUTPUTS: &[Output] = &[Output { name: "boxes", doc: "", value_type: ValueType::BoundingBoxList }];
 
-/// Finds as many things as the sample says, each surer than the one before; the first is a kite, all others are persons.
+/// Predicts as many boxes as the sample's number, with increasing scores; the first is a kite, all others are persons.
 struct Finder(Arc<AtomicUsize>);
 
 impl AnyStream for Finder {
@@ -64,21 +64,21 @@ impl DatasetIterator for Numbers {
     }
 }
 
-struct School {
+struct Setup {
     folder: PathBuf,
-    asked: Arc<AtomicUsize>,
+    processed: Arc<AtomicUsize>,
 }
 
-impl School {
+impl Setup {
     fn new(name: &str) -> Self {
         let folder = std::env::temp_dir().join(format!("opendr-teacher-{name}-{}", std::process::id()));
-        Self { folder, asked: Arc::default() }
+        Self { folder, processed: Arc::default() }
     }
 
     fn teacher(&self) -> Teacher {
         let spec = Spec::new("finder", Task::ObjectDetection2d).class("FinderLearner");
-        let entry = Entry::added(spec, &[], PORTS, OUTPUTS, |_, _| Err(Error::unsupported("making")));
-        let stream = || Box::new(Finder(self.asked.clone())) as Box<dyn AnyStream>;
+        let entry = Entry::dynamic(spec, &[], PORTS, OUTPUTS, |_, _| Err(Error::unsupported("making")));
+        let stream = || Box::new(Finder(self.processed.clone())) as Box<dyn AnyStream>;
         Teacher {
             subject: Subject { learner: "finder".to_owned(), ..Subject::default() },
             entry: Box::leak(Box::new(entry)),
@@ -91,11 +91,11 @@ impl School {
         &self,
         samples: &Numbers,
         problems: &Problems,
-        change: impl FnOnce(&mut Lesson<'_>),
+        change: impl FnOnce(&mut Distillation<'_>),
     ) -> Result<Vec<Labelled>> {
-        let mut lesson = Lesson {
+        let mut lesson = Distillation {
             dataset: "numbers".to_owned(),
-            wanted: ValueType::BoundingBoxList,
+            annotation_type: ValueType::BoundingBoxList,
             threshold: 0.5,
             classes: Classes::default(),
             class_matching: ClassMatching::default(),
@@ -105,19 +105,19 @@ impl School {
             progress: &Silent,
         };
         change(&mut lesson);
-        let taught = lesson.teach(self.teacher(), Box::new(samples))?;
-        assert!(taught.is_complete());
-        (0..taught.len()).map(|at| Ok((taught.name(at), labels(&taught.get(at)?)))).collect()
+        let labelled = lesson.label(self.teacher(), Box::new(samples))?;
+        assert!(labelled.is_complete());
+        (0..labelled.len()).map(|at| Ok((labelled.name(at), labels(&labelled.get(at)?)))).collect()
     }
 }
 
-impl Drop for School {
+impl Drop for Setup {
     fn drop(&mut self) {
         let _ = fs::remove_dir_all(&self.folder);
     }
 }
 
-/// The name of a sample, and the class and place of what was found in it.
+/// Name of a sample, and class and position of each of its boxes.
 type Labelled = (String, Vec<(Name, f32)>);
 
 fn labels(sample: &Sample) -> Vec<(Name, f32)> {
@@ -126,55 +126,55 @@ fn labels(sample: &Sample) -> Vec<(Name, f32)> {
 }
 
 #[test]
-fn sure_answers_become_annotations_in_the_classes_of_the_data_set() {
-    let school = School::new("classes");
+fn confident_predictions_become_annotations_in_the_classes_of_the_data_set() {
+    let setup = Setup::new("classes");
     let of_dataset: Classes = ["cat", "Person"].into_iter().collect();
     let samples = Numbers(vec![1, 3, 0, 2], of_dataset);
-    let taught = school.teach(&samples, &Problems::strict(), |_| {}).unwrap();
+    let labelled = setup.teach(&samples, &Problems::strict(), |_| {}).unwrap();
     let person = |left| (Name::Index(1), left);
     assert_eq!(
-        taught,
+        labelled,
         [("1".to_owned(), vec![person(1.0), person(2.0)]), ("3".to_owned(), vec![person(1.0)])]
     );
     let with_negatives =
-        school.teach(&samples, &Problems::strict(), |lesson| lesson.keep_empty = true).unwrap();
+        setup.teach(&samples, &Problems::strict(), |lesson| lesson.keep_empty = true).unwrap();
     assert_eq!(with_negatives.len(), 4);
     assert!(with_negatives[2].1.is_empty());
-    // The same answers serve other thresholds and classes.
-    let kites = school.teach(&samples, &Problems::strict(), |lesson| {
+    // The same predictions serve other thresholds and classes.
+    let kites = setup.teach(&samples, &Problems::strict(), |lesson| {
         (lesson.threshold, lesson.classes) = (0.2, ["kite"].into_iter().collect());
     });
     assert_eq!(kites.unwrap().iter().map(|(name, _)| &**name).collect::<Vec<_>>(), ["0", "1", "3"]);
-    assert_eq!(school.asked.load(Ordering::Relaxed), 4);
+    assert_eq!(setup.processed.load(Ordering::Relaxed), 4);
 }
 
 #[test]
-fn a_lesson_goes_on_where_it_ended() {
-    let school = School::new("resumed");
+fn a_distillation_resumes_from_its_journal() {
+    let setup = Setup::new("resumed");
     let samples = Numbers(vec![2; 6], Classes::default());
-    let whole = school.teach(&samples, &Problems::strict(), |_| {}).unwrap();
-    let journal = school.folder.join(JOURNAL);
+    let whole = setup.teach(&samples, &Problems::strict(), |_| {}).unwrap();
+    let journal = setup.folder.join(JOURNAL);
     let text = fs::read_to_string(&journal).unwrap();
     let cut: usize = text.lines().take(3).map(|line| line.len() + 1).sum();
     fs::write(&journal, &text[..cut + 5]).unwrap();
-    assert_eq!(school.teach(&samples, &Problems::strict(), |_| {}).unwrap(), whole);
-    assert_eq!(school.asked.load(Ordering::Relaxed), 6 + 4);
+    assert_eq!(setup.teach(&samples, &Problems::strict(), |_| {}).unwrap(), whole);
+    assert_eq!(setup.processed.load(Ordering::Relaxed), 6 + 4);
     assert_eq!(fs::read_to_string(&journal).unwrap(), text);
     let others = Numbers(vec![2; 5], Classes::default());
-    let error = school.teach(&others, &Problems::strict(), |_| {}).unwrap_err();
+    let error = setup.teach(&others, &Problems::strict(), |_| {}).unwrap_err();
     assert!(error.to_string().contains("data set differs"), "{error}");
 }
 
 #[test]
-fn what_cannot_be_answered_is_told_or_left_out() {
-    let school = School::new("broken");
+fn samples_without_predictions_are_reported_or_skipped() {
+    let setup = Setup::new("broken");
     let samples = Numbers(vec![3, 9, 3], Classes::default());
-    let error = school.teach(&samples, &Problems::strict(), |_| {}).unwrap_err();
+    let error = setup.teach(&samples, &Problems::strict(), |_| {}).unwrap_err();
     assert!(error.to_string().contains("unreadable"), "{error}");
     let problems = Problems::skipping();
-    assert_eq!(school.teach(&samples, &problems, |_| {}).unwrap().len(), 2);
+    assert_eq!(setup.teach(&samples, &problems, |_| {}).unwrap().len(), 2);
     assert_eq!(problems.count(), 1);
-    let poses = |lesson: &mut Lesson<'_>| lesson.wanted = ValueType::PoseList;
-    let error = school.teach(&samples, &problems, poses).unwrap_err();
-    assert!(error.to_string().contains("finder answers BoundingBoxList, but"), "{error}");
+    let poses = |lesson: &mut Distillation<'_>| lesson.annotation_type = ValueType::PoseList;
+    let error = setup.teach(&samples, &problems, poses).unwrap_err();
+    assert!(error.to_string().contains("finder predicts BoundingBoxList, but"), "{error}");
 }

@@ -1,4 +1,4 @@
-//! A learner that counts over data sets that are made here: resumption, sequences, what is broken.
+//! A counting learner on generated data sets: resumption, sequences, broken samples.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,21 +17,21 @@ use opendr_engine::{Device, Error, Progress, Result, Statistics, Task, Unit, Val
 use opendr_evaluation::{Evaluation, Outcome, Subject};
 use opendr_metrics::find;
 
-/// Answers how many samples of its stream it has seen.
+/// Predicts how many samples of its stream it has processed.
 #[derive(Default)]
 struct Counter {
-    seen: i64,
+    processed: i64,
 }
 
 impl AnyLearner for Counter {
     fn infer(&mut self, ports: &Ports<'_>) -> Result<Outputs> {
         ports.required::<Vector>("vector")?;
-        self.seen += 1;
-        Ok([("category", Value::from(Category::new(self.seen, Some(1.0))))].into_iter().collect())
+        self.processed += 1;
+        Ok([("category", Value::from(Category::new(self.processed, Some(1.0))))].into_iter().collect())
     }
 
     fn reset(&mut self) {
-        self.seen = 0;
+        self.processed = 0;
     }
 
     fn load(&mut self, _: &Path) -> Result<()> {
@@ -89,7 +89,7 @@ impl AnyLearner for Counter {
     }
 }
 
-/// Sequences of three frames whose classes are 1, 2, 3; `broken` cannot be read.
+/// Sequences of three frames with the classes 1, 2, 3; sample `broken` cannot be read.
 struct Frames {
     count: usize,
     broken: Option<usize>,
@@ -165,7 +165,7 @@ fn evaluate(
     let mut learners: [Box<dyn AnyLearner>; 2] = [Box::new(Counter::default()), Box::new(Counter::default())];
     let spec = Spec::new("counter", Task::ObjectDetection2d);
     let make = |_: &ParamMap, _| Err(Error::unsupported("making"));
-    let entry = Entry::added(spec, &[], <&Vector as Inputs<'_>>::PORTS, Category::OUTPUTS, make);
+    let entry = Entry::dynamic(spec, &[], <&Vector as Inputs<'_>>::PORTS, Category::OUTPUTS, make);
     evaluation.run(&mut learners, &entry, dataset)
 }
 
@@ -183,7 +183,7 @@ fn a_sequence_is_one_stream() {
 }
 
 #[test]
-fn resumption_begins_with_a_whole_sequence() {
+fn resumption_starts_at_a_sequence() {
     let folder = scratch("resume");
     let first = evaluate(&Frames::new(9), Some(&folder), 5, &Problems::strict()).unwrap();
     assert!(!first.complete && first.counted < 9, "{first:?}");
@@ -203,7 +203,7 @@ fn resumption_begins_with_a_whole_sequence() {
 }
 
 #[test]
-fn broken_samples_end_it_or_are_listed() {
+fn broken_samples_end_the_evaluation_or_are_listed() {
     let frames = Frames { broken: Some(4), ..Frames::new(6) };
     let error = evaluate(&frames, None, u64::MAX, &Problems::strict()).unwrap_err();
     assert_eq!(error.to_string(), "frame 4: truncated");

@@ -1,4 +1,4 @@
-//! The numbering of classes is nobody's business: no permutation on either side changes a number of any metric.
+//! No metric depends on the numbering of classes, on either side.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ use proptest::prelude::*;
 const NAMES: [&str; 6] = ["car", "pedestrian", "Cyclist", "van", "tram", "traffic sign"];
 const SAMPLES: usize = 8;
 
-/// The classes in an order of their own.
+/// The classes in a permuted order.
 #[derive(Debug, Clone)]
 struct Numbering(Vec<usize>);
 
@@ -27,13 +27,13 @@ impl Numbering {
         self.0.iter().map(|class| NAMES[*class]).collect()
     }
 
-    /// The number of a class.
+    /// Returns the number of a class.
     fn of(&self, class: usize) -> usize {
         self.0.iter().position(|other| *other == class).unwrap()
     }
 }
 
-/// What is there or predicted in a sample, by the places of classes in [`NAMES`].
+/// Returns the ground truth or the prediction of a sample; classes are indices into [`NAMES`].
 fn value(
     metric: &str,
     numbering: &Numbering,
@@ -43,7 +43,7 @@ fn value(
 ) -> Value {
     let class = |random: &mut Random, noise: &mut Random| {
         let class = random.below(NAMES.len());
-        // One prediction in four is of another class.
+        // One prediction in four has another class.
         if !is_truth && noise.chance(0.25) { noise.below(NAMES.len()) } else { class }
     };
     let classes = numbering.classes();
@@ -152,11 +152,11 @@ impl Predictor for Predictions {
     }
 }
 
-/// Every number of the report, and those of each class by its name.
+/// Returns all numbers of the report, including those of each class by its name.
 fn numbers(metric: &str, learner: &Numbering, dataset: &Numbering, seed: u64) -> BTreeMap<String, f64> {
     let [mut truths, mut predictions] = [Vec::new(), Vec::new()];
     for at in 0..SAMPLES {
-        let place = |what| Random::at([seed, at as u64, what]);
+        let place = |what| Random::from_key([seed, at as u64, what]);
         truths.push(value(metric, dataset, &mut place(0), true, &mut place(1)));
         predictions.push(value(metric, learner, &mut place(0), false, &mut place(2)));
     }

@@ -1,4 +1,5 @@
-//! The binary format of `model.bin`, versions 4 to 6 (6 is that of CTranslate2 3.17 to 4.8); all numbers are little-endian.
+//! The binary format of `model.bin`, versions 4 to 6 (CTranslate2 3.17 to 4.8 write version 6); all numbers are
+//! little-endian.
 //!
 //! | what | as |
 //! |---|---|
@@ -17,12 +18,12 @@ use std::collections::HashMap;
 use opendr_engine::{Error, Result};
 use opendr_onnx::{Array, Data, FloatType, element_count};
 
-/// The most axes that a variable has.
+/// Maximum number of axes of a variable.
 const MAX_AXES: u8 = 8;
 
-/// A file whose sizes are all checked; elements stay where they lie until somebody asks for them.
+/// A parsed file with validated sizes; elements are decoded on request.
 pub struct Ctranslate2File<'a> {
-    /// Which network it is, e.g. `WhisperSpec`.
+    /// Name of the network's specification, e.g. `WhisperSpec`.
     pub specification: &'a str,
     variables: HashMap<&'a str, Variable<'a>>,
 }
@@ -38,13 +39,13 @@ impl<'a> Ctranslate2File<'a> {
     /// Reads the table of a file.
     ///
     /// # Errors
-    /// `Format` for a damaged file, `Unsupported` for a version or an element type that is unknown.
+    /// `Format` for a damaged file, `Unsupported` for an unknown version or element type.
     pub fn read(bytes: &'a [u8]) -> Result<Self> {
         let mut rest = Rest(bytes);
         let version = rest.u32()?;
         if !(4..=6).contains(&version) {
             return Err(Error::unsupported(format!(
-                "version {version} of CTranslate2's format, or another format; convert the model with CTranslate2 4"
+                "unsupported version {version} of CTranslate2's format, or another format; convert the model with CTranslate2 4"
             )));
         }
         let specification = rest.text()?;
@@ -53,7 +54,7 @@ impl<'a> Ctranslate2File<'a> {
         for _ in 0..rest.u32()? {
             let (name, variable) = rest.variable()?;
             if variables.insert(name, variable).is_some() {
-                return Err(Error::format(format!("CTranslate2: two variables are called {name:.80?}")));
+                return Err(Error::format(format!("CTranslate2: two variables have the name {name:.80?}")));
             }
         }
         for _ in 0..rest.u32()? {
@@ -63,21 +64,21 @@ impl<'a> Ctranslate2File<'a> {
         }
         match rest.0 {
             [] => Ok(Self { specification, variables }),
-            more => Err(Error::format(format!("CTranslate2: {} bytes too many at the end", more.len()))),
+            more => Err(Error::format(format!("CTranslate2: {} unexpected bytes at the end", more.len()))),
         }
     }
 
-    /// Whether there is a variable of that name.
+    /// Returns whether there is a variable of that name.
     pub fn has(&self, name: &str) -> bool {
         self.variables.contains_key(name)
     }
 
-    /// Whether no variable of floats is wider than 16 bits.
+    /// Returns whether all float variables have at most 16 bits.
     pub fn is_half(&self) -> bool {
         self.variables.values().all(|variable| variable.element != 0)
     }
 
-    /// The one integer of a variable; `None` when there is none.
+    /// Returns the value of an integer variable; `None` when there is none.
     pub fn integer(&self, name: &str) -> Option<i64> {
         let Variable { element, bytes, .. } = self.variables.get(name)?;
         match (element, *bytes) {
@@ -88,10 +89,10 @@ impl<'a> Ctranslate2File<'a> {
         }
     }
 
-    /// The numbers of a variable.
+    /// Returns the numbers of a variable.
     ///
     /// # Errors
-    /// `Format` when there is none, `Unsupported` when it is quantised.
+    /// `Format` when there is no such variable, `Unsupported` when it is quantised.
     pub fn floats(&self, name: &str) -> Result<Array> {
         let Variable { dims, element, bytes } = self.variables.get(name).ok_or_else(|| missing(name))?;
         let float_type = match element {
@@ -104,29 +105,29 @@ impl<'a> Ctranslate2File<'a> {
                 )));
             }
         };
-        let floats = float_type.numbers(bytes);
+        let floats = float_type.decode(bytes);
         if floats.iter().any(|value| !value.is_finite()) {
             return Err(Error::format(format!(
-                "CTranslate2: {name:?} holds what is no number; get the file anew"
+                "CTranslate2: {name:?} contains NaN or infinity; download the file again"
             )));
         }
         let array = Array::new(dims.clone(), Data::Float(floats));
-        array.ok_or_else(|| Error::internal(format!("{name:?} was read to another size than {dims:?}")))
+        array.ok_or_else(|| Error::internal(format!("the decoded size of {name:?} does not match {dims:?}")))
     }
 }
 
 fn missing(name: &str) -> Error {
-    Error::format(format!("CTranslate2: there is no variable {name:.80?}; get the file anew"))
+    Error::format(format!("CTranslate2: there is no variable {name:.80?}; download the file again"))
 }
 
-/// What is yet to be read.
+/// The unread bytes.
 struct Rest<'a>(&'a [u8]);
 
 impl<'a> Rest<'a> {
     fn take(&mut self, count: usize) -> Result<&'a [u8]> {
         let (taken, rest) = self.0.split_at_checked(count).ok_or_else(|| {
             Error::format(format!(
-                "CTranslate2: {count} bytes wanted where {} are left; get the file anew",
+                "CTranslate2: {count} bytes are needed, but {} are left; download the file again",
                 self.0.len()
             ))
         })?;
@@ -136,7 +137,7 @@ impl<'a> Rest<'a> {
 
     fn number<const N: usize>(&mut self) -> Result<[u8; N]> {
         let bytes = self.take(N)?;
-        bytes.try_into().map_err(|_| Error::internal("a number of another width"))
+        bytes.try_into().map_err(|_| Error::internal("a number has the wrong width"))
     }
 
     fn u32(&mut self) -> Result<u32> {
@@ -151,7 +152,7 @@ impl<'a> Rest<'a> {
         let length = u16::from_le_bytes(self.number()?);
         let bytes = self.take(length.into())?;
         let text = bytes.strip_suffix(b"\0").and_then(|bytes| std::str::from_utf8(bytes).ok());
-        text.ok_or_else(|| Error::format("CTranslate2: a name is damaged; get the file anew"))
+        text.ok_or_else(|| Error::format("CTranslate2: a name is not valid text; download the file again"))
     }
 
     fn variable(&mut self) -> Result<(&'a str, Variable<'a>)> {
@@ -159,7 +160,7 @@ impl<'a> Rest<'a> {
         let axes = self.u8()?;
         if axes > MAX_AXES {
             return Err(Error::format(format!(
-                "CTranslate2: {name:.80?} has {axes} axes, at most {MAX_AXES} fit"
+                "CTranslate2: {name:.80?} has {axes} axes, more than the supported {MAX_AXES}"
             )));
         }
         let dims = (0..axes).map(|_| Ok(self.u32()? as usize)).collect::<Result<Vec<_>>>()?;
@@ -170,14 +171,14 @@ impl<'a> Rest<'a> {
             1 => 1,
             other => {
                 return Err(Error::unsupported(format!(
-                    "CTranslate2: {name:.80?} is of the unknown type {other}"
+                    "CTranslate2: {name:.80?} has the unknown type {other}"
                 )));
             }
         };
         let size = self.u32()? as usize;
         if element_count(&dims).and_then(|count| count.checked_mul(width)) != Some(size) {
             return Err(Error::format(format!(
-                "CTranslate2: {name:.80?} of shape {dims:?} does not have {size} bytes; get the file anew"
+                "CTranslate2: {name:.80?} of shape {dims:?} does not have {size} bytes; download the file again"
             )));
         }
         Ok((name, Variable { dims, element, bytes: self.take(size)? }))

@@ -1,6 +1,6 @@
-//! CTranslate2's `model.bin`.
+//! Import from CTranslate2's `model.bin`.
 //!
-//! `file` reads the binary format, `whisper` knows what CTranslate2 calls the weights of a Whisper.
+//! `file` reads the binary format, `whisper` maps the names of Whisper's weights.
 
 mod file;
 mod whisper;

@@ -1,4 +1,4 @@
-//! What CTranslate2 calls the weights of a Whisper.
+//! Mapping of Whisper's weights to CTranslate2's variables.
 
 use opendr_engine::{Error, Result, ResultExt};
 use opendr_onnx::{Array, Data};
@@ -6,22 +6,25 @@ use opendr_onnx::{Array, Data};
 use crate::ctranslate2::file::Ctranslate2File;
 use crate::whisper::{WhisperOnnx, WhisperWeights, onnx_from_whisper};
 
-/// The most bytes of a `model.bin`: an ONNX file holds no more than 2 GiB.
+/// Maximum size of a `model.bin`, in bytes: an ONNX file is limited to 2 GiB.
 const MAX_BYTES: usize = 1 << 31;
 
-/// Turns the `model.bin` of a Whisper that CTranslate2 converted into ONNX. Weights of 16 bits stay so.
+/// Converts the `model.bin` of a Whisper in CTranslate2's format to ONNX. Weights of 16 bits keep their type.
 ///
 /// # Errors
-/// `Format` for a damaged file, `Unsupported` for another network than a Whisper, for weights that are quantised, and for
+/// `Format` for a damaged file, `Unsupported` for a network other than Whisper, for quantised weights, and for
 /// versions of the format other than 4 to 6.
 pub fn whisper_from_ctranslate2(model_bin: &[u8]) -> Result<WhisperOnnx> {
     if model_bin.len() > MAX_BYTES {
-        return Err(Error::unsupported(format!("{} bytes of weights; at most {MAX_BYTES}", model_bin.len())));
+        return Err(Error::unsupported(format!(
+            "{} bytes of weights exceed the limit of {MAX_BYTES}",
+            model_bin.len()
+        )));
     }
     let file = Ctranslate2File::read(model_bin)?;
     if file.specification != "WhisperSpec" {
         return Err(Error::unsupported(format!(
-            "CTranslate2 wrote a {:.80}; only a WhisperSpec becomes ONNX",
+            "the CTranslate2 model is a {:.80}; only WhisperSpec is supported",
             file.specification
         )));
     }
@@ -32,14 +35,14 @@ struct Weights<'a> {
     file: Ctranslate2File<'a>,
 }
 
-/// A variable, and which of the equal parts that its rows were joined of.
+/// A variable, and one of the equal parts into which its rows are divided.
 struct Place {
     variable: String,
     part: usize,
     parts: usize,
 }
 
-/// Where a weight with one of Hugging Face's names is; `None` for one that Whisper has not.
+/// Returns the variable of a weight with one of Hugging Face's names; `None` for one that Whisper does not have.
 fn place(name: &str) -> Option<Place> {
     let whole = |variable: String| Some(Place { variable, part: 0, parts: 1 });
     let (side, rest) = name.split_once('.')?;
@@ -86,7 +89,7 @@ impl WhisperWeights for Weights<'_> {
 
     fn get(&self, name: &str) -> Result<Array> {
         let Place { variable, part, parts } =
-            place(name).ok_or_else(|| Error::internal(format!("no Whisper has a weight {name:?}")))?;
+            place(name).ok_or_else(|| Error::internal(format!("Whisper has no weight {name:?}")))?;
         let array = self.file.floats(&variable)?;
         if parts == 1 {
             return Ok(array);
@@ -97,7 +100,9 @@ impl WhisperWeights for Weights<'_> {
         let size = floats.len() / parts;
         let own = floats.get(part * size..(part + 1) * size).unwrap_or_default().to_vec();
         Array::new(dims, Data::Float(own)).ok_or_else(|| {
-            Error::format(format!("CTranslate2: the rows of {variable:?} are no {parts} equal parts"))
+            Error::format(format!(
+                "CTranslate2: the rows of {variable:?} are not divisible into {parts} equal parts"
+            ))
         })
     }
 
@@ -116,7 +121,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_lead_to_variables() {
+    fn names_map_to_variables() {
         let at = |name: &str| place(name).map(|place| (place.variable, place.part, place.parts));
         let whole = |variable: &str| Some((variable.to_owned(), 0, 1));
         assert_eq!(at("encoder.conv1.bias"), whole("encoder/conv1/bias"));

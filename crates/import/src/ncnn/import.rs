@@ -12,27 +12,30 @@ use super::weights::Weights;
 use crate::bounded::{MAX_BYTES, read_bounded};
 use crate::tensorflow::{ImportOptions, wanted};
 
-/// Turns a model of ncnn's, its text of layers and its weights of 16 or 32 bits, into an ONNX model (opset 17). The same input
-/// gives the same bytes.
+/// Converts an ncnn model, its `.param` text and its weights of 16 or 32 bits, to an ONNX model (opset 17). The
+/// output is deterministic.
 ///
 /// # Inputs and outputs
-/// * Inputs are `float32` of shape `1xCxHxW`. What the text leaves open stays open, unless
-///   [`ImportOptions::image_size`] fixes it.
-/// * Outputs are the tensors that no layer takes. Pictures are `1xCxHxW`, tables `1xHxW`, rows of numbers `1xN`.
-/// * They are called as in the text.
+/// * Inputs are `float32` of shape `1xCxHxW`. Sizes that the text leaves open stay open, unless
+///   [`ImportOptions::image_size`] fixes them.
+/// * Outputs are the tensors that no layer reads. Images are `1xCxHxW`, matrices `1xHxW`, vectors `1xN`.
+/// * The names are those of the text.
 ///
 /// # Errors
-/// `Format` for files that are damaged or contradict themselves, `Unsupported` (naming the layer) for what cannot be
-/// expressed, `NotFound` for an output that the model does not have.
+/// `Format` for damaged or inconsistent files, `Unsupported` (with the layer's name) for layers that cannot be
+/// expressed in ONNX, `NotFound` for an output that the model does not have.
 pub fn onnx_from_ncnn(param: &[u8], bin: &[u8], options: &ImportOptions) -> Result<Vec<u8>> {
     if param.len().max(bin.len()) as u64 > MAX_BYTES {
         return Err(Error::format(format!(
-            "{} bytes, more than the {MAX_BYTES} allowed",
+            "{} bytes exceed the limit of {MAX_BYTES}",
             param.len().max(bin.len())
         )));
     }
     let text = std::str::from_utf8(param).map_err(|error| {
-        Error::format("the layers are no text; ncnn's binary form of them cannot be read").with_source(error)
+        Error::format(
+            "the .param file is not text; ncnn's binary form is not supported, so convert it to text",
+        )
+        .with_source(error)
     })?;
     let layers = layers(text)?;
     let taken: HashSet<&str> = layers.iter().flat_map(|layer| layer.inputs.iter().copied()).collect();
@@ -52,10 +55,10 @@ pub fn onnx_from_ncnn(param: &[u8], bin: &[u8], options: &ImportOptions) -> Resu
     Ok(bytes_from_model(&model_from_graph(graph)))
 }
 
-/// As [`onnx_from_ncnn`], reading the files.
+/// Reads the files and converts them like [`onnx_from_ncnn`].
 ///
 /// # Errors
-/// As [`onnx_from_ncnn`]; `NotFound` or `Io` when a file cannot be read.
+/// Those of [`onnx_from_ncnn`]; `NotFound` or `Io` when a file cannot be read.
 pub fn onnx_from_ncnn_files(param: &Path, bin: &Path, options: &ImportOptions) -> Result<Vec<u8>> {
     let (text, weights) = (read_bounded(param)?, read_bounded(bin)?);
     onnx_from_ncnn(&text, &weights, options).context(|| format!("importing {}", param.display()))

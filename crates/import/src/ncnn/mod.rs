@@ -1,9 +1,11 @@
-//! ncnn's models: a text of layers (`.param`) and their weights (`.bin`).
+//! Import of ncnn models: a text of layers (`.param`) and their weights (`.bin`).
 //!
-//! `param` reads the text, `weights` the numbers, each where its layer needs them. `trace` goes through the layers, which stand in
-//! the order in which they compute; `operator` (`product`, where there are weights) says each in ONNX's terms. A tensor of
-//! ncnn has no batch and one, two or three axes; in ONNX each has an axis of 1 in front.
+//! `param` parses the text, `weights` reads the weights in the order of the layers. `convert` converts the layers in
+//! order of execution into a `trace`; `operator` (`product` for layers with weights) maps each to ONNX operators. A tensor of ncnn
+//! has no batch and one, two or three axes; in ONNX it has an additional first axis of size 1.
 
+mod activation;
+mod convert;
 mod import;
 mod operator;
 mod param;

@@ -1,14 +1,15 @@
-//! Layers in ONNX's terms.
+//! Mapping of layers to ONNX operators.
 
 use opendr_engine::{Error, Result};
-use opendr_onnx::{Dim, Operator, Wire};
+use opendr_onnx::{Dim, GraphTensor, Operator};
 
+use super::activation::activation;
 use super::param::Layer;
 use super::product::{batch_norm, convolution, inner_product, parametric, pooling};
 use super::shape::{concat, flat, permute, reshape};
 use super::trace::Trace;
 
-/// Operators of one number, by ncnn's number of them.
+/// Unary operators, by ncnn's operation type.
 const UNARY: [&str; 17] = [
     "Abs",
     "Neg",
@@ -28,15 +29,15 @@ const UNARY: [&str; 17] = [
     "Reciprocal",
     "Tanh",
 ];
-/// Operators of two numbers, by ncnn's number of them; the last two are turned round.
+/// Binary operators, by ncnn's operation type; from [`TURNED`] on the operands are swapped.
 const BINARY: [&str; 9] = ["Add", "Sub", "Mul", "Div", "Max", "Min", "Pow", "Sub", "Div"];
 const TURNED: i64 = 7;
 
-/// What the layer gives. All have one output but `Split`, whose are all the same.
+/// Converts a layer and returns its output. All layers have one output except `Split`, whose outputs are identical.
 ///
 /// # Errors
-/// `Unsupported` for a layer that is not known, `Format` for parameters and inputs that do not fit.
-pub fn output(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Wire> {
+/// `Unsupported` for an unknown layer, `Format` for invalid parameters and inputs.
+pub fn output(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<GraphTensor> {
     let parameters = &layer.parameters;
     match layer.kind {
         "Convolution" | "ConvolutionDepthWise" => convolution(trace, layer),
@@ -64,7 +65,7 @@ pub fn output(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Wire> {
                     trace.same(layer, Operator::new("Reciprocal"), &[&root])
                 }
                 Some(name) => trace.same(layer, Operator::new(name), &[&input]),
-                None => Err(Error::unsupported(format!("operator {number} of one number"))),
+                None => Err(Error::unsupported(format!("unsupported unary operator {number}"))),
             }
         }
         "Sigmoid" | "TanH" | "HardSigmoid" | "HardSwish" | "Swish" | "Clip" | "ReLU" => {
@@ -85,86 +86,35 @@ pub fn output(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Wire> {
                     let axis = if axis < 0 { axis + axes } else { axis } + 1;
                     trace.same(layer, Operator::new("Softmax").int("axis", axis), &[&input])
                 }
-                false => Err(Error::format(format!("axis {axis} of {axes}"))),
+                false => Err(Error::format(format!("axis {axis} is out of range for {axes} axes"))),
             }
         }
-        _ => Err(Error::unsupported("this layer cannot be written as ONNX yet")),
+        _ => Err(Error::unsupported("this layer type is not supported")),
     }
 }
 
-/// What a layer with weights does to its result: parameters 9 and 10.
-pub fn activated(trace: &mut Trace<'_>, layer: &Layer<'_>, wire: Wire) -> Result<Wire> {
-    let values = layer.parameters.list(10);
-    let value = |at: usize| {
-        values
-            .get(at)
-            .copied()
-            .ok_or_else(|| Error::format(format!("{} parameters of its activation", values.len())))
-    };
-    let (kind, values) = match layer.parameters.int(9, 0)? {
-        0 => return Ok(wire),
-        1 => ("ReLU", [0.0, 0.0]),
-        2 => ("ReLU", [value(0)?, 0.0]),
-        3 => ("Clip", [value(0)?, value(1)?]),
-        4 => ("Sigmoid", [0.0, 0.0]),
-        6 => ("HardSwish", [value(0)?, value(1)?]),
-        other => return Err(Error::unsupported(format!("activation {other}"))),
-    };
-    activation(trace, layer, kind, values, &wire)
-}
-
-fn activation(
-    trace: &mut Trace<'_>,
-    layer: &Layer<'_>,
-    kind: &str,
-    [first, second]: [f32; 2],
-    input: &Wire,
-) -> Result<Wire> {
-    let hard = || Operator::new("HardSigmoid").float("alpha", first).float("beta", second);
-    match kind {
-        "ReLU" if first == 0.0 => trace.same(layer, Operator::new("Relu"), &[input]),
-        "ReLU" => trace.same(layer, Operator::new("LeakyRelu").float("alpha", first), &[input]),
-        "Clip" => {
-            let (low, high) = (Wire::scalar(first), Wire::scalar(second));
-            trace.same(layer, Operator::new("Clip"), &[input, &low, &high])
-        }
-        "Sigmoid" => trace.same(layer, Operator::new("Sigmoid"), &[input]),
-        "TanH" => trace.same(layer, Operator::new("Tanh"), &[input]),
-        "HardSigmoid" => trace.same(layer, hard(), &[input]),
-        "HardSwish" => {
-            let gate = trace.same(layer, hard(), &[input])?;
-            trace.same(layer, Operator::new("Mul"), &[input, &gate])
-        }
-        "Swish" => {
-            let gate = trace.same(layer, Operator::new("Sigmoid"), &[input])?;
-            trace.same(layer, Operator::new("Mul"), &[input, &gate])
-        }
-        other => Err(Error::internal(format!("activation {other}"))),
-    }
-}
-
-/// `BinaryOp`: two tensors, of which one may be a number for each channel, or a tensor and a number.
-fn binary(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Wire> {
+/// Converts `BinaryOp`: two tensors, of which one may have a value per channel, or a tensor and a number.
+fn binary(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<GraphTensor> {
     let parameters = &layer.parameters;
     let number = parameters.int(0, 0)?;
     let name = usize::try_from(number).ok().and_then(|number| BINARY.get(number).copied());
-    let name = name.ok_or_else(|| Error::unsupported(format!("operator {number} of two numbers")))?;
+    let name = name.ok_or_else(|| Error::unsupported(format!("unsupported binary operator {number}")))?;
     let mut first = trace.input(layer, 0)?;
     let mut second = match parameters.int(1, 0)? {
         0 => trace.input(layer, 1)?,
-        _ => Wire::scalar(parameters.float(2, 0.0)?),
+        _ => GraphTensor::scalar(parameters.float(2, 0.0)?),
     };
     let is_scalar = second.rank() == 0;
     if !is_scalar && first.rank() != second.rank() {
         let (high, low) =
             if first.rank() > second.rank() { (&first, &mut second) } else { (&second, &mut first) };
-        // A row of numbers is one for each channel.
+        // A vector has one value per channel.
         let (2, rank) = (low.rank(), high.rank()) else {
-            return Err(Error::unsupported("two tensors of other axes"));
+            return Err(Error::unsupported("two tensors with incompatible numbers of axes"));
         };
         let sides = vec![Some(1); rank - 2];
         let dims = [low.dims().to_vec(), sides].concat();
-        let axes = Wire::ints(2..rank as i64);
+        let axes = GraphTensor::ints(2..rank as i64);
         *low = trace.add(layer, Operator::new("Unsqueeze"), &[&*low, &axes], dims)?;
     }
     let dims = if is_scalar { first.dims().to_vec() } else { broadcast(first.dims(), second.dims())? };
@@ -172,29 +122,31 @@ fn binary(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Wire> {
     trace.add(layer, Operator::new(name), &inputs, dims)
 }
 
-/// The sizes of what two tensors of as many axes give.
+/// Returns the broadcast dimensions of two tensors of equal rank.
 fn broadcast(a: &[Dim], b: &[Dim]) -> Result<Vec<Dim>> {
     let side = |(a, b): (&Dim, &Dim)| match (*a, *b) {
         (Some(1), other) | (other, Some(1)) => Ok(other),
-        (Some(a), Some(b)) if a != b => Err(Error::format(format!("sides of {a} and {b}"))),
+        (Some(a), Some(b)) if a != b => Err(Error::format(format!("the sizes {a} and {b} do not match"))),
         (a, b) => Ok(a.or(b)),
     };
     a.iter().zip(b).map(side).collect()
 }
 
-/// `Gemm` of two tensors of two axes.
-fn product(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Wire> {
+/// Converts a `Gemm` of two matrices.
+fn product(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<GraphTensor> {
     let (a, b) = (trace.input(layer, 0)?, trace.input(layer, 1)?);
     let parameters = &layer.parameters;
     let plain = parameters.float(0, 1.0)? == 1.0 && layer.inputs.len() == 2;
     let changed = (2..=14).any(|key| parameters.int(key, 0).is_ok_and(|value| value != 0));
     if !plain || changed || a.rank() != 3 || b.rank() != 3 {
-        return Err(Error::unsupported("a product of more than two plain matrices"));
+        return Err(Error::unsupported("only products of two matrices are supported"));
     }
     if let (Some(columns), Some(rows)) = (a.dims()[2], b.dims()[1])
         && columns != rows
     {
-        return Err(Error::format(format!("{columns} columns times {rows} rows")));
+        return Err(Error::format(format!(
+            "a matrix of {columns} columns cannot be multiplied by one of {rows} rows"
+        )));
     }
     let dims = vec![Some(1), a.dims()[1], b.dims()[2]];
     trace.add(layer, Operator::new("MatMul"), &[&a, &b], dims)

@@ -1,19 +1,19 @@
-//! The text of layers.
+//! Parsing of the `.param` text.
 
 use std::collections::BTreeMap;
 
 use opendr_engine::{Error, Result};
 
-/// What the text begins with.
+/// First line of the text.
 const MAGIC: &str = "7767517";
-/// More layers than any model has.
+/// Maximum number of layers.
 const MAX_LAYERS: usize = 20_000;
-/// Keys of lists are this much below zero, and then their own number.
+/// Offset of the keys of list parameters, which are negative: key `k` is written as `LISTS - k`.
 const LISTS: i64 = -23_300;
-/// A layer has no other.
+/// Valid keys of parameters.
 const KEYS: std::ops::Range<i64> = 0..32;
 
-/// A parameter of a layer: one number or several.
+/// A parameter of a layer: a number or a list.
 #[derive(Debug, Clone, PartialEq)]
 enum Parameter {
     Int(i64),
@@ -21,35 +21,35 @@ enum Parameter {
     List(Vec<f32>),
 }
 
-/// The parameters of a layer by their number.
+/// The parameters of a layer by key.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Parameters(BTreeMap<i64, Parameter>);
 
-/// One line of the text.
+/// A layer, from one line of the text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layer<'a> {
-    /// ncnn's name of what it does.
+    /// ncnn's name of the layer type.
     pub kind: &'a str,
-    /// Its own name.
+    /// Name of the layer.
     pub name: &'a str,
-    /// What it takes.
+    /// Names of the input tensors.
     pub inputs: Vec<&'a str>,
-    /// What it gives.
+    /// Names of the output tensors.
     pub outputs: Vec<&'a str>,
-    /// How it does it.
+    /// Parameters of the layer.
     pub parameters: Parameters,
 }
 
-/// The layers of a model, in their order.
+/// Returns the layers of a model, in order.
 ///
 /// # Errors
-/// `Format` with the number of the line.
+/// `Format` with the line number.
 pub fn layers(text: &str) -> Result<Vec<Layer<'_>>> {
     let mut lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
     let first = lines.next().map_or("", |(_, line)| line.trim());
     if first != MAGIC {
         return Err(Error::format(format!(
-            "it begins with {first:.20?} instead of {MAGIC}: no text of ncnn's"
+            "it begins with {first:.20?} instead of {MAGIC}; pass an ncnn .param file"
         )));
     }
     let counts = lines.next().and_then(|(_, line)| {
@@ -57,16 +57,16 @@ pub fn layers(text: &str) -> Result<Vec<Layer<'_>>> {
         Some((counts.next()?.ok()?, counts.next()?.ok()?))
     });
     let Some((count, _)) = counts.filter(|(count, _)| *count <= MAX_LAYERS) else {
-        return Err(Error::format(format!("no number of layers up to {MAX_LAYERS} in the second line")));
+        return Err(Error::format(format!("the second line has no number of layers up to {MAX_LAYERS}")));
     };
     let layers = lines.by_ref().take(count).map(|(number, line)| {
-        layer(line).ok_or_else(|| Error::format(format!("line {number} is no layer: {line:.80}")))
+        layer(line).ok_or_else(|| Error::format(format!("line {number} is not a layer: {line:.80}")))
     });
     let layers = layers.collect::<Result<Vec<_>>>()?;
     match (layers.len() == count, lines.next()) {
         (true, None) => Ok(layers),
-        (false, _) => Err(Error::format(format!("{} layers instead of {count}", layers.len()))),
-        (_, Some((number, _))) => Err(Error::format(format!("line {number} comes after the {count} layers"))),
+        (false, _) => Err(Error::format(format!("there are {} layers instead of {count}", layers.len()))),
+        (_, Some((number, _))) => Err(Error::format(format!("line {number} follows the {count} layers"))),
     }
 }
 
@@ -100,36 +100,37 @@ fn parameter(word: &str) -> Option<(i64, Parameter)> {
 }
 
 impl Parameters {
-    /// Whether the parameter is given.
+    /// Returns whether the parameter is present.
     pub fn has(&self, key: i64) -> bool {
         self.0.contains_key(&key)
     }
 
-    /// An integer.
+    /// Returns an integer.
     ///
     /// # Errors
-    /// `Format` when it is another thing.
+    /// `Format` when it has another type.
     pub fn int(&self, key: i64, default: i64) -> Result<i64> {
         match self.0.get(&key) {
             None => Ok(default),
             Some(Parameter::Int(value)) => Ok(*value),
-            Some(other) => Err(Error::format(format!("parameter {key} is {other:?} instead of an integer"))),
+            Some(other) => Err(Error::format(format!("parameter {key} must be an integer, not {other:?}"))),
         }
     }
 
-    /// A size: an integer from 0 to a bound that no real layer reaches.
+    /// Returns a size: an integer from 0 to a bound above that of real layers.
     ///
     /// # Errors
-    /// `Format` when it is another thing.
+    /// `Format` when it has another type or is out of range.
     pub fn size(&self, key: i64, default: usize) -> Result<usize> {
         const MOST: i64 = 1 << 28;
         let value = self.int(key, default as i64)?;
-        usize::try_from(value).ok().filter(|_| value <= MOST).ok_or_else(|| {
-            Error::format(format!("parameter {key} is {value} instead of a size up to {MOST}"))
-        })
+        usize::try_from(value)
+            .ok()
+            .filter(|_| value <= MOST)
+            .ok_or_else(|| Error::format(format!("parameter {key} must be a size up to {MOST}, not {value}")))
     }
 
-    /// A number.
+    /// Returns a number.
     ///
     /// # Errors
     /// `Format` when it is a list.
@@ -138,11 +139,11 @@ impl Parameters {
             None => Ok(default),
             Some(Parameter::Int(value)) => Ok(*value as f32),
             Some(Parameter::Float(value)) => Ok(*value),
-            Some(other) => Err(Error::format(format!("parameter {key} is {other:?} instead of a number"))),
+            Some(other) => Err(Error::format(format!("parameter {key} must be a number, not {other:?}"))),
         }
     }
 
-    /// A list of numbers; empty where it is not given.
+    /// Returns a list of numbers; empty where it is missing.
     pub fn list(&self, key: i64) -> &[f32] {
         match self.0.get(&key) {
             Some(Parameter::List(values)) => values,
@@ -172,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_text_of_layers_is_refused() {
+    fn invalid_param_files_are_rejected() {
         let cases = [
             "",
             "7767518\n0 0\n",

@@ -1,121 +1,67 @@
-//! The way through the layers.
+//! The graph under construction.
 
 use std::collections::HashMap;
 
-use opendr_engine::{Error, Result, ResultExt};
-use opendr_onnx::{Builder, Dim, Kind, Operator, Wire};
+use opendr_engine::{Error, Result};
+use opendr_onnx::{Builder, Dim, ElementType, GraphTensor, Operator};
 
-use super::operator::output;
 use super::param::Layer;
-use super::product::channels;
 use super::weights::Weights;
-use crate::tensorflow::ImportOptions;
 
-/// The graph under construction, the tensors that are known by name, and the weights that are left.
+/// The graph under construction, the converted tensors by name, and the unread weights.
 pub struct Trace<'a> {
     pub graph: Builder,
     pub weights: Weights<'a>,
-    tensors: HashMap<&'a str, Wire>,
+    pub(super) tensors: HashMap<&'a str, GraphTensor>,
 }
 
 impl<'a> Trace<'a> {
-    /// Goes through all layers.
+    /// Returns a tensor by name.
     ///
     /// # Errors
-    /// `Format` and `Unsupported`, naming the layer.
-    pub fn through(
-        layers: &[Layer<'a>],
-        graph: Builder,
-        weights: Weights<'a>,
-        options: &ImportOptions,
-    ) -> Result<Self> {
-        let mut trace = Self { graph, weights, tensors: HashMap::new() };
-        for layer in layers {
-            let wire = match layer.kind {
-                "Input" => trace.open(layer, layers, options),
-                _ => output(&mut trace, layer),
-            };
-            let wire = wire.context(|| format!("layer {} ({})", layer.name, layer.kind))?;
-            if layer.outputs.is_empty() || (layer.outputs.len() > 1 && layer.kind != "Split") {
-                return Err(Error::format(format!(
-                    "layer {} has {} outputs",
-                    layer.name,
-                    layer.outputs.len()
-                )));
-            }
-            for &name in &layer.outputs {
-                if trace.tensors.insert(name, wire.clone()).is_some() {
-                    return Err(Error::format(format!("two layers give {name:?}")));
-                }
-            }
-        }
-        trace.weights.end()?;
-        Ok(trace)
-    }
-
-    /// A tensor by its name.
-    ///
-    /// # Errors
-    /// `Format` when no layer gave it.
-    pub fn tensor(&self, name: &str) -> Result<Wire> {
+    /// `Format` when no layer has produced it.
+    pub fn tensor(&self, name: &str) -> Result<GraphTensor> {
         self.tensors
             .get(name)
             .cloned()
-            .ok_or_else(|| Error::format(format!("no layer before gives {name:?}")))
+            .ok_or_else(|| Error::format(format!("no preceding layer produces {name:?}")))
     }
 
-    /// An input of a layer.
+    /// Returns an input of a layer.
     ///
     /// # Errors
-    /// `Format` when it has none there.
-    pub fn input(&self, layer: &Layer<'_>, index: usize) -> Result<Wire> {
-        let few = || Error::format(format!("{} inputs, but input {index} is needed", layer.inputs.len()));
+    /// `Format` when the layer has no such input.
+    pub fn input(&self, layer: &Layer<'_>, index: usize) -> Result<GraphTensor> {
+        let few =
+            || Error::format(format!("it has {} inputs, but input {index} is needed", layer.inputs.len()));
         self.tensor(layer.inputs.get(index).ok_or_else(few)?)
     }
 
-    /// An operator on floats.
+    /// Adds an operator on floats.
     ///
     /// # Errors
-    /// `Format` when the graph has grown too large.
+    /// `Format` when the graph exceeds the maximum number of nodes.
     pub fn add(
         &mut self,
         layer: &Layer<'_>,
         operator: Operator,
-        inputs: &[&Wire],
+        inputs: &[&GraphTensor],
         dims: Vec<Dim>,
-    ) -> Result<Wire> {
-        self.graph.add(layer.name, operator, inputs, Kind::Float, dims)
+    ) -> Result<GraphTensor> {
+        self.graph.add(layer.name, operator, inputs, ElementType::Float, dims)
     }
 
-    /// The same, giving what is as large as its first input.
+    /// Adds an operator whose output has the dimensions of its first input.
     ///
     /// # Errors
-    /// As [`Trace::add`].
-    pub fn same(&mut self, layer: &Layer<'_>, operator: Operator, inputs: &[&Wire]) -> Result<Wire> {
+    /// Those of [`Trace::add`].
+    pub fn same(
+        &mut self,
+        layer: &Layer<'_>,
+        operator: Operator,
+        inputs: &[&GraphTensor],
+    ) -> Result<GraphTensor> {
         let dims = inputs.first().map(|input| input.dims().to_vec()).unwrap_or_default();
         self.add(layer, operator, inputs, dims)
     }
-
-    /// An input of the model: a picture, of open size where neither text nor options say it.
-    fn open(&mut self, layer: &Layer<'a>, layers: &[Layer<'a>], options: &ImportOptions) -> Result<Wire> {
-        let name = layer.outputs.first().copied().unwrap_or_default();
-        let given = |key: i64| layer.parameters.size(key, 0).map(|size| Some(size).filter(|size| *size > 0));
-        let (width, height, own) = (given(0)?, given(1)?, given(2)?);
-        let size = options.image_size;
-        let taken = consumer(layers, name).and_then(channels);
-        let dims = vec![
-            Some(1),
-            own.or(taken),
-            height.or(size.map(|size| size.0)),
-            width.or(size.map(|size| size.1)),
-        ];
-        let open = ["", "channels", "height", "width"].map(|axis| format!("{name}_{axis}"));
-        let open = [0, 1, 2, 3].map(|axis| open[axis].as_str());
-        Ok(self.graph.input(name, Kind::Float, dims, &open))
-    }
-}
-
-/// The first layer that does something with a tensor.
-fn consumer<'l, 'a>(layers: &'l [Layer<'a>], name: &str) -> Option<&'l Layer<'a>> {
-    layers.iter().find(|layer| layer.kind != "Input" && layer.inputs.contains(&name))
 }

@@ -1,17 +1,17 @@
-//! The numbers of the layers, one after the other.
+//! Reading of the weights, one layer after the other.
 
 use opendr_engine::{Error, Result};
 use opendr_onnx::float_from_half;
 
-/// Marks numbers of 16 bits, of 8 bits, and of 32 bits that are not to be made smaller.
+/// Tags of weights in 16 bits, in 8 bits, and in 32 bits without reduction.
 const HALF: u32 = 0x0130_6B47;
 const BYTE: u32 = 0x000D_4B38;
 const FULL: u32 = 0x0002_C056;
 
-/// What is left of the numbers.
+/// The unread weights.
 pub struct Weights<'a> {
     bytes: &'a [u8],
-    /// Bytes that were taken.
+    /// Number of bytes read.
     taken: usize,
 }
 
@@ -25,7 +25,7 @@ impl<'a> Weights<'a> {
         let part = count.and_then(|count| rest.get(..count)).ok_or_else(|| {
             let wanted = count.map_or_else(|| "too many".to_owned(), |count| count.to_string());
             Error::format(format!(
-                "the weights end: {wanted} bytes are wanted at {}, there are {}",
+                "the weights end: {wanted} bytes are needed at offset {}, but there are {}",
                 self.taken,
                 rest.len()
             ))
@@ -34,33 +34,35 @@ impl<'a> Weights<'a> {
         Ok(part)
     }
 
-    /// Numbers without a mark: biases and the like.
+    /// Reads numbers without a tag, such as biases.
     ///
     /// # Errors
-    /// `Format` when there are fewer.
+    /// `Format` when there are too few.
     pub fn plain(&mut self, count: usize) -> Result<Vec<f32>> {
         let bytes = self.take(count.checked_mul(4))?;
         Ok(bytes.as_chunks().0.iter().map(|word| f32::from_le_bytes(*word)).collect())
     }
 
-    /// Numbers behind the mark that says how they are written.
+    /// Reads numbers after a tag that states their format.
     ///
     /// # Errors
-    /// `Format` when there are fewer, `Unsupported` for those of 8 bits.
+    /// `Format` when there are too few, `Unsupported` for 8 bits.
     pub fn marked(&mut self, count: usize) -> Result<Vec<f32>> {
         let mark = self.take(Some(4))?.first_chunk().map_or(0, |mark| u32::from_le_bytes(*mark));
         match mark {
             0 | FULL => self.plain(count),
             HALF => {
-                // Padded to whole words.
+                // Padded to whole words of 32 bits.
                 let bytes =
                     self.take(count.checked_mul(2).and_then(|bytes| bytes.checked_next_multiple_of(4)))?;
                 let halves = bytes.as_chunks().0.iter().take(count);
                 Ok(halves.map(|half| float_from_half(u16::from_le_bytes(*half))).collect())
             }
-            BYTE => Err(Error::unsupported("weights of 8 bits; take a model of 16 or 32 bits")),
+            BYTE => {
+                Err(Error::unsupported("weights of 8 bits are not supported; use a model of 16 or 32 bits"))
+            }
             _ => {
-                // A table of 256 numbers and the places in it.
+                // A table of 256 numbers and the indices into it.
                 let table = self.plain(256)?;
                 let places = self.take(count.checked_next_multiple_of(4))?;
                 Ok(places.iter().take(count).map(|place| table[usize::from(*place)]).collect())
@@ -68,14 +70,14 @@ impl<'a> Weights<'a> {
         }
     }
 
-    /// That nothing is left.
+    /// Checks that nothing is left.
     ///
     /// # Errors
-    /// `Format` when there is.
+    /// `Format` when there are unread weights.
     pub fn end(&self) -> Result<()> {
         match self.bytes.len() - self.taken {
             0 => Ok(()),
-            left => Err(Error::format(format!("{left} bytes of weights that no layer takes"))),
+            left => Err(Error::format(format!("{left} bytes of weights that no layer reads"))),
         }
     }
 }

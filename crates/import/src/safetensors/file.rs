@@ -1,5 +1,5 @@
-//! The format: the length of a JSON header as u64, the header with names, types, shapes and places, then the numbers; all
-//! little-endian.
+//! The format: the length of a JSON header as u64, the header with names, types, shapes and offsets, then the
+//! numbers; all little-endian.
 
 use std::collections::BTreeMap;
 
@@ -7,13 +7,13 @@ use opendr_engine::{Error, Result};
 use opendr_onnx::{FloatType, element_count};
 use serde::Deserialize;
 
-/// The largest header that the format allows, bytes.
+/// Maximum size of the header by the format, in bytes.
 const MAX_HEADER: u64 = 100_000_000;
 
-/// A file whose places are all checked; numbers stay where they lie.
+/// A parsed safetensors file with validated offsets; the numbers are not copied.
 pub struct SafetensorsFile<'a> {
     metadata: BTreeMap<String, String>,
-    /// `None`: integers.
+    /// `None` for integers.
     tensors: BTreeMap<String, (Entry, Option<FloatType>)>,
     data: &'a [u8],
 }
@@ -33,20 +33,20 @@ struct Entry {
     data_offsets: [usize; 2],
 }
 
-/// One tensor of floating-point numbers.
+/// A tensor of floating-point numbers.
 pub struct FloatTensor<'a> {
-    /// Its name, e.g. `features.0.weight`.
+    /// Name, e.g. `features.0.weight`.
     pub name: &'a str,
     /// Size of each axis.
     pub dims: &'a [usize],
-    /// How wide its numbers are.
+    /// Format of the numbers.
     pub float_type: FloatType,
-    /// The numbers, last axis fastest, little-endian: as many as `dims` say.
+    /// The numbers in row-major order, little-endian; their number matches `dims`.
     pub bytes: &'a [u8],
 }
 
 impl<'a> SafetensorsFile<'a> {
-    /// Whether a file that starts so is a safetensors file.
+    /// Returns whether `head` is the start of a safetensors file.
     pub fn is_start(head: &[u8]) -> bool {
         let length = head.first_chunk().map(|bytes| u64::from_le_bytes(*bytes));
         length.is_some_and(|length| length <= MAX_HEADER) && head.get(8) == Some(&b'{')
@@ -55,13 +55,13 @@ impl<'a> SafetensorsFile<'a> {
     /// Reads the header of a file.
     ///
     /// # Errors
-    /// `Format` for a damaged file, `Unsupported` for types of numbers that are unknown.
+    /// `Format` for a damaged file, `Unsupported` for unknown number types.
     pub fn read(bytes: &'a [u8]) -> Result<Self> {
         let length = bytes.first_chunk().map(|bytes| u64::from_le_bytes(*bytes)).unwrap_or_default();
         let end = usize::try_from(length).ok().and_then(|length| length.checked_add(8));
         let (header, data) = end
             .and_then(|end| Some((bytes.get(8..end)?, bytes.get(end..)?)))
-            .ok_or_else(|| Error::format("safetensors: the header is cut off; get the file anew"))?;
+            .ok_or_else(|| Error::format("safetensors: the header is truncated; download the file again"))?;
         let Header { metadata, tensors } = serde_json::from_slice(header)
             .map_err(|error| Error::format("safetensors: the header is damaged").with_source(error))?;
         let typed = |(name, entry): (String, Entry)| {
@@ -72,18 +72,18 @@ impl<'a> SafetensorsFile<'a> {
         Ok(Self { metadata, tensors, data })
     }
 
-    /// What the file says of itself under `key`, e.g. `format`.
+    /// Returns an entry of the file's metadata, e.g. `format`.
     pub fn metadata(&self, key: &str) -> Option<&str> {
         self.metadata.get(key).map(String::as_str)
     }
 
-    /// The tensor of that name; `None` where there is none, or one of integers.
+    /// Returns the tensor of that name; `None` where there is none, or one of integers.
     pub fn float(&self, name: &str) -> Option<FloatTensor<'_>> {
         let (name, (entry, float_type)) = self.tensors.get_key_value(name)?;
         self.tensor(name, entry, (*float_type)?)
     }
 
-    /// All tensors of floating-point numbers, by name.
+    /// Returns all tensors of floating-point numbers, sorted by name.
     pub fn floats(&self) -> impl Iterator<Item = FloatTensor<'_>> {
         self.tensors.iter().filter_map(|(name, (entry, float_type))| self.tensor(name, entry, (*float_type)?))
     }
@@ -100,7 +100,7 @@ impl<'a> SafetensorsFile<'a> {
 }
 
 impl Entry {
-    /// The type of its numbers, `None` for integers, once it lies within `size` bytes.
+    /// Checks that the tensor lies within `size` bytes, and returns its type, `None` for integers.
     fn checked(&self, name: &str, size: usize) -> Result<Option<FloatType>> {
         let Self { dtype, shape, data_offsets: [start, end] } = self;
         let float_type = match dtype.as_str() {
@@ -111,7 +111,7 @@ impl Entry {
             "BOOL" | "U8" | "I8" | "I16" | "U16" | "I32" | "U32" | "I64" | "U64" => return Ok(None),
             other => {
                 return Err(Error::unsupported(format!(
-                    "safetensors: weight {name:.80?} is of type {other:.20?}; save it as F32"
+                    "safetensors: weight {name:.80?} has the unsupported type {other:.20?}; save it as F32"
                 )));
             }
         };
@@ -119,7 +119,7 @@ impl Entry {
         match end.checked_sub(*start) {
             given @ Some(_) if given == wanted && *end <= size => Ok(Some(float_type)),
             _ => Err(Error::format(format!(
-                "safetensors: weight {name:.80?} of shape {shape:?} does not lie in bytes {start} to {end} of {size}"
+                "safetensors: weight {name:.80?} of shape {shape:?} does not match bytes {start} to {end} of {size}"
             ))),
         }
     }

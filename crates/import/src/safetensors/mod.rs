@@ -1,6 +1,6 @@
-//! Hugging Face's safetensors.
+//! Hugging Face's safetensors format.
 //!
-//! `file` reads the format, `whisper` finds the weights of a Whisper in it.
+//! `file` reads the format, `whisper` maps the names of Whisper's weights.
 
 mod file;
 mod whisper;

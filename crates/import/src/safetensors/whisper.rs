@@ -1,4 +1,4 @@
-//! A Whisper that Hugging Face's transformers saved.
+//! Import of a Whisper from Hugging Face's transformers.
 
 use opendr_engine::{Error, Result, ResultExt};
 use opendr_onnx::{Array, Data, FloatType};
@@ -6,16 +6,20 @@ use opendr_onnx::{Array, Data, FloatType};
 use crate::safetensors::file::{FloatTensor, SafetensorsFile};
 use crate::whisper::{WhisperOnnx, WhisperWeights, onnx_from_whisper};
 
-/// The most bytes of a file: an ONNX file holds no more than 2 GiB.
+/// Maximum size of a file, in bytes: an ONNX file is limited to 2 GiB.
 const MAX_BYTES: usize = 1 << 31;
 
-/// Turns the `model.safetensors` of a Whisper into ONNX. Weights of 16 bits stay so.
+/// Converts the `model.safetensors` of a Whisper to ONNX. Weights of 16 bits keep their type.
 ///
 /// # Errors
-/// `Format` for a damaged file, `Unsupported` for one that is no Whisper, is larger than 2 GiB, or one of several parts.
+/// `Format` for a damaged file, `Unsupported` for one that is not a Whisper, is larger than 2 GiB, or is one of
+/// several parts.
 pub fn whisper_from_safetensors(model: &[u8]) -> Result<WhisperOnnx> {
     if model.len() > MAX_BYTES {
-        return Err(Error::unsupported(format!("{} bytes of weights; at most {MAX_BYTES}", model.len())));
+        return Err(Error::unsupported(format!(
+            "{} bytes of weights exceed the limit of {MAX_BYTES}",
+            model.len()
+        )));
     }
     let weights = Weights { file: SafetensorsFile::read(model)? };
     if !weights.has("encoder.conv1.weight") || !weights.has("decoder.embed_tokens.weight") {
@@ -32,7 +36,7 @@ struct Weights<'a> {
 }
 
 impl Weights<'_> {
-    /// `WhisperForConditionalGeneration` has its weights under `model.`, `WhisperModel` has not.
+    /// The weights of `WhisperForConditionalGeneration` have the prefix `model.`, those of `WhisperModel` do not.
     fn tensor(&self, name: &str) -> Option<FloatTensor<'_>> {
         self.file.float(&format!("model.{name}")).or_else(|| self.file.float(name))
     }
@@ -45,17 +49,17 @@ impl WhisperWeights for Weights<'_> {
 
     fn get(&self, name: &str) -> Result<Array> {
         let tensor = self.tensor(name).ok_or_else(|| {
-            Error::format(format!("there is no weight \"model.{name:.80}\"; get the file anew"))
+            Error::format(format!("there is no weight \"model.{name:.80}\"; download the file again"))
         })?;
-        let floats = tensor.float_type.numbers(tensor.bytes);
+        let floats = tensor.float_type.decode(tensor.bytes);
         if floats.iter().any(|value| !value.is_finite()) {
-            return Err(Error::format(format!("{name:?} holds what is no number; get the file anew")));
+            return Err(Error::format(format!("{name:?} contains NaN or infinity; download the file again")));
         }
         let array = Array::new(tensor.dims.to_vec(), Data::Float(floats));
-        array.ok_or_else(|| Error::internal(format!("{name:?} was read to another size than its shape")))
+        array.ok_or_else(|| Error::internal(format!("the decoded size of {name:?} does not match its shape")))
     }
 
-    /// In the configuration beside the file, where all Whispers have one for 64 features.
+    /// The number is only in the configuration file; every Whisper has one head per 64 features.
     fn heads(&self, _: &str) -> Option<usize> {
         None
     }

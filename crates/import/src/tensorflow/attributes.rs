@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use opendr_onnx::Kind;
+use opendr_onnx::ElementType;
 
-/// One parameter.
+/// A parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Attribute {
     Int(i64),
@@ -13,12 +13,12 @@ pub enum Attribute {
     Text(String),
     Ints(Vec<i64>),
     Texts(Vec<String>),
-    Kind(Kind),
+    Kind(ElementType),
     /// Dimensions, -1 where open.
     Shape(Vec<i64>),
 }
 
-/// Parameters by name. Missing ones have TensorFlow's defaults, so every reader takes one.
+/// Parameters by name. Missing ones have TensorFlow's defaults, so every reader has a default.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Attributes(BTreeMap<String, Attribute>);
 
@@ -30,7 +30,7 @@ impl Attributes {
         self
     }
 
-    /// An integer.
+    /// Returns an integer.
     pub fn int(&self, key: &str) -> Option<i64> {
         match self.0.get(key)? {
             Attribute::Int(value) => Some(*value),
@@ -38,7 +38,7 @@ impl Attributes {
         }
     }
 
-    /// A float.
+    /// Returns a float.
     pub fn float(&self, key: &str) -> Option<f32> {
         match self.0.get(key)? {
             Attribute::Float(value) => Some(*value),
@@ -46,12 +46,12 @@ impl Attributes {
         }
     }
 
-    /// A switch; false when missing.
+    /// Returns a boolean; false when missing.
     pub fn flag(&self, key: &str) -> bool {
         matches!(self.0.get(key), Some(Attribute::Flag(true)))
     }
 
-    /// A string.
+    /// Returns a string.
     pub fn text(&self, key: &str) -> Option<&str> {
         match self.0.get(key)? {
             Attribute::Text(text) => Some(text),
@@ -59,7 +59,7 @@ impl Attributes {
         }
     }
 
-    /// A list of integers; empty when missing.
+    /// Returns a list of integers; empty when missing.
     pub fn ints(&self, key: &str) -> &[i64] {
         match self.0.get(key) {
             Some(Attribute::Ints(values)) => values,
@@ -67,7 +67,7 @@ impl Attributes {
         }
     }
 
-    /// A list of strings; empty when missing.
+    /// Returns a list of strings; empty when missing.
     pub fn texts(&self, key: &str) -> &[String] {
         match self.0.get(key) {
             Some(Attribute::Texts(values)) => values,
@@ -75,15 +75,15 @@ impl Attributes {
         }
     }
 
-    /// An element type; `None` for one that ONNX graphs of ours do not hold (strings, complex numbers).
-    pub fn kind(&self, key: &str) -> Option<Kind> {
+    /// Returns an element type; `None` for a type that the graphs do not support (strings, complex numbers).
+    pub fn kind(&self, key: &str) -> Option<ElementType> {
         match self.0.get(key)? {
             Attribute::Kind(kind) => Some(*kind),
             _ => None,
         }
     }
 
-    /// Dimensions, -1 where open; `None` when even their number is.
+    /// Returns dimensions, -1 where open; `None` when the rank is open.
     pub fn shape(&self, key: &str) -> Option<&[i64]> {
         match self.0.get(key)? {
             Attribute::Shape(dims) => Some(dims),

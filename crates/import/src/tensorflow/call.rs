@@ -1,4 +1,4 @@
-//! One node of TensorFlow's graph with the values of its inputs.
+//! A node of a TensorFlow graph with the values of its inputs.
 
 use opendr_engine::{Error, Result};
 
@@ -6,7 +6,7 @@ use super::attributes::Attributes;
 use super::value::Value;
 use opendr_onnx::Array;
 
-/// One node with the values of its inputs, and the checks that every lowering needs.
+/// A node with the values of its inputs, and the checks that lowerings share.
 pub struct Call<'a> {
     name: &'a str,
     op: &'a str,
@@ -15,77 +15,75 @@ pub struct Call<'a> {
 }
 
 impl<'a> Call<'a> {
-    /// The node `name`, which is TensorFlow's operator `op`; inputs in its order, control inputs left out.
+    /// Creates the node `name` with TensorFlow's operator `op`; inputs in order, without control inputs.
     pub fn new(name: &'a str, op: &'a str, attr: &'a Attributes, inputs: Vec<Value>) -> Self {
         Self { name, op, attr, inputs }
     }
 
-    /// Name of the node; the tensors written for it are called after it.
+    /// Returns the node's name, from which the names of its tensors are derived.
     pub fn name(&self) -> &'a str {
         self.name
     }
 
-    /// TensorFlow's name of the operator.
+    /// Returns TensorFlow's name of the operator.
     pub fn op(&self) -> &'a str {
         self.op
     }
 
-    /// Parameters.
+    /// Returns the parameters.
     pub fn attr(&self) -> &'a Attributes {
         self.attr
     }
 
-    /// All inputs.
+    /// Returns all inputs.
     pub fn inputs(&self) -> &[Value] {
         &self.inputs
     }
 
-    /// An input that must be there.
+    /// Returns a required input.
     ///
     /// # Errors
-    /// `Format` when it is not.
+    /// `Format` when it is missing.
     pub fn input(&self, index: usize) -> Result<&Value> {
         self.inputs.get(index).ok_or_else(|| {
-            Error::format(format!("has {} inputs but input {index} is needed", self.inputs.len()))
+            Error::format(format!("it has {} inputs, but input {index} is needed", self.inputs.len()))
         })
     }
 
-    /// An input whose elements must be known when importing.
+    /// Returns an input whose elements must be known at import.
     ///
     /// # Errors
-    /// `Unsupported` when they depend on what the model is fed.
+    /// `Unsupported` when they depend on the model's inputs.
     pub fn constant(&self, index: usize) -> Result<&Array> {
         self.input(index)?.array().ok_or_else(|| {
-            Error::unsupported(format!(
-                "input {index} is computed by the model but must be known when importing"
-            ))
+            Error::unsupported(format!("input {index} is computed by the model, but must be a constant"))
         })
     }
 
-    /// Known integers: a shape, a list of axes, a scalar.
+    /// Returns known integers: a shape, a list of axes, a scalar.
     ///
     /// # Errors
-    /// As [`Call::constant`]; `Format` when they are no integers.
+    /// Those of [`Call::constant`]; `Format` when they are not integers.
     pub fn ints(&self, index: usize) -> Result<&[i64]> {
         let array = self.constant(index)?;
-        array.as_ints().ok_or_else(|| Error::format(format!("input {index} should be integers")))
+        array.as_ints().ok_or_else(|| Error::format(format!("input {index} must be integers")))
     }
 
-    /// A known integer.
+    /// Returns a known integer.
     ///
     /// # Errors
-    /// As [`Call::ints`].
+    /// Those of [`Call::ints`].
     pub fn int(&self, index: usize) -> Result<i64> {
         match self.ints(index)? {
             [single] => Ok(*single),
-            other => Err(Error::format(format!("input {index} should be one integer, not {}", other.len()))),
+            other => Err(Error::format(format!("input {index} must be one integer, not {}", other.len()))),
         }
     }
 
-    /// Known axes of a tensor of `rank` axes, negative ones counted from the end; sorted, each once.
+    /// Returns known axes of a tensor of `rank` axes, negative ones counted from the end; sorted, without duplicates.
     ///
     /// # Errors
-    /// As [`Call::ints`]; `Format` when an axis does not exist.
+    /// Those of [`Call::ints`]; `Format` when an axis does not exist.
     pub fn axes(&self, index: usize, rank: usize) -> Result<Vec<usize>> {
         let mut axes: Vec<usize> =
             self.ints(index)?.iter().map(|&axis| axis_in(axis, rank)).collect::<Result<_>>()?;
@@ -95,7 +93,7 @@ impl<'a> Call<'a> {
     }
 }
 
-/// A negative axis counts from the end.
+/// Resolves an axis; a negative one counts from the end.
 ///
 /// # Errors
 /// `Format` when a tensor of `rank` axes has no such axis.
@@ -104,5 +102,5 @@ pub fn axis_in(axis: i64, rank: usize) -> Result<usize> {
     usize::try_from(absolute)
         .ok()
         .filter(|&axis| axis < rank)
-        .ok_or_else(|| Error::format(format!("axis {axis} of a tensor of rank {rank}")))
+        .ok_or_else(|| Error::format(format!("axis {axis} is out of range for a tensor of rank {rank}")))
 }

@@ -1,15 +1,21 @@
 //! Inputs of models.
 
-use opendr_onnx::{Dim, Kind};
+use opendr_onnx::{Dim, ElementType};
 
 use super::layout::Order;
 use super::lowering::Lowering;
 use super::options::ImportOptions;
 use super::value::Value;
 
-/// An input of TensorFlow's dimensions `dims` (not above zero where open). Images become `1x3xHxW` floats, whatever
-/// element type TensorFlow wants; other inputs stay as they are.
-pub fn input(ctx: &mut Lowering, options: &ImportOptions, name: &str, kind: Kind, dims: &[i64]) -> Value {
+/// Adds an input of TensorFlow's dimensions `dims` (zero or negative where open). Images become `1x3xHxW` floats,
+/// whatever element type TensorFlow declares; other inputs are unchanged.
+pub fn input(
+    ctx: &mut Lowering,
+    options: &ImportOptions,
+    name: &str,
+    kind: ElementType,
+    dims: &[i64],
+) -> Value {
     let mut dims: Vec<Dim> =
         dims.iter().map(|&dim| usize::try_from(dim).ok().filter(|&dim| dim > 0)).collect();
     if let Some(batch) = dims.first_mut() {
@@ -27,5 +33,5 @@ pub fn input(ctx: &mut Lowering, options: &ImportOptions, name: &str, kind: Kind
         stored[3] = stored[3].or(Some(width));
     }
     let open = ["batch", "channels", "height", "width"];
-    Value::new(ctx.graph.input(name, Kind::Float, stored, &open), order)
+    Value::new(ctx.graph.input(name, ElementType::Float, stored, &open), order)
 }

@@ -1,79 +1,81 @@
-//! How a tensor's axes lie in memory compared with how TensorFlow names them.
+//! Storage order of a tensor's axes relative to TensorFlow's order.
 //!
-//! TensorFlow.js graphs are channels-last, ONNX convolutions channels-first. Instead of writing transpositions
-//! and removing them again, every tensor carries its [`Order`]: a convolution stores its result channels-first,
-//! the operators after it work on whatever order they find, a TensorFlow `Transpose` only renames axes, and a
-//! transposition is written only where elements really have to move, as when channels are flattened.
+//! TensorFlow graphs are channels-last, ONNX convolutions channels-first. Instead of inserting transpositions and
+//! removing them again, every tensor has an [`Order`]: a convolution stores its result channels-first, the following
+//! operators work on any order, a TensorFlow `Transpose` only renames axes, and a transposition is written only where
+//! elements must move, as when channels are flattened.
 
 use opendr_onnx::Dim;
 
-/// Stored axis `i` is TensorFlow's axis `order[i]`.
+/// The order of stored axes: stored axis `i` is TensorFlow's axis `order[i]`.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Order(Vec<usize>);
 
 impl Order {
-    /// Stored as TensorFlow names the axes.
+    /// Returns TensorFlow's own order.
     pub fn plain(rank: usize) -> Self {
         Self((0..rank).collect())
     }
 
-    /// `[batch, height, width, channels]` stored as `[batch, channels, height, width]`.
+    /// Returns the order of `[batch, height, width, channels]` stored as `[batch, channels, height, width]`.
     pub fn channels_first() -> Self {
         Self(vec![0, 3, 1, 2])
     }
 
-    /// From TensorFlow's axes in stored order; they are a permutation.
+    /// Creates an order from TensorFlow's axes in stored order; they must be a permutation.
     pub fn new(axes: Vec<usize>) -> Self {
         Self(axes)
     }
 
-    /// TensorFlow's axes in stored order.
+    /// Returns TensorFlow's axes in stored order.
     pub fn axes(&self) -> &[usize] {
         &self.0
     }
 
-    /// Number of axes.
+    /// Returns the number of axes.
     pub fn rank(&self) -> usize {
         self.0.len()
     }
 
-    /// Whether TensorFlow's naming and storage agree.
+    /// Returns whether the stored order is TensorFlow's.
     pub fn is_plain(&self) -> bool {
         self.0.iter().enumerate().all(|(stored, &axis)| stored == axis)
     }
 
-    /// Where TensorFlow's axis is stored.
+    /// Returns the stored position of TensorFlow's axis.
     pub fn stored(&self, axis: usize) -> usize {
         self.0.iter().position(|&own| own == axis).unwrap_or(axis)
     }
 
-    /// Whether going from this order to `target` moves no element, because all axes that change places have one
-    /// element. `dims` are the stored dimensions.
+    /// Returns whether a conversion from this order to `target` moves no element, because all axes that change places
+    /// have size one. `dims` are the stored dimensions.
     pub fn moves_nothing(&self, target: &Self, dims: &[Dim]) -> bool {
         let ranks =
             self.0.iter().zip(dims).filter(|(_, dim)| **dim != Some(1)).map(|(&axis, _)| target.stored(axis));
         ranks.is_sorted()
     }
 
-    /// The permutation for ONNX's `Transpose` that goes from this order to `target`.
+    /// Returns the permutation for ONNX's `Transpose` from this order to `target`.
     pub fn permutation_to(&self, target: &Self) -> Vec<i64> {
         target.0.iter().map(|&axis| self.stored(axis) as i64).collect()
     }
 
-    /// After TensorFlow's `Transpose` by `perm`: the new axis `i` is the old axis `perm[i]`, nothing moves.
+    /// Returns the order after TensorFlow's `Transpose` by `perm`: the new axis `i` is the old axis `perm[i]`; no
+    /// element moves.
     #[must_use]
     pub fn transposed(&self, perm: &[usize]) -> Self {
         Self(self.0.iter().map(|&old| perm.iter().position(|&axis| axis == old).unwrap_or(old)).collect())
     }
 
-    /// After removal of TensorFlow's axes `gone`.
+    /// Returns the order after removal of TensorFlow's axes `gone`.
     #[must_use]
     pub fn without(&self, gone: &[usize]) -> Self {
         let kept = self.0.iter().filter(|axis| !gone.contains(axis));
         Self(kept.map(|&axis| axis - gone.iter().filter(|&&gone| gone < axis).count()).collect())
     }
 
-    /// After insertion of TensorFlow's axis `axis`, and where it is stored: in front of the axis it pushes back.
+    /// Returns the order after insertion of TensorFlow's axis `axis`, and its stored position: before the axis that
+    /// it shifts.
     #[must_use]
     pub fn with(&self, axis: usize) -> (Self, usize) {
         let position = if axis < self.rank() { self.stored(axis) } else { self.rank() };
@@ -83,7 +85,7 @@ impl Order {
         (Self(axes), position)
     }
 
-    /// TensorFlow's dimensions of a tensor stored with `dims`.
+    /// Returns TensorFlow's dimensions of a tensor stored with `dims`.
     pub fn logical(&self, dims: &[Dim]) -> Vec<Dim> {
         let mut logical = vec![None; dims.len()];
         for (&axis, &dim) in self.0.iter().zip(dims) {
@@ -94,13 +96,13 @@ impl Order {
         logical
     }
 
-    /// Stored dimensions of a tensor with TensorFlow's dimensions `logical`.
+    /// Returns the stored dimensions of a tensor with TensorFlow's dimensions `logical`.
     pub fn stored_dims(&self, logical: &[Dim]) -> Vec<Dim> {
         self.0.iter().map(|&axis| logical.get(axis).copied().flatten()).collect()
     }
 
-    /// The order in which a tensor of TensorFlow's dimensions `from` can be stored after a reshape to `to` without
-    /// moving an element: possible when the axes that merge or split lie side by side.
+    /// Returns the order in which a tensor of TensorFlow's dimensions `from` can be stored after a reshape to `to`
+    /// without moving an element: possible when the axes that merge or split are adjacent.
     pub fn reshaped(&self, from: &[usize], to: &[usize]) -> Option<Self> {
         let groups = matching_groups(from, to)?;
         let group_of = |axis: usize| groups.iter().position(|group| group.from.contains(&axis));
@@ -124,14 +126,14 @@ impl Order {
     }
 }
 
-/// Axes of one shape that together hold the same elements as axes of another.
+/// Axes of one shape with the same elements as axes of another.
 struct Group {
     from: std::ops::Range<usize>,
     to: std::ops::Range<usize>,
 }
 
-/// The finest division of two shapes into groups of equal size; axes of one element join the group before them.
-/// `None` when there is no element, or the numbers of elements differ.
+/// Returns the finest division of two shapes into groups of equal size; axes of size one join the preceding group.
+/// Returns `None` when there are no elements, or the numbers of elements differ.
 fn matching_groups(from: &[usize], to: &[usize]) -> Option<Vec<Group>> {
     let first = |dims: &[usize]| dims.iter().position(|&dim| dim != 1).unwrap_or(dims.len());
     let (mut i, mut j) = (first(from), first(to));

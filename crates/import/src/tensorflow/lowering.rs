@@ -1,4 +1,4 @@
-//! What the lowering of every operator uses: writing nodes, and bringing tensors into a wanted order.
+//! Helpers of all lowerings: writing of nodes, and conversion of tensors to an order.
 
 use std::collections::HashMap;
 
@@ -7,73 +7,77 @@ use opendr_engine::{Error, Result};
 use super::call::Call;
 use super::layout::Order;
 use super::value::Value;
-use opendr_onnx::{Builder, Dim, Kind, Operator, Wire};
+use opendr_onnx::{Builder, Dim, ElementType, GraphTensor, Operator};
 
-/// No real tensor has as many axes; a hostile file could double them with every operator.
+/// Maximum number of axes, above that of real tensors; a hostile file could double them with every operator.
 pub const MAX_RANK: usize = 32;
 
-/// The graph under construction and what is remembered about its tensors.
+/// The graph under construction, with properties of its tensors.
 #[derive(Default)]
 pub struct Lowering {
     /// The ONNX graph.
     pub graph: Builder,
-    /// Tensors that are another one flattened against its stored order, see [`Lowering::note_flattened`].
+    /// Tensors that are a flattening of another one against its stored order, see [`Lowering::note_flattened`].
     flattened: HashMap<String, Value>,
 }
 
 impl Lowering {
-    /// Adds an operator with one output and returns it, stored in `order`. `dims` are TensorFlow's.
+    /// Adds an operator with one output and returns the output, stored in `order`. `dims` are TensorFlow's.
     ///
     /// # Errors
-    /// `Format` when the graph has grown too large, or the output has more than [`MAX_RANK`] axes.
+    /// `Format` when the graph exceeds the maximum number of nodes, or the output has more than [`MAX_RANK`] axes.
     pub fn emit(
         &mut self,
         call: &Call,
         operator: Operator,
-        inputs: &[&Wire],
-        kind: Kind,
+        inputs: &[&GraphTensor],
+        kind: ElementType,
         dims: &[Dim],
         order: Order,
     ) -> Result<Value> {
         if dims.len() > MAX_RANK {
-            return Err(Error::format(format!("{} axes, more than the {MAX_RANK} allowed", dims.len())));
+            return Err(Error::format(format!("{} axes exceed the limit of {MAX_RANK}", dims.len())));
         }
         let wire = self.graph.add(call.name(), operator, inputs, kind, order.stored_dims(dims))?;
         Ok(Value::new(wire, order))
     }
 
-    /// As [`Lowering::emit`] with everything in TensorFlow's order.
+    /// Adds an operator with everything in TensorFlow's order, like [`Lowering::emit`].
     ///
     /// # Errors
-    /// `Format` when the graph has grown too large.
+    /// `Format` when the graph exceeds the maximum number of nodes.
     pub fn emit_plain(
         &mut self,
         call: &Call,
         operator: Operator,
-        inputs: &[&Wire],
-        kind: Kind,
+        inputs: &[&GraphTensor],
+        kind: ElementType,
         dims: &[Dim],
     ) -> Result<Value> {
         self.emit(call, operator, inputs, kind, dims, Order::plain(dims.len()))
     }
 
-    /// The tensor stored in `order`, its elements moved if need be.
+    /// Returns the tensor stored in `order`; transposes it if needed.
     ///
     /// # Errors
     /// `Internal` when the ranks differ.
-    pub fn ordered(&mut self, value: &Value, order: &Order) -> Result<Wire> {
+    pub fn ordered(&mut self, value: &Value, order: &Order) -> Result<GraphTensor> {
         if value.order == *order {
             return Ok(value.wire.clone());
         }
         if value.rank() != order.rank() {
-            return Err(Error::internal(format!("rank {} stored as rank {}", value.rank(), order.rank())));
+            return Err(Error::internal(format!(
+                "a tensor of rank {} cannot be stored with rank {}",
+                value.rank(),
+                order.rank()
+            )));
         }
         let dims = order.stored_dims(&value.dims());
         let free = value.order.moves_nothing(order, value.wire.dims());
         let open = dims.iter().filter(|dim| dim.is_none()).count();
         let hint = value.wire.hint();
         if free && open <= 1 {
-            let shape = Wire::ints(dims.iter().map(|dim| dim.map_or(-1, |dim| dim as i64)));
+            let shape = GraphTensor::ints(dims.iter().map(|dim| dim.map_or(-1, |dim| dim as i64)));
             return self.graph.add(
                 &hint,
                 Operator::new("Reshape"),
@@ -86,24 +90,25 @@ impl Lowering {
         self.graph.add(&hint, transpose, &[&value.wire], value.kind(), dims)
     }
 
-    /// The tensor stored as TensorFlow names its axes.
+    /// Returns the tensor stored in TensorFlow's order.
     ///
     /// # Errors
-    /// `Format` when the graph has grown too large.
-    pub fn plain(&mut self, value: &Value) -> Result<Wire> {
+    /// `Format` when the graph exceeds the maximum number of nodes.
+    pub fn plain(&mut self, value: &Value) -> Result<GraphTensor> {
         self.ordered(value, &Order::plain(value.rank()))
     }
 
-    /// The tensor with as many axes as `order`, new ones in front as in broadcasting, stored in `order`. Constants
-    /// lose leading axes of one element again.
+    /// Returns the tensor with the rank of `order`, new axes in front as in broadcasting, stored in `order`.
+    /// Constants lose leading axes of size one again.
     ///
     /// # Errors
     /// `Internal` when the tensor has more axes than `order`.
-    pub fn broadcastable(&mut self, value: &Value, order: &Order) -> Result<Wire> {
+    pub fn broadcastable(&mut self, value: &Value, order: &Order) -> Result<GraphTensor> {
         let missing = order.rank().checked_sub(value.rank());
-        let missing = missing.ok_or_else(|| Error::internal("broadcasting to a lower rank"))?;
+        let missing =
+            missing.ok_or_else(|| Error::internal("a tensor cannot be broadcast to a lower rank"))?;
         if value.wire.element_count() == Some(1) && value.array().is_some() {
-            let empty = Wire::ints([]);
+            let empty = GraphTensor::ints([]);
             return self.graph.add(
                 "",
                 Operator::new("Reshape"),
@@ -118,7 +123,7 @@ impl Lowering {
         let wide = match missing {
             0 => value.clone(),
             _ => {
-                let axes = Wire::ints(0..missing as i64);
+                let axes = GraphTensor::ints(0..missing as i64);
                 let dims = [vec![Some(1); missing], value.wire.dims().to_vec()].concat();
                 let unsqueeze = Operator::new("Unsqueeze");
                 let hint = value.wire.hint();
@@ -132,16 +137,16 @@ impl Lowering {
             return Ok(stored);
         }
         let leading = stored.dims().iter().take_while(|dim| **dim == Some(1)).count();
-        let axes = Wire::ints(0..leading as i64);
+        let axes = GraphTensor::ints(0..leading as i64);
         let dims = stored.dims()[leading..].to_vec();
         self.graph.add("", Operator::new("Squeeze"), &[&stored, &axes], value.kind(), dims)
     }
 
-    /// The tensor with another element type.
+    /// Returns the tensor with another element type.
     ///
     /// # Errors
-    /// `Format` when the graph has grown too large.
-    pub fn cast(&mut self, wire: &Wire, kind: Kind) -> Result<Wire> {
+    /// `Format` when the graph exceeds the maximum number of nodes.
+    pub fn cast(&mut self, wire: &GraphTensor, kind: ElementType) -> Result<GraphTensor> {
         if wire.kind() == kind {
             return Ok(wire.clone());
         }
@@ -149,16 +154,16 @@ impl Lowering {
         self.graph.add(&wire.hint(), cast, &[wire], kind, wire.dims().to_vec())
     }
 
-    /// Remembers that `flat` is `source` flattened in TensorFlow's order though stored in another, so that an
-    /// operator for which the order of the elements matters little can read `source` instead.
-    pub fn note_flattened(&mut self, flat: &Wire, source: &Value) {
+    /// Records that `flat` is `source` flattened in TensorFlow's order though stored in another, so that an operator
+    /// that can work in any order reads `source` instead.
+    pub fn note_flattened(&mut self, flat: &GraphTensor, source: &Value) {
         if flat.array().is_none() {
             self.flattened.insert(flat.hint(), source.clone());
         }
     }
 
-    /// What [`Lowering::note_flattened`] remembered.
-    pub fn flattened(&self, flat: &Wire) -> Option<&Value> {
+    /// Returns the source recorded by [`Lowering::note_flattened`].
+    pub fn flattened(&self, flat: &GraphTensor) -> Option<&Value> {
         self.flattened.get(&flat.hint())
     }
 }

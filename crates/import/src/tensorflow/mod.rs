@@ -1,8 +1,8 @@
-//! What TensorFlow's operators mean in ONNX, whichever file they come from.
+//! Mapping of TensorFlow's operators to ONNX, independent of the file format.
 //!
-//! A node of TensorFlow's graph is a `call`; its function in `ops` writes it through `lowering` into an ONNX graph. A
-//! tensor on that way is a `value`: a tensor of the ONNX graph and the order in which it stores TensorFlow's axes
-//! (`layout`), so that hardly any has to be transposed.
+//! A node of a TensorFlow graph is a `call`; its function in `ops` writes it through `lowering` into an ONNX graph. A
+//! tensor is a `value`: a tensor of the ONNX graph and the order in which it stores TensorFlow's axes (`layout`), so
+//! that few tensors are transposed.
 
 mod attributes;
 mod call;

@@ -1,10 +1,10 @@
-//! What the caller may choose.
+//! Options of an import.
 
-/// What the caller may choose. The defaults import a model as it is.
+/// Options of an import. The defaults import a model unchanged.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ImportOptions {
-    /// Height and width of image inputs whose size the model leaves open. Without it they stay open.
+    /// Height and width of image inputs whose size the model leaves open; `None` keeps them open.
     pub image_size: Option<(usize, usize)>,
-    /// Outputs to keep, by name; all when empty. What only others need is left out of the graph.
+    /// Names of the outputs to keep; all when empty. Nodes that no kept output needs are removed.
     pub outputs: Vec<String>,
 }

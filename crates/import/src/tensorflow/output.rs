@@ -1,14 +1,14 @@
 //! Outputs of models, and the file around the graph.
 
 use opendr_engine::{Error, Result};
-use opendr_onnx::{Wire, bytes_from_model, model_from_graph, passes};
+use opendr_onnx::{GraphTensor, bytes_from_model, model_from_graph, passes};
 
 use super::layout::Order;
 use super::lowering::Lowering;
 use super::options::ImportOptions;
 use super::value::Value;
 
-/// Outputs of the model that the options ask for; each is a name and whatever finds the tensor.
+/// Returns the outputs selected by the options; each is a name and a reference to its tensor.
 ///
 /// # Errors
 /// `NotFound` for an output that the model does not have, `Format` when it has none.
@@ -32,10 +32,10 @@ pub fn wanted<T>(mut outputs: Vec<(String, T)>, options: &ImportOptions) -> Resu
     }
 }
 
-/// The ONNX file of a graph that gives out these values. `graph` is what the graph is called.
+/// Returns the ONNX file of a graph named `graph` with these values as outputs.
 ///
 /// # Errors
-/// `Format` when the graph has grown too large.
+/// `Format` when the graph exceeds the maximum number of nodes.
 pub fn finish<'a>(
     mut ctx: Lowering,
     outputs: impl IntoIterator<Item = (&'a str, Value)>,
@@ -50,8 +50,8 @@ pub fn finish<'a>(
     Ok(bytes_from_model(&model_from_graph(graph)))
 }
 
-/// Images go out as they are stored, everything else as the original has it.
-fn output_wire(ctx: &mut Lowering, value: &Value) -> Result<(Wire, &'static str)> {
+/// Images are returned in stored order, all other outputs in the original's order.
+fn output_wire(ctx: &mut Lowering, value: &Value) -> Result<(GraphTensor, &'static str)> {
     let image = value.order == Order::channels_first() && value.wire.dims()[2..] != [Some(1), Some(1)];
     match image {
         true => Ok((value.wire.clone(), "NCHW")),

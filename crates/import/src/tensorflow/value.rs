@@ -1,50 +1,50 @@
-//! A tensor of TensorFlow's graph, standing for one of the ONNX graph.
+//! Tensors of a TensorFlow graph during conversion.
 
 use super::layout::Order;
-use opendr_onnx::{Array, Dim, Kind, Wire};
+use opendr_onnx::{Array, Dim, ElementType, GraphTensor};
 
-/// A tensor of TensorFlow's graph: the ONNX tensor and the order in which its axes are stored there.
+/// A tensor of a TensorFlow graph: the ONNX tensor and its storage order.
 #[derive(Debug, Clone)]
 pub struct Value {
     /// The ONNX tensor.
-    pub wire: Wire,
-    /// TensorFlow's axes in the order stored. Constants are always plain.
+    pub wire: GraphTensor,
+    /// TensorFlow's axes in stored order. Constants are always in TensorFlow's order.
     pub order: Order,
 }
 
 impl Value {
-    /// A tensor stored in the order given; the ranks agree.
-    pub fn new(wire: Wire, order: Order) -> Self {
+    /// Creates a tensor stored in the given order; the ranks must match.
+    pub fn new(wire: GraphTensor, order: Order) -> Self {
         Self { wire, order }
     }
 
-    /// A tensor stored as TensorFlow names its axes.
-    pub fn plain(wire: Wire) -> Self {
+    /// Creates a tensor stored in TensorFlow's order.
+    pub fn plain(wire: GraphTensor) -> Self {
         let order = Order::plain(wire.rank());
         Self { wire, order }
     }
 
-    /// TensorFlow's dimensions.
+    /// Returns TensorFlow's dimensions.
     pub fn dims(&self) -> Vec<Dim> {
         self.order.logical(self.wire.dims())
     }
 
-    /// TensorFlow's dimensions, if all are known.
+    /// Returns TensorFlow's dimensions, if all are known.
     pub fn known_dims(&self) -> Option<Vec<usize>> {
         self.dims().into_iter().collect()
     }
 
-    /// Number of axes.
+    /// Returns the number of axes.
     pub fn rank(&self) -> usize {
         self.wire.rank()
     }
 
-    /// Element type.
-    pub fn kind(&self) -> Kind {
+    /// Returns the element type.
+    pub fn kind(&self) -> ElementType {
         self.wire.kind()
     }
 
-    /// All elements, if they are known.
+    /// Returns the elements, if all are known.
     pub fn array(&self) -> Option<&Array> {
         self.wire.array()
     }

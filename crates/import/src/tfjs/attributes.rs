@@ -1,17 +1,17 @@
-//! Parameters of TensorFlow nodes, as protobuf's JSON mapping writes them.
+//! Parameters of TensorFlow nodes in protobuf's JSON mapping.
 
 use std::collections::BTreeMap;
 
-use opendr_onnx::Kind;
+use opendr_onnx::ElementType;
 use serde::{Deserialize, Deserializer};
 use serde_json::Value as Json;
 
 use crate::tensorflow::{Attribute, Attributes};
 
-/// Reads the parameters of a node; those of no use to the importer are left out.
+/// Reads the parameters of a node; those that the importer does not use are omitted.
 ///
 /// # Errors
-/// Where there is no object.
+/// When the value is not an object.
 pub fn deserialize<'de, D: Deserializer<'de>>(json: D) -> Result<Attributes, D::Error> {
     let parameters = BTreeMap::<String, Json>::deserialize(json)?;
     Ok(parameters.into_iter().filter_map(|(key, json)| Some((key, attribute(&json)?))).collect())
@@ -40,19 +40,19 @@ fn list(json: &Json) -> Option<Attribute> {
     }
 }
 
-/// `None` for an element type that ONNX graphs of ours do not hold (strings, complex numbers).
-fn kind(json: &Json) -> Option<Kind> {
+/// Returns an element type; `None` for a type that the graphs do not support (strings, complex numbers).
+fn kind(json: &Json) -> Option<ElementType> {
     let name = json.as_str().map_or_else(|| json.to_string(), str::to_owned);
     Some(match name.as_str() {
-        "DT_FLOAT" | "DT_HALF" | "DT_DOUBLE" | "1" | "2" | "19" => Kind::Float,
-        "DT_INT32" | "DT_INT64" | "DT_UINT8" | "DT_INT8" | "DT_INT16" | "DT_UINT16" => Kind::Int,
-        "3" | "4" | "5" | "6" | "9" | "17" => Kind::Int,
-        "DT_BOOL" | "10" => Kind::Bool,
+        "DT_FLOAT" | "DT_HALF" | "DT_DOUBLE" | "1" | "2" | "19" => ElementType::Float,
+        "DT_INT32" | "DT_INT64" | "DT_UINT8" | "DT_INT8" | "DT_INT16" | "DT_UINT16" => ElementType::Int,
+        "3" | "4" | "5" | "6" | "9" | "17" => ElementType::Int,
+        "DT_BOOL" | "10" => ElementType::Bool,
         _ => return None,
     })
 }
 
-/// Dimensions, -1 where open; `None` when even their number is.
+/// Returns dimensions, -1 where open; `None` when the rank is open.
 fn shape(json: &Json) -> Option<Vec<i64>> {
     if json.get("unknownRank").and_then(Json::as_bool).unwrap_or(false) {
         return None;
@@ -119,7 +119,7 @@ mod tests {
         assert_eq!(a.text("bytes"), Some("VA"));
         assert_eq!((a.int("n"), a.int("m"), a.float("f")), (Some(-3), Some(4), Some(0.5)));
         assert!(a.flag("b") && !a.flag("missing"));
-        assert_eq!((a.kind("T"), a.kind("U")), (Some(Kind::Int), Some(Kind::Float)));
+        assert_eq!((a.kind("T"), a.kind("U")), (Some(ElementType::Int), Some(ElementType::Float)));
         assert_eq!(a.ints("strides"), [1, 2]);
         assert_eq!(a.texts("ops"), ["BiasAdd", "Relu"]);
         assert_eq!((a.shape("shape"), a.shape("any")), (Some(&[-1, 3][..]), None));

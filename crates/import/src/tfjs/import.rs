@@ -1,4 +1,4 @@
-//! The entry points.
+//! Entry points.
 
 use std::path::Path;
 
@@ -10,25 +10,25 @@ use super::weights::read_weights;
 use crate::bounded::{MAX_BYTES, read_bounded};
 use crate::tensorflow::{ImportOptions, finish, wanted};
 
-/// Turns a TensorFlow.js graph model into an ONNX model (opset 17). The same input gives the same bytes.
+/// Converts a TensorFlow.js graph model to an ONNX model (opset 17). The output is deterministic.
 ///
-/// `weights` are the files that [`tfjs_weight_files`] lists, in that order.
+/// `weights` are the contents of the files that [`tfjs_weight_files`] lists, in that order.
 ///
 /// # Inputs and outputs
-/// * Image inputs (rank 4 with 1, 3 or 4 channels) are `float32` of shape `1x3xHxW`, in the value range that the
-///   original wants, also where the original takes integers. Their names are those of the original.
-/// * Rank 4 outputs that hold an image (a feature map, heat map or mask: more than one pixel high or wide, as computed
+/// * Image inputs (rank 4 with 1, 3 or 4 channels) are `float32` of shape `1x3xHxW`, in the value range of the
+///   original, also where the original has integer inputs. Their names are those of the original.
+/// * Rank 4 outputs that are an image (a feature map, heatmap or mask: more than one pixel high or wide, as computed
 ///   by a convolution) are `1xCxHxW`. Every other output has the original's shape. Output names are the keys of the
 ///   model's signature without TensorFlow's `:0`; integers are `int64`.
 /// * An open batch size becomes 1. An open image size stays open unless [`ImportOptions::image_size`] fixes it.
 ///
 /// # Errors
-/// `Format` for files that are damaged or contradict each other, `Unsupported` (naming node and operator) for what
-/// cannot be expressed, `NotFound` for an output that the model does not have.
+/// `Format` for damaged or inconsistent files, `Unsupported` (with node and operator) for operators that cannot be
+/// expressed in ONNX, `NotFound` for an output that the model does not have.
 pub fn onnx_from_tfjs(model_json: &[u8], weights: &[&[u8]], options: &ImportOptions) -> Result<Vec<u8>> {
     let total: usize = weights.iter().fold(0, |sum, file| sum.saturating_add(file.len()));
     if total as u64 > MAX_BYTES {
-        return Err(Error::format(format!("{total} bytes of weights, more than the {MAX_BYTES} allowed")));
+        return Err(Error::format(format!("{total} bytes of weights exceed the limit of {MAX_BYTES}")));
     }
     let model = ModelJson::parse(model_json)?;
     let weights = read_weights(&model, weights)?;
@@ -44,18 +44,18 @@ pub fn onnx_from_tfjs(model_json: &[u8], weights: &[&[u8]], options: &ImportOpti
     finish(trace.lowering, outputs.iter().map(|(name, _)| name.as_str()).zip(values), "tfjs")
 }
 
-/// Paths of the weight files of a model, relative to its `model.json`, none of which leaves its folder.
+/// Returns the paths of a model's weight files, relative to its `model.json`; none leaves its folder.
 ///
 /// # Errors
-/// `Format` when it is no TensorFlow.js graph model, `Integrity` when a path points outside.
+/// `Format` when it is not a TensorFlow.js graph model, `Integrity` when a path points outside.
 pub fn tfjs_weight_files(model_json: &[u8]) -> Result<Vec<String>> {
     ModelJson::parse(model_json)?.weight_files()
 }
 
-/// As [`onnx_from_tfjs`], reading `model.json` and the weight files beside it.
+/// Reads `model.json` and the weight files beside it, and converts them like [`onnx_from_tfjs`].
 ///
 /// # Errors
-/// As [`onnx_from_tfjs`]; `NotFound` or `Io` when a file cannot be read.
+/// Those of [`onnx_from_tfjs`]; `NotFound` or `Io` when a file cannot be read.
 pub fn onnx_from_tfjs_file(model_json: &Path, options: &ImportOptions) -> Result<Vec<u8>> {
     let folder = model_json.parent().unwrap_or(Path::new(""));
     let json = read_bounded(model_json)?;

@@ -1,7 +1,7 @@
-//! TensorFlow.js graph models (`model.json` and weight files).
+//! Import of TensorFlow.js graph models (`model.json` and weight files).
 //!
-//! `model_json`, `attributes` and `weights` read the files. `trace` walks the graph from its outputs and hands every
-//! node that they need to TensorFlow's operators.
+//! `model_json`, `attributes` and `weights` read the files. `trace` walks the graph from its outputs and lowers every
+//! required node with TensorFlow's operators.
 
 mod attributes;
 mod import;

@@ -8,16 +8,16 @@ use serde::Deserialize;
 use super::attributes;
 use crate::tensorflow::Attributes;
 
-/// No real `model.json` comes near; the weights are in files of their own.
+/// Maximum size, above that of real files; the weights are in files of their own.
 const MAX_JSON_BYTES: usize = 64 << 20;
 
-/// The whole file; what the importer does not need is skipped.
+/// The parsed file; fields that the importer does not need are skipped.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct ModelJson {
     format: Option<String>,
     model_topology: Topology,
-    /// Groups of weights, each over its own list of files.
+    /// Groups of weights, each with its own list of files.
     pub weights_manifest: Vec<WeightGroup>,
     signature: Option<Signature>,
     user_defined_metadata: Option<Metadata>,
@@ -53,14 +53,14 @@ struct TensorName {
     name: String,
 }
 
-/// One operator of TensorFlow's graph.
+/// A node of a TensorFlow graph.
 #[derive(Debug, Deserialize)]
 pub struct Node {
-    /// Unique in the graph.
+    /// Unique name in the graph.
     pub name: String,
     /// TensorFlow's name of the operator.
     pub op: String,
-    /// `node`, `node:output`, or `^node` for an order without data.
+    /// Inputs: `node`, `node:output`, or `^node` for a control input.
     #[serde(default)]
     pub input: Vec<String>,
     /// Named parameters.
@@ -68,7 +68,7 @@ pub struct Node {
     pub attr: Attributes,
 }
 
-/// Weights that lie one after the other in the concatenation of `paths`.
+/// Weights that are stored one after the other in the concatenation of `paths`.
 #[derive(Debug, Deserialize)]
 pub struct WeightGroup {
     /// File names relative to `model.json`.
@@ -77,20 +77,20 @@ pub struct WeightGroup {
     pub weights: Vec<Weight>,
 }
 
-/// One weight.
+/// A weight.
 #[derive(Debug, Deserialize)]
 pub struct Weight {
-    /// The `Const` node it belongs to.
+    /// Name of its `Const` node.
     pub name: String,
     /// Dimensions.
     pub shape: Vec<usize>,
     /// `float32`, `int32` or `bool`.
     pub dtype: String,
-    /// How the elements are stored, when not as `dtype`.
+    /// Quantised storage of the elements, if any.
     pub quantization: Option<Quantization>,
 }
 
-/// Elements stored as `float16`, or as `uint8` or `uint16` with `value = stored * scale + min`.
+/// Storage as `float16`, or as `uint8` or `uint16` with `value = stored * scale + min`.
 #[derive(Debug, Deserialize)]
 pub struct Quantization {
     /// `float16`, `uint8` or `uint16`.
@@ -102,14 +102,14 @@ pub struct Quantization {
 }
 
 impl ModelJson {
-    /// Reads the file.
+    /// Parses the file.
     ///
     /// # Errors
-    /// `Format` when it is too large, no JSON, or no graph model.
+    /// `Format` when it is too large, not JSON, or not a graph model.
     pub fn parse(bytes: &[u8]) -> Result<Self> {
         if bytes.len() > MAX_JSON_BYTES {
             return Err(Error::format(format!(
-                "model.json has {} bytes, more than the {MAX_JSON_BYTES} allowed",
+                "model.json has {} bytes, which exceeds the limit of {MAX_JSON_BYTES}",
                 bytes.len()
             )));
         }
@@ -118,24 +118,24 @@ impl ModelJson {
             .context(|| "reading a TensorFlow.js model.json")?;
         if let Some(format) = model.format.as_deref().filter(|format| *format != "graph-model") {
             return Err(Error::unsupported(format!(
-                "TensorFlow.js format {format:?}; convert it to \"graph-model\" first"
+                "unsupported TensorFlow.js format {format:?}; convert the model to \"graph-model\" first"
             )));
         }
         if !model.model_topology.library.function.is_empty() {
             return Err(Error::unsupported(
-                "TensorFlow.js model with a function library; convert it with its functions inlined",
+                "TensorFlow.js models with a function library are not supported; convert the model with its functions inlined",
             ));
         }
         Ok(model)
     }
 
-    /// The operators, in the file's order.
+    /// Returns the nodes, in the file's order.
     pub fn nodes(&self) -> &[Node] {
         &self.model_topology.node
     }
 
-    /// Output names (without TensorFlow's `:0`) and the tensors they stand for, sorted by name. A model without
-    /// signature gives out every tensor that no other node reads.
+    /// Returns output names (without TensorFlow's `:0`) and their tensors, sorted by name. Without a signature, every
+    /// tensor that no other node reads is an output.
     pub fn outputs(&self) -> Vec<(String, String)> {
         let signature = self.signature.as_ref().filter(|signature| !signature.outputs.is_empty());
         let signature = signature
@@ -163,7 +163,8 @@ impl ModelJson {
         outputs
     }
 
-    /// Paths of the weight files, relative to `model.json`, in the order that [`onnx_from_tfjs`] wants them.
+    /// Returns the paths of the weight files, relative to `model.json`, in the order of the input of
+    /// [`onnx_from_tfjs`].
     ///
     /// # Errors
     /// `Integrity` when a path leaves the folder of `model.json`.
@@ -177,7 +178,7 @@ impl ModelJson {
                 match inside && !path.contains(['\\', ':']) {
                     true => Ok(path.clone()),
                     false => Err(Error::integrity(format!(
-                        "weight file {path:?} lies outside of the model's folder; the model.json is not to be trusted"
+                        "the weight file {path:?} is outside the model's folder; do not trust this model.json"
                     ))),
                 }
             })
@@ -185,7 +186,7 @@ impl ModelJson {
     }
 }
 
-/// Node and output number that an input string refers to; control inputs (`^node`) have none.
+/// Returns node and output index of an input string; control inputs (`^node`) have no index.
 pub fn producer(input: &str) -> (&str, Option<usize>) {
     if let Some(control) = input.strip_prefix('^') {
         return (control, None);

@@ -1,4 +1,4 @@
-//! Walks TensorFlow's graph from its outputs and lowers every node that they need, once.
+//! Traversal of a TensorFlow graph from its outputs; every required node is lowered once.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -6,26 +6,26 @@ use opendr_engine::{Error, Result, ResultExt};
 
 use super::model_json::{Node, producer};
 use crate::tensorflow::{Call, ImportOptions, Lowering, Value, input, ops};
-use opendr_onnx::{Array, Kind, Wire};
+use opendr_onnx::{Array, ElementType, GraphTensor};
 
-/// Walks TensorFlow's graph from its outputs.
+/// The traversal of a TensorFlow graph from its outputs.
 pub struct Trace<'a> {
     nodes: HashMap<&'a str, &'a Node>,
     weights: BTreeMap<String, Array>,
     options: &'a ImportOptions,
-    /// The graph written so far.
+    /// The graph under construction.
     pub lowering: Lowering,
     states: HashMap<&'a str, State>,
 }
 
 enum State {
-    /// On the path from the output that is being traced: meeting it again is a cycle.
+    /// On the path from the current output: visiting it again is a cycle.
     Open,
     Done(Vec<Value>),
 }
 
 impl<'a> Trace<'a> {
-    /// A trace that has seen nothing yet.
+    /// Creates a traversal without visited nodes.
     ///
     /// # Errors
     /// `Format` when two nodes have the same name.
@@ -37,16 +37,17 @@ impl<'a> Trace<'a> {
         let mut by_name = HashMap::with_capacity(nodes.len());
         for node in nodes {
             if by_name.insert(node.name.as_str(), node).is_some() {
-                return Err(Error::format(format!("two nodes are called {:?}", node.name)));
+                return Err(Error::format(format!("two nodes have the name {:?}", node.name)));
             }
         }
         Ok(Self { nodes: by_name, weights, options, lowering: Lowering::default(), states: HashMap::new() })
     }
 
-    /// Lowers whatever the tensor `name` needs and returns it. Keeps its own stack, so depth costs no recursion.
+    /// Lowers the nodes that the tensor `name` needs and returns the tensor. Uses an explicit stack, so that depth
+    /// costs no recursion.
     ///
     /// # Errors
-    /// `Format` for missing nodes and cycles, and whatever lowering a node gives.
+    /// `Format` for missing nodes and cycles, and the errors of lowering a node.
     pub fn tensor(&mut self, name: &str) -> Result<Value> {
         let (output, index) = self.resolve(name)?;
         let mut stack = vec![output];
@@ -64,7 +65,7 @@ impl<'a> Trace<'a> {
                     Some(State::Done(_)) => {}
                     Some(State::Open) => {
                         return Err(Error::format(format!(
-                            "nodes {:?} and {:?} need each other",
+                            "nodes {:?} and {:?} form a cycle",
                             node.name, source.name
                         )));
                     }
@@ -87,7 +88,7 @@ impl<'a> Trace<'a> {
         self.value(output, index)
     }
 
-    /// The node that a tensor name refers to, and which of its outputs.
+    /// Returns the node that a tensor name refers to, and the output index.
     fn resolve(&self, name: &str) -> Result<(&'a Node, usize)> {
         // A node's own name may contain a colon.
         let (node, index) = match self.nodes.get_key_value(name) {
@@ -97,7 +98,7 @@ impl<'a> Trace<'a> {
         match (self.nodes.get(node), index) {
             (Some(node), Some(index)) => Ok((node, index)),
             _ => Err(Error::format(format!(
-                "tensor {name:?} is needed but no node makes it; get the model.json anew"
+                "tensor {name:?} is needed, but no node produces it; download the model.json again"
             ))),
         }
     }
@@ -115,13 +116,12 @@ impl<'a> Trace<'a> {
             "Const" => {
                 let array = self.weights.get(&node.name);
                 let array = array.ok_or_else(|| Error::format("the manifest has no such weight"))?;
-                Ok(vec![Value::plain(Wire::named_constant(&node.name, array.clone()))])
+                Ok(vec![Value::plain(GraphTensor::named_constant(&node.name, array.clone()))])
             }
             "Placeholder" | "PlaceholderWithDefault" => Ok(vec![self.input(node)?]),
             op => {
-                let lower = ops::lowering(op).ok_or_else(|| {
-                    Error::unsupported(format!("operator {op:?} cannot be written as ONNX yet"))
-                })?;
+                let lower = ops::lowering(op)
+                    .ok_or_else(|| Error::unsupported(format!("operator {op:?} is not supported")))?;
                 let inputs = data_inputs(node)
                     .map(|input| self.resolve(input).and_then(|(source, index)| self.value(source, index)))
                     .collect::<Result<Vec<Value>>>()?;
@@ -131,13 +131,16 @@ impl<'a> Trace<'a> {
     }
 
     fn input(&mut self, node: &Node) -> Result<Value> {
-        let dims = node.attr.shape("shape").ok_or_else(|| Error::unsupported("input of unknown rank"))?;
-        let kind = node.attr.kind("dtype").unwrap_or(Kind::Float);
+        let dims = node
+            .attr
+            .shape("shape")
+            .ok_or_else(|| Error::unsupported("an input of unknown rank is not supported"))?;
+        let kind = node.attr.kind("dtype").unwrap_or(ElementType::Float);
         Ok(input(&mut self.lowering, self.options, &node.name, kind, dims))
     }
 }
 
-/// Inputs that carry data, which control inputs do not.
+/// Returns the data inputs of a node, without control inputs.
 fn data_inputs(node: &Node) -> impl Iterator<Item = &str> {
     node.input.iter().map(String::as_str).filter(|input| !input.starts_with('^'))
 }

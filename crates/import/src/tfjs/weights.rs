@@ -1,4 +1,4 @@
-//! The binary weight files.
+//! Reading of the binary weight files.
 
 use std::collections::BTreeMap;
 
@@ -7,8 +7,8 @@ use opendr_engine::{Error, Result};
 use super::model_json::{ModelJson, Quantization, Weight};
 use opendr_onnx::{Array, Data, element_count, float_from_half};
 
-/// Weights by name, decoded from the files of the manifest in its order. Every size is checked against the bytes
-/// there are before anything is allocated.
+/// Returns the weights by name, decoded from the files of the manifest in its order. Every size is checked against
+/// the available bytes before memory is allocated.
 ///
 /// # Errors
 /// `Format` when files are missing or too short, `Unsupported` for an element type such as strings.
@@ -16,7 +16,7 @@ pub fn read_weights(model: &ModelJson, files: &[&[u8]]) -> Result<BTreeMap<Strin
     let expected: usize = model.weights_manifest.iter().map(|group| group.paths.len()).sum();
     if expected != files.len() {
         return Err(Error::format(format!(
-            "the manifest names {expected} weight files but {} are given",
+            "the manifest lists {expected} weight files, but {} were passed",
             files.len()
         )));
     }
@@ -48,12 +48,12 @@ fn decode<'a>(weight: &Weight, bytes: &'a [u8]) -> Result<(Array, &'a [u8])> {
         "float32" | "int32" => 4,
         "float16" | "uint16" => 2,
         "uint8" | "bool" => 1,
-        _ => return Err(Error::unsupported(format!("weight {name:?} is of type {stored:?}"))),
+        _ => return Err(Error::unsupported(format!("weight {name:?} has the unsupported type {stored:?}"))),
     };
     let size = element_count(shape).and_then(|count| count.checked_mul(width));
     let Some((own, rest)) = size.and_then(|size| bytes.split_at_checked(size)) else {
         return Err(Error::format(format!(
-            "weight {name:?} of shape {shape:?} needs more than the {} bytes left in its file; get the file anew",
+            "weight {name:?} of shape {shape:?} needs more than the {} remaining bytes of its file; download the file again",
             bytes.len()
         )));
     };
@@ -71,7 +71,7 @@ fn decode<'a>(weight: &Weight, bytes: &'a [u8]) -> Result<(Array, &'a [u8])> {
     };
     match Array::new(shape.clone(), data) {
         Some(array) => Ok((array, rest)),
-        None => Err(Error::internal(format!("weight {name:?} decoded to a wrong size"))),
+        None => Err(Error::internal(format!("the decoded size of weight {name:?} does not match its shape"))),
     }
 }
 

@@ -1,11 +1,11 @@
-//! Element types of tensors, and elements.
+//! Element types of tensors, and decoding of elements.
 
 use opendr_engine::{Error, Result};
-use opendr_onnx::{Data, Kind};
+use opendr_onnx::{Data, ElementType};
 
 use opendr_onnx::float_from_half;
 
-/// Element types that occur; numbered as in the file.
+/// Element types, with the numbers of the file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Element {
     Float32,
@@ -16,7 +16,7 @@ pub enum Element {
     Bool,
     Int16,
     Int8,
-    /// One that the importer does not know, by its number.
+    /// An unknown type, by its number.
     Other(u8),
 }
 
@@ -37,23 +37,25 @@ impl From<u8> for Element {
 }
 
 impl Element {
-    /// What tensors of it are in the ONNX graph.
+    /// Returns the element type in the ONNX graph.
     ///
     /// # Errors
-    /// `Unsupported` for strings, complex numbers and numbers of four bits.
-    pub fn kind(self) -> Result<Kind> {
+    /// `Unsupported` for strings, complex numbers and 4-bit numbers.
+    pub fn kind(self) -> Result<ElementType> {
         match self {
-            Self::Float32 | Self::Float16 => Ok(Kind::Float),
-            Self::Int32 | Self::UInt8 | Self::Int64 | Self::Int16 | Self::Int8 => Ok(Kind::Int),
-            Self::Bool => Ok(Kind::Bool),
-            Self::Other(number) => Err(Error::unsupported(format!("tensor of element type {number}"))),
+            Self::Float32 | Self::Float16 => Ok(ElementType::Float),
+            Self::Int32 | Self::UInt8 | Self::Int64 | Self::Int16 | Self::Int8 => Ok(ElementType::Int),
+            Self::Bool => Ok(ElementType::Bool),
+            Self::Other(number) => {
+                Err(Error::unsupported(format!("a tensor has the unsupported element type {number}")))
+            }
         }
     }
 
-    /// Bytes of one element.
+    /// Returns the bytes per element.
     ///
     /// # Errors
-    /// As [`Element::kind`].
+    /// Those of [`Element::kind`].
     pub fn width(self) -> Result<usize> {
         match self {
             Self::UInt8 | Self::Bool | Self::Int8 => Ok(1),
@@ -64,7 +66,7 @@ impl Element {
         }
     }
 
-    /// Elements from their bytes. Those that stand for other numbers stay as narrow as they are stored.
+    /// Decodes elements. Quantised ones keep their stored width.
     pub fn decode(self, bytes: &[u8], quantised: bool) -> Data {
         let ints = |values: &mut dyn Iterator<Item = i64>| Data::Int(values.collect());
         let words = bytes.as_chunks().0.iter();

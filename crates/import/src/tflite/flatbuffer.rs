@@ -1,24 +1,24 @@
-//! Reads flatbuffers, checking every position before it is followed.
+//! Reading of flatbuffers, with a check of every position before it is followed.
 //!
-//! Offsets of tables, vectors and strings are unsigned and never zero, so they lead forward and no path through a file
-//! comes back to where it was. A file may still point to one place very often: everything that vectors and strings yield is
-//! counted against the file's own size.
+//! Offsets of tables, vectors and strings are unsigned and never zero, so that they lead forward and no path through
+//! a file forms a cycle. A file may still refer to one place many times: the size of all read vectors and strings is
+//! limited relative to the file's size.
 
 use std::cell::Cell;
 
 use opendr_engine::{Error, Result};
 
-/// How often on average a file may refer to each of its bytes; real files do so once, or twice where weights are shared.
+/// Maximum average number of references to each byte of a file; real files have one, or two where weights are shared.
 const MOST_REFERENCES: usize = 4;
 
-/// A file.
+/// A flatbuffer file.
 pub struct Flatbuffer<'a> {
     bytes: &'a [u8],
     left: Cell<usize>,
 }
 
 impl<'a> Flatbuffer<'a> {
-    /// A file that starts with the offset of its root and this identifier.
+    /// Opens a file that starts with the offset of its root and this identifier.
     ///
     /// # Errors
     /// `Format` when it has another identifier.
@@ -27,14 +27,14 @@ impl<'a> Flatbuffer<'a> {
             Some(own) if own == identifier => {
                 Ok(Self { bytes, left: Cell::new(bytes.len().saturating_mul(MOST_REFERENCES)) })
             }
-            _ => Err(Error::format("no TensorFlow Lite model: it should have \"TFL3\" at its fifth byte")),
+            _ => Err(Error::format("not a TensorFlow Lite model: \"TFL3\" is missing at the fifth byte")),
         }
     }
 
-    /// The table at the root.
+    /// Returns the table at the root.
     ///
     /// # Errors
-    /// `Format` when its position is outside of the file.
+    /// `Format` when its position is outside the file.
     pub fn root(&self) -> Result<Table<'a, '_>> {
         self.table(self.target(0)?)
     }
@@ -44,7 +44,7 @@ impl<'a> Flatbuffer<'a> {
         rest.first_chunk().copied().ok_or_else(|| damaged(position))
     }
 
-    /// Where the offset at `position` leads.
+    /// Returns the target of the offset at `position`.
     fn target(&self, position: usize) -> Result<usize> {
         let offset = u32::from_le_bytes(self.read(position)?) as usize;
         let target = position.checked_add(offset).filter(|target| offset != 0 && target % 4 == 0);
@@ -62,34 +62,36 @@ impl<'a> Flatbuffer<'a> {
         Ok(Table { file: self, start, fields: own })
     }
 
-    /// The elements of the vector at `start`, each of `width` bytes.
+    /// Returns the elements of the vector at `start`, each of `width` bytes.
     fn vector(&self, start: usize, width: usize) -> Result<&'a [u8]> {
         let count = u32::from_le_bytes(self.read(start)?) as usize;
         let elements = count.checked_mul(width).zip(self.bytes.get(start + 4..));
         let elements = elements.and_then(|(size, rest)| rest.get(..size)).ok_or_else(|| damaged(start))?;
         let left = self.left.get().checked_sub(elements.len() + 4);
         self.left.set(left.ok_or_else(|| {
-            Error::format("the file refers to the same bytes again and again; it is damaged or hostile")
+            Error::format("the file refers to the same bytes too many times; it is damaged or hostile")
         })?);
         Ok(elements)
     }
 }
 
 fn damaged(position: usize) -> Error {
-    Error::format(format!("what byte {position} refers to is not in the file; get the file anew"))
+    Error::format(format!(
+        "the reference at byte {position} points outside the file; download the file again"
+    ))
 }
 
-/// A table of a file. Fields that are missing have their defaults.
+/// A table of a file. Missing fields have their defaults.
 #[derive(Clone, Copy)]
 pub struct Table<'a, 'f> {
     file: &'f Flatbuffer<'a>,
     start: usize,
-    /// Two bytes per field: where it is, from `start`.
+    /// Two bytes per field: its position relative to `start`.
     fields: &'a [u8],
 }
 
 impl<'a, 'f> Table<'a, 'f> {
-    /// Where field `index` is.
+    /// Returns the position of field `index`.
     fn field(&self, index: usize) -> Option<usize> {
         let offset = self.fields.as_chunks().0.get(index).map(|&offset| u16::from_le_bytes(offset));
         offset.filter(|&offset| offset != 0).map(|offset| self.start + usize::from(offset))
@@ -99,45 +101,45 @@ impl<'a, 'f> Table<'a, 'f> {
         self.field(index).map(|position| self.file.read(position)).transpose()
     }
 
-    /// An unsigned byte, 0 when missing: an enumeration, a switch.
+    /// Returns an unsigned byte, 0 when missing: an enumeration or a boolean.
     ///
     /// # Errors
-    /// `Format` when it is outside of the file.
+    /// `Format` when it is outside the file.
     pub fn byte(&self, index: usize) -> Result<u8> {
         Ok(self.scalar(index)?.map_or(0, u8::from_le_bytes))
     }
 
-    /// A 32-bit integer.
+    /// Returns a 32-bit integer.
     ///
     /// # Errors
-    /// As [`Table::byte`].
+    /// Those of [`Table::byte`].
     pub fn int(&self, index: usize, default: i32) -> Result<i32> {
         Ok(self.scalar(index)?.map_or(default, i32::from_le_bytes))
     }
 
-    /// A 32-bit float.
+    /// Returns a 32-bit float.
     ///
     /// # Errors
-    /// As [`Table::byte`].
+    /// Those of [`Table::byte`].
     pub fn float(&self, index: usize, default: f32) -> Result<f32> {
         Ok(self.scalar(index)?.map_or(default, f32::from_le_bytes))
     }
 
-    /// Whether there is such a field.
+    /// Returns whether the field is present.
     pub fn has(&self, index: usize) -> bool {
         self.field(index).is_some()
     }
 
-    /// Another table.
+    /// Returns a nested table.
     ///
     /// # Errors
-    /// `Format` when it is outside of the file.
+    /// `Format` when it is outside the file.
     pub fn table(&self, index: usize) -> Result<Option<Table<'a, 'f>>> {
         let Some(position) = self.field(index) else { return Ok(None) };
         self.file.table(self.file.target(position)?).map(Some)
     }
 
-    /// The bytes of a vector; empty when missing. `width` is what an element has.
+    /// Returns the bytes of a vector; empty when missing. `width` is the size of an element.
     fn vector(&self, index: usize, width: usize) -> Result<&'a [u8]> {
         match self.field(index) {
             Some(position) => self.file.vector(self.file.target(position)?, width),
@@ -145,7 +147,7 @@ impl<'a, 'f> Table<'a, 'f> {
         }
     }
 
-    /// A vector of bytes.
+    /// Returns a vector of bytes.
     ///
     /// # Errors
     /// `Format` when it is longer than the file.
@@ -153,42 +155,42 @@ impl<'a, 'f> Table<'a, 'f> {
         self.vector(index, 1)
     }
 
-    /// A string; empty when missing.
+    /// Returns a string; empty when missing.
     ///
     /// # Errors
-    /// As [`Table::bytes`]; `Format` when it is no UTF-8.
+    /// Those of [`Table::bytes`]; `Format` when it is not UTF-8.
     pub fn text(&self, index: usize) -> Result<&'a str> {
-        std::str::from_utf8(self.bytes(index)?).map_err(|_| Error::format("a name that is no UTF-8"))
+        std::str::from_utf8(self.bytes(index)?).map_err(|_| Error::format("a name is not UTF-8"))
     }
 
-    /// A vector of 32-bit integers.
+    /// Returns a vector of 32-bit integers.
     ///
     /// # Errors
-    /// As [`Table::bytes`].
+    /// Those of [`Table::bytes`].
     pub fn ints(&self, index: usize) -> Result<Vec<i32>> {
         Ok(self.vector(index, 4)?.as_chunks().0.iter().map(|&bytes| i32::from_le_bytes(bytes)).collect())
     }
 
-    /// A vector of 64-bit integers.
+    /// Returns a vector of 64-bit integers.
     ///
     /// # Errors
-    /// As [`Table::bytes`].
+    /// Those of [`Table::bytes`].
     pub fn longs(&self, index: usize) -> Result<Vec<i64>> {
         Ok(self.vector(index, 8)?.as_chunks().0.iter().map(|&bytes| i64::from_le_bytes(bytes)).collect())
     }
 
-    /// A vector of 32-bit floats.
+    /// Returns a vector of 32-bit floats.
     ///
     /// # Errors
-    /// As [`Table::bytes`].
+    /// Those of [`Table::bytes`].
     pub fn floats(&self, index: usize) -> Result<Vec<f32>> {
         Ok(self.vector(index, 4)?.as_chunks().0.iter().map(|&bytes| f32::from_le_bytes(bytes)).collect())
     }
 
-    /// A vector of tables.
+    /// Returns a vector of tables.
     ///
     /// # Errors
-    /// As [`Table::bytes`]; `Format` when one is outside of the file.
+    /// Those of [`Table::bytes`]; `Format` when a table is outside the file.
     pub fn tables(&self, index: usize) -> Result<Vec<Table<'a, 'f>>> {
         let Some(position) = self.field(index) else { return Ok(Vec::new()) };
         let start = self.file.target(position)?;
@@ -201,7 +203,7 @@ impl<'a, 'f> Table<'a, 'f> {
 mod tests {
     use super::*;
 
-    /// A root with two fields (an integer and a vector of two integers), its list of fields in front.
+    /// Returns a file whose root has two fields (an integer and a vector of two integers), with the vtable in front.
     fn file() -> Vec<u8> {
         let mut bytes = vec![16, 0, 0, 0];
         bytes.extend(b"TFL3");
@@ -229,13 +231,13 @@ mod tests {
     }
 
     #[test]
-    fn offsets_that_are_odd_or_lead_nowhere_are_refused() {
+    fn invalid_offsets_are_rejected() {
         let with = |position: usize, value: u8| {
             let mut bytes = file();
             bytes[position] = value;
             bytes
         };
-        // The root's offset, the vector's, the number of its elements, the way to the list of fields.
+        // The root's offset, the vector's offset, the number of its elements, the offset of the vtable.
         for (position, value) in
             [(0, 0), (0, 17), (0, 200), (24, 0), (24, 5), (28, 3), (16, 9), (16, 100), (8, 2)]
         {

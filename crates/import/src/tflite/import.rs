@@ -1,4 +1,4 @@
-//! The entry points.
+//! Entry points.
 
 use std::collections::HashSet;
 use std::path::Path;
@@ -11,28 +11,28 @@ use super::trace::Trace;
 use crate::bounded::{MAX_BYTES, read_bounded};
 use crate::tensorflow::{ImportOptions, finish, wanted};
 
-/// Turns a TensorFlow Lite model into an ONNX model (opset 17). The same input gives the same bytes.
+/// Converts a TensorFlow Lite model to an ONNX model (opset 17). The output is deterministic.
 ///
 /// # Inputs and outputs
-/// * Image inputs (rank 4 with 1, 3 or 4 channels) are `float32` of shape `1x3xHxW`, in the value range that the
-///   original wants, also where the original takes integers.
-/// * Rank 4 outputs that hold an image (a feature map, heat map or mask: more than one pixel high or wide, as computed
+/// * Image inputs (rank 4 with 1, 3 or 4 channels) are `float32` of shape `1x3xHxW`, in the value range of the
+///   original, also where the original has integer inputs.
+/// * Rank 4 outputs that are an image (a feature map, heatmap or mask: more than one pixel high or wide, as computed
 ///   by a convolution) are `1xCxHxW`. Every other output has the original's shape; integers are `int64`.
-/// * Inputs and outputs are called as in the original, without TensorFlow's `:0`.
+/// * Inputs and outputs have the original's names, without TensorFlow's `:0`.
 /// * An open batch size becomes 1. An open image size stays open unless [`ImportOptions::image_size`] fixes it.
 ///
 /// # Quantised models
-/// Weights stay the integers that they are. Wherever the original has quantised numbers, a `QuantizeLinear` and a
-/// `DequantizeLinear` round to the values that the integers have, and the operators between compute in floats. Quantised
-/// inputs and outputs are `float32` as well: they take and give the real numbers for which the original's integers
-/// stand, so that 0..255 with scale 1/128 and zero point 128 becomes -1..1. Weights of 16 bits are widened.
+/// Weights stay integers. Wherever the original has quantised numbers, a `QuantizeLinear` and a `DequantizeLinear`
+/// round to the values of the integers, and the operators between compute in floats. Quantised inputs and outputs are
+/// `float32` as well, in the real numbers that the original's integers represent: 0..255 with scale 1/128 and zero
+/// point 128 becomes -1..1. Weights of 16 bits are widened.
 ///
 /// # Errors
-/// `Format` for files that are damaged or contradict themselves, `Unsupported` (naming the operator and what it makes)
-/// for what cannot be expressed, sparse weights among it, `NotFound` for an output that the model does not have.
+/// `Format` for damaged or inconsistent files, `Unsupported` (with the operator and its output) for operators that
+/// cannot be expressed in ONNX and for sparse weights, `NotFound` for an output that the model does not have.
 pub fn onnx_from_tflite(bytes: &[u8], options: &ImportOptions) -> Result<Vec<u8>> {
     if bytes.len() as u64 > MAX_BYTES {
-        return Err(Error::format(format!("{} bytes, more than the {MAX_BYTES} allowed", bytes.len())));
+        return Err(Error::format(format!("{} bytes exceed the limit of {MAX_BYTES}", bytes.len())));
     }
     let file = Flatbuffer::new(bytes, b"TFL3")?;
     let model = Model::read(&file)?;
@@ -41,7 +41,7 @@ pub fn onnx_from_tflite(bytes: &[u8], options: &ImportOptions) -> Result<Vec<u8>
     for &output in &model.outputs {
         let name = model.tensors[output].port();
         if name.is_empty() || !names.insert(name) {
-            return Err(Error::format(format!("output {name:?} without a name of its own")));
+            return Err(Error::format(format!("the name of output {name:?} is empty or not unique")));
         }
         outputs.push((name.to_owned(), output));
     }
@@ -55,10 +55,10 @@ pub fn onnx_from_tflite(bytes: &[u8], options: &ImportOptions) -> Result<Vec<u8>
     finish(trace.lowering, outputs.iter().map(|(name, _)| name.as_str()).zip(values), "tflite")
 }
 
-/// As [`onnx_from_tflite`], reading the file.
+/// Reads the file and converts it like [`onnx_from_tflite`].
 ///
 /// # Errors
-/// As [`onnx_from_tflite`]; `NotFound` or `Io` when the file cannot be read.
+/// Those of [`onnx_from_tflite`]; `NotFound` or `Io` when the file cannot be read.
 pub fn onnx_from_tflite_file(path: &Path, options: &ImportOptions) -> Result<Vec<u8>> {
     let bytes = read_bounded(path)?;
     onnx_from_tflite(&bytes, options).context(|| format!("importing {}", path.display()))

@@ -1,12 +1,14 @@
-//! TensorFlow Lite models (`.tflite`).
+//! Import of TensorFlow Lite models (`.tflite`).
 //!
-//! `flatbuffer` reads the bytes, `model` the few tables of the format that matter. `trace` goes through the operators;
-//! `operator` (and `product`, where there are weights) says each in TensorFlow's terms, as the file's own differ in little more than how parameters and weights
-//! are stored. Quantised tensors (`quantisation`) are real numbers on the way, rounded where the original rounds.
+//! `flatbuffer` reads the bytes, `model` the required tables of the format. `convert` converts the operators
+//! into a `trace`; `operator` (`product` for operators with weights) maps each to TensorFlow's operators, from which it differs
+//! mostly in the storage of parameters and weights. Quantised tensors (`quantisation`) are real numbers in between,
+//! rounded where the original rounds.
 //!
-//! The reader is written out here: the format's own library reads a file unchecked or checks all of it by a schema of
-//! which a handful of tables are needed, and neither bounds how often a file may refer to the same bytes.
+//! The reader is written by hand: the format's own library either reads a file unchecked or checks all of it by a
+//! schema of which few tables are needed, and neither limits how often a file may refer to the same bytes.
 
+mod convert;
 mod element;
 mod flatbuffer;
 mod import;
@@ -16,6 +18,7 @@ mod operator;
 mod options;
 mod product;
 mod quantisation;
+mod step;
 mod trace;
 mod window;
 

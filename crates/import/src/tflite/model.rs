@@ -1,4 +1,4 @@
-//! What the importer needs of a TensorFlow Lite file.
+//! The parts of a TensorFlow Lite file that the importer needs.
 
 use opendr_engine::{Error, Result, ResultExt};
 use opendr_onnx::{Array, element_count};
@@ -8,10 +8,10 @@ use super::flatbuffer::{Flatbuffer, Table};
 use super::quantisation::Quantisation;
 use crate::tensorflow::MAX_RANK;
 
-/// The number of the operator that stands for one of the model's own.
+/// Number of the operator code for custom operators.
 const CUSTOM: i32 = 32;
 
-/// The graph of a file: what is computed from the inputs, operator after operator.
+/// The graph of a file: its operators in order of execution.
 pub struct Model<'a, 'f> {
     pub tensors: Vec<Tensor<'a>>,
     pub inputs: Vec<usize>,
@@ -21,13 +21,13 @@ pub struct Model<'a, 'f> {
 
 /// A tensor.
 pub struct Tensor<'a> {
-    /// Not always unique.
+    /// Name, not always unique.
     pub name: &'a str,
     /// Dimensions; -1 where open.
     pub dims: Vec<i64>,
     pub element: Element,
     pub quantisation: Option<Quantisation>,
-    /// The elements of a constant.
+    /// Elements of a constant.
     bytes: &'a [u8],
     sparse: bool,
     external: bool,
@@ -35,10 +35,10 @@ pub struct Tensor<'a> {
 
 /// An operator.
 pub struct Node<'a, 'f> {
-    /// Its number among the operators that TensorFlow Lite has, and the name of one that it has not.
+    /// Number of the operator, and the name of a custom one.
     pub code: i32,
     pub custom: &'a str,
-    /// Tensors; `None` for an optional input that is left out.
+    /// Input tensors; `None` for an omitted optional input.
     pub inputs: Vec<Option<usize>>,
     pub outputs: Vec<usize>,
     /// Parameters.
@@ -50,13 +50,13 @@ impl<'a, 'f> Model<'a, 'f> {
     /// Reads the first graph of a file.
     ///
     /// # Errors
-    /// `Format` for a file that is damaged or contradicts itself, `Unsupported` for quantisations that ONNX lacks.
+    /// `Format` for a damaged or inconsistent file, `Unsupported` for quantisations that ONNX lacks.
     pub fn read(file: &'f Flatbuffer<'a>) -> Result<Self> {
         let root = file.root()?;
         let buffers = root.tables(4)?;
         let codes = root.tables(1)?.iter().map(operator_code).collect::<Result<Vec<_>>>()?;
         let graphs = root.tables(2)?;
-        let graph = graphs.first().ok_or_else(|| Error::format("TensorFlow Lite model without a graph"))?;
+        let graph = graphs.first().ok_or_else(|| Error::format("the TensorFlow Lite model has no graph"))?;
         let tensors = graph.tables(0)?;
         let tensors = tensors.iter().enumerate().map(|(index, tensor)| {
             Tensor::read(tensor, &buffers).context(|| format!("reading tensor {index}"))
@@ -64,7 +64,7 @@ impl<'a, 'f> Model<'a, 'f> {
         let tensors = tensors.collect::<Result<Vec<_>>>()?;
         let index = |tensor: i32| {
             usize::try_from(tensor).ok().filter(|&tensor| tensor < tensors.len()).ok_or_else(|| {
-                Error::format(format!("tensor {tensor} is needed but there are {}", tensors.len()))
+                Error::format(format!("tensor {tensor} is needed, but there are {}", tensors.len()))
             })
         };
         let optional = |tensor: i32| if tensor == -1 { Ok(None) } else { index(tensor).map(Some) };
@@ -73,7 +73,7 @@ impl<'a, 'f> Model<'a, 'f> {
             let (code, custom) = usize::try_from(table.int(0, 0)?)
                 .ok()
                 .and_then(|code| codes.get(code).copied())
-                .ok_or_else(|| Error::format("an operator that the model does not list"))?;
+                .ok_or_else(|| Error::format("an operator refers to a code that the model does not list"))?;
             operators.push(Node {
                 code,
                 custom,
@@ -89,8 +89,8 @@ impl<'a, 'f> Model<'a, 'f> {
     }
 }
 
-/// The number of an operator and its name if it is none of TensorFlow Lite's. Old files have the number in a byte,
-/// new ones there at most what fits.
+/// Returns the number of an operator, and its name if it is custom. Old files store the number in a byte; new ones
+/// have there at most what fits.
 fn operator_code<'a>(table: &Table<'a, '_>) -> Result<(i32, &'a str)> {
     let (old, new) = (i32::from(table.byte(0)?.cast_signed()), table.int(3, 0)?);
     let code = old.max(new);
@@ -103,7 +103,7 @@ impl<'a> Tensor<'a> {
         let signature = table.ints(7)?;
         let dims = if signature.len() == shape.len() { signature } else { shape };
         if dims.len() > MAX_RANK {
-            return Err(Error::format(format!("{} axes, more than the {MAX_RANK} allowed", dims.len())));
+            return Err(Error::format(format!("{} axes exceed the limit of {MAX_RANK}", dims.len())));
         }
         let dims: Vec<i64> = dims.into_iter().map(i64::from).collect();
         let element = Element::from(table.byte(1)?);
@@ -111,7 +111,7 @@ impl<'a> Tensor<'a> {
             Some(parameters) => Quantisation::of(&parameters, element, dims.len())?,
             None => None,
         };
-        // Buffer 0 is empty and stands for "none".
+        // Buffer 0 is empty and means "none".
         let number = usize::try_from(table.int(2, 0)?).ok();
         let buffer = number.and_then(|number| buffers.get(number));
         let (bytes, external) = match buffer {
@@ -123,29 +123,32 @@ impl<'a> Tensor<'a> {
         Ok(Self { name: table.text(3)?, dims, element, quantisation, bytes, sparse, external })
     }
 
-    /// Its name as an input or output of the model.
+    /// Returns the tensor's name as an input or output of the model.
     pub fn port(&self) -> &'a str {
         self.name.strip_suffix(":0").unwrap_or(self.name)
     }
 
-    /// Whether its elements are in the file.
+    /// Returns whether the elements are in the file.
     pub fn is_constant(&self) -> bool {
         !self.bytes.is_empty() || self.external || self.dims.contains(&0)
     }
 
-    /// Elements of a constant.
+    /// Returns the elements of a constant.
     ///
     /// # Errors
-    /// `Format` when it has other than the dimensions say; `Unsupported` for sparse tensors and strings.
+    /// `Format` when their number does not match the dimensions; `Unsupported` for sparse tensors and strings.
     pub fn array(&self) -> Result<Array> {
         if self.sparse {
             return Err(Error::unsupported(format!(
-                "tensor {:?} is sparse; take a model with dense weights",
+                "tensor {:?} is sparse; use a model with dense weights",
                 self.name
             )));
         }
         if self.external {
-            return Err(Error::unsupported(format!("the elements of {:?} are behind the model", self.name)));
+            return Err(Error::unsupported(format!(
+                "the elements of {:?} are stored outside the model, which is not supported",
+                self.name
+            )));
         }
         let dims: Option<Vec<usize>> = self.dims.iter().map(|&dim| usize::try_from(dim).ok()).collect();
         let width = self.element.width()?;
@@ -159,7 +162,7 @@ impl<'a> Tensor<'a> {
         };
         array.ok_or_else(|| {
             Error::format(format!(
-                "tensor {:?} of shape {:?} has {} bytes; get the file anew",
+                "tensor {:?} of shape {:?} has {} bytes; download the file again",
                 self.name,
                 self.dims,
                 self.bytes.len()

@@ -1,6 +1,6 @@
-//! What operators are called.
+//! Names of operators.
 
-/// Operators that differ from TensorFlow's in nothing but the name: number, name, TensorFlow's name.
+/// Operators that differ from TensorFlow's in the name only: number, name, TensorFlow's name.
 const SAME: &[(i32, &str, &str)] = &[
     (8, "FLOOR", "Floor"),
     (14, "LOGISTIC", "Sigmoid"),
@@ -65,7 +65,7 @@ const SAME: &[(i32, &str, &str)] = &[
     (158, "SIGN", "Sign"),
 ];
 
-/// Operators with parameters, or that are put together from several: number and name.
+/// Operators with parameters of their own, or that map to several: number and name.
 const OTHERS: &[(i32, &str)] = &[
     (0, "ADD"),
     (1, "AVERAGE_POOL_2D"),
@@ -104,13 +104,13 @@ const OTHERS: &[(i32, &str)] = &[
     (126, "BATCH_MATMUL"),
 ];
 
-/// TensorFlow Lite's name of an operator by its number, if the importer knows it.
+/// Returns TensorFlow Lite's name of an operator by its number; `None` for an unknown one.
 pub fn name(code: i32) -> Option<&'static str> {
     let same = SAME.iter().find(|(own, ..)| *own == code).map(|(_, name, _)| *name);
     same.or_else(|| OTHERS.iter().find(|(own, _)| *own == code).map(|(_, name)| *name))
 }
 
-/// TensorFlow's operator that does the same by TensorFlow Lite's number, if there is one.
+/// Returns the equivalent TensorFlow operator by TensorFlow Lite's number, if there is one.
 pub fn same(code: i32) -> Option<&'static str> {
     SAME.iter().find(|(own, ..)| *own == code).map(|(.., op)| *op)
 }

@@ -1,72 +1,41 @@
-//! TensorFlow Lite's operators in TensorFlow's terms.
+//! Mapping of TensorFlow Lite's operators to TensorFlow's.
 
 use opendr_engine::{Error, Result};
-use opendr_onnx::{Array, Wire};
+use opendr_onnx::{Array, GraphTensor};
 
 use super::model::Node;
 use super::names::{name, same};
 use super::options::Options;
 use super::product::{convolution, custom_transposed, fully_connected, transposed};
+use super::step::{Step, list};
 use super::trace::Trace;
 use super::window::{Fields, window};
 use crate::tensorflow::{Attribute, Attributes, Value};
 
-/// What an operator is in TensorFlow.
-pub struct Step {
-    /// TensorFlow's operator; empty where the results are `inputs` already.
-    pub op: &'static str,
-    pub attr: Attributes,
-    pub inputs: Vec<Value>,
-    /// What is applied to the results, as an operator of TensorFlow.
-    pub activation: Option<&'static str>,
-}
-
-impl<'a, 'f> Trace<'_, 'a, 'f> {
-    /// An input that may be left out.
-    pub fn optional(&mut self, node: &Node, index: usize) -> Result<Option<Value>> {
-        node.inputs.get(index).copied().flatten().map(|tensor| self.value(tensor)).transpose()
-    }
-
-    /// An input that must be there.
-    pub fn input(&mut self, node: &Node, index: usize) -> Result<Value> {
-        self.optional(node, index)?.ok_or_else(|| missing(node, index))
-    }
-
-    fn inputs(&mut self, node: &Node) -> Result<Vec<Value>> {
-        (0..node.inputs.len()).map(|index| self.input(node, index)).collect()
-    }
-}
-
-/// That an input is missing.
-pub fn missing(node: &Node, index: usize) -> Error {
-    Error::format(format!("has {} inputs but input {index} is needed", node.inputs.len()))
-}
-
 fn integer(value: i64) -> Value {
-    Value::plain(Wire::constant(Array::int(value)))
+    Value::plain(GraphTensor::constant(Array::int(value)))
 }
 
-/// A list of integers.
-pub fn list(values: impl IntoIterator<Item = i64>) -> Value {
-    Value::plain(Wire::ints(values))
-}
-
-/// What the operator is in TensorFlow.
+/// Returns the equivalent of an operator in TensorFlow.
 ///
 /// # Errors
-/// `Unsupported` for an operator that is not known, `Format` for parameters and inputs that do not fit.
+/// `Unsupported` for an unknown operator, `Format` for invalid parameters and inputs.
 pub fn step<'a, 'f>(trace: &mut Trace<'_, 'a, 'f>, node: &Node<'a, 'f>) -> Result<Step> {
     if node.custom == "Convolution2DTransposeBias" {
         return custom_transposed(trace, node);
     }
-    let unknown = || Error::unsupported("this operator cannot be written as ONNX yet");
+    let unknown = || Error::unsupported("this operator is not supported");
     let name = name(node.code).ok_or_else(unknown)?;
     let options = Options::of(node);
     match name {
         "CONV_2D" | "DEPTHWISE_CONV_2D" => return convolution(trace, node, name == "DEPTHWISE_CONV_2D"),
         "TRANSPOSE_CONV" => return transposed(trace, node),
         "FULLY_CONNECTED" => return fully_connected(trace, node),
-        "DENSIFY" => return Err(Error::unsupported("sparse weights; take a model with dense weights")),
+        "DENSIFY" => {
+            return Err(Error::unsupported(
+                "sparse weights are not supported; use a model with dense weights",
+            ));
+        }
         "L2_NORMALIZATION" => return normalised(trace, node),
         _ => {}
     }
@@ -112,7 +81,7 @@ pub fn step<'a, 'f>(trace: &mut Trace<'_, 'a, 'f>, node: &Node<'a, 'f>) -> Resul
         "SOFTMAX" => {
             let beta = options.float(0, 1.0)?;
             if beta != 1.0 {
-                let beta = Value::plain(Wire::scalar(beta));
+                let beta = Value::plain(GraphTensor::scalar(beta));
                 inputs =
                     trace.call(name, "Mul", &none, inputs.into_iter().take(1).chain([beta]).collect())?;
             }
@@ -130,7 +99,7 @@ pub fn step<'a, 'f>(trace: &mut Trace<'_, 'a, 'f>, node: &Node<'a, 'f>) -> Resul
         "REDUCE_MIN" => ("Min", none.with("keep_dims", options.flag(0)?)),
         "SQUEEZE" => ("Squeeze", none.with("squeeze_dims", Attribute::Ints(options.ints(0)?))),
         "STRIDED_SLICE" if options.byte(5)? != 0 => {
-            return Err(Error::unsupported("slice whose ends are counted from its beginnings"));
+            return Err(Error::unsupported("a slice with ends relative to its starts is not supported"));
         }
         "STRIDED_SLICE" => {
             let masks = ["begin_mask", "end_mask", "ellipsis_mask", "new_axis_mask", "shrink_axis_mask"];
@@ -139,7 +108,7 @@ pub fn step<'a, 'f>(trace: &mut Trace<'_, 'a, 'f>, node: &Node<'a, 'f>) -> Resul
         }
         "SPLIT" => ("Split", none.with("num_split", options.number(0)?)),
         "CAST" => {
-            let output = node.outputs.first().ok_or_else(|| Error::format("no output"))?;
+            let output = node.outputs.first().ok_or_else(|| Error::format("it has no output"))?;
             let kind = trace.model().tensors[*output].element.kind()?;
             ("Cast", none.with("DstT", Attribute::Kind(kind)))
         }
@@ -158,17 +127,18 @@ pub fn step<'a, 'f>(trace: &mut Trace<'_, 'a, 'f>, node: &Node<'a, 'f>) -> Resul
     Ok(Step { op, attr, inputs, activation })
 }
 
-/// Every pixel divided by its length.
+/// Divides every pixel by its L2 norm.
 fn normalised<'a, 'f>(trace: &mut Trace<'_, 'a, 'f>, node: &Node<'a, 'f>) -> Result<Step> {
     let x = trace.input(node, 0)?;
     let (none, keep) =
         (Attributes::default(), Attributes::default().with("keep_dims", Attribute::Flag(true)));
-    let last = x.rank().checked_sub(1).ok_or_else(|| Error::format("length of a scalar"))?;
+    let last =
+        x.rank().checked_sub(1).ok_or_else(|| Error::format("L2 normalisation needs at least one axis"))?;
     let name = x.wire.hint();
     let squares = trace.call(&name, "Square", &none, vec![x.clone()])?;
     let sum = [squares, vec![list([last as i64])]].concat();
     let sum = trace.call(&name, "Sum", &keep, sum)?;
-    let least = [sum, vec![Value::plain(Wire::scalar(1e-12))]].concat();
+    let least = [sum, vec![Value::plain(GraphTensor::scalar(1e-12))]].concat();
     let least = trace.call(&name, "Maximum", &none, least)?;
     let factor = trace.call(&name, "Rsqrt", &none, least)?;
     let activation = Options::of(node).activation(0)?;

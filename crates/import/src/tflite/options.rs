@@ -6,50 +6,50 @@ use super::flatbuffer::Table;
 use super::model::Node;
 use crate::tensorflow::Attribute;
 
-/// The parameters of an operator; all defaults where it has none.
+/// The parameters of an operator; defaults where it has none.
 pub struct Options<'a, 'f>(Option<Table<'a, 'f>>);
 
 impl<'a, 'f> Options<'a, 'f> {
-    /// Those of a node.
+    /// Returns the parameters of a node.
     pub fn of(node: &Node<'a, 'f>) -> Self {
         Self(node.options)
     }
 
-    /// An enumeration or switch.
+    /// Returns an enumeration or boolean.
     pub fn byte(&self, index: usize) -> Result<u8> {
         self.0.map_or(Ok(0), |table| table.byte(index))
     }
 
-    /// An integer.
+    /// Returns an integer.
     pub fn int(&self, index: usize, default: i32) -> Result<i32> {
         self.0.map_or(Ok(default), |table| table.int(index, default))
     }
 
-    /// A number of an attribute.
+    /// Returns an integer as an attribute.
     pub fn number(&self, index: usize) -> Result<Attribute> {
         Ok(Attribute::Int(self.int(index, 0)?.into()))
     }
 
-    /// A switch of an attribute.
+    /// Returns a boolean as an attribute.
     pub fn flag(&self, index: usize) -> Result<Attribute> {
         Ok(Attribute::Flag(self.byte(index)? != 0))
     }
 
-    /// A float.
+    /// Returns a float.
     pub fn float(&self, index: usize, default: f32) -> Result<f32> {
         self.0.map_or(Ok(default), |table| table.float(index, default))
     }
 
-    /// A list of integers.
+    /// Returns a list of integers.
     pub fn ints(&self, index: usize) -> Result<Vec<i64>> {
         let ints = self.0.map_or(Ok(Vec::new()), |table| table.ints(index))?;
         Ok(ints.into_iter().map(i64::from).collect())
     }
 
-    /// The activation that is fused into the operator.
+    /// Returns the fused activation.
     ///
     /// # Errors
-    /// `Unsupported` for one that is not known.
+    /// `Unsupported` for an unknown one.
     pub fn activation(&self, index: usize) -> Result<Option<&'static str>> {
         match self.byte(index)? {
             0 => Ok(None),
@@ -57,7 +57,7 @@ impl<'a, 'f> Options<'a, 'f> {
             2 => Ok(Some("ReluN1To1")),
             3 => Ok(Some("Relu6")),
             4 => Ok(Some("Tanh")),
-            other => Err(Error::unsupported(format!("activation number {other}"))),
+            other => Err(Error::unsupported(format!("unsupported activation {other}"))),
         }
     }
 }

@@ -1,30 +1,31 @@
-//! Operators that multiply by weights, which TensorFlow Lite stores in another order than TensorFlow.
+//! Operators with weights, whose order in TensorFlow Lite differs from TensorFlow's.
 
 use opendr_engine::{Error, Result};
 
 use super::model::Node;
-use super::operator::{Step, list, missing};
 use super::options::Options;
+use super::step::{Step, list, missing};
 use super::trace::Trace;
 use super::window::{Fields, four, padding, window};
 use crate::tensorflow::{Attribute, Attributes, Order, Value};
 
-/// The order in which ONNX wants TensorFlow's filters: output channels, input channels, height, width.
+/// Order of filters in ONNX, in TensorFlow's axes: output channels, input channels, height, width.
 const FILTER: [usize; 4] = [3, 2, 0, 1];
 
-/// The weights of a node: input 1, of which TensorFlow's axis `i` is axis `axes[i]`.
+/// Returns the weights of a node: input 1, of which TensorFlow's axis `i` is axis `axes[i]`.
 fn weight(trace: &mut Trace, node: &Node, axes: &[usize], stored: &Order) -> Result<Value> {
     let tensor = node.inputs.get(1).copied().flatten().ok_or_else(|| missing(node, 1))?;
     trace.weight(tensor, axes, stored)
 }
 
-/// The parameter that says that a bias is the third input.
+/// Adds the parameter for a bias as the third input.
 fn with_bias(attr: Attributes, bias: &Option<Value>) -> Attributes {
     let fused = bias.iter().map(|_| "BiasAdd".to_owned()).collect();
     attr.with("fused_ops", Attribute::Texts(fused))
 }
 
-/// A convolution; one per channel is a convolution of as many groups, as its filter has one input channel.
+/// Converts a convolution; a depthwise one becomes a convolution of as many groups, as its filter has one input
+/// channel.
 pub fn convolution<'a, 'f>(
     trace: &mut Trace<'_, 'a, 'f>,
     node: &Node<'a, 'f>,
@@ -40,7 +41,7 @@ pub fn convolution<'a, 'f>(
     Ok(Step { op: "Conv2D", attr, inputs, activation: options.activation(activation)? })
 }
 
-/// `TRANSPOSE_CONV`: the output's shape, the filter, the image, perhaps a bias.
+/// Converts `TRANSPOSE_CONV`: the output's shape, the filter, the image, optionally a bias.
 pub fn transposed<'a, 'f>(trace: &mut Trace<'_, 'a, 'f>, node: &Node<'a, 'f>) -> Result<Step> {
     let options = Options::of(node);
     let filter = weight(trace, node, &[1, 2, 0, 3], &Order::new(FILTER.to_vec()))?;
@@ -64,18 +65,21 @@ fn transposed_and_biased(
     Ok(Step { op: "BiasAdd", attr: Attributes::default(), inputs, activation })
 }
 
-/// MediaPipe's own transposed convolution: image, filter, bias. Its parameters are three integers: padding (1 for
-/// `SAME`, 2 for `VALID`), horizontal and vertical stride.
+/// Converts MediaPipe's custom transposed convolution: image, filter, bias. Its parameters are three integers:
+/// padding (1 for `SAME`, 2 for `VALID`), horizontal and vertical stride.
 pub fn custom_transposed<'a, 'f>(trace: &mut Trace<'_, 'a, 'f>, node: &Node<'a, 'f>) -> Result<Step> {
     let words: Vec<i32> =
         node.custom_options.as_chunks().0.iter().map(|&word| i32::from_le_bytes(word)).collect();
     let [same_or_valid, stride_width, stride_height, ..] = words[..] else {
-        return Err(Error::format(format!("parameters of {} bytes, not 12", node.custom_options.len())));
+        return Err(Error::format(format!(
+            "the custom parameters have {} bytes instead of 12",
+            node.custom_options.len()
+        )));
     };
     let image = trace.input(node, 0)?;
     let filter = weight(trace, node, &[1, 2, 0, 3], &Order::new(FILTER.to_vec()))?;
     let [Some(height), Some(width), Some(filters), _] = filter.dims()[..] else {
-        return Err(Error::unsupported("filter of open size"));
+        return Err(Error::unsupported("a filter of open size is not supported"));
     };
     let number = u8::try_from(same_or_valid.saturating_sub(1)).unwrap_or(u8::MAX);
     let grown = |dim: Option<usize>, stride: i32, kernel: usize| {
@@ -89,8 +93,9 @@ pub fn custom_transposed<'a, 'f>(trace: &mut Trace<'_, 'a, 'f>, node: &Node<'a, 
         [_, rows, columns, _] => grown(rows, stride_height, height).zip(grown(columns, stride_width, width)),
         _ => None,
     };
-    let (rows, columns) =
-        size.ok_or_else(|| Error::unsupported(format!("transposed convolution of an image {dims:?}")))?;
+    let (rows, columns) = size.ok_or_else(|| {
+        Error::unsupported(format!("a transposed convolution of an image {dims:?} is not supported"))
+    })?;
     let attr = Attributes::default()
         .with("padding", padding(number)?)
         .with("strides", four(stride_height, stride_width))
@@ -100,11 +105,11 @@ pub fn custom_transposed<'a, 'f>(trace: &mut Trace<'_, 'a, 'f>, node: &Node<'a, 
     transposed_and_biased(trace, attr, vec![shape, filter, image], bias, None)
 }
 
-/// A matrix product with the rows of `x`, whatever axes it has in front.
+/// Converts a matrix product with the rows of `x`, for any number of leading axes.
 pub fn fully_connected<'a, 'f>(trace: &mut Trace<'_, 'a, 'f>, node: &Node<'a, 'f>) -> Result<Step> {
     let options = Options::of(node);
     if options.byte(1)? != 0 {
-        return Err(Error::unsupported("weights in a shuffled order"));
+        return Err(Error::unsupported("shuffled weights are not supported"));
     }
     let activation = options.activation(0)?;
     let x = trace.input(node, 0)?;
@@ -112,7 +117,7 @@ pub fn fully_connected<'a, 'f>(trace: &mut Trace<'_, 'a, 'f>, node: &Node<'a, 'f
     let bias = trace.optional(node, 2)?;
     let (columns, filters) = match weight.dims()[..] {
         [Some(columns), Some(filters)] => (columns as i64, filters as i64),
-        _ => return Err(Error::unsupported("weights of open size")),
+        _ => return Err(Error::unsupported("weights of open size are not supported")),
     };
     let outer = x.dims();
     let rows = match x.rank() {

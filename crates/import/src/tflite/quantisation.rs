@@ -1,27 +1,27 @@
-//! Integers that stand for real numbers: `real = (integer - zero_point) * scale`.
+//! Affine quantisation: `real = (integer - zero_point) * scale`.
 
 use opendr_engine::{Error, Result};
-use opendr_onnx::{Array, Data, Kind, Operator, Wire};
+use opendr_onnx::{Array, Data, ElementType, GraphTensor, Operator};
 
 use super::element::Element;
 use super::flatbuffer::Table;
 use crate::tensorflow::{Lowering, Value};
 
-/// How the integers of a tensor stand for real numbers.
+/// Quantisation parameters of a tensor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quantisation {
     element: Element,
     scales: Vec<f32>,
     zero_points: Vec<i64>,
-    /// The axis with one scale per position, where there are several scales.
+    /// Axis with one scale per position, for several scales.
     axis: usize,
 }
 
 impl Quantisation {
-    /// `None` where the numbers are what they are.
+    /// Reads the parameters; `None` for a tensor that is not quantised.
     ///
     /// # Errors
-    /// `Format` for parameters that contradict each other, `Unsupported` for element types that ONNX cannot quantise.
+    /// `Format` for inconsistent parameters, `Unsupported` for element types that ONNX cannot quantise.
     pub fn of(table: &Table, element: Element, rank: usize) -> Result<Option<Self>> {
         let scales = table.floats(2)?;
         if scales.is_empty() || matches!(element, Element::Float32 | Element::Float16 | Element::Bool) {
@@ -36,7 +36,9 @@ impl Quantisation {
             Element::Int8 => -128..=127,
             Element::UInt8 => 0..=255,
             Element::Int32 => 0..=0,
-            other => return Err(Error::unsupported(format!("quantised tensor of {other:?}"))),
+            other => {
+                return Err(Error::unsupported(format!("a quantised tensor of {other:?} is not supported")));
+            }
         };
         let sound = scales.iter().all(|scale| scale.is_finite() && *scale > 0.0)
             && zero_points.iter().all(|zero| range.contains(zero))
@@ -44,15 +46,15 @@ impl Quantisation {
         match axis.filter(|_| sound) {
             Some(axis) => Ok(Some(Self { element, scales, zero_points, axis })),
             None => Err(Error::format(format!(
-                "quantised tensor of {} scales and {} zero points that do not fit",
+                "a quantised tensor has {} scales and {} zero points that do not match",
                 scales.len(),
                 zero_points.len()
             ))),
         }
     }
 
-    /// Scale and zero point as inputs of ONNX's operators; sums have no zero point.
-    fn parameters(&self) -> Result<Vec<Wire>> {
+    /// Returns scale and zero point as inputs of ONNX's operators; sums have no zero point.
+    fn parameters(&self) -> Result<Vec<GraphTensor>> {
         let several = self.scales.len() > 1;
         let dims = if several { vec![self.scales.len()] } else { Vec::new() };
         let zeros = (0..self.scales.len()).map(|i| self.zero_points.get(i).or(self.zero_points.first()));
@@ -64,8 +66,8 @@ impl Quantisation {
         };
         let mut arrays = vec![Array::new(dims.clone(), Data::Float(self.scales.clone()))];
         arrays.extend(zeros.map(|zeros| Array::new(dims, zeros)));
-        let wires = arrays.into_iter().map(|array| array.map(Wire::constant));
-        wires.collect::<Option<_>>().ok_or_else(|| Error::internal("scales of another shape"))
+        let wires = arrays.into_iter().map(|array| array.map(GraphTensor::constant));
+        wires.collect::<Option<_>>().ok_or_else(|| Error::internal("the scales have the wrong shape"))
     }
 
     fn operator(&self, name: &'static str, axis: usize) -> Operator {
@@ -73,43 +75,56 @@ impl Quantisation {
         if self.scales.len() > 1 { operator.int("axis", axis as i64) } else { operator }
     }
 
-    /// The real numbers for which `stored` stands; its axes are the tensor's in the order `axes`.
+    /// Returns the dequantised values of `stored`; its axes are the tensor's in the order `axes`.
     ///
     /// # Errors
     /// `Format` when there is not one scale per position of the axis.
-    pub fn dequantised(&self, ctx: &mut Lowering, name: &str, stored: &Wire, axes: &[usize]) -> Result<Wire> {
+    pub fn dequantised(
+        &self,
+        ctx: &mut Lowering,
+        name: &str,
+        stored: &GraphTensor,
+        axes: &[usize],
+    ) -> Result<GraphTensor> {
         let axis = axes.iter().position(|&axis| axis == self.axis).unwrap_or(0);
         let positions = stored.dims().get(axis).copied().flatten();
         if self.scales.len() > 1 && positions.is_some_and(|count| count != self.scales.len()) {
-            return Err(Error::format(format!("{} scales for {positions:?} positions", self.scales.len())));
+            return Err(Error::format(format!(
+                "{} scales do not match {positions:?} positions",
+                self.scales.len()
+            )));
         }
         let parameters = self.parameters()?;
-        let inputs: Vec<&Wire> = std::iter::once(stored).chain(&parameters).collect();
+        let inputs: Vec<&GraphTensor> = std::iter::once(stored).chain(&parameters).collect();
         let operator = self.operator("DequantizeLinear", axis);
-        ctx.graph.add(name, operator, &inputs, Kind::Float, stored.dims().to_vec())
+        ctx.graph.add(name, operator, &inputs, ElementType::Float, stored.dims().to_vec())
     }
 
-    /// The real numbers nearest to `value` for which there are integers.
+    /// Rounds `value` to the nearest quantised values.
     ///
     /// # Errors
-    /// As [`Quantisation::dequantised`].
+    /// Those of [`Quantisation::dequantised`].
     pub fn rounded(&self, ctx: &mut Lowering, name: &str, value: &Value) -> Result<Value> {
         if self.element == Element::Int32 {
             return Ok(value.clone());
         }
         if self.scales.len() > 1 && self.axis >= value.rank() {
-            return Err(Error::format(format!("scales on axis {} of rank {}", self.axis, value.rank())));
+            return Err(Error::format(format!(
+                "scales on axis {} do not match rank {}",
+                self.axis,
+                value.rank()
+            )));
         }
         let parameters = self.parameters()?;
-        let inputs: Vec<&Wire> = std::iter::once(&value.wire).chain(&parameters).collect();
+        let inputs: Vec<&GraphTensor> = std::iter::once(&value.wire).chain(&parameters).collect();
         let operator = self.operator("QuantizeLinear", value.order.stored(self.axis));
         let dims = value.wire.dims().to_vec();
-        let stored = ctx.graph.add(name, operator, &inputs, Kind::Int, dims)?;
+        let stored = ctx.graph.add(name, operator, &inputs, ElementType::Int, dims)?;
         let wire = self.dequantised(ctx, name, &stored, value.order.axes())?;
         Ok(Value::new(wire, value.order.clone()))
     }
 
-    /// Whether rounding also does what this activation does: the integers end where it cuts off.
+    /// Returns whether the limits of the integers already have the effect of this activation.
     pub fn includes(&self, activation: &str) -> bool {
         let (low, high) = match self.element {
             Element::Int8 => (-128, 127),

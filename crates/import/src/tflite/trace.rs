@@ -1,31 +1,27 @@
-//! Goes through the operators in their order and writes those that the outputs need.
+//! The graph under construction.
 
 use opendr_engine::{Error, Result, ResultExt};
-use opendr_onnx::{Kind, Operator, Wire};
+use opendr_onnx::{ElementType, GraphTensor, Operator};
 
 use super::model::{Model, Node};
-use super::names::name;
-use super::operator::{Step, step};
+use super::step::missing;
 use crate::tensorflow::{Attributes, Call, ImportOptions, Lowering, Order, Value, input, ops};
 
-/// More inputs or outputs than this are no real operator.
-const MAX_PORTS: usize = 4096;
-
-/// The graph written so far and what it says of the model's tensors.
+/// The graph under construction, with the tensors of the model.
 pub struct Trace<'m, 'a, 'f> {
-    model: &'m Model<'a, 'f>,
-    /// The graph written so far.
+    pub(super) model: &'m Model<'a, 'f>,
+    /// The graph under construction.
     pub lowering: Lowering,
-    /// Tensors that are known by now.
+    /// Converted tensors.
     values: Vec<Option<Value>>,
-    /// Elements of constants as they are stored.
-    constants: Vec<Option<Wire>>,
-    /// Tensors that are constants under another name.
+    /// Elements of constants in stored form.
+    constants: Vec<Option<GraphTensor>>,
+    /// Tensors that are copies of constants.
     same: Vec<Option<usize>>,
 }
 
 impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
-    /// A trace that knows the inputs.
+    /// Creates a trace with the model's inputs.
     ///
     /// # Errors
     /// `Unsupported` for an input of strings.
@@ -41,51 +37,13 @@ impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
         for &index in &model.inputs {
             let tensor = &model.tensors[index];
             let kind = match &tensor.quantisation {
-                Some(_) => Kind::Float,
+                Some(_) => ElementType::Float,
                 None => tensor.element.kind().context(|| format!("reading input {:?}", tensor.name))?,
             };
             let value = input(&mut trace.lowering, options, tensor.port(), kind, &tensor.dims);
             trace.define(index, value)?;
         }
         Ok(trace)
-    }
-
-    /// Writes what these tensors need.
-    ///
-    /// # Errors
-    /// `Format` where operators are not in order, and whatever writing an operator gives.
-    pub fn write(&mut self, outputs: &[usize]) -> Result<Vec<Value>> {
-        let needed = needed(self.model, outputs)?;
-        for (number, node) in self.model.operators.iter().enumerate().filter(|(number, _)| needed[*number]) {
-            let name = node.outputs.first().map_or("", |&output| self.model.tensors[output].name);
-            let at = || format!("importing operator {number} ({}), which makes {name:?}", described(node));
-            self.lower(node, name).context(at)?;
-        }
-        outputs.iter().map(|&output| self.value(output)).collect()
-    }
-
-    fn lower(&mut self, node: &Node<'a, 'f>, name: &str) -> Result<()> {
-        let Step { op, attr, inputs, activation } = step(self, node)?;
-        let made = if op.is_empty() { inputs } else { self.call(name, op, &attr, inputs)? };
-        if made.len() < node.outputs.len() {
-            return Err(Error::format(format!(
-                "it makes {} tensors, not {}",
-                made.len(),
-                node.outputs.len()
-            )));
-        }
-        for (&output, mut value) in node.outputs.iter().zip(made) {
-            let quantisation = self.model.tensors[output].quantisation.as_ref();
-            if let Some(activation) = activation
-                && !quantisation.is_some_and(|quantisation| quantisation.includes(activation))
-            {
-                let active = self.call(name, activation, &Attributes::default(), vec![value])?;
-                value =
-                    active.into_iter().next().ok_or_else(|| Error::internal("activation without output"))?;
-            }
-            self.define(output, value)?;
-        }
-        Ok(())
     }
 
     /// Writes TensorFlow's operator `op`.
@@ -100,14 +58,14 @@ impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
         lower(&mut self.lowering, &Call::new(name, op, attr, inputs))
     }
 
-    /// Sets a tensor that has been computed; quantised ones take the values that their integers have.
-    fn define(&mut self, index: usize, value: Value) -> Result<()> {
+    /// Sets a computed tensor; quantised ones are rounded to the values of their integers.
+    pub(super) fn define(&mut self, index: usize, value: Value) -> Result<()> {
         let tensor = &self.model.tensors[index];
         if self.values[index].is_some() || tensor.is_constant() {
-            return Err(Error::format(format!("tensor {:?} is made twice", tensor.name)));
+            return Err(Error::format(format!("tensor {:?} is produced twice", tensor.name)));
         }
         let value = match &tensor.quantisation {
-            Some(quantisation) if value.kind() == Kind::Float => {
+            Some(quantisation) if value.kind() == ElementType::Float => {
                 quantisation.rounded(&mut self.lowering, tensor.name, &value)?
             }
             _ => value,
@@ -116,17 +74,17 @@ impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
         Ok(())
     }
 
-    /// Tensor `copy` has the elements of the constant `original`, real numbers for quantised ones.
+    /// Records that tensor `copy` has the elements of the constant `original`, dequantised where it is quantised.
     pub fn note_same(&mut self, copy: usize, original: usize) {
         if self.model.tensors[original].is_constant() {
             self.same[copy] = Some(original);
         }
     }
 
-    /// The tensor; constants are read when first asked for.
+    /// Returns a tensor; constants are decoded on first use.
     ///
     /// # Errors
-    /// `Format` when nothing has made it.
+    /// `Format` when no operator has produced it.
     pub fn value(&mut self, index: usize) -> Result<Value> {
         if let Some(value) = &self.values[index] {
             return Ok(value.clone());
@@ -137,16 +95,31 @@ impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
         Ok(value)
     }
 
-    /// A weight of which TensorFlow's axis `i` is axis `axes[i]` here. TensorFlow's axes of a constant are stored in the
-    /// order given, even of a quantised one.
+    /// Returns an optional input.
+    pub fn optional(&mut self, node: &Node, index: usize) -> Result<Option<Value>> {
+        node.inputs.get(index).copied().flatten().map(|tensor| self.value(tensor)).transpose()
+    }
+
+    /// Returns a required input.
+    pub fn input(&mut self, node: &Node, index: usize) -> Result<Value> {
+        self.optional(node, index)?.ok_or_else(|| missing(node, index))
+    }
+
+    /// Returns all inputs, which are required.
+    pub fn inputs(&mut self, node: &Node) -> Result<Vec<Value>> {
+        (0..node.inputs.len()).map(|index| self.input(node, index)).collect()
+    }
+
+    /// Returns a weight of which TensorFlow's axis `i` is axis `axes[i]`. The axes of a constant, quantised or not,
+    /// are stored in the order `stored`.
     ///
     /// # Errors
-    /// As [`Trace::value`]; `Format` when it has another rank.
+    /// Those of [`Trace::value`]; `Format` when it has another rank.
     pub fn weight(&mut self, index: usize, axes: &[usize], stored: &Order) -> Result<Value> {
         let index = self.same[index].unwrap_or(index);
         let rank = self.model.tensors[index].dims.len();
         if rank != axes.len() {
-            return Err(Error::format(format!("weights of rank {rank}, not {}", axes.len())));
+            return Err(Error::format(format!("the weights have rank {rank} instead of {}", axes.len())));
         }
         if !self.model.tensors[index].is_constant() {
             let value = self.value(index)?;
@@ -156,18 +129,18 @@ impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
         Ok(Value::new(self.constant(index, own)?, stored.clone()))
     }
 
-    /// The elements of a constant, its axes in the order given.
-    fn constant(&mut self, index: usize, axes: Vec<usize>) -> Result<Wire> {
+    /// Returns the elements of a constant, with its axes in the given order.
+    fn constant(&mut self, index: usize, axes: Vec<usize>) -> Result<GraphTensor> {
         let tensor = &self.model.tensors[index];
         if !tensor.is_constant() {
             return Err(Error::format(format!(
-                "tensor {:?} is needed but nothing before makes it; get the file anew",
+                "tensor {:?} is needed, but no preceding operator produces it; download the file again",
                 tensor.name
             )));
         }
         let wire = match &self.constants[index] {
             Some(wire) => wire.clone(),
-            None => Wire::named_constant(tensor.name, tensor.array()?),
+            None => GraphTensor::named_constant(tensor.name, tensor.array()?),
         };
         self.constants[index] = Some(wire.clone());
         let stored = match axes.is_sorted() {
@@ -176,7 +149,7 @@ impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
                 let transpose = Operator::new("Transpose").ints("perm", axes.iter().map(|&axis| axis as i64));
                 let dims = axes.iter().map(|&axis| wire.dims()[axis]).collect();
                 let moved = self.lowering.graph.add(tensor.name, transpose, &[&wire], wire.kind(), dims)?;
-                moved.array().cloned().map_or(moved, |array| Wire::named_constant(tensor.name, array))
+                moved.array().cloned().map_or(moved, |array| GraphTensor::named_constant(tensor.name, array))
             }
         };
         match &tensor.quantisation {
@@ -185,36 +158,8 @@ impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
         }
     }
 
-    /// The model that is being written.
+    /// Returns the model that is converted.
     pub fn model(&self) -> &'m Model<'a, 'f> {
         self.model
-    }
-}
-
-/// Which operators these tensors need, found from the last to the first: operators stand in the order in which they run.
-fn needed(model: &Model, outputs: &[usize]) -> Result<Vec<bool>> {
-    let mut wanted = vec![false; model.tensors.len()];
-    outputs.iter().for_each(|&output| wanted[output] = true);
-    let mut needed = vec![false; model.operators.len()];
-    for (number, node) in model.operators.iter().enumerate().rev() {
-        if node.inputs.len().max(node.outputs.len()) > MAX_PORTS {
-            return Err(Error::format(format!(
-                "an operator of {} inputs and {} outputs; the file is damaged or hostile",
-                node.inputs.len(),
-                node.outputs.len()
-            )));
-        }
-        if node.outputs.iter().any(|&output| wanted[output]) {
-            needed[number] = true;
-            node.inputs.iter().flatten().for_each(|&input| wanted[input] = true);
-        }
-    }
-    Ok(needed)
-}
-
-fn described(node: &Node) -> String {
-    match node.custom {
-        "" => name(node.code).map_or_else(|| format!("number {}", node.code), str::to_owned),
-        custom => format!("custom operator {custom}"),
     }
 }

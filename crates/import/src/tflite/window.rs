@@ -1,22 +1,22 @@
-//! Parameters of convolutions and pools in TensorFlow's terms.
+//! Mapping of window parameters to TensorFlow's.
 
 use opendr_engine::{Error, Result};
 
 use super::options::Options;
 use crate::tensorflow::{Attribute, Attributes};
 
-/// Which fields of a table hold the parameters of a window; padding and strides come first in all of them.
+/// Fields of a table with the parameters of a window; padding and strides come first in all of them.
 pub struct Fields {
-    /// Width, then height.
+    /// Field of the width; the height follows.
     pub dilation: Option<usize>,
-    /// Width, then height.
+    /// Field of the width; the height follows.
     pub kernel: Option<usize>,
 }
 
 /// Reads the parameters of a window.
 ///
 /// # Errors
-/// `Format` when they are outside of the file, `Unsupported` for a padding that is not known.
+/// `Format` when they are outside the file, `Unsupported` for an unknown padding mode.
 pub fn window(options: &Options, fields: &Fields) -> Result<Attributes> {
     let padding = padding(options.byte(0)?)?;
     let pair = |first: Option<usize>| -> Result<Attribute> {
@@ -30,19 +30,19 @@ pub fn window(options: &Options, fields: &Fields) -> Result<Attributes> {
         .with("ksize", pair(fields.kernel)?))
 }
 
-/// TensorFlow's name of a padding by TensorFlow Lite's number.
+/// Returns TensorFlow's name of a padding mode by TensorFlow Lite's number.
 ///
 /// # Errors
-/// `Unsupported` for a number that is not known.
+/// `Unsupported` for an unknown number.
 pub fn padding(number: u8) -> Result<Attribute> {
     match number {
         0 => Ok(Attribute::Text("SAME".to_owned())),
         1 => Ok(Attribute::Text("VALID".to_owned())),
-        other => Err(Error::unsupported(format!("padding number {other}"))),
+        other => Err(Error::unsupported(format!("unsupported padding {other}"))),
     }
 }
 
-/// A parameter of height and width as a list with one number per axis.
+/// Returns height and width as a list with one number per axis.
 pub fn four(height: i32, width: i32) -> Attribute {
     Attribute::Ints(vec![1, height.into(), width.into(), 1])
 }

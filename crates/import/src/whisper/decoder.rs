@@ -1,33 +1,33 @@
-//! From tokens to the next one.
+//! The decoder: logits of the next token.
 
 use opendr_engine::Result;
 use opendr_onnx::proto::GraphProto;
-use opendr_onnx::{Kind, Operator, Wire};
+use opendr_onnx::{ElementType, GraphTensor, Operator};
 
 use super::layers::Layers;
-use super::sizes::{CONTEXT, PLACES, Sizes};
-use super::{HEAD, WhisperWeights};
+use super::sizes::{CONTEXT, HEAD, PLACES, Sizes};
+use super::weights::WhisperWeights;
 
-/// The graph of [`super::WhisperOnnx::decoder`].
+/// Returns the graph of [`super::WhisperOnnx::decoder`].
 pub fn graph(weights: &dyn WhisperWeights, sizes: &Sizes) -> Result<GraphProto> {
     let &Sizes { width, inner, tokens: count, .. } = sizes;
     let mut layers = Layers::new(weights, width, inner);
-    let tokens = layers.graph.input("tokens", Kind::Int, vec![None], &["tokens"]);
-    let positions = layers.graph.input("positions", Kind::Int, vec![None], &["tokens"]);
-    let mask = layers.graph.input("mask", Kind::Float, vec![None, None], &["tokens", "attended"]);
+    let tokens = layers.graph.input("tokens", ElementType::Int, vec![None], &["tokens"]);
+    let positions = layers.graph.input("positions", ElementType::Int, vec![None], &["tokens"]);
+    let mask = layers.graph.input("mask", ElementType::Float, vec![None, None], &["tokens", "attended"]);
     let heads = width / HEAD;
     let (mut past, mut cross) = (Vec::new(), Vec::new());
     for layer in 0..sizes.decoder_layers {
         past.push(["key", "value"].map(|name| {
             let dims = vec![None, Some(width)];
-            layers.graph.input(&format!("{name}_{layer}"), Kind::Float, dims, &["remembered"])
+            layers.graph.input(&format!("{name}_{layer}"), ElementType::Float, dims, &["remembered"])
         }));
     }
     for layer in 0..sizes.decoder_layers {
         let shapes = [("cross_key", [heads, HEAD, PLACES]), ("cross_value", [heads, PLACES, HEAD])];
         cross.push(shapes.map(|(name, dims)| {
             let dims = dims.map(Some).to_vec();
-            layers.graph.input(&format!("{name}_{layer}"), Kind::Float, dims, &[])
+            layers.graph.input(&format!("{name}_{layer}"), ElementType::Float, dims, &[])
         }));
     }
     let embeddings = layers.weight("decoder.embed_tokens.weight", &[count, width])?;
@@ -59,11 +59,12 @@ pub fn graph(weights: &dyn WhisperWeights, sizes: &Sizes) -> Result<GraphProto> 
         places = layers.sum(&places, &found)?;
         places = layers.dense(&block, &places)?;
     }
-    let (from, to, axis) = (Wire::ints([-1]), Wire::ints([i64::from(i32::MAX)]), Wire::ints([0]));
+    let (from, to, axis) =
+        (GraphTensor::ints([-1]), GraphTensor::ints([i64::from(i32::MAX)]), GraphTensor::ints([0]));
     let last = vec![Some(1), Some(width)];
     let last = layers.add("last", Operator::new("Slice"), &[&places, &from, &to, &axis], last)?;
     let last = layers.norm("decoder.layer_norm", &last)?;
-    // The words' own embeddings are what the end is compared with.
+    // The output layer shares the weights of the token embeddings.
     let product = Operator::new("Gemm").int("transB", 1);
     let logits = layers.add("logits", product, &[&last, &embeddings], vec![Some(1), Some(count)])?;
     layers.graph.output("logits", &logits, "", &[])?;
@@ -74,8 +75,8 @@ pub fn graph(weights: &dyn WhisperWeights, sizes: &Sizes) -> Result<GraphProto> 
     Ok(layers.graph.finish("whisper_decoder"))
 }
 
-/// What is remembered, and what is new behind it.
-fn remembered(layers: &mut Layers<'_>, past: &Wire, new: &Wire) -> Result<Wire> {
+/// Returns the cached keys or values followed by the new ones.
+fn remembered(layers: &mut Layers<'_>, past: &GraphTensor, new: &GraphTensor) -> Result<GraphTensor> {
     let width = new.dims().last().copied().flatten();
     layers.add("own", Operator::new("Concat").int("axis", 0), &[past, new], vec![None, width])
 }

@@ -1,18 +1,18 @@
-//! From a spectrogram to what the decoder attends to.
+//! The encoder: keys and values for the decoder's cross-attention, from a spectrogram.
 
 use opendr_engine::Result;
 use opendr_onnx::proto::GraphProto;
-use opendr_onnx::{Kind, Operator, Wire};
+use opendr_onnx::{ElementType, GraphTensor, Operator};
 
-use super::WhisperWeights;
 use super::layers::Layers;
 use super::sizes::{FRAMES, PLACES, Sizes};
+use super::weights::WhisperWeights;
 
-/// The graph of [`super::WhisperOnnx::encoder`].
+/// Returns the graph of [`super::WhisperOnnx::encoder`].
 pub fn graph(weights: &dyn WhisperWeights, sizes: &Sizes) -> Result<GraphProto> {
     let &Sizes { bands, width, inner, .. } = sizes;
     let mut layers = Layers::new(weights, width, inner);
-    let mel = layers.graph.input("mel", Kind::Float, vec![Some(1), Some(bands), Some(FRAMES)], &[]);
+    let mel = layers.graph.input("mel", ElementType::Float, vec![Some(1), Some(bands), Some(FRAMES)], &[]);
     let mut places = convolutions(&mut layers, &mel, bands, width)?;
     for layer in 0..sizes.encoder_layers {
         let block = format!("encoder.layers.{layer}");
@@ -40,8 +40,13 @@ pub fn graph(weights: &dyn WhisperWeights, sizes: &Sizes) -> Result<GraphProto> 
     Ok(layers.graph.finish("whisper_encoder"))
 }
 
-/// Two convolutions, of which the second halves the number of places, and the places' encodings.
-fn convolutions(layers: &mut Layers<'_>, mel: &Wire, bands: usize, width: usize) -> Result<Wire> {
+/// Writes two convolutions, of which the second halves the number of positions, and adds the position encodings.
+fn convolutions(
+    layers: &mut Layers<'_>,
+    mel: &GraphTensor,
+    bands: usize,
+    width: usize,
+) -> Result<GraphTensor> {
     let mut features = mel.clone();
     for (name, channels, stride, places) in
         [("encoder.conv1", bands, 1, FRAMES), ("encoder.conv2", width, 2, PLACES)]
@@ -58,7 +63,7 @@ fn convolutions(layers: &mut Layers<'_>, mel: &Wire, bands: usize, width: usize)
         features = layers.add(name, operator, &[&features, &weight, &bias], dims)?;
         features = layers.gelu(&features)?;
     }
-    let shape = Wire::ints([width as i64, -1]);
+    let shape = GraphTensor::ints([width as i64, -1]);
     let dims = vec![Some(width), Some(PLACES)];
     let features = layers.add("places", Operator::new("Reshape"), &[&features, &shape], dims)?;
     let order = Operator::new("Transpose").ints("perm", [1, 0]);

@@ -1,6 +1,6 @@
-//! A Whisper that PyTorch exported to ONNX, as Hugging Face's Optimum writes it.
+//! Import of a Whisper that PyTorch exported to ONNX, in the form of Hugging Face's Optimum.
 //!
-//! Networks of other programs pass around their memory in ways of their own; of these files only the weights are taken, by the
+//! Exporters differ in how a network passes its cache, so only the weights of these files are used, found by the
 //! names that PyTorch's exporter gives weights and, where it transposed them for a product, nodes.
 
 use std::collections::HashMap;
@@ -12,20 +12,20 @@ use opendr_onnx::{Array, Data, FloatType, model_from_bytes};
 use super::sizes::PLACES;
 use super::{WhisperOnnx, WhisperWeights, onnx_from_whisper};
 
-/// What every such encoder has, and no encoder of ours.
+/// A name that every exported encoder contains, and no encoder built here.
 const MARK: &[u8] = b"/self_attn/q_proj/MatMul";
 
-/// Whether a file is, by a name in it, half of a Whisper that PyTorch exported.
+/// Returns whether a file is, by a name in it, one of the networks of a Whisper that PyTorch exported.
 pub fn is_exported_whisper(model: &[u8]) -> bool {
     model.windows(MARK.len()).any(|bytes| bytes == MARK)
 }
 
-/// Turns the `encoder_model.onnx` and `decoder_model.onnx` of a Whisper that PyTorch exported, e.g. by Hugging Face's Optimum, into
-/// the networks that the learner runs. A `decoder_model_merged.onnx` will do, a quantised one will not. Weights of 16 bits
-/// stay so.
+/// Converts the `encoder_model.onnx` and `decoder_model.onnx` of a Whisper that PyTorch exported, e.g. with Hugging
+/// Face's Optimum, to the networks of [`WhisperOnnx`]. A `decoder_model_merged.onnx` is supported, a quantised one is
+/// not. Weights of 16 bits keep their type.
 ///
 /// # Errors
-/// `Format` for damaged files, `Unsupported` for those that have not the weights of a Whisper.
+/// `Format` for damaged files, `Unsupported` for those without Whisper's weights.
 pub fn whisper_from_onnx(encoder: &[u8], decoder: &[u8]) -> Result<WhisperOnnx> {
     let [encoder, decoder] = [("the encoder", encoder), ("the decoder", decoder)]
         .map(|(what, bytes)| Side::read(bytes).context(|| what.to_owned()));
@@ -41,9 +41,9 @@ struct Weights {
 /// The weights of a file.
 struct Side {
     tensors: Vec<TensorProto>,
-    /// Which tensor a name stands for; some stand for the same.
+    /// Tensor index by name; several names may share a tensor.
     names: HashMap<String, usize>,
-    /// The module of each product with a weight, e.g. `/layers.0/fc1`, and what its input is multiplied with.
+    /// The module of each product with a weight, e.g. `/layers.0/fc1`, and the index of the weight.
     products: Vec<(String, usize)>,
 }
 
@@ -52,7 +52,7 @@ impl Side {
         let mut side = Self { tensors: Vec::new(), names: HashMap::new(), products: Vec::new() };
         let mut graphs: Vec<GraphProto> = model_from_bytes(bytes)?.graph.into_iter().collect();
         let mut at = 0;
-        // A merged decoder has its two ways in graphs within the graph.
+        // A merged decoder has its two branches in subgraphs.
         while let Some(graph) = graphs.get_mut(at) {
             let (initializers, mut nodes) =
                 (std::mem::take(&mut graph.initializer), std::mem::take(&mut graph.node));
@@ -98,7 +98,7 @@ impl Side {
         }
     }
 
-    /// The tensor called `name`, perhaps within other modules.
+    /// Returns the tensor called `name`, also within other modules.
     fn named(&self, name: &str) -> Option<&TensorProto> {
         let is_meant = |other: &str| {
             other.strip_suffix(name).is_some_and(|before| before.is_empty() || before.ends_with('.'))
@@ -113,7 +113,7 @@ impl Side {
         self.tensors.get(*at)
     }
 
-    /// What the module called `name` multiplies with: the transposed weight of a dense layer.
+    /// Returns the factor of the module called `name`: the transposed weight of a dense layer.
     fn factor(&self, name: &str) -> Option<&TensorProto> {
         // Lists of modules keep their dot: `layers.0`.
         let path = format!("/{}", name.replace('.', "/").replace("layers/", "layers."));
@@ -121,7 +121,7 @@ impl Side {
         self.tensors.get(*at)
     }
 
-    /// The encoder's positions, which the exporter adds under a name of its own.
+    /// Returns the encoder's position encodings, which the exporter stores under a name of its own.
     fn places(&self) -> Option<&TensorProto> {
         let is_places = |tensor: &&TensorProto| matches!(tensor.dims[..], [rows, _] if rows == PLACES as i64);
         self.tensors.iter().find(is_places)
@@ -129,7 +129,7 @@ impl Side {
 }
 
 impl Weights {
-    /// The tensor of a weight, and whether it is transposed.
+    /// Returns the tensor of a weight, and whether it is transposed.
     fn find(&self, name: &str) -> Option<(&TensorProto, bool)> {
         let (side, rest) = name.split_once('.')?;
         let side = if side == "encoder" { &self.encoder } else { &self.decoder };
@@ -151,39 +151,41 @@ impl WhisperWeights for Weights {
     fn get(&self, name: &str) -> Result<Array> {
         let (tensor, is_transposed) = self.find(name).ok_or_else(|| {
             Error::unsupported(format!(
-                "no weight \"{name:.80}\", so it is no Whisper as PyTorch exports it, or a quantised one; give encoder_model.onnx, \
-                 then decoder_model.onnx, or the model.safetensors that they were made of"
+                "the weight \"{name:.80}\" is missing: not a Whisper exported by PyTorch, or a quantised one; pass encoder_model.onnx, \
+                 then decoder_model.onnx, or the original model.safetensors"
             ))
         })?;
         let array = match DataType::try_from(tensor.data_type) {
             Ok(DataType::Float16) => {
                 let dims: Option<Vec<usize>> =
                     tensor.dims.iter().map(|dim| usize::try_from(*dim).ok()).collect();
-                dims.and_then(|dims| Array::new(dims, Data::Float(FloatType::F16.numbers(&tensor.raw_data))))
+                dims.and_then(|dims| Array::new(dims, Data::Float(FloatType::F16.decode(&tensor.raw_data))))
             }
             _ => Array::from_tensor(tensor),
         };
         let array = array.ok_or_else(|| {
             Error::unsupported(format!(
-                "the weight \"{name:.80}\" does not lie in the file, or not as floats; export in one file, not quantised"
+                "the weight \"{name:.80}\" is not in the file, or not stored as floats; export to one file, not quantised"
             ))
         })?;
         let floats = array.as_floats().filter(|floats| floats.iter().all(|value| value.is_finite()));
         let Some(floats) = floats else {
-            return Err(Error::format(format!("{name:?} holds what is no number; get the file anew")));
+            return Err(Error::format(format!("{name:?} contains NaN or infinity; download the file again")));
         };
         match array.dims() {
             &[rows, columns] if is_transposed => {
                 let turned = (0..columns).flat_map(|column| (0..rows).map(move |row| row * columns + column));
                 let turned = turned.map(|at| floats[at]).collect();
                 let array = Array::new(vec![columns, rows], Data::Float(turned));
-                array.ok_or_else(|| Error::internal(format!("{name:?} lost its size when it was turned")))
+                array.ok_or_else(|| {
+                    Error::internal(format!("the size of {name:?} changed when it was transposed"))
+                })
             }
             _ => Ok(array),
         }
     }
 
-    /// Not in the file; all Whispers have one for 64 features.
+    /// The number is not in the file; every Whisper has one head per 64 features.
     fn heads(&self, _: &str) -> Option<usize> {
         None
     }

@@ -1,40 +1,44 @@
-//! How large a Whisper is.
+//! Sizes of a Whisper.
 
 use opendr_engine::{Error, Result};
 
-use super::{HEAD, WhisperWeights};
+use super::weights::WhisperWeights;
 
+/// Features of an attention head, in Whispers of every size.
+pub const HEAD: usize = 64;
 /// Frames of a spectrogram of 30 s.
 pub const FRAMES: usize = 3000;
-/// Places of the encoder: half as many.
+/// Positions of the encoder: half as many.
 pub const PLACES: usize = FRAMES / 2;
-/// Tokens that the decoder can attend to.
+/// Maximum context of the decoder, in tokens.
 pub const CONTEXT: usize = 448;
-/// The largest there is has 32 layers of width 1280.
+/// Limits above the largest Whisper, of 32 layers and width 1280.
 const MOST_LAYERS: usize = 128;
 const MOST_WIDTH: usize = 1 << 14;
 
-/// Sizes of all weights, as they follow from a few.
+/// Sizes from which those of all weights follow.
 pub struct Sizes {
-    /// Bands of the spectrogram.
+    /// Bands of the mel spectrogram.
     pub bands: usize,
-    /// Features of a place.
+    /// Features of a position.
     pub width: usize,
-    /// Features within a block's two dense layers.
+    /// Features within a block's feed-forward network.
     pub inner: usize,
     pub encoder_layers: usize,
     pub decoder_layers: usize,
-    /// Tokens that there are.
+    /// Size of the vocabulary.
     pub tokens: usize,
 }
 
 impl Sizes {
     /// # Errors
-    /// `Format` for sizes that are none of a Whisper.
+    /// `Format` for sizes that are not those of a Whisper.
     pub fn of(weights: &dyn WhisperWeights) -> Result<Self> {
         let two = |name: &str| match weights.get(name)?.dims() {
             &[rows, columns, ..] => Ok((rows, columns)),
-            dims => Err(Error::format(format!("{name} has the shape {dims:?}, which is not Whisper's"))),
+            dims => {
+                Err(Error::format(format!("{name} has the shape {dims:?}, which does not match a Whisper")))
+            }
         };
         let (width, bands) = two("encoder.conv1.weight")?;
         let (tokens, _) = two("decoder.embed_tokens.weight")?;
@@ -66,7 +70,7 @@ impl Sizes {
         match sound {
             true => Ok(sizes),
             false => Err(Error::format(format!(
-                "{bands} bands, width {width}, {layers:?} layers and {context} tokens of context are not Whisper's"
+                "{bands} bands, width {width}, {layers:?} layers and {context} tokens of context do not match a Whisper"
             ))),
         }
     }

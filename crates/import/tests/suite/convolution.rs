@@ -1,4 +1,4 @@
-//! Convolutions, pools and resizes against their definitions.
+//! Convolutions, pooling and resizing against their definitions.
 
 use crate::tiny::{Tiny, conv, convolved_same, fused, noise};
 use serde_json::json;
@@ -132,7 +132,7 @@ fn average_leaves_the_padding_out() {
 }
 
 #[test]
-fn resize_in_each_of_its_meanings() {
+fn resize_in_each_coordinate_mode() {
     let cases: [(&str, bool, bool, [f32; 4]); 6] = [
         ("ResizeBilinear", false, true, [0.0, 1.0, 3.0, 4.0]),
         ("ResizeBilinear", false, false, [0.0, 2.0, 4.0, 4.0]),
@@ -151,14 +151,14 @@ fn resize_in_each_of_its_meanings() {
 }
 
 #[test]
-fn blocks_of_channels_become_pixels() {
+fn depth_to_space_rearranges_channels() {
     let mut model = Tiny::with_input(&[1, 1, 1, 4]);
     model.node("y", "DepthToSpace", &["x"], json!({"block_size": {"i": "2"}})).output("y");
     model.run(&[1, 1, 1, 4], &[1.0, 2.0, 3.0, 4.0])[0].assert_near(&[1, 1, 2, 2], &[1.0, 2.0, 3.0, 4.0]);
 }
 
 #[test]
-fn hard_swish_is_recognised_and_its_rounded_sixth_moves_on() {
+fn hard_swish_is_fused_and_its_factor_folded() {
     let sixth = 0.166_625_98; // 1/6 in half precision
     let mut model = Tiny::with_input(&[1, 1, 4, 1]);
     model.floats("w", &[1, 1, 1, 1], &[2.0]).floats("v", &[1, 1, 1, 1], &[10.0]);

@@ -1,4 +1,4 @@
-//! Damaged and malicious models end in an error that names what is wrong.
+//! Damaged and malicious models cause an error with a precise message.
 
 use crate::tiny::{Tiny, conv, noise};
 use opendr_engine::ErrorKind;
@@ -23,17 +23,17 @@ fn model() -> Tiny {
 fn cycles() {
     let mut model = Tiny::default();
     model.node("a", "Relu", &["b"], json!({})).node("b", "Relu", &["a"], json!({})).output("a");
-    refused(&model, ErrorKind::Format, "need each other");
+    refused(&model, ErrorKind::Format, "form a cycle");
     let mut model = Tiny::default();
     model.node("a", "Relu", &["a"], json!({})).output("a");
-    refused(&model, ErrorKind::Format, "need each other");
+    refused(&model, ErrorKind::Format, "form a cycle");
 }
 
 #[test]
 fn missing_nodes_weights_and_outputs() {
     let mut missing = model();
     missing.node("z", "Relu", &["nowhere"], json!({})).output("z");
-    refused(&missing, ErrorKind::Format, "tensor \"nowhere\" is needed but no node makes it");
+    refused(&missing, ErrorKind::Format, "tensor \"nowhere\" is needed, but no node produces it");
     let mut missing = model();
     missing.node("z", "Relu", &["x:7"], json!({})).output("z");
     refused(&missing, ErrorKind::Format, "node \"x\" (Placeholder) has no output 7");
@@ -42,13 +42,13 @@ fn missing_nodes_weights_and_outputs() {
     refused(&missing, ErrorKind::Format, "the manifest has no such weight");
     let mut missing = model();
     missing.bytes.truncate(20);
-    refused(&missing, ErrorKind::Format, "get the file anew");
+    refused(&missing, ErrorKind::Format, "download the file again");
     let mut missing = model();
     missing.node("z", "Conv2D", &["x"], conv(1, "SAME")).output("z");
     refused(&missing, ErrorKind::Format, "input 1 is needed");
     let mut twice = model();
     twice.node("y", "Relu", &["x"], json!({}));
-    refused(&twice, ErrorKind::Format, "two nodes are called \"y\"");
+    refused(&twice, ErrorKind::Format, "two nodes have the name \"y\"");
 }
 
 #[test]
@@ -80,7 +80,7 @@ fn small_files_cannot_ask_for_much() {
     large.ints("dims", &[2], &[1 << 30, 1 << 30]).ints("one", &[], &[1]);
     large.node("z", "Fill", &["dims", "one"], json!({})).output("z");
     assert!(large.import().unwrap().len() < 1000);
-    // Many constants of 2^23 elements stop being computed.
+    // Many constants of 2^23 elements are no longer folded.
     let mut repeated = Tiny::default();
     repeated.ints("dims", &[2], &[1 << 13, 1 << 10]).floats("one", &[], &[1.0]);
     repeated.node("z0", "Fill", &["dims", "one"], json!({}));
@@ -108,7 +108,7 @@ fn weight_files_stay_in_their_folder() {
 }
 
 #[test]
-fn other_formats_are_told_apart() {
+fn other_formats_are_rejected_with_their_kind() {
     let import = |json: &str| onnx_from_tfjs(json.as_bytes(), &[], &ImportOptions::default()).unwrap_err();
     assert_eq!(import("not json").kind(), ErrorKind::Format);
     assert_eq!(import("{}").kind(), ErrorKind::Format);

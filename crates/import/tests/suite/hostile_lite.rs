@@ -1,4 +1,4 @@
-//! Damaged and malicious TensorFlow Lite models end in an error that names what is wrong.
+//! Damaged and malicious TensorFlow Lite models cause an error with a precise message.
 
 use crate::tiny_lite::{FLOAT32, Field, INT8, Table, TinyLite};
 use opendr_engine::ErrorKind;
@@ -11,7 +11,7 @@ fn refused(model: &TinyLite, kind: ErrorKind, part: &str) {
     assert!(error.as_ref().is_some_and(|error| error.0 == kind && error.1.contains(part)), "{error:?}");
 }
 
-/// A convolution of quantised numbers, a pool, a joint, a slice and a product.
+/// A quantised convolution, a pooling, a concatenation, a slice and a product.
 fn model() -> TinyLite {
     let mut model = TinyLite::default();
     let x = model.input(&[1, 4, 4, 3], INT8);
@@ -39,44 +39,44 @@ fn model() -> TinyLite {
 }
 
 #[test]
-fn what_is_not_there_is_named() {
+fn errors_name_the_missing_part() {
     let mut missing = model();
     missing.operators.remove(1);
-    refused(&missing, ErrorKind::Format, "tensor \"b\" is needed but nothing before makes it");
+    refused(&missing, ErrorKind::Format, "tensor \"b\" is needed, but no preceding operator produces it");
     let mut cycle = model();
     cycle.operators[1] = vec![(0, Field::Int(1)), (1, Field::Ints(vec![4])), (2, Field::Ints(vec![3]))];
-    refused(&cycle, ErrorKind::Format, "is needed but nothing before makes it");
+    refused(&cycle, ErrorKind::Format, "is needed, but no preceding operator produces it");
     let mut twice = model();
     let again = twice.operators[1].clone();
     twice.operators.insert(2, again);
-    refused(&twice, ErrorKind::Format, "made twice");
+    refused(&twice, ErrorKind::Format, "produced twice");
     let mut short = model();
     short.buffers[1].pop();
     refused(&short, ErrorKind::Format, "tensor \"w\" of shape [2, 1, 1, 3] has 5 bytes");
     let mut unknown = model();
     unknown.outputs[0] = 99;
-    refused(&unknown, ErrorKind::Format, "tensor 99 is needed but there are");
+    refused(&unknown, ErrorKind::Format, "tensor 99 is needed, but there are");
     let mut unlisted = model();
     unlisted.codes.pop();
     refused(&unlisted, ErrorKind::Format, "does not list");
     let mut scales = model();
     scales.tensors[1].pop();
     scales.quantise(1, &[0.5, 0.25, 1.0], &[0, 0, 0], 0);
-    refused(&scales, ErrorKind::Format, "3 scales for Some(2) positions");
+    refused(&scales, ErrorKind::Format, "3 scales do not match Some(2) positions");
     let mut nan = model();
     nan.tensors[1].pop();
     nan.quantise(1, &[f32::NAN], &[0], 0);
-    refused(&nan, ErrorKind::Format, "do not fit");
+    refused(&nan, ErrorKind::Format, "do not match");
 }
 
 #[test]
 fn sparse_weights_are_refused() {
     let mut sparse = model();
     sparse.tensors[1].push((6, Field::Table(Vec::new())));
-    refused(&sparse, ErrorKind::Unsupported, "take a model with dense weights");
+    refused(&sparse, ErrorKind::Unsupported, "use a model with dense weights");
     let mut densify = model();
     densify.codes[1] = 124;
-    refused(&densify, ErrorKind::Unsupported, "take a model with dense weights");
+    refused(&densify, ErrorKind::Unsupported, "use a model with dense weights");
 }
 
 #[test]
@@ -96,7 +96,7 @@ fn small_files_cannot_ask_for_much() {
         last = next;
     }
     axes.outputs.push(last);
-    refused(&axes, ErrorKind::Format, "57 axes, more than the 32 allowed");
+    refused(&axes, ErrorKind::Format, "57 axes exceed the limit of 32");
     // One buffer of a megabyte for a thousand tensors, by all of which the file would take a gigabyte.
     let mut shared = TinyLite::default();
     let x = shared.input(&[1 << 18], FLOAT32);
@@ -110,7 +110,7 @@ fn small_files_cannot_ask_for_much() {
         sum = next;
     }
     shared.outputs.push(sum);
-    refused(&shared, ErrorKind::Format, "again and again");
+    refused(&shared, ErrorKind::Format, "too many times");
 }
 
 /// Every byte and every word of the file damaged, and the file cut off everywhere: no panic.

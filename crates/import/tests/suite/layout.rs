@@ -1,10 +1,10 @@
-//! Channels-last graphs come out channels-first, with the values where TensorFlow has them.
+//! Channels-last graphs become channels-first, with the same values.
 
 use crate::tiny::{Tiny, conv, noise};
 use opendr_import::{ImportOptions, onnx_from_tfjs};
 use serde_json::{Value as Json, json};
 
-/// A model whose input goes through a convolution that changes nothing, so that it is stored channels-first.
+/// A model whose input passes an identity convolution, so that it is stored channels-first.
 fn stored_channels_first(height: i64, width: i64, channels: usize) -> Tiny {
     let mut model = Tiny::with_input(&[1, height, width, 3]);
     let mut identity = vec![0.0; 3 * channels];
@@ -120,7 +120,7 @@ fn shapes_are_those_of_tensorflow() {
 }
 
 #[test]
-fn images_stay_images_and_vectors_vectors() {
+fn image_outputs_are_channels_first_and_vectors_unchanged() {
     let mut model = stored_channels_first(2, 2, 1);
     model.ints("image", &[2], &[1, 2]);
     model.node("mask", "Sigmoid", &["map"], NONE()).output("mask");

@@ -1,4 +1,4 @@
-//! TensorFlow Lite models compute what their operators say, quantised ones to the last integer.
+//! TensorFlow Lite models compute what their operators define, quantised ones to the last integer.
 
 use crate::tiny::{convolved_same, noise, run};
 use crate::tiny_lite::{FLOAT16, FLOAT32, Field, INT8, INT32, TinyLite, UINT8, raw};
@@ -9,12 +9,12 @@ fn operators(model: &TinyLite) -> Vec<String> {
     model.graph().node.into_iter().map(|node| node.op_type).collect()
 }
 
-/// `SAME` padding, that stride, an activation in field `activation`.
+/// `SAME` padding, the given stride, an activation in field `activation`.
 fn window(stride: i32, activation: (usize, u8)) -> Vec<(usize, Field)> {
     vec![(1, Field::Int(stride)), (2, Field::Int(stride)), (activation.0, Field::Byte(activation.1))]
 }
 
-/// A filter in TensorFlow's order (height, width, input, output) as TensorFlow Lite has it: output first.
+/// Converts a filter from TensorFlow's order (height, width, input, output) to TensorFlow Lite's: output first.
 fn output_first(w: &[f32], outputs: usize) -> Vec<f32> {
     (0..outputs).flat_map(|output| w.iter().skip(output).step_by(outputs).copied()).collect()
 }
@@ -78,7 +78,7 @@ fn a_product_may_keep_the_axes_in_front() {
 }
 
 #[test]
-fn rows_are_brought_to_length_one() {
+fn rows_are_l2_normalised() {
     let mut model = TinyLite::default();
     let x = model.input(&[2, 2], FLOAT32);
     let y = model.tensor("y", &[2, 2], FLOAT32);
@@ -86,7 +86,7 @@ fn rows_are_brought_to_length_one() {
     run(model.import(), &[2, 2], &[3.0, -4.0, 0.0, 0.0])[0].assert_near(&[2, 2], &[0.6, -0.8, 0.0, 0.0]);
 }
 
-/// An image of bytes, weights with a scale per filter, a result of bytes that stops at zero.
+/// An image of bytes, weights with a scale per filter, and a result of bytes with a lower limit of zero.
 fn quantised() -> TinyLite {
     let mut model = TinyLite::default();
     let image = model.input(&[1, 1, 2, 3], UINT8);
@@ -136,7 +136,7 @@ fn quantised_numbers_are_rounded_where_the_original_rounds() {
 }
 
 #[test]
-fn integers_that_stand_for_themselves_stay() {
+fn unquantised_integers_are_unchanged() {
     let mut model = TinyLite::default();
     let x = model.input(&[4], FLOAT32);
     let axis = model.ints("axis", &[1], &[0]);
@@ -159,7 +159,7 @@ fn a_transposed_convolution_with_bias() {
 }
 
 #[test]
-fn what_no_output_needs_is_left_out() {
+fn unneeded_operators_are_omitted() {
     let mut model = TinyLite::default();
     let x = model.input(&[2], FLOAT32);
     let [y, z] = ["y", "z"].map(|name| model.tensor(name, &[2], FLOAT32));
@@ -168,5 +168,5 @@ fn what_no_output_needs_is_left_out() {
     let options = ImportOptions { outputs: vec!["y".to_owned()], ..ImportOptions::default() };
     assert!(onnx_from_tflite(&model.bytes(), &options).is_ok());
     let error = onnx_from_tflite(&model.bytes(), &ImportOptions::default()).unwrap_err().to_string();
-    assert!(error.contains("operator 1 (number 9999), which makes \"z\""), "{error}");
+    assert!(error.contains("operator 1 (number 9999), which produces \"z\""), "{error}");
 }

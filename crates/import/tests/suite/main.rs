@@ -1,4 +1,4 @@
-//! The integration tests of this crate, one program: each program more is linked once more.
+//! Integration tests of this crate in one program, which is linked once.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 

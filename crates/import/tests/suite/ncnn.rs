@@ -1,10 +1,11 @@
-//! ncnn's models compute what their layers say; damaged ones end in an error that names what is wrong.
+//! ncnn models compute what their layers define; damaged ones cause an error with a precise message.
 
 use crate::tiny::run;
 use opendr_engine::ErrorKind;
 use opendr_import::{ImportOptions, onnx_from_ncnn};
 
-/// Layers and weights of a small model: a convolution in halves, depth-wise and dense layers that gate it, a shape.
+/// Layers and weights of a small model: a convolution in half precision, depthwise and dense layers that gate it, a
+/// reshape.
 fn model() -> (String, Vec<u8>) {
     let text = "7767517\n\
         8 9\n\
@@ -19,7 +20,7 @@ fn model() -> (String, Vec<u8>) {
     let mut bin = Vec::new();
     let floats =
         |bin: &mut Vec<u8>, values: &[f32]| values.iter().for_each(|value| bin.extend(value.to_le_bytes()));
-    // 1, -1, 2, 0.5 in halves, and the bias.
+    // 1, -1, 2, 0.5 in half precision, and the bias.
     bin.extend(0x0130_6B47_u32.to_le_bytes());
     bin.extend([0x3c00_u16, 0xbc00, 0x4000, 0x3800].iter().flat_map(|half| half.to_le_bytes()));
     floats(&mut bin, &[0.5, -1.0]);
@@ -34,7 +35,7 @@ fn import(text: &str, bin: &[u8]) -> opendr_engine::Result<Vec<u8>> {
     onnx_from_ncnn(text.as_bytes(), bin, &ImportOptions::default())
 }
 
-/// What the model answers to a picture of two channels, computed here.
+/// The model's expected output for an image of two channels.
 fn wanted(x: &[f32; 12]) -> Vec<f32> {
     let leaky = |value: f32| if value < 0.0 { 0.5 * value } else { value };
     let a: Vec<Vec<f32>> = [([1.0, -1.0], 0.5), ([2.0, 0.5], -1.0)]
@@ -61,18 +62,18 @@ fn wanted(x: &[f32; 12]) -> Vec<f32> {
 }
 
 #[test]
-fn layers_compute_what_they_say() {
+fn layers_compute_the_reference() {
     let (text, bin) = model();
     let x = [1.0, 2.0, -1.0, 0.5, 3.0, 0.0, -1.0, 0.5, 1.5, 1.0, 0.25, 0.75];
     let onnx = import(&text, &bin).unwrap();
     assert_eq!(onnx, import(&text, &bin).unwrap(), "the same bytes");
-    // The runner takes channels last.
+    // The runner expects channels last.
     let pixels: Vec<f32> = (0..12).map(|at| x[at % 2 * 6 + at / 2]).collect();
     run(onnx, &[1, 2, 3, 2], &pixels)[0].assert_near(&[1, 2, 6], &wanted(&x));
 }
 
 #[test]
-fn outputs_are_what_nobody_takes_and_can_be_chosen() {
+fn unread_tensors_are_outputs_and_selectable() {
     let text = "7767517\n3 4\nInput in 0 1 in 0=4 1=1 2=1\nSplit s 1 2 in a b\nUnaryOp u 1 1 a c 0=7\n";
     run(import(text, &[]).unwrap(), &[1, 1, 4, 1], &[0.0; 4])[1].assert_near(&[1, 1, 1, 4], &[1.0; 4]);
     let options = ImportOptions { outputs: vec!["c".into()], ..ImportOptions::default() };
@@ -84,7 +85,7 @@ fn outputs_are_what_nobody_takes_and_can_be_chosen() {
 }
 
 #[test]
-fn what_is_wrong_is_named() {
+fn errors_name_the_cause() {
     let (text, bin) = model();
     let with = |from: &str, to: &str| {
         assert!(text.contains(from), "{from}");
@@ -97,21 +98,25 @@ fn what_is_wrong_is_named() {
         ("0=2 1=1 5=1 6=4", "0=0 1=1 5=1 6=4", "0 filters"),
         ("7=2", "7=0", "groups"),
         ("7=2", "7=3", "groups"),
-        ("1 1 in a", "1 1 nowhere a", "no layer before gives \"nowhere\""),
-        ("1 1 b c", "1 1 b in", "two layers give \"in\""),
+        ("1 1 in a", "1 1 nowhere a", "no preceding layer produces \"nowhere\""),
+        ("1 1 b c", "1 1 b in", "two layers produce \"in\""),
         ("Pooling ", "Polling ", "layer mean (Polling)"),
         ("0=2 2=4 9=1", "0=2 2=6 9=1", "3 columns"),
         ("0=2 2=4 9=1", "0=2 2=4 9=1 8=1", "8 bits"),
         ("1 1 e out 0=-1 1=2", "1 1 e out 0=-5 1=2", "shape"),
         ("1 1 e out 0=-1 1=2", "1 1 e out", "shape"),
-        ("ConvolutionDepthWise dw 1 1 d e 0=2 1=3", "ConvolutionDepthWise dw 1 1 b e 0=2 1=3", "no picture"),
+        (
+            "ConvolutionDepthWise dw 1 1 d e 0=2 1=3",
+            "ConvolutionDepthWise dw 1 1 b e 0=2 1=3",
+            "needs an image",
+        ),
     ];
     for (from, to, part) in cases {
         let error = with(from, to).to_string();
         assert!(error.contains(part), "{to}: {error}");
     }
     assert!(import(&text, &bin[..bin.len() - 1]).unwrap_err().to_string().contains("the weights end"));
-    assert!(import(&text, &[&bin[..], &[0; 4]].concat()).unwrap_err().to_string().contains("no layer takes"));
+    assert!(import(&text, &[&bin[..], &[0; 4]].concat()).unwrap_err().to_string().contains("no layer reads"));
     assert!(onnx_from_ncnn(&[0xff, 0xfe], &bin, &ImportOptions::default()).is_err());
     assert!(import("7767517\n1 1\nInput in 0 1 in\n", &[]).unwrap_err().to_string().contains("no outputs"));
 }

@@ -1,5 +1,5 @@
-//! A tiny Whisper, as CTranslate2 and transformers would write it, becomes two networks that fit each other; damaged files
-//! are refused.
+//! A tiny Whisper in the formats of CTranslate2, transformers and PyTorch becomes two networks that work together;
+//! damaged files are rejected.
 
 use opendr_engine::ErrorKind;
 use opendr_import::{
@@ -15,7 +15,7 @@ const WIDTH: usize = 64;
 const BANDS: usize = 2;
 const TOKENS: usize = 12;
 
-/// Little numbers without a pattern, as `float16`.
+/// Returns small pseudo-random numbers, as `float16`.
 fn halves(count: usize, seed: usize, scale: f32) -> Vec<u8> {
     let number = |at: usize| scale * ((at * 7919 + seed * 104_729) % 2003) as f32 / 1001.5 - scale;
     (0..count).flat_map(|at| opendr_onnx::half_from_float(number(at)).to_le_bytes()).collect()
@@ -105,7 +105,7 @@ fn tiny_file() -> File {
     file
 }
 
-/// The same weights with the names of transformers, without the leading `model.`: names, shapes and numbers.
+/// Returns the same weights with the names of transformers, without the prefix `model.`: names, shapes and numbers.
 fn renamed() -> Vec<(String, Vec<usize>, Vec<u8>)> {
     let names = [
         ("position_encodings/encodings", "embed_positions.weight"),
@@ -139,7 +139,7 @@ fn renamed() -> Vec<(String, Vec<usize>, Vec<u8>)> {
     weights
 }
 
-/// They as transformers saves them.
+/// Returns the weights in the format of transformers.
 fn tiny_safetensors() -> Vec<u8> {
     let (mut header, mut data) = (serde_json::Map::new(), Vec::new());
     for (name, dims, bytes) in renamed() {
@@ -152,8 +152,8 @@ fn tiny_safetensors() -> Vec<u8> {
     [&(header.len() as u64).to_le_bytes(), header.as_slice(), data.as_slice()].concat()
 }
 
-/// They as PyTorch exports one half: weights of dense layers transposed and without their names, the encoder's positions
-/// without theirs; within `inner` graphs of an `If` where that is not 0.
+/// Returns one network in the format of PyTorch's export: weights of dense layers transposed and unnamed, the
+/// encoder's position encodings unnamed; inside `inner` nested graphs of an `If`.
 fn tiny_exported(side: &str, prefix: &str, inner: usize) -> Vec<u8> {
     let mut graph = GraphProto::default();
     for (number, (name, dims, bytes)) in renamed().into_iter().enumerate() {
@@ -183,7 +183,7 @@ fn tiny_exported(side: &str, prefix: &str, inner: usize) -> Vec<u8> {
         } else if name == "encoder.embed_positions.weight" {
             tensor.name = format!("onnx::Add_{number}");
         } else if rest == "layer_norm.bias" {
-            // What is equal is stored once.
+            // Equal tensors are stored once.
             tensor.name = "other".into();
             graph.node.push(NodeProto {
                 op_type: "Identity".into(),
@@ -202,7 +202,7 @@ fn tiny_exported(side: &str, prefix: &str, inner: usize) -> Vec<u8> {
     bytes_from_model(&model_from_graph(graph))
 }
 
-/// Decodes `tokens` in steps of the given sizes; the logits after the last.
+/// Decodes `tokens` in steps of the given sizes; returns the logits after the last.
 fn decoded(networks: &WhisperOnnx, tokens: &[i32], steps: &[usize]) -> Vec<f32> {
     let encoder = Model::load(networks.encoder.clone()).unwrap();
     let decoder = Model::load(networks.decoder.clone()).unwrap();
@@ -247,7 +247,7 @@ fn decoded(networks: &WhisperOnnx, tokens: &[i32], steps: &[usize]) -> Vec<f32> 
 }
 
 #[test]
-fn steps_give_what_all_at_once_gives() {
+fn incremental_decoding_equals_decoding_at_once() {
     let networks = whisper_from_ctranslate2(&tiny()).unwrap();
     let tokens = [3, 1, 4, 1, 5, 9];
     let whole = decoded(&networks, &tokens, &[6]);
@@ -292,7 +292,7 @@ fn other_and_damaged_networks_are_refused() {
         damaged[place] ^= 0x11;
         whisper_from_onnx(&encoder, &damaged).ok();
     }
-    // As a quantised one is stored: there are products, but not of floats.
+    // Stored like a quantised one: there are products, but not of floats.
     let mut model = opendr_onnx::model_from_bytes(&encoder).unwrap();
     for tensor in &mut model.graph.as_mut().unwrap().initializer {
         tensor.data_type = DataType::Int8 as i32;
@@ -335,7 +335,7 @@ fn damage_is_refused_and_never_panics() {
     let mut longer = whole.clone();
     longer.push(0);
     assert_eq!(kind(&longer), Some(ErrorKind::Format));
-    // Names, sizes and types stand between the elements: every byte near a name is changed once.
+    // Names, sizes and types are stored between the elements: every byte near a name is changed once.
     let names: Vec<usize> =
         whole.windows(6).enumerate().filter(|(_, at)| *at == b"coder/").map(|(at, _)| at).collect();
     for place in names.iter().step_by(5).flat_map(|name| name.saturating_sub(4)..name + 60) {

@@ -1,4 +1,4 @@
-//! One model opened by the built-in runtime.
+//! A model opened by the built-in runtime.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -12,17 +12,17 @@ use crate::onnx_header::OnnxHeader;
 use crate::runtime::{Engine, Sink};
 use crate::tensor::{ElementType, TensorData, TensorInfo, TensorView};
 
-/// A model of rten's, with what the ONNX file declares: rten itself knows neither 64-bit integers nor truth values
-/// and carries both as 32-bit integers.
+/// An rten model with the types that the ONNX file declares: rten has neither 64-bit integers nor booleans and
+/// represents both as 32-bit integers.
 pub(super) struct BuiltinEngine {
     model: Model,
     header: OnnxHeader,
     inputs: Vec<NodeId>,
     outputs: Vec<NodeId>,
     threads: Arc<ThreadPool>,
-    /// Inputs that rten takes as 32-bit integers, kept between runs.
+    /// Inputs converted to 32-bit integers; reused between runs.
     narrowed: Vec<Vec<i32>>,
-    /// Outputs that rten gave as 32-bit integers.
+    /// Outputs converted from 32-bit integers.
     widened: Vec<Widened>,
 }
 
@@ -39,7 +39,7 @@ impl BuiltinEngine {
                 .iter()
                 .map(|info| {
                     model.find_node(&info.name).ok_or_else(|| {
-                        Error::format(format!("the graph of the ONNX model does not hold {:?}", info.name))
+                        Error::format(format!("the graph of the ONNX model has no value {:?}", info.name))
                     })
                 })
                 .collect()
@@ -58,9 +58,9 @@ impl BuiltinEngine {
             .map(|((&node, input), narrowed)| Ok((node, value_from_tensor(input, narrowed)?)))
             .collect::<Result<Vec<_>>>()?;
         let options = RunOptions::default().with_thread_pool(Some(Arc::clone(&self.threads)));
-        // An operator of rten that panics on an odd shape must not take the process along.
+        // An operator of rten that panics on an unexpected shape must not end the process.
         catch_unwind(AssertUnwindSafe(|| self.model.run(inputs, &self.outputs, Some(options))))
-            .map_err(|_| Error::internal("the built-in runtime failed; try ONNX Runtime"))?
+            .map_err(|_| Error::internal("the built-in runtime panicked; try ONNX Runtime"))?
             .map_err(|error| Error::internal("the built-in runtime cannot run the model").with_source(error))
     }
 }
@@ -90,7 +90,7 @@ impl Engine for BuiltinEngine {
 }
 
 impl Widened {
-    /// Makes the elements of `value` lie in order, and widens those that rten holds too narrow.
+    /// Makes the elements of `value` contiguous, and converts those that rten holds as 32-bit integers.
     fn fill(&mut self, value: &mut Value, declared: ElementType) {
         match value {
             Value::FloatTensor(tensor) => tensor.make_contiguous(),
@@ -118,7 +118,7 @@ fn narrow(input: &TensorView<'_>, narrowed: &mut Vec<i32>) -> Result<()> {
             for &value in data {
                 narrowed.push(i32::try_from(value).map_err(|_| {
                     Error::unsupported(format!(
-                        "the built-in runtime takes integers of 32 bits, was given {value}; use ONNX Runtime"
+                        "the built-in runtime supports integers of 32 bits, but the input contains {value}; use ONNX Runtime"
                     ))
                 })?);
             }
@@ -138,8 +138,11 @@ fn value_from_tensor<'a>(input: &TensorView<'a>, narrowed: &'a [i32]) -> Result<
         TensorData::U8(data) => ValueView::from_shape(shape, data).ok(),
         TensorData::I8(data) => ValueView::from_shape(shape, data).ok(),
     };
-    view.map(Into::into)
-        .ok_or_else(|| Error::invalid_input(format!("the built-in runtime takes no {input:?}")))
+    view.map(Into::into).ok_or_else(|| {
+        Error::invalid_input(format!(
+            "the built-in runtime does not support the input {input:?}; use ONNX Runtime"
+        ))
+    })
 }
 
 fn tensor_from_value<'a>(
@@ -166,6 +169,6 @@ fn tensor_from_value<'a>(
         _ => None,
     };
     view.unwrap_or_else(|| {
-        Err(Error::internal(format!("the built-in runtime gave {} for output {info}", value.dtype())))
+        Err(Error::internal(format!("the built-in runtime returned {} for output {info}", value.dtype())))
     })
 }

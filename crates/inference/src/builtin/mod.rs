@@ -1,4 +1,4 @@
-//! The built-in runtime: pure Rust (rten), so that a bare binary always works.
+//! The built-in runtime: pure Rust (rten), available without any installed library.
 
 mod engine;
 mod repair;
@@ -15,10 +15,10 @@ use crate::onnx_header::OnnxHeader;
 use crate::runtime::{Engine, Runtime, SessionOptions};
 use engine::BuiltinEngine;
 
-/// The version of rten in the workspace's manifest; rten does not tell it.
+/// Version of rten in the workspace's manifest; rten does not expose it.
 const RTEN_VERSION: &str = "0.27";
 
-/// The built-in runtime. Processor only; two to eight times slower than ONNX Runtime, and always there.
+/// The built-in runtime. Runs on the CPU only, two to eight times slower than ONNX Runtime; always available.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Builtin;
 
@@ -38,7 +38,7 @@ impl Runtime for Builtin {
     fn open(&self, bytes: &[u8], options: &SessionOptions) -> Result<Box<dyn Engine>> {
         if !matches!(options.device, Device::Auto | Device::Cpu) {
             return Err(Error::device(format!(
-                "the built-in runtime has no device {}, only cpu; install ONNX Runtime for others",
+                "the built-in runtime does not support device {}, only cpu; install ONNX Runtime for other devices",
                 options.device
             )));
         }
@@ -47,7 +47,7 @@ impl Runtime for Builtin {
         let model = repair::repaired(bytes)?.into_owned();
         let mut load = ModelOptions::with_all_ops();
         load.prepack_weights(true);
-        // rten checks most of what it reads, not all: what is left panics, and must not take the process along.
+        // rten validates most of its input, not all: the rest panics, and must not end the process.
         let model = catch_unwind(AssertUnwindSafe(|| load.load(model)))
             .map_err(|_| {
                 Error::format("the built-in runtime cannot read the ONNX model: its graph is damaged")

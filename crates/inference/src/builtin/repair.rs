@@ -1,5 +1,5 @@
-//! Rewrites what rten 0.27 gets wrong or refuses in a correct ONNX model, into what means the same: some operators
-//! ([`substitute`]), and lists in attributes, which it takes one by one only and some exporters (burn-onnx) pack.
+//! Rewriting of correct ONNX models that rten 0.27 runs wrongly or rejects: some operators ([`substitute`]), and
+//! packed lists in attributes, which it does not read and some exporters (burn-onnx) write.
 
 use std::borrow::Cow;
 
@@ -8,7 +8,7 @@ use opendr_engine::Result;
 use super::substitute::Weights;
 use crate::protobuf::{Field, Fields, Value, put_bytes, put_varint};
 
-/// The model, rewritten where that is needed. Errors as reading the model's outline does.
+/// Returns the model, rewritten where needed. Returns an error when the structure of the model cannot be read.
 pub(super) fn repaired(model: &[u8]) -> Result<Cow<'_, [u8]>> {
     rewritten(model, |field| match (field.number, field.value) {
         (7, Value::Bytes(graph)) => {
@@ -19,7 +19,8 @@ pub(super) fn repaired(model: &[u8]) -> Result<Cow<'_, [u8]>> {
     })
 }
 
-/// A copy of `message` with each field that `rewrite` gives anew replaced by that; the message itself when none is.
+/// Returns a copy of `message` with each field replaced for which `rewrite` returns a new one; the message itself
+/// when there is none.
 fn rewritten<'a>(
     message: &'a [u8],
     mut rewrite: impl FnMut(&Field<'a>) -> Result<Option<Vec<u8>>>,
@@ -40,7 +41,7 @@ fn rewritten<'a>(
     Ok(out.map_or(Cow::Borrowed(message), Cow::Owned))
 }
 
-/// `rewritten` for a field that holds a message: the whole field, or `None` when nothing changes.
+/// Applies `rewritten` to a field that contains a message: returns the whole field, or `None` when nothing changes.
 fn rewritten_field<'a>(
     number: u64,
     message: &'a [u8],
@@ -72,7 +73,7 @@ fn rewritten_graph(graph: &[u8], weights: &Weights<'_>) -> Result<Option<Vec<u8>
     })
 }
 
-/// The node with the lists in its attributes written one by one.
+/// Returns the node with unpacked lists in its attributes.
 fn unpacked_node(node: &[u8]) -> Result<Cow<'_, [u8]>> {
     rewritten(node, |field| match (field.number, field.value) {
         (5, Value::Bytes(attribute)) => rewritten_field(5, attribute, |field| Ok(unpacked(field))),
@@ -80,7 +81,7 @@ fn unpacked_node(node: &[u8]) -> Result<Cow<'_, [u8]>> {
     })
 }
 
-/// A packed list of an attribute (7: floats, 8: integers), one by one.
+/// Unpacks a packed list of an attribute (7: floats, 8: integers).
 fn unpacked(field: &Field<'_>) -> Option<Vec<u8>> {
     let mut list = Vec::new();
     match (field.number, field.value) {

@@ -1,7 +1,7 @@
-//! Refuses models that ask for tensors no machine holds: rten would ask for the memory and abort the process.
+//! Rejection of models with tensors too large for memory, for which rten would abort the process.
 //!
-//! What can be known before a run is checked: constants that say how large something gets, before rten computes with
-//! them while loading, and after that the shapes that it infers.
+//! Two checks run before the first inference: constants that determine sizes, before rten evaluates them while
+//! loading, and then the shapes that rten infers.
 
 use std::collections::HashMap;
 
@@ -10,19 +10,19 @@ use rten::{Dimension, Model};
 
 use crate::protobuf::{Fields, Value};
 
-/// Elements of the largest tensor that a model may make.
+/// Maximum number of elements of a tensor.
 const MAX_ELEMENTS: f64 = (1_u32 << 30) as f64;
 
-/// The most that one `Resize` may enlarge.
+/// Maximum enlargement of one `Resize`.
 const MAX_ENLARGEMENT: f64 = (1_u32 << 16) as f64;
 
-/// Elements of the longest constant that says how large something gets: two for each dimension.
+/// Maximum number of elements of a constant of sizes: two for each dimension.
 const MAX_SIZES: usize = 16;
 
-/// Checks the constants that the operators of the ONNX file `model` take as sizes.
+/// Checks the constants of the ONNX model `model` that operators take as sizes.
 ///
 /// # Errors
-/// `Format` that names the operator and the constant.
+/// `Format` with the operator and the constant.
 pub(super) fn check_constants(model: &[u8]) -> Result<()> {
     for graph in messages(model, 7) {
         let graph = graph?;
@@ -42,7 +42,7 @@ pub(super) fn check_constants(model: &[u8]) -> Result<()> {
                     }
                 }
             }
-            // Which inputs are sizes, and how much they may make.
+            // The inputs that are sizes, and their limit.
             let (sizes, most) = match kind {
                 b"ConstantOfShape" => (0..1, MAX_ELEMENTS),
                 b"Expand" | b"OneHot" | b"Pad" | b"Tile" => (1..2, MAX_ELEMENTS),
@@ -52,9 +52,9 @@ pub(super) fn check_constants(model: &[u8]) -> Result<()> {
             };
             for input in messages(node, 1).skip(sizes.start).take(sizes.len()) {
                 let Some(constant) = constants.get(input?) else { continue };
-                // Sizes of a `Resize`, unlike its scales, are whole.
+                // The sizes of a `Resize`, unlike its scales, are integers.
                 if constant.product() > if constant.whole { MAX_ELEMENTS } else { most } {
-                    return Err(too_large(constant.name, "asks for"));
+                    return Err(too_large(constant.name, "requests"));
                 }
             }
         }
@@ -62,10 +62,10 @@ pub(super) fn check_constants(model: &[u8]) -> Result<()> {
     Ok(())
 }
 
-/// Checks what the shape inference of `loaded` says of the values in the ONNX file `model`.
+/// Checks the inferred shapes of `loaded` for the values in the ONNX model `model`.
 ///
 /// # Errors
-/// `Format` that names the value.
+/// `Format` with the name of the value.
 pub(super) fn check_shapes(loaded: &Model, model: &[u8]) -> Result<()> {
     for graph in messages(model, 7) {
         for node in messages(graph?, 1) {
@@ -77,7 +77,7 @@ pub(super) fn check_shapes(loaded: &Model, model: &[u8]) -> Result<()> {
                     .iter()
                     .map(|dim| match dim {
                         Dimension::Fixed(size) => *size as f64,
-                        // What is given to `run` decides.
+                        // Determined by the inputs of `run`.
                         Dimension::Symbolic(_) => 1.0,
                     })
                     .product();
@@ -93,11 +93,11 @@ pub(super) fn check_shapes(loaded: &Model, model: &[u8]) -> Result<()> {
 fn too_large(name: &[u8], verb: &str) -> Error {
     let name = String::from_utf8_lossy(name);
     Error::format(format!(
-        "damaged ONNX model: {name:?} {verb} more elements than the built-in runtime makes (2^30)"
+        "damaged ONNX model: {name:?} {verb} more elements than the built-in runtime allows (2^30)"
     ))
 }
 
-/// The fields with this number that hold bytes, text or messages.
+/// Returns the fields with this number that contain bytes, text or messages.
 fn messages(message: &[u8], number: u64) -> impl Iterator<Item = Result<&[u8]>> {
     Fields::new(message).filter_map(move |field| match field {
         Ok(field) if field.number == number => match field.value {
@@ -109,10 +109,10 @@ fn messages(message: &[u8], number: u64) -> impl Iterator<Item = Result<&[u8]>> 
     })
 }
 
-/// A short constant; longer ones are kept without their elements.
+/// A short constant; longer ones are read without their elements.
 struct Constant<'a> {
     name: &'a [u8],
-    /// Whether its elements are whole numbers.
+    /// Whether its elements are integers.
     whole: bool,
     elements: Vec<f64>,
 }
@@ -148,7 +148,7 @@ impl<'a> Constant<'a> {
         Ok(Self { name, whole: data_type != 1, elements })
     }
 
-    /// How much it enlarges at most.
+    /// Returns the largest enlargement that it causes.
     fn product(&self) -> f64 {
         self.elements.iter().map(|element| element.abs().max(1.0)).product()
     }
@@ -196,7 +196,7 @@ mod tests {
         };
         for kind in [&b"Expand"[..], b"Tile", b"Pad", b"OneHot"] {
             assert!(check(kind, &small).is_ok());
-            assert!(check(kind, &large).unwrap_err().message().contains("\"sizes\" asks for more elements"));
+            assert!(check(kind, &large).unwrap_err().message().contains("\"sizes\" requests more elements"));
         }
         assert!(check(b"Add", &large).is_ok());
         let scales = [1.0_f32, 1.0, 300.0, 300.0].map(f32::to_le_bytes).concat();

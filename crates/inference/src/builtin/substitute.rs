@@ -1,10 +1,10 @@
-//! Operators that rten 0.27 gets wrong or lacks, in terms of others.
+//! Replacement of operators that rten 0.27 computes wrongly or lacks by equivalent ones.
 //!
-//! * It divides by a single element as a product with the reciprocal and forgets the element's dimensions: `4 / [2]`
-//!   becomes a scalar, and the next operator that relies on the dimension fails. A scalar weight over anything becomes
-//!   `Mul(Reciprocal(b), a)`, whose shape is right.
-//! * It concatenates no bytes. Quantised tensors are joined as 32-bit integers.
-//! * It does not infer a convolution's `kernel_shape`, nor a pooling's `strides`, where a model leaves them out.
+//! * Division by a single element is computed as a product with the reciprocal and loses the element's dimensions:
+//!   `4 / [2]` becomes a scalar, and the next operator that relies on the dimension fails. A division of a scalar
+//!   weight becomes `Mul(Reciprocal(b), a)`, whose shape is right.
+//! * Bytes cannot be concatenated. Quantised tensors are concatenated as 32-bit integers.
+//! * `kernel_shape` of a convolution and `strides` of a pooling are not inferred where a model omits them.
 
 use std::collections::{HashMap, HashSet};
 
@@ -12,19 +12,19 @@ use opendr_engine::Result;
 
 use crate::protobuf::{Field, Fields, Value, put_bytes, put_varint};
 
-/// ONNX's numbers for element types.
+/// ONNX's values of `TensorProto.DataType`.
 const FLOAT: u64 = 1;
 const UINT8: u64 = 2;
 const INT8: u64 = 3;
 const INT32: u64 = 6;
 
-/// What a graph's weights say about its values.
+/// Properties of a graph's values that follow from its weights.
 pub(super) struct Weights<'a> {
     /// Float weights without dimensions.
     scalars: HashSet<&'a [u8]>,
     /// Outputs of `QuantizeLinear`, by name, with the type of their zero point.
     quantised: HashMap<&'a [u8], u64>,
-    /// Sizes of the weights.
+    /// Dimensions of the weights.
     dims: HashMap<&'a [u8], Vec<u64>>,
 }
 
@@ -67,7 +67,8 @@ impl<'a> Weights<'a> {
         Ok(Self { scalars, quantised, dims })
     }
 
-    /// The nodes, as fields of the graph, that stand for `node`, whose lists are not packed; `None` when rten runs it as it is.
+    /// Returns the nodes, as fields of the graph, that replace `node`, whose lists are unpacked; `None` when rten
+    /// runs it unchanged.
     pub(super) fn substitute(&self, node: &[u8]) -> Result<Option<Vec<u8>>> {
         let node = Node::read(node)?;
         Ok(match (node.kind, &node.inputs[..], &node.outputs[..]) {
@@ -121,12 +122,12 @@ fn with_attribute(node: &Node<'_>, output: &[u8], name: &[u8], values: &[u64]) -
     nodes
 }
 
-/// A name that no other value of the graph has.
+/// Returns a name that no other value of the graph has.
 fn intermediate(output: &[u8], index: usize) -> Vec<u8> {
     [output, format!("/opendr/{index}").as_bytes()].concat()
 }
 
-/// The attribute `to` of a `Cast`, as field of its node.
+/// Returns the attribute `to` of a `Cast`, as a field of its node.
 fn cast_attribute(data_type: u64) -> Vec<u8> {
     const INT: u64 = 2;
     let (mut attribute, mut field) = (Vec::new(), Vec::new());
@@ -139,7 +140,7 @@ fn cast_attribute(data_type: u64) -> Vec<u8> {
     field
 }
 
-/// An attribute that holds integers, as field of its node.
+/// Returns an attribute with a list of integers, as a field of its node.
 fn list_attribute(name: &[u8], values: &[u64]) -> Vec<u8> {
     const INTS: u64 = 7;
     let (mut attribute, mut field) = (Vec::new(), Vec::new());
@@ -156,24 +157,24 @@ fn put_node(nodes: &mut Vec<u8>, kind: &[u8], inputs: &[&[u8]], output: &[u8], a
     let mut node = Vec::new();
     inputs.iter().for_each(|input| put_bytes(&mut node, 1, input));
     put_bytes(&mut node, 2, output);
-    // A name of its own: what the output is called is unique.
+    // The node name is that of the output, which is unique.
     put_bytes(&mut node, 3, output);
     put_bytes(&mut node, 4, kind);
     node.extend(attributes);
     put_bytes(nodes, 1, &node);
 }
 
-/// What decides about a node.
+/// The parts of a node that determine whether it is replaced.
 #[derive(Default)]
 struct Node<'a> {
     kind: &'a [u8],
     inputs: Vec<&'a [u8]>,
     outputs: Vec<&'a [u8]>,
-    /// Its attributes, as fields.
+    /// Attributes, as fields.
     attributes: Vec<u8>,
-    /// Their names, and how many integers they hold.
+    /// Names of the attributes, and their numbers of integers.
     lists: Vec<(&'a [u8], usize)>,
-    /// The tensor that a `Constant` holds.
+    /// Tensor of a `Constant`.
     constant: Option<&'a [u8]>,
 }
 
@@ -204,7 +205,7 @@ impl<'a> Node<'a> {
                         }
                     }
                     node.lists.push((name, count));
-                    // Weights can be large, and no node that is replaced has any.
+                    // Weights can be large, and no replaced node has any.
                     if node.constant.is_none() {
                         node.attributes.extend(field.raw);
                     }
@@ -216,7 +217,7 @@ impl<'a> Node<'a> {
     }
 }
 
-/// What decides about a weight.
+/// Name, element type and dimensions of a weight.
 struct Weight<'a> {
     name: &'a [u8],
     data_type: u64,

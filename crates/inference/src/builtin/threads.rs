@@ -1,4 +1,4 @@
-//! Threads of the built-in runtime, shared by the sessions that want the same number.
+//! Thread pools of the built-in runtime, shared by sessions with the same number of threads.
 
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
@@ -6,7 +6,7 @@ use rten::ThreadPool;
 
 static POOLS: Mutex<Vec<(usize, Weak<ThreadPool>)>> = Mutex::new(Vec::new());
 
-/// A pool of `count` threads; it ends with the last session that uses it.
+/// Returns a pool of `count` threads; it ends with the last session that uses it.
 pub(super) fn pool(count: usize) -> Arc<ThreadPool> {
     let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     pools.retain(|(_, pool)| pool.strong_count() > 0);

@@ -1,11 +1,11 @@
-//! One model opened by ONNX Runtime.
+//! A model opened by ONNX Runtime.
 
 use opendr_engine::{Device, Error, Result};
 use ort::session::{Session, SessionInputValue};
 use ort::value::{DynValue, Outlet, TensorElementType, TensorRef, ValueType};
 use smallvec::SmallVec;
 
-use super::words;
+use super::message::message_of;
 use crate::runtime::{Engine, Sink};
 use crate::tensor::{Element, ElementType, MAX_RANK, TensorData, TensorInfo, TensorView};
 
@@ -40,7 +40,7 @@ impl Engine for OnnxRuntimeEngine {
     fn run(&mut self, inputs: &[TensorView<'_>], sink: &mut Sink<'_>) -> Result<()> {
         let inputs = inputs.iter().map(value_from_tensor).collect::<Result<SmallVec<[_; 4]>>>()?;
         let values = self.session.run(&inputs[..]).map_err(|error| {
-            Error::internal("ONNX Runtime cannot run the model").with_source(words(&error))
+            Error::internal("ONNX Runtime cannot run the model").with_source(message_of(&error))
         })?;
         let outputs = (self.outputs.iter().enumerate())
             .map(|(index, info)| tensor_from_value(&values[index], info))
@@ -52,11 +52,11 @@ impl Engine for OnnxRuntimeEngine {
 fn info_from_outlet(outlet: &Outlet) -> Result<TensorInfo> {
     let refuse = |what: &str| {
         Err(Error::unsupported(format!(
-            "{:?} of the ONNX model is {what}; a session takes tensors of f32, i32, i64, u8, i8 and bool",
+            "{:?} of the ONNX model is {what}; a session supports tensors of f32, i32, i64, u8, i8 and bool",
             outlet.name()
         )))
     };
-    let ValueType::Tensor { ty, shape, .. } = outlet.dtype() else { return refuse("no tensor") };
+    let ValueType::Tensor { ty, shape, .. } = outlet.dtype() else { return refuse("not a tensor") };
     let element_type = match ty {
         TensorElementType::Float32 => ElementType::F32,
         TensorElementType::Int32 => ElementType::I32,
@@ -64,10 +64,10 @@ fn info_from_outlet(outlet: &Outlet) -> Result<TensorInfo> {
         TensorElementType::Uint8 => ElementType::U8,
         TensorElementType::Int8 => ElementType::I8,
         TensorElementType::Bool => ElementType::Bool,
-        other => return refuse(&format!("of {other}")),
+        other => return refuse(&format!("a tensor of {other}")),
     };
     if shape.len() > MAX_RANK {
-        return refuse(&format!("of {} dimensions", shape.len()));
+        return refuse(&format!("a tensor of {} dimensions", shape.len()));
     }
     let dims = shape.iter().map(|&dim| usize::try_from(dim).ok()).collect();
     Ok(TensorInfo { name: outlet.name().to_owned(), element_type, dims })
@@ -84,7 +84,8 @@ fn value_from_tensor<'a>(tensor: &'a TensorView<'a>) -> Result<SessionInputValue
         TensorData::Bool(data) => TensorRef::from_array_view((shape, data)).map(Into::into),
     };
     value.map_err(|error: ort::Error| {
-        Error::invalid_input(format!("ONNX Runtime takes no {tensor:?}")).with_source(words(&error))
+        Error::invalid_input(format!("ONNX Runtime does not accept {tensor:?}"))
+            .with_source(message_of(&error))
     })
 }
 
@@ -101,8 +102,8 @@ fn tensor_from_value<'a>(value: &'a DynValue, info: &TensorInfo) -> Result<Tenso
 
 fn typed<T: Element + ort::value::PrimitiveTensorElementType>(value: &DynValue) -> Result<TensorView<'_>> {
     let (shape, data) = value.try_extract_tensor::<T>().map_err(|error| {
-        Error::internal("ONNX Runtime gave an output of another type than declared")
-            .with_source(words(&error))
+        Error::internal("ONNX Runtime returned an output of another type than declared")
+            .with_source(message_of(&error))
     })?;
     let shape: SmallVec<[usize; MAX_RANK]> =
         shape.iter().map(|&dim| usize::try_from(dim).unwrap_or(0)).collect();

@@ -1,4 +1,4 @@
-//! Finds ONNX Runtime's library and loads it, once per process.
+//! Search and loading of the ONNX Runtime library, once per process.
 
 use std::env::{self, consts};
 use std::fmt;
@@ -9,14 +9,23 @@ use opendr_engine::{Error, Result, cache_dir};
 use ort::environment::Environment;
 use ort::logging::LogLevel;
 
-use super::{OnnxRuntime, python, words};
+use super::message::message_of;
+use super::python;
 
-/// A release of ONNX Runtime.
+/// Oldest supported version.
+pub(super) const MIN_VERSION: &str = "1.23";
+
+/// Returns the folder within a cache folder that is searched for the library.
+pub(super) fn cache_folder(cache: &Path) -> PathBuf {
+    cache.join("onnxruntime")
+}
+
+/// A version of ONNX Runtime.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Version([u32; 3]);
 
 impl Version {
-    /// Reads `1.31.1`, `libonnxruntime.so.1.31.1`, `libonnxruntime.1.31.1.dylib`; `None` when no version is in it.
+    /// Parses `1.31.1`, `libonnxruntime.so.1.31.1`, `libonnxruntime.1.31.1.dylib`; `None` without a version.
     pub(super) fn parse(text: &str) -> Option<Self> {
         let mut numbers = text.split('.').filter_map(|part| part.parse().ok());
         Some(Self([numbers.next()?, numbers.next()?, numbers.next()?]))
@@ -34,15 +43,15 @@ impl fmt::Display for Version {
     }
 }
 
-/// The library in use.
+/// The loaded library.
 pub(super) struct Library {
     pub(super) path: PathBuf,
-    /// `None` when the file's name does not state it: 1.23 or later.
+    /// `None` when the file name does not state it: 1.23 or later.
     pub(super) version: Option<Version>,
     pub(super) environment: Environment,
 }
 
-/// Loads the first library of the search order that works. What was passed over, and why, is added to `skipped`.
+/// Loads the first working library of the search order. Skipped libraries are added to `skipped` with the reason.
 pub(super) fn find(skipped: &mut Vec<String>) -> Option<Library> {
     let mut files = Vec::new();
     if let Some(path) = env::var_os("ORT_DYLIB_PATH").filter(|path| !path.is_empty()) {
@@ -51,11 +60,7 @@ pub(super) fn find(skipped: &mut Vec<String>) -> Option<Library> {
     }
     files.extend(python::onnxruntime_folders().iter().flat_map(|folder| libraries_in(folder)));
     files.extend(
-        cache_dir()
-            .ok()
-            .map(|cache| OnnxRuntime::cache_folder(&cache))
-            .iter()
-            .flat_map(|folder| libraries_in(folder)),
+        cache_dir().ok().map(|cache| cache_folder(&cache)).iter().flat_map(|folder| libraries_in(folder)),
     );
     for file in files {
         match load(&file) {
@@ -66,7 +71,7 @@ pub(super) fn find(skipped: &mut Vec<String>) -> Option<Library> {
     load_from_system(skipped)
 }
 
-/// The libraries of ONNX Runtime in a folder, newest first.
+/// Returns the ONNX Runtime libraries in a folder, newest first.
 pub(super) fn libraries_in(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
     let mut found: Vec<_> = entries
@@ -80,8 +85,8 @@ pub(super) fn libraries_in(folder: &Path) -> Vec<PathBuf> {
     found.into_iter().rev().map(|(_, path)| path).collect()
 }
 
-/// `libonnxruntime.so`, `libonnxruntime.so.1.31.1`, `libonnxruntime.1.31.1.dylib`, `onnxruntime.dll`; not the libraries
-/// of its providers.
+/// Returns whether `name` is that of the library, such as `libonnxruntime.so`, `libonnxruntime.so.1.31.1`,
+/// `libonnxruntime.1.31.1.dylib`, `onnxruntime.dll`; not one of its providers.
 pub(super) fn is_library(name: &str) -> bool {
     let Some(rest) = name.strip_prefix(consts::DLL_PREFIX).and_then(|name| name.strip_prefix("onnxruntime"))
     else {
@@ -97,9 +102,9 @@ pub(super) fn is_library(name: &str) -> bool {
 
 /// Loads the library at `path`.
 pub(super) fn load(path: &Path) -> Result<Library> {
-    // Within a relative path, ort would look beside the executable.
+    // ort resolves a relative path against the folder of the executable.
     let path = path.canonicalize().map_err(|error| {
-        Error::not_found(format!("no ONNX Runtime library at {}", path.display())).with_source(error)
+        Error::not_found(format!("there is no ONNX Runtime library at {}", path.display())).with_source(error)
     })?;
     let version = path.file_name().and_then(|name| Version::parse(&name.to_string_lossy()));
     if let Some(version) = version.filter(|version| !version.is_supported()) {
@@ -109,14 +114,14 @@ pub(super) fn load(path: &Path) -> Result<Library> {
     Ok(Library { path, version, environment })
 }
 
-/// Asks the system's loader for the library by name.
+/// Loads the library by name through the system's loader.
 fn load_from_system(skipped: &mut Vec<String>) -> Option<Library> {
-    // ort looks beside the executable first, and panics when it cannot tell where that is.
+    // ort first searches the folder of the executable, and panics when that is unknown.
     env::current_exe().ok()?;
     let path = PathBuf::from(format!("{}onnxruntime{}", consts::DLL_PREFIX, consts::DLL_SUFFIX));
     match start(&path) {
         Ok(environment) => Some(Library { path, version: None, environment }),
-        // That the system has none is the usual case and no news.
+        // A missing library is the usual case and is not reported.
         Err(error) if error.kind() == opendr_engine::ErrorKind::Format => None,
         Err(error) => {
             skipped.push(error.to_string());
@@ -129,14 +134,14 @@ fn start(path: &Path) -> Result<Environment> {
     let builder = ort::init_from(path).map_err(|error| match error {
         ort::LoadDynamicError::BadVersion { version_str, path } => too_old(&version_str, &path),
         other => {
-            Error::format(format!("{} is no library of ONNX Runtime", path.display())).with_source(other)
+            Error::format(format!("{} is not an ONNX Runtime library", path.display())).with_source(other)
         }
     })?;
     let environment = builder.with_name("opendr").with_telemetry(false).build().map_err(|error| {
-        Error::internal(format!("ONNX Runtime at {} does not start", path.display()))
-            .with_source(words(&error))
+        Error::internal(format!("ONNX Runtime at {} failed to start", path.display()))
+            .with_source(message_of(&error))
     })?;
-    // Whatever it would print to standard error comes back as an error too.
+    // Messages on standard error are also returned as errors.
     if env::var_os("ORT_LOG").is_none() {
         environment.set_log_level(LogLevel::Fatal);
     }
@@ -147,7 +152,7 @@ fn too_old(version: &str, path: &Path) -> Error {
     Error::unsupported(format!(
         "ONNX Runtime {version} at {} is older than {}; update it or run \"opendr runtime install\"",
         path.display(),
-        OnnxRuntime::OLDEST
+        MIN_VERSION
     ))
 }
 
@@ -157,7 +162,7 @@ mod tests {
 
     #[test]
     #[cfg(target_os = "linux")]
-    fn tells_the_library_from_its_neighbours() {
+    fn distinguishes_the_library_from_its_providers() {
         for name in ["libonnxruntime.so", "libonnxruntime.so.1", "libonnxruntime.so.1.31.1"] {
             assert!(is_library(name), "{name}");
         }

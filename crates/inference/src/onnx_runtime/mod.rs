@@ -2,6 +2,7 @@
 
 mod engine;
 mod library;
+mod message;
 mod provider;
 mod python;
 mod suited;
@@ -20,24 +21,24 @@ use crate::runtime::{Engine, Runtime, SessionOptions};
 use crate::tensor::TensorInfo;
 use engine::OnnxRuntimeEngine;
 use library::{Library, Version};
+use message::message_of;
 use suited::suited;
 
-/// How long ONNX Runtime's threads wait for work in a loop before they sleep; versions before this option was there
-/// take no notice of it.
+/// Time for which idle threads of ONNX Runtime spin before they sleep; versions without this option ignore it.
 ///
-/// Its default of some milliseconds ruins a machine that has anything else to do, as robots have. CenterNet, 2 threads
-/// on 2 cores, milliseconds a run: beside four busy processes 110 to 2000 by default, 70 to 110 with 50 us, 60 to 90
-/// without any loop; on free cores 40 to 51, 32 to 36, 40 to 43.
+/// The default of some milliseconds slows down a machine with other load, such as a robot. CenterNet, 2 threads on 2
+/// cores, milliseconds per run: beside four busy processes 110 to 2000 by default, 70 to 110 with 50 us, 60 to 90
+/// without spinning; on idle cores 40 to 51, 32 to 36, 40 to 43.
 const SPIN_MICROSECONDS: &str = "50";
 
-/// ONNX Runtime: the fastest runtime on every device, when its library is installed.
+/// ONNX Runtime: the fastest runtime on every device, where its library is installed.
 ///
-/// The library is searched for, once per process, in this order: `ORT_DYLIB_PATH` (a file or folder), the `onnxruntime`
-/// package of the active Python environment or of the `python3` on the search path, the cache that
+/// The library is searched for once per process, in this order: `ORT_DYLIB_PATH` (a file or folder), the
+/// `onnxruntime` package of the active Python environment or of the `python3` on the search path, the cache that
 /// `opendr runtime install` fills, the system's loader.
 pub struct OnnxRuntime(Library);
 
-/// What the search of this process came to.
+/// Result of the search of this process.
 #[derive(Default)]
 struct Search {
     found: Option<Arc<OnnxRuntime>>,
@@ -48,10 +49,10 @@ struct Search {
 static SEARCH: Mutex<Search> = Mutex::new(Search { found: None, done: false, skipped: Vec::new() });
 
 impl OnnxRuntime {
-    /// The ONNX Runtime of this process; the first call searches for its library.
+    /// Returns the ONNX Runtime of this process; the first call searches for its library.
     ///
     /// # Errors
-    /// `NotFound` that says what was passed over and how to install one.
+    /// `NotFound` with the skipped libraries and how to install one.
     pub fn find() -> Result<Arc<Self>> {
         let mut search = SEARCH.lock().unwrap_or_else(PoisonError::into_inner);
         if !search.done {
@@ -68,8 +69,8 @@ impl OnnxRuntime {
     /// Loads the library at `path` as the ONNX Runtime of this process.
     ///
     /// # Errors
-    /// `NotFound` when there is no such file, `Format` when it is no ONNX Runtime, `Unsupported` when it is too old or
-    /// another one is loaded already: a process holds one.
+    /// `NotFound` when there is no such file, `Format` when it is not ONNX Runtime, `Unsupported` when it is too old
+    /// or another one is already loaded: a process can load only one.
     pub fn load(path: &Path) -> Result<Arc<Self>> {
         let mut search = SEARCH.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(loaded) = &search.found {
@@ -77,7 +78,7 @@ impl OnnxRuntime {
                 return Ok(Arc::clone(loaded));
             }
             return Err(Error::unsupported(format!(
-                "ONNX Runtime at {} is loaded already, and a process holds one; start anew to use {}",
+                "ONNX Runtime at {} is already loaded, and a process can load only one; restart to use {}",
                 loaded.0.path.display(),
                 path.display()
             )));
@@ -88,43 +89,43 @@ impl OnnxRuntime {
         Ok(loaded)
     }
 
-    /// Libraries that the search passed over, and why, one line each: worth showing to the user once.
+    /// Returns the libraries that the search skipped, with the reason, one line each.
     pub fn skipped() -> Vec<String> {
         SEARCH.lock().unwrap_or_else(PoisonError::into_inner).skipped.clone()
     }
 
-    /// The oldest version that works.
-    pub const OLDEST: &str = "1.23";
+    /// Oldest supported version.
+    pub const MIN_VERSION: &str = library::MIN_VERSION;
 
-    /// Whether a version, e.g. `"1.31.1"`, works.
+    /// Returns whether a version, e.g. `"1.31.1"`, is supported.
     pub fn is_supported(version: &str) -> bool {
         Version::parse(version).is_some_and(Version::is_supported)
     }
 
-    /// Where in a cache folder the search looks for the library.
+    /// Returns the folder within a cache folder that is searched for the library.
     pub fn cache_folder(cache: &Path) -> PathBuf {
-        cache.join("onnxruntime")
+        library::cache_folder(cache)
     }
 
-    /// Whether a file is named as ONNX Runtime's library is on this system: `libonnxruntime.so.1.31.1`, not the
-    /// libraries of its providers.
+    /// Returns whether a file name is that of the ONNX Runtime library on this system: `libonnxruntime.so.1.31.1`,
+    /// not a library of its providers.
     pub fn is_library(file_name: &str) -> bool {
         library::is_library(file_name)
     }
 
-    /// The libraries of ONNX Runtime in a folder, newest first.
+    /// Returns the ONNX Runtime libraries in a folder, newest first.
     pub fn libraries_in(folder: &Path) -> Vec<PathBuf> {
         library::libraries_in(folder)
     }
 
-    /// Lets the next [`OnnxRuntime::find`] search again, if none was found so far: one was just installed.
-    pub fn search_again() {
+    /// Makes the next [`OnnxRuntime::find`] search again if none was found so far, e.g. after an installation.
+    pub fn reset_search() {
         let mut search = SEARCH.lock().unwrap_or_else(PoisonError::into_inner);
         search.done = search.found.is_some();
         search.skipped.clear();
     }
 
-    /// Where the library lies.
+    /// Returns the path of the library.
     pub fn path(&self) -> &Path {
         &self.0.path
     }
@@ -138,36 +139,39 @@ impl OnnxRuntime {
                 builder.with_config_entry("session.intra_op.spin_duration_us", SPIN_MICROSECONDS)?;
             Ok(builder.with_intra_threads(threads)?)
         };
-        build()
-            .map_err(|error| Error::internal("ONNX Runtime refuses its options").with_source(words(&error)))
+        build().map_err(|error| {
+            Error::internal("ONNX Runtime rejects the session options").with_source(message_of(&error))
+        })
     }
 
     fn open_on_cpu(&self, model: &[u8], options: &SessionOptions) -> Result<Session> {
         self.builder(options)?.commit_from_memory(&suited(model)).map_err(|error| {
             let message = "ONNX Runtime cannot open the ONNX model";
-            // It reports an operator that it has never heard of as a failure like any other.
+            // An unknown operator is reported as a general failure.
             let unknown = error.message().contains("No Op registered");
             match error.code() {
                 _ if unknown => Error::unsupported(message),
                 ort::ErrorCode::NotImplemented => Error::unsupported(message),
                 _ => Error::format(message),
             }
-            .with_source(words(&error))
+            .with_source(message_of(&error))
         })
     }
 
-    /// Opens a model on an accelerator, or says why that fails.
+    /// Opens a model on an accelerator, or returns why that fails.
     fn open_on(&self, device: Device, model: &[u8], options: &SessionOptions) -> Result<Session> {
         let builder = self.builder(options)?;
         Some(provider::providers_from_device(device))
             .filter(|_| provider::is_built_in(device))
             .ok_or_else(|| self.no_provider(device))
-            .and_then(|providers| builder.with_execution_providers(providers).map_err(|error| words(&error)))
-            .and_then(|mut builder| builder.commit_from_memory(model).map_err(|error| words(&error)))
+            .and_then(|providers| {
+                builder.with_execution_providers(providers).map_err(|error| message_of(&error))
+            })
+            .and_then(|mut builder| builder.commit_from_memory(model).map_err(|error| message_of(&error)))
             .map_err(|reason| {
                 let devices: Vec<_> = self.devices().iter().map(ToString::to_string).collect();
                 Error::device(format!(
-                    "device {device} is not there or does not work; available: {}",
+                    "device {device} is missing or not working; available: {}",
                     devices.join(", ")
                 ))
                 .with_source(reason)
@@ -178,7 +182,7 @@ impl OnnxRuntime {
         format!("ONNX Runtime at {} was built without {device}", self.0.path.display())
     }
 
-    /// Whether `device` can be set up, as far as that shows without a model.
+    /// Returns whether `device` can be set up, as far as that can be checked without a model.
     fn is_usable(&self, device: Device) -> bool {
         provider::is_built_in(device)
             && self.builder(&SessionOptions { device, threads: 1 }).is_ok_and(|builder| {
@@ -193,7 +197,9 @@ impl Runtime for OnnxRuntime {
     }
 
     fn version(&self) -> String {
-        self.0.version.map_or_else(|| format!("{} or later", Self::OLDEST), |version| version.to_string())
+        self.0
+            .version
+            .map_or_else(|| format!("{} or later", Self::MIN_VERSION), |version| version.to_string())
     }
 
     fn devices(&self) -> Vec<Device> {
@@ -220,7 +226,7 @@ impl Runtime for OnnxRuntime {
             }
             device => match self.open_on(device, model, options) {
                 Ok(session) => (device, session),
-                // A model that the processor cannot open either is at fault itself.
+                // A model that also fails on the CPU is itself invalid.
                 Err(error) => return Err(self.open_on_cpu(model, options).err().unwrap_or(error)),
             },
         };
@@ -232,12 +238,12 @@ impl Runtime for OnnxRuntime {
     }
 }
 
-/// Numbers of the inputs, times bytes of the model, below which a second thread costs more than it spares: keyword spotting
-/// by DS-CNN (490 numbers, 71 kB) takes 0.10 ms with two threads, 0.06 with one.
+/// Product of input elements and model bytes below which a second thread costs more than it saves: keyword spotting
+/// by DS-CNN (490 elements, 71 kB) takes 0.10 ms with two threads, 0.06 with one.
 const ONE_THREAD: usize = 50_000_000;
 
-/// Whether a run is little work: a weight meets each number of the inputs at most once, in all networks but those that go
-/// over them again, which leave a size other than that of the batch open.
+/// Returns whether a run is short: each weight is used at most once per input element, except in recurrent networks,
+/// which have an open dimension other than the batch.
 fn is_small(inputs: &[TensorInfo], bytes: usize) -> bool {
     let numbers = |input: &TensorInfo| {
         let (batch, rest) = input.dims.split_first()?;
@@ -247,20 +253,13 @@ fn is_small(inputs: &[TensorInfo], bytes: usize) -> bool {
     all.and_then(|all| all.checked_mul(bytes)).is_some_and(|work| work < ONE_THREAD)
 }
 
-/// What ONNX Runtime says, without where in its source it says so.
-fn words<R>(error: &ort::Error<R>) -> String {
-    let text = error.message();
-    let said = text.split_once("[ONNXRuntimeError] : ").and_then(|(_, text)| text.splitn(3, " : ").nth(2));
-    said.unwrap_or(text).trim().to_owned()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::tensor::ElementType;
 
     #[test]
-    fn small_networks_are_told_by_inputs_and_weights() {
+    fn small_networks_are_recognised_by_inputs_and_weights() {
         let input = |dims: &[Option<usize>]| TensorInfo {
             name: String::new(),
             element_type: ElementType::F32,
@@ -270,8 +269,8 @@ mod tests {
         assert!(is_small(std::slice::from_ref(&cepstra), 71_000));
         assert!(!is_small(&[cepstra], 10_000_000), "many weights");
         let picture = input(&[Some(1), Some(3), Some(64), Some(64)]);
-        assert!(!is_small(&[picture], 52_000), "a picture");
-        assert!(!is_small(&[input(&[Some(1), None])], 1000), "of any length");
+        assert!(!is_small(&[picture], 52_000), "an image");
+        assert!(!is_small(&[input(&[Some(1), None])], 1000), "an open length");
         assert!(!is_small(&[input(&[Some(usize::MAX), Some(2)])], 1));
     }
 }

@@ -1,13 +1,14 @@
-//! Devices as ONNX Runtime's execution providers.
+//! Mapping of devices to ONNX Runtime's execution providers.
 
 use opendr_engine::Device;
 use ort::ep::{CUDA, CoreML, ExecutionProvider as _, ExecutionProviderDispatch, OpenVINO, TensorRT};
 
-/// Devices other than the processor, in the order in which people want them.
+/// Devices other than the CPU, in order of preference.
 pub(super) const ACCELERATORS: [Device; 4] =
     [Device::Cuda(0), Device::TensorRt(0), Device::CoreMl, Device::OpenVino];
 
-/// Whether the loaded library was built with a provider for `device`. That the device works, only opening a model shows.
+/// Returns whether the loaded library was built with a provider for `device`. Whether the device works is only known
+/// after opening a model.
 pub(super) fn is_built_in(device: Device) -> bool {
     let built_in = match device {
         Device::Auto | Device::Cpu => return true,
@@ -20,7 +21,8 @@ pub(super) fn is_built_in(device: Device) -> bool {
     built_in.unwrap_or(false)
 }
 
-/// The providers for `device`, in order of preference; none for the processor, which takes what is left over anyway.
+/// Returns the providers for `device`, in order of preference; none for the CPU, which runs the remaining nodes
+/// anyway.
 pub(super) fn providers_from_device(device: Device) -> Vec<ExecutionProviderDispatch> {
     let index = |index: u32| i32::try_from(index).unwrap_or(i32::MAX);
     let cuda = |gpu| CUDA::default().with_device_id(index(gpu)).build();
@@ -28,7 +30,7 @@ pub(super) fn providers_from_device(device: Device) -> Vec<ExecutionProviderDisp
         Device::Cuda(gpu) => vec![cuda(gpu).error_on_failure()],
         Device::TensorRt(gpu) => {
             let tensor_rt = TensorRT::default().with_device_id(index(gpu)).build();
-            // What TensorRT lacks better stays on the GPU.
+            // Nodes that TensorRT lacks run on the GPU where possible.
             vec![tensor_rt.error_on_failure(), cuda(gpu).fail_silently()]
         }
         Device::OpenVino => vec![OpenVINO::default().build().error_on_failure()],

@@ -1,20 +1,21 @@
-//! Finds the packages of the Python environment by looking at folders: starting Python costs too much.
+//! Search for the packages of the Python environment by inspecting folders, because starting Python is slow.
 
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// The environment of the Python that this process runs in, when it does.
+/// Prefix of the Python environment of this process, if it runs in Python.
 static OWN: Mutex<Option<PathBuf>> = Mutex::new(None);
 
-/// Looks first into the environment `prefix` (`sys.prefix`), for a process that Python runs in. Only what is asked
-/// before the first session is opened counts.
+/// Makes the search begin in the environment `prefix` (`sys.prefix`), for a process that Python runs in. Takes effect
+/// only before the first session is opened.
 pub fn prefer_python(prefix: PathBuf) {
     *OWN.lock().unwrap_or_else(PoisonError::into_inner) = Some(prefix);
 }
 
-/// The `capi` folders of every `onnxruntime` package that the user's Python would import, likeliest first.
+/// Returns the `capi` folders of every `onnxruntime` package that the user's Python would import, in order of
+/// preference.
 pub(super) fn onnxruntime_folders() -> Vec<PathBuf> {
     let mut folders = Vec::new();
     for prefix in prefixes() {
@@ -28,7 +29,8 @@ pub(super) fn onnxruntime_folders() -> Vec<PathBuf> {
     folders
 }
 
-/// Installation prefixes: the active environment, then that of the Python on the search path, then the user's.
+/// Returns the installation prefixes: the active environment, then that of the Python on the search path, then the
+/// user's.
 fn prefixes() -> Vec<PathBuf> {
     let own = OWN.lock().unwrap_or_else(PoisonError::into_inner).clone();
     let named = ["VIRTUAL_ENV", "CONDA_PREFIX"].iter().filter_map(env::var_os).map(PathBuf::from);
@@ -47,7 +49,8 @@ fn prefixes() -> Vec<PathBuf> {
     prefixes
 }
 
-/// The prefixes that a `python3` may belong to: of the link itself (a virtual environment) and of what it points to.
+/// Returns the prefixes that a `python3` may belong to: that of the link itself (a virtual environment) and that of
+/// its target.
 fn prefixes_of(python: &Path) -> Vec<PathBuf> {
     let Some(folder) = python.parent() else { return Vec::new() };
     if folder.file_name().is_some_and(|name| name == "shims") {
@@ -62,8 +65,8 @@ fn prefixes_of(python: &Path) -> Vec<PathBuf> {
         .collect()
 }
 
-/// The versions that pyenv's `python3` stands for: `PYENV_VERSION`, else the nearest `.python-version`, else the
-/// global choice.
+/// Returns the prefixes of the versions that pyenv's `python3` selects: `PYENV_VERSION`, else the nearest
+/// `.python-version`, else the global choice.
 fn pyenv_prefixes(root: &Path) -> Vec<PathBuf> {
     let local = || {
         let folder = env::current_dir().ok()?;
@@ -81,7 +84,7 @@ fn pyenv_prefixes(root: &Path) -> Vec<PathBuf> {
     names.map(|name| versions.join(name)).collect()
 }
 
-/// The folders that the Python under `prefix` imports from.
+/// Returns the folders that the Python under `prefix` imports from.
 fn package_folders(prefix: &Path) -> Vec<PathBuf> {
     if cfg!(windows) {
         return vec![prefix.join("Lib").join("site-packages")];

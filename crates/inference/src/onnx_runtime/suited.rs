@@ -1,22 +1,23 @@
-//! Models as ONNX Runtime runs them best on a processor.
+//! Rewriting of models to the operators that ONNX Runtime runs fastest on a CPU.
 
 use std::borrow::Cow;
 
 use opendr_onnx::passes::{prelu_to_conv, transposed_conv_to_conv};
 use opendr_onnx::{bytes_from_model, model_from_bytes};
 
-/// The first version of the format whose constants need not be inputs.
+/// First IR version in which initializers need not be inputs.
 const FREE_CONSTANTS: i64 = 4;
-/// The first version of the operators that has all of what transposed convolutions become.
+/// First opset with all operators that replace transposed convolutions.
 const DEPTH_TO_SPACE: i64 = 11;
 
-/// The model with the same results and other operators, where those are faster; else as it was, errors included.
+/// Returns an equivalent model with faster operators where there are any; otherwise the model unchanged, errors
+/// included.
 pub(super) fn suited(model: &[u8]) -> Cow<'_, [u8]> {
     rewritten(model).map_or(Cow::Borrowed(model), Cow::Owned)
 }
 
 fn rewritten(model: &[u8]) -> Option<Vec<u8>> {
-    // Reading a model takes longer than looking whether it has what is rewritten.
+    // Decoding a model takes longer than searching it for the operators that are rewritten.
     let has = |name: &[u8]| model.windows(name.len()).any(|bytes| bytes == name);
     if !has(b"PRelu") && !has(b"ConvTranspose") {
         return None;

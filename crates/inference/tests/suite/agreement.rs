@@ -1,4 +1,4 @@
-//! Both runtimes give the same outputs for every model of the test data, on real pictures.
+//! Agreement of both runtimes on every model of the test data, with real images.
 
 use std::path::{Path, PathBuf};
 
@@ -7,29 +7,31 @@ use crate::test_data::test_data;
 use opendr_engine::Device;
 use opendr_inference::{Builtin, ElementType, OnnxRuntime, Session, TensorData, TensorInfo, TensorView};
 
-/// Share of an output's largest magnitude by which two runtimes may differ.
+/// Maximum difference between two runtimes, as a share of an output's largest magnitude.
 const TOLERANCE: f64 = 1e-4;
 
-/// How the outputs of two runtimes are held against each other.
+/// Criterion for the agreement of outputs.
 #[derive(Clone, Copy)]
 enum Agreement {
     /// Every float within [`TOLERANCE`].
     Close,
-    /// As `Close`, but for a mask of logits up to 1,900, from a graph so ill-conditioned that ONNX Runtime with its
-    /// graph optimisations on and off differs by 1.1e-3 on these very pictures: within 3e-4 where the model says
-    /// (`presence`) that there is something to mask, within 2e-3 elsewhere.
+    /// As `Close`, except for a mask of logits up to 1,900 from an ill-conditioned graph, for which ONNX Runtime with
+    /// graph optimisations on and off differs by 1.1e-3 on these images: within 3e-4 where the output `presence` is
+    /// positive, within 2e-3 elsewhere.
     Mask { mask: &'static str, presence: &'static str },
-    /// As `Close`; the rows of one output were picked by TopK on their column `score` and are matched with each other.
+    /// As `Close`; the rows of one output were selected by TopK on their column `score` and are matched with each
+    /// other.
     Ranked { output: &'static str, score: usize },
-    /// Labels (the elements of an integer output, or the largest of a row) are the same for 99 % on these pictures.
+    /// Labels (the elements of an integer output, or the argmax of a row) agree for 99 % on these images.
     ///
-    /// Fifty quantised layers make a rounding tie in the first, one value in a million, a difference in a third of the
-    /// last; where a segmentation net sees nothing that it knows its labels hang on that, and ONNX Runtime with graph
-    /// optimisations on and off differs from itself as it does from us (Cityscapes on a cup of coffee: 12 % of the
-    /// labels). Pictures of what the net was trained on are what can be held to 99 %.
+    /// In fifty quantised layers, a rounding tie in the first one, one value in a million, makes a third of the
+    /// values of the last one differ. Where a segmentation network recognises nothing, its labels depend on that:
+    /// ONNX Runtime with graph optimisations on and off then differs from itself as much as from the built-in runtime
+    /// (Cityscapes on a cup of coffee: 12 % of the labels). The limit of 99 % holds for images of the training
+    /// domain.
     Labels(&'static [&'static str]),
-    /// As `Labels`, for 98 %: a net of which ONNX Runtime with graph optimisations on and off gives other labels to 0.7 % of the very
-    /// pictures on which it does so least (to 1.8 % of [`PHOTOS`], to 3.4 % of the cat).
+    /// As `Labels`, for 98 %: a network for which ONNX Runtime with graph optimisations on and off gives different
+    /// labels to 0.7 % on the images with the least difference (to 1.8 % of [`PHOTOS`], to 3.4 % of the cat).
     RoundedLabels(&'static [&'static str]),
 }
 
@@ -62,7 +64,7 @@ const PASCAL: [&str; 8] = [
     "data/photos/zidane.jpg",
 ];
 
-/// Every model of the test data, the values it wants, and how its outputs have to agree.
+/// Every model of the test data, its input scale, and the criterion for its outputs.
 const MODELS: [(&str, Scale, Agreement); 34] = [
     ("classification/mobilenet_v2_1.0_224_qdq.onnx", Scale::Raw, Labels(&PHOTOS)),
     ("classification/resnet8_cifar10.onnx", Scale::Raw, Close),
@@ -108,21 +110,21 @@ const MODELS: [(&str, Scale, Agreement); 34] = [
     ("speech_commands/kws_dscnn_12.onnx", Scale::Raw, Labels(&PHOTOS)),
 ];
 
-/// One output for one picture.
+/// One output for one image.
 struct Output {
     shape: Vec<usize>,
     values: Vec<f64>,
 }
 
-/// One output of both runtimes for all pictures.
+/// One output of both runtimes for all images.
 struct Compared {
     info: TensorInfo,
     pairs: Vec<(Output, Output)>,
 }
 
 impl Compared {
-    /// The largest magnitude: that over all pictures, as a probability is small wherever there is nothing to find, and
-    /// what a float can tell apart in it is not.
+    /// Returns the largest magnitude over all images; in a single image a probability can be small everywhere, below
+    /// the precision of a float.
     fn magnitude(&self) -> f64 {
         self.pairs
             .iter()
@@ -130,14 +132,14 @@ impl Compared {
             .fold(0.0_f64, |largest, value| largest.max(value.abs()))
     }
 
-    /// The largest difference in one picture, as a share of the largest magnitude.
+    /// Returns the largest difference in one image, as a share of the largest magnitude.
     fn difference(&self, picture: usize) -> f64 {
         let (a, b) = &self.pairs[picture];
         let apart = a.values.iter().zip(&b.values).map(|(a, b)| (a - b).abs()).fold(0.0_f64, nan_max);
         apart / self.magnitude().max(f64::MIN_POSITIVE)
     }
 
-    /// As `difference`, rows matched with rows, each column by its own magnitude.
+    /// Returns `difference` with matched rows, each column relative to its own magnitude.
     fn ranked_difference(&self, picture: usize, score: usize) -> f64 {
         let (a, b) = &self.pairs[picture];
         let columns = *a.shape.last().unwrap();
@@ -156,7 +158,7 @@ impl Compared {
         matched_difference(&scaled(a), &scaled(b), score)
     }
 
-    /// The share of labels that differ over all pictures.
+    /// Returns the share of labels that differ over all images.
     fn label_difference(&self) -> f64 {
         let labels = |output: &Output| -> Vec<usize> {
             match self.info.element_type {
@@ -180,8 +182,8 @@ fn position_of_largest(row: &[f64]) -> usize {
     (0..row.len()).max_by(|&a, &b| row[a].total_cmp(&row[b]).then(b.cmp(&a))).unwrap()
 }
 
-/// Matches each row of `a` with the nearest row of `b` that is left. A row whose score is as low as the lowest may have
-/// gone: TopK kept another one as good.
+/// Matches each row of `a` with the nearest unmatched row of `b`. A row with the lowest score may be missing: TopK
+/// may select another one of equal score.
 fn matched_difference(a: &[Vec<f64>], b: &[Vec<f64>], score: usize) -> f64 {
     let cut = a.iter().map(|row| row[score]).fold(f64::INFINITY, f64::min);
     let mut left: Vec<_> = b.iter().collect();
@@ -223,7 +225,7 @@ fn numbers(tensor: &TensorView<'_>) -> Vec<f64> {
     }
 }
 
-/// Runs a model on all pictures with both runtimes.
+/// Runs a model on all images with both runtimes.
 fn compare(
     onnx_runtime: &OnnxRuntime,
     model: &[u8],
@@ -250,7 +252,7 @@ fn compare(
     compared
 }
 
-/// What is too far apart, one line each; every figure is printed.
+/// Returns one line per excessive difference; every figure is printed.
 fn disagreements(file: &str, agreement: Agreement, outputs: &[Compared]) -> Vec<String> {
     let mut lines = Vec::new();
     let mut judge = |output: &Compared, difference: f64, tolerance: f64| {

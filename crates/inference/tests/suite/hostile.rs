@@ -1,4 +1,4 @@
-//! Damaged and hostile models: an error from both runtimes, never a panic that comes out or a dead process.
+//! Damaged and hostile models: both runtimes return an error; no panic escapes and the process survives.
 
 use std::slice::from_ref;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ fn open(runtime: &Arc<dyn Runtime>, model: &[u8]) -> Result<Session> {
     Session::open_with(&**runtime, model, OPTIONS)
 }
 
-/// The kind of the error that every runtime gives for a model.
+/// Returns the error kind that every runtime reports for a model.
 fn refused(what: &str, model: &[u8]) -> ErrorKind {
     let kinds: Vec<_> = runtimes()
         .iter()
@@ -39,12 +39,12 @@ fn varint(mut value: u64) -> Vec<u8> {
     bytes
 }
 
-/// A field that holds bytes, text or a message.
+/// Encodes a field with bytes, text or a message.
 fn field(number: u64, bytes: &[u8]) -> Vec<u8> {
     [varint(number << 3 | 2), varint(bytes.len() as u64), bytes.to_vec()].concat()
 }
 
-/// A field that holds an integer.
+/// Encodes a field with an integer.
 fn number(number: u64, value: u64) -> Vec<u8> {
     [varint(number << 3), varint(value)].concat()
 }
@@ -59,7 +59,7 @@ fn node(kind: &str, inputs: &[&str], output: &str) -> Vec<u8> {
     [inputs, field(2, output.as_bytes()), field(4, kind.as_bytes())].concat()
 }
 
-/// A model from `x` to `y`, floats of shape `[2]`, of these nodes and weights.
+/// Returns a model from `x` to `y`, floats of shape `[2]`, of these nodes and weights.
 fn model(nodes: &[Vec<u8>], weights: &[Vec<u8>]) -> Vec<u8> {
     let shape = field(2, &field(1, &number(1, 2)));
     let info = |name: &str| {
@@ -91,7 +91,7 @@ fn the_plain_model_of_these_tests_runs() {
 }
 
 #[test]
-fn what_is_no_model_is_refused() {
+fn files_that_are_not_models_are_rejected() {
     for bytes in
         [&b""[..], b"hello, I am a text file", &[0; 1000], &[0xff; 1000], b"\x89PNG\r\n\x1a\n", b"RTEN"]
     {
@@ -100,7 +100,7 @@ fn what_is_no_model_is_refused() {
 }
 
 #[test]
-fn weights_that_are_not_there_are_refused() {
+fn missing_weights_are_rejected() {
     let add = node("Add", &["x", "w"], "y");
     for dims in [&[1 << 28][..], &[1 << 32, 1 << 32], &[u64::MAX], &[3]] {
         let weight = tensor("w", dims, 1, &[0; 8]);
@@ -128,14 +128,14 @@ fn graphs_nested_without_end_are_refused() {
 }
 
 #[test]
-fn an_unknown_operator_is_told() {
+fn unknown_operator_is_unsupported() {
     let kind = refused("an unknown operator", &model(&[node("Frobnicate", &["x"], "y")], &[]));
     assert_eq!(kind, ErrorKind::Unsupported);
 }
 
-/// Tensors of 2^40 elements: refused when opened or when run, but the process lives.
+/// Tensors of 2^40 elements: rejected when opened or run; the process survives.
 #[test]
-fn tensors_that_no_machine_holds_are_refused() {
+fn tensors_too_large_for_memory_are_rejected() {
     let sizes = |values: &[i64]| values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<_>>();
     let size = |values: &[i64]| tensor("s", &[values.len() as u64], 7, &sizes(values));
     let huge = [1 << 20, 1 << 20];
@@ -188,7 +188,7 @@ fn truncated_models_are_refused() {
     }
 }
 
-/// Bytes changed here and there, in the outline of the model rather than in its weights.
+/// Bytes changed in the structure of the model, not in its weights.
 #[test]
 fn altered_models_open_or_are_refused() {
     let Some(root) = test_data() else { return };
@@ -200,7 +200,7 @@ fn altered_models_open_or_are_refused() {
         state ^= state << 17;
         (state % below as u64) as usize
     };
-    // Its nodes come first, its weights after them.
+    // The nodes precede the weights.
     let outline = 20_000;
     let mut opened = 0;
     for _ in 0..300 {

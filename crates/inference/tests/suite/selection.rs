@@ -1,5 +1,5 @@
-//! Which runtime is taken, and what is said when it is not the best one. Each case is a process of its own, as a
-//! process searches once.
+//! Selection of the runtime, and the messages when it is not the best one. Each case runs in a process of its own,
+//! because the search runs once per process.
 
 use std::env;
 use std::fs;
@@ -12,7 +12,7 @@ use opendr_inference::{OnnxRuntime, Session, describe, runtimes};
 
 const DEVICE: &str = "OPENDR_SELECTION_TEST";
 
-/// Not a test: what the processes of the tests do.
+/// Entry point of the processes that the tests start.
 #[test]
 fn child() {
     let Ok(device) = env::var(DEVICE) else { return };
@@ -22,7 +22,7 @@ fn child() {
     }
 }
 
-/// A folder of its own, removed at the end.
+/// A temporary folder, removed on drop.
 struct Place(PathBuf);
 
 impl Place {
@@ -39,7 +39,7 @@ impl Place {
         path
     }
 
-    /// What a process with only these variables says about the runtime for `device`.
+    /// Returns the description of the runtime for `device` in a process with only these variables.
     fn said(&self, device: &str, variables: &[(&str, &Path)]) -> String {
         let mut command = Command::new(env::current_exe().unwrap());
         command
@@ -54,7 +54,7 @@ impl Place {
     }
 }
 
-/// Whether the system's loader has a library, so that none of these tests can do without.
+/// Returns whether the system's loader finds a library, which makes these tests impossible.
 fn system_has_one(place: &Place) -> bool {
     let has = place.said("auto", &[]).starts_with("ONNX Runtime");
     if has {
@@ -93,7 +93,7 @@ fn no_library_means_the_built_in_runtime_and_a_hint() {
 }
 
 #[test]
-fn wrong_wishes_are_told() {
+fn invalid_environment_variables_are_errors() {
     let place = Place::new("wishes");
     if system_has_one(&place) {
         return;
@@ -102,7 +102,7 @@ fn wrong_wishes_are_told() {
         (
             "OPENDR_RUNTIME",
             "tract",
-            "InvalidParam: environment variable OPENDR_RUNTIME is \"tract\"; give one of auto",
+            "InvalidParam: environment variable OPENDR_RUNTIME is \"tract\"; set it to one of auto",
         ),
         ("OPENDR_RUNTIME", "onnxruntime", "NotFound: no ONNX Runtime found; run \"opendr runtime install\""),
         ("OPENDR_THREADS", "many", "InvalidParam: environment variable OPENDR_THREADS is \"many\""),
@@ -110,7 +110,7 @@ fn wrong_wishes_are_told() {
         (
             "OPENDR_DEVICE",
             "cuda:1",
-            "Device: device cuda:1 needs ONNX Runtime; the built-in runtime has: cpu",
+            "Device: device cuda:1 needs ONNX Runtime; the built-in runtime supports: cpu",
         ),
     ] {
         let line = place.said("auto", &[(variable, Path::new(value))]);
@@ -121,7 +121,7 @@ fn wrong_wishes_are_told() {
 }
 
 #[test]
-fn a_file_that_is_no_library_is_passed_over() {
+fn files_that_are_not_a_library_are_skipped() {
     let place = Place::new("text");
     if system_has_one(&place) {
         return;
@@ -129,17 +129,17 @@ fn a_file_that_is_no_library_is_passed_over() {
     let text = place.write("libonnxruntime.so", b"not a library");
     let line = place.said("auto", &[("ORT_DYLIB_PATH", &text)]);
     assert!(line.starts_with("built-in"), "{line}");
-    let says = format!("passed over: {} is no library of ONNX Runtime", text.display());
+    let says = format!("skipped: {} is not an ONNX Runtime library", text.display());
     assert!(line.contains(&says), "{line}");
     let line = place.said("auto", &[("ORT_DYLIB_PATH", &text), ("OPENDR_RUNTIME", Path::new("onnxruntime"))]);
-    assert!(line.starts_with("NotFound: ") && line.contains("is no library of ONNX Runtime"), "{line}");
+    assert!(line.starts_with("NotFound: ") && line.contains("is not an ONNX Runtime library"), "{line}");
     let line = place.said("auto", &[("ORT_DYLIB_PATH", &place.0.join("absent.so"))]);
-    assert!(line.contains("passed over: no ONNX Runtime library at"), "{line}");
+    assert!(line.contains("skipped: there is no ONNX Runtime library at"), "{line}");
 }
 
 #[cfg(unix)]
 #[test]
-fn an_old_one_of_python_is_passed_over_in_one_clear_line() {
+fn old_library_of_python_is_skipped_with_one_line() {
     let place = Place::new("old");
     if system_has_one(&place) {
         return;
@@ -148,13 +148,13 @@ fn an_old_one_of_python_is_passed_over_in_one_clear_line() {
     place.write(&format!("{package}/{}", library_name("1.19.2")), b"old");
     let line = place.said("auto", &[("VIRTUAL_ENV", &place.0.join("venv"))]);
     assert!(line.starts_with("built-in"), "{line}");
-    assert!(line.contains("passed over: ONNX Runtime 1.19.2 at"), "{line}");
+    assert!(line.contains("skipped: ONNX Runtime 1.19.2 at"), "{line}");
     assert!(line.contains("is older than 1.23; update it or run \"opendr runtime install\""), "{line}");
 }
 
 #[cfg(unix)]
 #[test]
-fn a_real_one_is_found_in_python_and_in_the_cache() {
+fn library_is_found_in_python_and_in_the_cache() {
     let onnx_runtime =
         OnnxRuntime::find().expect("set ORT_DYLIB_PATH to the library of ONNX Runtime 1.23 or later");
     let library = onnx_runtime.path();
@@ -170,14 +170,14 @@ fn a_real_one_is_found_in_python_and_in_the_cache() {
         let line = place.said("auto", variables);
         assert!(line.starts_with("ONNX Runtime ") && line.contains(library.to_str().unwrap()), "{line}");
     }
-    // A text file where Python's should be does not hide the one in the cache.
+    // A text file in place of Python's library does not hide the one in the cache.
     let text = place.write("libonnxruntime.so", b"not a library");
     let line = place.said("auto", &[("ORT_DYLIB_PATH", &text)]);
     assert!(line.starts_with("ONNX Runtime "), "{line}");
 }
 
 #[test]
-fn a_device_that_is_not_there_is_an_error_that_lists_those_that_are() {
+fn missing_device_is_an_error_that_lists_the_available_ones() {
     let Some(root) = test_data() else { return };
     let model = fs::read(root.join("models/face_detection/yunet_n_320_320.onnx")).unwrap();
     for runtime in runtimes() {

@@ -1,4 +1,4 @@
-//! What a session adds to an engine: checks, sharing between threads, timing, and no allocation.
+//! Checks, sharing between threads, timing, and the absence of allocations in a session.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -9,7 +9,7 @@ use opendr_engine::{Error, ErrorKind, Result};
 use opendr_inference::{Element, ElementType, Engine, Session, Sink, TensorInfo, TensorView, timing};
 use opendr_test_allocator::allocations_of_thread;
 
-/// Adds one to each element, twice: in two outputs.
+/// An engine that adds one to each element, in two outputs.
 struct AddOne {
     infos: [TensorInfo; 3],
     sum: Vec<f32>,
@@ -71,25 +71,27 @@ fn a_run_allocates_nothing_of_its_own() {
 }
 
 #[test]
-fn what_does_not_fit_is_told() {
+fn mismatched_inputs_are_errors() {
     let session = AddOne::session();
     let run = |inputs: &[TensorView<'_>]| session.run(inputs, |_| Ok(())).unwrap_err();
     for (inputs, says) in [
-        (&[][..], "the model takes 1 inputs, was given 0"),
-        (&[view(&[1_u8])], "model input x: f32[1, ?] was given u8[1, 1]"),
-        (&[TensorView::new(&[2, 1], &[1.0_f32; 2]).unwrap()], "was given f32[2, 1]"),
-        (&[TensorView::new(&[1], &[1.0_f32]).unwrap()], "was given f32[1]"),
+        (&[][..], "the model has 1 inputs, but received 0"),
+        (&[view(&[1_u8])], "model input x: f32[1, ?] received u8[1, 1]"),
+        (&[TensorView::new(&[2, 1], &[1.0_f32; 2]).unwrap()], "received f32[2, 1]"),
+        (&[TensorView::new(&[1], &[1.0_f32]).unwrap()], "received f32[1]"),
     ] {
         let error = run(inputs);
         assert_eq!(error.kind(), ErrorKind::InvalidInput);
         assert!(error.to_string().contains(says), "{error}");
     }
     assert_eq!(session.output_index("z").unwrap(), 1);
-    assert!(session.output_index("w").unwrap_err().to_string().contains("no output \"w\", only y, z"));
+    assert!(
+        session.output_index("w").unwrap_err().to_string().contains("no output \"w\"; its outputs are y, z")
+    );
 }
 
 #[test]
-fn the_sinks_error_comes_out_and_its_panic_leaves_the_session_whole() {
+fn errors_of_the_sink_are_returned_and_panics_leave_the_session_usable() {
     let session = AddOne::session();
     let error = session.run(&[view(&[1.0_f32])], |_| Err(Error::not_found("the sink"))).unwrap_err();
     assert_eq!((error.kind(), error.message()), (ErrorKind::NotFound, "the sink"));
@@ -124,7 +126,7 @@ fn one_session_serves_threads_one_at_a_time() {
 }
 
 #[test]
-fn the_time_of_the_sink_is_no_session_time() {
+fn session_time_excludes_the_sink() {
     let session = AddOne::session();
     timing::start();
     let start = Instant::now();

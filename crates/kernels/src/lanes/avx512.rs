@@ -2,7 +2,7 @@ use std::arch::x86_64::*;
 
 use super::implement_lanes;
 
-/// Sixteen numbers: AVX-512F alone, so that sign bits are set by integer instructions.
+/// Sixteen numbers: AVX-512F only, so that sign bits are set by integer instructions.
 #[derive(Clone, Copy)]
 pub(crate) struct Avx512(__m512);
 

@@ -2,7 +2,7 @@ use std::arch::aarch64::*;
 
 use super::implement_lanes;
 
-/// Four numbers: NEON of aarch64 (unverified on hardware).
+/// Four numbers: NEON of aarch64 (not tested on hardware).
 #[derive(Clone, Copy)]
 pub(crate) struct Neon(float32x4_t);
 

@@ -1,8 +1,8 @@
 use super::implement_lanes;
 
-/// Four numbers in plain Rust: the compiler makes of it what the target always has (SSE2 on x86-64).
+/// Four numbers in plain Rust, which the compiler translates to the target's baseline instructions (SSE2 on x86-64).
 ///
-/// A product and a sum are rounded apart: without the instruction, fusing them is a call of the C library.
+/// Product and sum are rounded separately: without an FMA instruction, a fused operation is a call of the C library.
 #[derive(Clone, Copy)]
 pub(crate) struct Portable([f32; 4]);
 
@@ -20,7 +20,7 @@ impl Portable {
     }
 }
 
-/// Adding and taking away this leaves a whole number.
+/// Adding and subtracting this rounds to an integer.
 const ROUNDING: f32 = 12_582_912.0;
 
 implement_lanes! {

@@ -6,10 +6,10 @@ use crate::aligned::{PATCH_GRADIENTS, PATCHES, with_buffer};
 use crate::pool::Pieces;
 use crate::{Activation, Bias, Compute, Matrix, MatrixMut, Product};
 
-/// `y = activation(x * W + b)`: a convolution (in truth a correlation, as everywhere) with zeros around.
+/// A convolution `y = activation(x * W + b)` (a cross-correlation, as in PyTorch) with zero padding.
 ///
-/// Samples are `[channels, height, width]` in and out, so that flattening one is doing nothing. Parameters, as
-/// PyTorch's: W `[outputs, channels, kernel height, kernel width]`, then b.
+/// Input and output samples are `[channels, height, width]`, so that flattening a sample needs no work. Parameters,
+/// as in PyTorch: W `[outputs, channels, kernel height, kernel width]`, then b.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Conv2d {
     patches: Patches,
@@ -17,14 +17,15 @@ pub struct Conv2d {
     activation: Activation,
 }
 
-/// Into so many parts at most a batch is cut: their gradients are added in their order.
+/// Maximum number of parts of a batch; the gradients of the parts are added in their order.
 const PARTS: usize = 16;
 
 impl Conv2d {
-    /// A layer for pictures `[channels, height, width]`; kernel, stride and padding downwards and to the right.
+    /// Creates a layer for images `[channels, height, width]`; kernel, stride and padding are vertical, then
+    /// horizontal.
     ///
     /// # Errors
-    /// Where a size is zero, the kernel is larger than the padded picture, or the whole too large.
+    /// When a size is zero, the kernel is larger than the padded image, or the whole is too large.
     pub fn new(
         [channels, height, width]: [usize; 3],
         outputs: usize,
@@ -34,7 +35,7 @@ impl Conv2d {
         activation: Activation,
     ) -> Result<Self> {
         let size = [height, width];
-        checked_size("a picture", &[channels, height, width])?;
+        checked_size("an image", &[channels, height, width])?;
         checked_size("a kernel", &[outputs, channels, kernel[0], kernel[1]])?;
         checked_size("a stride", &stride)?;
         let mut places = [0; 2];
@@ -42,58 +43,58 @@ impl Conv2d {
             let padded = padding[axis].checked_mul(2).and_then(|twice| twice.checked_add(size[axis]));
             let Some(room) = padded.and_then(|padded| padded.checked_sub(kernel[axis])) else {
                 return Err(Error::invalid_param(format!(
-                    "a kernel of {kernel:?} does not fit into a picture of {size:?} with padding {padding:?}; use a smaller one"
+                    "a kernel of {kernel:?} does not fit into an image of {size:?} with padding {padding:?}; use a smaller kernel"
                 )));
             };
             places[axis] = room / stride[axis] + 1;
         }
-        checked_size("the patches of a picture", &[channels, kernel[0], kernel[1], places[0], places[1]])?;
+        checked_size("the patches of an image", &[channels, kernel[0], kernel[1], places[0], places[1]])?;
         checked_size("the output of a convolution", &[outputs, places[0], places[1]])?;
         let patches = Patches { channels, size, kernel, stride, padding, places };
         Ok(Self { patches, outputs, activation })
     }
 
-    /// Numbers of a sample that come in.
+    /// Returns the number of input values per sample.
     pub fn inputs(&self) -> usize {
         self.patches.picture()
     }
 
-    /// Numbers of a sample that go out.
+    /// Returns the number of output values per sample.
     pub fn outputs(&self) -> usize {
         self.outputs * self.patches.columns()
     }
 
-    /// Channels, height and width of what comes in.
+    /// Returns channels, height and width of the input.
     pub fn input_shape(&self) -> [usize; 3] {
         [self.patches.channels, self.patches.size[0], self.patches.size[1]]
     }
 
-    /// Height and width of the kernels.
+    /// Returns height and width of the kernels.
     pub fn kernel(&self) -> [usize; 2] {
         self.patches.kernel
     }
 
-    /// Steps of the kernels, downwards and to the right.
+    /// Returns the stride, vertical and horizontal.
     pub fn stride(&self) -> [usize; 2] {
         self.patches.stride
     }
 
-    /// Zeros around, above and below, and on both sides.
+    /// Returns the zero padding, vertical and horizontal, on each side.
     pub fn padding(&self) -> [usize; 2] {
         self.patches.padding
     }
 
-    /// What is done to every output.
+    /// Returns the activation function.
     pub fn activation(&self) -> Activation {
         self.activation
     }
 
-    /// Channels, height and width of what goes out.
+    /// Returns channels, height and width of the output.
     pub fn output_shape(&self) -> [usize; 3] {
         [self.outputs, self.patches.places[0], self.patches.places[1]]
     }
 
-    /// Numbers of W and b.
+    /// Returns the number of parameters, W and b.
     pub fn parameters(&self) -> usize {
         self.outputs * (self.patches.rows() + 1)
     }
@@ -101,10 +102,14 @@ impl Conv2d {
     /// Computes `y` `[batch, outputs]` from `x` `[batch, inputs]`.
     ///
     /// # Panics
-    /// Where a length does not fit.
+    /// When a length does not match.
     pub fn forward(&self, compute: &Compute, parameters: &[f32], x: &[f32], y: &mut [f32]) {
         let batch = self.batch(x, y);
-        assert_eq!(parameters.len(), self.parameters(), "parameters of another layer");
+        assert_eq!(
+            parameters.len(),
+            self.parameters(),
+            "`parameters` must have the length of the layer's parameters"
+        );
         let (rows, columns) = (self.patches.rows(), self.patches.columns());
         let (weights, bias) = parameters.split_at(self.outputs * rows);
         let product = Product::new().bias(Bias::Rows(bias)).activation(self.activation);
@@ -125,12 +130,12 @@ impl Conv2d {
         });
     }
 
-    /// Adds to `gradients`, and writes `dx`, where they are wanted. `dy`, the gradient of `y`, becomes that before the
-    /// activation. `scratch` is memory that is grown where needed and used again.
+    /// Computes the backward pass: adds to `gradients`, and writes `dx`, where they are given. `dy`, the gradient of
+    /// `y`, becomes that before the activation. `scratch` is work memory that grows as needed and is reused.
     ///
     /// # Panics
-    /// Where a length does not fit.
-    #[expect(clippy::too_many_arguments, reason = "what goes in and out of a backward pass")]
+    /// When a length does not match.
+    #[expect(clippy::too_many_arguments, reason = "inputs and outputs of a backward pass")]
     pub fn backward(
         &self,
         compute: &Compute,
@@ -142,10 +147,14 @@ impl Conv2d {
         scratch: &mut Vec<f32>,
     ) {
         let batch = self.batch(x, y);
-        assert_eq!(parameters.len(), self.parameters(), "parameters of another layer");
+        assert_eq!(
+            parameters.len(),
+            self.parameters(),
+            "`parameters` must have the length of the layer's parameters"
+        );
         let wants_input = dx.is_some();
         let dx = dx.unwrap_or_default();
-        assert!(!wants_input || dx.len() == x.len(), "inputs and their gradients differ in number");
+        assert!(!wants_input || dx.len() == x.len(), "`x` and `dx` must have equal lengths");
         self.activation.backward_in_place(compute.isa(), y, dy);
         let length = batch.div_ceil(PARTS).max(1);
         let parts = batch.div_ceil(length);
@@ -158,7 +167,7 @@ impl Conv2d {
         compute.pool().run(parts, |part| {
             let x = x.chunks(length * self.inputs()).nth(part).unwrap_or_default();
             let dy = dy.chunks(length * self.outputs()).nth(part).unwrap_or_default();
-            // SAFETY: each part comes once.
+            // SAFETY: each part is processed once.
             let (sums, dx) = unsafe { (sums.get(part), dx.get(part)) };
             if wanted > 0 {
                 self.add_gradients(compute, x, dy, sums);
@@ -168,7 +177,7 @@ impl Conv2d {
             }
         });
         if let Some(gradients) = gradients {
-            assert_eq!(gradients.len(), wanted, "gradients of another layer");
+            assert_eq!(gradients.len(), wanted, "`gradients` must have the length of the layer's parameters");
             for part in scratch.chunks_exact(wanted) {
                 for (total, &value) in gradients.iter_mut().zip(part) {
                     *total += value;
@@ -215,7 +224,7 @@ impl Conv2d {
     fn batch(&self, x: &[f32], y: &[f32]) -> usize {
         let batch = x.len() / self.inputs();
         let expected = [batch * self.inputs(), batch * self.outputs()];
-        assert_eq!([x.len(), y.len()], expected, "not a batch of {self:?}");
+        assert_eq!([x.len(), y.len()], expected, "`x` and `y` must be a batch of {self:?}");
         batch
     }
 }

@@ -4,9 +4,9 @@ use super::checked_size;
 use crate::column_sums::backward_with_column_sums;
 use crate::{Activation, Bias, Compute, Matrix, MatrixMut, Product};
 
-/// `y = activation(x W + b)`.
+/// A fully connected layer `y = activation(x W + b)`.
 ///
-/// Parameters: W by rows, `[inputs, outputs]` (the transpose of PyTorch's), then b.
+/// Parameters: W in row-major order, `[inputs, outputs]` (the transpose of PyTorch's), then b.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Dense {
     inputs: usize,
@@ -15,31 +15,31 @@ pub struct Dense {
 }
 
 impl Dense {
-    /// A layer of these sizes.
+    /// Creates a layer of these sizes.
     ///
     /// # Errors
-    /// Where a size is zero or their product too large.
+    /// When a size is zero or their product is too large.
     pub fn new(inputs: usize, outputs: usize, activation: Activation) -> Result<Self> {
         checked_size("a dense layer", &[inputs, outputs])?;
         Ok(Self { inputs, outputs, activation })
     }
 
-    /// Numbers of a sample that come in.
+    /// Returns the number of input values per sample.
     pub fn inputs(&self) -> usize {
         self.inputs
     }
 
-    /// Numbers of a sample that go out.
+    /// Returns the number of output values per sample.
     pub fn outputs(&self) -> usize {
         self.outputs
     }
 
-    /// What is done to every output.
+    /// Returns the activation function.
     pub fn activation(&self) -> Activation {
         self.activation
     }
 
-    /// Numbers of W and b.
+    /// Returns the number of parameters, W and b.
     pub fn parameters(&self) -> usize {
         (self.inputs + 1) * self.outputs
     }
@@ -47,7 +47,7 @@ impl Dense {
     /// Computes `y` `[batch, outputs]` from `x` `[batch, inputs]`.
     ///
     /// # Panics
-    /// Where a length does not fit.
+    /// When a length does not match.
     pub fn forward(&self, compute: &Compute, parameters: &[f32], x: &[f32], y: &mut [f32]) {
         let batch = self.batch(x, y);
         let (weights, bias) = parameters.split_at(self.inputs * self.outputs);
@@ -59,11 +59,11 @@ impl Dense {
         );
     }
 
-    /// Adds to `gradients`, and writes `dx`, where they are wanted. `dy`, the gradient of `y`, becomes that before the
-    /// activation.
+    /// Computes the backward pass: adds to `gradients`, and writes `dx`, where they are given. `dy`, the gradient of
+    /// `y`, becomes that before the activation.
     ///
     /// # Panics
-    /// Where a length does not fit.
+    /// When a length does not match.
     pub fn backward(
         &self,
         compute: &Compute,
@@ -103,7 +103,7 @@ impl Dense {
         assert_eq!(
             [x.len(), y.len()],
             [batch * self.inputs, batch * self.outputs],
-            "not a batch of {self:?}"
+            "`x` and `y` must be a batch of {self:?}"
         );
         batch
     }

@@ -3,7 +3,7 @@ use opendr_engine::Result;
 use super::checked_size;
 use crate::{Activation, Bias, Compute, Matrix, MatrixMut, Product, add_column_sums};
 
-/// A gated recurrent unit (Cho et al., 2014) as PyTorch's: with gates r, z and n from input and state,
+/// A gated recurrent unit (Cho et al., 2014) as in PyTorch, with gates r, z and n from input and state:
 /// `r = sigmoid(x Wr + cr + h Ur + dr)`, `z` likewise, `n = tanh(x Wn + cn + r (h Un + dn))`, `h' = (1 - z) n + z h`.
 ///
 /// Parameters: W `[inputs, 3 size]`, U `[size, 3 size]`, c `[3 size]`, d `[3 size]`, each with the columns of r, z and n.
@@ -13,60 +13,60 @@ pub struct Gru {
     size: usize,
 }
 
-/// What a pass over a sequence leaves for the pass back: memory that is used again.
+/// Values of a forward pass over a sequence for the backward pass; the memory is reused.
 #[derive(Debug, Clone, Default)]
 pub struct GruTape {
     steps: usize,
     batch: usize,
-    /// r, z and n of every step and sample.
+    /// Gates r, z and n of every step and sample.
     gates: Vec<f32>,
-    /// h U + d of one step; then its gradient, of every step.
+    /// h U + d of one step; in the backward pass its gradient, of every step.
     hidden: Vec<f32>,
-    /// The columns of n in h U + d.
+    /// Columns of n in h U + d.
     candidates: Vec<f32>,
-    /// The state before every step, zero where an episode starts.
+    /// State before every step, zero where an episode starts.
     before: Vec<f32>,
-    /// The state after every step.
+    /// State after every step.
     states: Vec<f32>,
-    /// The gradient of the state between two steps.
+    /// Gradient of the state between two steps.
     carried: Vec<f32>,
     inputs: Vec<f32>,
 }
 
 impl Gru {
-    /// A unit of these sizes.
+    /// Creates a unit of these sizes.
     ///
     /// # Errors
-    /// Where a size is zero or the whole too large.
+    /// When a size is zero or the whole is too large.
     pub fn new(inputs: usize, size: usize) -> Result<Self> {
         checked_size("the inputs of a recurrent unit", &[inputs, size, 3])?;
         checked_size("the state of a recurrent unit", &[size, size, 3])?;
         Ok(Self { inputs, size })
     }
 
-    /// Numbers of a sample that come in at a step.
+    /// Returns the number of input values per sample and step.
     pub fn inputs(&self) -> usize {
         self.inputs
     }
 
-    /// Numbers of a state.
+    /// Returns the size of the state.
     pub fn size(&self) -> usize {
         self.size
     }
 
-    /// Numbers of W, U, c and d.
+    /// Returns the number of parameters: W, U, c and d.
     pub fn parameters(&self) -> usize {
         3 * self.size * (self.inputs + self.size + 2)
     }
 
-    /// Runs over a sequence and gives the states after every step, `[steps, batch, size]`; the last ones are where to
-    /// go on from.
+    /// Computes a sequence and returns the states after every step, `[steps, batch, size]`; the last ones continue
+    /// the sequence in the next call.
     ///
-    /// `x` is `[steps, batch, inputs]`, `state` `[batch, size]`, `starts` `[steps, batch]`: where an episode starts, the
-    /// state is zero before the step.
+    /// `x` is `[steps, batch, inputs]`, `state` `[batch, size]`, `starts` `[steps, batch]`: where an episode starts,
+    /// the state is reset to zero before the step.
     ///
     /// # Panics
-    /// Where a length does not fit.
+    /// When a length does not match.
     pub fn forward<'t>(
         &self,
         compute: &Compute,
@@ -80,7 +80,11 @@ impl Gru {
         let steps = starts.len().checked_div(batch).unwrap_or(0);
         let samples = steps * batch;
         let lengths = [x.len(), state.len(), starts.len()];
-        assert_eq!(lengths, [samples * self.inputs, batch * self.size, samples], "no sequence for {self:?}");
+        assert_eq!(
+            lengths,
+            [samples * self.inputs, batch * self.size, samples],
+            "the lengths are not those of a sequence for {self:?}"
+        );
         let [w, u, c, d] = self.split(parameters);
         tape.prepare(self, steps, batch, x);
         Product::new().bias(Bias::Columns(c)).run(
@@ -114,7 +118,7 @@ impl Gru {
         &tape.states
     }
 
-    /// From the sums of a step to its gates and state.
+    /// Computes gates and state of a step from its sums.
     fn gate(&self, compute: &Compute, tape: &mut GruTape, step: usize) {
         let (size, batch) = (self.size, tape.batch);
         let hidden = tape.hidden.chunks_exact(3 * size);
@@ -141,14 +145,14 @@ impl Gru {
         }
     }
 
-    /// The way back through the sequence of the last [`Gru::forward`] on this tape, from `dy`, the gradient of all states.
+    /// Computes the backward pass of the last [`Gru::forward`] on this tape, from `dy`, the gradient of all states.
     ///
-    /// Adds to `gradients`; writes the gradient of `x` to `dx` and that of the first state to `dstate`, where they are wanted.
-    /// A second call needs a forward pass before it.
+    /// Adds to `gradients`; writes the gradient of `x` to `dx` and that of the first state to `dstate`, where they
+    /// are given. Each call needs a forward pass of its own.
     ///
     /// # Panics
-    /// Where a length does not fit.
-    #[expect(clippy::too_many_arguments, reason = "what goes in and out of a backward pass")]
+    /// When a length does not match.
+    #[expect(clippy::too_many_arguments, reason = "inputs and outputs of a backward pass")]
     pub fn backward(
         &self,
         compute: &Compute,
@@ -163,7 +167,11 @@ impl Gru {
         let (size, batch, steps) = (self.size, tape.batch, tape.steps);
         let samples = steps * batch;
         let lengths = [dy.len(), starts.len(), gradients.len()];
-        assert_eq!(lengths, [samples * size, samples, self.parameters()], "not the tape's sequence");
+        assert_eq!(
+            lengths,
+            [samples * size, samples, self.parameters()],
+            "the lengths are not those of the tape's sequence"
+        );
         let [w, u, ..] = self.split(parameters);
         tape.carried.clear();
         tape.carried.resize(batch * size, 0.0);
@@ -195,8 +203,8 @@ impl Gru {
         }
     }
 
-    /// Turns the gates of a step into their gradients, on the input's side in `gates`, on the state's in `hidden`, and
-    /// leaves in `carried` what reaches the state before around the gates.
+    /// Replaces the gates of a step by their gradients, of the input's part in `gates` and of the state's part in
+    /// `hidden`, and writes the gradient that bypasses the gates to `carried`.
     fn gate_backward(&self, tape: &mut GruTape, step: usize, dy: &[f32]) {
         let (size, batch) = (self.size, tape.batch);
         let gates = tape.gates[3 * step * batch * size..].chunks_exact_mut(3 * size);
@@ -241,7 +249,11 @@ impl Gru {
     }
 
     fn split<'p>(&self, parameters: &'p [f32]) -> [&'p [f32]; 4] {
-        assert_eq!(parameters.len(), self.parameters(), "parameters of another layer");
+        assert_eq!(
+            parameters.len(),
+            self.parameters(),
+            "`parameters` must have the length of the layer's parameters"
+        );
         let (w, rest) = parameters.split_at(3 * self.size * self.inputs);
         let (u, biases) = rest.split_at(3 * self.size * self.size);
         let (c, d) = biases.split_at(3 * self.size);

@@ -2,9 +2,10 @@ use opendr_engine::Result;
 
 use super::checked_size;
 
-/// Layer normalisation (Ba, Kiros and Hinton, 2016): each sample to mean 0 and variance 1, then scaled and shifted.
+/// Layer normalisation (Ba, Kiros and Hinton, 2016): normalises each sample to mean 0 and variance 1, then scales and
+/// shifts it.
 ///
-/// Parameters: scale, then shift, each as long as a sample.
+/// Parameters: scale, then shift, each of the sample's size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LayerNorm {
     size: usize,
@@ -12,21 +13,21 @@ pub struct LayerNorm {
 }
 
 impl LayerNorm {
-    /// A layer for samples of `size` numbers; `epsilon`, 1e-5 in PyTorch, is added to the variance.
+    /// Creates a layer for samples of `size` numbers; `epsilon`, 1e-5 in PyTorch, is added to the variance.
     ///
     /// # Errors
-    /// Where the size is zero or too large.
+    /// When the size is zero or too large.
     pub fn new(size: usize, epsilon: f32) -> Result<Self> {
         checked_size("a layer normalisation", &[size])?;
         Ok(Self { size, epsilon })
     }
 
-    /// Numbers of a sample.
+    /// Returns the number of values per sample.
     pub fn size(&self) -> usize {
         self.size
     }
 
-    /// Numbers of scale and shift.
+    /// Returns the number of parameters, scale and shift.
     pub fn parameters(&self) -> usize {
         2 * self.size
     }
@@ -34,11 +35,11 @@ impl LayerNorm {
     /// Computes `y` from `x`, both `[batch, size]`.
     ///
     /// # Panics
-    /// Where a length does not fit.
+    /// When a length does not match.
     pub fn forward(&self, parameters: &[f32], x: &[f32], y: &mut [f32]) {
-        assert_eq!(x.len(), y.len(), "inputs and outputs differ in number");
+        assert_eq!(x.len(), y.len(), "`x` and `y` must have equal lengths");
         let (scale, shift) = parameters.split_at(self.size);
-        assert_eq!(shift.len(), self.size, "parameters of another layer");
+        assert_eq!(shift.len(), self.size, "`parameters` must have the length of the layer's parameters");
         for (x, y) in x.chunks_exact(self.size).zip(y.chunks_exact_mut(self.size)) {
             let [mean, inverse] = self.moments(x);
             for (((y, &x), &scale), &shift) in y.iter_mut().zip(x).zip(scale).zip(shift) {
@@ -47,10 +48,11 @@ impl LayerNorm {
         }
     }
 
-    /// Adds to `gradients`, and writes `dx`, where they are wanted, from `dy`, the gradient of the output.
+    /// Computes the backward pass from `dy`, the gradient of the output: adds to `gradients`, and writes `dx`, where
+    /// they are given.
     ///
     /// # Panics
-    /// Where a length does not fit.
+    /// When a length does not match.
     pub fn backward(
         &self,
         parameters: &[f32],
@@ -59,11 +61,11 @@ impl LayerNorm {
         gradients: Option<&mut [f32]>,
         dx: Option<&mut [f32]>,
     ) {
-        assert_eq!(x.len(), dy.len(), "inputs and gradients differ in number");
+        assert_eq!(x.len(), dy.len(), "`x` and `dy` must have equal lengths");
         let rows = || x.chunks_exact(self.size).zip(dy.chunks_exact(self.size));
         if let Some(gradients) = gradients {
             let (scale, shift) = gradients.split_at_mut(self.size);
-            assert_eq!(shift.len(), self.size, "gradients of another layer");
+            assert_eq!(shift.len(), self.size, "`gradients` must have the length of the layer's parameters");
             for (x, dy) in rows() {
                 let [mean, inverse] = self.moments(x);
                 for (((scale, shift), &x), &dy) in scale.iter_mut().zip(&mut *shift).zip(x).zip(dy) {
@@ -73,7 +75,7 @@ impl LayerNorm {
             }
         }
         if let Some(dx) = dx {
-            assert_eq!(x.len(), dx.len(), "inputs and their gradients differ in number");
+            assert_eq!(x.len(), dx.len(), "`x` and `dx` must have equal lengths");
             for ((x, dy), dx) in rows().zip(dx.chunks_exact_mut(self.size)) {
                 self.input_gradient(&parameters[..self.size], x, dy, dx);
             }
@@ -94,7 +96,7 @@ impl LayerNorm {
         }
     }
 
-    /// The mean and one over the standard deviation.
+    /// Returns the mean and the reciprocal of the standard deviation.
     fn moments(&self, x: &[f32]) -> [f32; 2] {
         let count = self.size as f32;
         let mean = x.iter().sum::<f32>() / count;

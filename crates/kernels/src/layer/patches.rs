@@ -1,6 +1,6 @@
-//! Pictures as matrices: each column holds the numbers under the kernel at one place.
+//! Patches of an image as a matrix (im2col): each column contains the values under the kernel at one position.
 
-/// A picture `[channels, height, width]` and how a kernel goes over it.
+/// An image `[channels, height, width]` and the geometry of a kernel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Patches {
     pub(super) channels: usize,
@@ -8,27 +8,27 @@ pub(super) struct Patches {
     pub(super) kernel: [usize; 2],
     pub(super) stride: [usize; 2],
     pub(super) padding: [usize; 2],
-    /// Places, downwards and to the right.
+    /// Number of kernel positions, vertical and horizontal.
     pub(super) places: [usize; 2],
 }
 
 impl Patches {
-    /// Numbers of a picture.
+    /// Returns the number of values of an image.
     pub(super) fn picture(&self) -> usize {
         self.channels * self.size[0] * self.size[1]
     }
 
-    /// Rows of the matrix: numbers under the kernel.
+    /// Returns the rows of the matrix: the values under the kernel.
     pub(super) fn rows(&self) -> usize {
         self.channels * self.kernel[0] * self.kernel[1]
     }
 
-    /// Columns of the matrix: places of the kernel.
+    /// Returns the columns of the matrix: the kernel positions.
     pub(super) fn columns(&self) -> usize {
         self.places[0] * self.places[1]
     }
 
-    /// Fills the matrix from the picture; zeros where the kernel stands out.
+    /// Fills the matrix from the image; zeros in the padding.
     pub(super) fn gather(&self, picture: &[f32], matrix: &mut [f32]) {
         let [height, width] = self.size;
         for (row, line) in matrix.chunks_exact_mut(self.columns()).enumerate() {
@@ -39,7 +39,7 @@ impl Patches {
                 line.fill(0.0);
                 let Some(y) = self.position(0, i, offset[0]) else { continue };
                 let from = &plane[y * width..][..width];
-                // Not below zero, by the choice of `first`.
+                // Not negative, by the choice of `first`.
                 let start = (first * self.stride[1] + offset[1]).saturating_sub(self.padding[1]);
                 let spots = from.get(start..).unwrap_or_default().iter().step_by(self.stride[1]);
                 for (to, &value) in line[first..end].iter_mut().zip(spots) {
@@ -49,7 +49,7 @@ impl Patches {
         }
     }
 
-    /// Adds the matrix to the picture: the transpose of [`Patches::gather`].
+    /// Adds the matrix to the image (col2im): the transpose of [`Patches::gather`].
     pub(super) fn scatter(&self, matrix: &[f32], picture: &mut [f32]) {
         let [height, width] = self.size;
         for (row, line) in matrix.chunks_exact(self.columns()).enumerate() {
@@ -68,19 +68,19 @@ impl Patches {
         }
     }
 
-    /// The channel, and the place under the kernel, that a row of the matrix stands for.
+    /// Returns the channel and the offset in the kernel of a row of the matrix.
     fn under_kernel(&self, row: usize) -> (usize, [usize; 2]) {
         let area = self.kernel[0] * self.kernel[1];
         (row / area, [row % area / self.kernel[1], row % self.kernel[1]])
     }
 
-    /// Where in the picture the kernel's `offset` lies at a place, unless beside it.
+    /// Returns the image coordinate of the kernel's `offset` at a position; `None` in the padding.
     fn position(&self, axis: usize, place: usize, offset: usize) -> Option<usize> {
         let position = (place * self.stride[axis] + offset).checked_sub(self.padding[axis])?;
         (position < self.size[axis]).then_some(position)
     }
 
-    /// The places, from the first to the one after the last, at which the kernel's `offset` lies in the picture.
+    /// Returns the range of positions at which the kernel's `offset` lies in the image.
     fn inside(&self, axis: usize, offset: usize) -> (usize, usize) {
         let (stride, padding) = (self.stride[axis], self.padding[axis]);
         let first = padding.saturating_sub(offset).div_ceil(stride).min(self.places[axis]);

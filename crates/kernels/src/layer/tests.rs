@@ -1,4 +1,4 @@
-//! Every layer against plain loops in double precision, every gradient against their finite differences.
+//! Every layer against plain loops in double precision, every gradient against finite differences.
 
 use std::sync::Arc;
 
@@ -48,7 +48,7 @@ fn assert_gradient(what: &str, at: &[f32], gradient: &[f32], loss: impl Fn(&[f64
     assert_close(what, gradient, &differences);
 }
 
-/// Runs a network forward and back on every instruction set and compares all it gives.
+/// Runs a network forward and backward on every instruction set and compares all results.
 fn check(network: &Network, reference: impl Fn(&[f64], &[f64]) -> Vec<f64>, batch: usize) {
     let (x, parameters) = (random(batch * network.inputs(), 1), random(network.parameters(), 2));
     let weights = random(batch * network.outputs(), 3);
@@ -168,7 +168,7 @@ fn recurrence_through_time() {
     }
 }
 
-/// A policy's network for pictures: the same bits on one thread and on three, forward and back.
+/// A policy network for images: bit-identical on one thread and on three, forward and backward.
 #[test]
 fn threads_do_not_change_a_bit() {
     let first = Conv2d::new([2, 20, 20], 8, [5, 5], [2, 2], [1, 1], Activation::Relu).unwrap();

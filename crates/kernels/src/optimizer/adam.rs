@@ -2,13 +2,13 @@ use crate::compute::Compute;
 use crate::isa::for_every_isa;
 use crate::lanes::Lanes;
 
-/// Adam (Kingma and Ba, 2015) and AdamW (Loshchilov and Hutter, 2019), with the corrections and the place of epsilon that PyTorch
-/// has: `p -= rate / (1 - beta1^t) m / (sqrt(v) / sqrt(1 - beta2^t) + epsilon)`.
+/// Adam (Kingma and Ba, 2015) and AdamW (Loshchilov and Hutter, 2019), with PyTorch's bias correction and position of
+/// epsilon: `p -= rate / (1 - beta1^t) m / (sqrt(v) / sqrt(1 - beta2^t) + epsilon)`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Adam {
-    /// What does not change while training.
+    /// Options, which stay the same during a training.
     pub options: AdamOptions,
-    /// Steps done; like the moments, a part of what a checkpoint holds.
+    /// Number of steps so far; with the moments, part of a checkpoint.
     pub steps: u64,
     /// Running means of the gradients.
     pub first: Vec<f32>,
@@ -16,51 +16,51 @@ pub struct Adam {
     pub second: Vec<f32>,
 }
 
-/// Settings of [`Adam`]; the defaults are PyTorch's.
+/// Options of [`Adam`]; the defaults are PyTorch's.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AdamOptions {
-    /// How slowly the means of gradients and of squares change, each in [0, 1).
+    /// Decay rates of the means of gradients and of squares, each in [0, 1).
     pub betas: [f64; 2],
-    /// Keeps a step finite where gradients vanish.
+    /// Term in the denominator that keeps a step finite where gradients vanish.
     pub epsilon: f32,
-    /// What pulls parameters to zero.
-    pub decay: WeightDecay,
+    /// Weight decay.
+    pub weight_decay: WeightDecay,
 }
 
-/// A pull towards zero.
+/// Weight decay.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum WeightDecay {
-    /// None.
+    /// No weight decay.
     None,
     /// Added to the gradient, times the parameter, as in PyTorch's `Adam`.
-    Gradient(f32),
-    /// Taken off the parameter, times itself and the learning rate: `AdamW`.
+    L2(f32),
+    /// Subtracted from the parameter, times the parameter and the learning rate: `AdamW`.
     Decoupled(f32),
 }
 
 impl Default for AdamOptions {
     fn default() -> Self {
-        Self { betas: [0.9, 0.999], epsilon: 1e-8, decay: WeightDecay::None }
+        Self { betas: [0.9, 0.999], epsilon: 1e-8, weight_decay: WeightDecay::None }
     }
 }
 
-/// Numbers that one thread updates at a time.
+/// Number of parameters that one thread updates at a time.
 const PIECE: usize = 1 << 14;
 
 impl Adam {
-    /// An optimiser of this many parameters.
+    /// Creates an optimiser of this many parameters.
     pub fn new(parameters: usize, options: AdamOptions) -> Self {
         Self { options, steps: 0, first: vec![0.0; parameters], second: vec![0.0; parameters] }
     }
 
-    /// One step at learning rate `rate`.
+    /// Takes one step at learning rate `rate`.
     ///
     /// # Panics
-    /// Where there are more or fewer parameters or gradients than the optimiser was made for.
+    /// When the number of parameters or gradients differs from the optimiser's.
     pub fn step(&mut self, compute: &Compute, rate: f32, parameters: &mut [f32], gradients: &[f32]) {
         let count = parameters.len();
         let lengths = [gradients.len(), self.first.len(), self.second.len()];
-        assert_eq!(lengths, [count; 3], "gradients and moments of another network");
+        assert_eq!(lengths, [count; 3], "`parameters` and `gradients` must have the length of the moments");
         self.steps += 1;
         let update = self.options.update(rate, self.steps);
         let pieces = Pieces { parameters, first: &mut self.first, second: &mut self.second };
@@ -72,9 +72,9 @@ impl AdamOptions {
     fn update(&self, rate: f32, step: u64) -> Update {
         let power = i32::try_from(step).unwrap_or(i32::MAX);
         let [first, second] = self.betas.map(|beta| 1.0 - beta.powi(power));
-        let (added, kept) = match self.decay {
+        let (added, kept) = match self.weight_decay {
             WeightDecay::None => (0.0, 1.0),
-            WeightDecay::Gradient(decay) => (decay, 1.0),
+            WeightDecay::L2(decay) => (decay, 1.0),
             WeightDecay::Decoupled(decay) => (0.0, 1.0 - rate * decay),
         };
         Update {
@@ -89,7 +89,7 @@ impl AdamOptions {
     }
 }
 
-/// The numbers of one step.
+/// Coefficients of one step.
 #[derive(Clone, Copy)]
 struct Update {
     kept_moments: [f32; 2],
@@ -191,9 +191,9 @@ mod tests {
     fn reference(options: AdamOptions, rate: f64, p: &mut f64, state: &mut [f64; 2], g: f64, t: i32) {
         let [beta1, beta2] = options.betas;
         let mut g = g;
-        match options.decay {
+        match options.weight_decay {
             WeightDecay::None => (),
-            WeightDecay::Gradient(decay) => g += f64::from(decay) * *p,
+            WeightDecay::L2(decay) => g += f64::from(decay) * *p,
             WeightDecay::Decoupled(decay) => *p *= 1.0 - rate * f64::from(decay),
         }
         state[0] = beta1 * state[0] + (1.0 - beta1) * g;
@@ -205,8 +205,8 @@ mod tests {
     #[test]
     fn equals_the_rule_in_double_precision() {
         let count = 37;
-        for decay in [WeightDecay::None, WeightDecay::Gradient(0.1), WeightDecay::Decoupled(0.1)] {
-            let options = AdamOptions { decay, epsilon: 1e-5, ..AdamOptions::default() };
+        for decay in [WeightDecay::None, WeightDecay::L2(0.1), WeightDecay::Decoupled(0.1)] {
+            let options = AdamOptions { weight_decay: decay, epsilon: 1e-5, ..AdamOptions::default() };
             for isa in Isa::available() {
                 let compute = Compute::new(isa, Arc::new(WorkerPool::new(1)));
                 let mut adam = Adam::new(count, options);
@@ -220,7 +220,7 @@ mod tests {
                         reference(options, 0.01, &mut exact[i], &mut state[i], f64::from(g[i]), t);
                     }
                 }
-                // Fifty steps, each rounded to 2^-23 a few times.
+                // Rounding errors of fifty steps, 2^-23 each, a few times per step.
                 for (ours, exact) in p.iter().zip(&exact) {
                     assert!((f64::from(*ours) - exact).abs() < 1e-5, "{ours} {exact} {decay:?} {isa}");
                 }

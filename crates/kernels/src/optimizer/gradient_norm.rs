@@ -1,4 +1,5 @@
-/// The Euclidean norm of the gradients, summed in double precision in an order that depends on their number alone.
+/// Returns the Euclidean norm of the gradients, summed in double precision in an order that depends on their number
+/// only.
 pub fn gradient_norm(gradients: &[f32]) -> f64 {
     let mut lanes = [0.0; 8];
     let chunks = gradients.chunks_exact(8);
@@ -11,11 +12,11 @@ pub fn gradient_norm(gradients: &[f32]) -> f64 {
     (lanes.iter().sum::<f64>() + rest).sqrt()
 }
 
-/// Scales the gradients of all parts of a model by one factor, so that their norm is at most `max_norm`, and gives the
-/// norm that they had.
+/// Scales the gradients of all parts of a model by one factor, so that their norm is at most `max_norm`, and returns
+/// the norm before.
 ///
-/// The factor is that of PyTorch's `clip_grad_norm_`: `max_norm / (norm + 1e-6)`, at most 1. A norm that is not finite
-/// leaves no finite gradient; whoever wants to skip such a step looks at what is returned.
+/// The factor is that of PyTorch's `clip_grad_norm_`: `max_norm / (norm + 1e-6)`, at most 1. A norm that is not
+/// finite leaves no finite gradient; check the returned norm to skip such a step.
 pub fn clip_gradient_norm(parts: &mut [&mut [f32]], max_norm: f32) -> f32 {
     let squares: f64 = parts.iter().map(|part| gradient_norm(part).powi(2)).sum();
     let norm = squares.sqrt();
@@ -47,7 +48,7 @@ mod tests {
     }
 
     #[test]
-    fn tells_of_nan() {
+    fn nan_norm_is_returned() {
         let mut a = [1.0, f32::NAN];
         assert!(clip_gradient_norm(&mut [&mut a], 1.0).is_nan());
         assert!(a[0].is_nan());

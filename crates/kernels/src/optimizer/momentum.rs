@@ -1,24 +1,28 @@
-/// Stochastic gradient descent with momentum, as PyTorch's `SGD`: `v = momentum v + g`, `p -= rate v`.
+/// Stochastic gradient descent with momentum, as in PyTorch's `SGD`: `v = momentum v + g`, `p -= rate v`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Momentum {
     momentum: f32,
-    /// One number for each parameter; save and restore them with the parameters.
+    /// One value per parameter; part of a checkpoint.
     pub velocity: Vec<f32>,
 }
 
 impl Momentum {
-    /// An optimiser of this many parameters, at rest; `momentum` 0 is plain gradient descent.
+    /// Creates an optimiser of this many parameters with zero velocity; `momentum` 0 is plain gradient descent.
     pub fn new(parameters: usize, momentum: f32) -> Self {
         Self { momentum, velocity: vec![0.0; parameters] }
     }
 
-    /// One step at learning rate `rate`.
+    /// Takes one step at learning rate `rate`.
     ///
     /// # Panics
-    /// Where there are more or fewer parameters or gradients than the optimiser was made for.
+    /// When the number of parameters or gradients differs from the optimiser's.
     pub fn step(&mut self, rate: f32, parameters: &mut [f32], gradients: &[f32]) {
-        assert_eq!(parameters.len(), self.velocity.len(), "parameters of another network");
-        assert_eq!(gradients.len(), self.velocity.len(), "gradients of another network");
+        assert_eq!(
+            parameters.len(),
+            self.velocity.len(),
+            "`parameters` must have the length of the velocity"
+        );
+        assert_eq!(gradients.len(), self.velocity.len(), "`gradients` must have the length of the velocity");
         let both = parameters.iter_mut().zip(&mut self.velocity);
         for ((parameter, velocity), &gradient) in both.zip(gradients) {
             *velocity = self.momentum * *velocity + gradient;

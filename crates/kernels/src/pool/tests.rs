@@ -47,7 +47,7 @@ fn a_panic_reaches_the_caller_and_the_pool_lives_on() {
 }
 
 #[test]
-fn work_within_work_and_from_many_threads_ends() {
+fn nested_and_concurrent_work_finishes() {
     let pool = WorkerPool::new(2);
     let sum = AtomicUsize::new(0);
     std::thread::scope(|scope| {
@@ -84,11 +84,11 @@ fn dropping_joins() {
     let pool = WorkerPool::new(4);
     let shared = Arc::downgrade(&pool.shared);
     drop(pool);
-    assert!(shared.upgrade().is_none(), "a thread still holds the pool");
+    assert!(shared.upgrade().is_none(), "a thread still uses the pool");
 }
 
 #[test]
-fn both_are_done() {
+fn join_runs_both_functions() {
     for threads in 1..3 {
         let (mut a, mut b) = (0, 0);
         WorkerPool::new(threads).join(|| a = 1, || b = 2);

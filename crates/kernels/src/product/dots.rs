@@ -4,12 +4,12 @@ use super::tile::{BiasAt, Block, Finish, finish_aside};
 use crate::isa::for_every_isa;
 use crate::lanes::{Lanes, MAX_WIDTH};
 
-/// From more columns on tiles are faster.
+/// Maximum number of columns; with more, tiles are faster.
 pub(super) const MOST_COLUMNS: usize = 4;
 
 for_every_isa!(
-    /// Computes a block of at most [`MOST_COLUMNS`]. The pointers of `block` reach as far as its sizes and distances say; rows of
-    /// A and columns of B lie each in one piece.
+    /// Computes a block of at most [`MOST_COLUMNS`]. The pointers of `block` must be valid for its sizes and strides;
+    /// rows of A and columns of B must be contiguous.
     pub(super) fn compute_dots = dots_of_columns(block: &Block)
 );
 
@@ -26,7 +26,7 @@ unsafe fn dots_of_columns<V: Lanes>(block: &Block) {
     }
 }
 
-/// R rows at a time, then one by one.
+/// Computes R rows at a time, then single rows.
 #[inline(always)]
 unsafe fn dots_of_rows<V: Lanes, const R: usize, const N: usize>(block: &Block) {
     let whole = block.rows / R * R;
@@ -93,7 +93,7 @@ unsafe fn add_products<V: Lanes, const R: usize, const N: usize>(
     }
 }
 
-/// The lanes of each register added in their order, the totals of a row side by side.
+/// Adds the lanes of each register in order; returns the totals of a row side by side.
 #[inline(always)]
 unsafe fn totals<V: Lanes, const R: usize, const N: usize>(sums: &[[V; N]; R]) -> [[V; 1]; R] {
     // SAFETY: no register has more than `MAX_WIDTH` numbers.

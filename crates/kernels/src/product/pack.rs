@@ -1,23 +1,23 @@
-//! Panels: the parts of a factor in the order in which the inner loop reads them.
+//! Packing: panels with the elements of a factor in the order in which the inner loop reads them.
 
-/// Where a factor lies: its first number and the distances along the panels' long side and across.
+/// A factor: its first element and the strides along the depth and across.
 #[derive(Clone, Copy)]
 pub(super) struct Source {
     pub(super) data: *const f32,
-    /// From one step of the depth to the next.
+    /// Stride from one step of the depth to the next.
     pub(super) along: usize,
-    /// From one row of A, or one column of B, to the next.
+    /// Stride from one row of A, or one column of B, to the next.
     pub(super) across: usize,
 }
 
 /// Packs `count` rows of A (or columns of B) into panels of `width`, each `depth` steps of `width` numbers; the last
-/// panel is filled up with zeros.
+/// panel is padded with zeros.
 ///
 /// # Safety
 /// `width` is that of a tile: 4, 6, 8, 16 or 32. `source` is readable for `count` by `depth` numbers.
 pub(super) unsafe fn pack(source: Source, count: usize, depth: usize, width: usize, panels: &mut [f32]) {
     if source.across == 1 {
-        // A width known to the compiler becomes some moves.
+        // With a constant width, the compiler emits a few moves.
         // SAFETY: the caller's promise.
         return unsafe {
             match width {
@@ -43,7 +43,7 @@ pub(super) unsafe fn pack(source: Source, count: usize, depth: usize, width: usi
     }
 }
 
-/// Panels that are filled at the same time: a cache line of the source is then read once or twice, not once for each.
+/// Panels that are filled together: a cache line of the source is then read once or twice, not once per panel.
 const TOGETHER: usize = 4;
 
 unsafe fn copy_runs<const WIDTH: usize>(source: Source, count: usize, depth: usize, panels: &mut [f32]) {
@@ -72,7 +72,7 @@ unsafe fn copy_runs<const WIDTH: usize>(source: Source, count: usize, depth: usi
     }
 }
 
-/// Squares of four by four, which the compiler keeps in registers; then what is left over.
+/// Transposes squares of four by four, which the compiler keeps in registers, and then the rest.
 #[inline]
 unsafe fn transpose(source: Source, used: usize, depth: usize, width: usize, panel: *mut f32) {
     let Source { data, along, across } = source;

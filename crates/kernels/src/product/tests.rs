@@ -11,7 +11,7 @@ fn random(length: usize, seed: u64) -> Vec<f32> {
     (0..length).map(|_| random.uniform(-1.0, 1.0)).collect()
 }
 
-/// Every instruction set of this machine, on one thread and on three.
+/// Returns every instruction set of this machine, on one thread and on three.
 fn computes() -> Vec<Compute> {
     let pools = [1, 3].map(|threads| Arc::new(WorkerPool::new(threads)));
     let with = |isa| pools.iter().map(move |pool| Compute::new(isa, Arc::clone(pool)));
@@ -21,9 +21,9 @@ fn computes() -> Vec<Compute> {
 #[derive(Debug, Clone, Copy)]
 struct Case {
     size: [usize; 3],
-    /// Whether A, B and C are stored by columns.
+    /// Whether A, B and C are stored in column-major order.
     by_columns: [bool; 3],
-    /// Between neighbours, and between rows beyond what they need.
+    /// Gaps between neighbours, and between rows.
     gaps: [usize; 2],
     alpha: f32,
     beta: f32,
@@ -159,7 +159,7 @@ fn large_products_do_not_depend_on_threads() {
     }
 }
 
-/// A row gives the same bits alone and in a batch.
+/// A row has the same bits alone and in a batch.
 #[test]
 fn rows_do_not_depend_on_the_batch() {
     for (compute, columns) in computes().iter().flat_map(|compute| [1, 2, 3, 4, 33].map(|n| (compute, n))) {
@@ -176,7 +176,7 @@ fn rows_do_not_depend_on_the_batch() {
 }
 
 #[test]
-fn nan_and_infinity_go_where_they_belong() {
+fn nan_and_infinity_propagate() {
     for compute in computes() {
         for (m, n) in [(1, 1), (7, 19), (40, 3), (33, 65)] {
             let (mut a, mut b) = (random(m * 5, 1), random(5 * n, 2));
@@ -213,7 +213,7 @@ fn a_broadcast_factor_may_have_no_stride() {
 }
 
 #[test]
-#[should_panic(expected = "shapes differ")]
+#[should_panic(expected = "shapes of A, B and C do not match")]
 fn shapes_that_do_not_fit_are_refused() {
     let mut c = [0.0; 4];
     let factor = Matrix::new(&[0.0; 6], 2, 3);
@@ -221,7 +221,7 @@ fn shapes_that_do_not_fit_are_refused() {
 }
 
 #[test]
-#[should_panic(expected = "share places")]
+#[should_panic(expected = "overlap")]
 fn results_that_overlap_are_refused() {
     MatrixMut::with_strides(&mut [0.0; 10], [3, 4], [2, 1]);
 }

@@ -6,32 +6,32 @@ use crate::activation::{Activation, apply_all};
 use crate::isa::for_every_isa;
 use crate::lanes::{Lanes, MAX_WIDTH};
 
-/// Registers side by side in a tile.
+/// Number of registers across a tile.
 pub(super) const VECTORS: usize = 2;
-/// Steps of the depth in a turn of the loop.
+/// Steps of the depth per iteration of the loop.
 const UNROLLED: usize = 4;
 const MAX_ROWS: usize = 8;
 const MAX_COLUMNS: usize = VECTORS * MAX_WIDTH;
 
-/// A block of C and the panels of A and B that it comes from.
+/// A block of C and its panels of A and B.
 #[derive(Clone, Copy)]
 pub(super) struct Block {
     pub(super) rows: usize,
     pub(super) columns: usize,
     pub(super) depth: usize,
     pub(super) a: *const f32,
-    /// Distances in A: to the next row, to the next column, to the next tile. One of the first two is 1.
+    /// Strides of A: to the next row, to the next column, to the next tile. One of the first two is 1.
     pub(super) a_strides: [usize; 3],
     pub(super) b: *const f32,
-    /// Distances in B: to the next row, to the next tile. A tile's columns lie side by side.
+    /// Strides of B: to the next row, to the next tile. A tile's columns are contiguous.
     pub(super) b_strides: [usize; 2],
     pub(super) c: *mut f32,
-    /// Distances in C: to the next row, to the next column.
+    /// Strides of C: to the next row, to the next column.
     pub(super) c_strides: [usize; 2],
     pub(super) finish: Finish,
 }
 
-/// What becomes of a sum: `activation(alpha * sum + beta * c + bias)`.
+/// Final operation on a sum: `activation(alpha * sum + beta * c + bias)`.
 #[derive(Clone, Copy)]
 pub(super) struct Finish {
     pub(super) alpha: f32,
@@ -49,7 +49,8 @@ pub(super) enum BiasAt {
 }
 
 for_every_isa!(
-    /// Computes a block. The pointers of `block` reach as far as its sizes and distances say; B is readable in whole tiles.
+    /// Computes a block. The pointers of `block` must be valid for its sizes and strides; B must be readable in whole
+    /// tiles.
     pub(super) fn compute_block = block_in_tiles(block: &Block)
 );
 
@@ -60,7 +61,7 @@ unsafe fn block_in_tiles<V: Lanes>(block: &Block) {
         for first_row in (0..block.rows).step_by(V::ROWS) {
             let rows = V::ROWS.min(block.rows - first_row);
             let columns = tile_columns.min(block.columns - first_column);
-            // SAFETY: the tile lies in the block, whose pointers are good by contract.
+            // SAFETY: the tile lies in the block, whose pointers are valid by contract.
             unsafe {
                 if columns <= V::WIDTH {
                     tile_of_rows::<V, 1>(block, [first_row, first_column], [rows, columns]);
@@ -96,8 +97,8 @@ unsafe fn tile<V: Lanes, const R: usize, const N: usize>(
     size: [usize; 2],
 ) {
     let [row_stride, column_stride, tile_stride] = block.a_strides;
-    // SAFETY: the tile lies in the block. A tile that is no whole one, or whose numbers do not lie side by side, is
-    // finished in a buffer.
+    // SAFETY: the tile lies in the block. A tile that is incomplete, or whose numbers are not contiguous, is finished
+    // in a buffer.
     unsafe {
         let a = block.a.add(first_row / V::ROWS * tile_stride);
         let b = block.b.add(first_column / (VECTORS * V::WIDTH) * block.b_strides[1]);
@@ -117,8 +118,8 @@ unsafe fn tile<V: Lanes, const R: usize, const N: usize>(
     }
 }
 
-/// The products summed over the depth, from the first to the last, each element by itself: that order, and with it every
-/// bit, is the same for any cut of the work.
+/// Sums the products over the depth, from the first to the last, each element separately: the order, and with it
+/// every bit, does not depend on the division of the work.
 #[inline(always)]
 unsafe fn sums<V: Lanes, const R: usize, const N: usize>(
     depth: usize,
@@ -159,7 +160,7 @@ unsafe fn sums<V: Lanes, const R: usize, const N: usize>(
     }
 }
 
-/// Adds the products of a number of each row and a row of registers.
+/// Adds the products of one number per row and a row of registers.
 #[inline(always)]
 unsafe fn add_step<V: Lanes, const R: usize, const N: usize>(
     sums: &mut [[V; N]; R],
@@ -212,7 +213,7 @@ unsafe fn finish_tile<V: Lanes, const R: usize, const N: usize>(
                 sum.store(c.add(i * row_stride + j * V::WIDTH));
             }
         }
-        // What takes many instructions is written once for all registers of a row, not for each.
+        // Long functions are inlined once for all registers of a row, not for each.
         if !matches!(finish.activation, Activation::Identity | Activation::Relu) {
             for i in 0..R {
                 apply_all::<V>(finish.activation, c.add(i * row_stride), N * V::WIDTH);
@@ -233,7 +234,7 @@ fn change<V: Copy, const R: usize, const N: usize>(
     }
 }
 
-/// Finishes a tile in a buffer of whole registers: gathers what is there, then scatters the result.
+/// Finishes a tile in a buffer of whole registers: gathers the existing values, then scatters the result.
 #[inline(always)]
 pub(super) unsafe fn finish_aside<V: Lanes, const R: usize, const N: usize>(
     sums: [[V; N]; R],

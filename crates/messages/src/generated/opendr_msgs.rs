@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// `opendr_msgs/AudioStamped`: Sound with what is needed to read it.
+/// `opendr_msgs/AudioStamped`: Audio with its format.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct AudioStamped {
@@ -34,7 +34,7 @@ pub struct Float32MultiArrayStamped {
     pub array: crate::std_msgs::Float32MultiArray,
 }
 
-/// `opendr_msgs/ImageWithDetections`: A picture with boxes in it.
+/// `opendr_msgs/ImageWithDetections`: An image with detected boxes.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ImageWithDetections {
@@ -43,12 +43,12 @@ pub struct ImageWithDetections {
     pub detections: crate::vision_msgs::Detection2DArray,
 }
 
-/// `opendr_msgs/Observation`: What an agent sees of its world.
+/// `opendr_msgs/Observation`: The observation of an agent.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Observation {
     pub header: crate::std_msgs::Header,
-    /// The parts; one without a name when there are no parts.
+    /// The parts; one without a name if there are no parts.
     pub parts: Vec<ObservationPart>,
 }
 
@@ -67,25 +67,25 @@ pub struct PointCloudWithCalibration {
     pub header: crate::std_msgs::Header,
     pub cloud: crate::sensor_msgs::PointCloud2,
     pub calibration: Calibration,
-    /// Size of the camera's picture in pixels; 0 when it is not known.
+    /// Size of the camera's image in pixels; 0 if unknown.
     pub image_height: u32,
     pub image_width: u32,
 }
 
-/// `opendr_msgs/Pose2D`: One person, hand or animal: its joints in a picture.
+/// `opendr_msgs/Pose2D`: The joints of one person, hand or animal in an image.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Pose2D {
-    /// What the joints are, e.g. opendr18 or coco17.
+    /// The skeleton, e.g. opendr18 or coco17.
     pub skeleton: String,
     /// The joints in the order of the skeleton.
     pub keypoints: Vec<Pose2DKeypoint>,
     /// Score of the whole, 0 to 1.
     pub confidence: f32,
-    /// The track; -1 when none is kept.
+    /// The track; -1 if there is none.
     pub id: i64,
 }
 
-/// `opendr_msgs/Pose2DArray`: The poses in one picture, best first.
+/// `opendr_msgs/Pose2DArray`: The poses in one image, best first.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Pose2DArray {
@@ -93,7 +93,7 @@ pub struct Pose2DArray {
     pub poses: Vec<Pose2D>,
 }
 
-/// `opendr_msgs/Pose2DKeypoint`: A joint in pixels; (-1, -1) when it was not found.
+/// `opendr_msgs/Pose2DKeypoint`: A joint in pixels; (-1, -1) if it was not detected.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Pose2DKeypoint {
@@ -104,27 +104,27 @@ pub struct Pose2DKeypoint {
     pub confidence: f32,
 }
 
-/// `opendr_msgs/Transcription`: What was said.
+/// `opendr_msgs/Transcription`: A transcription of speech.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Transcription {
     pub header: crate::std_msgs::Header,
     pub text: String,
-    /// Two letters, e.g. en; empty when it is not known.
+    /// Two letters, e.g. en; empty if unknown.
     pub language: String,
-    /// Whether the words will not change any more.
+    /// Whether the text is final.
     pub is_final: bool,
     pub segments: Vec<TranscriptionSegment>,
 }
 
-/// `opendr_msgs/TranscriptionSegment`: A part of a transcription, as Whisper tells it.
+/// `opendr_msgs/TranscriptionSegment`: A segment of a transcription, as Whisper returns it.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct TranscriptionSegment {
     pub id: i64,
     /// Where its window begins, in frames of the spectrogram (10 ms).
     pub seek: i64,
-    /// Begin and end within the sound, seconds.
+    /// Start and end within the audio, in seconds.
     pub start: f32,
     pub end: f32,
     pub text: String,
@@ -135,7 +135,7 @@ pub struct TranscriptionSegment {
     pub no_speech_prob: f32,
 }
 
-/// `opendr_msgs/ViewAction`: How to move the camera to see better (active perception).
+/// `opendr_msgs/ViewAction`: A camera motion to a better view (active perception).
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ViewAction {

@@ -1,9 +1,11 @@
-//! ROS 1's format of messages: little-endian, no gaps, texts and arrays after a count of 32 bits.
+//! ROS 1's message format: little-endian, without padding; strings and arrays follow a 32-bit count.
 //!
-//! The structs are ROS 2's, so the format itself writes what only ROS 1 has (the `seq` of a header, always 0) and leaves
-//! out what only ROS 2 has (the filling of messages without fields).
+//! The structs are ROS 2's. The format therefore adds the field that only ROS 1 has (the `seq` of a header, always 0) and omits the
+//! one that only ROS 2 has (the dummy field of messages without fields).
 
+mod fields;
 mod reader;
+mod reason;
 mod writer;
 
 use opendr_engine::{Error, Result};
@@ -11,15 +13,10 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use reader::Reader;
+use reason::Reason;
 use writer::Writer;
 
-/// The struct that has a `seq` before its fields in ROS 1.
-const HEADER: &str = "Header";
-
-/// The field of messages without fields, which ROS 1 does not write.
-const EMPTY_FIELD: &str = "structure_needs_at_least_one_member";
-
-/// A message in ROS 1's format, without the length that TCPROS puts before it.
+/// Writes a message in ROS 1's format, without the length prefix of TCPROS.
 ///
 /// # Errors
 /// `InvalidInput` for more than 2^32 - 1 elements.
@@ -32,12 +29,11 @@ pub fn ros1_from_message(message: &impl Serialize) -> Result<Vec<u8>> {
 /// Reads a message in ROS 1's format.
 ///
 /// # Errors
-/// `Format` for bytes that end early or are too many, a length that is larger than what there is, or text that is not
-/// UTF-8.
+/// `Format` for incomplete or surplus bytes, a length beyond the end, or text that is not UTF-8.
 pub fn message_from_ros1<M: DeserializeOwned>(bytes: &[u8]) -> Result<M> {
     let unreadable = |reason: Reason| {
         Error::format(format!(
-            "{} bytes are no {} of ROS 1: {reason}",
+            "{} bytes cannot be read as {} of ROS 1: {reason}",
             bytes.len(),
             std::any::type_name::<M>()
         ))
@@ -48,42 +44,13 @@ pub fn message_from_ros1<M: DeserializeOwned>(bytes: &[u8]) -> Result<M> {
     Ok(message)
 }
 
-/// Why bytes cannot be read, or a message not be written.
-#[derive(Debug, thiserror::Error)]
-enum Reason {
-    #[error("they end within a field")]
-    Short,
-    #[error("{0} bytes are left over")]
-    Left(usize),
-    #[error("a text is not UTF-8")]
-    Utf8,
-    #[error("a field has more than 2^32 - 1 elements")]
-    Long,
-    #[error("ROS 1 has no {0}")]
-    Unknown(&'static str),
-    #[error("{0}")]
-    Custom(String),
-}
-
-impl serde::ser::Error for Reason {
-    fn custom<T: std::fmt::Display>(message: T) -> Self {
-        Self::Custom(message.to_string())
-    }
-}
-
-impl serde::de::Error for Reason {
-    fn custom<T: std::fmt::Display>(message: T) -> Self {
-        Self::Custom(message.to_string())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::{builtin_interfaces, sensor_msgs, std_msgs};
 
     #[test]
-    fn a_header_as_rospy_writes_it() {
+    fn header_equals_that_of_rospy() {
         let header = std_msgs::Header {
             stamp: builtin_interfaces::Time { sec: 1, nanosec: 2 },
             frame_id: "ab".to_owned(),

@@ -1,9 +1,10 @@
-//! Bytes to messages.
+//! Deserialiser of ROS 1's format.
 
 use serde::de::value::U8Deserializer;
 use serde::de::{DeserializeSeed, Deserializer, IntoDeserializer, SeqAccess, Visitor};
 
-use super::{EMPTY_FIELD, HEADER, Reason};
+use super::fields::{EMPTY_FIELD, HEADER};
+use super::reason::Reason;
 
 pub(super) struct Reader<'de> {
     left: &'de [u8],
@@ -174,12 +175,12 @@ impl<'de> SeqAccess<'de> for Elements<'_, 'de> {
     }
 
     fn size_hint(&self) -> Option<usize> {
-        // No element is smaller than a byte, so that a false count reserves nothing beyond what was sent.
+        // An element has at least one byte, so a wrong count reserves no more than the received bytes.
         Some(self.left.min(self.reader.left.len()))
     }
 }
 
-/// The one field of a message without fields, given without reading.
+/// Yields the dummy field of a message without fields, without reading.
 struct Filling(bool);
 
 impl<'de> SeqAccess<'de> for Filling {

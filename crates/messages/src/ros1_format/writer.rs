@@ -1,11 +1,12 @@
-//! Messages to bytes.
+//! Serialiser of ROS 1's format.
 
 use serde::Serialize;
 use serde::ser::{
     Impossible, SerializeSeq, SerializeStruct, SerializeTuple, SerializeTupleStruct, Serializer,
 };
 
-use super::{EMPTY_FIELD, HEADER, Reason};
+use super::fields::{EMPTY_FIELD, HEADER};
+use super::reason::Reason;
 
 #[derive(Default)]
 pub(super) struct Writer {

@@ -2,7 +2,7 @@ use super::*;
 
 fn counted(pairs: &[(i64, i64)]) -> Classification {
     let mut classification = Classification::default();
-    pairs.iter().for_each(|(truth, answer)| classification.add(*truth, *answer));
+    pairs.iter().for_each(|(truth, predicted)| classification.add(*truth, *predicted));
     classification
 }
 
@@ -12,7 +12,7 @@ fn example() -> Classification {
 }
 
 #[test]
-fn averages_of_the_documentation() {
+fn averages_match_the_documentation_of_scikit_learn() {
     let scores = example().scores();
     let third = Some(1.0 / 3.0);
     assert_eq!(scores.micro, PrecisionRecall { precision: third, recall: third, f1: third });
@@ -34,29 +34,30 @@ fn equal_scores_rank_by_class_number() {
 }
 
 #[test]
-fn refused_answers_are_not_counted() {
+fn rejected_predictions_are_not_counted() {
     let mut classification = Classification::default();
     let truth = Category::new(1, None);
-    let mut refused = |class, confidence, probabilities: &[f32]| {
-        let answer = Category { probabilities: probabilities.to_vec(), ..Category::new(class, confidence) };
-        classification.update(0, &answer, &truth).unwrap_err().to_string()
+    let mut rejected = |class, confidence, probabilities: &[f32]| {
+        let prediction =
+            Category { probabilities: probabilities.to_vec(), ..Category::new(class, confidence) };
+        classification.update(0, &prediction, &truth).unwrap_err().to_string()
     };
-    assert!(refused(0, None, &[1.0]).starts_with("class 1 has none of 1 scores"));
-    assert_eq!(refused(0, None, &[1.0, f32::NAN]), "score of class 1 is NaN; give numbers");
-    assert!(refused(0, Some(f32::NAN), &[0.5, 0.5]).contains("NaN is not in 0..=1"));
-    assert!(refused(0, Some(1.5), &[]).contains("1.5 is not in 0..=1"));
+    assert!(rejected(0, None, &[1.0]).starts_with("class 1 has none of 1 scores"));
+    assert_eq!(rejected(0, None, &[1.0, f32::NAN]), "score of class 1 is NaN; give numbers");
+    assert!(rejected(0, Some(f32::NAN), &[0.5, 0.5]).contains("NaN is not in 0..=1"));
+    assert!(rejected(0, Some(1.5), &[]).contains("1.5 is not in 0..=1"));
     assert_eq!(classification.finish(), Classification::default().finish());
 }
 
 #[test]
-fn labels_are_named_once() {
+fn duplicate_labels_are_rejected() {
     let params = ClassificationParams { labels: vec![3, 1, 3], ..ClassificationParams::default() };
     let error = Classification::new(&params).unwrap_err();
-    assert_eq!(error.to_string(), "labels name class 3 twice; give each class once");
+    assert_eq!(error.to_string(), "labels contain class 3 twice; give each class once");
 }
 
 #[test]
-fn confusion_matrix_covers_what_occurs() {
+fn confusion_matrix_covers_classes_that_occur() {
     let classification = counted(&[(5, -1), (5, 5), (5, 5)]);
     assert_eq!(classification.labels(), [-1, 5]);
     assert_eq!(classification.confusion(&[-1, 5]), [0, 0, 1, 2]);
@@ -66,15 +67,15 @@ fn confusion_matrix_covers_what_occurs() {
 
 #[test]
 fn parts_merge_to_the_whole() {
-    let answers =
+    let samples =
         [(0, [0.5, 0.25, 0.25]), (1, [0.25, 0.0, 0.75]), (2, [0.0, 1.0, 0.0]), (2, [0.5, 0.5, 0.0])];
     let [mut whole, mut even, mut odd] = [(); 3].map(|()| Classification::default());
-    for (at, (truth, probabilities)) in answers.iter().enumerate() {
+    for (at, (truth, probabilities)) in samples.iter().enumerate() {
         let best = if probabilities[1] >= 0.5 { 1 } else { 0 };
-        let answer = Category { probabilities: probabilities.to_vec(), ..Category::new(best, None) };
+        let prediction = Category { probabilities: probabilities.to_vec(), ..Category::new(best, None) };
         let truth = Category { description: Some("thing".into()), ..Category::new(*truth, None) };
         for part in [&mut whole, if at % 2 == 0 { &mut even } else { &mut odd }] {
-            part.update(at, &answer, &truth).unwrap();
+            part.update(at, &prediction, &truth).unwrap();
         }
     }
     odd.merge(even);
@@ -86,7 +87,7 @@ fn parts_merge_to_the_whole() {
 }
 
 #[test]
-fn nothing_counted() {
+fn empty_accumulator() {
     let report = Classification::default().finish();
     assert_eq!(report.statistics.get("samples"), Some(0.0));
     assert_eq!(report.statistics.get("accuracy"), None);

@@ -1,6 +1,6 @@
 use super::*;
 
-/// One picture: (object, place) and (track, place); equal places overlap wholly, others not at all.
+/// One frame: (object, position) and (track, position); equal positions overlap fully, others not at all.
 type Places<'a> = (&'a [(i64, i32)], &'a [(i64, i32)]);
 
 fn counted(frames: &[Places<'_>]) -> ClearMotCounts {
@@ -39,7 +39,7 @@ fn a_gap_is_a_fragmentation_only_between_matches() {
     assert_eq!((counts.mostly_tracked, counts.partially_tracked, counts.mostly_lost), (0, 1, 0));
 }
 
-/// An object keeps its track while that still overlaps enough, even where another overlaps better.
+/// An object keeps its track while their overlap suffices, even if another track overlaps more.
 #[test]
 fn earlier_matches_are_kept() {
     let mut metric = ClearMot::new(&TrackMatchingParams::default()).unwrap();
@@ -52,7 +52,7 @@ fn earlier_matches_are_kept() {
 }
 
 #[test]
-fn sequences_do_not_mix_and_merge() {
+fn sequences_are_independent_and_merge() {
     let frame = |track| TrackingFrame::new(vec![1], vec![track], vec![1.0]).unwrap();
     let new = || ClearMot::new(&TrackMatchingParams::default()).unwrap();
     let mut one = new();
@@ -68,7 +68,7 @@ fn sequences_do_not_mix_and_merge() {
 }
 
 #[test]
-fn nothing_counted_has_no_accuracy() {
+fn accuracy_is_undefined_without_objects() {
     let report = ClearMot::new(&TrackMatchingParams::default()).unwrap().finish();
     assert_eq!((report.statistics.get("mota"), report.statistics.get("objects")), (None, Some(0.0)));
     assert!(counted(&[(&[], &[(1, 0)])]).mota().is_nan());

@@ -1,4 +1,4 @@
-//! Verdicts of many pictures, class by class.
+//! Accumulation of matches over images, by class.
 
 use std::collections::BTreeMap;
 
@@ -9,10 +9,10 @@ use super::matching::{Detection, Matching, Truth};
 use super::protocol::{AREAS, AreaRange, Protocol, THRESHOLDS};
 use super::summary::{ClassOutcome, Outcome};
 
-/// Counts objects and detections, picture by picture, for classes that `K` tells apart.
+/// Accumulates objects and detections image by image, for classes with keys `K`.
 ///
-/// A picture is matched when it is added; what stays is 32 bytes a detection. Accumulators of several threads merge to
-/// the same outcome however pictures were spread over them.
+/// An image is matched when it is added; 32 bytes per detection are kept. Accumulators of several threads merge to the
+/// same result for any distribution of the images.
 #[derive(Debug, Clone)]
 pub struct Accumulator<K> {
     protocol: Protocol,
@@ -23,16 +23,16 @@ pub struct Accumulator<K> {
     overlaps: Vec<f64>,
 }
 
-/// What is kept of a class.
+/// Accumulated data of a class.
 #[derive(Debug, Clone, Default)]
 struct Class {
-    /// Objects that count, in each range of area.
+    /// Number of objects that count, in each range of area.
     truths: [u64; AREAS],
     ranked: Vec<Ranked>,
 }
 
 impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
-    /// An accumulator that has counted nothing.
+    /// Creates an empty accumulator.
     pub fn new(protocol: Protocol) -> Self {
         Self {
             protocol,
@@ -44,16 +44,16 @@ impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
         }
     }
 
-    /// Counts the objects and detections of one class in picture number `picture`.
+    /// Adds the objects and detections of one class in an image, given by its index `image`.
     ///
-    /// `overlap(detection, truth)` is asked for the detections that are within the limit only.
+    /// `overlap(detection, truth)` is called only for detections within the limit.
     ///
     /// # Errors
-    /// `InvalidInput` for a score that is NaN, and errors of `overlap`; nothing has been counted then.
+    /// Returns `InvalidInput` for a score that is NaN, and errors of `overlap`; nothing is counted then.
     pub fn count(
         &mut self,
         class: &K,
-        picture: u32,
+        image: u32,
         truths: &[Truth],
         detections: &[Detection],
         overlap: impl FnMut(usize, usize) -> Result<f64>,
@@ -67,7 +67,7 @@ impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
         let verdicts = self.matching.verdicts(self.protocol.areas, truths, &self.sorted, &self.overlaps);
         let ranked = verdicts.iter().zip(&self.sorted).zip(0..).map(|((verdict, detection), rank)| Ranked {
             score: detection.score,
-            picture,
+            image,
             rank,
             verdict: *verdict,
         });
@@ -78,31 +78,31 @@ impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
         Ok(())
     }
 
-    /// As [`Accumulator::count`], and tells the average precision over all thresholds in this picture alone; `None` when
-    /// no object counts.
+    /// Like [`Accumulator::count`], and returns the average precision over all thresholds in this image alone; `None` if no
+    /// object counts.
     ///
     /// # Errors
     /// As [`Accumulator::count`].
     pub fn add(
         &mut self,
         class: &K,
-        picture: u32,
+        image: u32,
         truths: &[Truth],
         detections: &[Detection],
         overlap: impl FnMut(usize, usize) -> Result<f64>,
     ) -> Result<Option<f64>> {
-        self.count(class, picture, truths, detections, overlap)?;
+        self.count(class, image, truths, detections, overlap)?;
         let ranked = self.classes.get(class).map_or(&[][..], |kept| &kept.ranked);
-        let alone = &ranked[ranked.len() - self.sorted.len()..];
+        let added = &ranked[ranked.len() - self.sorted.len()..];
         let objects = counting(truths, &self.protocol.areas[0]);
-        Ok((objects > 0).then(|| Curve::of(alone, 0, objects).mean()))
+        Ok((objects > 0).then(|| Curve::of(added, 0, objects).mean()))
     }
 
-    /// Sorts the detections by falling score, in their order where scores are equal.
+    /// Sorts the detections by descending score; the sort is stable.
     fn rank(&mut self, detections: &[Detection]) -> Result<()> {
         if detections.iter().any(|detection| detection.score.is_nan()) {
             return Err(Error::invalid_input(
-                "a detection has a score that is no number; give it one or leave it out",
+                "the score of a detection is NaN; give a number or remove the detection",
             ));
         }
         let falling = |a: &usize, b: &usize| {
@@ -128,7 +128,7 @@ impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
         Ok(())
     }
 
-    /// Counts what `other` counted.
+    /// Adds the counts of `other`.
     pub fn merge(&mut self, other: Self) {
         for (class, theirs) in other.classes {
             let ours = self.classes.entry(class).or_default();
@@ -141,7 +141,7 @@ impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
         }
     }
 
-    /// The outcome, computed on `threads` threads; counting may go on.
+    /// Returns the result, computed on `threads` threads. More images can be added afterwards.
     pub fn finish(&self, threads: usize) -> Outcome<K> {
         let mut classes = Vec::with_capacity(self.classes.len());
         let work = |(): &mut (), (class, kept): (&K, &Class)| (class.clone(), kept.outcome(&self.protocol));
@@ -166,18 +166,18 @@ impl Class {
         ClassOutcome { truths: self.truths[0], recalls: self.recalls(protocol), curves }
     }
 
-    /// For every limit of detections, the recall over all thresholds among objects of all sizes.
+    /// Returns the recall over all thresholds for objects of all sizes, at each limit of detections.
     fn recalls(&self, protocol: &Protocol) -> Vec<Option<f64>> {
         let recall = |limit: &u32| {
             let within = self.ranked.iter().filter(|ranked| ranked.rank < *limit);
-            let found: u64 = within.map(|ranked| u64::from(ranked.verdict.right[0].count_ones())).sum();
-            (self.truths[0] > 0).then(|| found as f64 / (self.truths[0] as usize * THRESHOLDS) as f64)
+            let correct: u64 = within.map(|ranked| u64::from(ranked.verdict.correct[0].count_ones())).sum();
+            (self.truths[0] > 0).then(|| correct as f64 / (self.truths[0] as usize * THRESHOLDS) as f64)
         };
         protocol.limits.iter().map(recall).collect()
     }
 }
 
-/// Objects that count in a range of area.
+/// Returns the number of objects that count in a range of area.
 fn counting(truths: &[Truth], area: &AreaRange) -> u64 {
     truths.iter().filter(|truth| !truth.ignored && area.contains(truth.area)).count() as u64
 }

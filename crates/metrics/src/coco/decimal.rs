@@ -1,9 +1,9 @@
-//! Numbers as they stood in a file.
+//! Recovery of decimal numbers of a file from `f32`.
 
-/// The number that was written, from the `f32` that it was read to.
+/// Returns the decimal number in the file from the `f32` it was read to.
 ///
-/// Annotations have few decimals. Their shortest text gives them back, so that 12.7 is what pycocotools reads and not
-/// 12.699999809: fives of its last place decide which pixel an outline takes.
+/// Annotations have few decimals, which the shortest text of the `f32` recovers: 12.7, as pycocotools reads it, and not
+/// 12.699999809. The difference would change pixels of polygons at rounding limits.
 pub(super) fn f64_from_f32(number: f32) -> f64 {
     if number.fract() == 0.0 {
         return f64::from(number);
@@ -11,7 +11,7 @@ pub(super) fn f64_from_f32(number: f32) -> f64 {
     number.to_string().parse().unwrap_or_else(|_| f64::from(number))
 }
 
-/// As [`f64_from_f32`], of a box.
+/// Like [`f64_from_f32`], for a box.
 pub(super) fn f64_box(found: &opendr_engine::target::BoundingBox) -> [f64; 4] {
     [found.left, found.top, found.width, found.height].map(f64_from_f32)
 }
@@ -21,7 +21,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn decimals_come_back() {
+    fn decimals_are_recovered() {
         assert_eq!([12.7f32, -0.1, 1e-7, 3.0, 123.45].map(f64_from_f32), [12.7, -0.1, 1e-7, 3.0, 123.45]);
         assert_eq!(f64_from_f32(f32::INFINITY), f64::INFINITY);
     }

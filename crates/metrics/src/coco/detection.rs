@@ -6,104 +6,105 @@ use opendr_engine::{Error, Result};
 
 use super::accumulator::Accumulator;
 use super::decimal::f64_box;
+use super::list_accumulator::ListAccumulator;
 use super::matching::{Detection, Truth};
-use super::overlap::{box_overlap, check_box};
-use super::picture::Pictures;
+use super::overlap::{box_iou, check_box};
 use super::protocol::Protocol;
 use crate::{Metric, Report};
 
-/// What a user may set.
+/// Parameters of [`CocoDetection`] and [`CocoSegmentation`](super::CocoSegmentation).
 #[derive(Debug, Clone, Params)]
 pub struct CocoDetectionParams {
-    /// At most this many detections a picture and class are counted, the surest.
+    /// Maximum number of detections per image and class; those with the highest scores count.
     #[param(default = 100, range = 1..=100_000)]
     pub max_detections: u32,
-    /// Whether a detection must name the class of the object; without, all classes are one.
+    /// Whether detections match only objects of their class; otherwise all classes count as one.
     #[param(default = true)]
     pub use_classes: bool,
 }
 
 /// Average precision and recall of boxes: pycocotools' `COCOeval(.., "bbox")`.
 ///
-/// An object's area and whether it is a crowd stand in its [`Segment`](opendr_engine::target::Segment); without, it is
-/// as big as its box.
+/// Area and crowd flag of an object are those of its [`Segment`](opendr_engine::target::Segment); without one, the area
+/// is that of the box.
 #[derive(Debug, Clone)]
 pub struct CocoDetection {
-    pictures: Pictures,
+    lists: ListAccumulator,
 }
 
 impl Metric for CocoDetection {
     const NAME: &'static str = "coco_detection";
     const ABOUT: &'static str = "average precision and recall of boxes, as pycocotools";
     const NUMBERS: &'static [(&'static str, &'static str)] = super::summary::NUMBERS;
-    const RANKS: bool = true;
+    const IS_RANKING: bool = true;
     type Params = CocoDetectionParams;
     type Prediction = BoundingBoxList;
     type Truth = BoundingBoxList;
 
     fn new(params: &CocoDetectionParams) -> Result<Self> {
         let accumulator = Accumulator::new(Protocol::objects(params.max_detections));
-        let pictures = Pictures { accumulator, classes: Default::default(), use_classes: params.use_classes };
-        Ok(Self { pictures })
+        let lists =
+            ListAccumulator { accumulator, classes: Default::default(), use_classes: params.use_classes };
+        Ok(Self { lists })
     }
 
     fn update(&mut self, at: usize, prediction: &BoundingBoxList, truth: &BoundingBoxList) -> Result<f64> {
         let detected = boxes(prediction, "detection")?;
         let annotated = boxes(truth, "object")?;
         let detections: Vec<_> = scored(prediction, &detected)?;
-        let object = |(found, bounds): (&BoundingBox, &[f64; 4])| truth_of(found, bounds[2] * bounds[3]);
-        let truths: Vec<_> = truth.boxes.iter().zip(&annotated).map(object).collect();
+        let to_truth = |(object, bounds): (&BoundingBox, &[f64; 4])| truth_of(object, bounds[2] * bounds[3]);
+        let truths: Vec<_> = truth.boxes.iter().zip(&annotated).map(to_truth).collect();
         let overlap =
-            |detection: &[f64; 4], truth: &[f64; 4], crowd: bool| Ok(box_overlap(*detection, *truth, crowd));
+            |detection: &[f64; 4], truth: &[f64; 4], crowd: bool| Ok(box_iou(*detection, *truth, crowd));
         let lists = [prediction, truth];
-        self.pictures.add(picture_number(at)?, lists, [&detected, &annotated], &detections, &truths, overlap)
+        self.lists.add(image_index(at)?, lists, [&detected, &annotated], &detections, &truths, overlap)
     }
 
     fn merge(&mut self, other: Self) {
-        self.pictures.merge(other.pictures);
+        self.lists.merge(other.lists);
     }
 
     fn finish(&self) -> Report {
-        let classes = &self.pictures.classes;
-        self.pictures.accumulator.finish(1).report(|class| class.label(classes))
+        let classes = &self.lists.classes;
+        self.lists.accumulator.finish(1).report(|class| class.label(classes))
     }
 }
 
-/// The number of a picture as it is kept.
-pub(super) fn picture_number(at: usize) -> Result<u32> {
+/// Converts the index of a sample to that of an image.
+pub(super) fn image_index(at: usize) -> Result<u32> {
     u32::try_from(at).map_err(|_| {
-        Error::invalid_input(format!("sample {at} is beyond 2^32 - 1, the last that can be counted"))
+        Error::invalid_input(format!("sample index {at} is above 2^32 - 1, the largest supported"))
     })
 }
 
-/// Boxes that are boxes.
+/// Returns the boxes of a list, after a check of each.
 pub(super) fn boxes(list: &BoundingBoxList, what: &str) -> Result<Vec<[f64; 4]>> {
     let boxes: Vec<_> = list.boxes.iter().map(f64_box).collect();
     boxes.iter().try_for_each(|bounds| check_box(*bounds, what))?;
     Ok(boxes)
 }
 
-/// Scores and areas of detections.
+/// Returns scores and areas of detections.
 fn scored(list: &BoundingBoxList, boxes: &[[f64; 4]]) -> Result<Vec<Detection>> {
-    let detection = |(found, bounds): (&BoundingBox, &[f64; 4])| {
-        Ok(Detection { score: checked_score(found.confidence)?, area: bounds[2] * bounds[3] })
+    let detection = |(object, bounds): (&BoundingBox, &[f64; 4])| {
+        Ok(Detection { score: checked_score(object.confidence)?, area: bounds[2] * bounds[3] })
     };
     list.boxes.iter().zip(boxes).map(detection).collect()
 }
 
-/// A score that is a number.
+/// Returns a score that is not NaN.
 pub(super) fn checked_score(confidence: f32) -> Result<f64> {
     match confidence.is_nan() {
         false => Ok(f64::from(confidence)),
         true => Err(Error::invalid_input(
-            "a detection has a score that is no number; give it one or leave the detection out",
+            "the score of a detection is NaN; give a number or remove the detection",
         )),
     }
 }
 
-/// An object of `area` square pixels, unless it states its own.
-pub(super) fn truth_of(found: &BoundingBox, area: f64) -> Truth {
-    let segment = found.segment.as_deref();
+/// Creates an object of `area` square pixels, unless it has its own area.
+pub(super) fn truth_of(object: &BoundingBox, area: f64) -> Truth {
+    let segment = object.segment.as_deref();
     let own = segment.map(|segment| f64::from(segment.area)).filter(|area| *area > 0.0);
     let crowd = segment.is_some_and(|segment| segment.iscrowd);
     Truth { area: own.unwrap_or(area), crowd, ignored: crowd }

@@ -1,4 +1,4 @@
-//! COCO's average precision of key points.
+//! COCO's average precision of keypoints.
 
 use opendr_engine::Result;
 use opendr_engine::params::Params;
@@ -6,26 +6,26 @@ use opendr_engine::target::{Pose, PoseList, Skeleton};
 
 use super::accumulator::Accumulator;
 use super::decimal::{f64_box, f64_from_f32};
-use super::detection::{checked_score, picture_number, truth_of};
+use super::detection::{checked_score, image_index, truth_of};
+use super::list_accumulator::quality_without_objects;
 use super::matching::{Detection, Truth};
 use super::overlap::{JOINTS, Person, check_box, keypoint_similarity};
-use super::picture::quality_of_nothing;
 use super::protocol::Protocol;
 use crate::{Metric, Report};
 
-/// What a user may set.
+/// Parameters of [`CocoKeypoints`].
 #[derive(Debug, Clone, Params)]
 pub struct CocoKeypointsParams {
-    /// At most this many persons a picture are counted, the surest.
+    /// Maximum number of persons per image; those with the highest scores count.
     #[param(default = 20, range = 1..=100_000)]
     pub max_detections: u32,
 }
 
-/// Average precision and recall of persons by their key points: pycocotools' `COCOeval(.., "keypoints")`.
+/// Average precision and recall of persons by their keypoints: pycocotools' `COCOeval(.., "keypoints")`.
 ///
-/// Poses of any skeleton are compared by the names of COCO's 17 joints. A joint that a truth lacks was not annotated;
-/// one that an answer lacks is at (0, 0), as in COCO's result files. Box, area and crowd of a truth are those of its
-/// [`Pose::region`], else those of the box around its joints.
+/// Poses of any skeleton are compared by the names of COCO's 17 joints. A joint that is missing in the ground truth was
+/// not annotated; one that is missing in a prediction is at (0, 0), as in COCO's result files. Box, area and crowd flag
+/// of the ground truth are those of [`Pose::region`], otherwise those of the box around its joints.
 #[derive(Debug, Clone)]
 pub struct CocoKeypoints {
     accumulator: Accumulator<()>,
@@ -33,9 +33,9 @@ pub struct CocoKeypoints {
 
 impl Metric for CocoKeypoints {
     const NAME: &'static str = "coco_keypoints";
-    const ABOUT: &'static str = "average precision and recall of persons by their key points, as pycocotools";
+    const ABOUT: &'static str = "average precision and recall of persons by their keypoints, as pycocotools";
     const NUMBERS: &'static [(&'static str, &'static str)] = super::summary::NUMBERS;
-    const RANKS: bool = true;
+    const IS_RANKING: bool = true;
     type Params = CocoKeypointsParams;
     type Prediction = PoseList;
     type Truth = PoseList;
@@ -45,14 +45,14 @@ impl Metric for CocoKeypoints {
     }
 
     fn update(&mut self, at: usize, prediction: &PoseList, truth: &PoseList) -> Result<f64> {
-        let answered = prediction.poses.iter().map(answer).collect::<Result<Vec<_>>>()?;
-        let (detections, detected): (Vec<Detection>, Vec<_>) = answered.into_iter().unzip();
+        let predicted = prediction.poses.iter().map(detection).collect::<Result<Vec<_>>>()?;
+        let (detections, detected): (Vec<Detection>, Vec<_>) = predicted.into_iter().unzip();
         let annotated = truth.poses.iter().map(person).collect::<Result<Vec<_>>>()?;
         let (truths, persons): (Vec<Truth>, Vec<Person>) = annotated.into_iter().unzip();
         let similarity =
             |detection: usize, truth: usize| Ok(keypoint_similarity(&detected[detection], &persons[truth]));
-        let quality = self.accumulator.add(&(), picture_number(at)?, &truths, &detections, similarity)?;
-        Ok(quality.unwrap_or_else(|| quality_of_nothing(&detections)))
+        let quality = self.accumulator.add(&(), image_index(at)?, &truths, &detections, similarity)?;
+        Ok(quality.unwrap_or_else(|| quality_without_objects(&detections)))
     }
 
     fn merge(&mut self, other: Self) {
@@ -64,24 +64,24 @@ impl Metric for CocoKeypoints {
     }
 }
 
-/// Where COCO's joints are; (0, 0) where they are not.
+/// Returns the positions of COCO's joints, (0, 0) for missing ones, and whether each was detected.
 fn joints(pose: &Pose) -> ([[f64; 2]; JOINTS], [bool; JOINTS]) {
-    let (mut places, mut found) = ([[0.0; 2]; JOINTS], [false; JOINTS]);
+    let (mut positions, mut is_detected) = ([[0.0; 2]; JOINTS], [false; JOINTS]);
     for (at, name) in Skeleton::Coco17.joints().iter().enumerate().take(JOINTS) {
-        if let Some(keypoint) = pose.keypoint(name).filter(|keypoint| keypoint.is_found()) {
-            places[at] = [keypoint.x, keypoint.y].map(f64_from_f32);
-            found[at] = true;
+        if let Some(keypoint) = pose.keypoint(name).filter(|keypoint| keypoint.is_detected()) {
+            positions[at] = [keypoint.x, keypoint.y].map(f64_from_f32);
+            is_detected[at] = true;
         }
     }
-    (places, found)
+    (positions, is_detected)
 }
 
-fn answer(pose: &Pose) -> Result<(Detection, [[f64; 2]; JOINTS])> {
-    let (places, _) = joints(pose);
-    Ok((Detection { score: checked_score(pose.confidence)?, area: area_around(&places) }, places))
+fn detection(pose: &Pose) -> Result<(Detection, [[f64; 2]; JOINTS])> {
+    let (positions, _) = joints(pose);
+    Ok((Detection { score: checked_score(pose.confidence)?, area: area_around(&positions) }, positions))
 }
 
-/// Of the box around all joints, those at (0, 0) too.
+/// Returns the area of the box around all joints, including those at (0, 0).
 pub(super) fn area_around(joints: &[[f64; 2]; JOINTS]) -> f64 {
     let extent = |axis: usize| {
         let along = joints.iter().map(|joint| joint[axis]);
@@ -91,7 +91,7 @@ pub(super) fn area_around(joints: &[[f64; 2]; JOINTS]) -> f64 {
 }
 
 fn person(pose: &Pose) -> Result<(Truth, Person)> {
-    let (places, found) = joints(pose);
+    let (positions, is_detected) = joints(pose);
     let around = pose.bounding_box().unwrap_or_default().map(f64_from_f32);
     let region = pose.region.as_deref();
     let bounding_box = region.map_or(around, f64_box);
@@ -99,8 +99,9 @@ fn person(pose: &Pose) -> Result<(Truth, Person)> {
     let box_area = bounding_box[2] * bounding_box[3];
     let plain = Truth { area: box_area, crowd: false, ignored: false };
     let mut truth = region.map_or(plain, |region| truth_of(region, box_area));
-    truth.ignored |= found == [false; JOINTS];
-    let joints = std::array::from_fn(|at| [places[at][0], places[at][1], f64::from(u8::from(found[at]))]);
+    truth.ignored |= is_detected == [false; JOINTS];
+    let joints =
+        std::array::from_fn(|at| [positions[at][0], positions[at][1], f64::from(u8::from(is_detected[at]))]);
     Ok((truth, Person { joints, bounding_box, area: truth.area }))
 }
 
@@ -120,15 +121,17 @@ mod tests {
     }
 
     #[test]
-    fn joints_of_other_skeletons_are_found_by_name() {
+    fn joints_of_other_skeletons_match_by_name() {
         let mut metric = CocoKeypoints::new(&CocoKeypointsParams::default()).unwrap();
-        let [answer, truth] =
+        let [prediction, truth] =
             [Skeleton::Opendr18, Skeleton::Coco17].map(|skeleton| vec![pose(skeleton)].into());
-        assert!((metric.update(0, &answer, &truth).unwrap() - 1.0).abs() < 1e-9);
-        // A person without annotated joints counts neither way.
-        let mut nobody = pose(Skeleton::Coco17);
-        nobody.keypoints.iter_mut().for_each(|keypoint| *keypoint = Keypoint::MISSING);
-        assert!((metric.update(1, &Vec::new().into(), &vec![nobody].into()).unwrap() - 1.0).abs() < 1e-9);
+        assert!((metric.update(0, &prediction, &truth).unwrap() - 1.0).abs() < 1e-9);
+        // A person without annotated joints is ignored.
+        let mut unannotated = pose(Skeleton::Coco17);
+        unannotated.keypoints.iter_mut().for_each(|keypoint| *keypoint = Keypoint::MISSING);
+        assert!(
+            (metric.update(1, &Vec::new().into(), &vec![unannotated].into()).unwrap() - 1.0).abs() < 1e-9
+        );
         assert!((metric.finish().statistics.get("mar").unwrap() - 1.0).abs() < 1e-9);
     }
 }

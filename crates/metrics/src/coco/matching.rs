@@ -1,56 +1,56 @@
-//! Which detection finds which object, in one picture and class.
+//! Matching of detections with objects, in one image and class.
 
 use super::protocol::{AREAS, AreaRange, THRESHOLDS, thresholds};
 
-/// An object that is there.
+/// An annotated object.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Truth {
-    /// Square pixels.
+    /// Area in square pixels.
     pub area: f64,
-    /// Whether it stands for many: any number of detections may find it, and none is right or wrong.
+    /// Whether it is a crowd: any number of detections may match it, and none of them counts.
     pub crowd: bool,
-    /// Whether finding or missing it counts neither way (crowds, persons without key points).
+    /// Whether it is ignored, found or not (crowds, persons without keypoints).
     pub ignored: bool,
 }
 
 /// A detection.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Detection {
-    /// How sure it is; never NaN.
+    /// Score; never NaN.
     pub score: f64,
-    /// Square pixels.
+    /// Area in square pixels.
     pub area: f64,
 }
 
-/// What became of a detection, a bit for each threshold in every range of area.
+/// Result of the matching of a detection: a bit per threshold in each range of area.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Verdict {
-    /// Found an object that counts.
-    pub right: [u16; AREAS],
-    /// Counts neither way.
+    /// Whether it matches an object that counts.
+    pub correct: [u16; AREAS],
+    /// Whether it is ignored.
     pub ignored: [u16; AREAS],
 }
 
 const ALL_THRESHOLDS: u16 = (1 << THRESHOLDS) - 1;
 
-/// Work memory of [`Matching::verdicts`].
+/// Buffers of [`Matching::verdicts`].
 #[derive(Debug, Clone, Default)]
 pub(super) struct Matching {
-    /// Numbers of the objects, those that count first.
+    /// Indices of the objects, those that count first.
     order: Vec<usize>,
     ignored: Vec<bool>,
-    /// For each threshold and object, whether it has been found.
+    /// For each threshold and object, whether it is matched.
     taken: Vec<bool>,
-    /// Detections that overlap enough with something.
+    /// Detections with an overlap above the lowest threshold.
     candidates: Vec<usize>,
     verdicts: Vec<Verdict>,
 }
 
 impl Matching {
-    /// What becomes of `detections`, which are sorted by falling score; `overlaps` is `[detection][truth]`.
+    /// Matches `detections`, sorted by descending score; `overlaps` is `[detection][truth]`.
     ///
-    /// As pycocotools' `evaluateImg`: each detection in turn takes the free object that it overlaps most, the later of
-    /// two equal ones; one that counts goes before one that does not.
+    /// As in pycocotools' `evaluateImg`, each detection in turn takes the free object with the largest overlap, the later of
+    /// two equal ones; objects that count take precedence over ignored ones.
     pub(super) fn verdicts(
         &mut self,
         areas: &[AreaRange],
@@ -80,18 +80,18 @@ impl Matching {
         for (verdict, detection) in self.verdicts.iter_mut().zip(detections) {
             for (at, area) in areas.iter().enumerate().take(AREAS) {
                 if !area.contains(detection.area) {
-                    verdict.ignored[at] |= ALL_THRESHOLDS & !verdict.right[at];
+                    verdict.ignored[at] |= ALL_THRESHOLDS & !verdict.correct[at];
                 }
             }
         }
         &self.verdicts
     }
 
-    /// The range of area `at` lets the same objects count as the one before.
+    /// Copies the results of the previous range of area, in which the same objects count.
     fn repeat(&mut self, at: usize) {
         for index in &self.candidates {
             let verdict = &mut self.verdicts[*index];
-            verdict.right[at] = verdict.right[at - 1];
+            verdict.correct[at] = verdict.correct[at - 1];
             verdict.ignored[at] = verdict.ignored[at - 1];
         }
     }
@@ -109,41 +109,41 @@ impl Matching {
             taken.resize(truths.len(), false);
             for index in &*candidates {
                 let row = &overlaps[index * truths.len()..][..truths.len()];
-                let Some(found) =
+                let Some(matched) =
                     best(row, threshold, order, ignored, |truth| taken[truth] && !truths[truth].crowd)
                 else {
                     continue;
                 };
-                taken[found] = true;
+                taken[matched] = true;
                 let verdict = &mut verdicts[*index];
-                let bits = if ignored[found] { &mut verdict.ignored } else { &mut verdict.right };
+                let bits = if ignored[matched] { &mut verdict.ignored } else { &mut verdict.correct };
                 bits[at] |= 1 << bit;
             }
         }
     }
 }
 
-/// The object that a detection finds, if any.
+/// Returns the object that a detection matches, if any.
 fn best(
     row: &[f64],
     threshold: f64,
     order: &[usize],
     ignored: &[bool],
-    is_gone: impl Fn(usize) -> bool,
+    is_taken: impl Fn(usize) -> bool,
 ) -> Option<usize> {
-    let (mut most, mut found) = (threshold.min(1.0 - 1e-10), None);
+    let (mut most, mut matched) = (threshold.min(1.0 - 1e-10), None);
     for truth in order.iter().copied() {
-        if is_gone(truth) {
+        if is_taken(truth) {
             continue;
         }
-        if ignored[truth] && found.is_some_and(|found: usize| !ignored[found]) {
+        if ignored[truth] && matched.is_some_and(|matched: usize| !ignored[matched]) {
             break;
         }
         if row[truth] < most {
             continue;
         }
         most = row[truth];
-        found = Some(truth);
+        matched = Some(truth);
     }
-    found
+    matched
 }

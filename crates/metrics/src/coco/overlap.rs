@@ -1,10 +1,11 @@
-//! How much a detection covers an object.
+//! Overlap of detections and objects.
 
 use opendr_engine::target::Rle;
 use opendr_engine::{Error, Result};
 
-/// Intersection over union of boxes `[left, top, width, height]`; over the detection alone when the object is a crowd.
-pub fn box_overlap(detection: [f64; 4], truth: [f64; 4], crowd: bool) -> f64 {
+/// Returns the intersection over union of boxes `[left, top, width, height]`; for a crowd the intersection over the area
+/// of the detection.
+pub fn box_iou(detection: [f64; 4], truth: [f64; 4], crowd: bool) -> f64 {
     let [left, top, wide, high] = detection;
     let [x, y, width, height] = truth;
     let across = (left + wide).min(x + width) - left.max(x);
@@ -16,7 +17,7 @@ pub fn box_overlap(detection: [f64; 4], truth: [f64; 4], crowd: bool) -> f64 {
     both / if crowd { area } else { area + width * height - both }
 }
 
-/// A mask and what is asked of it again and again.
+/// A mask with its area and extent.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mask {
     rle: Rle,
@@ -25,16 +26,16 @@ pub struct Mask {
 }
 
 impl Mask {
-    /// Pixels of the object.
+    /// Returns the number of pixels of the object.
     pub fn area(&self) -> u64 {
         self.area
     }
 
-    /// Intersection over union; over the detection alone when the object is a crowd.
+    /// Returns the intersection over union; for a crowd the intersection over the area of the detection.
     ///
     /// # Errors
-    /// `InvalidInput` for masks of different sizes.
-    pub fn overlap(&self, truth: &Self, crowd: bool) -> Result<f64> {
+    /// Returns `InvalidInput` for masks of different sizes.
+    pub fn iou(&self, truth: &Self, crowd: bool) -> Result<f64> {
         let [(left, right), (top, bottom)] = [0, 1].map(|axis| {
             let end = |mask: &Self| mask.extent[axis] + mask.extent[axis + 2];
             (self.extent[axis].max(truth.extent[axis]), end(self).min(end(truth)))
@@ -54,29 +55,30 @@ impl From<Rle> for Mask {
     }
 }
 
-/// Joints of a person in COCO.
+/// Number of joints of a person in COCO.
 pub const JOINTS: usize = 17;
 
-/// How far annotators place each joint apart, over the root of the person's area (COCO's published numbers, halved).
+/// Standard deviation of the annotated position of each joint, relative to the square root of the person's area (COCO's
+/// published numbers, halved).
 const SIGMAS: [f64; JOINTS] = [
     0.026, 0.025, 0.025, 0.035, 0.035, 0.079, 0.079, 0.072, 0.072, 0.062, 0.062, 0.107, 0.107, 0.087, 0.087,
     0.089, 0.089,
 ];
 
-/// A person's joints as they were annotated.
+/// A person with annotated joints.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Person {
-    /// `[x, y, v]` in pixels; `v` is 0 where a joint was not annotated.
+    /// Joints `[x, y, v]` in pixels; `v` is 0 for joints that are not annotated.
     pub joints: [[f64; 3]; JOINTS],
-    /// `[left, top, width, height]` in pixels.
+    /// Bounding box `[left, top, width, height]` in pixels.
     pub bounding_box: [f64; 4],
-    /// Square pixels.
+    /// Area in square pixels.
     pub area: f64,
 }
 
-/// Object key point similarity: the mean over annotated joints of `exp(-d^2 / (2 s^2 k^2))`.
+/// Returns the object keypoint similarity: the mean over annotated joints of `exp(-d^2 / (2 s^2 k^2))`.
 ///
-/// Where no joint was annotated, the distance is that to the person's box, doubled.
+/// Without annotated joints, the distance is that to the person's box, doubled.
 pub fn keypoint_similarity(detection: &[[f64; 2]; JOINTS], truth: &Person) -> f64 {
     let annotated = truth.joints.iter().filter(|[_, _, visible]| *visible > 0.0).count();
     let [left, top, width, height] = truth.bounding_box;
@@ -96,7 +98,7 @@ pub fn keypoint_similarity(detection: &[[f64; 2]; JOINTS], truth: &Person) -> f6
     similarities.sum::<f64>() / if annotated == 0 { JOINTS } else { annotated } as f64
 }
 
-/// Refuses a box that is no box.
+/// Checks that a box is finite and its size not negative.
 pub(super) fn check_box(bounds: [f64; 4], what: &str) -> Result<()> {
     match bounds.iter().all(|number| number.is_finite()) && bounds[2] >= 0.0 && bounds[3] >= 0.0 {
         true => Ok(()),

@@ -1,13 +1,13 @@
-//! What COCO's evaluation is made of: thresholds of overlap, ranges of area, limits of detections.
+//! Thresholds, ranges of area and limits of detections of COCO's evaluation.
 
-/// Thresholds of overlap (intersection over union, or key point similarity).
+/// Number of thresholds of the overlap (intersection over union, or keypoint similarity).
 pub const THRESHOLDS: usize = 10;
-/// Levels of recall at which precision is read off.
+/// Number of levels of recall.
 pub const RECALLS: usize = 101;
-/// At most so many ranges of area.
+/// Maximum number of ranges of area.
 pub(super) const AREAS: usize = 4;
 
-/// The thresholds .50, .55 to .95, to the last bit those of pycocotools (NumPy's `linspace`).
+/// Returns the thresholds .50, .55 to .95, equal to those of pycocotools (NumPy's `linspace`) to the last bit.
 pub fn thresholds() -> [f64; THRESHOLDS] {
     let step = (0.95 - 0.5) / (THRESHOLDS - 1) as f64;
     let mut thresholds = std::array::from_fn(|index| index as f64 * step + 0.5);
@@ -15,17 +15,17 @@ pub fn thresholds() -> [f64; THRESHOLDS] {
     thresholds
 }
 
-/// The levels of recall 0, .01 to 1, to the last bit those of pycocotools.
+/// Returns the levels of recall 0, .01 to 1, equal to those of pycocotools to the last bit.
 pub fn recalls() -> [f64; RECALLS] {
     let mut recalls = std::array::from_fn(|index| index as f64 * 0.01);
     recalls[RECALLS - 1] = 1.0;
     recalls
 }
 
-/// Objects of an area within `min..=max` square pixels.
+/// A range of area, `min..=max` square pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AreaRange {
-    /// As it stands in keys: `map_small`.
+    /// Name in keys: `small` in `map_small`.
     pub name: &'static str,
     /// Smallest area.
     pub min: f64,
@@ -44,29 +44,29 @@ impl AreaRange {
     }
 }
 
-/// How objects are counted.
+/// Rules of an evaluation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Protocol {
     /// Ranges of area, all sizes first.
     pub(super) areas: &'static [AreaRange],
-    /// Limits of detections a picture and class, ascending.
+    /// Limits of detections per image and class, ascending.
     pub(super) limits: Vec<u32>,
 }
 
 impl Protocol {
-    /// For boxes and masks: all, small, medium, large; 1, 10 and `most` detections (COCO: 100).
+    /// Creates the rules for boxes and masks: areas all, small, medium, large; 1, 10 and `most` detections (COCO: 100).
     pub fn objects(most: u32) -> Self {
         const AREAS: [AreaRange; 4] = [AreaRange::ALL, AreaRange::SMALL, AreaRange::MEDIUM, AreaRange::LARGE];
         Self { areas: &AREAS, limits: vec![1, 10.min(most), most] }
     }
 
-    /// For key points: all, medium, large; `most` detections (COCO: 20).
+    /// Creates the rules for keypoints: areas all, medium, large; `most` detections (COCO: 20).
     pub fn keypoints(most: u32) -> Self {
         const AREAS: [AreaRange; 3] = [AreaRange::ALL, AreaRange::MEDIUM, AreaRange::LARGE];
         Self { areas: &AREAS, limits: vec![most] }
     }
 
-    /// The largest limit of detections.
+    /// Returns the largest limit of detections.
     pub(super) fn most(&self) -> u32 {
         self.limits.last().copied().unwrap_or_default()
     }
@@ -76,12 +76,15 @@ impl Protocol {
 mod tests {
     use super::*;
 
-    /// Compared with `numpy.linspace`.
+    /// The values are those of `numpy.linspace`.
     #[test]
-    fn to_the_last_bit() {
-        let wanted = [0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95];
+    fn levels_are_exact() {
+        let expected = [0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95];
         assert!(
-            thresholds().iter().zip(wanted).all(|(threshold, wanted)| (threshold - wanted).abs() < 1e-15)
+            thresholds()
+                .iter()
+                .zip(expected)
+                .all(|(threshold, expected)| (threshold - expected).abs() < 1e-15)
         );
         assert_eq!((thresholds()[0], thresholds()[5], thresholds()[9]), (0.5, 0.75, 0.95));
         assert_eq!((recalls()[29], recalls()[57], recalls()[100]), (0.29, 0.5700000000000001, 1.0));

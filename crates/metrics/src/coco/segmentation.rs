@@ -5,67 +5,68 @@ use opendr_engine::{Error, Result};
 
 use super::accumulator::Accumulator;
 use super::decimal::f64_from_f32;
-use super::detection::{CocoDetectionParams, checked_score, picture_number, truth_of};
+use super::detection::{CocoDetectionParams, checked_score, image_index, truth_of};
+use super::list_accumulator::ListAccumulator;
 use super::matching::Detection;
 use super::overlap::Mask;
-use super::picture::Pictures;
 use super::protocol::Protocol;
 use crate::{Metric, Report};
 
 /// Average precision and recall of masks: pycocotools' `COCOeval(.., "segm")`.
 ///
-/// Every box needs an outline or a mask. Where all are outlines, nothing tells the size of the picture, and they are
-/// filled on a canvas that holds them all; pycocotools cuts them off at the picture's edge.
+/// Every box needs a mask. If all masks are polygons, the size of the image is unknown and they are filled on a canvas
+/// that holds them all; pycocotools clips them at the image border.
 #[derive(Debug, Clone)]
 pub struct CocoSegmentation {
-    pictures: Pictures,
+    lists: ListAccumulator,
 }
 
 impl Metric for CocoSegmentation {
     const NAME: &'static str = "coco_segmentation";
     const ABOUT: &'static str = "average precision and recall of masks, as pycocotools";
     const NUMBERS: &'static [(&'static str, &'static str)] = super::summary::NUMBERS;
-    const RANKS: bool = true;
+    const IS_RANKING: bool = true;
     type Params = CocoDetectionParams;
     type Prediction = BoundingBoxList;
     type Truth = BoundingBoxList;
 
     fn new(params: &CocoDetectionParams) -> Result<Self> {
         let accumulator = Accumulator::new(Protocol::objects(params.max_detections));
-        let pictures = Pictures { accumulator, classes: Default::default(), use_classes: params.use_classes };
-        Ok(Self { pictures })
+        let lists =
+            ListAccumulator { accumulator, classes: Default::default(), use_classes: params.use_classes };
+        Ok(Self { lists })
     }
 
     fn update(&mut self, at: usize, prediction: &BoundingBoxList, truth: &BoundingBoxList) -> Result<f64> {
         let canvas = canvas([prediction, truth])?;
         let (detected, annotated) =
             (masks(prediction, canvas, "detection")?, masks(truth, canvas, "object")?);
-        let scored = prediction.boxes.iter().zip(&detected).map(|(found, mask)| {
-            Ok(Detection { score: checked_score(found.confidence)?, area: mask.area() as f64 })
+        let scored = prediction.boxes.iter().zip(&detected).map(|(object, mask)| {
+            Ok(Detection { score: checked_score(object.confidence)?, area: mask.area() as f64 })
         });
         let detections = scored.collect::<Result<Vec<_>>>()?;
         let objects = truth.boxes.iter().zip(&annotated);
-        let truths: Vec<_> = objects.map(|(found, mask)| truth_of(found, mask.area() as f64)).collect();
+        let truths: Vec<_> = objects.map(|(object, mask)| truth_of(object, mask.area() as f64)).collect();
         let lists = [prediction, truth];
-        let at = picture_number(at)?;
-        self.pictures.add(at, lists, [&detected, &annotated], &detections, &truths, Mask::overlap)
+        let at = image_index(at)?;
+        self.lists.add(at, lists, [&detected, &annotated], &detections, &truths, Mask::iou)
     }
 
     fn merge(&mut self, other: Self) {
-        self.pictures.merge(other.pictures);
+        self.lists.merge(other.lists);
     }
 
     fn finish(&self) -> Report {
-        let classes = &self.pictures.classes;
-        self.pictures.accumulator.finish(1).report(|class| class.label(classes))
+        let classes = &self.lists.classes;
+        self.lists.accumulator.finish(1).report(|class| class.label(classes))
     }
 }
 
 fn segmentations(list: &BoundingBoxList) -> impl Iterator<Item = &Segmentation> {
-    list.boxes.iter().filter_map(|found| found.segment.as_deref()).map(|segment| &segment.segmentation)
+    list.boxes.iter().filter_map(|object| object.segment.as_deref()).map(|segment| &segment.segmentation)
 }
 
-/// `[height, width]` of all masks: the picture's, or what holds all outlines.
+/// Returns `[height, width]` of all masks: that of the image, or that of a canvas for all polygons.
 fn canvas(lists: [&BoundingBoxList; 2]) -> Result<[u32; 2]> {
     let mut size: Option<[u32; 2]> = None;
     let mut extent = [1.0f32; 2];
@@ -76,8 +77,8 @@ fn canvas(lists: [&BoundingBoxList; 2]) -> Result<[u32; 2]> {
                 if [height, width] != rle.size() {
                     let [rows, columns] = rle.size();
                     return Err(Error::invalid_input(format!(
-                        "masks of {height}x{width} and {rows}x{columns} pixels in one picture; \
-                         give all masks the picture's size"
+                        "masks of {height}x{width} and {rows}x{columns} pixels in one image; \
+                         give all masks the size of the image"
                     )));
                 }
                 size = Some(rle.size());
@@ -101,10 +102,10 @@ fn masks(list: &BoundingBoxList, [height, width]: [u32; 2], what: &str) -> Resul
             Rle::from_polygons(height, width, &polygons).map(Mask::from)
         }
     };
-    let masks = list.boxes.iter().enumerate().map(|(index, found)| match found.segment.as_deref() {
+    let masks = list.boxes.iter().enumerate().map(|(index, object)| match object.segment.as_deref() {
         Some(segment) => mask(&segment.segmentation),
         None => Err(Error::invalid_input(format!(
-            "{what} {index} has neither outline nor mask; compare boxes with coco_detection"
+            "{what} {index} has no mask; evaluate boxes with coco_detection"
         ))),
     });
     masks.collect()

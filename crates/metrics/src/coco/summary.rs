@@ -1,40 +1,46 @@
-//! The numbers, tables and figures of a COCO evaluation.
+//! Metrics, tables and figures of a COCO evaluation.
 
 use super::curve::Curve;
 use super::protocol::{Protocol, RECALLS, THRESHOLDS, recalls};
 use crate::average::mean;
 use crate::{Curves, Figure, Line, Report, Table};
 
-/// What the numbers are.
+/// Keys of the metrics, with descriptions.
 pub const NUMBERS: &[(&str, &str)] = &[
     ("map", "Average precision, mean over IoU .50 to .95 and classes."),
-    ("map50", "At IoU .50 alone."),
-    ("map75", "At IoU .75 alone."),
-    ("map_<area>", "Of objects `small` (below 32x32 pixels), `medium` (below 96x96) or `large`."),
-    ("mar", "Average recall with all answers, mean over IoU .50 to .95 and classes."),
-    ("mar<n>", "With the n best answers a picture; of key points, at similarity .50 and .75 alone."),
-    ("mar_<area>", "Of objects of that size."),
+    ("map50", "Average precision at IoU .50."),
+    ("map75", "Average precision at IoU .75."),
+    (
+        "map_<area>",
+        "Average precision of objects that are `small` (below 32x32 pixels), `medium` (below 96x96) or `large`.",
+    ),
+    ("mar", "Average recall with all predictions, mean over IoU .50 to .95 and classes."),
+    (
+        "mar<n>",
+        "Average recall with the n best predictions per image; for keypoints, at similarity .50 and .75.",
+    ),
+    ("mar_<area>", "Average recall of objects of that size."),
 ];
 
-/// What came out for one class.
+/// Result of one class.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ClassOutcome {
-    /// Objects that count.
+    /// Number of objects that count.
     pub truths: u64,
     /// Recall at each limit of detections; `None` without objects.
     pub recalls: Vec<Option<f64>>,
-    /// In each range of area; `None` without objects.
+    /// Curve in each range of area; `None` without objects.
     pub curves: Vec<Option<Curve>>,
 }
 
-/// What came out, by class.
+/// Result of an evaluation, by class.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome<K> {
     protocol: Protocol,
     classes: Vec<(K, ClassOutcome)>,
 }
 
-/// Thresholds whose numbers stand alone, with their keys.
+/// Thresholds with keys of their own.
 const ALONE: [(usize, &str); 2] = [(0, "50"), (5, "75")];
 
 impl<K> Outcome<K> {
@@ -42,16 +48,16 @@ impl<K> Outcome<K> {
         Self { protocol: protocol.clone(), classes }
     }
 
-    /// The numbers in the order of pycocotools' `stats` (12 for boxes and masks, 10 for key points); -1 where there is
-    /// nothing to count.
+    /// Returns the metrics in the order of pycocotools' `stats` (12 for boxes and masks, 10 for keypoints); -1 if there are no
+    /// objects.
     pub fn stats(&self) -> Vec<f64> {
         self.numbers().into_iter().map(|(_, number)| number.unwrap_or(-1.0)).collect()
     }
 
-    /// The numbers under their keys, in the order of [`Outcome::stats`].
+    /// Returns the metrics with their keys, in the order of [`Outcome::stats`].
     ///
-    /// `map` is COCO's AP, `map50` at an overlap of .5, `map_small` of small objects; `mar` is AR with the highest limit
-    /// of detections, `mar1` and `mar10` with at most 1 and 10 a picture.
+    /// `map` is COCO's AP, `map50` that at an overlap of .5, `map_small` that of small objects. `mar` is AR with the highest
+    /// limit of detections, `mar1` and `mar10` with at most 1 and 10 per image.
     pub fn numbers(&self) -> Vec<(String, Option<f64>)> {
         let areas = || self.protocol.areas.iter().enumerate().skip(1);
         let mut numbers = vec![("map".to_owned(), self.average(0, Curve::mean))];
@@ -78,7 +84,7 @@ impl<K> Outcome<K> {
         numbers
     }
 
-    /// The numbers, a table by class and precision-recall curves; `label` names a class.
+    /// Returns the metrics, a table by class and precision-recall curves; `label` returns the name of a class.
     pub fn report(&self, label: impl Fn(&K) -> String) -> Report {
         let mut report = Report::new("map");
         for (key, number) in self.numbers() {
@@ -89,7 +95,7 @@ impl<K> Outcome<K> {
         report
     }
 
-    /// Over the classes that have objects in range of area `at`.
+    /// Returns the mean of a number over the classes that have objects in range of area `at`.
     fn average(&self, at: usize, number: impl Fn(&Curve) -> f64) -> Option<f64> {
         mean(self.classes.iter().filter_map(|(_, class)| class.curves[at].as_ref().map(&number)))
     }

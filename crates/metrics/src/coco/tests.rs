@@ -2,25 +2,31 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// A picture of one class: objects (box, area, crowd) and detections (box, score).
-type Picture = (Vec<([f64; 4], f64, bool)>, Vec<([f64; 4], f64)>);
+/// An image of one class: objects (box, area, crowd) and detections (box, score).
+type ImageBoxes = (Vec<([f64; 4], f64, bool)>, Vec<([f64; 4], f64)>);
 
-fn count(accumulator: &mut Accumulator<i64>, class: i64, at: u32, (there, found): &Picture) -> Option<f64> {
+fn count(
+    accumulator: &mut Accumulator<i64>,
+    class: i64,
+    at: u32,
+    (annotated, detected): &ImageBoxes,
+) -> Option<f64> {
     let truth =
         |(_, area, crowd): &([f64; 4], f64, bool)| Truth { area: *area, crowd: *crowd, ignored: *crowd };
-    let truths: Vec<_> = there.iter().map(truth).collect();
+    let truths: Vec<_> = annotated.iter().map(truth).collect();
     let detection =
         |(bounds, score): &([f64; 4], f64)| Detection { score: *score, area: bounds[2] * bounds[3] };
-    let detections: Vec<_> = found.iter().map(detection).collect();
-    let overlap =
-        |detection: usize, truth: usize| Ok(box_overlap(found[detection].0, there[truth].0, there[truth].2));
+    let detections: Vec<_> = detected.iter().map(detection).collect();
+    let overlap = |detection: usize, truth: usize| {
+        Ok(box_iou(detected[detection].0, annotated[truth].0, annotated[truth].2))
+    };
     accumulator.add(&class, at, &truths, &detections, overlap).unwrap()
 }
 
-fn stats(pictures: &[Picture]) -> Vec<f64> {
+fn stats(images: &[ImageBoxes]) -> Vec<f64> {
     let mut accumulator = Accumulator::new(Protocol::objects(100));
-    for (at, picture) in (0..).zip(pictures) {
-        count(&mut accumulator, 1, at, picture);
+    for (at, image) in (0..).zip(images) {
+        count(&mut accumulator, 1, at, image);
     }
     accumulator.finish(1).stats()
 }
@@ -29,9 +35,9 @@ const PLACE: [f64; 4] = [0.0, 0.0, 50.0, 50.0];
 const ELSEWHERE: [f64; 4] = [100.0, 0.0, 50.0, 50.0];
 
 #[test]
-fn half_found_has_half_the_recall() {
-    let picture = (vec![(PLACE, 2500.0, false), (ELSEWHERE, 2500.0, false)], vec![(PLACE, 0.9)]);
-    let stats = stats(&[picture]);
+fn half_of_the_objects_detected_gives_half_the_recall() {
+    let image = (vec![(PLACE, 2500.0, false), (ELSEWHERE, 2500.0, false)], vec![(PLACE, 0.9)]);
+    let stats = stats(&[image]);
     // Recalls 0 to .5 have precision 1: 51 of 101; both objects are medium.
     for ap in [0, 1, 2, 4] {
         assert!((stats[ap] - 51.0 / 101.0).abs() < 1e-12, "{stats:?}");
@@ -40,7 +46,7 @@ fn half_found_has_half_the_recall() {
 }
 
 #[test]
-fn crowds_swallow_detections() {
+fn detections_in_crowds_are_ignored() {
     let crowd = (
         vec![(PLACE, 2500.0, true), (ELSEWHERE, 2500.0, false)],
         vec![([1.0, 1.0, 5.0, 5.0], 0.99), ([9.0, 9.0, 5.0, 5.0], 0.98), (ELSEWHERE, 0.5)],
@@ -51,18 +57,18 @@ fn crowds_swallow_detections() {
 }
 
 #[test]
-fn of_equal_scores_the_earlier_picture_and_detection_comes_first() {
+fn ties_are_sorted_by_image_and_detection() {
     let right = (vec![(PLACE, 2500.0, false)], vec![(PLACE, 0.5), (ELSEWHERE, 0.5)]);
     let wrong = (vec![(PLACE, 2500.0, false)], vec![(ELSEWHERE, 0.5), (PLACE, 0.5)]);
-    // Right, wrong, wrong, right: precision 1 up to half the recall, 2/4 beyond.
+    // True, false, false, true: precision 1 up to half the recall, 2/4 beyond.
     let first = stats(&[right.clone(), wrong.clone()])[0];
     assert!((first - (51.0 + 50.0 * 0.5) / 101.0).abs() < 1e-12);
-    // Wrong, right, right, wrong: 2/3 all over.
+    // False, true, true, false: 2/3 at every recall.
     assert!((stats(&[wrong, right])[0] - 2.0 / 3.0).abs() < 1e-12);
 }
 
 #[test]
-fn only_the_surest_count() {
+fn only_the_highest_scores_count() {
     let many = (0..150).map(|at| (ELSEWHERE, 0.9 - f64::from(at) * 1e-3));
     let last = many.clone().chain([(PLACE, 0.1)]).collect();
     assert_eq!(stats(&[(vec![(PLACE, 2500.0, false)], last)])[8], 0.0);
@@ -72,7 +78,7 @@ fn only_the_surest_count() {
 }
 
 #[test]
-fn scores_that_are_no_numbers_are_refused_and_not_counted() {
+fn nan_scores_are_rejected_and_not_counted() {
     let mut accumulator = Accumulator::new(Protocol::objects(100));
     let detection = Detection { score: f64::NAN, area: 1.0 };
     assert!(accumulator.add(&1, 0, &[], &[detection], |_, _| Ok(0.0)).is_err());
@@ -84,23 +90,23 @@ fn bounds() -> impl Strategy<Value = [f64; 4]> {
         .prop_map(|(x, y, w, h)| [x, y, w, h].map(|side| f64::from(side) * 10.0))
 }
 
-fn picture() -> impl Strategy<Value = Picture> {
-    let there = (bounds(), any::<bool>()).prop_map(|(place, crowd)| (place, place[2] * place[3], crowd));
-    let found = (bounds(), 0u8..4).prop_map(|(place, score)| (place, f64::from(score) / 4.0));
-    (proptest::collection::vec(there, 0..5), proptest::collection::vec(found, 0..8))
+fn image() -> impl Strategy<Value = ImageBoxes> {
+    let annotated = (bounds(), any::<bool>()).prop_map(|(place, crowd)| (place, place[2] * place[3], crowd));
+    let detected = (bounds(), 0u8..4).prop_map(|(place, score)| (place, f64::from(score) / 4.0));
+    (proptest::collection::vec(annotated, 0..5), proptest::collection::vec(detected, 0..8))
 }
 
 proptest! {
     #[test]
-    fn how_pictures_are_spread_does_not_matter(
-        pictures in proptest::collection::vec((0i64..3, picture(), 0usize..3), 0..9),
+    fn distribution_over_accumulators_does_not_matter(
+        images in proptest::collection::vec((0i64..3, image(), 0usize..3), 0..9),
     ) {
         let mut parts = [(); 3].map(|()| Accumulator::new(Protocol::objects(100)));
         let mut whole = Accumulator::new(Protocol::objects(100));
-        for (at, (class, picture, part)) in (0..).zip(&pictures) {
-            let alone = count(&mut whole, *class, at, picture);
-            prop_assert_eq!(count(&mut parts[*part], *class, at, picture), alone);
-            prop_assert!(alone.is_none_or(|quality| (0.0..=1.0).contains(&quality)));
+        for (at, (class, image, part)) in (0..).zip(&images) {
+            let quality = count(&mut whole, *class, at, image);
+            prop_assert_eq!(count(&mut parts[*part], *class, at, image), quality);
+            prop_assert!(quality.is_none_or(|quality| (0.0..=1.0).contains(&quality)));
         }
         let [mut last, middle, first] = parts;
         last.merge(first);

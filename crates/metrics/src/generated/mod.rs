@@ -1,3 +1,3 @@
-//! Tables that a program made.
+//! Generated tables.
 
 pub(crate) mod punctuation;

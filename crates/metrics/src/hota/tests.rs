@@ -4,7 +4,7 @@ fn new() -> Hota {
     Hota::new(&HotaParams { rules: MotRules::All }).unwrap()
 }
 
-/// One object over four pictures: track 7 covers the first three (overlap 0.8, 0.8, 0.5), track 8 the last (0.8).
+/// One object over four frames: track 7 covers the first three (overlap 0.8, 0.8, 0.5), track 8 the last (0.8).
 ///
 /// At 0.8 and below 0.5: matches 3 and 1. AssA = (3·3/(4+3-3) + 1·1/(4+1-1)) / 4 = (9/4 + 1/4) / 4 = 0.625.
 /// At 0.65: matches 2 and 1. AssA = (2·2/(4+3-2) + 1/4) / 3 = (0.8 + 0.25) / 3 = 0.35, DetA = 3/(3+1+1) = 0.6.
@@ -15,7 +15,8 @@ fn hand_computed() {
         metric.count(&TrackingFrame::new(vec![1], vec![track], vec![overlap]).unwrap());
     }
     let scores = metric.counts().scores();
-    let near = |value: f64, wanted: f64| assert!((value - wanted).abs() < 1e-12, "{value} is not {wanted}");
+    let near =
+        |value: f64, expected: f64| assert!((value - expected).abs() < 1e-12, "{value} is not {expected}");
     near(scores.deta[0], 1.0);
     near(scores.assa[0], 0.625);
     near(scores.hota[0], 0.625f64.sqrt());
@@ -30,7 +31,7 @@ fn hand_computed() {
 }
 
 #[test]
-fn sequences_do_not_mix_and_merge() {
+fn sequences_are_independent_and_merge() {
     let frame = |track| TrackingFrame::new(vec![1], vec![track], vec![1.0]).unwrap();
     let mut one = new();
     one.count(&frame(5));
@@ -45,7 +46,7 @@ fn sequences_do_not_mix_and_merge() {
 }
 
 #[test]
-fn empty_pictures_count() {
+fn frames_without_matches_count() {
     let mut metric = new();
     metric.count(&TrackingFrame::new(vec![1, 2], vec![], vec![]).unwrap());
     metric.count(&TrackingFrame::new(vec![], vec![3], vec![]).unwrap());

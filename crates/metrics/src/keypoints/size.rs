@@ -1,27 +1,13 @@
-//! How large a pose is: what the distances of its joints are measured in.
+//! Sizes of poses, by which the distances of joints are normalised.
 
 use opendr_engine::target::{BoundingBox, Pose};
 
-use super::{KeypointsParams, place_of};
-
-opendr_engine::choices! {
-    /// What the distances of joints are measured in.
-    pub enum PoseSize {
-        /// The longer side of the pose's box (PCK of MMPose).
-        Box = "box",
-        /// The root of the area of the pose's box (NME of faces).
-        Area = "area",
-        /// 0.6 times the diagonal of the pose's box, which is that of the head (PCKh of MPII).
-        Head = "head",
-        /// The distance from the left shoulder to the right hip.
-        Torso = "torso",
-        /// The distance between two joints, or the middles of two halves of a list of joints.
-        Joints = "joints",
-    }
-}
+use super::params::{KeypointsParams, PoseSize};
+use super::places::place_of;
 
 impl KeypointsParams {
-    /// Pixels; `None` where the pose has none or no positive one. A pose without a region has the box around its joints.
+    /// Returns the size in pixels; `None` if the pose has no positive size. A pose without a region uses the box around its
+    /// joints.
     pub(super) fn size_of_pose(&self, pose: &Pose) -> Option<f64> {
         let size = match self.normalize {
             PoseSize::Box | PoseSize::Area | PoseSize::Head => {
@@ -48,7 +34,7 @@ impl KeypointsParams {
         (size > 0.0 && size.is_finite()).then_some(size)
     }
 
-    /// Whether a distance in sizes of the pose is small enough: below the threshold as in MMPose's PCK, at most it as
+    /// Returns whether a normalised distance is correct: below the threshold as in MMPose's PCK, or at most the threshold as
     /// in MPII's PCKh.
     pub(super) fn is_correct(&self, distance: f64) -> bool {
         match self.normalize {

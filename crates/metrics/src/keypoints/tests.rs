@@ -36,14 +36,14 @@ fn numbers_by_hand() {
 }
 
 #[test]
-fn joints_not_found_are_wrong_and_have_no_distance() {
+fn joints_not_predicted_are_incorrect_and_have_no_distance() {
     let mut keypoints = Keypoints::default();
     keypoints.add(&[Some([0.0, 0.0]), Some([1.0, 1.0])], &[None, Some([1.0, 1.0])], 10.0).unwrap();
     assert_eq!((keypoints.pooled_pck(), keypoints.end_point_error()), (Some(0.5), Some(0.0)));
 }
 
 #[test]
-fn threshold_itself() {
+fn distance_equal_to_the_threshold() {
     let hit = |normalize| {
         let mut keypoints = with(normalize, 0.5, &[0, 1]);
         keypoints.add(&[Some([0.0, 0.0])], &[Some([5.0, 0.0])], 10.0).unwrap()
@@ -73,19 +73,19 @@ fn sizes_of_poses() {
 }
 
 #[test]
-fn nearest_pose_answers() {
+fn nearest_poses_are_matched() {
     let list = |places: &[f32]| -> PoseList {
         places.iter().map(|x| in_box(pose(&[[*x, 0.0]]), 10.0, 10.0)).collect::<Vec<_>>().into()
     };
     let mut keypoints = Keypoints::default();
-    // The second truth takes 11, hence the first has to take 100; 200 is left over.
+    // The second object matches 11, so the first has to match 100; 200 is left over.
     let score = keypoints.update(0, &list(&[100.0, 11.0, 200.0]), &list(&[5.0, 10.0])).unwrap();
     assert_eq!((score, keypoints.end_point_error()), (0.5, Some(48.0)));
     assert_eq!(keypoints.update(1, &list(&[]), &list(&[5.0])).unwrap(), 0.0);
     assert_eq!(keypoints.update(2, &list(&[5.0]), &list(&[])).unwrap(), 1.0);
     let report = keypoints.finish();
     assert_eq!(report.statistics.get("poses"), Some(3.0));
-    // These points are of no skeleton.
+    // These points have no skeleton.
     assert_eq!(report.tables[0].rows[0].0, "0");
 }
 
@@ -109,7 +109,7 @@ fn other_skeletons_are_compared_by_name() {
 }
 
 #[test]
-fn poses_without_size_do_not_count() {
+fn poses_without_size_are_ignored() {
     let mut keypoints = Keypoints::default();
     let point = PoseList::from(vec![pose(&[[1.0, 1.0]])]);
     assert_eq!(keypoints.update(0, &point, &point).unwrap(), 1.0);
@@ -124,16 +124,16 @@ fn parts_merge_to_the_whole() {
     let [mut whole, mut first, mut second] = [(); 3].map(|()| Keypoints::default());
     for at in 0..5_u8 {
         let truth = PoseList::from(vec![in_box(pose(&[[1.0, 1.0], [2.0, 4.0]]), 8.0, 8.0)]);
-        let answer = PoseList::from(vec![pose(&[[1.0, f32::from(at)], [2.0, 4.5]])]);
-        whole.update(at.into(), &answer, &truth).unwrap();
-        if at < 2 { &mut first } else { &mut second }.update(at.into(), &answer, &truth).unwrap();
+        let prediction = PoseList::from(vec![pose(&[[1.0, f32::from(at)], [2.0, 4.5]])]);
+        whole.update(at.into(), &prediction, &truth).unwrap();
+        if at < 2 { &mut first } else { &mut second }.update(at.into(), &prediction, &truth).unwrap();
     }
     second.merge(first);
     assert_eq!(second.finish(), whole.finish());
 }
 
 #[test]
-fn poses_that_do_not_fit_are_refused() {
+fn invalid_poses_are_rejected() {
     let mut keypoints = Keypoints::default();
     let list = |places: &[[f32; 2]]| PoseList::from(vec![in_box(pose(places), 8.0, 8.0)]);
     assert!(keypoints.update(0, &list(&[[1.0, 1.0]]), &list(&[[1.0, 1.0]; 2])).is_err());

@@ -1,12 +1,12 @@
-//! What is kept of one picture, and its matching.
+//! Boxes of one image and their matching.
 
 use opendr_engine::{Error, Result};
 
 use super::object::KittiObject;
 use super::rules::{KittiOverlap, ObjectKind, Role, Rules, SMALLEST_LEAST_OVERLAP, Traits};
-use crate::{StandingBox, image_cover, image_overlap};
+use crate::{UprightBox3D, box_ioa, box_iou};
 
-/// Boxes of one picture: more are a mistake, and their overlaps would fill the memory.
+/// Maximum number of boxes per image, which bounds the memory of their overlaps.
 const MOST_BOXES: usize = 1024;
 
 #[derive(Debug, Clone, Copy)]
@@ -14,7 +14,7 @@ struct Found {
     traits: Traits,
     score: f64,
     alpha: f64,
-    /// Its largest share in a `DontCare` region.
+    /// Largest fraction of the box in a `DontCare` region.
     in_dont_care: f64,
 }
 
@@ -24,7 +24,7 @@ struct Truth {
     alpha: f64,
 }
 
-/// A pair that some rule may take, by places in the lists.
+/// A pair that some rule may match, by indices in the lists.
 #[derive(Debug, Clone, Copy)]
 struct Candidate {
     truth: u32,
@@ -35,21 +35,21 @@ struct Candidate {
 #[derive(Debug, Clone)]
 pub(super) struct Frame {
     pub at: usize,
-    /// How well boxes of the same class cover each other in space, 0 to 1.
+    /// How well boxes of the same class overlap in space, 0 to 1.
     pub coverage: f64,
     pub has_orientations: bool,
     truth: Vec<Truth>,
     found: Vec<Found>,
-    /// By kind of overlap; truth in its order, and found of each in theirs.
+    /// Candidates by kind of overlap, in the order of ground truth and then predictions.
     candidates: [Vec<Candidate>; 3],
 }
 
-/// What matching counts in one picture.
+/// Counts of the matching in one image.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Matched {
     pub true_positives: u64,
     pub false_positives: u64,
-    /// Sum over true positives of how well orientations agree, 0 to 1 each.
+    /// Sum of the orientation similarity of true positives, 0 to 1 each.
     pub similarity: f64,
 }
 
@@ -57,7 +57,7 @@ impl Frame {
     pub fn new(at: usize, found: &[KittiObject], truth: &[KittiObject]) -> Result<Self> {
         if found.len().max(truth.len()) > MOST_BOXES {
             return Err(Error::invalid_input(format!(
-                "{} found and {} true boxes in one picture; give at most {MOST_BOXES}",
+                "{} predicted and {} true boxes in one image; give at most {MOST_BOXES}",
                 found.len(),
                 truth.len()
             )));
@@ -76,22 +76,22 @@ impl Frame {
     }
 
     fn fill_overlaps(&mut self, found: &[KittiObject], truth: &[KittiObject]) {
-        let standing: Vec<StandingBox> = found.iter().map(KittiObject::standing_box).collect();
+        let boxes: Vec<UprightBox3D> = found.iter().map(KittiObject::upright_box).collect();
         let mut best_of_truth = vec![0.0f64; truth.len()];
         let mut best_of_found = vec![0.0f64; found.len()];
         for (row, object) in truth.iter().enumerate() {
             if matches!(self.truth[row].traits.kind, ObjectKind::Other | ObjectKind::DontCare) {
                 continue;
             }
-            let here = object.standing_box();
+            let upright = object.upright_box();
             for (column, other) in found.iter().enumerate() {
-                let shared = here.floor.shared_area(&standing[column].floor);
-                let on_ground = match here.floor.area() + standing[column].floor.area() - shared {
+                let shared = upright.base.intersection_area(&boxes[column].base);
+                let on_ground = match upright.base.area() + boxes[column].base.area() - shared {
                     union if shared > 0.0 => shared / union,
                     _ => 0.0,
                 };
-                let in_space = here.overlap_with_shared_floor(&standing[column], shared);
-                let overlaps = [image_overlap(object.in_image, other.in_image), on_ground, in_space];
+                let in_space = upright.iou_with_base_intersection(&boxes[column], shared);
+                let overlaps = [box_iou(object.bbox2d, other.bbox2d), on_ground, in_space];
                 for (candidates, overlap) in self.candidates.iter_mut().zip(overlaps) {
                     if overlap > SMALLEST_LEAST_OVERLAP {
                         candidates.push(Candidate { truth: row as u32, found: column as u32, overlap });
@@ -111,11 +111,12 @@ impl Frame {
         self.coverage = if union > 0.0 { (hits / union).min(1.0) } else { 1.0 };
     }
 
-    pub fn asked_for(&self, rules: &Rules) -> usize {
+    pub fn positives(&self, rules: &Rules) -> usize {
         self.truth.iter().filter(|object| rules.role_of_truth(&object.traits) == Role::Counts).count()
     }
 
-    /// Scores of the answers that are right when all are taken: every truth gets the best scored one.
+    /// Appends the scores of the true positives at threshold 0: each ground-truth box matches the prediction with the highest
+    /// score.
     pub fn true_scores(&self, rules: &Rules, scores: &mut Vec<f64>) {
         let mut taken = vec![false; self.found.len()];
         for (truth, pairs) in self.candidates_by_truth(rules) {
@@ -136,7 +137,8 @@ impl Frame {
         }
     }
 
-    /// Matches the answers that score at least `threshold`: every truth gets the one that overlaps most.
+    /// Matches the predictions with a score of at least `threshold`: each ground-truth box matches the one with the largest
+    /// overlap.
     pub fn matched(&self, rules: &Rules, threshold: f64) -> Matched {
         let mut matched = Matched::default();
         let mut taken = vec![false; self.found.len()];
@@ -145,8 +147,8 @@ impl Frame {
             taken[best] = true;
             if self.both_count(rules, truth, best) {
                 matched.true_positives += 1;
-                let turn = self.truth[truth].alpha - self.found[best].alpha;
-                matched.similarity += (1.0 + turn.cos()) / 2.0;
+                let rotation = self.truth[truth].alpha - self.found[best].alpha;
+                matched.similarity += (1.0 + rotation.cos()) / 2.0;
             }
         }
         let wrong = self.found.iter().zip(taken).filter(|(found, taken)| {
@@ -158,7 +160,7 @@ impl Frame {
         matched
     }
 
-    /// The answer that counts and overlaps most, or else the first ignored one.
+    /// Returns the prediction that counts and overlaps most, otherwise the first ignored one.
     fn largest_overlap(
         &self,
         rules: &Rules,
@@ -189,7 +191,7 @@ impl Frame {
             && rules.role_of_found(&self.found[found].traits) == Role::Counts
     }
 
-    /// Truth that takes part, each with its candidates.
+    /// Returns the ground-truth boxes that take part in the matching, with their candidates.
     fn candidates_by_truth(&self, rules: &Rules) -> impl Iterator<Item = (usize, &[Candidate])> {
         self.candidates[rules.overlap as usize].chunk_by(|a, b| a.truth == b.truth).filter_map(|pairs| {
             let truth = pairs.first()?.truth as usize;
@@ -200,7 +202,7 @@ impl Frame {
 
 fn found_from_object(object: &KittiObject, truth: &[KittiObject]) -> Found {
     let regions = truth.iter().filter(|other| other.kind() == ObjectKind::DontCare);
-    let covers = regions.map(|region| image_cover(object.in_image, region.in_image));
+    let covers = regions.map(|region| box_ioa(object.bbox2d, region.bbox2d));
     Found {
         traits: object.into(),
         score: object.score,

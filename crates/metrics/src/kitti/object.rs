@@ -1,63 +1,70 @@
-//! An object as KITTI's rules look at it.
+//! Objects with the properties that KITTI's rules use.
 
 use opendr_engine::target::{BoundingBox3D, BoundingBox3DList, Name};
 use opendr_engine::{Error, Result};
 
-use super::rules::ObjectKind;
-use crate::StandingBox;
+use super::rules::{ObjectKind, Traits};
+use crate::UprightBox3D;
 
-/// An object of truth or answer.
+/// A ground-truth or predicted object.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KittiObject {
     /// Type as in KITTI's files, e.g. `Car`, `Person_sitting` or `DontCare`; case does not matter.
     pub class: String,
-    /// Share that lies outside the picture; only of truth.
+    /// Fraction outside the image; ground truth only.
     pub truncated: f64,
-    /// 0 visible, 1 partly, 2 largely hidden, 3 not known; only of truth.
+    /// Occlusion: 0 visible, 1 partly, 2 largely occluded, 3 unknown; ground truth only.
     pub occluded: i32,
-    /// Angle under which it is seen, radians; -10 when it is not known.
+    /// Observation angle in radians; -10 if unknown.
     pub alpha: f64,
-    /// Corners `[x0, y0, x1, y1]` in the picture, pixels.
-    pub in_image: [f64; 4],
-    /// Length, height and width, metres.
+    /// Corners `[x0, y0, x1, y1]` in the image, in pixels.
+    pub bbox2d: [f64; 4],
+    /// Length, height and width in metres.
     pub dimensions: [f64; 3],
-    /// The middle of its floor in the camera's frame, metres.
+    /// Center of the base in the camera frame, in metres.
     pub location: [f64; 3],
-    /// Turn about the vertical axis, radians.
+    /// Rotation about the vertical axis, in radians.
     pub rotation_y: f64,
-    /// Score; only of answers.
+    /// Score; predictions only.
     pub score: f64,
 }
 
 impl KittiObject {
-    /// The box in space.
-    pub fn standing_box(&self) -> StandingBox {
-        StandingBox::in_camera(self.dimensions, self.location, self.rotation_y)
+    /// Returns the 3D box.
+    pub fn upright_box(&self) -> UprightBox3D {
+        UprightBox3D::from_kitti(self.dimensions, self.location, self.rotation_y)
     }
 
     pub(super) fn kind(&self) -> ObjectKind {
         ObjectKind::from_name(&self.class)
     }
 
-    /// Height in the picture, pixels.
+    /// Returns the height in the image, in pixels.
     pub(super) fn height_in_image(&self) -> f64 {
-        self.in_image[3] - self.in_image[1]
+        self.bbox2d[3] - self.bbox2d[1]
     }
 
     pub(super) fn check(&self) -> Result<()> {
         let numbers = [self.truncated, self.alpha, self.rotation_y, self.score].into_iter();
-        let places = self.in_image.into_iter().chain(self.dimensions).chain(self.location);
+        let places = self.bbox2d.into_iter().chain(self.dimensions).chain(self.location);
         if numbers.chain(places).all(f64::is_finite) {
             return Ok(());
         }
         Err(Error::invalid_input(format!(
-            "a {} has numbers that are not finite: {self:?}; give finite ones",
+            "a {} has numbers that are not finite: {self:?}; give finite numbers",
             self.class
         )))
     }
 }
 
-/// The objects of a list.
+impl From<&KittiObject> for Traits {
+    fn from(object: &KittiObject) -> Self {
+        let KittiObject { truncated, occluded, .. } = *object;
+        Self { kind: object.kind(), height: object.height_in_image(), truncated, occluded }
+    }
+}
+
+/// Converts a list of boxes to objects.
 pub(super) fn objects_from_list(list: &BoundingBox3DList) -> Result<Vec<KittiObject>> {
     list.boxes.iter().map(|found| object_from_box(found, list)).collect()
 }
@@ -68,13 +75,13 @@ fn object_from_box(found: &BoundingBox3D, list: &BoundingBox3DList) -> Result<Ki
         (None, Name::Label(label)) => label.to_string(),
         (None, Name::Index(index)) => {
             return Err(Error::invalid_input(format!(
-                "a box has class number {index}, but its list names no classes; give labels such as \"Car\""
+                "a box has class index {index}, but its list has no class names; give labels such as \"Car\""
             )));
         }
     };
     if found.bbox2d == [0.0; 4] {
         return Err(Error::invalid_input(format!(
-            "a {class} has no place in the picture (\"bbox2d\"), which KITTI's rules look at; project it into the picture"
+            "a {class} has no box in the image (\"bbox2d\"), which KITTI's rules need; project it into the image"
         )));
     }
     Ok(KittiObject {
@@ -82,7 +89,7 @@ fn object_from_box(found: &BoundingBox3D, list: &BoundingBox3DList) -> Result<Ki
         truncated: as_written(found.truncated),
         occluded: found.occluded,
         alpha: as_written(found.alpha),
-        in_image: found.bbox2d.map(as_written),
+        bbox2d: found.bbox2d.map(as_written),
         dimensions: found.dimensions.map(as_written),
         location: found.location.map(as_written),
         rotation_y: as_written(found.rotation_y),
@@ -90,8 +97,8 @@ fn object_from_box(found: &BoundingBox3D, list: &BoundingBox3DList) -> Result<Ki
     })
 }
 
-/// The number that KITTI's file has: its two decimals lie on the rules' limits (0.15, 25 pixels), and an `f32` would
-/// fall on either side of them.
+/// Returns the decimal number in KITTI's file. Its two decimals may equal the limits of the rules (0.15, 25 pixels), and an
+/// `f32` could be on either side of them.
 fn as_written(number: f32) -> f64 {
     number.to_string().parse().unwrap_or_else(|_| f64::from(number))
 }

@@ -1,45 +1,43 @@
-//! Which objects count.
+//! KITTI's rules: classes, overlaps, difficulties, and which objects count.
 
-use super::object::KittiObject;
-
-/// The classes that are evaluated.
+/// An evaluated class.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum KittiClass {
-    /// Cars; vans are neither asked for nor wrong.
+    /// Cars; vans are ignored.
     Car,
-    /// Pedestrians; sitting persons are neither asked for nor wrong.
+    /// Pedestrians; sitting persons are ignored.
     Pedestrian,
     /// Cyclists.
     Cyclist,
 }
 
-/// What overlaps.
+/// Kind of overlap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum KittiOverlap {
-    /// Boxes in the picture.
+    /// Boxes in the image.
     Image,
-    /// Turned boxes on the ground, seen from above.
+    /// Rotated boxes on the ground, in bird's-eye view.
     Ground,
-    /// Boxes in space.
+    /// 3D boxes.
     Space,
 }
 
-/// What truth is asked for.
+/// Difficulty: the ground truth that counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum KittiDifficulty {
-    /// Visible, at most 15 % outside the picture, more than 40 pixels high.
+    /// Visible, at most 15 % outside the image, more than 40 pixels high.
     Easy,
-    /// At most partly hidden, at most 30 % outside the picture, more than 25 pixels high.
+    /// At most partly occluded, at most 30 % outside the image, more than 25 pixels high.
     Moderate,
-    /// At most largely hidden, at most 50 % outside the picture, more than 25 pixels high.
+    /// At most largely occluded, at most 50 % outside the image, more than 25 pixels high.
     Hard,
 }
 
 impl KittiClass {
-    /// All of them.
+    /// All classes.
     pub const ALL: [Self; 3] = [Self::Car, Self::Pedestrian, Self::Cyclist];
 
-    /// As in keys, e.g. `"car"`.
+    /// Returns the name in keys, e.g. `"car"`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Car => "car",
@@ -50,10 +48,10 @@ impl KittiClass {
 }
 
 impl KittiOverlap {
-    /// All of them.
+    /// All kinds.
     pub const ALL: [Self; 3] = [Self::Image, Self::Ground, Self::Space];
 
-    /// As in keys: `"2d"`, `"bev"` or `"3d"`.
+    /// Returns the name in keys: `"2d"`, `"bev"` or `"3d"`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Image => "2d",
@@ -64,10 +62,10 @@ impl KittiOverlap {
 }
 
 impl KittiDifficulty {
-    /// All of them.
+    /// All difficulties.
     pub const ALL: [Self; 3] = [Self::Easy, Self::Moderate, Self::Hard];
 
-    /// As in keys, e.g. `"moderate"`.
+    /// Returns the name in keys, e.g. `"moderate"`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Easy => "easy",
@@ -76,7 +74,7 @@ impl KittiDifficulty {
         }
     }
 
-    /// Pixels.
+    /// Returns the minimum height in pixels.
     const fn least_height(self) -> f64 {
         match self {
             Self::Easy => 40.0,
@@ -84,7 +82,7 @@ impl KittiDifficulty {
         }
     }
 
-    fn asks_for(self, truth: &Traits) -> bool {
+    fn counts(self, truth: &Traits) -> bool {
         let (occluded, truncated) = match self {
             Self::Easy => (0, 0.15),
             Self::Moderate => (1, 0.3),
@@ -94,7 +92,7 @@ impl KittiDifficulty {
     }
 }
 
-/// The types that the rules tell apart.
+/// Types that the rules distinguish.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ObjectKind {
     Class(KittiClass),
@@ -125,46 +123,39 @@ impl ObjectKind {
     }
 }
 
-/// What the rules look at of one object.
+/// Properties of an object that the rules use.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Traits {
     pub kind: ObjectKind,
-    /// In the picture, pixels.
+    /// Height in the image, in pixels.
     pub height: f64,
     pub truncated: f64,
     pub occluded: i32,
 }
 
-impl From<&KittiObject> for Traits {
-    fn from(object: &KittiObject) -> Self {
-        let KittiObject { truncated, occluded, .. } = *object;
-        Self { kind: object.kind(), height: object.height_in_image(), truncated, occluded }
-    }
-}
-
-/// How an object is treated.
+/// Role of an object in the matching.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Role {
-    /// Truth that is asked for, answers that may be right or wrong.
+    /// Ground truth and predictions that count.
     Counts,
-    /// Takes part in matching, but neither it nor its partner counts.
+    /// Takes part in the matching, but neither it nor its partner counts.
     Ignored,
-    /// Of another class.
+    /// Does not take part, as an object of another class.
     Absent,
 }
 
-/// One row and column of KITTI's tables.
+/// One row and column of KITTI's result tables.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rules {
     pub class: KittiClass,
     pub overlap: KittiOverlap,
     pub difficulty: KittiDifficulty,
-    /// The smaller limits that are usual for boxes on the ground and in space.
+    /// Whether to use the lower limits for boxes on the ground and in space.
     pub is_loose: bool,
 }
 
 impl Rules {
-    /// Every row and column.
+    /// Returns all rows and columns.
     pub fn all() -> impl Iterator<Item = Self> {
         KittiClass::ALL.into_iter().flat_map(|class| {
             KittiOverlap::ALL.into_iter().flat_map(move |overlap| {
@@ -176,7 +167,7 @@ impl Rules {
         })
     }
 
-    /// Boxes match that overlap by more than this.
+    /// Returns the limit of the overlap: matching boxes overlap by more.
     pub fn least_overlap(&self) -> f64 {
         match (self.class, self.is_loose) {
             (KittiClass::Car, false) => 0.7,
@@ -187,12 +178,12 @@ impl Rules {
 
     pub fn role_of_truth(&self, truth: &Traits) -> Role {
         if truth.kind == ObjectKind::Class(self.class) {
-            return if self.difficulty.asks_for(truth) { Role::Counts } else { Role::Ignored };
+            return if self.difficulty.counts(truth) { Role::Counts } else { Role::Ignored };
         }
         if truth.kind.is_neighbour_of(self.class) { Role::Ignored } else { Role::Absent }
     }
 
-    /// Small answers of every class are ignored, even where they match: so does KITTI.
+    /// Small predictions of every class are ignored, even if they match, as in KITTI's development kit.
     pub fn role_of_found(&self, found: &Traits) -> Role {
         if found.height.abs() < self.difficulty.least_height() {
             return Role::Ignored;
@@ -201,5 +192,5 @@ impl Rules {
     }
 }
 
-/// No rule takes boxes that overlap less.
+/// Lowest limit of the overlap over all rules.
 pub(super) const SMALLEST_LEAST_OVERLAP: f64 = 0.25;

@@ -1,16 +1,16 @@
-//! Segments given as boxes with masks.
+//! Conversion of boxes with masks to maps of labels.
 
 use std::collections::HashMap;
 
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Heatmap, Name, Rle, Segmentation};
 
-use super::{LABEL_DIVISOR, VOID_LABEL};
+use super::label::{LABEL_DIVISOR, VOID_LABEL};
 
-/// As for masks on their own.
+/// Maximum number of pixels, the same as for single masks.
 const MOST_PIXELS: u64 = 1 << 28;
 
-/// The map of labels of a list whose boxes all have masks by runs, of one size; the first of the list lies on top.
-/// Objects of a class count from 1; crowds of the truth are object 0. An empty map for an empty list.
+/// Converts a list of boxes with run-length encoded masks of one size to a map of labels; the first mask of the list is on
+/// top. Objects of a class are numbered from 1; crowds of the ground truth are object 0. An empty list gives an empty map.
 pub(super) fn labels_from_masks(list: &BoundingBoxList, is_truth: bool) -> Option<Heatmap> {
     let Some(first) = list.boxes.first() else { return Some(Heatmap::default()) };
     let size = mask_of_box(first)?.0.size();
@@ -41,7 +41,7 @@ pub(super) fn labels_from_masks(list: &BoundingBoxList, is_truth: bool) -> Optio
     Some(map)
 }
 
-/// Runs go down the columns, background first.
+/// Writes a label into the pixels of a mask. Runs are in column order, background first.
 fn paint(labels: &mut [u32], mask: &Rle, label: u32) {
     let [height, width] = mask.size().map(|side| side as usize);
     let mut start = 0;

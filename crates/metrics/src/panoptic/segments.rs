@@ -1,35 +1,35 @@
-//! Segments of one picture, and the pixels that those of truth and answer share.
+//! Segments of one image, and the pixels that ground truth and prediction share.
 
 use std::collections::HashMap;
 
 use opendr_engine::{Error, Result};
 
-/// The number of pixels that belong to no segment.
+/// Id of pixels without segment.
 const VOID: u32 = 0;
 
-/// One object, or the region of one class.
+/// An object (thing), or the region of a class (stuff).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PanopticSegment {
-    /// Its number in the map; not 0.
+    /// Id in the map; not 0.
     pub id: u32,
-    /// Its class.
+    /// Class index.
     pub class: u32,
-    /// Whether it is a crowd: several objects that are not told apart. Only in truth.
+    /// Whether it is a crowd: several objects that are not separated. Ground truth only.
     pub is_crowd: bool,
 }
 
-/// A picture's segments.
+/// The segments of an image.
 #[derive(Debug, Clone, Copy)]
 pub struct PanopticMap<'a> {
-    /// The number of each pixel's segment; 0 is void.
+    /// Segment id of each pixel; 0 is void.
     pub ids: &'a [u32],
-    /// The table of segments.
+    /// Table of the segments.
     pub segments: &'a [PanopticSegment],
 }
 
-/// Pixels by true and found segment, which are known by their places in the tables.
+/// Numbers of pixels by ground-truth and predicted segment, which are identified by their indices in the tables.
 pub(super) struct Overlaps {
-    /// Where both are in a segment.
+    /// Pixels in both segments of a pair.
     shared: HashMap<(usize, usize), u64>,
     truth: Vec<u64>,
     found: Vec<u64>,
@@ -41,12 +41,13 @@ impl Overlaps {
     pub fn new(found: &PanopticMap<'_>, truth: &PanopticMap<'_>) -> Result<Self> {
         if found.ids.len() != truth.ids.len() {
             return Err(Error::invalid_input(format!(
-                "{} found and {} true pixels; give maps of one size",
+                "{} predicted and {} true pixels; give maps of one size",
                 found.ids.len(),
                 truth.ids.len()
             )));
         }
-        let (places_of_truth, places_of_found) = (places("truth", truth)?, places("answer", found)?);
+        let (indices_of_truth, indices_of_found) =
+            (indices("ground truth", truth)?, indices("prediction", found)?);
         let mut overlaps = Self {
             shared: HashMap::new(),
             truth: vec![0; truth.segments.len()],
@@ -55,8 +56,8 @@ impl Overlaps {
             in_crowd: vec![0; found.segments.len()],
         };
         for ((true_id, found_id), pixels) in pixels_by_pair(truth.ids, found.ids) {
-            let row = place("truth", &places_of_truth, true_id)?;
-            let column = place("answer", &places_of_found, found_id)?;
+            let row = index("ground truth", &indices_of_truth, true_id)?;
+            let column = index("prediction", &indices_of_found, found_id)?;
             if let Some(row) = row {
                 overlaps.truth[row] += pixels;
             }
@@ -75,14 +76,14 @@ impl Overlaps {
         }
         match overlaps.found.iter().position(|pixels| *pixels == 0) {
             Some(column) => Err(Error::invalid_input(format!(
-                "found segment {} has no pixel; leave it out of the table",
+                "predicted segment {} has no pixels; remove it from the table",
                 found.segments[column].id
             ))),
             None => Ok(overlaps),
         }
     }
 
-    /// Places of true and found segment that share pixels, and how many.
+    /// Returns the indices of ground-truth and predicted segments that share pixels, with the number of shared pixels.
     pub fn pairs(&self) -> impl Iterator<Item = (usize, usize, u64)> {
         self.shared.iter().map(|(&(row, column), &pixels)| (row, column, pixels))
     }
@@ -95,18 +96,18 @@ impl Overlaps {
         self.found[column]
     }
 
-    /// Pixels of a found segment for which there is no truth.
+    /// Returns the number of pixels of a predicted segment without ground truth.
     pub fn in_void(&self, column: usize) -> u64 {
         self.in_void[column]
     }
 
-    /// Pixels of a found segment in crowds of its class.
+    /// Returns the number of pixels of a predicted segment in crowds of its class.
     pub fn in_crowd(&self, column: usize) -> u64 {
         self.in_crowd[column]
     }
 }
 
-/// Neighbours are mostly alike, so runs are counted.
+/// Returns the number of pixels of each pair of ids. Neighbouring pixels are mostly equal, so runs are counted.
 fn pixels_by_pair(truth: &[u32], found: &[u32]) -> HashMap<(u32, u32), u64> {
     let mut counts = HashMap::new();
     let (mut pair, mut run) = ((VOID, VOID), 0);
@@ -121,25 +122,25 @@ fn pixels_by_pair(truth: &[u32], found: &[u32]) -> HashMap<(u32, u32), u64> {
     counts
 }
 
-fn places(whose: &str, map: &PanopticMap<'_>) -> Result<HashMap<u32, usize>> {
-    let mut places = HashMap::with_capacity(map.segments.len());
+fn indices(what: &str, map: &PanopticMap<'_>) -> Result<HashMap<u32, usize>> {
+    let mut indices = HashMap::with_capacity(map.segments.len());
     for (at, segment) in map.segments.iter().enumerate() {
-        if segment.id == VOID || places.insert(segment.id, at).is_some() {
+        if segment.id == VOID || indices.insert(segment.id, at).is_some() {
             return Err(Error::invalid_input(format!(
-                "the table of the {whose} has segment {} twice or as void; give every segment its own number from 1",
+                "the table of the {what} has segment {} twice or as void; give every segment its own id from 1",
                 segment.id
             )));
         }
     }
-    Ok(places)
+    Ok(indices)
 }
 
-/// The place of a segment; `None` for void.
-fn place(whose: &str, places: &HashMap<u32, usize>, id: u32) -> Result<Option<usize>> {
-    match places.get(&id) {
+/// Returns the index of a segment; `None` for void.
+fn index(what: &str, indices: &HashMap<u32, usize>, id: u32) -> Result<Option<usize>> {
+    match indices.get(&id) {
         None if id != VOID => Err(Error::invalid_input(format!(
-            "segment {id} of the {whose}'s map is not in its table; add it, or give its pixels the number 0"
+            "segment {id} in the map of the {what} is not in its table; add it, or set its pixels to 0"
         ))),
-        place => Ok(place.copied()),
+        index => Ok(index.copied()),
     }
 }

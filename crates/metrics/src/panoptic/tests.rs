@@ -27,7 +27,7 @@ fn counted(
     metric.counts().iter().map(|(class, counts)| (*class, numbers(counts))).collect()
 }
 
-/// Person 1 of pixels 0 to 3 is found in 0 to 2 (3 of 4); person 2 of 4 and 5 is missed; the sky of 6 to 9 is found in
+/// Person 1 of pixels 0 to 3 is detected in 0 to 2 (3 of 4); person 2 of 4 and 5 is missed; the sky of 6 to 9 is detected in
 /// 5 to 9 (4 of 5). Person: PQ 0.75 / 1.5 = 0.5; sky: 0.8; all: 0.65.
 #[test]
 fn hand_computed() {
@@ -48,9 +48,9 @@ fn hand_computed() {
     let quality = metric.update(0, &labels(&found.0, &found.1), &labels(&truth.0, &truth.1)).unwrap();
     assert_eq!(quality, 1.55 / 2.5);
     let report = metric.finish();
-    let near = |key: &str, wanted: f64| {
+    let near = |key: &str, expected: f64| {
         let value = report.statistics.get(key).unwrap();
-        assert!((value - wanted).abs() < 1e-12, "{key}: {value} is not {wanted}");
+        assert!((value - expected).abs() < 1e-12, "{key}: {value} is not {expected}");
     };
     near("pq", 0.65);
     near("pq_things", 0.5);
@@ -62,24 +62,24 @@ fn hand_computed() {
     assert_eq!(report.tables[0].rows[0].1[3..], [Some(1.0), Some(0.0), Some(1.0)]);
 }
 
-/// Half of the union is not enough to match.
+/// Half of the union is too little for a match.
 #[test]
 fn half_is_not_enough() {
     let counts = counted((&[1, 0], &[segment(1, SKY)]), (&[1, 1], &[segment(1, SKY)]));
     assert_eq!(counts, BTreeMap::from([(SKY, (0, 1, 1, 0.0))]));
 }
 
-/// Pixels in void leave the union of a match: 2 of 2, though the answer has 3 more in void.
+/// Pixels in void are removed from the union of a match: 2 of 2, although the prediction has 3 more in void.
 #[test]
-fn void_leaves_the_union() {
+fn void_is_removed_from_the_union() {
     let counts = counted((&[1; 5], &[segment(1, SKY)]), (&[0, 0, 0, 4, 4], &[segment(4, SKY)]));
     assert_eq!(counts, BTreeMap::from([(SKY, (1, 0, 0, 1.0))]));
 }
 
-/// An answer is no mistake when more than half of it lies in void or in a crowd of its class; half is not enough, and
-/// a crowd of another class does not help.
+/// A prediction is ignored if more than half of it is in void or in a crowd of its class; half is too little, and a crowd
+/// of another class does not count.
 #[test]
-fn void_and_crowd_excuse() {
+fn predictions_in_void_and_crowd_are_ignored() {
     let crowd = PanopticSegment { is_crowd: true, ..segment(3, PERSON) };
     let truth = ([3, 0, 8, 3, 8, 8], [crowd, segment(8, SKY)]);
     let of = |found: [u32; 6], class| {
@@ -90,7 +90,7 @@ fn void_and_crowd_excuse() {
     assert_eq!(of([0, 0, 1, 1, 0, 0], PERSON), (0, 1, 0, 0.0));
     assert_eq!(of([1, 1, 0, 0, 0, 0], 5), (0, 1, 0, 0.0));
     assert_eq!(of([0, 1, 0, 0, 0, 0], 5), (0, 0, 0, 0.0));
-    // The crowd itself is neither found nor missed.
+    // The crowd itself is neither a true positive nor missed.
     assert_eq!(of([1, 0, 0, 1, 0, 0], PERSON), (0, 0, 0, 0.0));
 }
 
@@ -108,7 +108,7 @@ fn truth_of_thing_zero_is_a_crowd() {
 
 #[test]
 fn merging_does_not_depend_on_order() {
-    let picture = |at: u32| {
+    let image = |at: u32| {
         let truth =
             (0..60).map(|pixel| 7000 * u32::from(pixel < 40 + at) + 1001 * u32::from(pixel >= 40 + at));
         let found = (0..60).map(|pixel| 7000 * u32::from(pixel < 43) + 1002 * u32::from(pixel >= 43));
@@ -119,7 +119,7 @@ fn merging_does_not_depend_on_order() {
     };
     let (mut whole, mut parts) = (new(), [new(), new(), new()]);
     for at in 0..9 {
-        let (found, truth) = picture(at);
+        let (found, truth) = image(at);
         whole.update(at as usize, &found, &truth).unwrap();
         parts[at as usize % 3].update(at as usize, &found, &truth).unwrap();
     }
@@ -130,18 +130,18 @@ fn merging_does_not_depend_on_order() {
 }
 
 #[test]
-fn what_cannot_be_counted_is_refused() {
+fn invalid_maps_are_rejected() {
     let one = [segment(1, SKY)];
-    let refused = |found: (&[u32], &[PanopticSegment]), truth: (&[u32], &[PanopticSegment])| {
+    let rejected = |found: (&[u32], &[PanopticSegment]), truth: (&[u32], &[PanopticSegment])| {
         let map = |(ids, segments)| PanopticMap { ids, segments };
         new().count(&map(found), &map(truth)).is_err()
     };
-    assert!(refused((&[1], &one), (&[1, 1], &one)));
-    assert!(refused((&[2], &one), (&[1], &one)));
-    assert!(refused((&[1], &one), (&[2], &one)));
-    assert!(refused((&[1], &[one[0], one[0]]), (&[1], &one)));
-    assert!(refused((&[0], &one), (&[1], &one)));
-    assert!(refused((&[0], &[segment(0, SKY)]), (&[1], &one)));
+    assert!(rejected((&[1], &one), (&[1, 1], &one)));
+    assert!(rejected((&[2], &one), (&[1], &one)));
+    assert!(rejected((&[1], &one), (&[2], &one)));
+    assert!(rejected((&[1], &[one[0], one[0]]), (&[1], &one)));
+    assert!(rejected((&[0], &one), (&[1], &one)));
+    assert!(rejected((&[0], &[segment(0, SKY)]), (&[1], &one)));
     let labels = Heatmap::from_labels(vec![0; 4], &[2, 2]).unwrap();
     let wide = Heatmap::from_labels(vec![0; 4], &[1, 4]).unwrap();
     assert!(new().update(0, &labels, &wide).is_err());
@@ -154,7 +154,7 @@ fn what_cannot_be_counted_is_refused() {
     );
 }
 
-/// Masks are painted as labels: the first of a list on top, crowds of the truth as object 0, void where there is none.
+/// Masks become labels: the first of a list on top, crowds of the ground truth as object 0, void where there is none.
 #[test]
 fn masks_as_labels() {
     let masked = |class: i64, counts: &[u32], iscrowd| {

@@ -38,11 +38,11 @@ fn random_maps_equal_the_definition() {
     let mut random = Random::new(7);
     for ignore in [None, Some(0), Some(2), Some(255), Some(u32::MAX)] {
         let mut segmentation = ignoring(ignore);
-        let (mut truths, mut answers) = (Vec::new(), Vec::new());
+        let (mut truths, mut predictions) = (Vec::new(), Vec::new());
         for size in [1, 15, 16, 17, 400] {
             let classes = 1 + random.below(9);
             let mut draw = |void: Option<u32>| {
-                // Runs of a label, as in pictures, that do not end where those of the other map do.
+                // Runs of a label, as in images, whose ends differ between the two maps.
                 let mut labels = Vec::new();
                 while labels.len() < size {
                     let label = random.below(classes + 1) as u32;
@@ -52,25 +52,25 @@ fn random_maps_equal_the_definition() {
                 labels.truncate(size);
                 labels
             };
-            let (truth, answer) = (draw(ignore), draw(ignore));
-            segmentation.add(&truth, &answer).unwrap();
+            let (truth, prediction) = (draw(ignore), draw(ignore));
+            segmentation.add(&truth, &prediction).unwrap();
             truths.extend(truth);
-            answers.extend(answer);
+            predictions.extend(prediction);
         }
         for (class, pixels) in segmentation.scores().classes.into_iter().enumerate() {
-            assert_eq!(pixels, by_hand(ignore, &truths, &answers, class as u32), "{class} {ignore:?}");
+            assert_eq!(pixels, by_hand(ignore, &truths, &predictions, class as u32), "{class} {ignore:?}");
         }
     }
 }
 
 #[test]
 fn parts_merge_to_the_whole() {
-    let pictures = [(vec![0, 1, 255], vec![0, 0, 1]), (vec![5, 5, 2], vec![5, 255, 2]), (vec![1], vec![3])];
+    let images = [(vec![0, 1, 255], vec![0, 0, 1]), (vec![5, 5, 2], vec![5, 255, 2]), (vec![1], vec![3])];
     let [mut whole, mut first, mut second] = [(); 3].map(|()| Segmentation::default());
-    for (at, (truth, answer)) in pictures.iter().enumerate() {
-        whole.update(at, &map(answer), &map(truth)).unwrap();
+    for (at, (truth, prediction)) in images.iter().enumerate() {
+        whole.update(at, &map(prediction), &map(truth)).unwrap();
         let part = if at == 1 { &mut first } else { &mut second };
-        part.update(at, &map(answer), &map(truth)).unwrap();
+        part.update(at, &map(prediction), &map(truth)).unwrap();
     }
     second.merge(first);
     assert_eq!(second.finish(), whole.finish());
@@ -81,24 +81,25 @@ fn parts_merge_to_the_whole() {
 }
 
 #[test]
-fn maps_that_do_not_fit_are_refused() {
+fn invalid_maps_are_rejected() {
     let mut segmentation = Segmentation::default();
-    let mut refused =
-        |answer: &Heatmap, truth: &Heatmap| segmentation.update(0, answer, truth).unwrap_err().to_string();
-    assert!(refused(&map(&[0]), &map(&[0, 0])).contains("cannot answer one of [1, 2]"));
-    assert!(refused(&map(&[0]), &map(&[1024])).contains("label 1024 is no class number below 1024"));
-    assert!(refused(&map(&[u32::MAX - 1]), &map(&[0])).contains("4294967294"));
+    let mut rejected = |prediction: &Heatmap, truth: &Heatmap| {
+        segmentation.update(0, prediction, truth).unwrap_err().to_string()
+    };
+    assert!(rejected(&map(&[0]), &map(&[0, 0])).contains("cannot be compared with one of [1, 2]"));
+    assert!(rejected(&map(&[0]), &map(&[1024])).contains("label 1024 is not a class index below 1024"));
+    assert!(rejected(&map(&[u32::MAX - 1]), &map(&[0])).contains("4294967294"));
     let scores = Heatmap::from_scores(vec![f32::NAN; 2], &[2, 1, 1]).unwrap();
-    assert!(refused(&scores, &map(&[0])).contains("NaN"));
-    assert!(refused(&map(&[0]), &scores).contains("map of labels"));
+    assert!(rejected(&scores, &map(&[0])).contains("NaN"));
+    assert!(rejected(&map(&[0]), &scores).contains("map of labels"));
     assert!(
-        refused(&Heatmap::from_scores(vec![], &[0, 1, 1]).unwrap(), &map(&[0])).contains("without scores")
+        rejected(&Heatmap::from_scores(vec![], &[0, 1, 1]).unwrap(), &map(&[0])).contains("without scores")
     );
     assert_eq!(segmentation.finish(), Segmentation::default().finish());
 }
 
 #[test]
-fn highest_score_is_the_answer() {
+fn highest_score_is_the_prediction() {
     let scores = Heatmap::from_scores(vec![0.5, 0.0, 0.5, 0.25, 0.0, 1.0], &[3, 1, 2]).unwrap();
     let (labels, shape) = scores.class_labels().unwrap();
     assert_eq!((&labels[..], shape), (&[0, 2][..], &[1, 2][..]));

@@ -35,11 +35,11 @@ fn empty_texts() {
 }
 
 #[test]
-fn words_are_parted_as_by_jiwer() {
-    assert_eq!(words_of_text("one two"), ["one", "two"]);
-    assert_eq!(words_of_text("one\ttwo \tthree\n\nfour"), ["one\ttwo", "three", "four"]);
-    assert_eq!(words_of_text(" one \u{a0} two "), ["one", "two"]);
-    assert!(words_of_text("").is_empty());
+fn words_are_separated_as_by_jiwer() {
+    assert_eq!(split_words("one two"), ["one", "two"]);
+    assert_eq!(split_words("one\ttwo \tthree\n\nfour"), ["one\ttwo", "three", "four"]);
+    assert_eq!(split_words(" one \u{a0} two "), ["one", "two"]);
+    assert!(split_words("").is_empty());
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn parts_merge_to_the_whole() {
 }
 
 #[test]
-fn endless_texts_are_refused() {
+fn long_texts_are_rejected() {
     let mut transcription = Transcription::default();
     assert!(transcription.add("a", &"b".repeat(MAX_CHARACTERS + 1)).is_err());
     assert_eq!(transcription.finish().statistics.get("utterances"), Some(0.0));

@@ -10,8 +10,8 @@ fn counted(folds: usize, pairs: &[(bool, f64)]) -> Verification {
 }
 
 #[test]
-fn parts_are_consecutive() {
-    // Parts 0 1 2, 3 4: the threshold of each is found on the other.
+fn folds_are_consecutive() {
+    // Folds 0 1 2, 3 4: the threshold of each is selected on the other.
     let pairs = [(true, 0.9), (false, 0.2), (true, 0.3), (true, 0.5), (false, 0.4)];
     let folds = counted(2, &pairs).fold_accuracies().unwrap();
     let [first, second] = folds[..] else { panic!("{folds:?}") };
@@ -21,16 +21,16 @@ fn parts_are_consecutive() {
 }
 
 #[test]
-fn order_is_that_of_the_numbers() {
+fn order_is_that_of_the_indices() {
     let pairs = [(true, 0.9), (false, 0.2), (true, 0.3), (true, 0.5), (false, 0.4)];
     let whole = counted(2, &pairs);
-    let mut turned = counted(2, &[]);
+    let mut reversed = counted(2, &[]);
     for (at, (same, score)) in pairs.iter().enumerate().rev() {
         let mut part = counted(2, &[]);
         part.add(at, *same, *score).unwrap();
-        turned.merge(part);
+        reversed.merge(part);
     }
-    assert_eq!(turned.finish(), whole.finish());
+    assert_eq!(reversed.finish(), whole.finish());
 }
 
 #[test]
@@ -68,7 +68,7 @@ fn equal_error_rate_at_the_ends() {
 }
 
 #[test]
-fn answers_without_score_are_refused() {
+fn predictions_without_score_are_rejected() {
     let mut verification = Verification::default();
     let truth = Category::new(1, None);
     assert!(verification.update(0, &Category::new(1, None), &truth).is_err());

@@ -1,11 +1,11 @@
-//! Element by element.
+//! Element-wise operators.
 
 use super::super::array::{Array, Data, element_count};
 use super::super::proto::DataType;
+use super::indexing::{MAX_ELEMENTS, broadcast, broadcast_strides, strided};
 use super::movement::partial_values;
-use super::{MAX_ELEMENTS, broadcast, broadcast_strides, strided};
 
-/// Both operands spread over their common dimensions.
+/// Broadcasts both operands to their common dimensions.
 fn spread<A: Clone, B: Clone>(x: (&Array, &[A]), y: (&Array, &[B])) -> Option<(Vec<usize>, Vec<A>, Vec<B>)> {
     let dims = broadcast(x.0.dims(), y.0.dims())?;
     let left = strided(x.1, &dims, &broadcast_strides(x.0.dims(), &dims)?, 0)?;
@@ -90,7 +90,7 @@ fn int_operation(name: &str) -> Option<fn(i64, i64) -> Option<i64>> {
         "Sub" => i64::checked_sub,
         "Mul" => i64::checked_mul,
         "Div" => i64::checked_div,
-        // ONNX's integer `Mod` takes the sign of the divisor.
+        // ONNX's integer `Mod` has the sign of the divisor.
         "Mod" => |a, b| a.checked_rem(b).map(|r| if r != 0 && (r < 0) != (b < 0) { r + b } else { r }),
         "Min" => |a, b| Some(a.min(b)),
         "Max" => |a, b| Some(a.max(b)),

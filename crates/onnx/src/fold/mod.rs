@@ -1,88 +1,20 @@
-//! Evaluates operators whose inputs are known, so that shape arithmetic leaves no node behind.
+//! Constant folding: evaluation of operators with known inputs, so that shape arithmetic leaves no nodes.
 //!
-//! A function that returns `None` declines: the operator is then written into the graph, where the runtime
-//! judges it. Nothing here can fail or panic, whatever the operands.
+//! A function that returns `None` declines: the operator is then written into the graph and left to the runtime. No
+//! function fails or panics, whatever the operands.
 
 mod arithmetic;
+mod indexing;
 mod movement;
 mod reduction;
 
 pub use movement::slice_range;
 
-use super::array::{Array, element_count};
+use super::array::Array;
 use super::operator::Operator;
 
-/// Results larger than this are not computed ahead: a file could ask for gigabytes with one small node.
-const MAX_ELEMENTS: usize = 1 << 24;
-
-/// Row-major strides; dimensions of an [`Array`] never overflow.
-fn strides(dims: &[usize]) -> Vec<usize> {
-    let mut strides = vec![1; dims.len()];
-    for axis in (1..dims.len()).rev() {
-        strides[axis - 1] = strides[axis] * dims[axis];
-    }
-    strides
-}
-
-/// A negative axis counts from the end.
-fn axis_in(axis: i64, rank: usize) -> Option<usize> {
-    let axis = if axis < 0 { axis.checked_add(rank as i64)? } else { axis };
-    usize::try_from(axis).ok().filter(|&axis| axis < rank)
-}
-
-/// Reads elements at `offset` plus the strides' multiples, `dims` many; every position lies inside `source`.
-fn strided<T: Clone>(source: &[T], dims: &[usize], strides: &[isize], offset: usize) -> Option<Vec<T>> {
-    let count = element_count(dims).filter(|&count| count <= MAX_ELEMENTS)?;
-    let mut result = Vec::with_capacity(count);
-    let mut index = vec![0usize; dims.len()];
-    let mut position = offset as isize;
-    for _ in 0..count {
-        result.push(source.get(usize::try_from(position).ok()?)?.clone());
-        for axis in (0..dims.len()).rev() {
-            index[axis] += 1;
-            // Wraps only on steps longer than the axis, which are taken back below.
-            position = position.wrapping_add(strides[axis]);
-            if index[axis] < dims[axis] {
-                break;
-            }
-            position = position.wrapping_sub(strides[axis].wrapping_mul(dims[axis] as isize));
-            index[axis] = 0;
-        }
-    }
-    Some(result)
-}
-
-/// The dimensions that numpy's broadcasting gives.
-pub fn broadcast(a: &[usize], b: &[usize]) -> Option<Vec<usize>> {
-    let rank = a.len().max(b.len());
-    let dim = |dims: &[usize], axis: usize| (axis + dims.len()).checked_sub(rank).map_or(1, |i| dims[i]);
-    (0..rank)
-        .map(|axis| match (dim(a, axis), dim(b, axis)) {
-            (x, y) if x == y => Some(x),
-            (1, y) => Some(y),
-            (x, 1) => Some(x),
-            _ => None,
-        })
-        .collect()
-}
-
-/// Strides that repeat an array of dimensions `dims` over dimensions `target`.
-fn broadcast_strides(dims: &[usize], target: &[usize]) -> Option<Vec<isize>> {
-    let missing = target.len().checked_sub(dims.len())?;
-    let own = strides(dims);
-    let mut result = vec![0isize; missing];
-    for (axis, &dim) in dims.iter().enumerate() {
-        match dim {
-            1 => result.push(0),
-            _ if dim == target[missing + axis] => result.push(own[axis] as isize),
-            _ => return None,
-        }
-    }
-    Some(result)
-}
-
-/// The outputs of `operator`, when it is one of those that can be evaluated and all it needs is known.
-/// An absent optional input is `None`.
+/// Returns the outputs of `operator`, if it can be evaluated and all required inputs are known. An absent optional
+/// input is `None`.
 pub fn evaluate(operator: &Operator, inputs: &[Option<&Array>]) -> Option<Vec<Array>> {
     let input = |i: usize| inputs.get(i).copied().flatten();
     let ints = |i: usize| input(i).and_then(Array::as_ints);

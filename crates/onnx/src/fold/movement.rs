@@ -1,7 +1,7 @@
 //! Operators that only move elements.
 
 use super::super::array::{Array, Data, element_count, map_data};
-use super::{MAX_ELEMENTS, axis_in, broadcast, broadcast_strides, strided, strides};
+use super::indexing::{MAX_ELEMENTS, axis_in, broadcast, broadcast_strides, strided, strides};
 
 pub(super) fn reshape(x: &Array, shape: &[i64]) -> Option<Array> {
     let mut dims = Vec::with_capacity(shape.len());
@@ -40,7 +40,7 @@ pub(super) fn unsqueeze(x: &Array, axes: &[i64]) -> Option<Array> {
     x.clone().reshaped(dims?)
 }
 
-/// An array read through strides of its own elements.
+/// Returns an array with its own elements read through strides.
 fn viewed(x: &Array, dims: Vec<usize>, strides: &[isize], offset: usize) -> Option<Array> {
     let data = map_data!(x.data(), values => strided(values, &dims, strides, offset)?);
     Array::new(dims, data).map(Array::completed)
@@ -91,8 +91,8 @@ pub(super) fn slice(x: &Array, starts: &[i64], ends: &[i64], axes: &[i64], steps
     viewed(x, dims, &strides, offset)
 }
 
-/// First index and number of elements of `start..end` by `step` on an axis of `dim` elements, as ONNX's `Slice`
-/// counts: negative positions count from the end, all are clamped.
+/// Returns the first index and the number of elements of `start..end` by `step` on an axis of `dim` elements, by the
+/// rules of ONNX's `Slice`: negative positions count from the end, all are clamped.
 pub fn slice_range(dim: usize, start: i64, end: i64, step: i64) -> Option<(usize, usize)> {
     let dim = i64::try_from(dim).ok()?;
     if dim == 0 {
@@ -158,7 +158,7 @@ pub(super) fn concat(parts: &[&Array], axis: i64) -> Option<Array> {
     Array::new(dims, data?).map(Array::completed)
 }
 
-/// Integers as integers that may be unknown.
+/// Returns integers as integers that may be unknown.
 pub(super) fn partial_values(data: &Data) -> Option<Vec<Option<i64>>> {
     match data {
         Data::Int(values) => Some(values.iter().copied().map(Some).collect()),

@@ -1,8 +1,8 @@
-//! Sums, products and extremes over axes.
+//! Reductions over axes: sum, product, mean, minimum, maximum.
 
 use super::super::array::{Array, Data, element_count};
 use super::super::operator::Operator;
-use super::axis_in;
+use super::indexing::{axis_in, strided, strides};
 
 type IntFold = fn(i64, i64) -> Option<i64>;
 
@@ -10,14 +10,14 @@ pub(super) fn reduce(operator: &Operator, x: &Array, axes: &[i64]) -> Option<Arr
     let rank = x.dims().len();
     let axes: Option<Vec<usize>> = axes.iter().map(|&axis| axis_in(axis, rank)).collect();
     let axes = axes?;
-    // The reduced array's stride per axis of `x`: zero on reduced axes.
+    // Stride of the reduced array per axis of `x`: zero on reduced axes.
     let kept: Vec<usize> =
         (0..rank).map(|axis| if axes.contains(&axis) { 1 } else { x.dims()[axis] }).collect();
-    let own = super::strides(&kept);
+    let own = strides(&kept);
     let strides: Vec<isize> =
         (0..rank).map(|axis| if axes.contains(&axis) { 0 } else { own[axis] as isize }).collect();
     let targets: Vec<usize> = (0..element_count(&kept)?).collect();
-    let targets = super::strided(&targets, x.dims(), &strides, 0)?;
+    let targets = strided(&targets, x.dims(), &strides, 0)?;
     let name = operator.name();
     let data = match x.data() {
         Data::Float(values) => {

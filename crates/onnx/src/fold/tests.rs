@@ -15,7 +15,7 @@ fn matrix() -> Array {
 }
 
 #[test]
-fn movements() {
+fn movement_operators() {
     let transpose = Operator::new("Transpose").ints("perm", [1, 0]);
     assert_eq!(one(transpose, &[matrix()]).unwrap().as_ints(), Some(&[0, 3, 1, 4, 2, 5][..]));
     let slice = |start, end, step| {
@@ -62,7 +62,7 @@ fn arithmetic_broadcasts() {
 }
 
 #[test]
-fn unknown_elements_stay_unknown_until_left_out() {
+fn unknown_elements_stay_unknown_until_removed() {
     let shape = Array::partial(vec![Some(1), None, Some(3)]);
     let doubled = one(Operator::new("Mul"), &[shape, ints(&[2])]).unwrap();
     assert_eq!(doubled.data(), &Data::Partial(vec![Some(2), None, Some(6)]));
@@ -71,7 +71,7 @@ fn unknown_elements_stay_unknown_until_left_out() {
 }
 
 #[test]
-fn nonsense_and_giants_are_declined() {
+fn invalid_and_huge_operands_are_declined() {
     let huge = Array::ints(vec![1 << 40]);
     assert_eq!(one(Operator::new("Expand"), &[Array::int(1), huge.clone()]), None);
     assert_eq!(one(Operator::new("Tile"), &[ints(&[1]), huge]), None);

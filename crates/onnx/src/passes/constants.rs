@@ -1,8 +1,8 @@
-//! Makes initializers of nodes that hold a constant.
+//! Conversion of `Constant` nodes to initializers.
 
 use crate::proto::GraphProto;
 
-/// Turns each `Constant` that holds a tensor into an initializer of the same name.
+/// Converts each `Constant` with a tensor to an initializer of the same name.
 pub fn constants_to_initializers(graph: &mut GraphProto) {
     let initializers = &mut graph.initializer;
     graph.node.retain_mut(|node| {

@@ -1,10 +1,10 @@
-//! Folds multiplications and additions per channel into the convolution before them.
+//! Folding of per-channel scales and shifts into the preceding convolution.
 
 use super::rewriter::Rewriter;
 use crate::array::{Array, Data, element_count};
 use crate::proto::{GraphProto, NodeProto};
 
-/// What follows a convolution: `y * scale + shift`, per output channel.
+/// The operation after a convolution: `y * scale + shift`, per output channel.
 struct Affine {
     scale: Vec<f32>,
     shift: Vec<f32>,
@@ -27,7 +27,7 @@ fn fold_one(graph: &mut Rewriter, conv: usize) -> Option<()> {
     let dims = graph.constant_dims(&weights)?;
     let layout = Layout::from_node(node, &dims)?;
     let (rank, filters) = (dims.len(), layout.filters);
-    let affordable = graph.affords(element_count(&dims)?.checked_add(filters)?);
+    let affordable = graph.can_add_constant(element_count(&dims)?.checked_add(filters)?);
     following(graph, conv).filter(|_| affordable)?;
     let shift = match bias {
         Some(name) => vector(graph, &name, filters)?,
@@ -60,13 +60,13 @@ fn fold_one(graph: &mut Rewriter, conv: usize) -> Option<()> {
     Some(())
 }
 
-/// How weights belong to filters: `[filters, inputs / groups, ..]`, or `[inputs, filters / groups, ..]` where the
-/// convolution is transposed.
+/// Layout of the weights: `[filters, inputs / groups, ..]`, or `[inputs, filters / groups, ..]` for a transposed
+/// convolution.
 struct Layout {
     filters: usize,
-    /// Weights that lie together and belong to one filter.
+    /// Number of contiguous weights of one filter.
     block: usize,
-    /// Of a transposed convolution: filters and inputs of one group.
+    /// Filters and inputs per group of a transposed convolution.
     group: Option<[usize; 2]>,
 }
 
@@ -103,7 +103,7 @@ fn following(graph: &Rewriter, conv: usize) -> Option<usize> {
 }
 
 impl Affine {
-    /// Takes in what `reader` does to the output of `conv`; `None`, with nothing taken in, if that is not affine.
+    /// Applies the operation of `reader` on the output of `conv`; `None`, without any change, if it is not affine.
     fn follow(&mut self, graph: &Rewriter, conv: usize, reader: usize, rank: usize) -> Option<()> {
         let output = graph.node(conv)?.output.first()?;
         let node = graph.node(reader)?;
@@ -145,7 +145,7 @@ impl Affine {
         Some(())
     }
 
-    /// One float per channel from a constant that broadcasts along the channel axis only.
+    /// Returns one float per channel from a constant that broadcasts along the channel axis only.
     fn per_channel(&self, graph: &Rewriter, name: &str, rank: usize) -> Option<Vec<f32>> {
         let channels = self.scale.len();
         if let Some(value) = graph.scalar(name) {
@@ -163,7 +163,7 @@ impl Affine {
     }
 }
 
-/// A constant list of that many floats.
+/// Returns a constant list of `length` floats.
 fn vector(graph: &Rewriter, name: &str, length: usize) -> Option<Vec<f32>> {
     (graph.constant_dims(name)? == [length]).then(|| graph.constant(name))??.as_floats().map(<[f32]>::to_vec)
 }

@@ -1,4 +1,4 @@
-//! Moves multiplications by one number into the convolutions after them.
+//! Folding of scalar factors into the following convolutions.
 
 use std::collections::BTreeSet;
 
@@ -6,11 +6,11 @@ use super::rewriter::Rewriter;
 use crate::array::{Array, Data, element_count};
 use crate::proto::GraphProto;
 
-/// A factor that would have to pass more operators than this stays where it is.
+/// Maximum number of operators that a factor passes; beyond it, the factor stays.
 const MAX_REACH: usize = 64;
 
-/// Folds a `Mul` by one number into the weights of all convolutions that its result reaches, through operators that
-/// a factor passes unchanged. Leaves it alone when it reaches anything else.
+/// Folds a `Mul` by a scalar into the weights of all convolutions that its result reaches through operators that
+/// commute with a factor. The `Mul` stays when it reaches any other operator.
 pub fn fold_factor_into_conv(graph: &mut GraphProto) {
     let mut graph = Rewriter::new(graph);
     for index in 0..graph.node_count() {
@@ -33,7 +33,7 @@ fn fold_one(graph: &mut Rewriter, product: usize) -> Option<()> {
     let sizes =
         convs.iter().map(|&conv| element_count(&graph.constant_dims(graph.node(conv)?.input.get(1)?)?));
     let total = sizes.sum::<Option<usize>>()?;
-    if !graph.affords(total) {
+    if !graph.can_add_constant(total) {
         return None;
     }
     for &conv in &convs {
@@ -51,7 +51,8 @@ fn fold_one(graph: &mut Rewriter, product: usize) -> Option<()> {
     Some(())
 }
 
-/// The convolutions that a factor on `tensor` would reach; `None` when it reaches something that it would change.
+/// Returns the convolutions that a factor on `tensor` reaches; `None` when it reaches an operator that does not
+/// commute with it.
 fn reached_convs(graph: &Rewriter, tensor: &str) -> Option<BTreeSet<usize>> {
     let mut convs = BTreeSet::new();
     let mut passed = BTreeSet::new();

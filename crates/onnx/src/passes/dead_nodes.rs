@@ -1,13 +1,13 @@
-//! Removes what no output needs.
+//! Dead-code elimination.
 
 use std::collections::HashSet;
 
 use crate::proto::{AttributeProto, GraphProto};
 
-/// Removes nodes and initializers that no output of the graph needs. Graph inputs stay, they are the interface.
+/// Removes nodes and initializers that no output of the graph needs. Graph inputs stay, as part of the interface.
 pub fn remove_dead_nodes(graph: &mut GraphProto) {
     let mut needed: HashSet<String> = graph.output.iter().map(|output| output.name.clone()).collect();
-    // Nodes are in an order in which makers come before readers.
+    // Nodes are in topological order.
     let mut keep = vec![false; graph.node.len()];
     for (index, node) in graph.node.iter().enumerate().rev() {
         if node.output.iter().any(|output| needed.contains(output)) {
@@ -22,7 +22,7 @@ pub fn remove_dead_nodes(graph: &mut GraphProto) {
     graph.value_info.retain(|info| needed.contains(&info.name));
 }
 
-/// Names that the subgraphs of loops and branches read, taking none for local.
+/// Collects the names that the subgraphs of loops and branches read, including those of their own values.
 fn captured(attribute: &AttributeProto, needed: &mut HashSet<String>) {
     for graph in attribute.g.iter().chain(&attribute.graphs) {
         needed.extend(graph.output.iter().map(|output| output.name.clone()));

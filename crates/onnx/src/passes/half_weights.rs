@@ -1,7 +1,7 @@
-//! Weights in 16 bits: stored as `float16`, widened by a `Cast` as the model is opened.
+//! Weights in 16 bits: stored as `float16`, converted by a `Cast` when the model is opened.
 //!
-//! The arithmetic stays that of `float32`, so that every engine runs the model and answers as before, up to the
-//! rounding of the weights (one part in 2048).
+//! The arithmetic stays `float32`, so that every runtime runs the model and the outputs change only by the rounding
+//! of the weights (one part in 2048).
 
 use std::collections::HashSet;
 
@@ -9,14 +9,15 @@ use crate::half::half_from_float;
 use crate::proto::{DataType, GraphProto, NodeProto};
 use crate::{Array, Operator};
 
-/// Smaller tensors stay: they would not pay for their `Cast`, and sizes and limits are among them.
+/// Minimum size of converted tensors: for smaller ones, which include sizes and limits, the `Cast` costs more than it
+/// saves.
 const LEAST_ELEMENTS: usize = 128;
 
-/// The largest `float16`.
+/// Largest finite `float16`.
 const LARGEST: f32 = 65504.0;
 
-/// Stores the float weights as `float16`; how many tensors.
-pub fn halve_weights(graph: &mut GraphProto) -> usize {
+/// Stores the float weights as `float16`; returns the number of converted tensors.
+pub fn weights_to_fp16(graph: &mut GraphProto) -> usize {
     let inputs: HashSet<String> = graph.input.iter().map(|input| input.name.clone()).collect();
     let mut casts = Vec::new();
     for tensor in &mut graph.initializer {
@@ -65,7 +66,7 @@ mod tests {
             ],
             ..GraphProto::default()
         };
-        assert_eq!(halve_weights(&mut graph), 1);
+        assert_eq!(weights_to_fp16(&mut graph), 1);
         let [cast] = graph.node.as_slice() else { panic!("{:?}", graph.node) };
         assert_eq!((cast.input[0].as_str(), cast.output[0].as_str()), ("weights/half", "weights"));
         assert_eq!(graph.initializer[0].raw_data, [0x00, 0x34].repeat(LEAST_ELEMENTS));

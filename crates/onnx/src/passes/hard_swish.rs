@@ -1,12 +1,12 @@
-//! Recognises MobileNetV3's activation in the operators it is made of.
+//! Fusion of the operators of MobileNetV3's activation.
 
 use super::rewriter::Rewriter;
 use crate::array::Array;
 use crate::proto::GraphProto;
 
-/// Rewrites `(x * c) * clip(x + 3, 0, 6)` as `HardSwish(x) * 6c`, and `x * HardSigmoid(x)` as `HardSwish(x)`. The factor
-/// is 1 but for the rounding of `c` to half precision; [`fold_factor_into_conv`](super::fold_factor_into_conv) moves it
-/// on.
+/// Rewrites `(x * c) * clip(x + 3, 0, 6)` as `HardSwish(x) * 6c`, and `x * HardSigmoid(x)` as `HardSwish(x)`. The
+/// factor differs from 1 only where `c` was rounded to half precision;
+/// [`fold_factor_into_conv`](super::fold_factor_into_conv) folds it further.
 pub fn fuse_hard_swish(graph: &mut GraphProto) {
     let mut graph = Rewriter::new(graph);
     for index in 0..graph.node_count() {
@@ -17,13 +17,13 @@ pub fn fuse_hard_swish(graph: &mut GraphProto) {
     graph.finish();
 }
 
-/// `x * HardSigmoid(x)`, of slope 1/6 around 1/2.
+/// Fuses `x * HardSigmoid(x)`, with slope 1/6 and offset 1/2.
 fn fuse_sigmoid(graph: &mut Rewriter, product: usize) -> Option<()> {
     let node = graph.node_of(product, "Mul")?;
     let [a, b] = node.input.as_slice() else { return None };
-    let (x, sigmoid) = match graph.made_by(b, "HardSigmoid") {
+    let (x, sigmoid) = match graph.producer(b, "HardSigmoid") {
         Some(sigmoid) => (a.clone(), sigmoid),
-        None => (b.clone(), graph.made_by(a, "HardSigmoid")?),
+        None => (b.clone(), graph.producer(a, "HardSigmoid")?),
     };
     let node = graph.node(sigmoid)?;
     let number = |key: &str| node.find(key).map(|attribute| attribute.f);
@@ -39,13 +39,13 @@ fn fuse_sigmoid(graph: &mut Rewriter, product: usize) -> Option<()> {
 fn fuse_one(graph: &mut Rewriter, product: usize) -> Option<()> {
     let node = graph.node_of(product, "Mul")?;
     let [a, b] = node.input.as_slice() else { return None };
-    let (scaled, clipped) = match graph.made_by(b, "Clip") {
+    let (scaled, clipped) = match graph.producer(b, "Clip") {
         Some(_) => (a, b),
         None => (b, a),
     };
-    let (scaled, clip) = (graph.made_by(scaled, "Mul")?, graph.made_by(clipped, "Clip")?);
+    let (scaled, clip) = (graph.producer(scaled, "Mul")?, graph.producer(clipped, "Clip")?);
     let [shifted, low, high] = graph.node(clip)?.input.as_slice() else { return None };
-    let shift = graph.made_by(shifted, "Add")?;
+    let shift = graph.producer(shifted, "Add")?;
     let (x, factor) = with_scalar(graph, scaled)?;
     let (same, offset) = with_scalar(graph, shift)?;
     let bounds = (graph.scalar(low)?, graph.scalar(high)?);
@@ -64,7 +64,7 @@ fn fuse_one(graph: &mut Rewriter, product: usize) -> Option<()> {
     Some(())
 }
 
-/// The two operands of an operator of which one is a constant of one element.
+/// Returns the operand and the scalar of an operator with one constant of one element.
 fn with_scalar(graph: &Rewriter, index: usize) -> Option<(String, f32)> {
     let [a, b] = graph.node(index)?.input.as_slice() else { return None };
     match (graph.scalar(a), graph.scalar(b)) {

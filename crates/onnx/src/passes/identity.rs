@@ -1,15 +1,15 @@
-//! Removes nodes that hand on what they get.
+//! Removal of `Identity` nodes.
 
 use std::collections::{HashMap, HashSet};
 
 use crate::proto::GraphProto;
 
-/// Removes `Identity` nodes: readers read the original, and where the graph gives the copy out, the node that made the
-/// original gives it the output's name. One stays where a graph input, an initializer or a second output is given out.
+/// Removes `Identity` nodes: readers read the original, and where the copy is a graph output, the original takes its
+/// name. An `Identity` stays where it copies a graph input, an initializer or another output to an output.
 pub fn remove_identities(graph: &mut GraphProto) {
     let given_out: HashSet<String> = graph.output.iter().map(|output| output.name.clone()).collect();
     let made: HashSet<String> = graph.node.iter().flat_map(|node| &node.output).cloned().collect();
-    // What each tensor is to be called. Makers come before readers, so that chains resolve in one sweep.
+    // Final name of each tensor. Nodes are in topological order, so that chains resolve in one sweep.
     let mut names: HashMap<String, String> = HashMap::new();
     for node in &graph.node {
         let ("Identity", [source], [copy]) =

@@ -1,4 +1,4 @@
-//! Rewrites of finished graphs. Each leaves the results as they were, up to rounding.
+//! Rewriting passes for finished graphs. Each preserves the results, up to rounding.
 
 mod constants;
 mod conv_affine;
@@ -17,7 +17,7 @@ pub use constants::constants_to_initializers;
 pub use conv_affine::fold_affine_into_conv;
 pub use conv_factor::fold_factor_into_conv;
 pub use dead_nodes::remove_dead_nodes;
-pub use half_weights::halve_weights;
+pub use half_weights::weights_to_fp16;
 pub use hard_swish::fuse_hard_swish;
 pub use identity::remove_identities;
 pub use pad::fold_padding;
@@ -27,7 +27,7 @@ pub use transposed_conv::transposed_conv_to_conv;
 
 use super::proto::GraphProto;
 
-/// All rewrites, in an order in which one prepares the next.
+/// Runs all simplifications, in an order in which each prepares the next.
 pub fn simplify(graph: &mut GraphProto) {
     remove_identities(graph);
     for rewrite in [fold_padding, fold_affine_into_conv, fuse_hard_swish, fold_factor_into_conv] {

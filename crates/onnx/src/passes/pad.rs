@@ -1,9 +1,9 @@
-//! Folds padding with zeros into the convolution after it, and padding with the lowest number into a maximum.
+//! Folding of `Pad` nodes into convolutions (zeros) and maximum pooling (lowest number).
 
 use super::rewriter::Rewriter;
 use crate::proto::GraphProto;
 
-/// Folds a `Pad` of height and width into every `Conv` that reads it (zeros) or `MaxPool` (the lowest number).
+/// Folds a `Pad` of height and width into every `Conv` (zeros) or `MaxPool` (lowest number) that reads it.
 pub fn fold_padding(graph: &mut GraphProto) {
     let mut graph = Rewriter::new(graph);
     for index in 0..graph.node_count() {
@@ -21,7 +21,7 @@ fn fold_one(graph: &mut Rewriter, reader: usize, op: &str) -> Option<()> {
     }
     let kernel = node.ints("kernel_shape")?.to_vec();
     let own = node.ints("pads").map_or_else(|| vec![0; 2 * kernel.len()], <[i64]>::to_vec);
-    let pad = graph.node(graph.made_by(node.input.first()?, "Pad")?)?;
+    let pad = graph.node(graph.producer(node.input.first()?, "Pad")?)?;
     let source = pad.input.first()?.clone();
     let outer = outer_pads(graph, pad, op)?;
     if outer.len() != own.len() || own.iter().any(|&pad| pad < 0) {
@@ -39,7 +39,7 @@ fn fold_one(graph: &mut Rewriter, reader: usize, op: &str) -> Option<()> {
     Some(())
 }
 
-/// Padding of height and width, if nothing else is padded, with what `op` ignores.
+/// Returns the padding of height and width, if no other axis is padded and the value is neutral for `op`.
 fn outer_pads(graph: &Rewriter, pad: &crate::proto::NodeProto, op: &str) -> Option<Vec<i64>> {
     if pad.find("mode").is_some_and(|mode| mode.s != b"constant") || pad.input.len() > 3 {
         return None;

@@ -1,4 +1,4 @@
-//! Slopes of channels as convolutions.
+//! Rewriting of per-channel `PRelu` as convolutions.
 
 use std::collections::HashMap;
 
@@ -7,16 +7,16 @@ use crate::array::{Array, Data};
 use crate::operator::Operator;
 use crate::proto::{GraphProto, NodeProto};
 
-/// What leaves the number of dimensions of its first input as it is.
+/// Operators that keep the rank of their first input.
 const KEEP_RANK: [&str; 9] =
     ["Add", "Clip", "LeakyRelu", "MaxPool", "PRelu", "Pad", "Relu", "Resize", "Concat"];
 
-/// Steps back from an activation to the convolution that tells the number of dimensions.
+/// Maximum number of steps back from an activation to the convolution that determines the rank.
 const MOST_STEPS: usize = 64;
 
-/// Rewrites `PRelu(x)` with a slope `a` for each channel of pictures as `a * x + (1 - a) * Relu(x)`, the products as
-/// convolutions of one weight a channel, and with one slope for all as `LeakyRelu(x)`. ONNX Runtime keeps its blocked layout
-/// through these on processors; around `PRelu` it goes back and forth. Says whether there was any.
+/// Rewrites `PRelu(x)` with a slope `a` per channel of images as `a * x + (1 - a) * Relu(x)`, with the products as
+/// depthwise 1x1 convolutions, and with a single slope as `LeakyRelu(x)`. On CPUs, ONNX Runtime keeps its blocked
+/// layout through these; around `PRelu` it converts back and forth. Returns whether any node was rewritten.
 pub fn prelu_to_conv(graph: &mut GraphProto) -> bool {
     let slopes = slopes_of(graph);
     if slopes.is_empty() {
@@ -28,7 +28,7 @@ pub fn prelu_to_conv(graph: &mut GraphProto) -> bool {
     })
 }
 
-/// The slopes of each activation that can be rewritten, by the place of its node.
+/// Returns the slopes of each activation that can be rewritten, by node index.
 fn slopes_of(graph: &GraphProto) -> HashMap<usize, Vec<f32>> {
     let is_prelu = |node: &NodeProto| {
         node.op_type == "PRelu" && node.domain.is_empty() && node.input.len() == 2 && node.output.len() == 1
@@ -108,7 +108,7 @@ mod tests {
         Array::new(dims.to_vec(), data).unwrap().to_tensor(name).unwrap()
     }
 
-    /// A convolution of `rank` dimensions and `PRelu` with a slope of `dims` after it.
+    /// Returns a graph with a convolution of `rank` dimensions and a `PRelu` with slopes of shape `dims`.
     fn graph(rank: usize, dims: &[usize]) -> GraphProto {
         let node = |operator: &'static str, input: [&str; 2], output: &str| NodeProto {
             input: input.map(str::to_owned).to_vec(),
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_slope_of_channels_stays() {
+    fn other_slopes_are_unchanged() {
         for (rank, dims) in
             [(3, &[3, 1, 1][..]), (5, &[3, 1, 1]), (4, &[3]), (4, &[3, 2, 1]), (4, &[2, 3, 1, 1])]
         {

@@ -1,12 +1,13 @@
-//! A graph opened for rewriting.
+//! Indexed access to a graph for rewriting.
 
 use std::collections::{HashMap, HashSet};
 
 use crate::array::{Array, element_count};
 use crate::proto::{GraphProto, NodeProto};
 
-/// A graph with an index of who makes each tensor and who reads those that nodes make, and the means to change it. Every change costs time
-/// in proportion to what it changes, not to the graph. Nodes are only marked as removed until [`Rewriter::finish`].
+/// A graph with an index of the producer and the readers of each tensor, and the methods to change it. The cost of a
+/// change is proportional to its size, not to that of the graph. Nodes are only marked as removed until
+/// [`Rewriter::finish`].
 pub struct Rewriter<'a> {
     graph: &'a mut GraphProto,
     producers: HashMap<String, usize>,
@@ -14,7 +15,7 @@ pub struct Rewriter<'a> {
     initializers: HashMap<String, usize>,
     given_out: HashSet<String>,
     removed: HashSet<usize>,
-    /// Elements of constants that may still be added.
+    /// Number of constant elements that may still be added.
     budget: usize,
 }
 
@@ -41,28 +42,28 @@ impl<'a> Rewriter<'a> {
         Self { graph, producers, readers, initializers, given_out, removed: HashSet::new(), budget }
     }
 
-    /// Number of nodes, those removed included.
+    /// Returns the number of nodes, removed ones included.
     pub fn node_count(&self) -> usize {
         self.graph.node.len()
     }
 
-    /// A node, unless it has been removed.
+    /// Returns a node, unless it has been removed.
     pub fn node(&self, index: usize) -> Option<&NodeProto> {
         self.graph.node.get(index).filter(|_| !self.removed.contains(&index))
     }
 
-    /// The node, if it is the operator `op` with one output.
+    /// Returns the node, if it is the operator `op` with one output.
     pub fn node_of(&self, index: usize, op: &str) -> Option<&NodeProto> {
         self.node(index).filter(|node| node.op_type == op && node.domain.is_empty() && node.output.len() == 1)
     }
 
-    /// The operator `op` that makes a tensor.
-    pub fn made_by(&self, tensor: &str, op: &str) -> Option<usize> {
+    /// Returns the operator `op` that produces a tensor.
+    pub fn producer(&self, tensor: &str, op: &str) -> Option<usize> {
         let index = *self.producers.get(tensor)?;
         self.node_of(index, op).map(|_| index)
     }
 
-    /// The only node that reads a tensor, if one reads it once and the graph does not give it out.
+    /// Returns the only node that reads a tensor, if one node reads it once and it is not a graph output.
     pub fn only_reader(&self, tensor: &str) -> Option<usize> {
         match self.readers.get(tensor)?.as_slice() {
             [single] if !self.given_out.contains(tensor) => Some(*single),
@@ -70,30 +71,30 @@ impl<'a> Rewriter<'a> {
         }
     }
 
-    /// The nodes that read a tensor; `None` if the graph gives it out or nothing reads it.
+    /// Returns the nodes that read a tensor; `None` if it is a graph output or nothing reads it.
     pub fn readers(&self, tensor: &str) -> Option<&[usize]> {
         let readers = self.readers.get(tensor).map(Vec::as_slice);
         readers.filter(|readers| !readers.is_empty() && !self.given_out.contains(tensor))
     }
 
-    /// The dimensions of an initializer.
+    /// Returns the dimensions of an initializer.
     pub fn constant_dims(&self, tensor: &str) -> Option<Vec<usize>> {
         let tensor = self.graph.initializer.get(*self.initializers.get(tensor)?)?;
         tensor.dims.iter().map(|&dim| usize::try_from(dim).ok()).collect()
     }
 
-    /// Whether a constant of that many elements may be added. A graph whose nodes share large constants could
-    /// otherwise grow without bound when each gets its own.
-    pub fn affords(&self, elements: usize) -> bool {
+    /// Returns whether a constant of that many elements may be added. Otherwise a graph whose nodes share large
+    /// constants could grow without bound when each node gets its own copy.
+    pub fn can_add_constant(&self, elements: usize) -> bool {
         elements <= self.budget
     }
 
-    /// The elements of an initializer.
+    /// Returns the elements of an initializer.
     pub fn constant(&self, tensor: &str) -> Option<Array> {
         Array::from_tensor(self.graph.initializer.get(*self.initializers.get(tensor)?)?)
     }
 
-    /// An initializer of one float.
+    /// Returns the value of an initializer of one float.
     pub fn scalar(&self, tensor: &str) -> Option<f32> {
         match element_count(&self.constant_dims(tensor)?)? {
             1 => self.constant(tensor)?.as_floats()?.first().copied(),
@@ -101,8 +102,8 @@ impl<'a> Rewriter<'a> {
         }
     }
 
-    /// Adds an initializer with a name made from `hint`, and returns the name; `None` when
-    /// the graph has grown too much.
+    /// Adds an initializer with a name derived from `hint`, and returns the name; `None` when the graph has grown too
+    /// much.
     pub fn add_constant(&mut self, hint: &str, array: &Array) -> Option<String> {
         self.budget = self.budget.checked_sub(array.data().len())?;
         let taken = |name: &str| self.initializers.contains_key(name) || self.producers.contains_key(name);
@@ -117,7 +118,7 @@ impl<'a> Rewriter<'a> {
         Some(name)
     }
 
-    /// Makes a node read `tensor` as input `slot`, adding inputs as needed.
+    /// Connects input `slot` of a node to `tensor`, adding inputs as needed.
     pub fn set_input(&mut self, index: usize, slot: usize, tensor: &str) {
         let Some(node) = self.graph.node.get_mut(index) else { return };
         if node.input.len() <= slot {
@@ -132,7 +133,7 @@ impl<'a> Rewriter<'a> {
         self.readers.entry(tensor.to_owned()).or_default().push(index);
     }
 
-    /// Makes all readers of one tensor read another.
+    /// Connects all readers of one tensor to another.
     pub fn redirect(&mut self, from: &str, to: &str) {
         let readers = self.readers.remove(from).unwrap_or_default();
         for &reader in &readers {
@@ -142,7 +143,7 @@ impl<'a> Rewriter<'a> {
         self.readers.entry(to.to_owned()).or_default().extend(readers);
     }
 
-    /// Makes a node another operator, without attributes, of other inputs; its output stays.
+    /// Replaces a node by another operator without attributes and with other inputs; its output stays.
     pub fn replace(&mut self, index: usize, op: &str, inputs: &[String]) {
         self.unlink(index);
         if let Some(node) = self.graph.node.get_mut(index) {
@@ -155,12 +156,12 @@ impl<'a> Rewriter<'a> {
         }
     }
 
-    /// A node to change attributes of; inputs and outputs are changed through the rewriter.
+    /// Returns a node to change its attributes; inputs and outputs are changed through the rewriter.
     pub fn node_mut(&mut self, index: usize) -> Option<&mut NodeProto> {
         self.graph.node.get_mut(index)
     }
 
-    /// Removes node `gone`, whose only output `keeper` makes from now on.
+    /// Removes node `gone`; `keeper` then produces its only output.
     pub fn absorb(&mut self, keeper: usize, gone: usize) {
         self.remove(gone);
         let Some(output) = self.graph.node.get(gone).and_then(|node| node.output.first()).cloned() else {
@@ -172,14 +173,14 @@ impl<'a> Rewriter<'a> {
         self.producers.insert(output, keeper);
     }
 
-    /// Removes a node that nothing reads any more.
+    /// Removes a node without readers.
     pub fn remove(&mut self, index: usize) {
         if self.removed.insert(index) {
             self.unlink(index);
         }
     }
 
-    /// Takes a node from the readers of its inputs.
+    /// Removes a node from the readers of its inputs.
     fn unlink(&mut self, index: usize) {
         let inputs = self.graph.node.get(index).into_iter().flat_map(|node| &node.input);
         for input in inputs {
@@ -189,7 +190,7 @@ impl<'a> Rewriter<'a> {
         }
     }
 
-    /// Drops the nodes that were removed.
+    /// Drops the removed nodes.
     pub fn finish(self) {
         let mut index = 0;
         self.graph.node.retain(|_| {

@@ -4,7 +4,7 @@ use crate::array::Array;
 use crate::operator::Operator;
 use crate::proto::{GraphProto, NodeProto, TensorProto};
 
-/// Nodes that stand for another, and the constants that they need.
+/// The nodes that replace a node, and their constants.
 #[derive(Default)]
 pub(super) struct Split {
     nodes: Vec<NodeProto>,
@@ -29,9 +29,9 @@ impl Split {
     }
 }
 
-/// Puts what `split` makes of a node, told by its place, where the node was. Names are made of the output's and a part after a
-/// `/`; a node stays where one of them is taken, or where the constants would become more than four times what the model
-/// has. Says whether there was any.
+/// Replaces nodes by those that `split` returns for a node and its index. New names consist of the output's name and
+/// a suffix after a `/`; a node stays where one of them is used, or where the constants would grow to more than four
+/// times those of the model. Returns whether any node was replaced.
 pub(super) fn split_nodes(
     graph: &mut GraphProto,
     mut split: impl FnMut(usize, &NodeProto) -> Option<Split>,

@@ -1,4 +1,4 @@
-//! What a training ends in.
+//! Result of a training.
 
 use std::fmt;
 use std::fs;
@@ -8,39 +8,39 @@ use opendr_datasets::Problem;
 use opendr_engine::{Error, Result, ResultExt, Statistics};
 use serde::Serialize;
 
-/// The file of the report in the output folder.
+/// Name of the report in the output folder.
 const REPORT: &str = "report.json";
 
-/// The numbers and curves of a training, and where its model lies. Printed, it is a table.
+/// Metrics and curves of a training, and the path of its model. `Display` prints a table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Fitted {
-    /// What was trained.
+    /// Name of the learner.
     pub learner: String,
-    /// In which environment, where it learnt by acting.
+    /// Environment of the training, for policies.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub environment: Option<String>,
-    /// On what data set; empty where it learnt by acting.
+    /// Data set of the training; empty for policies.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub dataset: String,
-    /// How many samples were trained on.
+    /// Number of training samples.
     pub samples: usize,
-    /// Whether it ran to its end; else it can be resumed from `output`.
+    /// Whether the training ran to its end; else it can be resumed from `output`.
     pub complete: bool,
-    /// How long it took, seconds; of the last run where it was resumed.
+    /// Duration in seconds; of a resumed training, that of the last run.
     pub seconds: f64,
-    /// The numbers and curves.
+    /// Metrics and curves.
     #[serde(flatten)]
     pub statistics: Statistics,
-    /// The folder of checkpoints and report.
+    /// Folder of checkpoints and report.
     pub output: PathBuf,
-    /// The trained model; `None` when it ended before there was one.
+    /// Trained model; `None` when the training ended before the first one.
     pub model: Option<PathBuf>,
-    /// The folder of event files and curves.
+    /// Folder of event files and curves.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub logging_path: Option<PathBuf>,
-    /// Samples and annotations that were left out because they are broken.
+    /// Number of skipped broken samples and annotations.
     pub skipped: u64,
-    /// What was left out.
+    /// Descriptions of skipped samples and annotations.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub problems: Vec<Problem>,
 }
@@ -49,7 +49,7 @@ impl Fitted {
     /// Writes `report.json` into the output folder.
     pub(super) fn write(&self) -> Result<()> {
         let json = serde_json::to_string_pretty(self)
-            .map_err(|error| Error::internal("the report has no JSON form").with_source(error))?;
+            .map_err(|error| Error::internal("the report cannot be written as JSON").with_source(error))?;
         let path = self.output.join(REPORT);
         fs::write(&path, json + "\n").context(|| format!("writing {}", path.display()))
     }
@@ -63,10 +63,10 @@ impl fmt::Display for Fitted {
             None => writeln!(f, "{learner} trained on {samples} samples of {dataset} in {seconds:.1} s")?,
         }
         if !self.complete {
-            writeln!(f, "not complete: resume it from {}", self.output.display())?;
+            writeln!(f, "not complete; resume it from {}", self.output.display())?;
         }
         if self.skipped > 0 {
-            writeln!(f, "{} left out as broken", self.skipped)?;
+            writeln!(f, "{} broken samples skipped", self.skipped)?;
         }
         let names = statistics.scalars.keys().chain(statistics.curves.keys());
         let width = names.map(String::len).max().unwrap_or(0);

@@ -1,4 +1,4 @@
-//! `fit` of policies.
+//! Training of policies.
 
 use std::time::Instant;
 
@@ -7,26 +7,26 @@ use opendr_engine::learner::{AnyLearner, Entry, FitJob};
 use opendr_engine::{Error, Progress, Result, Statistics};
 
 use super::{FitOptions, Fitted, check_fit, finish, run_folder};
-use crate::trained_in;
+use crate::training_environment;
 
-/// Where a policy is trained and measured.
+/// Environments in which a policy is trained and evaluated.
 #[derive(Clone, Copy)]
 pub struct FitEnvironments<'a> {
-    /// Makes those to train in.
+    /// Source of the training environments.
     pub env: &'a dyn EnvironmentSource,
-    /// Makes those to measure in; else `env` does.
+    /// Source of the evaluation environments (default: `env`).
     pub val_env: Option<&'a dyn EnvironmentSource>,
 }
 
-/// Trains a policy in environments, from its model where it has one, loads the result, and writes a report beside it.
+/// Trains a policy in environments, from its model if one is loaded, loads the result, and writes a report beside it.
 ///
-/// When the user stops it, the model is of what was done, and [`Fitted::complete`] is false.
+/// When the user stops the training, the model is that of the steps so far, and [`Fitted::complete`] is false.
 ///
 /// # Errors
-/// `Unsupported` when the learner does not train in environments; `InvalidParam` for a parameter that does not fit, and
-/// for options that belong to data sets; `InvalidInput` when the output folder is not empty, or the policy is for
-/// other spaces; `Io`; those of the environment, with the step.
-pub fn fit_in(
+/// `Unsupported` when the learner does not train in environments; `InvalidParam` for a wrong parameter or an option of
+/// data sets; `InvalidInput` when the output folder is not empty, or the policy has other spaces; `Io`; those of the
+/// environment, with the step.
+pub fn fit_policy(
     learner: &mut dyn AnyLearner,
     entry: &'static Entry,
     environments: FitEnvironments<'_>,
@@ -36,7 +36,9 @@ pub fn fit_in(
     let begun = Instant::now();
     if !entry.capabilities.fit_in {
         let class = entry.spec.class;
-        return Err(Error::unsupported(format!("{class} learns from data sets; give one, no environment")));
+        return Err(Error::unsupported(format!(
+            "{class} trains on data sets; give a data set instead of an environment"
+        )));
     }
     check_fit(entry, &options.params)?;
     check_options(options)?;
@@ -59,7 +61,7 @@ pub fn fit_in(
     };
     let fitted = Fitted {
         learner: entry.spec.name.to_owned(),
-        environment: Some(trained_in(learner).unwrap_or_default().to_owned()),
+        environment: Some(training_environment(learner).unwrap_or_default().to_owned()),
         dataset: String::new(),
         samples: 0,
         complete: !progress.stopped(),
@@ -74,7 +76,7 @@ pub fn fit_in(
     finish(fitted, progress)
 }
 
-/// Options of data sets are no options of environments.
+/// Refuses options that apply to data sets only.
 fn check_options(options: &FitOptions) -> Result<()> {
     let FitOptions { split, val, val_format, val_split, limit, teacher, .. } = options;
     let given = [
@@ -87,7 +89,7 @@ fn check_options(options: &FitOptions) -> Result<()> {
     ];
     match given.into_iter().find(|(_, given)| *given) {
         Some((name, _)) => Err(Error::invalid_param(format!(
-            "{name} belongs to data sets; leave it out where a policy learns in an environment"
+            "{name} applies to data sets only; omit it for a policy that trains in an environment"
         ))),
         None => Ok(()),
     }

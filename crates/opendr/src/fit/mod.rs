@@ -1,4 +1,4 @@
-//! `fit` of every learner, as all surfaces have it.
+//! Training of every learner, shared by all surfaces.
 
 mod fitted;
 mod in_environment;
@@ -14,31 +14,31 @@ use opendr_engine::dataset::{DatasetIterator, DatasetRef, ExternalDataset};
 use opendr_engine::learner::{AnyLearner, Entry, FitJob};
 use opendr_engine::params::{ParamMap, ParamValue};
 use opendr_engine::{Device, Error, Progress, Result, Statistics};
-use opendr_evaluation::{Lesson, Teacher};
+use opendr_evaluation::{Distillation, Teacher};
 use opendr_inference as inference;
 
 pub use fitted::Fitted;
-pub use in_environment::{FitEnvironments, fit_in};
+pub use in_environment::{FitEnvironments, fit_policy};
 pub use options::FitOptions;
-pub use samples::{Opening, Samples};
+pub use samples::{DatasetOpener, Samples};
 
 use crate::{learner_with, registry};
-use samples::{limited, wanted};
+use samples::{annotation_type, limited};
 
-/// A teacher's answers below this score are no annotations, where nobody says otherwise.
+/// Default score below which a teacher's predictions are dropped.
 const TEACHER_THRESHOLD: f32 = 0.5;
-/// The parameter below which learners drop answers.
+/// Name of the score threshold among a learner's parameters.
 const THRESHOLD: &str = "threshold";
-/// Streams of a teacher that work at once.
+/// Maximum number of streams of a teacher that run in parallel.
 const MAX_STREAMS: usize = 4;
 
-/// What a learner is trained and measured on.
+/// Data on which a learner is trained and evaluated.
 pub struct FitData<'a> {
-    /// What to train on.
+    /// Training data.
     pub dataset: DatasetRef<'a>,
-    /// What to measure on; else what [`FitOptions`] say.
+    /// Validation data (default: those of [`FitOptions`]).
     pub val_dataset: Option<DatasetRef<'a>>,
-    /// Who makes the annotations; else the one that [`FitOptions`] name.
+    /// Teacher that annotates the samples (default: that of [`FitOptions`]).
     pub teacher: Option<Teacher>,
 }
 
@@ -48,13 +48,13 @@ impl<'a> From<DatasetRef<'a>> for FitData<'a> {
     }
 }
 
-/// Trains a learner of `entry`, from its model where it has one, loads the result, and writes a report beside it.
+/// Trains a learner of `entry`, from its model if one is loaded, loads the result, and writes a report beside it.
 ///
-/// When the user stops it, the model is of what was done, and [`Fitted::complete`] is false.
+/// When the user stops the training, the model is that of the steps so far, and [`Fitted::complete`] is false.
 ///
 /// # Errors
-/// `Unsupported` when the learner does not train; `InvalidParam` for a parameter of the training that does not fit;
-/// `InvalidInput` when the data set does not fit the task, or the output folder is not empty; `Io`.
+/// `Unsupported` when the learner does not train; `InvalidParam` for a wrong parameter of the training; `InvalidInput` when
+/// the data set does not match the task, or the output folder is not empty; `Io`.
 pub fn fit(
     learner: &mut dyn AnyLearner,
     entry: &'static Entry,
@@ -66,7 +66,7 @@ pub fn fit(
     if entry.capabilities.fit_in {
         let class = entry.spec.class;
         return Err(Error::unsupported(format!(
-            "{class} learns by acting; give an environment, no data set"
+            "{class} trains in environments; give an environment instead of a data set"
         )));
     }
     check_fit(entry, &options.params)?;
@@ -113,16 +113,19 @@ pub fn fit(
     finish(fitted, progress)
 }
 
-/// Writes the report, and tells of a training that was stopped.
+/// Writes the report, and prints a note if the training was stopped.
 fn finish(fitted: Fitted, progress: &dyn Progress) -> Result<Fitted> {
     fitted.write()?;
     if !fitted.complete {
-        progress.note(&format!("stopped: what was done is in {}, to be resumed", fitted.output.display()));
+        progress.note(&format!(
+            "stopped: the state is in {}, from which the training resumes",
+            fitted.output.display()
+        ));
     }
     Ok(fitted)
 }
 
-/// What a training needs before it begins.
+/// Checked options of a training.
 struct Preparation<'a> {
     entry: &'static Entry,
     options: &'a FitOptions,
@@ -132,18 +135,18 @@ struct Preparation<'a> {
 }
 
 impl Preparation<'_> {
-    fn opening(&self, annotated: bool) -> Opening<'_> {
-        Opening { entry: self.entry, annotated, problems: self.problems, progress: self.progress }
+    fn opening(&self, annotated: bool) -> DatasetOpener<'_> {
+        DatasetOpener { entry: self.entry, annotated, problems: self.problems, progress: self.progress }
     }
 
-    /// What to measure on: `val`, else another part of what is trained on where one is named.
+    /// Opens the validation samples: `val`, else the validation split of the training data, if one is named.
     fn val<'d>(&self, val: Option<DatasetRef<'d>>, dataset: DatasetRef<'d>) -> Result<Option<Samples<'d>>> {
         let split = self.options.val_split.as_deref();
         let val = val.or(split.is_some().then_some(dataset));
-        val.map(|val| self.opening(true).to_measure(val, split)).transpose()
+        val.map(|val| self.opening(true).open_validation(val, split)).transpose()
     }
 
-    /// What the data set is called, and its samples, labelled by the teacher where there is one.
+    /// Returns the name of the data set and its samples, annotated by the teacher if there is one.
     fn samples<'d>(
         &self,
         dataset: DatasetRef<'d>,
@@ -162,23 +165,27 @@ impl Preparation<'_> {
             DatasetRef::Iterator(_) => String::new(),
         };
         let name = self.options.name.clone().unwrap_or(path);
-        let samples = self.opening(teacher.is_none()).to_train(dataset, self.options.split.as_deref())?;
+        let samples =
+            self.opening(teacher.is_none()).open_training(dataset, self.options.split.as_deref())?;
         let mut samples = limited(samples, self.options.limit);
         run_folder::make(self.output)?;
         self.progress.note(&format!("output: {}", self.output.display()));
         if let Some(teacher) = teacher {
-            samples = Box::new(self.lesson(name.clone())?.teach(teacher, samples)?);
+            samples = Box::new(self.lesson(name.clone())?.label(teacher, samples)?);
         }
         if samples.is_empty() && !self.progress.stopped() {
-            return Err(Error::invalid_input(format!("there is nothing to train on in {name}")));
+            return Err(Error::invalid_input(format!(
+                "there is nothing to train on in {name}: it has no samples"
+            )));
         }
         Ok((name, samples))
     }
 
-    fn lesson(&self, dataset: String) -> Result<Lesson<'_>> {
-        Ok(Lesson {
+    fn lesson(&self, dataset: String) -> Result<Distillation<'_>> {
+        Ok(Distillation {
             dataset,
-            wanted: wanted(self.entry).ok_or_else(|| Error::internal("a learner without outputs"))?,
+            annotation_type: annotation_type(self.entry)
+                .ok_or_else(|| Error::internal("a learner without outputs"))?,
             threshold: self.options.teacher_threshold.unwrap_or(TEACHER_THRESHOLD),
             classes: self.options.teacher_classes.iter().cloned().collect(),
             class_matching: self.options.class_matching(),
@@ -190,19 +197,19 @@ impl Preparation<'_> {
     }
 }
 
-/// A loaded learner of `entry`, called `name`, as a teacher.
+/// Makes a teacher, called `name`, of a loaded learner of `entry`.
 ///
 /// # Errors
-/// `NotFound` when nothing is loaded.
+/// `NotFound` when no model is loaded.
 pub fn teacher(name: impl Into<String>, learner: &dyn AnyLearner, entry: &'static Entry) -> Result<Teacher> {
     Teacher::new(name, learner, entry, streams_at_once(learner.device())?)
 }
 
-/// The learner that `spec` names as a teacher whose answers from `threshold` (by default 0.5) on are wanted; `load` loads it
-/// with the parameters that this takes.
+/// Loads the learner that `spec` names as a teacher whose predictions count from the score `threshold` on (by default 0.5);
+/// `load` loads it with the given parameters.
 ///
 /// # Errors
-/// `NotFound` for a name that there is not; those of `load`.
+/// `NotFound` for an unknown name; those of `load`.
 pub fn teacher_with(
     spec: &str,
     threshold: Option<f32>,
@@ -214,7 +221,7 @@ pub fn teacher_with(
     let own = entry.params.iter().find(|field| field.name == THRESHOLD);
     let own = own.and_then(|field| field.default.value().as_float()).filter(|own| *own > wanted);
     let params = own.map(|_| (THRESHOLD.to_owned(), ParamValue::Float(wanted))).into_iter().collect();
-    // Several streams with a thread each are faster than one with several.
+    // Several single-threaded streams are faster than one stream with several threads.
     let threads = (inference::default_threads()? / streams_at_once(device)?).max(1);
     teacher(spec, inference::with_threads(threads, || load(&params))?.as_ref(), entry)
 }
@@ -226,19 +233,22 @@ fn streams_at_once(device: Device) -> Result<usize> {
     }
 }
 
-/// That a learner trains, and takes the parameters: known before data sets are opened, or a teacher works for hours.
+/// Checks that a learner trains and that its training has the parameters, before data sets are opened.
 ///
 /// # Errors
-/// `Unsupported`, with learners that train; `InvalidParam`.
+/// `Unsupported`, with the names of learners that train; `InvalidParam`.
 pub fn check_fit(entry: &Entry, params: &ParamMap) -> Result<()> {
     if !entry.capabilities.fit && !entry.capabilities.fit_in {
         return Err(cannot_fit(entry));
     }
     params.iter().try_for_each(|(name, value)| {
-        let field = entry.fit_params.iter().find(|field| field.name == name).ok_or_else(|| {
+        let field = entry.fit_params.iter().find(|field| field.is_called(name)).ok_or_else(|| {
             let names: Vec<_> = entry.fit_params.iter().map(|field| field.name).collect();
             let class = entry.spec.class;
-            Error::invalid_param(format!("fit of {class} has no {name:?}; there are {}", names.join(", ")))
+            Error::invalid_param(format!(
+                "fit of {class} has no parameter {name:?}; it has {}",
+                names.join(", ")
+            ))
         })?;
         field.check(value)
     })
@@ -254,11 +264,11 @@ fn cannot_fit(entry: &Entry) -> Error {
     };
     Error::unsupported(match (names(true), names(false)) {
         _ if !cfg!(feature = "training") => {
-            format!("{class} cannot fit: this build has no training; build it with --features training")
+            format!("{class} cannot fit: this build has no training; build with --features training")
         }
         (none, others) if none.is_empty() => {
-            format!("{class} cannot fit, nor can any learner of {task}; these train: {others}")
+            format!("{class} cannot fit, nor can any learner of {task}; learners that train: {others}")
         }
-        (of_task, _) => format!("{class} cannot fit; of {task} these train: {of_task}"),
+        (of_task, _) => format!("{class} cannot fit; learners of {task} that train: {of_task}"),
     })
 }

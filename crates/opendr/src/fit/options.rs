@@ -1,4 +1,4 @@
-//! What a surface may say about a training, in JSON.
+//! Options of a training, shared by all surfaces.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -8,44 +8,44 @@ use opendr_engine::params::ParamMap;
 use opendr_evaluation::ClassMatching;
 use serde::Deserialize;
 
-/// Everything that can be chosen; all of it may be left out.
+/// Options of a training; every field has a default.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct FitOptions {
-    /// Parameters of the training, over the learner's defaults.
+    /// Parameters of the training; others keep the learner's defaults.
     pub params: ParamMap,
-    /// The part of the data set to train on; by default the one for that.
+    /// Split to train on (default: the data set's training split).
     pub split: Option<String>,
-    /// A data set on disk to measure on after each epoch.
+    /// Data set on disk to evaluate on after each epoch.
     pub val: Option<PathBuf>,
-    /// The format of `val`; by default recognised.
+    /// Format of `val` (default: detected).
     pub val_format: Option<String>,
-    /// The part to measure on: of `val` or, without it, of the data set that is trained on.
+    /// Split to evaluate on: of `val` or, without it, of the training data set.
     pub val_split: Option<String>,
-    /// Only the first so many samples.
+    /// Maximum number of training samples, counted from the first.
     pub limit: Option<usize>,
-    /// The folder of checkpoints, the trained model and the report; by default `runs/NAME-DATE`.
+    /// Folder of checkpoints, the trained model and the report (default: `runs/NAME-DATE`).
     #[serde(alias = "output")]
     pub out: Option<PathBuf>,
-    /// The folder of event files and curves; none are written without it.
+    /// Folder of event files and curves; none are written without it.
     pub logging_path: Option<PathBuf>,
-    /// Whether to go on from the last checkpoint in `out`; without `out`, in the last run of the learner in `runs`.
+    /// Whether to resume from the last checkpoint in `out`; without `out`, from the learner's last run in `runs`.
     pub resume: bool,
-    /// A learner of the zoo whose answers are learned from, instead of annotations, e.g. `"nanodet"`.
+    /// Learner of the zoo whose predictions replace the annotations, such as `"nanodet"`.
     pub teacher: Option<String>,
-    /// The teacher's answers below this score are dropped; 0.5 by default.
+    /// Score below which the teacher's predictions are dropped (default: 0.5).
     pub teacher_threshold: Option<f32>,
-    /// What is learned from the teacher; by default the classes of the data set, or where it has none the teacher's.
+    /// Classes to train on (default: those of the data set, or else the teacher's).
     pub teacher_classes: Vec<String>,
-    /// Classes of the data set by classes of the teacher, where their names do not match.
+    /// Class of the data set for each class of the teacher, where their names differ.
     pub teacher_map: BTreeMap<String, String>,
-    /// Whether numbers of the teacher's classes are taken as they are, whatever the names are.
+    /// Whether classes of the teacher are matched by index and their names ignored.
     pub teacher_by_number: bool,
-    /// Whether pictures in which the teacher finds nothing are kept, as examples of nothing.
+    /// Whether images without a prediction of the teacher are kept, as negative samples.
     pub keep_empty: bool,
-    /// Whether what is broken is left out and listed.
+    /// Whether broken samples are skipped and listed.
     pub skip_broken: bool,
-    /// What reports call the data set; by default its path.
+    /// Name of the data set in reports (default: its path).
     pub name: Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! The folder that a training writes to.
+//! Output folder of a training.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,12 +8,12 @@ use opendr_engine::{Error, Result, ResultExt};
 
 use super::FitOptions;
 
-/// The folder of the runs that nobody named a folder for.
+/// Default folder of runs.
 const RUNS: &str = "runs";
 
 impl FitOptions {
-    /// The folder that a training of the learner `name` writes to: the one that is named, else `runs/NAME-DATE`, a new
-    /// one, or the last one where a training is resumed.
+    /// Returns the output folder of a training of the learner `name`: `out`, else a new folder `runs/NAME-DATE` or, for a resumed
+    /// training, the last one.
     ///
     /// # Errors
     /// `NotFound` when there is no run to resume.
@@ -26,27 +26,27 @@ impl FitOptions {
     }
 }
 
-/// That nothing would be written over.
+/// Checks that the training would overwrite nothing.
 ///
 /// # Errors
-/// `InvalidInput` when something is in the folder, unless a training is resumed.
+/// `InvalidInput` when the folder is not empty, unless a training is resumed.
 pub(super) fn check(folder: &Path, resume: bool) -> Result<()> {
     let is_empty = fs::read_dir(folder).map_or(true, |mut entries| entries.next().is_none());
     if resume || is_empty {
         return Ok(());
     }
     Err(Error::invalid_input(format!(
-        "{} is not empty: resume the training in it, or name another folder, so that nothing is lost",
+        "{} is not empty: resume the training in it, or name another folder",
         folder.display()
     )))
 }
 
-/// Makes the folder.
+/// Creates the folder.
 ///
 /// # Errors
-/// `Io` when it cannot be made.
+/// `Io` when the folder cannot be created.
 pub(super) fn make(folder: &Path) -> Result<()> {
-    fs::create_dir_all(folder).context(|| format!("making {}", folder.display()))
+    fs::create_dir_all(folder).context(|| format!("creating {}", folder.display()))
 }
 
 fn last_run(runs: &Path, name: &str) -> Result<PathBuf> {
@@ -72,7 +72,7 @@ fn new_run(runs: &Path, name: &str, stamp: &str) -> PathBuf {
     free.next().unwrap_or_else(|| runs.join(name))
 }
 
-/// Year, month, day and time in UTC, `20261121-174530`: text sorts as time does.
+/// Returns date and time in UTC as `20261121-174530`, whose text order is the order in time.
 fn stamp(now: SystemTime) -> String {
     let seconds = now.duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
     let (day, time) = (seconds / 86_400, seconds % 86_400);
@@ -80,7 +80,8 @@ fn stamp(now: SystemTime) -> String {
     format!("{year:04}{month:02}{day:02}-{:02}{:02}{:02}", time / 3600, time / 60 % 60, time % 60)
 }
 
-/// The date of a day since 1970-01-01, by the years of 400 that begin in March (Howard Hinnant, `civil_from_days`).
+/// Returns year, month and day of a day since 1970-01-01, by 400-year eras that begin in March (Howard Hinnant,
+/// `civil_from_days`).
 fn date_from_day(day: u64) -> (u64, u64, u64) {
     let day = day + 719_468;
     let (era, of_era) = (day / 146_097, day % 146_097);

@@ -1,30 +1,16 @@
-//! From the answer of one learner to what another takes, where the types differ.
+//! Conversion of predictions into the input type of a later learner.
 
 use opendr_engine::model::Model;
-use opendr_engine::{Result, Value, ValueType};
+use opendr_engine::{Result, Value};
 
-#[cfg(feature = "actions")]
-use super::skeletons::Skeletons;
-
-/// Makes, answer after answer of a stream, what a port takes.
+/// Converts the predictions of a stream, one after the other, into values of a port.
 pub(super) trait Adapter: Send {
-    /// What the port gets for `answer`; `None` where there is nothing to look at.
-    fn adapt(&mut self, answer: &Value) -> Result<Option<Value>>;
+    /// Returns the value of the port for `prediction`; `None` if the learner should not run.
+    fn adapt(&mut self, prediction: &Value) -> Result<Option<Value>>;
 
-    /// Forgets the stream.
+    /// Resets the state of the stream.
     fn reset(&mut self);
 }
 
-/// Makes an adapter for a learner with its model.
+/// Creates an adapter for the model of the later learner.
 pub(super) type Make = fn(&Model) -> Result<Box<dyn Adapter>>;
-
-/// Every adapter: from which type of answer to which type of port.
-const ADAPTERS: &[(ValueType, ValueType, Make)] = &[
-    #[cfg(feature = "actions")]
-    (ValueType::PoseList, ValueType::SkeletonSequence, Skeletons::make),
-];
-
-/// How answers of the type `from` become what a port of the type `to` takes.
-pub(super) fn adapter(from: ValueType, to: ValueType) -> Option<Make> {
-    ADAPTERS.iter().find(|(answer, port, _)| (*answer, *port) == (from, to)).map(|(.., make)| *make)
-}

@@ -1,6 +1,7 @@
-//! Learners one after the other: a detector, a tracker, what looks at the tracks.
+//! Pipelines: learners in sequence, such as a detector, a tracker and a recogniser of the tracks.
 
 mod adapter;
+mod adapters;
 mod each_box;
 #[cfg(feature = "actions")]
 mod skeletons;
@@ -12,26 +13,25 @@ use std::collections::BTreeMap;
 use opendr_engine::learner::{AnyLearner, Entry, Output, Outputs, Port, Ports};
 use opendr_engine::params::ParamMap;
 use opendr_engine::target::Classes;
-use opendr_engine::{Device, Error, Progress, Result, Silent, Value, ValueType, assembly_line};
+use opendr_engine::{Device, Error, Progress, Result, Silent, Value, ValueType, map_in_stages};
 
 use crate::{learner_with, registry};
 use opendr_evaluation::Predictor;
 use stage::Stage;
 use wiring::{Wire, wires};
 
-/// Learners that each take what those before them answer.
+/// Learners in sequence, each with the predictions of those before it as inputs.
 ///
-/// A port takes the newest answer of its type; what no learner before answers is an input of the pipeline, shared by all
-/// that take it. So a detector, a tracker over `image` and `detections`, and a recogniser need no wiring by hand. The
-/// answers of all are the answer of the pipeline; where two are of one type, the later one.
+/// A port gets the newest prediction of its type. A port whose type no earlier learner predicts is an input of the pipeline,
+/// shared by all learners with such a port. A detector, a tracker over `image` and `detections`, and a recogniser therefore need
+/// no manual wiring. The output of the pipeline is the predictions of all learners; of two of one type, the later one.
 ///
-/// Where no answer is of a port's type, one that can be turned into it is taken: poses become moving skeletons, as
-/// many frames and persons of them as the model looks at, so that `"movenet/multipose + spatio_temporal_gcn"` tells actions in
-/// a video. A learner that has nothing to look at, since nobody is in sight, answers nothing.
+/// If no prediction has a port's type, one that converts to it is used: poses become skeleton sequences with the frames and
+/// persons of the model, so that `"movenet/multipose + spatio_temporal_gcn"` recognises actions in a video. A learner without an
+/// input, such as an empty list of poses, returns no output.
 ///
-/// `each` before a learner shows it the boxes found before, one by one, in place of the picture:
-/// `"yunet + each facial_emotion"` names every face by its expression. What it answers of a box lies in the whole picture; a
-/// category becomes the box's name.
+/// `each` before a learner runs it on the crop of each detected box instead of the image: `"yunet + each facial_emotion"` names
+/// every face by its expression. Outputs are in pixels of the whole image; a category becomes the name of the box.
 ///
 /// ```no_run
 /// # fn main() -> opendr::Result<()> {
@@ -47,11 +47,11 @@ pub struct Pipeline {
     ports: Vec<Port>,
 }
 
-/// The word before a learner that looks at each box.
+/// Prefix of a learner that runs on each box.
 const EACH: &str = "each ";
 
 impl Pipeline {
-    /// The learners that `specs` names, with their pretrained models: `"nanodet + yunet/320 + each facial_emotion"`.
+    /// Loads the learners that `specs` names, with their pretrained models: `"nanodet + yunet/320 + each facial_emotion"`.
     ///
     /// # Errors
     /// As [`crate::learner()`] and [`Pipeline::then`].
@@ -59,7 +59,7 @@ impl Pipeline {
         Self::open_with(specs, Device::Auto, &Silent)
     }
 
-    /// As [`Pipeline::open`], with a device and someone to tell how the downloads go.
+    /// As [`Pipeline::open`], with a device and a progress display for the downloads.
     ///
     /// # Errors
     /// As [`Pipeline::open`].
@@ -68,7 +68,7 @@ impl Pipeline {
         specs.split('+').try_fold(Self::default(), named)
     }
 
-    /// Adds the learner that `spec` names at the end, with its pretrained model: `"yunet/320"`, `"each facial_emotion"`.
+    /// Appends the learner that `spec` names, with its pretrained model: `"yunet/320"`, `"each facial_emotion"`.
     ///
     /// # Errors
     /// As [`Pipeline::open`].
@@ -80,18 +80,18 @@ impl Pipeline {
         if each { self.then_each(entry, learner.as_ref()) } else { self.then(entry, learner.as_ref()) }
     }
 
-    /// Adds a stream of a loaded learner of `entry` at the end.
+    /// Appends a stream of a loaded learner of `entry`.
     ///
     /// # Errors
-    /// `InvalidParam` for one that takes nothing of what those before it answer; `NotFound` for one without a model.
+    /// `InvalidParam` if no port matches a prediction of the learners before it; `NotFound` for a learner without a model.
     pub fn then(mut self, entry: &'static Entry, learner: &dyn AnyLearner) -> Result<Self> {
-        let answered = self.stages.iter().map(|stage| stage.outputs()).collect::<Vec<_>>();
-        let wires = wires(entry.ports, &answered, &mut self.ports);
+        let predicted = self.stages.iter().map(|stage| stage.outputs()).collect::<Vec<_>>();
+        let wires = wires(entry.ports, &predicted, &mut self.ports);
         let feeds = |wire: &Wire| !matches!(wire, Wire::Input);
         let is_beside =
             entry.ports.iter().all(|port| self.stages.iter().any(|stage| takes(stage.entry, port)));
         if !self.stages.is_empty() && !wires.iter().any(feeds) && !is_beside {
-            return Err(self.feeds_not(entry, entry.ports));
+            return Err(self.unmatched_ports(entry, entry.ports));
         }
         let adapters = wires.iter().map(|wire| match (wire, learner.model()) {
             (Wire::Adapted { make, .. }, Some(model)) => {
@@ -108,11 +108,11 @@ impl Pipeline {
         Ok(self)
     }
 
-    /// Adds a stream of a loaded learner of pictures at the end that looks at each of the boxes found before it.
+    /// Appends a stream of a loaded learner that runs on the crop of each box detected before it.
     ///
     /// # Errors
-    /// `InvalidParam` where none before it finds boxes, and for a learner that takes more than a picture, or answers what
-    /// has no place in one.
+    /// `InvalidParam` if no learner before it predicts boxes, if the learner has inputs besides an image, or if its outputs cannot
+    /// be merged.
     pub fn then_each(mut self, entry: &'static Entry, learner: &dyn AnyLearner) -> Result<Self> {
         const BOXES: Port = Port {
             name: ValueType::BoundingBoxList.port(),
@@ -122,10 +122,10 @@ impl Pipeline {
             init: false,
         };
         each_box::check(entry)?;
-        let answered = self.stages.iter().map(|stage| stage.outputs()).collect::<Vec<_>>();
-        let boxes = wires(&[BOXES], &answered, &mut Vec::new()).into_iter().next();
-        if !matches!(boxes, Some(Wire::Answer { .. })) {
-            return Err(self.feeds_not(entry, &[BOXES]));
+        let predicted = self.stages.iter().map(|stage| stage.outputs()).collect::<Vec<_>>();
+        let boxes = wires(&[BOXES], &predicted, &mut Vec::new()).into_iter().next();
+        if !matches!(boxes, Some(Wire::Prediction { .. })) {
+            return Err(self.unmatched_ports(entry, &[BOXES]));
         }
         let wires = wires(entry.ports, &[], &mut self.ports);
         let (stream, classes) = (learner.stream()?, learner.classes());
@@ -133,25 +133,25 @@ impl Pipeline {
         Ok(self)
     }
 
-    /// That nothing before a learner answers what it takes.
-    fn feeds_not(&self, entry: &Entry, ports: &[Port]) -> Error {
+    /// Returns the error of a learner whose inputs no earlier learner predicts.
+    fn unmatched_ports(&self, entry: &Entry, ports: &[Port]) -> Error {
         let wanted: Vec<_> = ports.iter().map(|port| port.value_type.name()).collect();
-        let there = self.stages.iter().flat_map(|stage| stage.outputs());
-        let there: Vec<_> = there.map(|output| output.value_type.name()).collect();
+        let predicted_types = self.stages.iter().flat_map(|stage| stage.outputs());
+        let predicted_types: Vec<_> = predicted_types.map(|output| output.value_type.name()).collect();
         Error::invalid_param(format!(
-            "{} takes {}, and those before it answer {}; put one before it that answers what it takes",
+            "the inputs of {} are {}, but the learners before it predict {}; put a learner with such an output before it",
             entry.spec.class,
             wanted.join(", "),
-            there.join(", ")
+            predicted_types.join(", ")
         ))
     }
 
-    /// What it takes.
+    /// Returns the inputs of the pipeline.
     pub fn ports(&self) -> &[Port] {
         &self.ports
     }
 
-    /// What it answers.
+    /// Returns the outputs of the pipeline.
     pub fn outputs(&self) -> Vec<Output> {
         let mut by_type = BTreeMap::new();
         for output in self.stages.iter().flat_map(Stage::outputs) {
@@ -160,41 +160,41 @@ impl Pipeline {
         by_type.into_values().collect()
     }
 
-    /// What the class numbers of the last learner mean; targets that carry class names of their own say more.
+    /// Returns the classes of the last learner; targets may contain class names of their own.
     pub fn classes(&self) -> Classes {
         self.stages.last().map(|stage| stage.classes.clone()).unwrap_or_default()
     }
 
-    /// The learners, in order.
+    /// Returns the learners, in order.
     pub fn entries(&self) -> impl Iterator<Item = &'static Entry> {
         self.stages.iter().map(|stage| stage.entry)
     }
 
-    /// Forgets what the streams of all learners remember.
+    /// Resets the streams of all learners.
     pub fn reset(&mut self) {
         self.stages.iter_mut().for_each(Stage::reset);
     }
 
-    /// Answers one set of inputs, stage after stage.
+    /// Runs the learners on one set of inputs, in sequence.
     ///
     /// # Errors
-    /// The first error of a learner; `InvalidInput` for an input that the pipeline does not take.
+    /// The first error of a learner; `InvalidInput` for an input that the pipeline does not have.
     pub fn infer(&mut self, ports: &Ports<'_>) -> Result<Outputs> {
         ports.check_names(&self.ports)?;
-        let mut answers = Vec::new();
+        let mut predictions = Vec::new();
         for stage in &mut self.stages {
-            answers.push(stage.infer(ports, &answers)?);
+            predictions.push(stage.infer(ports, &predictions)?);
         }
-        Ok(merged(answers))
+        Ok(merged(predictions))
     }
 
-    /// Answers a stream of inputs, each learner on a thread of its own: the slowest sets the pace, not their sum. `begins`
-    /// says which items begin a stream, before which the learners forget the one before; `ports` shows an item's inputs;
-    /// `each` is handed items and answers in their order, on the calling thread. What fails of one item is told for it, and
-    /// the next goes on.
+    /// Runs the learners on a stream of items, each learner on its own thread, so that the slowest determines the rate. `begins`
+    /// returns whether an item begins a stream, before which the learners are reset; `ports` returns the inputs of an item; `each`
+    /// receives items and outputs in order, on the calling thread. An error of one item is passed to `each`, and the next item
+    /// follows.
     ///
     /// # Errors
-    /// The first error of `each`, which ends the work.
+    /// The first error of `each`, which ends the run.
     pub fn run<T: Send, E>(
         &mut self,
         items: impl IntoIterator<Item = T>,
@@ -203,17 +203,19 @@ impl Pipeline {
         mut each: impl FnMut(T, Result<Outputs>) -> std::result::Result<(), E>,
     ) -> std::result::Result<(), E> {
         let begun = items.into_iter().map(|item| (begins(&item), item, Ok(Vec::new())));
-        let work = |stage: &mut Stage, (begins, item, answers): &mut (bool, T, Result<Vec<Outputs>>)| {
+        let work = |stage: &mut Stage, (begins, item, predictions): &mut (bool, T, Result<Vec<Outputs>>)| {
             if *begins {
                 stage.reset();
             }
-            let Ok(before) = answers else { return };
+            let Ok(before) = predictions else { return };
             match ports(item).and_then(|ports| stage.infer(&ports, before)) {
-                Ok(answer) => before.push(answer),
-                Err(error) => *answers = Err(error),
+                Ok(outputs) => before.push(outputs),
+                Err(error) => *predictions = Err(error),
             }
         };
-        assembly_line(&mut self.stages, begun, work, |(_, item, answers)| each(item, answers.map(merged)))
+        map_in_stages(&mut self.stages, begun, work, |(_, item, predictions)| {
+            each(item, predictions.map(merged))
+        })
     }
 }
 
@@ -231,10 +233,10 @@ fn takes(entry: &Entry, port: &Port) -> bool {
     entry.ports.iter().any(|other| other.value_type == port.value_type)
 }
 
-/// The answers of all, the later where two are of one type.
-fn merged(answers: Vec<Outputs>) -> Outputs {
+/// Merges the predictions of all learners; of two of one type, the later remains.
+fn merged(predictions: Vec<Outputs>) -> Outputs {
     let mut merged: Vec<(&'static str, Value)> = Vec::new();
-    for (name, value) in answers.into_iter().flatten() {
+    for (name, value) in predictions.into_iter().flatten() {
         merged
             .retain(|(_, earlier)| earlier.as_value_ref().value_type() != value.as_value_ref().value_type());
         merged.push((name, value));

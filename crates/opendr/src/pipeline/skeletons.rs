@@ -1,4 +1,4 @@
-//! Poses of one picture after the other as moving skeletons.
+//! Adapter from poses of successive images to skeleton sequences.
 
 use opendr_actions::skeleton_based_action_recognition::{SkeletonBuffer, SkeletonBufferOptions};
 use opendr_engine::model::Model;
@@ -7,14 +7,14 @@ use opendr_engine::{Error, Result, Value};
 
 use super::adapter::Adapter;
 
-/// A [`SkeletonBuffer`] of the joints, frames and persons that a model says it looks at.
+/// A [`SkeletonBuffer`] with the joints, frames and persons of a model.
 pub(super) struct Skeletons(SkeletonBuffer);
 
 impl Skeletons {
-    /// For `model`, whose `inputs.skeleton_sequence` names skeleton, frames and persons.
+    /// Creates the adapter for `model`, whose `inputs.skeleton_sequence` names skeleton, frames and persons.
     ///
     /// # Errors
-    /// `InvalidParam` where it does not.
+    /// `InvalidParam` for a model without them.
     pub fn make(model: &Model) -> Result<Box<dyn Adapter>> {
         let input = model.manifest().inputs.get("skeleton_sequence");
         let text = |key: &str| input?.get(key)?.as_str();
@@ -24,7 +24,7 @@ impl Skeletons {
             (text("skeleton").and_then(named), count("frames"), count("persons"))
         else {
             return Err(Error::invalid_param(format!(
-                "the model {} does not say which skeletons it takes: name skeleton, frames and persons under \
+                "the model {} does not describe its skeletons: name skeleton, frames and persons under \
                  inputs.skeleton_sequence of its model.json, or train it again",
                 model.path().display()
             )));
@@ -35,9 +35,9 @@ impl Skeletons {
 }
 
 impl Adapter for Skeletons {
-    fn adapt(&mut self, answer: &Value) -> Result<Option<Value>> {
-        let Value::PoseList(poses) = answer else {
-            return Err(Error::internal("skeletons are made of poses"));
+    fn adapt(&mut self, prediction: &Value) -> Result<Option<Value>> {
+        let Value::PoseList(poses) = prediction else {
+            return Err(Error::internal("skeleton sequences are made from poses"));
         };
         self.0.push(poses)?;
         let sequence = self.0.together()?;

@@ -1,4 +1,4 @@
-//! One learner of a pipeline, and what goes into it.
+//! One learner of a pipeline with its wiring.
 
 use opendr_engine::learner::{AnyStream, Entry, Output, Outputs, Ports};
 use opendr_engine::target::Classes;
@@ -8,21 +8,21 @@ use super::adapter::Adapter;
 use super::each_box;
 use super::wiring::Wire;
 
-/// A learner in its place.
+/// A learner at its position in the pipeline.
 pub(super) struct Stage {
     pub entry: &'static Entry,
     pub stream: Box<dyn AnyStream>,
-    /// What the class numbers of its predictions mean.
+    /// Classes of its predictions.
     pub classes: Classes,
     pub wires: Vec<Wire>,
-    /// One for each port whose answer is of another type.
+    /// Adapters by port; `None` for a port without one.
     pub adapters: Vec<Option<Box<dyn Adapter>>>,
-    /// Where the boxes are that the learner looks at one by one.
+    /// Source of the boxes, if the learner runs on each box.
     pub boxes: Option<Wire>,
 }
 
 impl Stage {
-    /// What it answers; of boxes looked at one by one, that is boxes again where the learner answers categories.
+    /// Returns the outputs of the stage; a learner of categories that runs on each box has boxes as output.
     pub fn outputs(&self) -> Vec<Output> {
         let category_is_box = |output: &Output| match (&self.boxes, output.value_type) {
             (Some(_), ValueType::Category) => {
@@ -34,25 +34,27 @@ impl Stage {
         self.entry.outputs.iter().map(category_is_box).collect()
     }
 
-    /// Forgets the stream.
+    /// Resets the stream.
     pub fn reset(&mut self) {
         self.stream.reset();
         self.adapters.iter_mut().flatten().for_each(|adapter| adapter.reset());
     }
 
-    /// Its answer to the pipeline's inputs and what those before it answered; nothing where one of these is not there.
-    pub fn infer(&mut self, given: &Ports<'_>, before: &[Outputs]) -> Result<Outputs> {
-        self.answer(given, before).map_err(|error| error.context(self.entry.spec.class))
+    /// Runs the learner on the pipeline's inputs `inputs` and the outputs `before`; without one of its inputs, returns no outputs.
+    pub fn infer(&mut self, inputs: &Ports<'_>, before: &[Outputs]) -> Result<Outputs> {
+        self.run(inputs, before).map_err(|error| error.context(self.entry.spec.class))
     }
 
-    fn answer(&mut self, given: &Ports<'_>, before: &[Outputs]) -> Result<Outputs> {
-        let answer = |stage: usize, output: &str| before.get(stage).and_then(|outputs| outputs.get(output));
-        if let Some(Wire::Answer { stage, output }) = &self.boxes {
-            let (Some(Value::BoundingBoxList(boxes)), [port]) = (answer(*stage, output), self.entry.ports)
+    fn run(&mut self, inputs: &Ports<'_>, before: &[Outputs]) -> Result<Outputs> {
+        let prediction =
+            |stage: usize, output: &str| before.get(stage).and_then(|outputs| outputs.get(output));
+        if let Some(Wire::Prediction { stage, output }) = &self.boxes {
+            let (Some(Value::BoundingBoxList(boxes)), [port]) =
+                (prediction(*stage, output), self.entry.ports)
             else {
                 return Ok(Outputs::default());
             };
-            let image = given.required(port.name)?;
+            let image = inputs.required(port.name)?;
             let value = each_box::infer(self.entry, &mut *self.stream, &self.classes, image, boxes)?;
             return Ok([(value.as_value_ref().value_type().port(), value)].into_iter().collect());
         }
@@ -60,7 +62,7 @@ impl Stage {
         for (wire, adapter) in self.wires.iter().zip(&mut self.adapters) {
             adapted.push(match (wire, adapter) {
                 (Wire::Adapted { stage, output, .. }, Some(adapter)) => {
-                    answer(*stage, output).map(|value| adapter.adapt(value)).transpose()?.flatten()
+                    prediction(*stage, output).map(|value| adapter.adapt(value)).transpose()?.flatten()
                 }
                 _ => None,
             });
@@ -68,8 +70,8 @@ impl Stage {
         let mut ports = Ports::default();
         for ((port, wire), adapted) in self.entry.ports.iter().zip(&self.wires).zip(&adapted) {
             let value: Option<ValueRef<'_>> = match wire {
-                Wire::Input => given.get(port.name),
-                Wire::Answer { stage, output } => answer(*stage, output).map(Value::as_value_ref),
+                Wire::Input => inputs.get(port.name),
+                Wire::Prediction { stage, output } => prediction(*stage, output).map(Value::as_value_ref),
                 Wire::Adapted { .. } => adapted.as_ref().map(Value::as_value_ref),
             };
             match value {

@@ -1,29 +1,30 @@
-//! Which answer goes into which port.
+//! Wiring of predictions to ports.
 
 use opendr_engine::learner::{Output, Port};
 
-use super::adapter::{Make, adapter};
+use super::adapter::Make;
+use super::adapters::adapter;
 
-/// Where a port's value comes from.
+/// Source of a port's value.
 #[derive(Debug, Clone)]
 pub(super) enum Wire {
-    /// An answer of an earlier stage.
-    Answer { stage: usize, output: &'static str },
-    /// What is made of such an answer.
+    /// A prediction of an earlier stage.
+    Prediction { stage: usize, output: &'static str },
+    /// A converted prediction of an earlier stage.
     Adapted { stage: usize, output: &'static str, make: Make },
-    /// The pipeline's own input of the port's name.
+    /// The input of the pipeline with the name of the port.
     Input,
 }
 
-/// The wires of a learner's ports behind stages that answer `answered`; what nobody answers becomes an input of the
-/// pipeline.
-pub(super) fn wires(ports: &[Port], answered: &[Vec<Output>], inputs: &mut Vec<Port>) -> Vec<Wire> {
+/// Returns the sources of a learner's ports after stages with the outputs `predicted`. A port without a prediction is added to the
+/// `inputs` of the pipeline.
+pub(super) fn wires(ports: &[Port], predicted: &[Vec<Output>], inputs: &mut Vec<Port>) -> Vec<Wire> {
     let wire = |port: &Port| {
-        // What begins a stream is the user's to give.
-        let newest_first = || answered.iter().enumerate().rev().filter(|_| !port.init);
+        // Init ports are always inputs of the pipeline.
+        let newest_first = || predicted.iter().enumerate().rev().filter(|_| !port.init);
         let newest = newest_first().find_map(|(stage, outputs)| {
             let output = outputs.iter().find(|output| output.value_type == port.value_type)?;
-            Some(Wire::Answer { stage, output: output.name })
+            Some(Wire::Prediction { stage, output: output.name })
         });
         let made = || {
             newest_first().find_map(|(stage, outputs)| {
@@ -58,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn the_newest_answer_of_a_type_is_taken() {
+    fn the_newest_prediction_of_a_type_is_used() {
         let detector = vec![output("detections", ValueType::BoundingBoxList)];
         let filter = vec![output("poses", ValueType::PoseList), output("kept", ValueType::BoundingBoxList)];
         let mut inputs = vec![port("image", ValueType::Image, false)];
@@ -73,7 +74,7 @@ mod tests {
         let [Wire::Input, boxes, Wire::Input, Wire::Input, skeletons] = &found[..] else {
             panic!("{found:?}")
         };
-        assert!(matches!(boxes, Wire::Answer { stage: 1, output: "kept" }), "{boxes:?}");
+        assert!(matches!(boxes, Wire::Prediction { stage: 1, output: "kept" }), "{boxes:?}");
         assert!(matches!(skeletons, Wire::Adapted { stage: 1, output: "poses", .. }), "{skeletons:?}");
         let names: Vec<_> = inputs.iter().map(|input| input.name).collect();
         assert_eq!(names, ["image", "first", "depth"]);

@@ -1,4 +1,4 @@
-//! A learner's training as something that a tuner carries out.
+//! Training of a learner as a trial of a tuner.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,11 +9,12 @@ use opendr_engine::params::{ParamMap, ParamValue};
 use opendr_engine::{Error, Progress, Result, ResultExt as _, Silent};
 use opendr_tuning::Training;
 
+use super::data::nothing_measured;
 use super::until::Until;
 use super::{TuneData, TuneOptions};
-use crate::{ActingStream, FitData, FitEnvironments, FitOptions, eval_in, fit, fit_in};
+use crate::{FitData, FitEnvironments, FitOptions, PolicyController, evaluate_policy, fit, fit_policy};
 
-/// One configuration with one seed: `fit`, stopped at every point with its checkpoint, and resumed.
+/// Training of one configuration with one seed, which stops with a checkpoint at each evaluation and resumes.
 pub struct LearnerTraining<'a> {
     entry: &'static Entry,
     data: TuneData<'a>,
@@ -25,16 +26,16 @@ pub struct LearnerTraining<'a> {
 
 static COUNTER: AtomicU64 = AtomicU64::new(0);
 
-/// Parameters of trainings in environments by their names: length, seed, measurements of their own.
+/// Names of the parameters that set the length of a training.
 const LENGTH: [&str; 2] = ["total_timesteps", "max_steps"];
 const SEED: &str = "seed";
 const MEASUREMENTS: &str = "eval_freq";
 
 impl<'a> LearnerTraining<'a> {
-    /// A training that has not begun; it works in a folder of its own below `work`.
+    /// Creates a training that has not begun, with a folder of its own below `work`.
     ///
     /// # Errors
-    /// `InvalidParam` for parameters that do not fit, `Unsupported` for data that nothing is trained on.
+    /// `InvalidParam` for wrong parameters, `Unsupported` for [`TuneData::Inference`], which trains nothing.
     pub fn new(
         entry: &'static Entry,
         data: TuneData<'a>,
@@ -44,16 +45,18 @@ impl<'a> LearnerTraining<'a> {
         work: &Path,
         progress: &'a dyn Progress,
     ) -> Result<Self> {
-        if matches!(data, TuneData::Answers { .. }) {
-            return Err(Error::unsupported("these data are to measure a learner as it is, not to train it"));
+        if matches!(data, TuneData::Inference { .. }) {
+            return Err(Error::unsupported(
+                "these data are for the evaluation of a learner without training",
+            ));
         }
         let mut params = options.fit_params.clone();
-        let has = |name: &str| entry.fit_params.iter().any(|field| field.name == name);
+        let has = |name: &str| entry.fit_params.iter().any(|field| field.is_called(name));
         params.extend(
             LENGTH
                 .into_iter()
                 .filter(|name| has(name))
-                .map(|name| (name.to_owned(), (options.length as i64).into())),
+                .map(|name| (name.to_owned(), (options.steps as i64).into())),
         );
         if has(SEED) {
             params.insert(SEED.to_owned(), (seed as i64).into());
@@ -69,7 +72,7 @@ impl<'a> LearnerTraining<'a> {
         Ok(Self { entry, data, learner, params, folder, progress })
     }
 
-    /// Whether it came as far.
+    /// Trains up to step `until` and returns whether the training got there.
     fn train(&mut self, until: u64) -> Result<bool> {
         let options = FitOptions {
             params: self.params.clone(),
@@ -81,9 +84,9 @@ impl<'a> LearnerTraining<'a> {
         match self.data {
             TuneData::Environment { env, .. } => {
                 let environments = FitEnvironments { env, val_env: None };
-                fit_in(self.learner.as_mut(), self.entry, environments, &options, &until)
+                fit_policy(self.learner.as_mut(), self.entry, environments, &options, &until)
             }
-            TuneData::Dataset { dataset, split, .. } | TuneData::Answers { dataset, split, .. } => {
+            TuneData::Dataset { dataset, split, .. } | TuneData::Inference { dataset, split, .. } => {
                 let options = FitOptions { split: split.map(str::to_owned), ..options };
                 fit(self.learner.as_mut(), self.entry, FitData::from(dataset), &options, &until)
             }
@@ -95,15 +98,16 @@ impl<'a> LearnerTraining<'a> {
         match self.data {
             TuneData::Environment { env, protocol } => {
                 let mut environment = env.make()?;
-                let mut acting = ActingStream::new(self.learner.stream()?, self.entry, environment.spec())?;
-                let report = eval_in(&mut acting, environment.as_mut(), protocol, &Silent)?;
+                let mut acting =
+                    PolicyController::new(self.learner.stream()?, self.entry, environment.spec())?;
+                let report = evaluate_policy(&mut acting, environment.as_mut(), protocol, &Silent)?;
                 Ok(report.success.map_or(report.mean_return, |success| success.rate))
             }
-            TuneData::Dataset { val_dataset: dataset, .. } | TuneData::Answers { dataset, .. } => {
+            TuneData::Dataset { val_dataset: dataset, .. } | TuneData::Inference { dataset, .. } => {
                 let options = self.data.eval_options();
                 let outcome = options.run(&mut self.learner, self.entry, dataset, &Silent)?;
                 let (name, _) = options.metric_for(self.entry)?.numbers[0];
-                outcome.report.statistics.get(name).ok_or_else(|| super::nothing_measured(name))
+                outcome.report.statistics.get(name).ok_or_else(|| nothing_measured(name))
             }
         }
     }
@@ -132,7 +136,7 @@ impl Drop for LearnerTraining<'_> {
     }
 }
 
-/// Copies a folder so that the copy is there whole or not at all.
+/// Copies a folder atomically: the copy is complete or absent.
 fn copied(from: &Path, to: &Path) -> Result<()> {
     let context = || format!("copying {} to {}", from.display(), to.display());
     let number = COUNTER.fetch_add(1, Ordering::Relaxed);

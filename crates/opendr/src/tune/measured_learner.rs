@@ -1,4 +1,4 @@
-//! A learner as it is, as something that a tuner measures.
+//! Evaluation of a learner without training as a trial of a tuner.
 
 use std::path::Path;
 
@@ -10,9 +10,10 @@ use opendr_evaluation::EvalOptions;
 use opendr_tuning::Training;
 
 use super::MakeLearner;
+use super::data::nothing_measured;
 use super::until::Until;
 
-/// One configuration of a learner's own parameters: there is nothing to train, and so nothing to save.
+/// One configuration of a learner's own parameters, without training and therefore without a checkpoint.
 pub(super) struct MeasuredLearner<'a> {
     pub entry: &'static Entry,
     pub make: &'a MakeLearner<'a>,
@@ -25,7 +26,7 @@ pub(super) struct MeasuredLearner<'a> {
 impl Training for MeasuredLearner<'_> {
     fn advance(&mut self, _: u64) -> Result<Option<f64>> {
         let mut learner = (self.make)(&self.params)?;
-        // Its bar would stand in the place of the search's.
+        // The progress bar of an evaluation would replace that of the search.
         let quiet = Until::new(self.progress, u64::MAX);
         let outcome = self.options.run(&mut learner, self.entry, self.dataset, &quiet)?;
         if !outcome.complete {
@@ -33,7 +34,7 @@ impl Training for MeasuredLearner<'_> {
         }
         let (name, _) = self.options.metric_for(self.entry)?.numbers[0];
         let value = outcome.report.statistics.get(name);
-        value.map(Some).ok_or_else(|| super::nothing_measured(name))
+        value.map(Some).ok_or_else(|| nothing_measured(name))
     }
 
     fn save(&self, _: &Path) -> Result<()> {
@@ -41,6 +42,6 @@ impl Training for MeasuredLearner<'_> {
     }
 
     fn load(&mut self, _: &Path) -> Result<()> {
-        Err(Error::internal("a measurement has no middle to go on from"))
+        Err(Error::internal("an evaluation has no checkpoint to resume from"))
     }
 }

@@ -1,15 +1,15 @@
-//! What is searched, as a user says it.
+//! Search space from text.
 
 use opendr_engine::params::{Field, ParamKind, ParamValue};
 use opendr_engine::{Error, Result};
 use opendr_tuning::{Distribution, SearchSpace};
 use serde_json::Value;
 
-/// The space of parameters given as `NAME` (the range that the learner states), `NAME=LOW..HIGH` (by factors where the
-/// learner's range is), or `NAME=A,B,C`.
+/// Parses parameters given as `NAME` (the range of the learner), `NAME=LOW..HIGH` (logarithmic if the learner's range is), or
+/// `NAME=A,B,C`.
 ///
 /// # Errors
-/// `InvalidParam` for a parameter that there is not, one without a range, and values that do not fit.
+/// `InvalidParam` for an unknown parameter, one without a range, or wrong values.
 pub fn search_space(fields: &[Field], texts: &[String]) -> Result<SearchSpace> {
     if texts.is_empty() {
         let names: Vec<_> = fields.iter().map(|field| field.name).collect();
@@ -17,10 +17,11 @@ pub fn search_space(fields: &[Field], texts: &[String]) -> Result<SearchSpace> {
     }
     texts.iter().try_fold(SearchSpace::new(), |space, text| {
         let (name, values) = text.split_once('=').unwrap_or((text, ""));
-        let field = fields.iter().find(|field| field.name == name).ok_or_else(|| {
+        let field = fields.iter().find(|field| field.is_called(name)).ok_or_else(|| {
             let names: Vec<_> = fields.iter().map(|field| field.name).collect();
             Error::invalid_param(format!("no parameter {name:?} to search; there are {}", names.join(", ")))
         })?;
+        let name = field.name;
         if values.is_empty() {
             let own = SearchSpace::from_fields(fields, &[name])?;
             return own
@@ -96,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_told() {
+    fn invalid_search_spaces_are_refused() {
         for (texts, word) in [
             (&[][..], "nothing to search"),
             (&["colour"], "learning_rate"),

@@ -1,4 +1,4 @@
-//! What a search ends in.
+//! Result of a search.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -7,26 +7,26 @@ use std::path::PathBuf;
 use serde::Serialize;
 use serde_json::Value;
 
-/// The best configuration, and what it comes to. Printed, it is a table.
+/// Best configuration and its values. `Display` prints a table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Tuned {
-    /// What was tuned.
+    /// Name of the learner.
     pub learner: String,
-    /// The best parameters; none before a trial is complete.
+    /// Best parameters; `None` before a trial is complete.
     pub params: Option<BTreeMap<String, Value>>,
-    /// The mean over its seeds, by which they were chosen.
+    /// Mean over the seeds of the trial, by which the parameters were chosen.
     pub value: Option<f64>,
-    /// What they come to with seeds by which they were not chosen.
+    /// Values of the best parameters with new seeds, which had no part in the choice.
     pub fresh_values: Vec<f64>,
-    /// The share of each parameter in what made the difference.
+    /// Importance of each parameter by PED-ANOVA; the sum is 1.
     pub importance: BTreeMap<String, f64>,
-    /// How many trials the study has.
+    /// Number of trials of the study.
     pub trials: usize,
-    /// Whether it ran to its end; else the same call goes on.
+    /// Whether the search ran to its end; else the same call resumes it.
     pub complete: bool,
-    /// How long it took, seconds; of the last call where it went on.
+    /// Duration in seconds; of a resumed search, that of the last call.
     pub seconds: f64,
-    /// The folder of the study, its trials and figures.
+    /// Folder of the study, its trials and figures.
     pub output: PathBuf,
 }
 

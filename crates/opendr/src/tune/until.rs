@@ -1,10 +1,10 @@
-//! A training that ends at a point.
+//! Progress display that stops a training at a given step.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use opendr_engine::{Progress, Unit};
 
-/// Says that a training is to stop, with its checkpoint, once so many steps are done, or the user wants it.
+/// Requests a stop after a number of steps, or when the user does.
 pub(super) struct Until<'a> {
     inner: &'a dyn Progress,
     steps: u64,

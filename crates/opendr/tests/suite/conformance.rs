@@ -1,4 +1,4 @@
-//! Every learner of the registry keeps every promise of the interface.
+//! Conformance of every learner of the registry to the contract of the interface.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use opendr::{Header, Value, ValueType};
 use crate::models::Models;
 
 #[test]
-fn every_learner_keeps_its_promises() {
+fn every_learner_conforms() {
     let Some(models) = Models::find() else { return };
     let scratch = std::env::temp_dir().join(format!("opendr-conformance-{}", std::process::id()));
     let mut checked = 0;
@@ -60,7 +60,7 @@ fn vectors(model: &Path) -> Vec<Vec<(&'static str, Value)>> {
     stamped(ValueType::Vector, [0.3, 1.0, 2.5].map(vector))
 }
 
-/// What a lidar sees of a street.
+/// A simulated lidar scan of a street.
 fn street(number: usize) -> Value {
     let sample = opendr::simulation::street::StreetScans::new(7, 3).get(number).unwrap();
     match sample.data.into_iter().next() {
@@ -112,7 +112,7 @@ fn with_further_ports(
     calls
 }
 
-/// What a further port gets beside `first`.
+/// The value of a further port beside `first`.
 fn beside(port: &Port, first: &Value, shift: f32) -> Value {
     match (port.value_type, port.name, first) {
         (ValueType::BoundingBoxList, ..) => boxes(shift).into(),
@@ -128,7 +128,7 @@ fn beside(port: &Port, first: &Value, shift: f32) -> Value {
     }
 }
 
-/// Squares of many greys, moved to the right.
+/// A checkerboard image in many greys, moved to the right.
 fn checkered(shift: usize) -> Image {
     let grey = |at: usize| {
         let (x, y) = ((at % 400 + 64 - shift) / 16, at / 400 / 16);
@@ -156,7 +156,7 @@ fn cars(shift: f32) -> BoundingBox3DList {
     [-5.0, 5.0].map(car).to_vec().into()
 }
 
-/// A map of hills.
+/// A heatmap of smooth hills.
 fn values(step: f32) -> Heatmap {
     let values = (0..30 * 40).map(|at| (at as f32 * step).sin() + (at / 40) as f32 / 30.0).collect();
     Heatmap::from_scores(values, &[30, 40]).unwrap()
@@ -181,7 +181,7 @@ fn stamped(kind: ValueType, values: impl IntoIterator<Item = Value>) -> Vec<Vec<
     stamped.collect()
 }
 
-/// All but the test learner, which the engine's own tests check: it takes more than a picture.
+/// All learners but the test learner, which the engine's own tests check: it has inputs besides an image.
 fn learners() -> impl Iterator<Item = &'static Entry> {
     opendr::registry().entries().into_iter().filter(|entry| entry.spec.name != "counter")
 }

@@ -1,4 +1,4 @@
-//! Learners of faces with their real weights: floors of accuracy, and what they answer to frames without a face.
+//! Face learners with their real weights: minimum accuracies, and predictions on frames without a face.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -63,7 +63,7 @@ fn pairs(models: &Models) -> Vec<([PathBuf; 2], bool)> {
 }
 
 #[test]
-fn pairs_of_faces_are_told_apart() {
+fn pairs_of_faces_are_distinguished() {
     let Some(models) = Models::find() else { return };
     let Some(path) = models.get("face_recognition") else { return };
     let params = FaceRecognitionParams::default();
@@ -178,7 +178,7 @@ fn persons_are_known_after_references_and_others_are_not() {
     let strangers = group.boxes.iter().filter(|found| found.name == Name::from("unknown"));
     assert!(strangers.count() >= 5, "{group:#}");
 
-    // The stranger joins those that are known.
+    // The unknown person joins the known ones.
     let place = folder.0.join("more/person_new");
     fs::create_dir_all(&place).unwrap();
     fs::copy(&stranger[0], place.join("a.jpg")).unwrap();
@@ -186,7 +186,7 @@ fn persons_are_known_after_references_and_others_are_not() {
     opendr::vision::save(&black(), folder.0.join("more/nobody/black.png")).unwrap();
     let dataset = ExternalDataset::new(folder.0.join("more"), "imagenet");
     let error = fit(&mut *learner, "faceless", &dataset, false).unwrap_err();
-    assert!(error.to_string().contains("no picture shows a face of nobody"), "{error}");
+    assert!(error.to_string().contains("no image has a face of nobody"), "{error}");
     fs::remove_dir_all(folder.0.join("more/nobody")).unwrap();
     fit(&mut *learner, "second", &dataset, false).unwrap();
     assert_eq!(learner.classes().len(), known.len() + 1);
@@ -220,7 +220,7 @@ fn frames_without_a_face_and_crops_have_answers() {
     let group = faces.infer(&photo(&models, "t1.jpg")).unwrap();
     assert_eq!(group.boxes.len(), 6);
     assert!(group.boxes.iter().all(|found| found.name == Name::from("unknown") && found.confidence > 0.99));
-    faces.set("picture", "face".into()).unwrap();
+    faces.set("input_kind", "face".into()).unwrap();
     let crop = faces.infer(&black()).unwrap();
     assert_eq!((crop.boxes.len(), crop.boxes[0].corners()), (1, [0.0, 0.0, 320.0, 240.0]));
 
@@ -232,7 +232,7 @@ fn frames_without_a_face_and_crops_have_answers() {
     assert_eq!(happy.description.as_deref(), Some("happy"));
     assert!(happy.confidence.unwrap() > 0.95 && happy.probabilities.len() == 7, "{happy:?}");
     emotion.infer(&photo(&models, "t1.jpg")).unwrap();
-    emotion.set("picture", "face".into()).unwrap();
+    emotion.set("input_kind", "face".into()).unwrap();
     assert!((0..7).contains(&emotion.infer(&black()).unwrap().class));
 
     let Some(mut mesh) = handle::<FaceMesh>(&models, FaceMeshParams::default()) else { return };
@@ -301,7 +301,7 @@ fn mesh_lies_on_the_face_and_follows_it() {
     assert_eq!(ids(many.infer(&group).unwrap()), all);
 }
 
-/// The picture, `by` pixels further right.
+/// The image, `by` pixels further right.
 fn shifted(image: &Image, by: usize) -> Image {
     let (width, height) = (image.width(), image.height());
     let pixels = image.hwc_u8(opendr::data::PixelFormat::Rgb);
@@ -316,7 +316,7 @@ fn shifted(image: &Image, by: usize) -> Image {
 /// A cloth over nose, mouth and chin makes a face another class. It is not drawn as those that were learned from; of nine faces in
 /// photos, bare and covered, the network is wrong about few.
 #[test]
-fn faces_with_masks_are_told() {
+fn faces_with_masks_are_recognised() {
     let Some(models) = Models::find() else { return };
     let Some(path) = models.get("yunet/masked") else { return };
     let mut finder = Handle::<Yunet>::new(YunetParams::default(), Device::Cpu).unwrap();
@@ -339,7 +339,7 @@ fn faces_with_masks_are_told() {
     assert!(masked[0] >= 7 && masked[1] + 2 >= masked[0], "covered: {masked:?}");
 }
 
-/// Draws a light cloth over the lower half of a face, that lets a little of what it hides through.
+/// Draws a light, slightly transparent cloth over the lower half of a face.
 fn cover(picture: &mut Image, face: &BoundingBox) {
     let (left, right) = (face.left + 0.08 * face.width, face.left + 0.92 * face.width);
     let (top, bottom) = (face.landmarks[2][1] - 0.12 * face.height, face.top + 0.97 * face.height);

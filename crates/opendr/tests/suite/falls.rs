@@ -1,4 +1,4 @@
-//! Falls in pictures, with the models of the zoo.
+//! Fall detection in images, with the models of the zoo.
 
 use opendr::data::{Image, Pixels};
 use opendr::fall_detection::{FallDetector, FallDetectorParams, FallDetectorTargets};
@@ -14,7 +14,7 @@ fn count(targets: &FallDetectorTargets, class: i64) -> usize {
     targets.falls.boxes.iter().filter(|person| person.name == class.into()).count()
 }
 
-/// The picture by a quarter turn.
+/// The image rotated by a quarter turn.
 fn lying(picture: &Image) -> Image {
     let (width, height) = (picture.width(), picture.height());
     let Pixels::U8(pixels) = picture.pixels() else { panic!("no picture of bytes") };
@@ -28,7 +28,7 @@ fn lying(picture: &Image) -> Image {
 }
 
 #[test]
-fn whoever_lies_has_fallen() {
+fn lying_persons_have_fallen() {
     let Some(models) = Models::find() else { return };
     let picture = opendr::vision::open(models.data("photos/bus.jpg")).unwrap();
     let mut handle = Handle::<FallDetector>::new(FallDetectorParams::default(), Device::Cpu).unwrap();

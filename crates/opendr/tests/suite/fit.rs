@@ -1,4 +1,4 @@
-//! `fit` as every surface calls it, with the learner made for tests.
+//! `fit` as every surface calls it, with the test learner.
 
 use std::fs;
 use std::path::PathBuf;
@@ -65,15 +65,15 @@ fn fit(dataset: &dyn DatasetIterator, options: &FitOptions, progress: &dyn Progr
     Ok(fitted)
 }
 
-/// Stops after as many samples, and remembers what it was told.
+/// Stops after a number of samples, and records notes.
 struct StopAfter {
     left: AtomicU64,
-    told: Mutex<Vec<String>>,
+    notes: Mutex<Vec<String>>,
 }
 
 impl StopAfter {
     fn new(samples: u64) -> Self {
-        Self { left: AtomicU64::new(samples), told: Mutex::default() }
+        Self { left: AtomicU64::new(samples), notes: Mutex::default() }
     }
 }
 
@@ -88,7 +88,7 @@ impl Progress for StopAfter {
     fn end(&self) {}
 
     fn note(&self, line: &str) {
-        self.told.lock().unwrap().push(line.to_owned());
+        self.notes.lock().unwrap().push(line.to_owned());
     }
 
     fn stopped(&self) -> bool {
@@ -116,13 +116,13 @@ fn model_and_report_lie_in_the_output_folder() {
 }
 
 #[test]
-fn a_training_that_was_stopped_goes_on() {
+fn a_stopped_training_resumes() {
     let place = Place::new();
     let mut options = place.options(r#"{"params": {"epochs": 3}}"#);
     let stop = StopAfter::new(7);
     let stopped = fit(&Boxes(5), &options, &stop).unwrap();
     assert_eq!((stopped.complete, stopped.statistics.curves["loss"].len()), (false, 1));
-    assert!(stop.told.lock().unwrap().iter().any(|line| line.starts_with("stopped: ")));
+    assert!(stop.notes.lock().unwrap().iter().any(|line| line.starts_with("stopped: ")));
     let error = fit(&Boxes(5), &options, &Silent).unwrap_err();
     assert!(error.kind() == ErrorKind::InvalidInput && error.to_string().contains("is not empty"), "{error}");
     options.resume = true;
@@ -142,7 +142,7 @@ fn val_data_are_measured() {
 }
 
 #[test]
-fn a_teacher_that_answers_something_else_is_refused() {
+fn a_teacher_with_other_predictions_is_refused() {
     let place = Place::new();
     let (mut learner, entry) = counter();
     let mut teacher = {
@@ -160,14 +160,17 @@ fn a_teacher_that_answers_something_else_is_refused() {
 }
 
 #[test]
-fn what_cannot_be_is_told_before_anything_is_written() {
+fn invalid_options_are_refused_before_anything_is_written() {
     let place = Place::new();
     let refused = |json: &str, wanted: &str| {
         let error = fit(&Boxes(2), &place.options(json), &Silent).unwrap_err();
         assert!(error.to_string().contains(wanted), "{error}");
         assert!(!place.0.exists());
     };
-    refused(r#"{"params": {"epoch": 3}}"#, "fit of CounterLearner has no \"epoch\"; there are epochs, lr");
+    refused(
+        r#"{"params": {"epoch": 3}}"#,
+        "fit of CounterLearner has no parameter \"epoch\"; it has epochs, lr",
+    );
     refused(r#"{"params": {"epochs": 0}}"#, "out of range");
     refused(r#"{"params": {"epochs": "many"}}"#, "epochs = many should be");
     let entry = opendr::registry().find("yunet").unwrap();

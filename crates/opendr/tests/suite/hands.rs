@@ -1,4 +1,4 @@
-//! Gestures of hands in pictures and videos, with the models of the zoo.
+//! Hand gestures in images and videos, with the models of the zoo.
 
 use opendr::data::Image;
 use opendr::gesture_recognition::{HandGesture, HandGestureParams};
@@ -25,7 +25,7 @@ fn first(list: &BoundingBoxList) -> Option<&str> {
 }
 
 #[test]
-fn open_hands_and_fists_are_told() {
+fn open_hands_and_fists_are_recognised() {
     let Some(models) = Models::find() else { return };
     let Some(mut handle) = handle(&models, false) else { return };
     // As their joints are annotated, these hands are spread, and those are closed around something.

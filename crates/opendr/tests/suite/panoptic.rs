@@ -1,4 +1,4 @@
-//! Panoptic segmentation with the real weights of its parts.
+//! Panoptic segmentation with real weights.
 
 use opendr::data::Image;
 use opendr::dataset::{DatasetIterator as _, ExternalDataset};

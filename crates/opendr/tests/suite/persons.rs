@@ -1,4 +1,4 @@
-//! Persons' pixels with the real weights.
+//! Person segmentation with real weights.
 
 use opendr::data::Image;
 use opendr::dataset::{DatasetIterator as _, ExternalDataset};
@@ -47,7 +47,7 @@ fn persons_before_the_bus() {
         let pixels = image.width() * image.height();
         assert!((0..pixels).all(|at| count(at) <= 1), "{name}: a pixel of two persons");
         let here = (0..pixels).map(count).sum::<usize>() as f64 / pixels as f64;
-        println!("{name}: {here:.3} of the picture, {found:#}");
+        println!("{name}: {here:.3} of the image, {found:#}");
         assert!(share.contains(&here), "{name}: {here}");
         assert!((least..=most).contains(&found.boxes.len()), "{name}: {found:#}");
     }
@@ -108,10 +108,10 @@ fn persons_of_coco_are_found() {
     assert!(overlap >= 0.65 && 2 * found >= there, "{overlap} {found}/{there}");
 }
 
-/// MediaPipe 0.10.9's own runs of the two networks say 0.545 and 0.551 of the picture; both count the helmet before her,
-/// which DeepLab does not.
+/// MediaPipe 0.10.9's own runs of the two networks return 0.545 and 0.551 of the image; both count the helmet in front of
+/// her, which DeepLab does not.
 #[test]
-fn the_astronaut_is_told_from_her_background() {
+fn the_astronaut_is_segmented_from_the_background() {
     let Some(models) = Models::find() else { return };
     let Some(deeplab) = labels(&models, "deeplab", "astronaut.png") else { return };
     for (spec, wanted) in [("selfie_segmentation", 0.545), ("selfie_segmentation/landscape", 0.551)] {
@@ -121,7 +121,7 @@ fn the_astronaut_is_told_from_her_background() {
         let persons = deeplab.iter().zip(&labels).filter(|(label, _)| **label == 15);
         let (all, found) =
             persons.fold((0.0, 0.0), |(all, found), (_, label)| (all + 1.0, found + f64::from(*label)));
-        println!("{spec}: {share:.4} of the picture, {:.4} of DeepLab's person", found / all);
+        println!("{spec}: {share:.4} of the image, {:.4} of DeepLab's person", found / all);
         assert!((share - wanted).abs() < 0.01 && found / all > 0.95, "{spec}: {share} {}", found / all);
     }
 }

@@ -1,4 +1,4 @@
-//! Learners one behind the other, with the models of the zoo.
+//! Pipelines with the models of the zoo.
 
 use opendr::data::Image;
 use opendr::learner::{AnyLearner, Entry, Outputs, Ports};
@@ -85,7 +85,7 @@ fn each_box_is_a_picture_of_its_own() {
     let Some(models) = Models::find() else { return };
     let Some((detector, faces)) = learner(&models, "yunet") else { return };
     let Some((entry, mut emotions)) = learner(&models, "facial_emotion") else { return };
-    emotions.set("picture", "face".into()).unwrap();
+    emotions.set("input_kind", "face".into()).unwrap();
     let pipeline = Pipeline::default().then(detector, faces.as_ref()).unwrap();
     let mut pipeline = pipeline.then_each(entry, emotions.as_ref()).unwrap();
     let astronaut = picture(&models, "astronaut.png");
@@ -118,7 +118,7 @@ fn each_box_is_a_picture_of_its_own() {
     else {
         panic!("{outputs}")
     };
-    let inside = poses.poses.iter().flat_map(|pose| &pose.keypoints).filter(|point| point.is_found());
+    let inside = poses.poses.iter().flat_map(|pose| &pose.keypoints).filter(|point| point.is_detected());
     let in_a_box =
         |x: f32, y: f32| {
             boxes.boxes.iter().map(opendr::target::BoundingBox::corners).any(|[x0, y0, x1, y1]| {

@@ -1,4 +1,4 @@
-//! Learners of whole pictures with their real weights: classes, maps of classes, grasps.
+//! Learners of whole images with real weights: classification, segmentation, grasps.
 
 use std::path::PathBuf;
 
@@ -25,7 +25,7 @@ fn of_models(models: &Models, name: &str) -> PathBuf {
 }
 
 #[test]
-fn photographs_are_told() {
+fn photographs_are_classified() {
     let Some(models) = Models::find() else { return };
     let Some(mut learner) = learner(&models, "image_classifier/mobilenet_v2") else { return };
     let cases = [
@@ -57,7 +57,7 @@ fn persons_wake_it() {
         };
         let pixels = (image.width() * image.height()) as f32;
         let is_person = |one: &&BoundingBox| boxes.label(one) == Some("person");
-        // As in the data that it was trained on, persons count from half a percent of the picture on.
+        // As in the data that it was trained on, persons count from half a percent of the image on.
         let wanted = boxes.boxes.iter().filter(is_person).any(|one| one.area() > 0.005 * pixels);
         let answer = learner.infer(&Ports::one(image)).unwrap();
         let Some(Value::Category(category)) = answer.first() else { panic!("{answer:?}") };
@@ -104,7 +104,7 @@ fn the_bird_lies_where_it_is() {
 }
 
 #[test]
-fn the_street_is_told() {
+fn the_street_is_segmented() {
     let Some(models) = Models::find() else { return };
     let Some(overlaps) = overlaps(&models, "deeplab/cityscapes", "cityscapes") else { return };
     let mean = overlaps.iter().map(|(_, overlap)| overlap).sum::<f64>() / overlaps.len() as f64;
@@ -157,6 +157,6 @@ fn depth_is_of_the_picture() {
         learner.infer(&ports).unwrap_err().to_string()
     };
     let mut refused = refused;
-    assert!(refused(&small, &depth).contains("one size"));
+    assert!(refused(&small, &depth).contains("the same size"));
     assert!(refused(&image, &image).contains("millimetres"));
 }

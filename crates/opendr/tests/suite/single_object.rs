@@ -1,4 +1,4 @@
-//! One object is followed with the real network.
+//! Single-object tracking with the real network.
 
 use opendr::data::{Image, Layout, PixelFormat};
 use opendr::learner::Handle;
@@ -29,8 +29,8 @@ const OBJECTS: [(&str, [f32; 4]); 5] = [
     ("photos/chelsea.png", [130.0, 60.0, 190.0, 160.0]),
 ];
 
-/// How far off it may be: 8 pixels of the picture for what is no larger than the network sees it, else 8 of the 127 pixels
-/// to which the network shrinks the object and its surroundings.
+/// Tolerance: 8 pixels of the image for an object that is not larger than in the network's input, else 8 of the 127 pixels
+/// to which the object and its surroundings are downscaled.
 fn allowed([_, _, width, height]: [f32; 4]) -> f32 {
     let context = 0.5 * (width + height);
     let seen = ((width + context) * (height + context)).sqrt();

@@ -1,4 +1,4 @@
-//! Learners of space with their real weights: cars on simulated streets, and KITTI's own.
+//! 3D detectors with real weights: cars on simulated streets, and scans of KITTI.
 
 use opendr::data::PointCloud;
 use opendr::dataset::{DatasetIterator as _, ExternalDataset};
@@ -48,7 +48,7 @@ fn cars_of_simulated_streets_are_found() {
     assert!(numbers["car_3d_moderate_r40"] > LEAST, "{numbers:?}");
 }
 
-/// KITTI's own scans give boxes in the picture, and always the same.
+/// KITTI's own scans give boxes in the image, and always the same.
 #[test]
 fn kittis_scans_are_taken() {
     let Some(models) = Models::find() else { return };

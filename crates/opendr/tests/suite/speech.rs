@@ -1,4 +1,4 @@
-//! Learners that take a stream of sound, with the models of the zoo.
+//! Learners of audio streams, with the models of the zoo.
 
 use std::path::{Path, PathBuf};
 
@@ -68,7 +68,7 @@ fn category(outputs: &Outputs) -> &opendr::target::Category {
     }
 }
 
-/// Every learner that takes sound in pieces, with its model.
+/// Every streaming audio learner, with its model.
 fn listeners(models: &Models) -> Vec<(&'static str, PathBuf)> {
     let entries = opendr::registry().entries().into_iter();
     let entries = entries
@@ -96,7 +96,7 @@ fn pieces_give_the_answers_of_the_whole() {
                 assert_eq!(streamed(&mut *one, &sound, size), whole, "{name}: pieces of {size}");
             }
         }
-        // Two streams in turn, and pieces that are refused between those that are not.
+        // Two interleaved streams, with refused chunks between accepted ones.
         let (mut first, mut second) = (Vec::new(), Vec::new());
         for piece in sound.chunks(3000) {
             push(&mut *one, piece, 16_000, &mut first).unwrap();

@@ -1,4 +1,4 @@
-//! Stereo matching on a pair whose true disparities were measured.
+//! Stereo matching on a pair with measured ground-truth disparities.
 
 use std::fs::File;
 use std::io::Read as _;

@@ -1,4 +1,4 @@
-//! Large pictures in tiles, with the real networks.
+//! Large images in tiles, with the real networks.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use opendr::{Device, ErrorKind, Random, Value};
 use crate::models::Models;
 
 const SIZE: [usize; 2] = [3840, 2160];
-/// The longer side of what is looked for.
+/// Longer side of the objects, in pixels.
 const LONG: f32 = 24.0;
 const OBJECTS: usize = 30;
 
@@ -36,7 +36,7 @@ fn boxes(learner: &mut dyn AnyLearner, image: &Image) -> BoundingBoxList {
     }
 }
 
-/// A part of a picture made smaller, each pixel the mean of those that it stands for.
+/// A downscaled part of an image, each pixel the mean of those that it replaces.
 fn shrunk(part: ImageView<'_>, scale: f32) -> (Vec<[u8; 3]>, usize) {
     let side = |long: usize| ((long as f32 * scale).round() as usize).max(1);
     let (width, height) = (side(part.width()), side(part.height()));
@@ -55,10 +55,10 @@ fn shrunk(part: ImageView<'_>, scale: f32) -> (Vec<[u8; 3]>, usize) {
     ((0..width * height).map(pixel).collect(), width)
 }
 
-/// What is where: class and box.
+/// Class and box of an object.
 type Truth = Vec<(&'static str, [f32; 4])>;
 
-/// A picture, what was asked for in it, and where anything at all is.
+/// An image, its objects of the wanted classes, and the places of all objects.
 struct Scene {
     image: Image,
     truth: Truth,
@@ -88,7 +88,7 @@ fn scene(models: &Models) -> Scene {
             let (long, short) = (one.width.max(one.height), one.width.min(one.height));
             (long >= 100.0 && short >= 40.0).then_some((name, one))
         });
-        // Two of a picture at most, so that there are many.
+        // Two per image at most, so that there are many.
         for (name, one) in usable.take(2) {
             if truth.len() == OBJECTS {
                 break;
@@ -127,7 +127,7 @@ fn scene(models: &Models) -> Scene {
 }
 
 fn overlap(a: [f32; 4], b: [f32; 4]) -> f32 {
-    opendr::overlap::image_overlap(a.map(f64::from), b.map(f64::from)) as f32
+    opendr::overlap::box_iou(a.map(f64::from), b.map(f64::from)) as f32
 }
 
 fn hits(found: &BoundingBoxList, truth: &Truth) -> usize {
@@ -163,7 +163,7 @@ fn things_of_24_pixels_are_found_in_4k() {
         let Some(mut tiled) = learner(&models, &format!("tiled_detection/{name}"), &[]) else { return };
         let (without, with) = (boxes(&mut *plain, &image), boxes(&mut *tiled, &image));
         let (without, hit) = (hits(&without, &truth), hits(&with, &truth));
-        // What else is around an object in its picture may be told too.
+        // Other objects around an object in its image may be detected too.
         let [on_ground, twice] = mistakes(&with, &parts);
         let count = with.boxes.len();
         println!(
@@ -177,7 +177,7 @@ fn things_of_24_pixels_are_found_in_4k() {
     }
 }
 
-/// With a budget (here one that nothing exceeds), parts of tiles that have something in them are looked at side by side.
+/// With a budget (here one that nothing exceeds), parts of tiles that have something in them are processed side by side.
 #[test]
 fn parts_side_by_side_show_nearly_as_much() {
     let Some(models) = Models::find() else { return };
@@ -190,13 +190,13 @@ fn parts_side_by_side_show_nearly_as_much() {
     let [on_ground, twice] = mistakes(&found, &parts);
     println!("{hit} of {OBJECTS} in parts, {wanted} in tiles; {on_ground} of nothing, {twice} twice");
     assert!(3 * hit >= 2 * wanted && on_ground <= 3 && twice == 0, "{hit} of {wanted}, {on_ground}, {twice}");
-    // Nothing moved: the answer stays. Everything goes: nothing stays.
+    // A static scene keeps its predictions; an empty one keeps none.
     assert_eq!(boxes(&mut *packed, &image), found);
     let ground = Image::from_rgb8(vec![130; SIZE[0] * SIZE[1] * 3], SIZE[0], SIZE[1]).unwrap();
     assert!(boxes(&mut *packed, &ground).boxes.is_empty());
 }
 
-/// With few tiles a picture, what is there is found little by little, and stays.
+/// With few tiles per frame, objects are detected over several frames and then kept.
 #[test]
 fn a_few_tiles_at_a_time_find_the_same_in_the_end() {
     let Some(models) = Models::find() else { return };
@@ -217,7 +217,7 @@ fn a_few_tiles_at_a_time_find_the_same_in_the_end() {
     }
     assert!(counts.len() > 2 && counts.is_sorted(), "{counts:?}");
     assert_eq!(boxes(&mut *slowly, &image), wanted, "{counts:?}");
-    // What goes away is told no more.
+    // Objects that disappear are dropped.
     let ground = Image::from_rgb8(vec![130; SIZE[0] * SIZE[1] * 3], SIZE[0], SIZE[1]).unwrap();
     (0..12).for_each(|_| drop(boxes(&mut *slowly, &ground)));
     assert!(boxes(&mut *slowly, &ground).boxes.is_empty());
@@ -239,7 +239,7 @@ fn a_small_picture_is_no_other_than_without_tiles() {
     }
 }
 
-/// A bus and its passengers are larger than tiles: no piece of them is told as another.
+/// A bus and its passengers are larger than tiles: no piece of them is detected as another object.
 #[test]
 fn what_borders_cut_is_one() {
     let Some(models) = Models::find() else { return };
@@ -265,7 +265,7 @@ fn a_part_of_another_kind_is_refused() {
     assert_eq!(learner.load(&model).unwrap_err().kind(), ErrorKind::InvalidInput);
 }
 
-/// Four birds in a picture of twice the size: tiles see each as large as the network wants it.
+/// Four birds in an image of twice the size: each has in a tile the size that the network is trained on.
 #[test]
 fn classes_of_pixels_come_from_the_finest_look() {
     let Some(models) = Models::find() else { return };

@@ -1,4 +1,4 @@
-//! `eval` hands trackers what a MOT data set says was found.
+//! `eval` of trackers on the detections of a MOT data set.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -11,7 +11,7 @@ use opendr::{Device, Silent, TuneData, TuneOptions};
 
 use crate::models::Models;
 
-/// Two videos in which two persons walk past each other; one in ten boxes is missed, and each has an alarm that is false.
+/// Two videos in which two persons walk past each other; one in ten boxes is missing, and each video has a false positive.
 fn folder(name: &str) -> PathBuf {
     let root = std::env::temp_dir().join(format!("opendr-{name}-{}", std::process::id()));
     fs::remove_dir_all(&root).ok();
@@ -74,7 +74,7 @@ fn a_tracker_is_tuned_without_a_training() {
         Ok(learner)
     };
     let external = ExternalDataset::new(folder.clone(), "mot");
-    let data = TuneData::Answers {
+    let data = TuneData::Inference {
         make: &make,
         dataset: DatasetRef::External(&external),
         split: None,
@@ -87,7 +87,7 @@ fn a_tracker_is_tuned_without_a_training() {
         params: ParamMap::new(),
         trials,
         seeds: 3,
-        length: 1000,
+        steps: 1000,
         interval: 10,
         pruner: "asha".into(),
         jobs: 1,

@@ -1,4 +1,4 @@
-//! Whisper with its real weights, on the recordings that come with the package moonshine-voice.
+//! Whisper with real weights, on the recordings of the package moonshine-voice.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -22,7 +22,7 @@ const TWO_CITIES: &str = "It was the best of times, it was the worst of times, i
     was so far like the present period, that some of its noisiest authorities insisted on its being received, for good \
     or for evil, in the superlative degree of comparison only.";
 
-/// The folder of the recordings; `None`, said aloud, where pip does not get them.
+/// The folder of the recordings; prints a line and returns `None` where pip cannot download them.
 fn recordings() -> Option<PathBuf> {
     let root = Path::new(&std::env::var_os("CARGO_MANIFEST_DIR")?).join("../..");
     let cache =

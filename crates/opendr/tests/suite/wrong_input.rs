@@ -1,4 +1,4 @@
-//! What no learner was made for: every one has an answer of numbers for it or a clear error, and goes on as before.
+//! Unusual inputs: every learner returns finite numbers or a clear error, and continues to work.
 
 use std::f32::consts::TAU;
 
@@ -45,7 +45,7 @@ fn infer(learner: &mut dyn AnyLearner, value: &Value) -> Result<Outputs> {
     learner.infer(&Ports::one(value))
 }
 
-/// What is wrong with it: an answer with a number that is none, or an error that does not tell that the input is wrong.
+/// Describes a failure: a prediction with a number that is not finite, or an error of another kind than wrong input.
 fn fault(entry: &Entry, what: &str, answer: Result<Outputs>) -> Option<String> {
     let name = entry.spec.name;
     match answer {
@@ -58,7 +58,7 @@ fn fault(entry: &Entry, what: &str, answer: Result<Outputs>) -> Option<String> {
     }
 }
 
-/// Something that learners of the type were made for.
+/// A usual input of the type.
 fn usual(kind: ValueType) -> Option<Value> {
     Some(match kind {
         ValueType::Image => picture(320, 240, |x, y| [(x % 256) as u8, (y % 256) as u8, 90]),
@@ -70,7 +70,7 @@ fn usual(kind: ValueType) -> Option<Value> {
     })
 }
 
-/// What it may get all the same.
+/// Unusual inputs of the type.
 fn wrong(kind: ValueType) -> Vec<(&'static str, Value)> {
     match kind {
         ValueType::Image => vec![

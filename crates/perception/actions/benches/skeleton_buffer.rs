@@ -1,4 +1,4 @@
-//! Poses of five persons a frame into their moving skeletons: taking a frame in, and giving one person's last 300 frames.
+//! Benchmark of `SkeletonBuffer` with five persons per frame: adding a frame, and returning the last 300 frames of a person.
 //!
 //! `cargo bench -p opendr-actions --bench skeleton_buffer`
 

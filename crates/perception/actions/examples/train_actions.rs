@@ -1,7 +1,8 @@
-//! Trains ST-GCN to tell actions by the moving joints of JHMDB, and measures it, on the first split of the data.
+//! Trains ST-GCN on the skeletons of JHMDB and measures its accuracy on the first split of the data set.
 //!
-//! The joints are the annotated ones of JHMDB (Jhuang et al., 2013), as DD-Net's authors hand them around: 433 recordings to
-//! train on, 176 others to measure on. It makes the zoo's `spatio_temporal_gcn/jhmdb` and `co_st_gcn/jhmdb`:
+//! The joints are the annotated ones of JHMDB (Jhuang et al., 2013), in the files that DD-Net's authors distribute: 433
+//! recordings for training, 176 others for testing. The example produces the zoo's `spatio_temporal_gcn/jhmdb` and
+//! `co_st_gcn/jhmdb`:
 //!
 //! ```console
 //! $ cargo run --release -p opendr-actions --features training --example train_actions -- shared/data/skeleton out
@@ -23,7 +24,7 @@ use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams};
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [skeletons, output] = &arguments[..] else {
-        return Err(Error::invalid_param("give the folder of the joints and one for the models"));
+        return Err(Error::invalid_param("usage: train_actions SKELETON_FOLDER OUTPUT_FOLDER"));
     };
     let part = |name: &str| {
         let dataset = ExternalDataset::new(skeletons, "jhmdb");
@@ -64,21 +65,21 @@ fn main() -> Result<()> {
     co_st_gcn_from(&Model::open(job.model())?)?.write(&steps)?;
     let mut continual = Handle::<CoStGcn>::new(CoStGcnParams::default(), Device::Cpu)?;
     continual.load(&steps)?;
-    let mut right = [0; 2];
+    let mut correct = [0; 2];
     for index in 0..test.len() {
         let sample = test.get(index)?;
         let (Some(Value::SkeletonSequence(sequence)), Some(Value::Category(action))) =
             (sample.data.first(), &sample.target)
         else {
-            return Err(Error::invalid_input("no skeletons with their action"));
+            return Err(Error::invalid_input("the sample has no skeleton sequence with an action"));
         };
         continual.reset();
-        let answers = [clip_wise.infer(sequence)?, continual.infer(sequence)?];
-        right.iter_mut().zip(&answers).for_each(|(right, answer)| {
-            *right += usize::from(answer.class == action.class);
+        let predictions = [clip_wise.infer(sequence)?, continual.infer(sequence)?];
+        correct.iter_mut().zip(&predictions).for_each(|(correct, prediction)| {
+            *correct += usize::from(prediction.class == action.class);
         });
     }
-    let shares = right.map(|right| right as f64 / test.len() as f64);
-    println!("of {} {right:?} are right, clip-wise and frame by frame: {shares:.4?}", test.len());
+    let shares = correct.map(|correct| correct as f64 / test.len() as f64);
+    println!("correct of {}, clip-wise and frame by frame: {correct:?}, accuracy {shares:.4?}", test.len());
     Ok(())
 }

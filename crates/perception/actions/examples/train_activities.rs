@@ -1,8 +1,8 @@
-//! Trains X3D to tell actions in clips of stick figures, and measures it on others.
+//! Trains X3D to classify actions in clips of stick figures and measures its accuracy on other clips.
 //!
-//! There is no video in the clips: the annotated joints of JHMDB (Jhuang et al., 2013) are drawn, bone by bone, each in its own
-//! colour, on black; 433 recordings to train on, each in several versions (mirrored, turned, stretched, cut), 176 others to
-//! measure on. What it learns is to read such drawings, not videos. It makes the zoo's `x3d/stick_figures` and
+//! The clips are no videos: the annotated joints of JHMDB (Jhuang et al., 2013) are drawn on black, each bone in its own
+//! colour; 433 recordings for training, each in several versions (mirrored, rotated, stretched, cut), 176 others for testing.
+//! The network learns to classify such drawings, not videos. The example produces the zoo's `x3d/stick_figures` and
 //! `co_x3d/stick_figures`:
 //!
 //! ```console
@@ -24,7 +24,7 @@ use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams};
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [skeletons, output] = &arguments[..] else {
-        return Err(Error::invalid_param("give the folder of the joints and one for the models"));
+        return Err(Error::invalid_param("usage: train_activities SKELETON_FOLDER OUTPUT_FOLDER"));
     };
     let part = |name: &str, versions: usize| -> Result<StickFigures> {
         let dataset = ExternalDataset::new(skeletons, "jhmdb");
@@ -64,21 +64,21 @@ fn main() -> Result<()> {
         let sample = test.get(index)?;
         let (Some(Value::Video(clip)), Some(Value::Category(action))) = (sample.data.first(), &sample.target)
         else {
-            return Err(Error::invalid_input("no clip with its action"));
+            return Err(Error::invalid_input("the sample has no video with an action"));
         };
         right += usize::from(handle.infer(clip)?.class == action.class);
     }
-    println!("of {} {right} are right: {:.4}", test.len(), right as f64 / test.len() as f64);
+    println!("correct of {}: {right}, accuracy {:.4}", test.len(), right as f64 / test.len() as f64);
     Ok(())
 }
 
-/// Skeletons as clips of stick figures, each in so many versions.
+/// Skeletons drawn as clips of stick figures, each in several versions.
 struct StickFigures {
     skeletons: Box<dyn DatasetIterator>,
     versions: usize,
 }
 
-/// Versions of a recording to train on.
+/// Number of versions of a training recording.
 const VERSIONS: usize = 6;
 
 impl Dataset for StickFigures {}
@@ -91,7 +91,7 @@ impl DatasetIterator for StickFigures {
     fn get(&self, index: usize) -> Result<Sample> {
         let sample = self.skeletons.get(index % self.skeletons.len())?;
         let Some(Value::SkeletonSequence(sequence)) = sample.data.first() else {
-            return Err(Error::invalid_input("no skeletons"));
+            return Err(Error::invalid_input("the sample has no skeleton sequence"));
         };
         let version = match index < self.skeletons.len() {
             true => Version::ORIGINAL,
@@ -105,19 +105,19 @@ impl DatasetIterator for StickFigures {
     }
 }
 
-/// Pixels of a side of a drawing.
+/// Side of a drawing in pixels.
 const SIDE: usize = 48;
-/// Points drawn along a bone.
+/// Number of points drawn along a bone.
 const POINTS: usize = 40;
 
-/// How a recording is drawn.
+/// Random changes of a recording before it is drawn.
 struct Version {
     is_mirrored: bool,
-    /// Radians.
+    /// Rotation in radians.
     turn: f32,
-    /// How much wider.
+    /// Factor on the width.
     stretch: f32,
-    /// What is left out at the beginning and at the end, as shares of the frames.
+    /// Shares of the frames removed at the beginning and at the end.
     cut: [f32; 2],
 }
 
@@ -134,7 +134,7 @@ impl Version {
     }
 }
 
-/// The person drawn so that all its frames fill the square.
+/// Draws the person of a sequence, scaled so that all its frames fill the square.
 fn stick_figure(sequence: &SkeletonSequence, version: &Version) -> Result<Video> {
     let [_, _, all_frames, joints, persons] = sequence.shape();
     let [first, left_out] = version.cut.map(|share| (share * all_frames as f32) as usize);

@@ -1,15 +1,15 @@
-//! Trains the network that tells which faces wear a mask, and measures it.
+//! Trains a classifier of faces with and without mask, and measures it.
 //!
-//! The masks are drawn: over the faces that YuNet finds in COCO's first 128 pictures to train on, and over those in another folder of
-//! pictures to measure on; half of the faces get none, but perhaps dark glasses. It makes the zoo's `image_classifier/masked_face`,
-//! a part of `yunet/masked`:
+//! The masks are synthetic: drawn over the faces that YuNet detects in COCO's first 128 images for training, and over those in
+//! another folder of images for testing; half of the faces have no mask, some of these have dark glasses. The example produces
+//! the zoo's `image_classifier/masked_face`, a part of `yunet/masked`:
 //!
 //! ```console
 //! $ cargo run --release -p opendr-classification --features training --example train_masks -- shared/data/coco128/images YUNET \
 //!       shared/data/face_verification out
 //! ```
 //!
-//! YUNET is a container of YuNet's.
+//! YUNET is a container of YuNet.
 
 use std::path::{Path, PathBuf};
 
@@ -24,27 +24,29 @@ use opendr_engine::{Device, Error, Random, Result, ResultExt, Value};
 use opendr_face_detection::face_detection::{Yunet, YunetParams, mask_crop};
 use opendr_vision::Preprocess;
 
-/// Sides of the pictures that are learned, pixels.
+/// Side of the training images in pixels.
 const SIDE: usize = 40;
 /// Versions of a face, half of them with masks.
 const VERSIONS: usize = 80;
-/// Smaller faces show nothing, pixels.
+/// Minimum side of a face in pixels.
 const SMALLEST: f32 = 20.0;
-/// What is seen of a face's surroundings while a mask is drawn, in longer sides of its box.
+/// Side of the region around a face in which a mask is drawn, in longer sides of its box.
 const AROUND: f32 = 3.0;
 const CLASSES: [&str; 2] = ["face", "masked face"];
 
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [pictures, detector, others, output] = &arguments[..] else {
-        return Err(Error::invalid_param("give PICTURES, YUNET, OTHERS and OUTPUT"));
+        return Err(Error::invalid_param(
+            "usage: train_masks TRAINING_IMAGES YUNET TEST_IMAGES OUTPUT_FOLDER",
+        ));
     };
     let mut finder =
         Handle::<Yunet>::new(YunetParams { threshold: 0.5, ..YunetParams::default() }, Device::Cpu)?;
     finder.load(Path::new(detector))?;
     let training = Crops::of(&mut finder, Path::new(pictures), VERSIONS, 1)?;
     let test = Crops::of(&mut finder, Path::new(others), 2, 2)?;
-    println!("{} crops to train on, {} to measure on", training.len(), test.len());
+    println!("{} crops for training, {} for testing", training.len(), test.len());
     let mut learner = Handle::<ImageClassifier>::new(ImageClassifierParams::default(), Device::Cpu)?;
     let mut params =
         ImageClassifierFitParams { side: SIDE, width: 24, crop: 0.8, dropout: 0.3, ..Default::default() };
@@ -57,17 +59,18 @@ fn main() -> Result<()> {
         for (image, class) in &crops.0 {
             counts[*class][learner.infer(image)?.class as usize] += 1;
         }
-        println!("{what}: rows are the truth, columns the answers, without and with masks: {counts:?}");
+        println!(
+            "{what}: confusion matrix, rows ground truth, columns predictions, without and with mask: {counts:?}"
+        );
     }
     Ok(())
 }
 
-/// Crops of faces, and whether a mask is on them.
+/// Crops of faces, and whether they have a mask.
 struct Crops(Vec<(Image, usize)>);
 
 impl Crops {
-    /// Versions of all faces in the pictures of a folder; those that are not found again once something is drawn over them are
-    /// left out.
+    /// Returns versions of all faces in the images of a folder; faces that are not detected again after drawing are skipped.
     fn of(finder: &mut Handle<Yunet>, folder: &Path, versions: usize, seed: u64) -> Result<Self> {
         let mut random = Random::new(seed);
         let mut crops = Vec::new();
@@ -125,7 +128,8 @@ impl DatasetIterator for Crops {
     }
 
     fn get(&self, index: usize) -> Result<Sample> {
-        let (image, class) = self.0.get(index).ok_or_else(|| Error::not_found(format!("no crop {index}")))?;
+        let (image, class) =
+            self.0.get(index).ok_or_else(|| Error::not_found(format!("there is no crop {index}")))?;
         let target = Category { class: *class as i64, ..Category::default() };
         Ok(Sample { data: vec![Value::Image(image.clone())], target: Some(target.into()) })
     }
@@ -161,7 +165,7 @@ fn cut(picture: &Image, crop: &opendr_vision::Similarity, side: usize) -> Result
     Image::from_rgb8(levels, side, side)
 }
 
-/// A face with its surroundings, and its points there.
+/// Returns a face with its surroundings, and its landmarks there.
 fn region(picture: &Image, face: &BoundingBox) -> Result<(Image, [Point; 5])> {
     let centre = [face.left + face.width / 2.0, face.top + face.height / 2.0];
     let extent = AROUND * face.width.max(face.height);
@@ -174,8 +178,8 @@ fn region(picture: &Image, face: &BoundingBox) -> Result<(Image, [Point; 5])> {
     Ok((cut(picture, &crop, side)?, points))
 }
 
-/// Draws `colour` (of how far along and across the face a place is, and what is there) wherever it gives one; the unit is the
-/// distance of the eyes, the middle the nose.
+/// Draws `colour`, a function of the position along and across the face and of the pixel, wherever it returns one; the unit is
+/// the distance of the eyes, the origin the nose.
 fn draw(
     image: &mut Image,
     [right, left, nose, ..]: &[Point; 5],
@@ -197,7 +201,7 @@ fn draw(
     }
 }
 
-/// What a cloth shows: its colour, in the light that fell on what it hides.
+/// Returns the colour of a cloth.
 fn cloth(random: &mut Random) -> [f32; 3] {
     match random.below(6) {
         0 => [225.0, 228.0, 232.0],
@@ -210,7 +214,7 @@ fn cloth(random: &mut Random) -> [f32; 3] {
 
 fn draw_mask(image: &mut Image, points: &[Point; 5], random: &mut Random) {
     let colour = cloth(random);
-    // Where the mouth is from the nose, in distances of the eyes.
+    // Position of the mouth relative to the nose, in distances of the eyes.
     let (top, chin) = (random.uniform(-0.35, -0.05), random.uniform(1.1, 1.45));
     let (wide, narrow) = (random.uniform(0.75, 1.0), random.uniform(0.35, 0.6));
     let (pleats, phase) = (random.uniform(0.0, 0.12), random.uniform(0.0, 6.0));
@@ -234,11 +238,11 @@ fn draw_mask(image: &mut Image, points: &[Point; 5], random: &mut Random) {
     });
 }
 
-/// Other light, another camera.
+/// Changes illumination and colours at random.
 fn relight(image: &mut Image, random: &mut Random) {
     let (power, gain) = (random.uniform(-0.7, 0.7).exp(), random.uniform(0.6, 1.3));
     let tint = [0; 3].map(|_| random.uniform(0.85, 1.15));
-    // From no colours to more than there were.
+    // From no saturation to a higher one.
     let (colour, grain) = (random.uniform(0.0, 1.4), random.uniform(0.0, 12.0));
     let Some(levels) = image.bytes_mut() else { return };
     for pixel in levels.chunks_exact_mut(3) {

@@ -1,4 +1,4 @@
-//! Batches of pictures with classes.
+//! Batches of images with classes.
 
 use burn::nn::loss::{CrossEntropyLoss, CrossEntropyLossConfig};
 use burn::tensor::{Device, Int, Tensor, TensorData};
@@ -8,20 +8,20 @@ use opendr_engine::dataset::Sample;
 use opendr_perception_common::labelled::class_of;
 use opendr_vision::Preprocess;
 
-/// Makes [`LabelledPictures`].
+/// Collates [`LabelledPictures`].
 pub struct PictureCollator {
     pictures: ImageBatches,
     classes: usize,
 }
 
-/// Pictures and the number of the class of each.
+/// Batch of images and their class indices.
 pub struct LabelledPictures {
     pictures: ImageBatch,
     classes: Vec<i64>,
 }
 
 impl PictureCollator {
-    /// Of pictures as `preprocess` makes them, each of a class below `classes`.
+    /// Creates a collator of images preprocessed by `preprocess`, with classes below `classes`.
     pub fn new(preprocess: Preprocess, classes: usize) -> Self {
         Self { pictures: ImageBatches::new(preprocess), classes }
     }
@@ -43,12 +43,13 @@ impl Collate for PictureCollator {
 }
 
 impl LabelledPictures {
-    /// The pictures `[batch, 3, height, width]`.
+    /// Returns the images `[batch, 3, height, width]`.
     pub fn pictures(&self, device: &Device) -> Tensor<4> {
         Tensor::from_data(TensorData::new(self.pictures.values().to_vec(), self.pictures.shape()), device)
     }
 
-    /// The mean cross-entropy of logits `[batch, classes]`, with `smoothing` of the probability spread over all classes.
+    /// Returns the mean cross-entropy of logits `[batch, classes]`, with `smoothing` of the probability spread over all
+    /// classes.
     pub fn cross_entropy(&self, logits: Tensor<2>, smoothing: f64, device: &Device) -> Tensor<1> {
         let classes = TensorData::new(self.classes.clone(), [self.classes.len()]);
         let loss: CrossEntropyLoss = CrossEntropyLossConfig::new()

@@ -1,20 +1,21 @@
-//! How long voxelisation and turned suppression take; `benches/space.py` compares them with Python.
+//! Measures the time of voxelisation and of non-maximum suppression of rotated boxes; `benches/space.py` compares it with
+//! Python.
 //!
 //! ```console
 //! $ cargo run --release -p opendr-clouds --example space_speed -- points.bin boxes.bin
 //! ```
 //!
-//! `points.bin` has x, y, z and reflectance of points, `boxes.bin` x, y, length, width, yaw and score of boxes: 32-bit floats.
-//! It prints the median of some rounds, in seconds, and what came out, as JSON.
+//! `points.bin` contains x, y, z and reflectance of points, `boxes.bin` x, y, length, width, yaw and score of boxes, both as
+//! 32-bit floats. The example prints the median of 15 rounds in seconds, and the sizes of the results, as JSON.
 
 use std::time::Instant;
 
 use opendr_clouds::pillars::{PillarGrid, PillarPoint, Voxeliser, scatter};
 use opendr_engine::overlap::RotatedRectangle;
 use opendr_engine::{Error, Result};
-use opendr_perception_common::suppression::{StandingCandidate, suppress_standing};
+use opendr_perception_common::suppression::{BevCandidate, suppress_bev};
 
-/// The grid of PointPillars' paper for cars.
+/// Grid of the PointPillars paper for cars.
 const GRID: PillarGrid = PillarGrid { x: [0.0, 69.12], y: [-39.68, 39.68], z: [-3.0, 1.0], side: 0.16 };
 const ROUNDS: usize = 15;
 const OVERLAP: f32 = 0.1;
@@ -22,7 +23,7 @@ const OVERLAP: f32 = 0.1;
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [points, boxes] = &arguments[..] else {
-        return Err(Error::invalid_param("give a file of points and one of boxes"));
+        return Err(Error::invalid_param("usage: space_speed POINTS_FILE BOXES_FILE"));
     };
     let (points, boxes) = (floats(points)?, floats(boxes)?);
     let mut voxeliser = Voxeliser::default();
@@ -43,7 +44,7 @@ fn main() -> Result<()> {
     let (mut kept, mut dropped) = (Vec::new(), Vec::new());
     let suppress = median(|| {
         kept.clone_from(&candidates);
-        suppress_standing(&mut kept, &mut dropped, OVERLAP, usize::MAX);
+        suppress_bev(&mut kept, &mut dropped, OVERLAP, usize::MAX);
     });
     println!(
         "{{\"voxelise\": {voxelise}, \"points\": {}, \"pillars\": {}, \"suppress\": {suppress}, \"kept\": {}}}",
@@ -54,11 +55,11 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-fn candidate(index: u32, numbers: &[f32]) -> StandingCandidate {
+fn candidate(index: u32, numbers: &[f32]) -> BevCandidate {
     let number = |at: usize| numbers.get(at).copied().map_or(f64::NAN, f64::from);
     let floor =
         RotatedRectangle { center: [number(0), number(1)], size: [number(2), number(3)], angle: number(4) };
-    StandingCandidate { floor, score: number(5) as f32, class: 0, index }
+    BevCandidate { footprint: floor, score: number(5) as f32, class: 0, index }
 }
 
 fn floats(path: &str) -> Result<Vec<f32>> {

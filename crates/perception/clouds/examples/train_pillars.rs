@@ -1,14 +1,16 @@
-//! Trains PointPillars on simulated streets, and measures it on others.
+//! Trains PointPillars on simulated streets and measures it on other streets.
 //!
-//! The scans are synthetic: boxes with hoods and roofs on sloping ground, seen by a ray caster with the geometry, noise and
-//! losses of KITTI's lidar (`opendr_simulation::street`). It makes the zoo's `voxel_object_detection_3d/pointpillars_car`:
+//! The scans are synthetic: boxes with hoods and roofs on sloping ground, scanned by a ray caster with the geometry, noise and
+//! losses of KITTI's lidar (`opendr_simulation::street`). The example produces the zoo's
+//! `voxel_object_detection_3d/pointpillars_car`:
 //!
 //! ```console
 //! $ cargo run --release -p opendr-clouds --features training --example train_pillars -- out 4000
 //! ```
 //!
-//! The second argument is the number of optimiser steps, of four scans each. With 0 it only measures what lies in `out`. A
-//! folder of KITTI's object benchmark as third has its cars within 30 metres counted too. It goes on where it was stopped.
+//! The second argument is the number of optimiser steps, of four scans each. With 0 the example only measures the model in
+//! `out`. With a folder of KITTI's object benchmark as third argument, its cars within 30 metres are counted, too. An
+//! interrupted training resumes.
 
 use std::path::Path;
 use std::time::Instant;
@@ -19,14 +21,14 @@ use opendr_clouds::object_detection_3d::{
 use opendr_datasets::{OpenOptions, Problems, open};
 use opendr_engine::dataset::{DatasetIterator, ExternalDataset};
 use opendr_engine::learner::{FitJob, Handle};
-use opendr_engine::overlap::StandingBox;
+use opendr_engine::overlap::UprightBox3D;
 use opendr_engine::target::{BoundingBox3D, BoundingBox3DList};
 use opendr_engine::{Device, Error, Progress, Result, Unit, Value};
 use opendr_metrics::{Kitti, Metric};
 use opendr_simulation::street::StreetScans;
 use opendr_training::TrainingParams;
 
-/// Streets to train on and to measure on: seeds and numbers.
+/// Seeds and numbers of the streets for training and testing.
 const TRAINING: (u64, usize) = (1, 40_000);
 const TEST: (u64, usize) = (2, 200);
 
@@ -35,10 +37,10 @@ fn main() -> Result<()> {
     let (output, steps, kitti) = match &arguments[..] {
         [output, steps] => (Path::new(output), steps, None),
         [output, steps, kitti] => (Path::new(output), steps, Some(kitti)),
-        _ => return Err(Error::invalid_param("give a folder for the model and a number of steps")),
+        _ => return Err(Error::invalid_param("usage: train_pillars OUTPUT_FOLDER STEPS [KITTI_FOLDER]")),
     };
     let steps: u64 =
-        steps.parse().map_err(|_| Error::invalid_param("the second argument is a number of steps"))?;
+        steps.parse().map_err(|_| Error::invalid_param("the second argument must be a number of steps"))?;
     let params = VoxelObjectDetection3dParams { threshold: 0.05, ..Default::default() };
     let mut handle = Handle::<VoxelObjectDetection3d>::new(params, Device::Cpu)?;
     let job = FitJob { device: Device::Cpu, resume: true, progress: &Lines, ..FitJob::new(output) };
@@ -62,11 +64,11 @@ fn main() -> Result<()> {
     let mut metric = Kitti::default();
     let (mut seconds, mut near) = (0.0, [0; 3]);
     for index in 0..streets.len() {
-        let (found, truth, took) = answer(&mut handle, &streets, index)?;
-        metric.update(index, &found, &truth)?;
+        let (found, ground_truth, took) = predict(&mut handle, &streets, index)?;
+        metric.update(index, &found, &ground_truth)?;
         seconds += took;
-        // What is hidden altogether is nobody's mistake; KITTI's 3 is "not known".
-        let counted = within_30_metres(&found, &truth, 3);
+        // Fully hidden cars are ignored; KITTI's occlusion 3 is "unknown".
+        let counted = within_30_metres(&found, &ground_truth, 3);
         near = [0, 1, 2].map(|at| near[at] + counted[at]);
     }
     for (name, value) in &metric.finish().statistics.scalars {
@@ -75,15 +77,15 @@ fn main() -> Result<()> {
         }
     }
     println!("{} streets, {:.1} ms each", streets.len(), 1e3 * seconds / streets.len() as f64);
-    println!("cars within 30 m: {} found, {} missed, {} false", near[0], near[1], near[2]);
+    println!("cars within 30 m: {} detected, {} missed, {} false positives", near[0], near[1], near[2]);
     let Some(kitti) = kitti else { return Ok(()) };
     let dataset =
         open(&ExternalDataset::new(kitti, "kitti"), &OpenOptions::default(), &Problems::skipping())?;
     for index in 0..dataset.len() {
-        let (found, truth, took) = answer(&mut handle, &*dataset, index)?;
-        let [hit, missed, wrong] = within_30_metres(&found, &truth, i32::MAX);
+        let (found, ground_truth, took) = predict(&mut handle, &*dataset, index)?;
+        let [hit, missed, wrong] = within_30_metres(&found, &ground_truth, i32::MAX);
         println!(
-            "KITTI {}: {hit} found, {missed} missed, {wrong} false within 30 m; {:.0} ms",
+            "KITTI {}: {hit} detected, {missed} missed, {wrong} false positives within 30 m; {:.0} ms",
             dataset.name(index),
             1e3 * took
         );
@@ -92,7 +94,7 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-fn answer(
+fn predict(
     handle: &mut Handle<VoxelObjectDetection3d>,
     dataset: &dyn DatasetIterator,
     index: usize,
@@ -101,43 +103,53 @@ fn answer(
     let scan = match sample.data.first() {
         Some(Value::PointCloudWithCalibration(scan)) => Scan::from(scan),
         Some(Value::PointCloud(cloud)) => Scan::from(cloud),
-        _ => return Err(Error::invalid_input("no scan")),
+        _ => return Err(Error::invalid_input("the sample has no scan")),
     };
-    let Some(Value::BoundingBox3DList(truth)) = sample.target else {
-        return Err(Error::invalid_input("no boxes"));
+    let Some(Value::BoundingBox3DList(ground_truth)) = sample.target else {
+        return Err(Error::invalid_input("the sample has no boxes"));
     };
     let begin = Instant::now();
     let found = handle.infer(scan)?;
-    Ok((found, truth, begin.elapsed().as_secs_f64()))
+    Ok((found, ground_truth, begin.elapsed().as_secs_f64()))
 }
 
-/// Boxes that a user would be told of have this score.
-const TOLD: f32 = 0.3;
+/// Minimum score of a counted detection.
+const MIN_SCORE: f32 = 0.3;
 
-/// Cars found, missed and falsely told, no farther away than 30 metres; boxes must share half of their volume. Cars as hidden
-/// as `hidden` are not asked for.
-fn within_30_metres(found: &BoundingBox3DList, truth: &BoundingBox3DList, hidden: i32) -> [usize; 3] {
+/// Returns the numbers of detected, missed and falsely detected cars within 30 metres; boxes match from a volume IoU of 0.5.
+/// Cars with an occlusion of at least `hidden` are ignored.
+fn within_30_metres(found: &BoundingBox3DList, ground_truth: &BoundingBox3DList, hidden: i32) -> [usize; 3] {
     let near = |found: &&BoundingBox3D| {
         found.location[0].hypot(found.location[2]) < 30.0 && found.name == "Car".into()
     };
     let standing = |found: &BoundingBox3D| {
         let (size, place) = (found.dimensions.map(f64::from), found.location.map(f64::from));
-        StandingBox::in_camera(size, place, f64::from(found.rotation_y))
+        UprightBox3D::from_kitti(size, place, f64::from(found.rotation_y))
     };
-    let all: Vec<_> = truth.boxes.iter().filter(|truth| truth.name == "Car".into()).map(standing).collect();
+    let all: Vec<_> = ground_truth
+        .boxes
+        .iter()
+        .filter(|ground_truth| ground_truth.name == "Car".into())
+        .map(standing)
+        .collect();
     let told: Vec<_> =
-        found.boxes.iter().filter(near).filter(|found| found.confidence >= TOLD).map(standing).collect();
-    let asked = truth.boxes.iter().filter(near).filter(|truth| truth.occluded < hidden).map(standing);
+        found.boxes.iter().filter(near).filter(|found| found.confidence >= MIN_SCORE).map(standing).collect();
+    let asked = ground_truth
+        .boxes
+        .iter()
+        .filter(near)
+        .filter(|ground_truth| ground_truth.occluded < hidden)
+        .map(standing);
     let (mut hit, mut missed) = (0, 0);
     for car in asked {
-        let is_found = told.iter().any(|told| told.overlap(&car) > 0.5);
+        let is_found = told.iter().any(|told| told.iou(&car) > 0.5);
         *if is_found { &mut hit } else { &mut missed } += 1;
     }
-    let wrong = told.iter().filter(|told| all.iter().all(|car| told.overlap(car) <= 0.5)).count();
+    let wrong = told.iter().filter(|told| all.iter().all(|car| told.iou(car) <= 0.5)).count();
     [hit, missed, wrong]
 }
 
-/// Prints how it goes.
+/// Prints the progress.
 struct Lines;
 
 impl Progress for Lines {

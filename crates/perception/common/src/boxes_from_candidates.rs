@@ -1,13 +1,13 @@
-//! From what a suppression leaves to boxes in a picture.
+//! Conversion of candidates after suppression to boxes in image pixels.
 
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes};
 use opendr_vision::InputGeometry;
 
 use crate::suppression::Candidate;
 
-/// Replaces the boxes of `list` by `candidates`, brought back to the picture's pixels and cut at its border.
+/// Replaces the boxes of `list` by `candidates`, mapped from the network's input to image pixels and clipped to the image.
 ///
-/// Candidates that lie outside the picture altogether are left out.
+/// Candidates that lie outside the image are dropped.
 pub fn boxes_from_candidates(
     list: &mut BoundingBoxList,
     candidates: &[Candidate],

@@ -1,22 +1,23 @@
-//! From a classifier's outputs to a category.
+//! Categories from the outputs of a classifier.
 
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Error, Result};
 
-/// Fills `category` with the class of the highest of `logits`, its probability and those of all classes.
+/// Fills `category` with the class of the highest of `logits`, and with the softmax of all.
 ///
 /// # Errors
-/// `Format` when there are no logits, or not as many as `classes` names; `InvalidInput` when they are no numbers.
+/// `Format` when there are no logits, or their number differs from that of `classes`; `InvalidInput` when one is not
+/// finite.
 pub fn category_from_logits(category: &mut Category, logits: &[f32], classes: &Classes) -> Result<()> {
     let highest = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     category.probabilities.clear();
     category.probabilities.extend(logits.iter().map(|logit| (logit - highest).exp()));
-    shares(category);
-    highest_wins(category, classes)
+    normalise(category);
+    fill_from_highest(category, classes)
 }
 
-/// Fills `category` with the class of the highest of `scores`, none below 0; its probability and those of all classes
-/// are their shares in the sum.
+/// Fills `category` with the class of the highest of the non-negative `scores`; its probabilities are the scores divided by
+/// their sum.
 ///
 /// # Errors
 /// As [`category_from_logits`].
@@ -27,16 +28,16 @@ pub fn category_from_scores(
 ) -> Result<()> {
     category.probabilities.clear();
     category.probabilities.extend(scores);
-    shares(category);
-    highest_wins(category, classes)
+    normalise(category);
+    fill_from_highest(category, classes)
 }
 
-fn shares(category: &mut Category) {
+fn normalise(category: &mut Category) {
     let sum: f32 = category.probabilities.iter().sum();
     category.probabilities.iter_mut().for_each(|probability| *probability /= sum);
 }
 
-/// Fills `category` with the class of the highest of `probabilities`, and with all of them.
+/// Fills `category` with the class of the highest of `probabilities`, and with all probabilities.
 ///
 /// # Errors
 /// As [`category_from_logits`].
@@ -47,11 +48,11 @@ pub fn category_from_probabilities(
 ) -> Result<()> {
     category.probabilities.clear();
     category.probabilities.extend(probabilities);
-    highest_wins(category, classes)
+    fill_from_highest(category, classes)
 }
 
-/// Fills `category` with class 1 where something `holds`, else 0; `probability` is that of class 1.
-pub fn category_of_two(category: &mut Category, holds: bool, probability: f32, classes: &Classes) {
+/// Fills the binary `category`: class 1 where `holds`, else class 0; `probability` is that of class 1.
+pub fn binary_category(category: &mut Category, holds: bool, probability: f32, classes: &Classes) {
     category.class = i64::from(holds);
     category.description = classes.name(category.class).cloned();
     category.confidence = Some(if holds { probability } else { 1.0 - probability });
@@ -59,16 +60,16 @@ pub fn category_of_two(category: &mut Category, holds: bool, probability: f32, c
     category.probabilities.extend([1.0 - probability, probability]);
 }
 
-fn highest_wins(category: &mut Category, classes: &Classes) -> Result<()> {
+fn fill_from_highest(category: &mut Category, classes: &Classes) -> Result<()> {
     let (scores, names) = (category.probabilities.len(), classes.len());
     if scores == 0 || !(names == 0 || names == scores) {
         return Err(Error::format(format!(
-            "the model gives {scores} scores for {names} classes; export it with the classes it was trained on"
+            "the model has {scores} scores for {names} classes; export it with the classes of its training"
         )));
     }
     if !category.probabilities.iter().all(|probability| probability.is_finite()) {
         return Err(Error::invalid_input(
-            "the network's scores are no numbers: the input is far out of the range that it was made for",
+            "the network's scores are not finite; check that the values of the input are in the range of its training data",
         ));
     }
     let highest = category.probabilities.iter().copied().fold(f32::NEG_INFINITY, f32::max);

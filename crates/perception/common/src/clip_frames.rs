@@ -1,59 +1,60 @@
-//! From the frames of a video to what the networks are given.
+//! Network inputs from the frames of a video.
 
 use opendr_engine::data::{Image, Layout, PixelFormat, Pixels, Video};
 use opendr_engine::{Error, Result};
 use opendr_vision::Preprocess;
 
-/// Frames as the networks take them: stretched to a square, levels brought to the mean and deviation of Kinetics.
+/// Pre-processing of video frames: resizing to a square without keeping the aspect ratio, normalisation with Kinetics' mean
+/// and standard deviation.
 #[derive(Debug, Clone)]
 pub struct ClipFrames {
     preprocess: Preprocess,
     frames: usize,
 }
 
-/// Mean and deviation of levels of 0..=255.
+/// Mean and standard deviation of levels of 0..=255.
 const MEAN: f32 = 0.45 * 255.0;
 const DEVIATION: f32 = 0.225 * 255.0;
 
 impl ClipFrames {
-    /// Makes clips of `frames` frames of `side` x `side` pixels.
+    /// Creates the pre-processing for clips of `frames` frames of `side` x `side` pixels.
     pub fn new(side: usize, frames: usize) -> Self {
         Self { preprocess: Preprocess::new(side, side).normalise([MEAN; 3], [DEVIATION; 3]), frames }
     }
 
-    /// Returns how many numbers a frame has.
+    /// Returns the number of values per frame.
     pub fn frame_len(&self) -> usize {
         self.preprocess.len()
     }
 
-    /// Replaces `input` by one picture, `[3, side, side]`.
+    /// Replaces `input` by one image, `[3, side, side]`.
     ///
     /// # Errors
-    /// As the picture's preprocessing.
-    pub fn picture_into(&self, image: &Image, input: &mut Vec<f32>) -> Result<()> {
+    /// As the pre-processing of images.
+    pub fn image_into(&self, image: &Image, input: &mut Vec<f32>) -> Result<()> {
         input.resize(self.frame_len(), 0.0);
         self.preprocess.run_into(image.view(), input).map(drop)
     }
 
-    /// Replaces `input` by frames of a clip, `[frames, 3, side, side]`, evenly spaced from the first to the last; where the
-    /// clip has fewer, some stand twice.
+    /// Replaces `input` by frames of a clip, `[frames, 3, side, side]`, evenly spaced from the first to the last. Frames
+    /// repeat where the clip is shorter.
     ///
     /// # Errors
-    /// `InvalidInput` when it has not three channels, or a level is no number.
+    /// `InvalidInput` when the clip does not have three channels, or a level is not finite.
     pub fn clip_into(&self, video: &Video, input: &mut Vec<f32>) -> Result<()> {
         let [channels, given, height, width] = video.shape();
         if channels != 3 {
             return Err(Error::invalid_input(format!(
-                "a clip of {channels} channels; the network takes red, green and blue"
+                "the clip has {channels} channels instead of 3; give an RGB clip"
             )));
         }
         if let Some(at) = video.as_slice().iter().position(|level| !level.is_finite()) {
             return Err(Error::invalid_input(format!(
-                "level {at} of the clip is {}; give levels within 0 and 1",
+                "level {at} of the clip is {}; give levels of 0 to 1",
                 video.as_slice()[at]
             )));
         }
-        // The planes of each channel lie below each other: the clip is a picture of all frames, and a frame is a part of it.
+        // The planes of each channel are consecutive, so the clip is one tall image, and a frame is a crop of it.
         let levels = Pixels::F32(video.array().clone().into_data());
         let strip = Image::new(levels, width, given * height, PixelFormat::Rgb, Layout::Chw)?;
         input.resize(self.frames * self.frame_len(), 0.0);
@@ -74,7 +75,7 @@ mod tests {
 
     #[test]
     fn frames_are_evenly_spaced() {
-        // Frame number `at` has the level `at / 10` all over.
+        // Frame `at` has the level `at / 10` everywhere.
         let levels: Vec<f32> = (0..3).flat_map(|_| (0..10).flat_map(|at| [at as f32 / 10.0; 6])).collect();
         let video = Video::new(levels, [3, 10, 2, 3]).unwrap();
         for (frames, wanted) in [(4, vec![0, 3, 6, 9]), (1, vec![0]), (2, vec![0, 9])] {

@@ -1,18 +1,19 @@
-//! From joints to what the networks see of them.
+//! Features of skeleton sequences, input of the networks for skeletons.
 
 use opendr_engine::data::SkeletonSequence;
 use opendr_engine::{Error, Result};
 
-/// Makes the features of a person's joints, frame after frame: nothing of a later frame is needed, so that a stream and a
-/// clip give the same.
+/// Computes the features of a person's joints, frame by frame. No feature depends on a later frame, so a stream and a clip
+/// have the same features.
 ///
-/// Of every coordinate there are three: where the joint is, seen from the middle of all joints; how far it has moved
-/// since the frame before; and the way from its parent, the next joint towards the middle of the body. All are divided
-/// by the body's size in that frame (the root mean square of the joints' distances from their middle), so that neither
-/// place nor size nor unit matter.
+/// Each coordinate has three features: the position relative to the centre of all joints, the motion since the previous
+/// frame, and the bone, the vector from the parent joint (the next joint towards the centre of the body). All are divided
+/// by the body's size in that frame (the root mean square of the joints' distances from their centre), so that the features
+/// do not depend on position, size or unit.
 ///
-/// A joint is missing where its score is not above 0 or, without scores, where all its coordinates are 0, as NTU RGB+D and
-/// Kinetics-Skeleton fill up. It stays where it was last seen; before it is seen at all, it is in the middle of the others.
+/// A joint is missing where its score is not above 0 or, without scores, where all its coordinates are 0, the padding of
+/// NTU RGB+D and Kinetics-Skeleton. A missing joint keeps its last position; before its first one, it has the centre of the
+/// others.
 #[derive(Debug, Clone)]
 pub struct FrameFeatures {
     parents: Vec<usize>,
@@ -20,77 +21,79 @@ pub struct FrameFeatures {
     kinds: usize,
 }
 
-/// What is kept of a person from frame to frame.
+/// State of one person between frames.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct LastFrame {
-    /// Where the joints were, `[joints, coordinates]`; empty before the person is seen.
+    /// Positions of the joints in the last frame, `[joints, coordinates]`; empty before the person is observed.
     places: Vec<f32>,
-    /// Which joints were ever seen.
+    /// Joints that were observed at least once.
     seen: Vec<bool>,
-    /// Where the joints are in the frame in hand.
+    /// Positions of the joints in the current frame.
     now: Vec<f32>,
 }
 
 impl LastFrame {
-    /// Forgets all, but keeps the memory.
-    pub fn forget(&mut self) {
+    /// Clears the state, but keeps its memory.
+    pub fn clear(&mut self) {
         self.places.clear();
         self.seen.clear();
     }
 
-    /// Returns whether the person was seen.
-    pub fn is_seen(&self) -> bool {
+    /// Returns whether the person was observed.
+    pub fn is_observed(&self) -> bool {
         !self.places.is_empty()
     }
 }
 
-/// Number of features of a coordinate: place, motion, bone.
-pub const KINDS: usize = 3;
-/// Bodies smaller than this have no size to divide by.
+/// Number of features per coordinate: position, motion, bone.
+pub const FEATURES_PER_COORDINATE: usize = 3;
+/// Size below which a body is not scaled.
 const SMALLEST: f32 = 1e-6;
 
 impl FrameFeatures {
-    /// Computes place, motion and bones of joints of `coordinates` numbers, each with its parent.
+    /// Creates position, motion and bone features of joints with `coordinates` coordinates; `parents` has the parent of
+    /// each joint.
     pub fn new(parents: Vec<usize>, coordinates: usize) -> Self {
-        Self { parents, coordinates, kinds: KINDS }
+        Self { parents, coordinates, kinds: FEATURES_PER_COORDINATE }
     }
 
-    /// Computes place and motion only, of points that no bones join.
+    /// Creates position and motion features only, for points without bones.
     pub fn without_bones(points: usize, coordinates: usize) -> Self {
-        Self { parents: (0..points).collect(), coordinates, kinds: KINDS - 1 }
+        Self { parents: (0..points).collect(), coordinates, kinds: FEATURES_PER_COORDINATE - 1 }
     }
 
-    /// Returns how many numbers a frame has.
+    /// Returns the number of features per frame.
     pub fn frame_len(&self) -> usize {
         self.kinds * self.coordinates * self.parents.len()
     }
 
-    /// Refuses sequences of another shape, and numbers that are none.
+    /// Checks the shape and the values of a sequence.
     ///
     /// # Errors
-    /// `InvalidInput`.
+    /// `InvalidInput` for another shape, and for values that are not finite.
     pub fn check(&self, sequence: &SkeletonSequence) -> Result<()> {
         let [samples, channels, _, joints, _] = sequence.shape();
         let (wanted, coordinates) = (self.parents.len(), self.coordinates);
         let scored = coordinates == 2 && channels == 3;
         if samples != 1 || joints != wanted || !(channels == coordinates || scored) {
             return Err(Error::invalid_input(format!(
-                "{samples} recordings of {joints} joints with {channels} channels; the network takes one of {wanted} joints \
-                 with {coordinates}{}: choose another graph_type or model, or rearrange the joints",
+                "the sequence has {samples} recordings of {joints} joints with {channels} channels, the network takes one \
+                 of {wanted} joints with {coordinates}{}: choose another graph_type or model, or rearrange the joints",
                 if coordinates == 2 { " (or 3, the third their scores)" } else { "" }
             )));
         }
         match sequence.as_slice().iter().position(|number| !number.is_finite()) {
             Some(at) => Err(Error::invalid_input(format!(
-                "number {at} of the skeletons is {}; give joints that are missing as zeros",
+                "number {at} of the skeletons is {}; give missing joints as zeros",
                 sequence.as_slice()[at]
             ))),
             None => Ok(()),
         }
     }
 
-    /// Writes the features `[kinds * coordinates, joints]` of one frame of one person of a sequence that
-    /// [`FrameFeatures::check`] let pass to `features`. `false`, with nothing written, when no joint is there and none was.
+    /// Writes the features `[kinds * coordinates, joints]` of one frame of one person to `features`.
+    /// [`FrameFeatures::check`] must have accepted the sequence. Returns `false`, with nothing written, when no joint is
+    /// there and none was before.
     pub fn write(
         &self,
         sequence: &SkeletonSequence,
@@ -109,7 +112,7 @@ impl FrameFeatures {
             true => at(coordinates, joint) > 0.0,
             false => (0..coordinates).any(|channel| at(channel, joint) != 0.0),
         };
-        let first = !last.is_seen();
+        let first = !last.is_observed();
         let found = (0..joints).filter(|joint| is_there(*joint)).count();
         if first && found == 0 {
             return false;
@@ -125,7 +128,7 @@ impl FrameFeatures {
                 last.now[joint * coordinates + channel] = at(channel, joint);
             }
             if !last.seen[joint] {
-                // It comes from nowhere, not from where it was not.
+                // The motion of a joint's first observation is 0.
                 let place = joint * coordinates..(joint + 1) * coordinates;
                 last.places[place.clone()].copy_from_slice(&last.now[place]);
                 last.seen[joint] = true;
@@ -167,20 +170,19 @@ impl FrameFeatures {
         true
     }
 
-    /// Replaces `work.clip` by the features `[kinds * coordinates, frames, joints]` of the last `frames` frames of a person;
-    /// where there are fewer, the person has stood still before the first. `false` when the person is never there.
-    ///
-    /// Frames before the person is there count as standing still too.
+    /// Replaces `work.clip` by the features `[kinds * coordinates, frames, joints]` of the last `frames` frames of a
+    /// person. Frames before the first one, and before the person appears, repeat the first features. Returns `false` when
+    /// the person never appears.
     pub fn clip_into(
         &self,
         sequence: &SkeletonSequence,
         person: usize,
         frames: usize,
-        work: &mut ClipWork,
+        work: &mut ClipScratch,
     ) -> bool {
         let (joints, given) = (self.parents.len(), sequence.shape()[2]);
-        let ClipWork { last, frame, clip } = work;
-        last.forget();
+        let ClipScratch { last, frame, clip } = work;
+        last.clear();
         frame.resize(self.frame_len(), 0.0);
         clip.clear();
         clip.resize(self.frame_len() * frames, 0.0);
@@ -206,12 +208,12 @@ impl FrameFeatures {
     }
 }
 
-/// Memory to make clips in.
+/// Work memory of [`FrameFeatures::clip_into`].
 #[derive(Debug, Default)]
-pub struct ClipWork {
+pub struct ClipScratch {
     last: LastFrame,
     frame: Vec<f32>,
-    /// The features that were made.
+    /// Features of the last clip.
     pub clip: Vec<f32>,
 }
 
@@ -221,7 +223,7 @@ mod tests {
 
     const JOINTS: usize = 15;
 
-    /// Joints on a circle of radius 2 around a place that moves by (1, 0) a frame.
+    /// Returns joints on a circle of radius 2 around a point that moves by (1, 0) per frame.
     fn circle(frames: usize) -> Vec<f32> {
         let mut numbers = Vec::new();
         for channel in 0..2 {
@@ -240,7 +242,7 @@ mod tests {
         let features = FrameFeatures::new(vec![1; JOINTS], 2);
         let sequence = SkeletonSequence::new(numbers, [1, channels, frames, JOINTS, 1]).unwrap();
         features.check(&sequence).unwrap();
-        let mut work = ClipWork::default();
+        let mut work = ClipScratch::default();
         features.clip_into(&sequence, 0, wanted, &mut work).then_some(work.clip)
     }
 
@@ -250,10 +252,10 @@ mod tests {
         let there = clip(circle(3).into_iter().map(|number| 7.0 * number).collect(), 2, 3, 3).unwrap();
         assert!(here.iter().zip(&there).all(|(a, b)| (a - b).abs() < 1e-3));
         let at = |row: usize, frame: usize, joint: usize| here[(row * 3 + frame) * JOINTS + joint];
-        // Joint 0 is right of the middle; all move by half the body's size; nobody has moved before the first frame.
+        // Joint 0 is right of the centre; all move by half the body's size; the motion of the first frame is 0.
         assert!((at(0, 1, 0) - 1.0).abs() < 1e-4 && at(1, 1, 0).abs() < 1e-4);
         assert!((0..JOINTS).all(|joint| (at(2, 1, joint) - 0.5).abs() < 1e-4 && at(2, 0, joint) == 0.0));
-        // Joint 1 is the middle of the body and its own parent.
+        // Joint 1 is the centre of the body and its own parent.
         assert_eq!((at(4, 0, 1), at(5, 0, 1)), (0.0, 0.0));
     }
 
@@ -279,7 +281,7 @@ mod tests {
         }
         let gone = clip(numbers.clone(), 2, 2, 2).unwrap();
         assert!(gone[(2 * 2 + 1) * JOINTS + 4].abs() < 1e-6, "it does not move");
-        // The same, told by scores.
+        // The same with missing joints marked by scores.
         let mut scored = circle(2);
         scored.extend((0..2 * JOINTS).map(|at| if at == JOINTS + 4 { 0.0 } else { 0.9 }));
         assert_eq!(clip(scored, 3, 2, 2).unwrap(), gone);

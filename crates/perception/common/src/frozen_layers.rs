@@ -1,4 +1,4 @@
-//! The frozen first layers of a network that trains.
+//! Frozen first layers of a network in training.
 
 use burn::module::Module;
 use burn::tensor::{Device, Tensor, TensorData};
@@ -8,21 +8,21 @@ use opendr_inference::{Session, TensorView};
 use opendr_training::export::{self, Input, Outputs};
 use opendr_training::training_device;
 
-/// Layers that keep their weights, run as they will be after the training: by the inference runtime, which folds what can be
-/// folded and keeps nothing for a gradient.
+/// Layers whose weights do not train. The inference runtime runs them, as after the training: with folded constants and
+/// without gradients.
 #[derive(Debug)]
 pub struct FrozenLayers(Session);
 
-/// Returns whether the job trains where the inference runtime runs frozen layers.
+/// Returns whether the job trains on the CPU, where the inference runtime runs frozen layers.
 ///
 /// # Errors
-/// `InvalidParam` for an environment that names no device.
-pub fn is_on_processor(job: &FitJob<'_>) -> Result<bool> {
+/// `InvalidParam` when the environment variable names no device.
+pub fn is_on_cpu(job: &FitJob<'_>) -> Result<bool> {
     Ok(training_device(job.device)? == Device::flex())
 }
 
 impl FrozenLayers {
-    /// Exports the layers that `forward` runs for pictures of `[width, height]`; `names` are for its outputs.
+    /// Exports the layers of `forward` for images of `[width, height]`; `names` are those of its outputs.
     pub fn new<M: Module, O: Outputs>(
         network: &M,
         [width, height]: [usize; 2],
@@ -34,19 +34,22 @@ impl FrozenLayers {
         Session::open(&model, Place::Cpu).map(Self)
     }
 
-    /// Returns what they answer to `images`, `[batch, 3, height, width]`, in the order of the names.
+    /// Returns the outputs for `images`, `[batch, 3, height, width]`, in the order of the names.
     pub fn run(&self, images: &[f32], shape: [usize; 4], device: &Device) -> Result<Vec<Tensor<4>>> {
-        let mut answers = Vec::with_capacity(self.0.outputs().len());
+        let mut tensors = Vec::with_capacity(self.0.outputs().len());
         self.0.run(&[TensorView::new(&shape, images)?], |outputs| {
             for output in outputs {
                 let shape: [usize; 4] = output.shape().try_into().map_err(|_| {
-                    Error::internal(format!("frozen layers answered {:?}; please report it", output.shape()))
+                    Error::internal(format!(
+                        "the frozen layers have an output of shape {:?}; please report it",
+                        output.shape()
+                    ))
                 })?;
                 let data = TensorData::new(output.values::<f32>()?.to_vec(), shape);
-                answers.push(Tensor::from_data(data, device));
+                tensors.push(Tensor::from_data(data, device));
             }
             Ok(())
         })?;
-        Ok(answers)
+        Ok(tensors)
     }
 }

@@ -1,13 +1,13 @@
-//! Joints of one skeleton as those of another.
+//! Joints of a pose by name, converted between skeletons.
 
 use opendr_engine::target::{Keypoint, Pose};
 
 const SHOULDERS: [&str; 2] = ["l_sho", "r_sho"];
 const HIPS: [&str; 2] = ["l_hip", "r_hip"];
 
-/// Returns OpenDR's 18 joints of a pose of any skeleton, as [`joint_of`] finds them.
+/// Returns OpenDR's 18 joints of a pose of any skeleton, converted by [`joint_of`].
 #[cfg(feature = "training")]
-pub fn opendr_joints(pose: &Pose) -> [Keypoint; 18] {
+pub fn opendr_joints_from_pose(pose: &Pose) -> [Keypoint; 18] {
     let mut joints = [Keypoint::MISSING; 18];
     for (joint, name) in joints.iter_mut().zip(opendr_engine::target::Skeleton::Opendr18.joints()) {
         *joint = joint_of(pose, name).unwrap_or(Keypoint::MISSING);
@@ -15,25 +15,25 @@ pub fn opendr_joints(pose: &Pose) -> [Keypoint; 18] {
     joints
 }
 
-/// Returns the joint called `name`, if it was found. One that the pose's skeleton does not have is told by others: the neck is the
-/// middle of the shoulders, the pelvis that of the hips, the belly that of both, and the nose stands for face and
-/// head (and they for it). Between joints, the lower score counts.
+/// Returns the joint called `name`, if it was detected. A joint that the pose's skeleton lacks is derived from others: the
+/// neck is the middle of the shoulders, the pelvis that of the hips, the belly that of both, and nose, face and head stand
+/// for each other. A joint between two others has the lower of their scores.
 pub fn joint_of(pose: &Pose, name: &str) -> Option<Keypoint> {
-    let found = |name: &str| pose.keypoint(name).copied().filter(Keypoint::is_found);
+    let found = |name: &str| pose.keypoint(name).copied().filter(Keypoint::is_detected);
     if pose.skeleton.joint(name).is_some() {
         return found(name);
     }
-    let middle = |[one, other]: [&str; 2]| Some(between(found(one)?, found(other)?));
+    let middle = |[one, other]: [&str; 2]| Some(middle_of(found(one)?, found(other)?));
     match name {
         "neck" => middle(SHOULDERS),
         "pelvis" => middle(HIPS),
-        "belly" => Some(between(middle(SHOULDERS)?, middle(HIPS)?)),
+        "belly" => Some(middle_of(middle(SHOULDERS)?, middle(HIPS)?)),
         "face" | "head" | "nose" => ["nose", "face", "head"].into_iter().find_map(found),
         _ => None,
     }
 }
 
-fn between(one: Keypoint, other: Keypoint) -> Keypoint {
+fn middle_of(one: Keypoint, other: Keypoint) -> Keypoint {
     Keypoint {
         x: (one.x + other.x) / 2.0,
         y: (one.y + other.y) / 2.0,
@@ -56,10 +56,10 @@ mod tests {
 
     #[test]
     fn joints_keep_their_names() {
-        let own = opendr_joints(&pose(Skeleton::Opendr18));
+        let own = opendr_joints_from_pose(&pose(Skeleton::Opendr18));
         assert!(own.iter().enumerate().all(|(at, joint)| joint.x == at as f32));
         let mut coco = pose(Skeleton::Coco17);
-        let joints = opendr_joints(&coco);
+        let joints = opendr_joints_from_pose(&coco);
         for (name, joint) in Skeleton::Opendr18.joints().iter().zip(joints) {
             match Skeleton::Coco17.joint(name) {
                 Some(at) => assert_eq!(joint.x, at as f32, "{name}"),
@@ -67,9 +67,9 @@ mod tests {
             }
         }
         coco.keypoints[5] = Keypoint::MISSING;
-        assert_eq!(opendr_joints(&coco)[1], Keypoint::MISSING);
+        assert_eq!(opendr_joints_from_pose(&coco)[1], Keypoint::MISSING);
         coco.keypoints.clear();
-        assert_eq!(opendr_joints(&coco), [Keypoint::MISSING; 18]);
+        assert_eq!(opendr_joints_from_pose(&coco), [Keypoint::MISSING; 18]);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! What the trainings of learners that answer a category have in common.
+//! Batches and class lists for the training of classifiers.
 
 use burn::nn::loss::CrossEntropyLossConfig;
 use burn::tensor::{Device, Int, Tensor, TensorData};
@@ -6,7 +6,7 @@ use opendr_engine::dataset::{DatasetIterator, Sample};
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, Value};
 
-/// Inputs of one size, one after the other, each with its class.
+/// Inputs of one size, each with its class index.
 #[derive(Debug, Default)]
 pub struct LabelledBatch {
     inputs: Vec<f32>,
@@ -14,12 +14,12 @@ pub struct LabelledBatch {
 }
 
 impl LabelledBatch {
-    /// Makes an empty batch, with room for `capacity` of `size` numbers.
+    /// Creates an empty batch with room for `capacity` inputs of `size` values.
     pub fn with_capacity(capacity: usize, size: usize) -> Self {
         Self { inputs: Vec::with_capacity(capacity * size), classes: Vec::with_capacity(capacity) }
     }
 
-    /// Adds an input.
+    /// Adds an input and its class index.
     pub fn push(&mut self, input: &[f32], class: i64) {
         self.inputs.extend_from_slice(input);
         self.classes.push(class);
@@ -31,7 +31,7 @@ impl LabelledBatch {
         Tensor::from_data(TensorData::new(self.inputs.clone(), shape), device)
     }
 
-    /// Returns the mean cross-entropy of logits `[batch, classes]`; with `weights`, one a class, the weighted mean.
+    /// Returns the mean cross-entropy of logits `[batch, classes]`; with `weights`, one per class, the weighted mean.
     pub fn cross_entropy(&self, logits: Tensor<2>, weights: &[f32], device: &Device) -> Tensor<1> {
         let count = self.classes.len();
         let classes = Tensor::<1, Int>::from_data(TensorData::new(self.classes.clone(), [count]), device);
@@ -40,27 +40,30 @@ impl LabelledBatch {
     }
 }
 
-/// Returns the class of a sample, below `classes`.
+/// Returns the class index of a sample, which is below `classes`.
 ///
 /// # Errors
-/// `InvalidInput` when it has none, or one that the network does not have.
+/// `InvalidInput` when the sample has no class, or one that the network does not have.
 pub fn class_of(sample: &Sample, classes: usize) -> Result<i64> {
     let class = match &sample.target {
         Some(Value::Category(category)) => category.class,
-        _ => return Err(Error::invalid_input("the sample has no category to learn; give it one")),
+        _ => {
+            return Err(Error::invalid_input("the sample has no category to train on; annotate it with one"));
+        }
     };
     match usize::try_from(class) {
         Ok(index) if index < classes => Ok(class),
         _ => Err(Error::invalid_input(format!(
-            "the sample is of class {class}, the network has {classes}, from 0; mend the data, or train with more classes"
+            "the sample has class {class}, but the network has {classes} classes, from 0; correct the data, or train with more classes"
         ))),
     }
 }
 
-/// Returns the classes to train: `wanted`, called `parameter`, or as many as the data name or have.
+/// Returns the classes to train. Their number is `wanted`, the value of the parameter `parameter`, else that of the data
+/// set's names or of its highest class. Classes without a name are called `class N`.
 ///
 /// # Errors
-/// `InvalidInput` when the data name more classes than are wanted.
+/// `InvalidInput` when the data set names more classes than `wanted`, or when its annotations give no usable number.
 pub fn classes_to_train(
     dataset: &dyn DatasetIterator,
     wanted: Option<usize>,
@@ -70,7 +73,7 @@ pub fn classes_to_train(
     let count = match wanted {
         Some(wanted) if wanted < named.len() => {
             return Err(Error::invalid_input(format!(
-                "the data set has {} classes, {parameter} = {wanted}; give as many, or leave it out",
+                "the data set has {} classes, but {parameter} = {wanted}; give at least as many, or omit {parameter}",
                 named.len()
             )));
         }
@@ -84,7 +87,7 @@ pub fn classes_to_train(
     Ok((0..count).map(name).collect())
 }
 
-/// One more than the highest class that occurs.
+/// Returns one more than the highest class index of the data set.
 fn count_classes(dataset: &dyn DatasetIterator) -> Result<usize> {
     let mut most = 0;
     for index in 0..dataset.len() {
@@ -95,10 +98,11 @@ fn count_classes(dataset: &dyn DatasetIterator) -> Result<usize> {
     match most {
         2..=MOST_CLASSES => Ok(most as usize),
         _ => Err(Error::invalid_input(format!(
-            "the data set names no classes and its highest is {}; give 2 to {MOST_CLASSES} classes",
+            "the data set names no classes and its highest class is {}; give a data set of 2 to {MOST_CLASSES} classes",
             most - 1
         ))),
     }
 }
 
+/// Limit for a number of classes that is derived from annotations.
 const MOST_CLASSES: i64 = 10_000;

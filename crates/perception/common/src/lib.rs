@@ -1,24 +1,51 @@
-//! What the families of perception learners share.
+//! Building blocks that the families of perception learners share.
 //!
-//! A family adds what only it needs. [`picture_network`] runs a network on a picture, [`category_scores`] makes a category of
-//! its outputs, [`suppression`] thins out boxes; with the feature `training`, [`labelled`] and [`trainable_weights`] serve the
-//! learners that train.
+//! The crate holds no learner. Its modules, by purpose:
+//!
+//! * Inputs: [`image_network`] (a session with fused pre-processing of one image), [`manifest_preprocess`] (pre-processing from
+//!   a model's manifest), [`clip_frames`], [`frame_features`] (features of skeletons).
+//! * Outputs: [`category_scores`] (categories from logits), [`suppression`] (non-maximum suppression),
+//!   [`boxes_from_candidates`], [`part_tree`] (PersonLab's decoder of poses), [`joints`], [`rotated_square`].
+//! * Second passes over parts of a large image: [`regions`].
+//! * Training, with the feature `training`: [`labelled`], [`trainable_weights`], [`frozen_layers`], [`dynamic_sides`],
+//!   [`small_backbone`] and [`small_classifier`].
+//!
+//! Data and target types are in `opendr-engine`, sessions in `opendr-inference`, image pre-processing in `opendr-vision`, the
+//! training loop in `opendr-training`, tiles of large images in `opendr-tiling`. Code that only one family needs is in the crate
+//! of that family. A learner of one image begins with [`image_network::ImageNetwork`].
+//!
+//! ```
+//! use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
+//!
+//! let candidate = |left: f32, score: f32, index: u32| Candidate {
+//!     corners: [left, 0.0, left + 10.0, 10.0],
+//!     score,
+//!     class: 0,
+//!     index,
+//! };
+//! let mut candidates = vec![candidate(1.0, 0.8, 0), candidate(0.0, 0.9, 1), candidate(50.0, 0.7, 2)];
+//! let suppression = Suppression { kind: SuppressionKind::Hard, overlap: 0.5, threshold: 0.1, most: 100 };
+//! suppression.run(&mut candidates, &mut Vec::new());
+//! let kept: Vec<u32> = candidates.iter().map(|candidate| candidate.index).collect();
+//! assert_eq!(kept, [1, 2]);
+//! ```
 
 pub mod boxes_from_candidates;
 pub mod category_scores;
 pub mod clip_frames;
-pub mod described_input;
+#[cfg(feature = "training")]
+pub mod dynamic_sides;
 pub mod frame_features;
 #[cfg(feature = "training")]
 pub mod frozen_layers;
+pub mod image_network;
 pub mod joints;
 #[cfg(feature = "training")]
 pub mod labelled;
-#[cfg(feature = "training")]
-pub mod open_sides;
+pub mod manifest_preprocess;
 pub mod part_tree;
-pub mod picture_network;
 pub mod regions;
+pub mod rotated_square;
 #[cfg(feature = "training")]
 pub mod small_backbone;
 #[cfg(feature = "training")]
@@ -26,4 +53,3 @@ pub mod small_classifier;
 pub mod suppression;
 #[cfg(feature = "training")]
 pub mod trainable_weights;
-pub mod turned_square;

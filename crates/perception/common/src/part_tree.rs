@@ -1,12 +1,12 @@
-//! From heat maps and displacements to persons: PersonLab's fast greedy decoder.
+//! Persons from heatmaps and displacements: PersonLab's fast greedy decoder.
 //!
-//! Papandreou et al., PersonLab, ECCV 2018, section 3.2, as PoseNet trains for it: joints are peaks of heat maps
-//! refined by short-range offsets; from the best free peak the other joints follow along a tree by mid-range
-//! displacements, and a person is scored by the joints that no better person has.
+//! Papandreou et al., PersonLab, ECCV 2018, section 3.2, as in PoseNet: joints are peaks of heatmaps, refined by
+//! short-range offsets. From the best free peak the other joints follow along a tree by mid-range displacements. The score
+//! of a person counts only joints that no better person has.
 
 use opendr_engine::target::Keypoint;
 
-/// The tree that joins COCO's 17 joints: parent and child.
+/// Edges of the tree over COCO's 17 joints: parent and child.
 const EDGES: [[usize; 2]; 16] = [
     [0, 1],
     [1, 3],
@@ -26,49 +26,49 @@ const EDGES: [[usize; 2]; 16] = [
     [14, 16],
 ];
 const JOINTS: usize = 17;
-/// How often a displaced joint is pulled to its cell's offset.
+/// Number of refinements of a displaced joint by the offset of its cell.
 const REFINEMENTS: usize = 2;
 
-/// The network's outputs over a grid of cells, one map after the other, in pixels of the network's input.
+/// Outputs of the network over a grid of cells, planar, in pixels of the network's input.
 #[derive(Clone, Copy)]
 pub struct PartMaps<'a> {
-    /// Cells down.
+    /// Number of rows of cells.
     pub rows: usize,
-    /// Cells across.
+    /// Number of columns of cells.
     pub columns: usize,
-    /// Pixels from cell to cell.
+    /// Pixels per cell.
     pub stride: f32,
-    /// `[17, rows, columns]`: logits.
+    /// Logits `[17, rows, columns]`.
     pub heatmap: &'a [f32],
-    /// `[34, rows, columns]`: 17 y, 17 x.
+    /// Short-range offsets `[34, rows, columns]`: 17 y, then 17 x.
     pub offsets: &'a [f32],
-    /// `[32, rows, columns]`: 16 y, 16 x; from parent to child.
+    /// Displacements from parent to child `[32, rows, columns]`: 16 y, then 16 x.
     pub forward: &'a [f32],
-    /// `[32, rows, columns]`: 16 y, 16 x; from child to parent.
+    /// Displacements from child to parent `[32, rows, columns]`: 16 y, then 16 x.
     pub backward: &'a [f32],
 }
 
-/// A person in pixels of the network's input; each joint's confidence is the heat map's.
+/// A person in pixels of the network's input. The confidence of a joint is the heatmap's score.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Person {
     /// COCO's 17 joints.
     pub joints: [Keypoint; JOINTS],
-    /// Mean score of the joints that no better person has.
+    /// Sum of the scores of the joints that no better person has, divided by 17.
     pub score: f32,
 }
 
-/// What the decoder may be told.
+/// Settings of the decoder.
 #[derive(Debug, Clone, Copy)]
 pub struct PartTree {
-    /// Peaks below this score start no person, 0..=1.
+    /// Score below which a peak starts no person, 0..=1.
     pub peak_threshold: f32,
-    /// Joints of one kind nearer than this belong to one person, pixels of the network's input.
+    /// Distance within which joints of one kind belong to one person, in pixels of the network's input.
     pub radius: f32,
-    /// At most this many persons.
-    pub most: usize,
+    /// Maximum number of persons.
+    pub max_persons: usize,
 }
 
-/// A peak of one heat map.
+/// A peak of one heatmap.
 #[derive(Debug, Clone, Copy)]
 pub struct Peak {
     score: f32,
@@ -77,7 +77,7 @@ pub struct Peak {
 }
 
 impl PartTree {
-    /// Fills `persons`, best start first. `peaks` is work memory.
+    /// Fills `persons`, in the order of their start peaks' scores. `peaks` is work memory.
     pub fn decode(&self, maps: &PartMaps<'_>, peaks: &mut Vec<Peak>, persons: &mut Vec<Person>) {
         persons.clear();
         maps.find_peaks(self.peak_threshold, peaks);
@@ -85,7 +85,7 @@ impl PartTree {
             b.score.total_cmp(&a.score).then(a.joint.cmp(&b.joint)).then(a.cell.cmp(&b.cell))
         });
         for peak in peaks.iter() {
-            if persons.len() >= self.most {
+            if persons.len() >= self.max_persons {
                 break;
             }
             let start = maps.offset_point(peak.cell, peak.joint);
@@ -107,7 +107,7 @@ impl PartTree {
         })
     }
 
-    /// The mean score over all joints, counting only those that no earlier person has.
+    /// Returns the sum of the scores of the joints that no earlier person has, divided by the number of joints.
     fn score(&self, persons: &[Person], joints: &[Keypoint; JOINTS]) -> f32 {
         let free =
             joints.iter().enumerate().filter(|(joint, at)| !self.is_taken(persons, *joint, [at.x, at.y]));
@@ -116,7 +116,7 @@ impl PartTree {
 }
 
 impl PartMaps<'_> {
-    /// Local maxima of 3x3 cells that reach the threshold.
+    /// Finds the local maxima over 3x3 cells that reach the threshold.
     fn find_peaks(&self, threshold: f32, peaks: &mut Vec<Peak>) {
         peaks.clear();
         let logit = (threshold / (1.0 - threshold)).ln();
@@ -138,7 +138,7 @@ impl PartMaps<'_> {
             .all(|row| near(column, self.columns).all(|column| self.logit([row, column], joint) <= value))
     }
 
-    /// Follows the tree from the one joint that is known to all others: up to the root, then down.
+    /// Fills the joints from the one known joint along the tree: first up to the root, then down.
     fn grow(&self, joints: &mut [Keypoint; JOINTS]) {
         for (edge, [parent, child]) in EDGES.iter().copied().enumerate().rev() {
             self.step(joints, child, parent, edge, self.backward);
@@ -170,18 +170,18 @@ impl PartMaps<'_> {
         joints[to] = keypoint(target, score);
     }
 
-    /// Where the joint lies that the cell sees, `[x, y]`.
+    /// Returns the position `[x, y]` of the joint that the offset of the cell predicts.
     fn offset_point(&self, cell: [usize; 2], joint: usize) -> [f32; 2] {
         let [dx, dy] = self.vector(self.offsets, JOINTS, joint, cell);
         [cell[1] as f32 * self.stride + dx, cell[0] as f32 * self.stride + dy]
     }
 
-    /// `[x, y]` out of maps that hold first every y, then every x.
+    /// Returns `[x, y]` from maps with every y before every x.
     fn vector(&self, maps: &[f32], count: usize, at: usize, cell: [usize; 2]) -> [f32; 2] {
         [maps[self.index(count + at, cell)], maps[self.index(at, cell)]]
     }
 
-    /// The cell nearest to a point; NaN goes to the first.
+    /// Returns the cell nearest to a point; NaN maps to cell 0.
     fn cell_at(&self, [x, y]: [f32; 2]) -> [usize; 2] {
         let nearest = |at: f32, count: usize| ((at / self.stride).round().max(0.0) as usize).min(count - 1);
         [nearest(y, self.rows), nearest(x, self.columns)]
@@ -212,23 +212,23 @@ mod tests {
     const CELLS: usize = SIDE * SIDE;
     const STRIDE: f32 = 16.0;
 
-    struct Drawn {
+    struct SyntheticMaps {
         heatmap: Vec<f32>,
         offsets: Vec<f32>,
         forward: Vec<f32>,
         backward: Vec<f32>,
     }
 
-    impl Drawn {
+    impl SyntheticMaps {
         fn maps(&self) -> PartMaps<'_> {
             let Self { heatmap, offsets, forward, backward } = self;
             PartMaps { rows: SIDE, columns: SIDE, stride: STRIDE, heatmap, offsets, forward, backward }
         }
     }
 
-    /// Maps in which each person's joints lie at the cells given, with an offset of (1, -2) pixels.
-    fn drawn(persons: &[[[usize; 2]; JOINTS]]) -> Drawn {
-        let mut drawn = Drawn {
+    /// Returns maps with each person's joints in the given cells, with an offset of (1, -2) pixels.
+    fn synthetic(persons: &[[[usize; 2]; JOINTS]]) -> SyntheticMaps {
+        let mut synthetic = SyntheticMaps {
             heatmap: vec![-9.0; CELLS * JOINTS],
             offsets: vec![0.0; CELLS * 2 * JOINTS],
             forward: vec![0.0; CELLS * 32],
@@ -237,9 +237,9 @@ mod tests {
         for (number, joints) in persons.iter().enumerate() {
             for (joint, [row, column]) in joints.iter().enumerate() {
                 let cell = row * SIDE + column;
-                drawn.heatmap[joint * CELLS + cell] = 4.0 - number as f32;
-                drawn.offsets[joint * CELLS + cell] = -2.0;
-                drawn.offsets[(JOINTS + joint) * CELLS + cell] = 1.0;
+                synthetic.heatmap[joint * CELLS + cell] = 4.0 - number as f32;
+                synthetic.offsets[joint * CELLS + cell] = -2.0;
+                synthetic.offsets[(JOINTS + joint) * CELLS + cell] = 1.0;
             }
             for (edge, [parent, child]) in EDGES.iter().enumerate() {
                 let ([row, column], [to_row, to_column]) = (joints[*parent], joints[*child]);
@@ -247,29 +247,29 @@ mod tests {
                     ((to_row as f32 - row as f32) * STRIDE, (to_column as f32 - column as f32) * STRIDE);
                 let (here, there) = (row * SIDE + column, to_row * SIDE + to_column);
                 for (map, value) in [(edge, dy), (16 + edge, dx)] {
-                    drawn.forward[map * CELLS + here] = value;
-                    drawn.backward[map * CELLS + there] = -value;
+                    synthetic.forward[map * CELLS + here] = value;
+                    synthetic.backward[map * CELLS + there] = -value;
                 }
             }
         }
-        drawn
+        synthetic
     }
 
     fn body(column: usize) -> [[usize; 2]; JOINTS] {
         std::array::from_fn(|joint| [joint / 2, column + joint % 2 * 2])
     }
 
-    fn decode(drawn: &Drawn) -> Vec<Person> {
+    fn decode(synthetic: &SyntheticMaps) -> Vec<Person> {
         let mut persons = Vec::new();
-        let tree = PartTree { peak_threshold: 0.5, radius: 10.0, most: 10 };
-        tree.decode(&drawn.maps(), &mut Vec::new(), &mut persons);
+        let tree = PartTree { peak_threshold: 0.5, radius: 10.0, max_persons: 10 };
+        tree.decode(&synthetic.maps(), &mut Vec::new(), &mut persons);
         persons
     }
 
     #[test]
-    fn two_persons_are_taken_apart() {
+    fn two_persons_are_separated() {
         let bodies = [body(0), body(5)];
-        let persons = decode(&drawn(&bodies));
+        let persons = decode(&synthetic(&bodies));
         assert_eq!(persons.len(), 2);
         for (person, joints) in persons.iter().zip(bodies) {
             for (found, [row, column]) in person.joints.iter().zip(joints) {
@@ -281,14 +281,14 @@ mod tests {
     }
 
     #[test]
-    fn maps_of_nonsense_do_no_harm() {
-        let mut drawn = drawn(&[body(2)]);
-        for (values, bad) in [(&mut drawn.forward, f32::NAN), (&mut drawn.backward, f32::INFINITY)] {
+    fn invalid_maps_do_not_panic() {
+        let mut synthetic = synthetic(&[body(2)]);
+        for (values, bad) in [(&mut synthetic.forward, f32::NAN), (&mut synthetic.backward, f32::INFINITY)] {
             values.fill(bad);
         }
-        drawn.offsets.fill(-1e30);
-        assert!(decode(&drawn).len() <= 10);
-        drawn.heatmap.fill(f32::NAN);
-        assert!(decode(&drawn).is_empty());
+        synthetic.offsets.fill(-1e30);
+        assert!(decode(&synthetic).len() <= 10);
+        synthetic.heatmap.fill(f32::NAN);
+        assert!(decode(&synthetic).is_empty());
     }
 }

@@ -1,5 +1,5 @@
-//! What small networks see in pictures: blocks of convolution, batch normalisation and ReLU, halved in size by strides, then
-//! the mean over the picture.
+//! A small convolutional backbone: blocks of convolution, batch normalisation and ReLU, downsampled by strides, then global
+//! average pooling.
 
 use burn::module::Module;
 use burn::nn::conv::{Conv2d, Conv2dConfig};
@@ -7,7 +7,7 @@ use burn::nn::{BatchNorm, BatchNormConfig, PaddingConfig2d};
 use burn::tensor::activation::relu;
 use burn::tensor::{Device, Tensor};
 
-/// A few convolutions.
+/// A small convolutional backbone.
 #[derive(Module, Debug)]
 pub struct SmallBackbone {
     blocks: Vec<Block>,
@@ -24,7 +24,7 @@ struct Block {
 const BLOCKS: [(usize, usize); 4] = [(5, 2), (3, 1), (3, 2), (3, 1)];
 
 impl SmallBackbone {
-    /// Makes a network for pictures of so many channels, `width` channels in its first block.
+    /// Creates a backbone for images of `channels` channels; the first block has `width` channels.
     pub fn new(channels: usize, width: usize, device: &Device) -> Self {
         let (mut inputs, mut outputs) = (channels, width);
         let blocks = BLOCKS.iter().enumerate().map(|(index, (kernel, stride))| {
@@ -39,12 +39,12 @@ impl SmallBackbone {
         Self { blocks, features: inputs }
     }
 
-    /// Returns how many features it has.
+    /// Returns the number of features.
     pub fn features(&self) -> usize {
         self.features
     }
 
-    /// Computes, of pictures `[batch, channels, height, width]`, features `[batch, features]`.
+    /// Computes features `[batch, features]` of images `[batch, channels, height, width]`.
     pub fn forward(&self, images: Tensor<4>) -> Tensor<2> {
         let features = self.blocks.iter().fold(images, |features, block| block.forward(features));
         let [batch, channels, height, width] = features.dims();

@@ -1,4 +1,4 @@
-//! The weights of a network as it is trained, beside its ONNX in the container: what a further training begins with.
+//! Training weights in a container, beside its ONNX file, from which a further training starts.
 
 use burn::module::Module;
 use burn::store::ModuleRecord;
@@ -6,34 +6,36 @@ use burn::tensor::Bytes;
 use opendr_engine::model::Model;
 use opendr_engine::{Error, Result};
 
-/// The file in the container. The ONNX beside it cannot stand for it: batch normalisations are gone there.
+/// File name in the container. The ONNX file cannot replace it: batch normalisations are folded there.
 pub const TRAINABLE: &str = "network.bpk";
 
-/// Returns the weights of `network` as the bytes of the file.
+/// Returns the weights of `network` in Burn's format.
 ///
 /// # Errors
-/// `Internal` when something of the network has no form on disk.
+/// `Internal` when the weights cannot be serialised.
 pub fn bytes_from_network<M: Module>(network: &M) -> Result<Vec<u8>> {
     let bytes = network.valid().into_record().into_bytes();
-    let bytes = bytes.map_err(|error| Error::internal("a network has no form on disk").with_source(error))?;
+    let bytes = bytes.map_err(|error| {
+        Error::internal("the weights of the network cannot be serialised").with_source(error)
+    })?;
     Ok(bytes.to_vec())
 }
 
-/// Returns `network` with the weights of the container that training begins with, where there is one.
+/// Returns `network` with the weights of the base container, if there is one.
 ///
 /// # Errors
-/// `Format` when the container has none, or those of a network of other sizes.
+/// `Format` when the container has no such weights, or those of a network of other sizes.
 pub fn network_from_base<M: Module>(network: M, base: Option<&Model>) -> Result<M> {
     let Some(base) = base else { return Ok(network) };
     if !base.manifest().files.iter().any(|file| file.name == TRAINABLE) {
         return Err(Error::format(format!(
-            "{} has no {TRAINABLE}, so that training cannot go on from it; train a new model",
+            "{} has no {TRAINABLE}, so training cannot resume from it; train a new model",
             base.path().display()
         )));
     }
     let other = || {
         format!(
-            "{TRAINABLE} of {} is of a network of other sizes or classes; give the parameters it was made with, or train \
+            "{TRAINABLE} of {} belongs to a network of other sizes or classes; give the parameters of its training, or train \
              a new model",
             base.path().display()
         )

@@ -1,4 +1,4 @@
-//! The single-shot detector's decoding, without network and pre-processing: maps of a 320 x 320 input, one class and 80.
+//! Decoding of the single-shot detector's outputs, without network and pre-processing: a 320 x 320 input, 1 and 80 classes.
 //!
 //! `cargo bench -p opendr-detection --bench single_shot_decode`
 
@@ -20,7 +20,7 @@ fn decode(criterion: &mut Criterion) {
             .iter()
             .map(|level| {
                 let cells = level.cells(SIZE).pow(2) * level.sides.len();
-                // About one score in two thousand is over 0.2.
+                // About one score in two thousand is above 0.2.
                 let scores: Vec<f32> = (0..cells * classes).map(|_| random.uniform(-2800.0, 0.0)).collect();
                 let offsets: Vec<f32> = (0..cells * 4).map(|_| random.uniform(-1.0, 1.0)).collect();
                 (level.cells(SIZE), scores, offsets)

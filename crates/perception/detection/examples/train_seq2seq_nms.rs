@@ -1,10 +1,12 @@
 //! Trains a Seq2Seq-NMS on the persons of COCO128 and compares it with greedy suppression of the same boxes.
 //!
-//! `cargo run --release -p opendr-detection --features training --example train_seq2seq_nms -- DATA DETECTOR OUTPUT
-//! [PARAMETER=VALUE ...]`
+//! ```console
+//! $ cargo run --release -p opendr-detection --features training --example train_seq2seq_nms -- DATA DETECTOR \
+//!     OUTPUT [PARAMETER=VALUE ...]
+//! ```
 //!
-//! DATA holds `coco128`: its train split is trained on, its val split measured. DETECTOR is a container as `opendr download`
-//! gets it, e.g. NanoDet's; its suppression is switched off.
+//! DATA contains `coco128`: its train split is for training, its val split for evaluation. DETECTOR is a container from
+//! `opendr download`, such as NanoDet's; its suppression is switched off.
 
 use std::path::Path;
 
@@ -20,12 +22,12 @@ use opendr_engine::target::{BoundingBox, BoundingBoxList};
 use opendr_engine::{Device, Error, Progress, Result, Unit, Value};
 use opendr_metrics::{CocoDetection, Metric};
 use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
-use opendr_tiling::open_picture_learner;
+use opendr_tiling::open_image_learner;
 
-/// Overlaps at which greedy suppression is tried.
+/// IoU thresholds of greedy suppression to compare with.
 const OVERLAPS: [f32; 6] = [0.45, 0.5, 0.55, 0.6, 0.65, 0.7];
 
-/// Lines to the terminal.
+/// Progress as lines on the terminal.
 struct Lines;
 
 impl Progress for Lines {
@@ -37,7 +39,7 @@ impl Progress for Lines {
     }
 }
 
-fn pictures(data: &Path, split: &str) -> Result<Box<dyn DatasetIterator>> {
+fn open_split(data: &Path, split: &str) -> Result<Box<dyn DatasetIterator>> {
     let dataset = ExternalDataset::new(data.join("coco128/object_detection"), "yolo");
     let options = OpenOptions { split: Some(split.to_owned()), ..OpenOptions::default() };
     opendr_datasets::open(&dataset, &options, &Problems::strict())
@@ -58,7 +60,8 @@ fn suppressed(found: &BoundingBoxList, kind: SuppressionKind, overlap: f32) -> B
         index: index as u32,
     };
     let mut candidates: Vec<_> = found.boxes.iter().enumerate().map(candidate).collect();
-    Suppression { kind, overlap, threshold: 0.01, most: 400 }.run(&mut candidates, &mut Vec::new());
+    Suppression { kind, iou_threshold: overlap, threshold: 0.01, max_boxes: 400 }
+        .run(&mut candidates, &mut Vec::new());
     let boxes = candidates.iter().map(|candidate| BoundingBox {
         confidence: candidate.score,
         ..found.boxes[candidate.index as usize].clone()
@@ -76,7 +79,7 @@ fn main() -> Result<()> {
         variant: NmsVariant::Light,
         classes: vec!["person".to_owned()],
         detector: Some(detector.clone()),
-        versions: 8,
+        augmented_versions: 8,
         dropout: 0.1,
         ..Default::default()
     };
@@ -86,19 +89,19 @@ fn main() -> Result<()> {
         let (name, value) = setting.split_once('=').ok_or_else(|| Error::invalid_input("give NAME=VALUE"))?;
         params.set_text(name, value)?;
     }
-    let (dataset, val_dataset) = (pictures(data, "train")?, pictures(data, "val")?);
+    let (dataset, val_dataset) = (open_split(data, "train")?, open_split(data, "val")?);
     let job = FitJob { device: Device::Cpu, progress: &Lines, ..FitJob::new(output) };
     let learner_params = Seq2SeqNmsParams { threshold: 0.0, ..Default::default() };
     let mut learner = Handle::<Seq2SeqNms>::new(learner_params, Device::Cpu)?;
     println!("{}", learner.fit(&params, (&*dataset).into(), None, &job)?);
 
-    let wishes = ParamMap::from([
+    let overrides = ParamMap::from([
         ("threshold".to_owned(), 0.05.into()),
         ("iou_threshold".to_owned(), 1.0.into()),
         ("max_detections".to_owned(), 1000i64.into()),
     ]);
     let model = Model::open(Path::new(detector))?;
-    let detector = open_picture_learner(&model, DETECTORS, &wishes, Device::Cpu)?;
+    let detector = open_image_learner(&model, DETECTORS, &overrides, Device::Cpu)?;
     let metric = || CocoDetection::new(&Default::default());
     let kinds = [SuppressionKind::Hard, SuppressionKind::Soft];
     let mut greedy = Vec::new();
@@ -110,7 +113,7 @@ fn main() -> Result<()> {
         let sample = val_dataset.get(index)?;
         let ([Value::Image(image)], Some(Value::BoundingBoxList(truth))) = (&sample.data[..], sample.target)
         else {
-            return Err(Error::invalid_input("no picture with boxes"));
+            return Err(Error::invalid_input("the sample is not an image with boxes"));
         };
         let (truth, mut found) = (persons(truth), BoundingBoxList::default());
         detector.answer(image, &mut found)?;
@@ -121,15 +124,15 @@ fn main() -> Result<()> {
         }
         ours.update(index, &learner.infer(Seq2SeqNmsInputs { image, detections: &found })?, &truth)?;
     }
-    println!("{} pictures, {boxes} boxes of persons before suppression", val_dataset.len());
-    let tell = |name: &str, metric: &CocoDetection| {
+    println!("{} images, {boxes} boxes of persons before suppression", val_dataset.len());
+    let report = |name: &str, metric: &CocoDetection| {
         let numbers = metric.finish().statistics.scalars;
         let number = |key: &str| numbers.get(key).copied().unwrap_or(f64::NAN);
         println!("{name}: AP50 {:.4}, AP50:95 {:.4}", number("map50"), number("map"));
     };
     for (kind, overlap, metric) in &greedy {
-        tell(&format!("{} {overlap}", kind.name()), metric);
+        report(&format!("{} {overlap}", kind.name()), metric);
     }
-    tell("seq2seq_nms", &ours);
+    report("seq2seq_nms", &ours);
     Ok(())
 }

@@ -1,11 +1,13 @@
-//! Trains `ssd_default_person`: pictures with boxes, pictures that a teacher labels, PoseNet's backbone.
+//! Trains `ssd_default_person` on annotated images and on images that a teacher annotates, from PoseNet's backbone.
 //!
-//! `cargo run --release -p opendr-detection --features training --example train_ssd_person -- DATA POSENET CENTERNET
-//! OUTPUT [FOLDER ...] [PARAMETER=VALUE ...]`
+//! ```console
+//! $ cargo run --release -p opendr-detection --features training --example train_ssd_person -- DATA POSENET CENTERNET \
+//!     OUTPUT [FOLDER ...] [PARAMETER=VALUE ...]
+//! ```
 //!
-//! POSENET and CENTERNET are containers as `opendr download` gets them. DATA holds `coco128` (its train split has boxes)
-//! and folders of photos without, and so may FOLDERs; what is measured, coco128's val split, `bus.jpg` and `zidane.jpg`, is
-//! never trained on. Called again with the same OUTPUT, it goes on where it was left.
+//! POSENET and CENTERNET are containers from `opendr download`. DATA contains `coco128` (its train split is annotated) and
+//! folders of photos without annotations, as each FOLDER is. The images of the evaluation, coco128's val split, `bus.jpg`
+//! and `zidane.jpg`, are not in the training set. A further call with the same OUTPUT resumes the training.
 
 use std::path::{Path, PathBuf};
 
@@ -20,7 +22,7 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Device, Error, Progress, Result, Unit, Value};
 
-/// Pictures without boxes: folders of DATA, and single files.
+/// Images without annotations: folders of DATA, and single files.
 const PHOTOS: [&str; 9] = [
     "face_verification",
     "mmpose_samples/coco",
@@ -33,7 +35,7 @@ const PHOTOS: [&str; 9] = [
     "photos/astronaut.png",
 ];
 
-/// The persons of a data set, and photos with the persons that a teacher finds.
+/// The persons of a data set, and photos with the persons that a teacher detects.
 struct Persons {
     annotated: Box<dyn DatasetIterator>,
     labelled: Vec<(PathBuf, BoundingBoxList)>,
@@ -76,7 +78,7 @@ fn annotated(data: &Path, split: &str) -> Result<Box<dyn DatasetIterator>> {
     opendr_datasets::open(&dataset, &options, &Problems::strict())
 }
 
-/// What CenterNet finds in the photos; what it is not sure of stays in the list, for training to leave out.
+/// Returns CenterNet's detections in the photos. Detections of low scores stay in the list; training ignores them.
 fn labelled(photos_at: &[PathBuf], teacher_model: &Path) -> Result<Vec<(PathBuf, BoundingBoxList)>> {
     let params = CenterNetParams { threshold: 0.25, ..CenterNetParams::default() };
     let mut teacher = Handle::<CenterNet>::new(params, Device::Cpu)?;
@@ -97,7 +99,7 @@ fn labelled(photos_at: &[PathBuf], teacher_model: &Path) -> Result<Vec<(PathBuf,
     Ok(photos)
 }
 
-/// Lines to the terminal.
+/// Progress as lines on the terminal.
 struct Lines;
 
 impl Progress for Lines {
@@ -131,7 +133,7 @@ fn main() -> Result<()> {
     let val_dataset = Persons { annotated: annotated(data, "val")?, labelled: Vec::new() };
     let objects = dataset.labelled.iter().map(|(_, list)| list.boxes.len()).sum::<usize>();
     println!(
-        "{} pictures, in {} of them {objects} persons found by the teacher",
+        "{} images, in {} of them {objects} persons detected by the teacher",
         dataset.len(),
         dataset.labelled.len()
     );

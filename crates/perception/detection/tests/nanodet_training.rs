@@ -14,13 +14,13 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes, Name};
 use opendr_engine::{Device, ErrorKind, Result, Statistics, Value, ValueType};
 
-/// Pictures of COCO with three classes in place of eighty.
+/// Images of COCO with three classes instead of eighty.
 struct Grouped<D> {
     pictures: D,
     classes: Classes,
 }
 
-/// COCO's numbers of what each class is made of.
+/// COCO's class indices of each class.
 const GROUPS: [std::ops::Range<i64>; 3] = [0..1, 1..9, 14..24];
 
 impl<D: DatasetIterator> Grouped<D> {
@@ -55,7 +55,7 @@ impl<D: DatasetIterator> DatasetIterator for Grouped<D> {
     }
 }
 
-/// The zoo's NanoDet, where the tests of `opendr` have put it, and the folder of data.
+/// Returns the zoo's NanoDet from the cache of `opendr`'s tests, and the data folder.
 fn zoo() -> Option<(Model, PathBuf)> {
     let (Some(cache), Some(shared)) =
         (std::env::var_os("OPENDR_TEST_CACHE"), std::env::var_os("OPENDR_TEST_DATA"))
@@ -68,7 +68,7 @@ fn zoo() -> Option<(Model, PathBuf)> {
     let model =
         containers.filter_map(|path| Model::open(path).ok()).find(|model| model.classes().len() == 80);
     if model.is_none() {
-        println!("skipped: no NanoDet in OPENDR_TEST_CACHE; the tests of opendr put it there");
+        println!("skipped: no NanoDet in OPENDR_TEST_CACHE; run the tests of opendr first");
     }
     Some((model?, PathBuf::from(shared).join("data")))
 }
@@ -116,14 +116,14 @@ fn fit(
 
 fn boxes(model: &Path, sample: &Sample) -> BoundingBoxList {
     let learner = Nanodet::load(&Model::open(model).unwrap(), NanodetParams::default(), Device::Cpu).unwrap();
-    let Some(Value::Image(image)) = sample.data.first() else { panic!("no picture") };
+    let Some(Value::Image(image)) = sample.data.first() else { panic!("no image") };
     let mut boxes = BoundingBoxList::default();
     learner.infer_into(&mut (), image, &mut boxes).unwrap();
     boxes
 }
 
 #[test]
-fn what_is_not_changed_infers_as_before() {
+fn training_at_rate_zero_keeps_predictions() {
     let Some((zoo, data)) = zoo() else { return };
     let pictures = Subset::new(coco(&data, "val"), vec![0, 1]).unwrap();
     let once = params(|params| {
@@ -152,7 +152,7 @@ fn what_is_not_changed_infers_as_before() {
     }
     assert!(found > 0);
 
-    // What was trained can be trained further, for other classes too.
+    // A trained model can be trained further, for other classes too.
     let grouped = Grouped::new(pictures);
     let further = Folder::new("further");
     fit(Some(&Model::open(&trained).unwrap()), &once, &grouped, None, &further.0).unwrap();
@@ -161,7 +161,7 @@ fn what_is_not_changed_infers_as_before() {
 }
 
 #[test]
-fn data_that_do_not_fit_are_refused() {
+fn unsuitable_data_sets_are_refused() {
     let Some((zoo, data)) = zoo() else { return };
     let few = params(|params| params.training.max_steps = 1);
     let folder = Folder::new("empty");
@@ -173,10 +173,10 @@ fn data_that_do_not_fit_are_refused() {
     let unnamed = Grouped { classes: ["person"].into_iter().collect(), pictures: coco(&data, "val") };
     let error = fit(Some(&zoo), &few, &unnamed, None, &folder.0).unwrap_err();
     let text = error.to_string();
-    assert!(error.kind() == ErrorKind::InvalidInput && text.contains("data set of 1 classes"), "{text}");
+    assert!(error.kind() == ErrorKind::InvalidInput && text.contains("data set has 1 classes"), "{text}");
 }
 
-/// Mean average precision at IoU 0.5 of a head that knows nothing, then after training on 64 pictures.
+/// Compares the mAP at IoU 0.5 of an untrained head with that after training on 64 images.
 #[test]
 #[ignore = "ten minutes of training"]
 fn a_new_head_learns_from_64_pictures() {

@@ -1,6 +1,6 @@
-//! Trains a learner to tell gestures apart, and measures it on a fifth of the rows, kept apart.
+//! Trains a classifier of gestures and evaluates it on a fifth of the rows, which are held out.
 //!
-//! The rows are of Kazuhito Takahashi's hand-gesture-recognition-using-mediapipe: a class, then the numbers. It makes the
+//! The rows are those of Kazuhito Takahashi's hand-gesture-recognition-using-mediapipe: a class, then the values. It trains the
 //! zoo's `keypoint_gesture/hand` and `keypoint_gesture/path`:
 //!
 //! ```console
@@ -26,26 +26,26 @@ fn main() -> Result<()> {
     };
     let rows = open(&ExternalDataset::new(rows, "ucr"), &OpenOptions::default(), &Problems::strict())?;
     let rows = Rows { rows, classes: names.iter().map(String::as_str).collect() };
-    let [training, kept_apart] = Subset::split(&rows, 0.8, 2024)?;
+    let [training, held_out] = Subset::split(&rows, 0.8, 2024)?;
     let mut handle = Handle::<KeypointGesture>::new(KeypointGestureParams::default(), Device::Cpu)?;
     let job = FitJob { device: Device::Cpu, ..FitJob::new(Path::new(output)) };
     let fit_params = KeypointGestureFitParams::default();
     let statistics = handle.fit(&fit_params, (&training as &dyn DatasetIterator).into(), None, &job)?;
     println!("{statistics}");
     let mut right = 0;
-    for index in 0..kept_apart.len() {
-        let sample = kept_apart.get(index)?;
-        let (Some(Value::Timeseries(row)), Some(Value::Category(wanted))) =
+    for index in 0..held_out.len() {
+        let sample = held_out.get(index)?;
+        let (Some(Value::Timeseries(row)), Some(Value::Category(expected))) =
             (sample.data.first(), &sample.target)
         else {
-            return Err(Error::invalid_input("no row with its class"));
+            return Err(Error::invalid_input("the sample is not a row with its class"));
         };
         right +=
-            usize::from(handle.infer(&Vector::from_data(row.as_slice().to_vec())?)?.class == wanted.class);
+            usize::from(handle.infer(&Vector::from_data(row.as_slice().to_vec())?)?.class == expected.class);
     }
-    let (count, trained) = (kept_apart.len(), training.len());
+    let (count, trained) = (held_out.len(), training.len());
     println!(
-        "trained on {trained} rows; of {count} others {right} are right: {:.4}",
+        "trained on {trained} rows; {right} of {count} held out rows are correct: {:.4}",
         right as f64 / count as f64
     );
     Ok(())

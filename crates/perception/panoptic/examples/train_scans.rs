@@ -1,11 +1,11 @@
-//! Trains the segmentation of lidar scans on simulated streets, and measures it on others.
+//! Trains the panoptic segmentation of lidar scans on simulated streets and measures it on other streets.
 //!
 //! ```console
 //! $ cargo run --release -p opendr-panoptic --features training --example train_scans -- out 4000
 //! ```
 //!
-//! The second argument is the number of optimiser steps, of four scans each; with 0 it only measures what lies in `out`. It goes
-//! on where it was stopped.
+//! The second argument is the number of optimiser steps, of four scans each; with 0 the example only measures the model in
+//! `out`. An interrupted training resumes.
 
 use std::path::Path;
 use std::time::Instant;
@@ -19,17 +19,17 @@ use opendr_panoptic::panoptic_segmentation::{EfficientLps, EfficientLpsFitParams
 use opendr_simulation::street::StreetSegments;
 use opendr_training::TrainingParams;
 
-/// Streets to train on and to measure on: seeds and numbers.
+/// Seeds and numbers of the streets for training and testing.
 const TRAINING: (u64, usize) = (1, 40_000);
 const TEST: (u64, usize) = (2, 100);
 
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [output, steps] = &arguments[..] else {
-        return Err(Error::invalid_param("give a folder for the model and a number of steps"));
+        return Err(Error::invalid_param("usage: train_scans OUTPUT_FOLDER STEPS"));
     };
     let steps: u64 =
-        steps.parse().map_err(|_| Error::invalid_param("the second argument is a number of steps"))?;
+        steps.parse().map_err(|_| Error::invalid_param("the second argument must be a number of steps"))?;
     let things = StreetSegments::THINGS.to_vec();
     let params = EfficientLpsParams { things: things.clone(), ..Default::default() };
     let mut handle = Handle::<EfficientLps>::new(params, Device::Cpu)?;
@@ -56,7 +56,7 @@ fn main() -> Result<()> {
         let (Some(Value::PointCloudWithCalibration(scan)), Some(Value::Heatmap(truth))) =
             (sample.data.first(), &sample.target)
         else {
-            return Err(Error::invalid_input("no labelled scan"));
+            return Err(Error::invalid_input("the sample has no labelled scan"));
         };
         let begin = Instant::now();
         let found = handle.infer(Scan::from(scan))?;

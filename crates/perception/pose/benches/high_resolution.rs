@@ -1,4 +1,4 @@
-//! A 4K picture with persons of about 40 pixels, looked at plainly and twice.
+//! A 4K image with persons of about 40 pixels, in one pass and in two.
 //!
 //! `cargo bench -p opendr-pose --bench high_resolution`
 
@@ -26,7 +26,7 @@ fn handle<L: Learner>(name: &str) -> Handle<L> {
     handle
 }
 
-/// Grey, with four patches of stripes that are as small as the persons.
+/// Returns a grey image with four patches of stripes as small as the persons.
 fn canvas() -> Image {
     let [width, height] = [3840, 2160];
     let mut pixels = vec![128; width * height * 3];

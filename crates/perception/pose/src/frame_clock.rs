@@ -1,20 +1,20 @@
-//! Seconds from frame to frame of a stream.
+//! Time between the frames of a stream.
 
 use opendr_engine::Header;
 
-/// Seconds from frame to frame where they have no time stamps.
+/// Seconds between frames without time stamps.
 const FRAME: f32 = 1.0 / 30.0;
-/// Frames are taken to be at least this far apart: stamps may be wrong.
+/// Minimum seconds between frames: stamps may be wrong.
 const SHORTEST_FRAME: f32 = 1e-3;
 
-/// Remembers the stamp of the frame before.
+/// Stores the stamp of the last frame.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct FrameClock {
     stamp_ns: Option<i64>,
 }
 
 impl FrameClock {
-    /// Seconds since the frame before.
+    /// Returns the seconds since the last frame.
     pub fn seconds_to(&mut self, header: &Header) -> f32 {
         let before = std::mem::replace(&mut self.stamp_ns, header.stamp_ns);
         let passed =

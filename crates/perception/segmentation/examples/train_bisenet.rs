@@ -1,10 +1,10 @@
-//! Trains BiSeNet on street scenes that are drawn here, with CamVid's eleven classes, and measures it on others.
+//! Trains BiSeNet on synthetic street scenes with CamVid's eleven classes and measures it on other scenes.
 //!
 //! ```console
 //! $ cargo run --release -p opendr-segmentation --features training --example train_bisenet -- out
 //! ```
 //!
-//! makes the zoo's `bisenet/drawn_streets`. Drawn scenes are no photographs: what it says of those is worth little.
+//! The example produces the zoo's `bisenet/drawn_streets`. The scenes are drawings: on photographs the model is of little use.
 
 use std::path::Path;
 
@@ -30,15 +30,13 @@ const CLASSES: [&str; 11] = [
 ];
 const WIDTH: usize = 192;
 const HEIGHT: usize = 144;
-/// Seeds from here on are not trained on.
-const KEPT_APART: u64 = 1_000_000;
+/// First seed of the held-out scenes.
+const HELD_OUT: u64 = 1_000_000;
 
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [output, rest @ ..] = &arguments[..] else {
-        return Err(Error::invalid_param(
-            "give a folder for the model, and perhaps how many scenes and epochs",
-        ));
+        return Err(Error::invalid_param("usage: train_bisenet OUTPUT_FOLDER [SCENES] [EPOCHS]"));
     };
     let number = |at: usize, usual: usize| rest.get(at).and_then(|text| text.parse().ok()).unwrap_or(usual);
     let scenes = Streets { first: 0, count: number(0, 600) };
@@ -48,22 +46,24 @@ fn main() -> Result<()> {
     let mut handle = Handle::<Bisenet>::new(BisenetParams::default(), Device::Cpu)?;
     let job = FitJob { device: Device::Cpu, ..FitJob::new(Path::new(output)) };
     println!("{}", handle.fit(&fit_params, (&scenes as &dyn DatasetIterator).into(), None, &job)?);
-    measure(&mut handle, &Streets { first: KEPT_APART, count: 100 })
+    measure(&mut handle, &Streets { first: HELD_OUT, count: 100 })
 }
 
-/// Intersection over union of each class over all pixels.
+/// Prints the intersection over union of each class over all pixels.
 fn measure(handle: &mut Handle<Bisenet>, scenes: &Streets) -> Result<()> {
     let mut counts = [[0_u64; CLASSES.len()]; CLASSES.len()];
     for index in 0..scenes.len() {
         let sample = scenes.get(index)?;
-        let (Some(Value::Image(image)), Some(Value::Heatmap(truth))) = (sample.data.first(), &sample.target)
+        let (Some(Value::Image(image)), Some(Value::Heatmap(ground_truth))) =
+            (sample.data.first(), &sample.target)
         else {
-            return Err(Error::invalid_input("no scene"));
+            return Err(Error::invalid_input("the sample has no image with a map"));
         };
         let found = handle.infer(image)?;
-        let (HeatmapValues::Labels(found), HeatmapValues::Labels(wanted)) = (found.values(), truth.values())
+        let (HeatmapValues::Labels(found), HeatmapValues::Labels(wanted)) =
+            (found.values(), ground_truth.values())
         else {
-            return Err(Error::invalid_input("no classes"));
+            return Err(Error::invalid_input("the map has no classes"));
         };
         for (found, wanted) in found.iter().zip(wanted.iter()) {
             counts[*wanted as usize][*found as usize] += 1;
@@ -72,19 +72,19 @@ fn measure(handle: &mut Handle<Bisenet>, scenes: &Streets) -> Result<()> {
     let mut sum = 0.0;
     for (class, name) in CLASSES.iter().enumerate() {
         let there: u64 = counts[class].iter().sum();
-        let said: u64 = counts.iter().map(|row| row[class]).sum();
+        let predicted: u64 = counts.iter().map(|row| row[class]).sum();
         let both = counts[class][class];
-        let overlap = both as f64 / (there + said - both).max(1) as f64;
+        let overlap = both as f64 / (there + predicted - both).max(1) as f64;
         println!("{name}: IoU {overlap:.3}");
         sum += overlap;
     }
-    let right: u64 = (0..CLASSES.len()).map(|class| counts[class][class]).sum();
+    let correct: u64 = (0..CLASSES.len()).map(|class| counts[class][class]).sum();
     let all: u64 = counts.iter().flatten().sum();
-    println!("mean IoU {:.4}, pixels right {:.4}", sum / CLASSES.len() as f64, right as f64 / all as f64);
+    println!("mean IoU {:.4}, pixel accuracy {:.4}", sum / CLASSES.len() as f64, correct as f64 / all as f64);
     Ok(())
 }
 
-/// Scenes, each of its own seed.
+/// Synthetic scenes, each with its own seed.
 struct Streets {
     first: u64,
     count: usize,
@@ -107,7 +107,7 @@ impl DatasetIterator for Streets {
     }
 }
 
-/// A canvas of colours and classes.
+/// Canvas of colours and classes.
 struct Scene {
     random: Random,
     colours: Vec<[f64; 3]>,
@@ -129,7 +129,7 @@ impl Scene {
         low + (high - low) * self.random.unit()
     }
 
-    /// A colour near `base`.
+    /// Returns a colour near `base`.
     fn near(&mut self, base: Colour, spread: f64) -> Colour {
         let light = self.between(-spread, spread);
         base.map(|level| level + light + self.between(-spread / 3.0, spread / 3.0))
@@ -162,7 +162,7 @@ impl Scene {
         self.ground(horizon, vanishing);
         self.poles(horizon);
         for _ in 0..2 + self.random.below(6) {
-            // What is nearer is lower and larger.
+            // Nearer objects are lower and larger.
             let foot = horizon + self.between(0.08, 1.0).powi(2) * (height - horizon);
             let size = (foot - horizon) / (height - horizon) * 0.9 * height + 8.0;
             let x = self.between(0.0, width);
@@ -292,7 +292,7 @@ impl Scene {
         self.disc(class, skin, [x, foot - 0.92 * tall], [0.075 * tall, 0.09 * tall]);
     }
 
-    /// Light, grain and bytes.
+    /// Applies gain, tint and noise, and converts to bytes.
     fn finished(mut self) -> Result<(Image, Heatmap)> {
         let (gain, grain) = (self.between(0.6, 1.25), self.between(2.0, 14.0));
         let tint: Colour = std::array::from_fn(|_| self.between(-12.0, 12.0));

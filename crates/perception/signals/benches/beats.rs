@@ -1,4 +1,4 @@
-//! Beats of a minute of a heart signal at 360 Hz, on one thread.
+//! Benchmark of beat detection in a minute of an ECG at 360 Hz, on one thread.
 
 #![allow(missing_docs, clippy::expect_used)]
 
@@ -11,7 +11,7 @@ fn minute(criterion: &mut Criterion) {
     let wave =
         |at: usize| (-((at % 288) as f32 - 100.0).powi(2) / 36.0).exp() + 0.1 * (at as f32 * 0.01).sin();
     let samples: Vec<f32> = (0..60 * 360).map(wave).collect();
-    let detector = BeatDetector::new(360.0).expect("a rate that can be");
+    let detector = BeatDetector::new(360.0).expect("a valid rate");
     criterion.bench_function("beats/minute", |bencher| {
         bencher.iter(|| {
             let (mut signal, mut beats) = (BeatSignal::default(), 0);

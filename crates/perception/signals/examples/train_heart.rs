@@ -1,6 +1,6 @@
-//! Trains a learner of heart signals to tell normal beats from others, and measures it on a fifth of the beats, kept apart.
+//! Trains a heart anomaly detector on normal and abnormal beats, and measures it on a held-out fifth of the beats.
 //!
-//! The beats are ECG5000 of the UCR archive (of the BIDMC database of PhysioNet). It makes the zoo's
+//! The beats are ECG5000 of the UCR archive (from the BIDMC database of PhysioNet). The example produces the zoo's
 //! `gated_recurrent_unit/ecg5000` and `attention_neural_bag_of_feature/ecg5000`:
 //!
 //! ```console
@@ -25,7 +25,7 @@ use opendr_signals::heart_anomaly_detection::{
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [learner, series, output] = &arguments[..] else {
-        return Err(Error::invalid_param("give a learner, ECG5000_TRAIN.txt and a folder for the model"));
+        return Err(Error::invalid_param("usage: train_heart LEARNER ECG5000_TRAIN.txt OUTPUT_FOLDER"));
     };
     match learner.as_str() {
         "gated_recurrent_unit" => {
@@ -41,7 +41,7 @@ fn main() -> Result<()> {
             train::<AttentionNeuralBagOfFeatureKind>(params, &fit_params, series, output)
         }
         other => Err(Error::invalid_param(format!(
-            "no learner {other}; give gated_recurrent_unit or attention_neural_bag_of_feature"
+            "unknown learner {other}; choose gated_recurrent_unit or attention_neural_bag_of_feature"
         ))),
     }
 }
@@ -68,11 +68,11 @@ fn train<K: TrainableHeart>(
     }
     let (count, trained) = (kept_apart.len(), training.len());
     let area = roc.curve().area().unwrap_or(f64::NAN);
-    println!("trained on {trained} beats; of {count} others {right} are right, ROC AUC {area:.4}");
+    println!("trained on {trained} beats; correct of {count} others: {right}, ROC AUC {area:.4}");
     Ok(())
 }
 
-/// ECG5000 with two classes: its first is the normal beat.
+/// ECG5000 with two classes: the first one is the normal beat.
 struct Beats(Box<dyn DatasetIterator>);
 
 impl Dataset for Beats {}
@@ -97,6 +97,6 @@ impl DatasetIterator for Beats {
 fn beat(sample: Sample) -> Result<(Timeseries, i64)> {
     match (sample.data.into_iter().next(), sample.target) {
         (Some(Value::Timeseries(series)), Some(Value::Category(category))) => Ok((series, category.class)),
-        _ => Err(Error::invalid_input("no heart beat with its class")),
+        _ => Err(Error::invalid_input("the sample has no heart beat with a class")),
     }
 }

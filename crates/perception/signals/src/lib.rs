@@ -1,6 +1,23 @@
-//! Signals of the body: heart beats, and what is wrong with them.
+//! Heart signals: beat detection and anomaly detection.
 //!
-//! Begin with [`heart_anomaly_detection::GatedRecurrentUnit`]; [`beats::BeatDetector`] finds beats in an electrocardiogram.
+//! [`beats`] detects the beats of an electrocardiogram in a stream, without a learner. [`heart_anomaly_detection`] classifies
+//! single beats or recordings with [`GatedRecurrentUnit`](heart_anomaly_detection::GatedRecurrentUnit) or
+//! [`AttentionNeuralBagOfFeature`](heart_anomaly_detection::AttentionNeuralBagOfFeature). The feature `training` adds `fit`.
+//! Readers of recordings (WFDB, UCR) are in the crate `opendr-datasets`.
+//!
+//! Begin with `GatedRecurrentUnit`, or with [`beats::BeatDetector`] for beats alone; the documentation of [`beats`] has an
+//! example.
+//!
+//! ```
+//! use opendr_engine::Device;
+//! use opendr_engine::learner::Handle;
+//! use opendr_signals::heart_anomaly_detection::{GatedRecurrentUnit, GatedRecurrentUnitParams};
+//!
+//! let learner = Handle::<GatedRecurrentUnit>::new(GatedRecurrentUnitParams::default(), Device::Cpu)?;
+//! // After `load`, `infer` returns the `Category` of a `Timeseries`.
+//! assert!(!learner.is_ready());
+//! # Ok::<(), opendr_engine::Error>(())
+//! ```
 
 pub mod beats;
 pub mod heart_anomaly_detection;

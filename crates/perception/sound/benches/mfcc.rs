@@ -1,4 +1,4 @@
-//! Cepstra of one second of sound, on one thread; `mfcc.py` beside this prints librosa's time for the same.
+//! Benchmark of the cepstra of one second of audio, on one thread; `mfcc.py` beside this file prints librosa's time.
 
 #![allow(missing_docs, clippy::expect_used)]
 
@@ -12,7 +12,7 @@ fn recipes(criterion: &mut Criterion) {
     let recipes =
         [("keywords", MfccOptions::keywords()), ("librosa_64", MfccOptions::librosa(16_000, 640, 480, 64))];
     for (name, options) in recipes {
-        let mfcc = Mfcc::new(options).expect("a recipe that can be");
+        let mfcc = Mfcc::new(options).expect("valid options");
         let mut cepstra = Vec::new();
         criterion.bench_function(&format!("mfcc/{name}"), |bencher| {
             bencher.iter(|| mfcc.run_into(black_box(&second), black_box(&mut cepstra)));

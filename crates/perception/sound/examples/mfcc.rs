@@ -1,4 +1,4 @@
-//! Writes the cepstra of a WAVE file as `[frames, coefficients]` in a `.npy` file: what the Python tests compare.
+//! Writes the cepstra of a WAVE file as `[frames, coefficients]` into a `.npy` file, for comparison by the Python tests.
 //!
 //! ```console
 //! $ cargo run -p opendr-sound --example mfcc -- keywords yes.wav cepstra.npy
@@ -13,14 +13,19 @@ fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let number = |text: &str| {
-        text.parse::<usize>().map_err(|_| Error::invalid_param(format!("{text:?} is no number of samples")))
+        text.parse::<usize>()
+            .map_err(|_| Error::invalid_param(format!("{text:?} is not a number of samples")))
     };
     let (recipe, from, to) = match words[..] {
         ["keywords", from, to] => (None, from, to),
         ["librosa", window, hop, count, from, to] => {
             (Some([number(window)?, number(hop)?, number(count)?]), from, to)
         }
-        _ => return Err(Error::invalid_param("give keywords IN OUT, or librosa WINDOW HOP COUNT IN OUT")),
+        _ => {
+            return Err(Error::invalid_param(
+                "usage: mfcc keywords IN OUT, or mfcc librosa WINDOW HOP COUNT IN OUT",
+            ));
+        }
     };
     let audio = open_wav(from)?;
     let samples = audio.mono();

@@ -1,8 +1,8 @@
-//! Sound at another rate.
+//! Resampling of audio.
 //!
-//! Windowed sinc interpolation (Smith, Digital Audio Resampling, 1984) with a Kaiser window of 32 zero crossings on each
-//! side: what lies above 0.93 of half the lower rate fades, what would be mirrored is some 80 dB down. A stream in pieces
-//! gives what it gives in one.
+//! Windowed sinc interpolation (Smith, Digital Audio Resampling, 1984) with a Kaiser window of 32 zero crossings on each side:
+//! frequencies above 0.93 of half the lower rate are attenuated, aliases by about 80 dB. The result of a stream does not depend
+//! on its pieces.
 
 use std::f64::consts::PI;
 
@@ -10,44 +10,44 @@ use opendr_engine::{Error, Result};
 
 /// Zero crossings on each side.
 const ZEROS: usize = 32;
-/// Entries of the table between two of them.
+/// Table entries per zero crossing.
 const STEPS: usize = 512;
-/// Of half the lower rate, what passes.
+/// Pass band as a share of half the lower rate.
 const ROLL_OFF: f64 = 0.93;
-/// The Kaiser window's.
+/// Beta of the Kaiser window.
 const BETA: f64 = 9.0;
 
-/// Weights that are kept rather than made anew for each output.
+/// Maximum number of precomputed weights; beyond, weights are computed for each output.
 const MOST_WEIGHTS: usize = 1 << 17;
 
-/// The rates that there are, Hz.
+/// Supported sample rates in Hz.
 const RATES: std::ops::RangeInclusive<u32> = 1000..=768_000;
 
-/// Changes the rate of one stream of sound.
+/// Resampler of one stream of audio.
 #[derive(Debug)]
 pub struct Resampler {
     from: u32,
     to: u32,
     kernel: Kernel,
-    /// Weights of the samples around an output, for each of the places between two samples that there are; empty where
-    /// these are many.
+    /// Precomputed weights of the samples around an output, for each position of an output between two samples; empty where
+    /// there are too many.
     weights: Vec<f32>,
-    /// Parts of a sample, `to` to one, from one such place to the next.
+    /// Distance between such positions, in units of `1 / to` sample.
     stride: u64,
-    /// Samples on each side that an output depends on.
+    /// Number of samples on each side that an output depends on.
     reach: usize,
     pending: Vec<f32>,
-    /// Where the next output lies behind the first of `pending`, in parts of a sample, `to` to one.
+    /// Position of the next output relative to the first of `pending`, in units of `1 / to` sample.
     next: u64,
     taken: u64,
     given: u64,
 }
 
-/// Half of the windowed sinc, `STEPS` entries a zero crossing, scaled.
+/// Half of the scaled windowed sinc, `STEPS` entries per zero crossing.
 #[derive(Debug)]
 struct Kernel {
     table: Vec<f32>,
-    /// Entries that a sample spans.
+    /// Table entries per sample.
     stretch: f64,
 }
 
@@ -62,7 +62,7 @@ impl Kernel {
         Self { table: (0..=ZEROS * STEPS).map(entry).collect(), stretch: cutoff * STEPS as f64 }
     }
 
-    /// The weight of a sample at a distance, samples.
+    /// Returns the weight of a sample at a distance in samples.
     fn weight(&self, distance: f64) -> f32 {
         let entry = distance.abs() * self.stretch;
         let index = entry as usize;
@@ -74,14 +74,14 @@ impl Kernel {
 }
 
 impl Resampler {
-    /// From `from` to `to` samples a second.
+    /// Creates a resampler from `from` to `to` Hz.
     ///
     /// # Errors
     /// `InvalidInput` for a rate outside of 1,000 to 768,000 Hz.
     pub fn new(from: u32, to: u32) -> Result<Self> {
         if let Some(rate) = [from, to].iter().find(|rate| !RATES.contains(rate)) {
             return Err(Error::invalid_input(format!(
-                "sound at {rate} Hz cannot be resampled; give {} to {} Hz",
+                "audio at {rate} Hz cannot be resampled; the rate must be {} to {} Hz",
                 RATES.start(),
                 RATES.end()
             )));
@@ -112,12 +112,12 @@ impl Resampler {
         })
     }
 
-    /// The rate of what it takes, Hz.
+    /// Returns the sample rate of the input in Hz.
     pub fn from_rate(&self) -> u32 {
         self.from
     }
 
-    /// Takes the next piece, and adds what follows from it to `resampled`.
+    /// Adds a piece and appends the completed samples to `resampled`.
     pub fn push(&mut self, piece: &[f32], resampled: &mut Vec<f32>) {
         self.taken += piece.len() as u64;
         if self.from == self.to {
@@ -128,7 +128,7 @@ impl Resampler {
         self.run(u64::MAX, resampled);
     }
 
-    /// The stream is over: adds the rest, so that in all there are as many samples as it lasted, rounded up.
+    /// Ends the stream and appends the rest; the total number of samples is the duration times the new rate, rounded up.
     pub fn finish(&mut self, resampled: &mut Vec<f32>) {
         if self.from != self.to {
             let all = (self.taken * u64::from(self.to)).div_ceil(u64::from(self.from));
@@ -165,7 +165,7 @@ impl Resampler {
     }
 }
 
-/// The sum of products, eight side by side.
+/// Returns the sum of products, computed in eight lanes.
 fn product(a: &[f32], b: &[f32]) -> f32 {
     let (a, b) = (a.as_chunks::<8>(), b.as_chunks::<8>());
     let mut sums = [0.0; 8];
@@ -175,12 +175,12 @@ fn product(a: &[f32], b: &[f32]) -> f32 {
     sums.iter().sum::<f32>() + a.1.iter().zip(b.1).map(|(a, b)| a * b).sum::<f32>()
 }
 
-/// The greatest number that divides both.
+/// Returns the greatest common divisor.
 fn divisor(a: u32, b: u32) -> u32 {
     if b == 0 { a.max(1) } else { divisor(b, a % b) }
 }
 
-/// A whole sound at another rate, in as many samples as it lasts, rounded up.
+/// Resamples a whole recording; the number of samples is the duration times the new rate, rounded up.
 ///
 /// # Errors
 /// As [`Resampler::new`].
@@ -192,7 +192,7 @@ pub fn resampled(samples: &[f32], from: u32, to: u32) -> Result<Vec<f32>> {
     Ok(resampled)
 }
 
-/// The modified Bessel function of the first kind and order zero.
+/// Modified Bessel function of the first kind and order zero.
 fn bessel(x: f64) -> f64 {
     let (mut sum, mut term) = (1.0, 1.0);
     for order in 1..64 {
@@ -212,29 +212,29 @@ mod tests {
     }
 
     #[test]
-    fn tones_keep_their_pitch_and_loudness() {
+    fn tones_keep_pitch_and_volume() {
         for (from, to) in
             [(48_000, 16_000), (44_100, 16_000), (8000, 16_000), (22_050, 16_000), (44_101, 16_000)]
         {
-            let heard = resampled(&tone(1000.0, from, 0.5), from, to).unwrap();
-            let wanted = tone(1000.0, to, 0.5);
-            assert!(heard.len() - wanted.len() <= 1, "{from} to {to}");
-            let middle = 2000..heard.len() - 2000;
-            let off = heard[middle.clone()].iter().zip(&wanted[middle]).map(|(a, b)| (a - b).abs());
+            let output = resampled(&tone(1000.0, from, 0.5), from, to).unwrap();
+            let expected = tone(1000.0, to, 0.5);
+            assert!(output.len() - expected.len() <= 1, "{from} to {to}");
+            let middle = 2000..output.len() - 2000;
+            let off = output[middle.clone()].iter().zip(&expected[middle]).map(|(a, b)| (a - b).abs());
             let off = off.fold(0.0, f32::max);
             assert!(off < 2e-3, "{from} to {to}: {off}");
         }
     }
 
     #[test]
-    fn what_the_lower_rate_cannot_carry_is_gone() {
-        let heard = resampled(&tone(11_000.0, 48_000, 0.5), 48_000, 16_000).unwrap();
-        let loudest = heard[1000..7000].iter().copied().fold(0.0, f32::max);
+    fn frequencies_above_the_lower_nyquist_rate_are_removed() {
+        let output = resampled(&tone(11_000.0, 48_000, 0.5), 48_000, 16_000).unwrap();
+        let loudest = output[1000..7000].iter().copied().fold(0.0, f32::max);
         assert!(loudest < 3e-4, "{loudest}");
     }
 
     #[test]
-    fn pieces_give_what_the_whole_gives() {
+    fn pieces_yield_the_samples_of_the_whole() {
         let sound = tone(440.0, 44_100, 0.2);
         let whole = resampled(&sound, 44_100, 16_000).unwrap();
         let mut resampler = Resampler::new(44_100, 16_000).unwrap();
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn rates_that_cannot_be_are_refused() {
+    fn invalid_rates_are_refused() {
         for (from, to) in [(0, 16_000), (999, 16_000), (16_000, u32::MAX)] {
             assert!(Resampler::new(from, to).is_err());
         }

@@ -1,4 +1,4 @@
-//! What speech learners take.
+//! Input of the learners of audio.
 
 use std::borrow::Cow;
 
@@ -6,21 +6,21 @@ use opendr_engine::data::{Audio, Timeseries};
 use opendr_engine::learner::{Inputs, Port, Ports};
 use opendr_engine::{Error, Header, Result, ValueRef, ValueType};
 
-/// Sound: [`Audio`], which knows its rate, or a [`Timeseries`] that is taken to be at the learner's (as in OpenDR).
+/// Audio input: [`Audio`] with its sample rate, or a [`Timeseries`] at the learner's sample rate (as in OpenDR).
 #[derive(Debug, Clone, Copy)]
-pub enum Sound<'a> {
-    /// With its rate.
+pub enum AudioInput<'a> {
+    /// Audio with its sample rate.
     Audio(&'a Audio),
     /// One feature through time, or one row as in OpenDR.
     Series(&'a Timeseries),
 }
 
 const PORT: &str = ValueType::Audio.port();
-/// Samples beyond are no sound of any unit, and their spectra would be infinite.
+/// Maximum absolute value of a sample; spectra of larger values could overflow.
 const LOUDEST: f32 = 1e9;
 
-impl<'a> Sound<'a> {
-    /// Samples a second: those of the sound, or `of_series` where it is a series.
+impl<'a> AudioInput<'a> {
+    /// Returns the sample rate of the audio in Hz, or `of_series` for a series.
     pub fn rate(self, of_series: u32) -> u32 {
         match self {
             Self::Audio(audio) => audio.sample_rate(),
@@ -28,15 +28,16 @@ impl<'a> Sound<'a> {
         }
     }
 
-    /// The samples of one channel at `sample_rate`.
+    /// Returns the samples of one channel at `sample_rate`.
     ///
     /// # Errors
-    /// `InvalidInput` for another rate, a series of several features, or a sample that is no number or beyond 10^9, of which spectra would overflow.
+    /// `InvalidInput` for another sample rate, a series of several features, or a sample that is NaN or beyond 10^9, where
+    /// spectra would overflow.
     pub fn samples(self, sample_rate: u32) -> Result<Cow<'a, [f32]>> {
         let samples = match self {
             Self::Audio(audio) if audio.sample_rate() != sample_rate => {
                 return Err(Error::invalid_input(format!(
-                    "sound at {} Hz, the learner hears at {sample_rate} Hz; resample it",
+                    "the audio has {} Hz, but the learner requires {sample_rate} Hz; resample it",
                     audio.sample_rate()
                 )));
             }
@@ -45,27 +46,27 @@ impl<'a> Sound<'a> {
             Self::Series(series) => {
                 let [time, features] = series.shape();
                 return Err(Error::invalid_input(format!(
-                    "a series of {time} instants with {features} features is no sound; give one feature"
+                    "a series of {time} time steps with {features} features is not audio; it must have one feature"
                 )));
             }
         };
         let is_bad = |sample: &f32| !(-LOUDEST..=LOUDEST).contains(sample);
-        // Counted, not sought, so that many are compared at once.
+        // A count over all samples vectorises; a search would not.
         if samples.iter().map(|sample| u32::from(is_bad(sample))).sum::<u32>() == 0 {
             return Ok(samples);
         }
         let at = samples.iter().position(is_bad).unwrap_or_default();
         Err(Error::invalid_input(format!(
-            "sample {at} of the sound is {}; give numbers within -1 and 1",
+            "sample {at} of the audio is {}; samples must be within -1 and 1",
             samples[at]
         )))
     }
 }
 
-impl<'a> Inputs<'a> for Sound<'a> {
+impl<'a> Inputs<'a> for AudioInput<'a> {
     const PORTS: &'static [Port] = &[Port {
         name: PORT,
-        doc: "What was heard; a Timeseries of one feature is taken to be at the learner's sample rate.",
+        doc: "Audio; a Timeseries of one feature has the learner's sample rate.",
         value_type: ValueType::Audio,
         optional: false,
         init: false,
@@ -86,13 +87,13 @@ impl<'a> Inputs<'a> for Sound<'a> {
     }
 }
 
-impl<'a> From<&'a Audio> for Sound<'a> {
+impl<'a> From<&'a Audio> for AudioInput<'a> {
     fn from(audio: &'a Audio) -> Self {
         Self::Audio(audio)
     }
 }
 
-impl<'a> From<&'a Timeseries> for Sound<'a> {
+impl<'a> From<&'a Timeseries> for AudioInput<'a> {
     fn from(series: &'a Timeseries) -> Self {
         Self::Series(series)
     }
@@ -105,19 +106,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sound_and_series_give_samples() {
+    fn audio_and_series_yield_samples() {
         let audio = Audio::new(vec![0.0, 0.5, 1.0, 0.5], 2, 16_000).unwrap();
         let column = Timeseries::new(vec![0.25, 0.75], [2, 1]).unwrap();
         let row = Timeseries::new(vec![0.25, 0.75], [1, 2]).unwrap();
-        for sound in [Sound::from(&audio), Sound::from(&column), Sound::from(&row)] {
+        for sound in [AudioInput::from(&audio), AudioInput::from(&column), AudioInput::from(&row)] {
             assert_eq!(*sound.samples(16_000).unwrap(), [0.25, 0.75]);
         }
-        assert_eq!(Sound::from(&audio).samples(8000).unwrap_err().kind(), ErrorKind::InvalidInput);
+        assert_eq!(AudioInput::from(&audio).samples(8000).unwrap_err().kind(), ErrorKind::InvalidInput);
         let wide = Timeseries::new(vec![0.0; 4], [2, 2]).unwrap();
-        assert!(Sound::from(&wide).samples(16_000).is_err());
+        assert!(AudioInput::from(&wide).samples(16_000).is_err());
         let broken = Timeseries::new(vec![0.0, f32::NAN], [2, 1]).unwrap();
-        assert!(Sound::from(&broken).samples(16_000).is_err());
-        let Ok(Sound::Series(_)) = Sound::from_ports(&Ports::default().with("audio", &row)) else { panic!() };
-        assert!(Sound::from_ports(&Ports::default()).is_err());
+        assert!(AudioInput::from(&broken).samples(16_000).is_err());
+        let Ok(AudioInput::Series(_)) = AudioInput::from_ports(&Ports::default().with("audio", &row)) else {
+            panic!()
+        };
+        assert!(AudioInput::from_ports(&Ports::default()).is_err());
     }
 }

@@ -1,4 +1,4 @@
-/// Brings numbers to mean zero and deviation one; equal numbers become zero.
+/// Normalises values to zero mean and unit deviation; equal values become zero.
 pub fn standardise(numbers: &mut [f32]) {
     let count = numbers.len() as f64;
     let mean = numbers.iter().map(|number| f64::from(*number)).sum::<f64>() / count;

@@ -1,6 +1,6 @@
-//! Trains a learner of words on those of Speech Commands, and measures it on the clips of a fifth of the speakers, kept apart.
+//! Trains a keyword spotting learner on Speech Commands and measures its accuracy on a held-out fifth of the speakers.
 //!
-//! The clips are of the test set of version 0.02, of ten words, silence and other words. It makes the zoo's
+//! The clips are those of the test set of version 0.02: ten words, silence and other words. The example produces the zoo's
 //! `matchboxnet/commands_12`, `edge_speech_nets/commands_12` and `quadratic_self_onn/commands_12`:
 //!
 //! ```console
@@ -14,9 +14,9 @@ use opendr_engine::dataset::{DatasetIterator, ExternalDataset, Subset};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::{Device, Error, Result, Value};
 use opendr_speech::speech_recognition::{
-    EdgeSpeechNet, EdgeSpeechNetsFitParams, EdgeSpeechNetsKind, EdgeSpeechNetsParams, MatchboxNetFitParams,
-    MatchboxNetKind, MatchboxNetParams, QuadraticSelfOnnFitParams, QuadraticSelfOnnKind,
-    QuadraticSelfOnnParams, Sound, TrainableWords, WordFitParams, WordLearner,
+    AudioInput, EdgeSpeechNet, EdgeSpeechNetsFitParams, EdgeSpeechNetsKind, EdgeSpeechNetsParams,
+    MatchboxNetFitParams, MatchboxNetKind, MatchboxNetParams, QuadraticSelfOnnFitParams,
+    QuadraticSelfOnnKind, QuadraticSelfOnnParams, TrainableWords, WordFitParams, WordLearner,
 };
 use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams};
 
@@ -25,12 +25,12 @@ fn main() -> Result<()> {
     let (learner, clips, output, epochs) = match &arguments[..] {
         [learner, clips, output] => (learner, clips, output, 60),
         [learner, clips, output, epochs] => {
-            let wrong = || Error::invalid_param(format!("{epochs:?} epochs; give a number"));
+            let wrong = || Error::invalid_param(format!("{epochs:?} is not a number of epochs"));
             (learner, clips, output, epochs.parse().map_err(|_| wrong())?)
         }
         _ => {
             return Err(Error::invalid_param(
-                "give a learner, the folder of the clips, one for the model and, if you like, the epochs (60)",
+                "usage: train_words LEARNER CLIP_FOLDER OUTPUT_FOLDER [EPOCHS=60]",
             ));
         }
     };
@@ -51,7 +51,7 @@ fn main() -> Result<()> {
             train::<QuadraticSelfOnnKind>(QuadraticSelfOnnParams::default(), &fit_params, clips, output)
         }
         other => Err(Error::invalid_param(format!(
-            "no learner {other}; give matchboxnet, edge_speech_nets or quadratic_self_onn"
+            "unknown learner {other}; choose matchboxnet, edge_speech_nets or quadratic_self_onn"
         ))),
     }
 }
@@ -76,31 +76,32 @@ fn train<K: TrainableWords>(
 ) -> Result<()> {
     let clips = ExternalDataset::new(clips, "speech_commands");
     let clips = &*open(&clips, &OpenOptions::default(), &Problems::strict())?;
-    let (kept_apart, training) = (0..clips.len()).partition(|index| is_kept_apart(&clips.name(*index)));
-    let (training, kept_apart) = (Subset::new(clips, training)?, Subset::new(clips, kept_apart)?);
+    let (held_out, training) = (0..clips.len()).partition(|index| is_held_out(&clips.name(*index)));
+    let (training, held_out) = (Subset::new(clips, training)?, Subset::new(clips, held_out)?);
     let mut handle = Handle::<WordLearner<K>>::new(params, Device::Cpu)?;
     let job = FitJob { device: Device::Cpu, resume: true, ..FitJob::new(Path::new(output)) };
     let statistics = handle.fit(fit_params, (&training as &dyn DatasetIterator).into(), None, &job)?;
     println!("{statistics}");
-    let mut right = 0;
-    for index in 0..kept_apart.len() {
-        let sample = kept_apart.get(index)?;
+    let mut correct = 0;
+    for index in 0..held_out.len() {
+        let sample = held_out.get(index)?;
         let (Some(Value::Audio(audio)), Some(Value::Category(word))) = (sample.data.first(), &sample.target)
         else {
-            return Err(Error::invalid_input("no clip with its word"));
+            return Err(Error::invalid_input("the sample has no audio with a class"));
         };
-        right += usize::from(handle.infer(Sound::from(audio))?.class == word.class);
+        correct += usize::from(handle.infer(AudioInput::from(audio))?.class == word.class);
     }
-    let (count, trained) = (kept_apart.len(), training.len());
+    let (count, trained) = (held_out.len(), training.len());
     println!(
-        "trained on {trained} clips; of {count} of other speakers {right} are right: {:.4}",
-        right as f64 / count as f64
+        "trained on {trained} clips; correct of {count} clips of other speakers: {correct}, accuracy {:.4}",
+        correct as f64 / count as f64
     );
     Ok(())
 }
 
-/// A fifth of the speakers, by the hash that names them; noise, which nobody speaks, by its number.
-fn is_kept_apart(name: &str) -> bool {
+/// Whether a clip is of the held-out fifth of the speakers, by the hash in its name; noise has no speaker and is split by its
+/// number.
+fn is_held_out(name: &str) -> bool {
     let file = name.rsplit('/').next().unwrap_or(name);
     let speaker = speaker_of_clip(file).trim_end_matches(".wav");
     u64::from_str_radix(speaker, 16).is_ok_and(|hash| hash % 5 == 4)

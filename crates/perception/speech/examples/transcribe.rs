@@ -1,6 +1,6 @@
-//! `transcribe FOLDER SOUND.wav...`: writes down recordings with a Whisper, and tells how long that took. `FOLDER` holds
-//! CTranslate2's `model.bin` with `tokenizer.json`, or the container that was made of them. With `--pieces`, the sound
-//! comes in pieces of 100 ms.
+//! `transcribe FOLDER SOUND.wav...`: transcribes recordings with Whisper and prints the time taken. `FOLDER` contains
+//! CTranslate2's `model.bin` with `tokenizer.json`, or the container converted from them. With `--pieces`, the audio is passed
+//! in pieces of 100 ms.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -44,13 +44,13 @@ fn run(folder: &Path, sounds: &[String], pieces: bool) -> Result<()> {
     for sound in sounds {
         let audio = open_wav(sound)?;
         let start = Instant::now();
-        let mut said = WhisperTranscription::default();
+        let mut transcription = WhisperTranscription::default();
         match pieces {
             true => streamed(&mut handle, &audio)?,
-            false => handle.infer_into((&audio).into(), &mut said)?,
+            false => handle.infer_into((&audio).into(), &mut transcription)?,
         }
         let (took, length) = (start.elapsed().as_secs_f64(), audio.duration_s());
-        print!("{said:#}");
+        print!("{transcription:#}");
         println!("{sound}: {length:.2} s in {took:.2} s, real-time factor {:.3}", took / length);
     }
     println!("{}", peak_memory());
@@ -60,9 +60,9 @@ fn run(folder: &Path, sounds: &[String], pieces: bool) -> Result<()> {
 fn streamed(handle: &mut Handle<Whisper>, audio: &Audio) -> Result<()> {
     let samples = audio.mono();
     let mut stream = handle.stream()?;
-    let mut show = |said: WhisperTranscription| match said.segments.is_empty() {
-        true => println!("...{}", said.text),
-        false => print!("{said:#}"),
+    let mut show = |transcription: WhisperTranscription| match transcription.segments.is_empty() {
+        true => println!("...{}", transcription.text),
+        false => print!("{transcription:#}"),
     };
     for piece in samples.chunks(audio.sample_rate() as usize / 10) {
         let piece = Audio::new(piece.to_vec(), 1, audio.sample_rate())?;
@@ -82,7 +82,7 @@ fn imported(folder: &Path) -> Result<std::path::PathBuf> {
     Ok(container)
 }
 
-/// The line of the kernel's report; empty where there is none.
+/// Returns the line of the kernel's report; empty where there is none.
 fn peak_memory() -> String {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     status.lines().find(|line| line.starts_with("VmHWM")).unwrap_or_default().to_owned()

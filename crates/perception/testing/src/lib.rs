@@ -1,8 +1,10 @@
-//! What the tests of perception learners share: real models and data, and checks that every learner that trains passes.
+//! Shared test code of the perception learners.
 //!
-//! Families have this crate as a dev-dependency; no program has it. Begin with [`test_models::test_data`].
+//! The crate has real models and data for tests ([`test_models`]), the check that a learner overfits one batch
+//! ([`overfit`]), and the checks of the learner's contract ([`learner_checks`]). It is a dev-dependency of the families only; no
+//! program contains it. Begin with [`test_models::test_data`].
 #![allow(clippy::unwrap_used)]
 
+pub mod learner_checks;
 pub mod overfit;
-pub mod promises;
 pub mod test_models;

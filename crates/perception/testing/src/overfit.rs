@@ -1,15 +1,15 @@
-//! What the tests of learners that train have in common: each can learn one batch by heart.
+//! Test that a trainable learner overfits one batch.
 
 use burn::module::Module;
 use burn::optim::{AdamConfig, GradientsParams};
 use burn::tensor::Device;
-use opendr_datasets::augment::{Augment, Others};
+use opendr_datasets::augment::{Augment, OtherSamples};
 use opendr_datasets::loader::Collate;
 use opendr_engine::Random;
 use opendr_engine::dataset::Sample;
 use opendr_training::Objective;
 
-/// Returns the loss of `samples`, one batch, before training and after 300 steps on it alone.
+/// Returns the loss of `samples`, one batch, before and after 300 training steps on it.
 pub fn losses_on_one_batch<O: Objective>(
     objective: &O,
     network: impl FnOnce(&Device) -> O::Network,
@@ -23,7 +23,7 @@ pub fn losses_on_one_batch<O: Objective>(
     let (collate, pipeline) = (objective.collate().unwrap(), objective.pipeline().unwrap());
     let mut batch = collate.start(samples.len());
     for mut sample in samples {
-        pipeline.apply(&mut sample, &mut Random::new(0), &Others::none()).unwrap();
+        pipeline.apply(&mut sample, &mut Random::new(0), &OtherSamples::none()).unwrap();
         collate.add(&mut batch, sample).unwrap();
     }
     let mut optimizer = AdamConfig::new().init();

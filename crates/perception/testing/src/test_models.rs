@@ -1,10 +1,10 @@
-//! Real models and data for the tests of learners, out of `OPENDR_TEST_DATA`.
+//! Real models and data for the tests of learners, from `OPENDR_TEST_DATA`.
 
 use std::path::PathBuf;
 
 use opendr_engine::model::{Manifest, ModelWriter};
 
-/// Returns a path in the folder of test data; `None`, said aloud, without one.
+/// Returns a path in the folder of test data; without one, prints a message and returns `None`.
 pub fn test_data(path: &str) -> Option<PathBuf> {
     let folder = std::env::var_os("OPENDR_TEST_DATA").map(PathBuf::from);
     if folder.is_none() {
@@ -13,13 +13,13 @@ pub fn test_data(path: &str) -> Option<PathBuf> {
     Some(folder?.join(path))
 }
 
-/// Returns a container of `learner` with the model at `path` among the test models and one class in each line of `classes`.
+/// Returns a container of `learner` with the model at `path` of the test models, and one class per line of `classes`.
 pub fn container(learner: &str, path: &str, classes: &str) -> Option<PathBuf> {
     let model = std::fs::read(test_data("models")?.join(path)).unwrap();
     Some(container_of(learner, &model, classes))
 }
 
-/// Returns a container of `learner` with `model`.
+/// Returns a container of `learner` with `model`, and one class per line of `classes`.
 pub fn container_of(learner: &str, model: &[u8], classes: &str) -> PathBuf {
     let test = std::thread::current().name().unwrap_or_default().replace("::", "-");
     let folder = std::env::temp_dir().join(format!("opendr-{test}-{learner}-{}", std::process::id()));

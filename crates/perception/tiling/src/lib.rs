@@ -1,14 +1,32 @@
-//! Large pictures in tiles: small things in them are found by networks that see only a few hundred pixels.
+//! Tiled inference over large images: scheduling of tiles, time budgets, and merging of boxes.
 //!
-//! [`Tiles`] says which tiles of a picture are worth a look, and in which order: those with detail that were not looked at
-//! yet or changed since, where objects were seen first, the others in turn. [`look_side_by_side`] looks at them on several
-//! threads until the time is over; where time is short, small parts of several tiles are put side by side and looked at as one
-//! ([`Looks`]). What lies in the overlap of tiles or is cut by their borders is put together by
-//! [`merge_pieces`]. [`picture_learner`](PictureLearner) is what looks: any learner of one picture that remembers nothing.
+//! Networks with inputs of a few hundred pixels miss small objects in large images; over tiles they detect them. [`Tiles`]
+//! selects the tiles to process in each image and their order: tiles with detail that are new or changed, those with objects
+//! and others in turn. [`run_within_budget`] processes them on several threads until the time budget is used. With little time,
+//! small parts of several tiles share one inference ([`TileInferences`]). [`merge_pieces`] merges the boxes of overlapping tiles and of
+//! objects that tile borders cut. [`ImageLearner`] is a learner of one image without state, which runs on the tiles.
 //!
-//! Tiles that did not change keep the answer of their last look, so a camera that stands pays for what moves (the idea of
-//! regions of interest by difference, after B. Unel et al., "The Power of Tiling for Small Object Detection", CVPR
-//! Workshops 2019, and F. C. Akyon et al., "Slicing Aided Hyper Inference", ICIP 2022, for tiles and their merging).
+//! Tiles without a change keep the result of their last inference, so a fixed camera pays for motion only. The regions of
+//! interest by difference follow B. Unel et al., "The Power of Tiling for Small Object Detection", CVPR Workshops 2019; tiles
+//! and their merging also F. C. Akyon et al., "Slicing Aided Hyper Inference", ICIP 2022.
+//!
+//! The learners over tiles are in `opendr-detection` and `opendr-segmentation`, regions and brightness per cell in
+//! `opendr-perception-common`. Begin with [`Tiles`].
+//!
+//! ```
+//! use opendr_engine::data::Image;
+//! use opendr_tiling::{Tiles, TilingParams};
+//!
+//! let params = TilingParams { tile: 64, tile_overlap: 16, detail_threshold: 0.0, ..TilingParams::default() };
+//! let image = Image::from_rgb8(vec![128; 160 * 120 * 3], 160, 120)?;
+//! let mut tiles = Tiles::default();
+//! let is_other_scene = tiles.plan(&params, image.view(), |_, _| false)?;
+//! assert!(is_other_scene);
+//! // The whole image is the first tile.
+//! assert_eq!(tiles.tiles()[0].region.width, 160);
+//! assert_eq!(tiles.order().len(), tiles.tiles().len());
+//! # Ok::<(), opendr_engine::Error>(())
+//! ```
 
 mod looking;
 mod packing;
@@ -19,46 +37,46 @@ mod tile_picture;
 
 use opendr_engine::params::Params;
 
-pub use looking::{Allowance, look_side_by_side};
-pub use packing::{Looks, Slot};
-pub use picture_learner::{Open, PictureLearner, open_as, open_copies, open_picture_learner};
+pub use looking::{TimeBudget, run_within_budget};
+pub use packing::{Slot, TileInferences};
+pub use picture_learner::{ImageLearner, Open, open_as, open_copies, open_image_learner};
 pub use pieces::{Cut, Piece, merge_pieces};
 pub use schedule::{Tile, Tiles};
-pub use tile_picture::TilePicture;
+pub use tile_picture::TileImage;
 
-/// How a large picture is looked at.
+/// Parameters of the tiling.
 #[derive(Debug, Clone, Params)]
 pub struct TilingParams {
-    /// Side of a tile in the picture. What is looked for should fill a tenth of it or more.
+    /// Side of a tile in the image. Objects should cover a tenth of it or more.
     #[param(default = 256, range = 32..=4096, unit = "px", live)]
     pub tile: usize,
-    /// What neighbouring tiles share: what is smaller lies whole in one of them. At most half of a tile counts.
+    /// Overlap of neighbouring tiles: a smaller object is completely in one of them. At most half of a tile counts.
     #[param(default = 48, range = 0..=2048, unit = "px", live)]
     pub tile_overlap: usize,
-    /// Whether the whole picture is looked at, too: for what is larger than a tile.
+    /// Whether the whole image is processed too, for objects larger than a tile.
     #[param(default = true, live)]
     pub whole: bool,
-    /// Time for one picture; a tile that has begun is finished, and one is always looked at. 0: no limit, and answers that
-    /// depend on nothing but the pictures.
+    /// Time budget per image. A tile in progress is finished, and one is always processed. With 0 there is no limit, and
+    /// the results are deterministic.
     #[param(default = 0.0, range = 0.0..=60000.0, unit = "ms", live)]
     pub time_budget: f32,
-    /// At most so many tiles of one picture are looked at, the others in the next ones; 0: no limit.
+    /// Maximum number of tiles per image; the others are processed in the next images. 0: no limit.
     #[param(default = 0, range = 0..=100000, live)]
     pub max_tiles: usize,
-    /// A tile in which brightness differs by no more than this within 16 pixels, 0..=255, is empty; 0: no tile is.
+    /// Range of brightness within 16 pixels, 0..=255, up to which a tile is empty; 0: no tile is.
     #[param(default = 16.0, range = 0.0..=255.0, live)]
     pub detail_threshold: f32,
-    /// A tile is looked at again once the brightness of 16 x 16 pixels in it changed by more than this, 0..=255; until then
-    /// its last answer holds. 0: always.
+    /// Change of the brightness of 16 x 16 pixels, 0..=255, above which a tile is processed again; until then its last
+    /// result is valid. 0: always.
     #[param(default = 6.0, range = 0.0..=255.0, live)]
     pub change_threshold: f32,
-    /// For so many pictures the answer of a tile that changed holds, if there was no time to look again.
+    /// Number of images for which the last result of a changed tile stays valid, if there is no time to process it again.
     #[param(default = 5, range = 0..=1000, live)]
     pub memory: u32,
-    /// In every so-manyth picture the tile that was not looked at for longest is, be there anything or not; 0: never.
+    /// Number of images after which the tile that was processed longest ago is processed again, in any case; 0: never.
     #[param(default = 4, range = 0..=1000, live)]
     pub rotation: u32,
-    /// Tiles that are looked at side by side, each on a thread with a copy of the network; 0: as many as there are cores,
+    /// Number of tiles that are processed in parallel, each on a thread with a copy of the network; 0: the number of cores,
     /// at most four.
     #[param(default = 0, range = 0..=64)]
     pub parallel_tiles: usize,

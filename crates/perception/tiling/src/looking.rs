@@ -5,39 +5,39 @@ use std::time::{Duration, Instant};
 
 use opendr_engine::Result;
 
-/// How long a picture may take.
+/// Time budget of an image.
 #[derive(Debug, Clone, Copy)]
-pub struct Allowance {
+pub struct TimeBudget {
     begun: Instant,
     limit: Option<Duration>,
 }
 
-impl Allowance {
-    /// From now on so many milliseconds; 0 or no number: no limit.
-    pub fn of_milliseconds(milliseconds: f32) -> Self {
+impl TimeBudget {
+    /// Starts a budget of so many milliseconds; without a limit for 0 and NaN.
+    pub fn from_milliseconds(milliseconds: f32) -> Self {
         let limit = (milliseconds > 0.0).then(|| Duration::from_secs_f32(milliseconds.min(1e9) / 1000.0));
         Self { begun: Instant::now(), limit }
     }
 
-    /// Whether there is time for something that takes `long`.
+    /// Returns whether the budget has `long` left.
     fn has(&self, long: Duration) -> bool {
         self.limit.is_none_or(|limit| self.begun.elapsed() + long <= limit)
     }
 }
 
-/// Does `jobs` in their order, at most `workers` side by side, while the allowance has time for one more that takes as long as
-/// the longest so far; the first is always done. `work` is given the number of its worker and the job; what was done
-/// is in the order of the jobs.
+/// Runs `jobs` in their order, at most `workers` in parallel, while the budget has time for one more that takes as long as
+/// the longest so far; the first is always run. `work` receives the index of its worker and the job. The results are in the
+/// order of the jobs.
 ///
 /// # Errors
-/// The first error of `work`; what is under way is finished.
+/// The first error of `work`; jobs in progress are finished.
 ///
 /// # Panics
-/// Goes on with a panic of `work`.
-pub fn look_side_by_side<R: Send>(
+/// When `work` panics.
+pub fn run_within_budget<R: Send>(
     workers: usize,
     jobs: &[usize],
-    allowance: Allowance,
+    allowance: TimeBudget,
     work: impl Fn(usize, usize) -> Result<R> + Sync,
 ) -> Result<Vec<(usize, R)>> {
     let (next, longest) = (AtomicUsize::new(0), AtomicU64::new(0));
@@ -80,46 +80,47 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_is_done_in_order_without_a_limit() {
+    fn all_jobs_run_in_order_without_a_limit() {
         for workers in [0, 1, 3] {
             let jobs: Vec<usize> = (0..50).rev().collect();
             let done =
-                look_side_by_side(workers, &jobs, Allowance::of_milliseconds(0.0), |_, job| Ok(job * 2));
-            let wanted: Vec<_> = jobs.iter().map(|job| (*job, job * 2)).collect();
-            assert_eq!(done.unwrap(), wanted);
+                run_within_budget(workers, &jobs, TimeBudget::from_milliseconds(0.0), |_, job| Ok(job * 2));
+            let expected: Vec<_> = jobs.iter().map(|job| (*job, job * 2)).collect();
+            assert_eq!(done.unwrap(), expected);
         }
     }
 
     #[test]
-    fn one_is_done_when_the_time_is_over_already() {
-        let allowance = Allowance::of_milliseconds(1e-6);
+    fn one_job_runs_when_the_time_is_over() {
+        let allowance = TimeBudget::from_milliseconds(1e-6);
         thread::sleep(Duration::from_millis(1));
-        let done = look_side_by_side(1, &[7, 8, 9], allowance, |_, job| Ok(job)).unwrap();
+        let done = run_within_budget(1, &[7, 8, 9], allowance, |_, job| Ok(job)).unwrap();
         assert_eq!(done, [(7, 7)]);
-        assert!(look_side_by_side(2, &[], allowance, |_, job| Ok(job)).unwrap().is_empty());
+        assert!(run_within_budget(2, &[], allowance, |_, job| Ok(job)).unwrap().is_empty());
     }
 
     #[test]
-    fn what_would_take_too_long_is_not_begun() {
+    fn jobs_beyond_the_budget_are_not_started() {
         let begun = Instant::now();
         let (long, limit) = (Duration::from_millis(30), Duration::from_millis(75));
-        let allowance = Allowance { begun, limit: Some(limit) };
-        let done = look_side_by_side(1, &[1, 2, 3, 4, 5], allowance, |_, job| {
+        let allowance = TimeBudget { begun, limit: Some(limit) };
+        let done = run_within_budget(1, &[1, 2, 3, 4, 5], allowance, |_, job| {
             thread::sleep(long);
             Ok(job)
         });
-        // Two fit; the machine may be slow, so that there may be fewer, never more.
+        // Two fit; on a slow machine there may be fewer, never more.
         assert!((1..=2).contains(&done.unwrap().len()));
     }
 
     #[test]
-    fn an_error_ends_it() {
+    fn an_error_ends_the_run() {
         let work = |_: usize, job: usize| {
             if job == 3 { Err(Error::invalid_input("three")) } else { Ok(job) }
         };
         for workers in [1, 2] {
             let jobs: Vec<usize> = (0..1000).collect();
-            let error = look_side_by_side(workers, &jobs, Allowance::of_milliseconds(0.0), work).unwrap_err();
+            let error =
+                run_within_budget(workers, &jobs, TimeBudget::from_milliseconds(0.0), work).unwrap_err();
             assert!(error.to_string().contains("three"));
         }
     }

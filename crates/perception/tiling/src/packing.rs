@@ -3,27 +3,27 @@ use opendr_perception_common::regions::Region;
 
 use super::Tiles;
 
-/// A part of a tile, and where it lies in the picture that the network is given.
+/// A part of a tile, and its position in the network's input image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Slot {
-    /// The number of the tile.
+    /// Index of the tile.
     pub tile: usize,
-    /// What of the whole picture is looked at.
+    /// Region of the whole image.
     pub part: Region,
-    /// Its left upper corner in the picture of the look.
-    pub at: [usize; 2],
+    /// Its left upper corner in the input image.
+    pub position: [usize; 2],
 }
 
 impl Slot {
-    /// Whether a place in the picture of the look is of this part.
-    pub fn shows(&self, [x, y]: [f32; 2]) -> bool {
-        let [left, top] = self.at.map(|at| at as f32);
-        Region { x: 0, y: 0, ..self.part }.holds([x - left, y - top])
+    /// Returns whether a position in the input image is in this part.
+    pub fn contains(&self, [x, y]: [f32; 2]) -> bool {
+        let [left, top] = self.position.map(|at| at as f32);
+        Region { x: 0, y: 0, ..self.part }.contains([x - left, y - top])
     }
 
-    /// A box of the picture of the look in pixels of the part, as far as it lies in it.
-    pub fn within(&self, mut found: BoundingBox) -> BoundingBox {
-        let [x, y] = self.at.map(|at| at as f32);
+    /// Converts a box of the input image to pixels of the part, clipped to it.
+    pub fn box_in_part(&self, mut found: BoundingBox) -> BoundingBox {
+        let [x, y] = self.position.map(|at| at as f32);
         let [left, top, right, bottom] = found.corners();
         let cut = |from: f32, to: f32, at: f32, side: usize| {
             let (from, to) = ((from - at).max(0.0), (to - at).min(side as f32));
@@ -36,35 +36,35 @@ impl Slot {
     }
 }
 
-/// The looks at a picture: each at a tile, or at small parts of several tiles side by side.
+/// The inferences for an image: each for one tile, or for small parts of several tiles side by side.
 #[derive(Debug, Default)]
-pub struct Looks {
+pub struct TileInferences {
     slots: Vec<Slot>,
-    /// The first slot behind each look.
+    /// End of each inference in the slots.
     ends: Vec<usize>,
-    /// What is looked at together, while it is put together.
+    /// Parts of the inference that is being packed.
     open: Vec<Slot>,
 }
 
-/// Pixels between parts that are looked at together.
+/// Pixels between parts in one inference.
 const GAP: usize = 8;
 
-impl Looks {
-    /// One look for each tile, in the order of the plan.
+impl TileInferences {
+    /// Plans one inference per tile, in the order of the tiles.
     pub fn plan_whole(&mut self, tiles: &Tiles) {
         self.clear();
         tiles.order().iter().for_each(|index| self.add_tile(tiles, *index));
     }
 
-    /// Parts of tiles that are worth a look are put side by side, as many as fit into a square of `side` pixels; tiles of which
-    /// more than a quarter is are looked at as they are.
+    /// Packs the changed parts of tiles side by side into squares of `side` pixels. Parts longer than half of the square
+    /// are processed as whole tiles.
     pub fn plan_packed(&mut self, tiles: &Tiles, side: usize) {
         self.clear();
-        // The row that is being filled: where the next part goes, and how high the row is.
+        // The current row: position of the next part, and height of the row.
         let (mut x, mut y, mut high) = (0, 0, 0);
         for index in tiles.order() {
-            let Some(part) = tiles.tiles().get(*index).map(|tile| tile.due) else { continue };
-            // A tile whose turn it is has no such part.
+            let Some(part) = tiles.tiles().get(*index).map(|tile| tile.changed_part) else { continue };
+            // A tile of the rotation has no such part.
             if part.is_empty() || 2 * part.width.max(part.height) > side {
                 self.add_tile(tiles, *index);
                 continue;
@@ -76,25 +76,25 @@ impl Looks {
                 self.close(tiles);
                 (x, y, high) = (0, 0, 0);
             }
-            self.open.push(Slot { tile: *index, part, at: [x, y] });
+            self.open.push(Slot { tile: *index, part, position: [x, y] });
             x += part.width + GAP;
             high = high.max(part.height);
         }
         self.close(tiles);
     }
 
-    /// How many there are.
+    /// Returns the number of inferences.
     pub fn len(&self) -> usize {
         self.ends.len()
     }
 
-    /// Whether nothing is worth a look.
+    /// Returns whether there is no inference.
     pub fn is_empty(&self) -> bool {
         self.ends.is_empty()
     }
 
-    /// What is looked at together.
-    pub fn look(&self, number: usize) -> &[Slot] {
+    /// Returns the parts of one inference.
+    pub fn slots(&self, number: usize) -> &[Slot] {
         let begin = number.checked_sub(1).map_or(Some(0), |before| self.ends.get(before).copied());
         let range = begin.zip(self.ends.get(number).copied());
         range.and_then(|(begin, end)| self.slots.get(begin..end)).unwrap_or_default()
@@ -108,12 +108,12 @@ impl Looks {
 
     fn add_tile(&mut self, tiles: &Tiles, index: usize) {
         if let Some(tile) = tiles.tiles().get(index) {
-            self.slots.push(Slot { tile: index, part: tile.region, at: [0, 0] });
+            self.slots.push(Slot { tile: index, part: tile.region, position: [0, 0] });
             self.ends.push(self.slots.len());
         }
     }
 
-    /// Ends the look that is open; a part alone is looked at with all of its tile.
+    /// Ends the current inference; a single part is processed as its whole tile.
     fn close(&mut self, tiles: &Tiles) {
         if let [slot] = self.open[..] {
             self.open.clear();
@@ -135,7 +135,7 @@ mod tests {
 
     const SIZE: [usize; 2] = [1280, 960];
 
-    /// Grey, with dark squares of 20 pixels at these places.
+    /// Returns a grey image with dark squares of 20 pixels at the given positions.
     fn scene(squares: &[[usize; 2]]) -> Image {
         let mut samples = vec![120; SIZE[0] * SIZE[1] * 3];
         for [left, top] in squares {
@@ -146,12 +146,12 @@ mod tests {
         Image::from_rgb8(samples, SIZE[0], SIZE[1]).unwrap()
     }
 
-    fn plan(squares: &[[usize; 2]]) -> (Tiles, Looks) {
+    fn plan(squares: &[[usize; 2]]) -> (Tiles, TileInferences) {
         plan_with(&TilingParams { whole: false, rotation: 0, ..TilingParams::default() }, squares)
     }
 
-    fn plan_with(params: &TilingParams, squares: &[[usize; 2]]) -> (Tiles, Looks) {
-        let (mut tiles, mut looks) = (Tiles::default(), Looks::default());
+    fn plan_with(params: &TilingParams, squares: &[[usize; 2]]) -> (Tiles, TileInferences) {
+        let (mut tiles, mut looks) = (Tiles::default(), TileInferences::default());
         tiles.plan(params, scene(squares).view(), |_, _| false).unwrap();
         looks.plan_packed(&tiles, params.tile);
         (tiles, looks)
@@ -164,9 +164,9 @@ mod tests {
         let (tiles, looks) = plan(&squares);
         assert!(looks.len() < tiles.order().len(), "{} for {}", looks.len(), tiles.order().len());
         let mut seen = Vec::new();
-        for look in (0..looks.len()).map(|number| looks.look(number)) {
+        for look in (0..looks.len()).map(|number| looks.slots(number)) {
             for (at, slot) in look.iter().enumerate() {
-                let place = |slot: &Slot| Region { x: slot.at[0], y: slot.at[1], ..slot.part };
+                let place = |slot: &Slot| Region { x: slot.position[0], y: slot.position[1], ..slot.part };
                 let own = place(slot);
                 assert!(own.x + own.width <= 256 && own.y + own.height <= 256, "{slot:?}");
                 assert!(look[at + 1..].iter().all(|other| !place(other).overlaps(&own)), "{look:?}");
@@ -177,22 +177,22 @@ mod tests {
         let mut order = tiles.order().to_vec();
         order.sort_unstable();
         assert_eq!(seen, order);
-        // What is around a square belongs to it.
+        // The surroundings of a square belong to its part.
         let region = Region { x: 80, y: 70, width: 60, height: 60 };
-        let shown = (0..looks.len()).flat_map(|number| looks.look(number));
-        assert!(shown.clone().any(|slot| slot.part.joined(&region) == slot.part));
-        assert!(looks.look(looks.len()).is_empty());
+        let shown = (0..looks.len()).flat_map(|number| looks.slots(number));
+        assert!(shown.clone().any(|slot| slot.part.union(&region) == slot.part));
+        assert!(looks.slots(looks.len()).is_empty());
     }
 
     #[test]
     fn a_part_alone_is_its_tile() {
         let (tiles, looks) = plan(&[[130, 130]]);
         assert_eq!((looks.len(), tiles.order().len()), (1, 1));
-        assert_eq!(looks.look(0)[0].part, tiles.tiles()[tiles.order()[0]].region);
-        // Nothing is there, and it is its turn.
+        assert_eq!(looks.slots(0)[0].part, tiles.tiles()[tiles.order()[0]].region);
+        // The tile is empty, but its turn has come.
         let turn = TilingParams { whole: false, rotation: 1, ..TilingParams::default() };
         let (tiles_in_turn, looks) = plan_with(&turn, &[]);
-        assert_eq!(looks.look(0)[0].part, tiles_in_turn.tiles()[0].region);
+        assert_eq!(looks.slots(0)[0].part, tiles_in_turn.tiles()[0].region);
         let (_, mut looks) = plan(&[]);
         assert!(looks.is_empty());
         looks.plan_whole(&tiles);

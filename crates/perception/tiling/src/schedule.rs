@@ -1,89 +1,90 @@
 use opendr_engine::Result;
 use opendr_engine::data::ImageView;
-use opendr_perception_common::regions::{CoarsePicture, Region};
+use opendr_perception_common::regions::{CellBrightness, Region};
 
 use super::TilingParams;
 
-/// A tile of a picture and when it was looked at.
+/// A tile of an image and the state of its processing.
 #[derive(Debug, Clone)]
 pub struct Tile {
-    /// What is looked at.
+    /// Region of the tile.
     pub region: Region,
-    /// The part of it that no other tile is nearer to: the cores of all tiles make up the picture. Empty for the whole picture.
+    /// The part to which no other tile is nearer: the cores of all tiles partition the image. Empty for the tile of the
+    /// whole image.
     pub core: Region,
-    /// The picture in which it was looked at last, from 0.
-    pub seen: Option<u64>,
-    /// The first picture since then in which it had changed.
+    /// Index of the image in which it was processed last, from 0.
+    pub last_processed: Option<u64>,
+    /// Index of the first image since then in which it had changed.
     pub changed: Option<u64>,
-    /// The part that is worth a look, with what is around it: where there is detail, or what changed.
-    pub due: Region,
-    /// The brightness of its cells when it was looked at.
+    /// The part to process, with its surroundings: where there is detail, or a change.
+    pub changed_part: Region,
+    /// The brightness of its cells when it was processed.
     reference: Vec<u8>,
 }
 
-/// The tiles of the pictures of one stream.
+/// The tiles of the images of one stream.
 #[derive(Debug, Default)]
 pub struct Tiles {
     size: [usize; 2],
-    /// Side, overlap and whether the whole is one, of the tiles there are.
-    made: (usize, usize, bool),
+    /// Side and overlap of the tiles, and whether one is the whole image.
+    layout: (usize, usize, bool),
     tiles: Vec<Tile>,
-    coarse: CoarsePicture,
-    /// The brightness of the cells of the picture before.
+    coarse: CellBrightness,
+    /// The brightness of the cells of the last image.
     before: Vec<u8>,
-    /// Pictures so far.
+    /// Number of images so far.
     pictures: u64,
     order: Vec<usize>,
-    hot: Vec<usize>,
+    occupied: Vec<usize>,
     rest: Vec<usize>,
 }
 
-/// Sides of the cells in which brightness is compared, pixels.
+/// Side of the cells in which brightness is compared, in pixels.
 const CELL: usize = 16;
-/// Points of a cell that are looked at, each way: every fourth pixel.
+/// Number of samples of a cell along each axis: every fourth pixel.
 const POINTS: usize = 4;
-/// What belongs to what is worth a look, pixels on each side: things are told by what is around them.
+/// Margin around a part to process, in pixels on each side, as context of the objects.
 const AROUND: usize = 2 * CELL;
-/// A scene is another one where this share of its cells changed by more than [`OTHER_LEVEL`] since the picture before.
+/// Share of cells with a change of more than [`OTHER_LEVEL`] since the last image above which the scene is a different one.
 const OTHER_SHARE: f32 = 0.4;
 const OTHER_LEVEL: u8 = 32;
 
 impl Tiles {
-    /// Plans the looks at the next picture; `is_hot` says of a tile whether something was seen in it. What changed goes before
-    /// what did not, tiles with something in them and others take turns, and of these the one that was not looked at for
-    /// longest comes first. Whether the scene is another one than before: then nothing of what was seen holds.
+    /// Plans the inferences for the next image; `is_occupied` returns whether something was detected in a tile. Tiles with
+    /// objects and others alternate, those that were processed longest ago first. Returns whether the scene is a different
+    /// one, so that no previous result is valid.
     ///
     /// # Errors
-    /// As [`CoarsePicture::look`].
+    /// As [`CellBrightness::compute`].
     pub fn plan(
         &mut self,
         params: &TilingParams,
         view: ImageView<'_>,
-        is_hot: impl Fn(usize, &Tile) -> bool,
+        is_occupied: impl Fn(usize, &Tile) -> bool,
     ) -> Result<bool> {
         let size = [view.width(), view.height()];
-        let made = (params.tile.max(1), params.tile_overlap, params.whole);
-        let is_new = (self.size, self.made) != (size, made);
+        let layout = (params.tile.max(1), params.tile_overlap, params.whole);
+        let is_new = (self.size, self.layout) != (size, layout);
         if is_new {
-            (self.size, self.made) = (size, made);
+            (self.size, self.layout) = (size, layout);
             self.pictures = 0;
             self.before.clear();
             self.cut();
         }
         let [columns, rows] = size.map(|side| side.div_ceil(CELL));
-        self.coarse.look(view, columns, rows, POINTS)?;
+        self.coarse.compute(view, columns, rows, POINTS)?;
         let is_other = self.is_other_scene();
         self.before.clear();
         self.before.extend_from_slice(self.coarse.means());
-        self.hot.clear();
+        self.occupied.clear();
         self.rest.clear();
         let now = self.pictures;
         for (index, tile) in self.tiles.iter_mut().enumerate() {
             if !tile.is_due(&self.coarse, size, params, now) {
                 continue;
             }
-            match is_hot(index, tile) {
-                true => self.hot.push(index),
+            match is_occupied(index, tile) {
+                true => self.occupied.push(index),
                 false => self.rest.push(index),
             }
         }
@@ -92,63 +93,64 @@ impl Tiles {
         Ok(is_new || is_other)
     }
 
-    /// The numbers of the tiles to look at, first things first.
+    /// Returns the indices of the tiles to process, in order.
     pub fn order(&self) -> &[usize] {
         &self.order
     }
 
-    /// All tiles: the whole picture first, if it is one, then row by row.
+    /// Returns all tiles: the whole image first, if it is one, then row by row.
     pub fn tiles(&self) -> &[Tile] {
         &self.tiles
     }
 
-    /// Notes that a tile was looked at in the picture that was planned last: all of it, or the part that was due.
-    pub fn saw(&mut self, index: usize, is_whole: bool) {
+    /// Records that a tile was processed in the image of the last plan: completely, or the part that was due.
+    pub fn record(&mut self, index: usize, is_whole: bool) {
         let Some(tile) = self.tiles.get_mut(index) else { return };
         let [columns, rows] = self.coarse.size();
         let levels = cells_of(&tile.region, self.size, &self.coarse).map(|cell| self.coarse.means()[cell]);
-        // Around the part nothing changed by much: what it is compared with stays, so that it cannot creep.
-        let is_new = is_whole || tile.seen.is_none();
+        // Outside the part the change was small: its reference stays, so that slow changes accumulate.
+        let is_new = is_whole || tile.last_processed.is_none();
         if is_new {
             tile.reference.clear();
             tile.reference.extend(levels);
         } else {
             let cells = cells_of(&tile.region, self.size, &self.coarse);
             for ((cell, level), reference) in cells.zip(levels).zip(&mut tile.reference) {
-                if cell_region(cell, [columns, rows], self.size).overlaps(&tile.due) {
+                if cell_region(cell, [columns, rows], self.size).overlaps(&tile.changed_part) {
                     *reference = level;
                 }
             }
         }
-        tile.seen = Some(self.pictures.saturating_sub(1));
+        tile.last_processed = Some(self.pictures.saturating_sub(1));
         tile.changed = None;
     }
 
-    /// Whether the last look at a tile still holds: it is as it was, or changed no more than `memory` pictures ago.
-    pub fn holds(&self, index: usize, memory: u32) -> bool {
+    /// Returns whether the last result of a tile is valid: it is unchanged, or changed no more than `memory` images ago.
+    pub fn is_valid(&self, index: usize, memory: u32) -> bool {
         self.tiles.get(index).is_some_and(|tile| {
             let age = |changed| self.pictures.saturating_sub(changed);
-            tile.seen.is_some() && tile.changed.is_none_or(|changed| age(changed) <= u64::from(memory))
+            tile.last_processed.is_some()
+                && tile.changed.is_none_or(|changed| age(changed) <= u64::from(memory))
         })
     }
 
-    /// Whether a place of a tile that has changed was looked at later, with another tile.
+    /// Returns whether a position in a changed tile was processed later, in another tile.
     pub fn is_superseded(&self, index: usize, place: [f32; 2]) -> bool {
         let Some(own) = self.tiles.get(index).filter(|tile| tile.changed.is_some()) else { return false };
-        self.tiles.iter().any(|tile| tile.seen > own.seen && tile.region.holds(place))
+        self.tiles.iter().any(|tile| tile.last_processed > own.last_processed && tile.region.contains(place))
     }
 
     fn cut(&mut self) {
-        let (side, overlap, whole) = self.made;
+        let (side, overlap, whole) = self.layout;
         let [width, height] = self.size;
         let picture = Region { x: 0, y: 0, width, height };
         self.tiles.clear();
         let tile = |region, core| Tile {
             region,
             core,
-            seen: None,
+            last_processed: None,
             changed: None,
-            due: Region::default(),
+            changed_part: Region::default(),
             reference: Vec::new(),
         };
         let is_small = width.max(height) <= side;
@@ -166,7 +168,7 @@ impl Tiles {
             let above = row.checked_sub(1).map(|other| &regions[other * columns]);
             let right = (column + 1 < columns).then(|| &regions[column + 1]);
             let below = regions.get((row + 1) * columns);
-            // Half of what two share is each one's.
+            // Two neighbours share their overlap equally.
             let begin = |own: usize, other: Option<usize>| other.map_or(own, |end| (own + end) / 2);
             let x = begin(region.x, left.map(|other| other.x + other.width));
             let y = begin(region.y, above.map(|other| other.y + other.height));
@@ -185,12 +187,12 @@ impl Tiles {
 
     fn put_in_order(&mut self, params: &TilingParams) {
         let tiles = &self.tiles;
-        let age = |index: &usize| (tiles[*index].seen.map_or(0, |seen| seen + 1), *index);
-        self.hot.sort_unstable_by_key(age);
+        let age = |index: &usize| (tiles[*index].last_processed.map_or(0, |seen| seen + 1), *index);
+        self.occupied.sort_unstable_by_key(age);
         self.rest.sort_unstable_by_key(age);
         self.order.clear();
-        for at in 0..self.hot.len().max(self.rest.len()) {
-            self.order.extend(self.hot.get(at));
+        for at in 0..self.occupied.len().max(self.rest.len()) {
+            self.order.extend(self.occupied.get(at));
             self.order.extend(self.rest.get(at));
         }
         let turn = u64::from(params.rotation);
@@ -208,35 +210,35 @@ impl Tiles {
 }
 
 impl Tile {
-    /// Whether it is worth a look; notes where, and when it changed first.
-    fn is_due(&mut self, coarse: &CoarsePicture, size: [usize; 2], params: &TilingParams, now: u64) -> bool {
+    /// Returns whether the tile is to be processed; updates the part and the time of the first change.
+    fn is_due(&mut self, coarse: &CellBrightness, size: [usize; 2], params: &TilingParams, now: u64) -> bool {
         let cells = cells_of(&self.region, size, coarse);
-        if self.seen.is_none() {
+        if self.last_processed.is_none() {
             let has_detail = |cell: &usize| f32::from(coarse.ranges()[*cell]) > params.detail_threshold;
-            self.due = match params.detail_threshold <= 0.0 || self.core.is_empty() {
+            self.changed_part = match params.detail_threshold <= 0.0 || self.core.is_empty() {
                 true => self.region,
                 false => self.around(cells.filter(has_detail), coarse.size(), size),
             };
-            return !self.due.is_empty();
+            return !self.changed_part.is_empty();
         }
         let differs = |(cell, then): &(usize, &u8)| {
             f32::from(coarse.means()[*cell].abs_diff(**then)) > params.change_threshold
         };
-        self.due = match params.change_threshold <= 0.0 {
+        self.changed_part = match params.change_threshold <= 0.0 {
             true => self.region,
             false => {
                 let changed = cells.zip(&self.reference).filter(differs).map(|(cell, _)| cell);
                 self.around(changed, coarse.size(), size)
             }
         };
-        self.changed = (!self.due.is_empty()).then(|| self.changed.unwrap_or(now));
+        self.changed = (!self.changed_part.is_empty()).then(|| self.changed.unwrap_or(now));
         self.changed.is_some()
     }
 
-    /// What lies in the tile of the smallest region with all `cells` and what is around it; empty without cells.
+    /// Returns the smallest region with all `cells` and the margin, clipped to the tile; empty without cells.
     fn around(&self, cells: impl Iterator<Item = usize>, grid: [usize; 2], size: [usize; 2]) -> Region {
         let regions = cells.map(|cell| cell_region(cell, grid, size));
-        let Some(all) = regions.reduce(|all, region| all.joined(&region)) else { return Region::default() };
+        let Some(all) = regions.reduce(|all, region| all.union(&region)) else { return Region::default() };
         let (x, y) = (
             all.x.saturating_sub(AROUND).max(self.region.x),
             all.y.saturating_sub(AROUND).max(self.region.y),
@@ -249,7 +251,7 @@ impl Tile {
     }
 }
 
-/// The pixels of a cell of a coarse picture.
+/// Returns the pixels of a cell of a coarse image.
 fn cell_region(cell: usize, [columns, rows]: [usize; 2], [width, height]: [usize; 2]) -> Region {
     let side = |at: usize, count: usize, long: usize| (at * long / count, ((at + 1) * long).div_ceil(count));
     let (x, right) = side(cell % columns, columns, width);
@@ -257,11 +259,11 @@ fn cell_region(cell: usize, [columns, rows]: [usize; 2], [width, height]: [usize
     Region { x, y, width: right - x, height: below - y }
 }
 
-/// The numbers of the cells of a coarse picture that a region touches.
+/// Returns the indices of the cells of a coarse image that a region touches.
 fn cells_of(
     region: &Region,
     [width, height]: [usize; 2],
-    coarse: &CoarsePicture,
+    coarse: &CellBrightness,
 ) -> impl Iterator<Item = usize> + use<> {
     let [columns, rows] = coarse.size();
     let touched = |begin: usize, long: usize, all: usize, cells: usize| {
@@ -290,7 +292,7 @@ mod tests {
         params
     }
 
-    /// Grey, with squares of 24 pixels, white with a black middle, at these places.
+    /// Returns a grey image with white squares of 24 pixels with a black centre at the given positions.
     fn scene(squares: &[[usize; 2]]) -> Image {
         let level = |at: usize| {
             let (x, y) = (at % SIZE[0], at / SIZE[0]);
@@ -312,15 +314,15 @@ mod tests {
         Image::from_rgb8(samples, SIZE[0], SIZE[1]).unwrap()
     }
 
-    fn looked(tiles: &mut Tiles, params: &TilingParams, image: &Image) -> Vec<usize> {
+    fn process(tiles: &mut Tiles, params: &TilingParams, image: &Image) -> Vec<usize> {
         tiles.plan(params, image.view(), |_, _| false).unwrap();
         let order = tiles.order().to_vec();
-        order.iter().for_each(|index| tiles.saw(*index, true));
+        order.iter().for_each(|index| tiles.record(*index, true));
         order
     }
 
     #[test]
-    fn cores_make_up_the_picture() {
+    fn cores_partition_the_image() {
         let mut tiles = Tiles::default();
         tiles.plan(&params(&[]), scene(&[]).view(), |_, _| false).unwrap();
         let cores: Vec<_> =
@@ -329,44 +331,44 @@ mod tests {
         for (at, core) in cores.iter().enumerate() {
             assert!(cores[at + 1..].iter().all(|other| !core.overlaps(other)));
         }
-        assert!(tiles.tiles().iter().skip(1).all(|tile| tile.region.joined(&tile.core) == tile.region));
+        assert!(tiles.tiles().iter().skip(1).all(|tile| tile.region.union(&tile.core) == tile.region));
     }
 
     #[test]
-    fn tiles_with_something_in_them_are_looked_at_once() {
+    fn tiles_with_objects_are_processed_once() {
         let mut tiles = Tiles::default();
         let params = params(&[("rotation", 0.0)]);
         let image = scene(&[[300, 200]]);
-        let first = looked(&mut tiles, &params, &image);
+        let first = process(&mut tiles, &params, &image);
         assert_eq!(first[0], 0, "the whole picture");
         let shows = |index: &usize| {
             tiles.tiles()[*index].region.overlaps(&Region { x: 284, y: 184, width: 56, height: 56 })
         };
         assert!(first.len() >= 2 && first.iter().all(shows));
-        assert!(looked(&mut tiles, &params, &image).is_empty(), "nothing changed");
-        // It moves: only where it was and is.
-        let moved = looked(&mut tiles, &params, &scene(&[[310, 205]]));
+        assert!(process(&mut tiles, &params, &image).is_empty(), "nothing changed");
+        // After a motion only the old and the new position are processed.
+        let moved = process(&mut tiles, &params, &scene(&[[310, 205]]));
         assert!((2..6).contains(&moved.len()), "{moved:?}");
     }
 
     #[test]
-    fn without_thresholds_every_tile_is_looked_at_always() {
+    fn without_thresholds_every_tile_is_always_processed() {
         let mut tiles = Tiles::default();
         let params = params(&[("detail_threshold", 0.0), ("change_threshold", 0.0)]);
         for _ in 0..6 {
-            let mut order = looked(&mut tiles, &params, &scene(&[]));
+            let mut order = process(&mut tiles, &params, &scene(&[]));
             order.sort_unstable();
             assert_eq!(order, (0..tiles.tiles().len()).collect::<Vec<_>>());
         }
     }
 
     #[test]
-    fn rotation_comes_around() {
+    fn rotation_processes_every_tile() {
         let mut tiles = Tiles::default();
         let params = params(&[("max_tiles", 1.0), ("rotation", 1.0)]);
         let mut seen: Vec<usize> = Vec::new();
         for _ in 0..60 {
-            seen.extend(looked(&mut tiles, &params, &scene(&[])));
+            seen.extend(process(&mut tiles, &params, &scene(&[])));
         }
         seen.sort_unstable();
         seen.dedup();
@@ -381,7 +383,7 @@ mod tests {
         for picture in 1..200 {
             tiles.plan(&params, scene(&[]).view(), |index, _| index % 7 == 0).unwrap();
             for index in tiles.order().to_vec() {
-                tiles.saw(index, true);
+                tiles.record(index, true);
                 last[index] = picture;
             }
         }
@@ -390,22 +392,23 @@ mod tests {
     }
 
     #[test]
-    fn what_changed_holds_for_a_while() {
+    fn results_of_changed_tiles_stay_valid_for_a_while() {
         let mut tiles = Tiles::default();
         let few = params(&[("rotation", 0.0), ("max_tiles", 1.0)]);
         let all = params(&[("rotation", 0.0)]);
-        looked(&mut tiles, &all, &scene(&[[300, 200]]));
-        let index = (1..tiles.tiles().len()).find(|index| tiles.tiles()[*index].seen.is_some()).unwrap();
+        process(&mut tiles, &all, &scene(&[[300, 200]]));
+        let index =
+            (1..tiles.tiles().len()).find(|index| tiles.tiles()[*index].last_processed.is_some()).unwrap();
         for picture in 0..5 {
             tiles.plan(&few, scene(&[[0, 400]]).view(), |_, _| false).unwrap();
-            assert_eq!(tiles.holds(index, 3), picture < 3, "{picture}");
+            assert_eq!(tiles.is_valid(index, 3), picture < 3, "{picture}");
         }
         tiles.plan(&few, scene(&[[300, 200]]).view(), |_, _| false).unwrap();
-        assert!(tiles.holds(index, 0), "it is as it was");
+        assert!(tiles.is_valid(index, 0), "it is as it was");
     }
 
     #[test]
-    fn another_scene_is_told() {
+    fn another_scene_is_reported() {
         let mut tiles = Tiles::default();
         let params = params(&[]);
         assert!(tiles.plan(&params, scene(&[]).view(), |_, _| false).unwrap());

@@ -1,4 +1,4 @@
-//! Trackers at 25 objects, and what they are made of; `benches/tracking.py` compares with Python.
+//! Trackers with 25 objects, and their parts; `benches/tracking.py` compares with Python.
 //!
 //! `cargo bench -p opendr-tracking --bench tracking`
 
@@ -13,9 +13,9 @@ use opendr_engine::learner::Learner;
 use opendr_engine::target::{BoundingBox, BoundingBoxList, TrackingAnnotationList};
 use opendr_tracking::object_tracking_2d::{ByteTrack, OcSort, Sort, TrackerInputs};
 use opendr_tracking::tracking::camera_motion::CameraMotion;
-use opendr_tracking::tracking::{AreaFilter, HeightFilter, Pairing};
+use opendr_tracking::tracking::{AreaFilter, HeightFilter, SparseAssignment};
 
-/// 25 persons who walk to the right, one in twenty hidden.
+/// Returns frames of 25 persons who walk to the right, one in twenty undetected.
 fn frames() -> Vec<BoundingBoxList> {
     let mut random = Random::new(0);
     let frame = |at: usize| {
@@ -33,12 +33,12 @@ fn track<L>(criterion: &mut Criterion, name: &str, tracker: &L, frames: &[Boundi
 where
     L: for<'a> Learner<Input<'a> = TrackerInputs<'a>, Target = TrackingAnnotationList>,
 {
-    let (mut state, mut answer) = (L::State::default(), TrackingAnnotationList::default());
+    let (mut state, mut target) = (L::State::default(), TrackingAnnotationList::default());
     let mut next = frames.iter().cycle();
     criterion.bench_function(&format!("tracking/{name}_25_objects"), |bencher| {
         bencher.iter(|| {
             let detections = next.next()?;
-            tracker.infer_into(&mut state, TrackerInputs { detections, image: None }, &mut answer).ok()
+            tracker.infer_into(&mut state, TrackerInputs { detections, image: None }, &mut target).ok()
         });
     });
 }
@@ -51,25 +51,25 @@ fn trackers(criterion: &mut Criterion) {
 }
 
 fn parts(criterion: &mut Criterion) {
-    let seen = [100.0, 100.0, 150.0, 220.0];
-    let mut area = AreaFilter::new(seen);
+    let observed = [100.0, 100.0, 150.0, 220.0];
+    let mut area = AreaFilter::new(observed);
     criterion.bench_function("tracking/area_filter_step", |bencher| {
         bencher.iter(|| {
             area.predict();
-            area.update(black_box(seen));
+            area.update(black_box(observed));
         });
     });
-    let mut height = HeightFilter::new(seen);
+    let mut height = HeightFilter::new(observed);
     criterion.bench_function("tracking/height_filter_step", |bencher| {
         bencher.iter(|| {
             height.predict();
-            height.update(black_box(seen));
+            height.update(black_box(observed));
         });
     });
-    let mut pairing = Pairing::default();
+    let mut pairing = SparseAssignment::default();
     criterion.bench_function("tracking/pairing_25_by_25_all_proposed", |bencher| {
         bencher.iter(|| {
-            pairing.begin();
+            pairing.clear();
             for at in 0..625 {
                 pairing.propose(at / 25, at % 25, ((at * 37) % 101 + 1) as f64);
             }
@@ -80,7 +80,7 @@ fn parts(criterion: &mut Criterion) {
     let samples = (0..1920 * 1080 * 3).map(|_| random.below(256) as u8).collect();
     let Ok(picture) = Image::from_rgb8(samples, 1920, 1080) else { return };
     criterion.bench_function("tracking/camera_motion_1080p", |bencher| {
-        bencher.iter(|| camera.next(black_box(&picture), &[]));
+        bencher.iter(|| camera.update(black_box(&picture), &[]));
     });
 }
 

@@ -1,12 +1,12 @@
-//! Runs a tracker of detections over a video's boxes: how `tests/tracking` scores it beside others, and `benches/tracking.py`
-//! times it.
+//! Runs a tracker on the detections of a video. `tests/tracking` evaluates its output beside that of others, and
+//! `benches/tracking.py` measures its time.
 //!
 //! ```console
 //! $ cargo run --release -p opendr-tracking --example follow -- byte_track '{}' < frames.json
 //! ```
 //!
 //! A line of standard input is one frame: a list of boxes `[left, top, width, height, confidence]`. A line of standard output
-//! is a list of `[id, left, top, width, height]`; the last line is `{"seconds": S}`, what the tracker took for all frames.
+//! is a list of `[id, left, top, width, height]`; the last line is `{"seconds": S}`, the tracker's time for all frames.
 
 use std::error::Error;
 use std::io::{self, BufRead as _, Write as _};
@@ -43,14 +43,14 @@ where
         });
         frames.push(BoundingBoxList::from(found.collect::<Vec<_>>()));
     }
-    let (mut state, mut answer) = (L::State::default(), TrackingAnnotationList::default());
+    let (mut state, mut target) = (L::State::default(), TrackingAnnotationList::default());
     let mut output = io::stdout().lock();
     let mut seconds = 0.0;
     for detections in &frames {
         let begin = Instant::now();
-        tracker.infer_into(&mut state, TrackerInputs { detections, image: None }, &mut answer)?;
+        tracker.infer_into(&mut state, TrackerInputs { detections, image: None }, &mut target)?;
         seconds += begin.elapsed().as_secs_f64();
-        let rows: Vec<_> = answer
+        let rows: Vec<_> = target
             .annotations
             .iter()
             .map(|track| {

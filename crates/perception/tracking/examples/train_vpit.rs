@@ -1,14 +1,15 @@
-//! Trains VPIT on simulated drives, and measures it on others.
+//! Trains VPIT on simulated drives, and evaluates it on others.
 //!
-//! The scans are synthetic: cars, trucks and pedestrians that move and stand on sloping streets, seen from a moving car by a ray
-//! caster with the geometry, noise and losses of KITTI's lidar (`opendr_simulation::street`). It makes the zoo's `vpit/streets`:
+//! The scans are synthetic: cars, trucks and pedestrians that move and stand on sloping streets, from a moving car with a ray
+//! caster with the geometry, noise and dropouts of KITTI's lidar (`opendr_simulation::street`). It trains the zoo's
+//! `vpit/streets`:
 //!
 //! ```console
 //! $ cargo run --release -p opendr-tracking --features training --example train_vpit -- out 1500
 //! ```
 //!
-//! The second argument is the number of optimiser steps, of eight pairs of scans each. With 0 it only measures what lies in
-//! `out`. It goes on where it was stopped.
+//! The second argument is the number of optimiser steps, of eight pairs of scans each. With 0 it only evaluates the model in
+//! `out`. A further call resumes the training.
 
 use std::path::Path;
 use std::time::Instant;
@@ -17,14 +18,14 @@ use opendr_clouds::object_detection_3d::Scan;
 use opendr_engine::data::PointCloudWithCalibration;
 use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::learner::{FitJob, Handle};
-use opendr_engine::overlap::StandingBox;
+use opendr_engine::overlap::UprightBox3D;
 use opendr_engine::target::{BoundingBox3D, BoundingBox3DList, TrackingAnnotation3DList};
 use opendr_engine::{Device, Error, Progress, Result, Unit, Value};
 use opendr_simulation::street::StreetDrives;
 use opendr_tracking::object_tracking_3d::{Extrapolation, Vpit, VpitFitParams, VpitInputs, VpitParams};
 use opendr_training::TrainingParams;
 
-/// Drives to train on and to measure on: seeds, and how many drives of how many frames.
+/// Drives for training and for evaluation: seed, number of drives, frames per drive.
 const TRAINING: (u64, usize, usize) = (11, 4000, 8);
 const TEST: (u64, usize, usize) = (12, 20, 40);
 
@@ -62,9 +63,9 @@ fn main() -> Result<()> {
         ..VpitParams::default()
     };
     measure("VPIT", params.clone(), &job, &frames)?;
-    // What one gets without looking.
+    // The baseline of a box that does not move.
     let blind = VpitParams { min_top_score: 1.0, extrapolation_mode: Extrapolation::None, ..params };
-    measure("a box that stays where it was", blind, &job, &frames)
+    measure("a box that does not move", blind, &job, &frames)
 }
 
 type Frame = (PointCloudWithCalibration, TrackingAnnotation3DList);
@@ -75,18 +76,18 @@ fn frame(drives: &StreetDrives, index: usize) -> Result<Frame> {
         (Some(Value::PointCloudWithCalibration(scan)), Some(Value::TrackingAnnotation3DList(tracks))) => {
             Ok((scan, tracks))
         }
-        _ => Err(Error::invalid_input("no scan with tracks")),
+        _ => Err(Error::invalid_input("the sample is not a scan with tracks")),
     }
 }
 
-fn standing(found: &BoundingBox3D) -> StandingBox {
+fn standing(found: &BoundingBox3D) -> UprightBox3D {
     let (size, place) = (found.dimensions.map(f64::from), found.location.map(f64::from));
-    StandingBox::in_camera(size, place, f64::from(found.rotation_y))
+    UprightBox3D::from_kitti(size, place, f64::from(found.rotation_y))
 }
 
-/// Each car and each pedestrian that is well seen in the first frame of a drive, followed to its end: success and precision as
-/// the benchmarks of single-object tracking have them (areas under the curves over the overlap, 0 to 1, and over the
-/// distance, 0 to 2 m; percent), over the frames in which it is seen.
+/// Tracks each car and each pedestrian that is clearly visible in the first frame of a drive to its end, and prints success
+/// and precision of single-object tracking (areas under the curves over the overlap, 0 to 1, and over the distance, 0 to 2
+/// m; in percent), over the frames in which it is visible.
 fn measure(what: &str, params: VpitParams, job: &FitJob<'_>, frames: &[Frame]) -> Result<()> {
     let mut handle = Handle::<Vpit>::new(params, Device::Cpu)?;
     handle.load(job.model())?;
@@ -104,19 +105,19 @@ fn measure(what: &str, params: VpitParams, job: &FitJob<'_>, frames: &[Frame]) -
                 for (at, (scan, tracks)) in drive.iter().enumerate() {
                     let init_box = (at == 0).then_some(&init);
                     let begin = Instant::now();
-                    let answer = handle.infer(VpitInputs { scan: Scan::from(scan), init_box })?;
+                    let target = handle.infer(VpitInputs { scan: Scan::from(scan), init_box })?;
                     seconds += begin.elapsed().as_secs_f64();
                     let truth = tracks.annotations.iter().find(|track| track.id == object.id);
                     let Some(truth) = truth.map(|truth| &truth.bounding_box_3d) else { break };
                     if at == 0 || truth.occluded > 1 {
                         continue;
                     }
-                    let Some(found) = answer.annotations.first() else { continue };
+                    let Some(found) = target.annotations.first() else { continue };
                     let found = &found.bounding_box_3d;
-                    let apart =
+                    let distance =
                         (0..3).map(|axis| (found.location[axis] - truth.location[axis]).powi(2)).sum::<f32>();
-                    success += standing(found).overlap(&standing(truth));
-                    precision += 1.0 - f64::from(apart.sqrt().min(2.0)) / 2.0;
+                    success += standing(found).iou(&standing(truth));
+                    precision += 1.0 - f64::from(distance.sqrt().min(2.0)) / 2.0;
                     count += 1;
                 }
             }
@@ -132,7 +133,7 @@ fn measure(what: &str, params: VpitParams, job: &FitJob<'_>, frames: &[Frame]) -
     Ok(())
 }
 
-/// Prints how it goes.
+/// Progress as lines on the terminal.
 struct Lines;
 
 impl Progress for Lines {

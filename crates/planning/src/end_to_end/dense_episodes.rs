@@ -1,4 +1,4 @@
-//! Some flights between more obstacles.
+//! A wrapper that increases the number of obstacles in every second episode.
 
 use opendr_engine::Result;
 use opendr_engine::data::Image;
@@ -6,25 +6,25 @@ use opendr_engine::environment::{
     Environment, EnvironmentSpec, Info, ResetOptions, Snapshot, StateReader, Step,
 };
 
-/// A corridor in which every second flight has 8 to 10 obstacles, whatever else it has: who trains in it also finds
-/// the way where there is little room.
+/// A corridor environment with 8 to 10 obstacles in every second episode, regardless of its options. Policies trained in
+/// it also pass narrow gaps.
 #[derive(Debug, Clone)]
-pub struct DenseEpisodes<E> {
+pub struct DenseObstacles<E> {
     inner: E,
     episodes: u64,
 }
 
-/// The options of a reset, and what they are then.
+/// Reset options of the episodes with more obstacles.
 const DENSE: [(&str, i64); 2] = [("min_obstacles", 8), ("max_obstacles", 10)];
 
-impl<E: Environment> DenseEpisodes<E> {
-    /// `inner`, a corridor.
+impl<E: Environment> DenseObstacles<E> {
+    /// Wraps a corridor environment.
     pub fn new(inner: E) -> Self {
         Self { inner, episodes: 0 }
     }
 }
 
-impl<E: Environment> Environment for DenseEpisodes<E> {
+impl<E: Environment> Environment for DenseObstacles<E> {
     fn spec(&self) -> &EnvironmentSpec {
         self.inner.spec()
     }

@@ -1,33 +1,30 @@
-//! The learner.
+//! The learner of end-to-end planning.
 
 use opendr_engine::data::Observation;
-use opendr_engine::environment::{EnvironmentSource, Space};
-use opendr_engine::learner::{FitJob, Learner, LearnerRl, Spec};
+use opendr_engine::environment::Space;
+use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
-use opendr_engine::params::Params as _;
 use opendr_engine::target::RlTarget;
-use opendr_engine::{Device, Error, Random, Result, Statistics, Task};
+use opendr_engine::{Device, Error, Random, Result, Task};
 use opendr_kernels::Compute;
-use opendr_rl::{Acting, POLICY, Policy, PolicyMemory, PolicyParams, fit_policy, numbers_from_observation};
+use opendr_rl::{ActionMode, POLICY_FILE, Policy, PolicyMemory, PolicyParams, numbers_from_observation};
 use opendr_simulation::uav_corridor::FlightMemory;
 
-use super::method::{EndToEndPlanningFitParams, PpoInCorridors};
-
-/// Flies a drone between obstacles by its depth camera (OpenDR's `EndToEndPlanningRLLearner`): PPO on what the drone
-/// remembers of its flight, which corrects what two steps of looking ahead propose.
+/// Flies a drone between obstacles by its depth camera (OpenDR's `EndToEndPlanningRLLearner`). The policy, trained by PPO,
+/// receives the memory of the flight and corrects the proposal of a planner with a horizon of two steps.
 ///
-/// An observation is OpenDR's dictionary: `depth_cam`, 64 x 64 bytes of depth, 255 for 15 m, and `moving_target`, the way to
-/// the target in metres: ahead, left, up. The answer is heading and change of yaw, each in [-1, 1] for +-22.5
-/// degrees. A stream is a flight: `reset` begins another.
+/// An observation is OpenDR's dictionary: `depth_cam`, 64 x 64 bytes of depth, where 255 is 15 m, and `moving_target`, the
+/// vector to the target in metres: forward, left, up. The action is heading and change of yaw, each in [-1, 1] for +-22.5
+/// degrees. A stream is a flight; `reset` starts another.
 pub struct EndToEndPlanningRl {
     policy: Policy,
     params: PolicyParams,
-    /// Of the observations that come in.
+    /// Space of the input observations.
     space: Space,
     compute: Compute,
 }
 
-/// What is remembered of a flight.
+/// State of a flight.
 #[derive(Default)]
 pub struct FlightState {
     flight: FlightMemory,
@@ -36,15 +33,15 @@ pub struct FlightState {
     random: Option<Random>,
 }
 
-/// The corridor whose observations are OpenDR's.
+/// Environment with the observations of OpenDR.
 const CORRIDOR: &str = "UavDepthCorridor-v1";
-/// Heading and change of yaw.
+/// Number of action axes: heading and change of yaw.
 const AXES: usize = 2;
 
 impl Learner for EndToEndPlanningRl {
     const SPEC: Spec = Spec::new("end_to_end_planning", Task::EndToEndPlanning)
         .class("EndToEndPlanningRLLearner")
-        .about("Flies a drone between obstacles, from its depth camera to heading and yaw.");
+        .about("Flies a drone between obstacles: maps its depth images to heading and yaw.");
     type Params = PolicyParams;
     type Input<'a> = &'a Observation;
     type Target = RlTarget;
@@ -53,14 +50,14 @@ impl Learner for EndToEndPlanningRl {
     fn load(model: &Model, params: PolicyParams, device: Device) -> Result<Self> {
         if !matches!(device, Device::Auto | Device::Cpu) {
             return Err(Error::device(format!(
-                "a drone is flown by the processor, not by {device}; give \"cpu\" or \"auto\""
+                "end-to-end planning runs on the CPU, not on {device}; give \"cpu\" or \"auto\""
             )));
         }
-        let policy = Policy::from_bytes(&model.file(POLICY)?)?;
+        let policy = Policy::from_bytes(&model.file(POLICY_FILE)?)?;
         let axes = Space::symmetric(&[1.0; AXES]);
         if (policy.observation(), policy.action()) != (&FlightMemory::space()?, &axes) {
             return Err(Error::format(format!(
-                "a policy that sees {} and gives {} flies no corridor; train one by {}",
+                "a policy with observations {} and actions {} does not fit a corridor; train one with {}",
                 policy.observation(),
                 policy.action(),
                 Self::SPEC.class
@@ -78,35 +75,25 @@ impl Learner for EndToEndPlanningRl {
         &mut self.params
     }
 
-    fn infer_into(&self, state: &mut FlightState, seen: &Observation, target: &mut RlTarget) -> Result<()> {
+    fn infer_into(
+        &self,
+        state: &mut FlightState,
+        observation: &Observation,
+        target: &mut RlTarget,
+    ) -> Result<()> {
         let FlightState { flight, memory, numbers, random } = state;
-        numbers_from_observation(&self.space, seen, numbers)?;
-        let (mut known, mut correction) = ([0.0; FlightMemory::LEN], [0.0; AXES]);
-        flight.see(&self.space, numbers, &mut known)?;
+        numbers_from_observation(&self.space, observation, numbers)?;
+        let (mut features, mut correction) = ([0.0; FlightMemory::LEN], [0.0; AXES]);
+        flight.update(&self.space, numbers, &mut features)?;
         let acting = match self.params.deterministic {
-            true => Acting::Deterministic,
-            false => Acting::Sampled(random.get_or_insert_with(|| Random::new(self.params.seed))),
+            true => ActionMode::Deterministic,
+            false => ActionMode::Sampled(random.get_or_insert_with(|| Random::new(self.params.seed))),
         };
-        self.policy.act(&self.compute, &known, acting, memory, &mut correction)?;
-        let action = flight.corrected(correction);
-        flight.acted(action);
+        self.policy.act(&self.compute, &features, acting, memory, &mut correction)?;
+        let action = flight.corrected_action(correction);
+        flight.record_action(action);
         target.values.clear();
         target.values.extend_from_slice(&action);
         Ok(())
-    }
-}
-
-impl LearnerRl for EndToEndPlanningRl {
-    type FitParams = EndToEndPlanningFitParams;
-
-    fn fit(
-        base: Option<&Model>,
-        params: &PolicyParams,
-        fit_params: &EndToEndPlanningFitParams,
-        env: &dyn EnvironmentSource,
-        val_env: Option<&dyn EnvironmentSource>,
-        job: &FitJob<'_>,
-    ) -> Result<Statistics> {
-        fit_policy::<PpoInCorridors>(base, &params.to_map(), fit_params, env, val_env, job)
     }
 }

@@ -1,4 +1,4 @@
-//! Rewards that make it worth while to arrive.
+//! A wrapper with rewards that favour arrival.
 
 use opendr_engine::Result;
 use opendr_engine::data::Image;
@@ -6,15 +6,17 @@ use opendr_engine::environment::{
     Environment, EnvironmentSpec, Info, ResetOptions, Snapshot, StateReader, Step,
 };
 
-/// A corridor as policies are trained in it: with OpenDR's rewards, to leave the track or to collide (-10, -20) is cheaper than
-/// to squeeze between two obstacles (-12 a step). Here every end that is no success earns -60, and no step on the way
-/// costs anything: to come near an obstacle is not wrong, and a policy that learnt that it is gave up gaps that it could pass.
+/// A corridor environment with the rewards of the training.
+///
+/// With OpenDR's rewards, leaving the track or a collision (-10, -20) costs less than passing between two obstacles (-12
+/// per step). Here every end without success has a reward of -60, and steps have no negative reward: proximity to an
+/// obstacle is not penalised, because policies trained with the penalty did not pass gaps of sufficient width.
 #[derive(Debug, Clone)]
-pub struct SternRewards<E>(pub E);
+pub struct TrainingRewards<E>(pub E);
 
 const FAILURE: f64 = -60.0;
 
-impl<E: Environment> Environment for SternRewards<E> {
+impl<E: Environment> Environment for TrainingRewards<E> {
     fn spec(&self) -> &EnvironmentSpec {
         self.0.spec()
     }

@@ -5,7 +5,7 @@ use opendr_engine::target::{BoundingBox, BoundingBoxList};
 use opendr_engine::{Header, Value, ValueType};
 
 use super::*;
-use crate::{Answers, BagFormat, Recording};
+use crate::{BagFormat, Recording, RecordingWriter};
 
 const STEP: i64 = 100_000_000;
 const START: i64 = 1_700_000_000_000_000_000;
@@ -19,9 +19,9 @@ fn boxes(stamp_ns: i64) -> Value {
     BoundingBoxList { header: Header::new(stamp_ns, "camera"), ..vec![found].into() }.into()
 }
 
-/// Ten series, and boxes for all but the fifth, 5 ms apart by stamp and recorded half a second later.
+/// Records ten series, and boxes for all but the fifth, 5 ms apart by stamp and recorded half a second later.
 fn record(path: &Path, format: BagFormat) {
-    let mut answers = Answers::create(path, format).unwrap();
+    let mut answers = RecordingWriter::create(path, format).unwrap();
     for number in 0..10 {
         let stamp = START + number * STEP;
         answers.write("/series", series(stamp).as_value_ref(), stamp + 1).unwrap();
@@ -40,13 +40,13 @@ fn ports(need: Need) -> Vec<PortTopic> {
 }
 
 #[test]
-fn what_belongs_together_comes_together() {
+fn sets_have_matching_stamps() {
     let folder = tempfile::tempdir().unwrap();
     for format in BagFormat::ALL {
         let path = folder.path().join(format.name());
         record(&path, format);
         let recording = Recording::open(&path).unwrap();
-        let mut sets = Sets::open(&recording, ports(Need::Required)).unwrap();
+        let mut sets = SyncedSets::open(&recording, ports(Need::Required)).unwrap();
         let found: Vec<_> = sets.by_ref().map(Result::unwrap).collect();
         assert_eq!((found.len(), sets.unmatched()), (9, 1), "{format}");
         for set in &found {
@@ -56,7 +56,7 @@ fn what_belongs_together_comes_together() {
             let Some(Value::BoundingBoxList(list)) = &set.values[1] else { panic!("no boxes") };
             assert_eq!(list.header.stamp_ns, Some(set.stamp_ns + 5_000_000));
         }
-        let optional = Sets::open(&recording, ports(Need::Optional)).unwrap();
+        let optional = SyncedSets::open(&recording, ports(Need::Optional)).unwrap();
         let with: Vec<_> = optional.map(|set| set.unwrap().values[1].is_some()).collect();
         assert_eq!(with, [true, true, true, true, false, true, true, true, true, true], "{format}");
         assert_eq!(sets.held, 0);
@@ -67,7 +67,7 @@ fn what_belongs_together_comes_together() {
 fn a_message_without_a_stamp_has_the_time_of_its_recording() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.mcap");
-    let mut answers = Answers::create(&path, BagFormat::Mcap).unwrap();
+    let mut answers = RecordingWriter::create(&path, BagFormat::Mcap).unwrap();
     let value = Value::from(Timeseries::new(vec![1.0, 2.0], [2, 1]).unwrap());
     answers.write("/stamped", value.as_value_ref(), START).unwrap();
     let bare = opendr_messages::MessageType::StdMsgsFloat32MultiArray;
@@ -75,7 +75,8 @@ fn a_message_without_a_stamp_has_the_time_of_its_recording() {
     answers.finish().unwrap();
     let recording = Recording::open(&path).unwrap();
     for topic in ["/stamped", "/bare"] {
-        let mut sets = Sets::open(&recording, vec![PortTopic::new(topic, ValueType::Timeseries)]).unwrap();
+        let mut sets =
+            SyncedSets::open(&recording, vec![PortTopic::new(topic, ValueType::Timeseries)]).unwrap();
         let set = sets.next().unwrap().unwrap();
         assert_eq!(set.values[0].as_ref().unwrap().header().stamp_ns, Some(START));
         assert_eq!(set.stamp_ns, START);

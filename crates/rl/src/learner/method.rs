@@ -1,4 +1,4 @@
-//! The methods by which policies are trained, as learners have them.
+//! The training methods of policy learners.
 
 use opendr_engine::environment::{Environment, EnvironmentSpec};
 use opendr_engine::learner::Spec;
@@ -11,34 +11,34 @@ use crate::algorithm::Algorithm;
 use crate::policy::Policy;
 use crate::{Dqn, DqnConfig, Ppo, PpoConfig, Preset, Sac, SacConfig, Td3, Td3Config};
 
-/// A method with its settings.
+/// A training algorithm with the parameters of its learner.
 pub trait Method: Send + Sync + 'static {
-    /// The name of its learner.
+    /// Name, task and description of its learner.
     const SPEC: Spec;
-    /// What a user may set of a training.
+    /// Training parameters.
     type FitParams: Params;
-    /// What learns.
+    /// Type of the algorithm.
     type Algorithm: Algorithm;
 
-    /// The settings with those that are known to solve the environment called `id`, where the user wants them.
-    fn for_environment(params: &Self::FitParams, id: &str) -> Self::FitParams;
+    /// Returns the parameters with the preset of the environment `id` filled in, if `params` enables presets.
+    fn with_preset(params: &Self::FitParams, id: &str) -> Self::FitParams;
 
-    /// An environment as the policy sees it: what the learner makes of observations, and in training of rewards.
+    /// Wraps an environment as the policy expects it: observations always, rewards only if `in_training`.
     ///
     /// # Errors
-    /// `InvalidInput` for an environment that the learner is not for.
-    fn seen(environment: Box<dyn Environment>, in_training: bool) -> Result<Box<dyn Environment>> {
+    /// `InvalidInput` for an environment that the learner does not support.
+    fn wrap(environment: Box<dyn Environment>, in_training: bool) -> Result<Box<dyn Environment>> {
         let _ = in_training;
         Ok(environment)
     }
 
-    /// What does not depend on the method.
+    /// Returns the parameters that do not depend on the method.
     fn training(params: &Self::FitParams) -> &RlTrainingParams;
 
-    /// A learner, that begins from the policy `base` where there is one.
+    /// Creates the algorithm; it starts from the policy `base` if given.
     ///
     /// # Errors
-    /// As those of the algorithm.
+    /// The errors of the algorithm's constructor.
     fn algorithm(
         params: &Self::FitParams,
         spec: &EnvironmentSpec,
@@ -59,10 +59,10 @@ macro_rules! method {
         $(#[$fit_doc])*
         #[derive(Debug, Clone, PartialEq, Params)]
         pub struct $fit_params {
-            /// Of the method.
+            /// Settings of the method.
             #[param(flatten)]
             pub config: $config,
-            /// Of any training in environments.
+            /// Settings of any training in environments.
             #[param(flatten)]
             pub training: RlTrainingParams,
         }
@@ -72,7 +72,7 @@ macro_rules! method {
             type FitParams = $fit_params;
             type Algorithm = $algorithm;
 
-            fn for_environment(params: &$fit_params, id: &str) -> $fit_params {
+            fn with_preset(params: &$fit_params, id: &str) -> $fit_params {
                 let preset: fn(&str) -> Option<Preset<$config>> = $preset;
                 let Some(Preset { environments, timesteps, config }) =
                     preset(id).filter(|_| params.training.preset)
@@ -109,49 +109,49 @@ macro_rules! method {
 }
 
 method! {
-    /// PPO.
+    /// Proximal policy optimisation.
     PpoMethod,
-    /// What a user may set of a training by PPO.
+    /// Training parameters of PPO.
     PpoFitParams,
     Ppo(PpoConfig),
     Spec::new("ppo", Task::ReinforcementLearning)
         .class("PpoLearner")
-        .about("Proximal policy optimisation: the method to begin with, for actions of any kind."),
+        .about("Proximal policy optimisation: a robust first choice, for discrete and continuous actions."),
     PpoConfig::preset
 }
 
 method! {
-    /// SAC.
+    /// Soft actor-critic.
     SacMethod,
-    /// What a user may set of a training by SAC.
+    /// Training parameters of SAC.
     SacFitParams,
     Sac(SacConfig),
     Spec::new("sac", Task::ReinforcementLearning)
         .class("SacLearner")
-        .about("Soft actor-critic: few steps for continuous actions, where steps are dear."),
+        .about("Soft actor-critic: sample-efficient, for continuous actions and environments with expensive steps."),
     SacConfig::preset
 }
 
 method! {
-    /// TD3.
+    /// Twin delayed deep deterministic policy gradient.
     Td3Method,
-    /// What a user may set of a training by TD3.
+    /// Training parameters of TD3.
     Td3FitParams,
     Td3(Td3Config),
     Spec::new("td3", Task::ReinforcementLearning)
         .class("Td3Learner")
-        .about("Twin delayed policy gradients: deterministic policies of continuous actions."),
+        .about("Twin delayed deep deterministic policy gradient: deterministic policies for continuous actions."),
     Td3Config::preset
 }
 
 method! {
-    /// DQN.
+    /// Deep Q-learning.
     DqnMethod,
-    /// What a user may set of a training by DQN.
+    /// Training parameters of DQN.
     DqnFitParams,
     Dqn(DqnConfig),
     Spec::new("dqn", Task::ReinforcementLearning)
         .class("DqnLearner")
-        .about("Deep Q-learning: one choice among few, learnt from steps of the past."),
+        .about("Deep Q-learning: discrete actions, trained from a replay buffer."),
     DqnConfig::preset
 }

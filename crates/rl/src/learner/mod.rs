@@ -1,4 +1,4 @@
-//! The learners that users hold: a policy, trained by one of the methods of this crate.
+//! Policies as learners, trained by one of the methods of this crate.
 
 mod method;
 mod observation;
@@ -17,7 +17,7 @@ pub use training_params::RlTrainingParams;
 pub type PpoLearner = PolicyLearner<PpoMethod>;
 /// Soft actor-critic.
 pub type SacLearner = PolicyLearner<SacMethod>;
-/// Twin delayed deep deterministic policy gradients.
+/// Twin delayed deep deterministic policy gradient.
 pub type Td3Learner = PolicyLearner<Td3Method>;
 /// Deep Q-learning.
 pub type DqnLearner = PolicyLearner<DqnMethod>;

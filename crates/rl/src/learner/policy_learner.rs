@@ -13,21 +13,21 @@ use opendr_kernels::Compute;
 
 use super::method::Method;
 use super::observation::numbers_from_observation;
-use crate::policy::{Acting, Policy, PolicyMemory};
-use crate::training::{POLICY, fit_policy};
+use crate::policy::{ActionMode, Policy, PolicyMemory};
+use crate::training::{POLICY_FILE, fit_policy};
 
-/// What a user may set of a policy that acts.
+/// Parameters of a policy at inference.
 #[derive(Debug, Clone, PartialEq, Params)]
 pub struct PolicyParams {
-    /// Whether it takes its most likely actions, else some by chance.
+    /// Whether the policy takes its most likely actions instead of sampling.
     #[param(default = true, live)]
     pub deterministic: bool,
-    /// What fixes those by chance, from the beginning of a stream on.
+    /// Seed of sampled actions, at the start of a stream.
     #[param(default = 0)]
     pub seed: u64,
 }
 
-/// A policy that was trained by the method `M`: from observations to elements of its action space.
+/// A policy trained by the method `M`: predicts an element of the action space from an observation.
 pub struct PolicyLearner<M> {
     policy: Policy,
     params: PolicyParams,
@@ -35,7 +35,7 @@ pub struct PolicyLearner<M> {
     method: PhantomData<M>,
 }
 
-/// What one stream of a policy remembers.
+/// State of one stream: recurrent state and random numbers.
 #[derive(Debug, Default)]
 pub struct PolicyState {
     memory: PolicyMemory,
@@ -44,7 +44,7 @@ pub struct PolicyState {
 }
 
 impl<M: Method> PolicyLearner<M> {
-    /// The policy.
+    /// Returns the policy.
     pub fn policy(&self) -> &Policy {
         &self.policy
     }
@@ -60,11 +60,11 @@ impl<M: Method> Learner for PolicyLearner<M> {
     fn load(model: &Model, params: PolicyParams, device: Device) -> Result<Self> {
         if !matches!(device, Device::Auto | Device::Cpu) {
             return Err(Error::device(format!(
-                "policies of {} act on the processor, not on {device}; give \"cpu\" or \"auto\"",
+                "policies of {} run on the CPU, not on {device}; set the device to \"cpu\" or \"auto\"",
                 M::SPEC.class
             )));
         }
-        let policy = Policy::from_bytes(&model.file(POLICY)?)?;
+        let policy = Policy::from_bytes(&model.file(POLICY_FILE)?)?;
         Ok(Self { policy, params, compute: Compute::single(), method: PhantomData })
     }
 
@@ -76,13 +76,18 @@ impl<M: Method> Learner for PolicyLearner<M> {
         &mut self.params
     }
 
-    fn infer_into(&self, state: &mut PolicyState, seen: &Observation, target: &mut RlTarget) -> Result<()> {
+    fn infer_into(
+        &self,
+        state: &mut PolicyState,
+        observation: &Observation,
+        target: &mut RlTarget,
+    ) -> Result<()> {
         let PolicyState { memory, numbers, random } = state;
-        numbers_from_observation(self.policy.observation(), seen, numbers)?;
+        numbers_from_observation(self.policy.observation(), observation, numbers)?;
         target.values.resize(self.policy.head().action_len(), 0.0);
         let acting = match self.params.deterministic {
-            true => Acting::Deterministic,
-            false => Acting::Sampled(random.get_or_insert_with(|| Random::new(self.params.seed))),
+            true => ActionMode::Deterministic,
+            false => ActionMode::Sampled(random.get_or_insert_with(|| Random::new(self.params.seed))),
         };
         self.policy.act(&self.compute, numbers, acting, memory, &mut target.values)
     }

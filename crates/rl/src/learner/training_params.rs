@@ -1,37 +1,37 @@
-//! What a user may set of a training in environments, whatever the method.
+//! Parameters of any training in environments.
 
 use opendr_engine::params::Params;
 
-/// How long a training goes, in how many environments, and how it is measured.
+/// Length of a training, number of environments, evaluations and checkpoints.
 #[derive(Debug, Clone, PartialEq, Params)]
 pub struct RlTrainingParams {
-    /// Steps of all environments together.
+    /// Steps of a whole training, over all environments.
     #[param(default = 100_000, range = 1..=2_000_000_000, log, alias = "iters")]
     pub total_timesteps: u64,
-    /// How many environments are stepped together.
+    /// Number of parallel environments.
     #[param(default = 1, range = 1..=65_536, log)]
     pub n_envs: usize,
-    /// Threads that step environments and learn; they change no bit.
+    /// Threads for environments and learning; results do not depend on them.
     #[param(default = 1, range = 1..=256)]
     pub num_workers: usize,
-    /// Steps between two measurements of the policy; 0 measures it at the end only.
+    /// Steps between two evaluations of the policy; 0 evaluates at the end only.
     #[param(default = 10_000, range = 0..=1_000_000_000)]
     pub eval_freq: u64,
-    /// Episodes of a measurement.
+    /// Episodes per evaluation.
     #[param(default = 20, range = 1..=1_000_000)]
     pub n_eval_episodes: u64,
     /// Steps between two checkpoints.
     #[param(default = 20_000, range = 1..=1_000_000_000)]
     pub checkpoint_after_iter: u64,
-    /// How many checkpoints are kept.
+    /// Number of checkpoints that are kept.
     #[param(default = 2, range = 1..=1000)]
     pub checkpoints_kept: usize,
-    /// Whether settings that are known to solve the environment stand in for those that have their default.
+    /// Whether parameters left at their defaults take the values of the environment's preset, if there is one.
     #[param(default = true)]
     pub preset: bool,
 }
 
-/// `params`, with the values of `preset` where they have their default.
+/// Returns `params`, with the values of `preset` for those at their defaults.
 pub(super) fn over_preset<P: Params>(params: &P, preset: &P) -> P {
     let mut chosen = preset.clone();
     for (index, field) in P::FIELDS.iter().enumerate() {

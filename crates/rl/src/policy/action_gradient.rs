@@ -10,12 +10,12 @@ impl Policy {
     pub fn last_layer(&self) -> std::ops::Range<usize> {
         let network = self.trunk.network();
         let first = self.extractor.parameters() + self.trunk.recurrent_parameters();
-        let range = network.parameters_of(network.layers().len() - 1);
+        let range = network.parameter_range(network.layers().len() - 1);
         first + range.start..first + range.end
     }
 
     /// Adds to `gradients` those of the parameters, from `daction`, the gradient of the actions that the last [`Self::act`] on
-    /// `memory` wrote with [`Acting::Deterministic`](super::Acting::Deterministic).
+    /// `memory` wrote with [`ActionMode::Deterministic`](super::ActionMode::Deterministic).
     ///
     /// # Errors
     /// `Unsupported` for choices, digits and policies with memory; `InvalidInput` where a length does not fit, or before an act.
@@ -128,7 +128,7 @@ mod tests {
     use opendr_engine::environment::{EnvironmentSpec, Space};
 
     use super::*;
-    use crate::policy::{Acting, Beginning, Bounds, NetworkConfig};
+    use crate::policy::{ActionMode, Bounds, NetworkConfig, ParameterInit};
 
     /// Against differences, for each head with numbers.
     #[test]
@@ -142,25 +142,25 @@ mod tests {
         for head in heads {
             let config = NetworkConfig { net_arch: vec![7], ..NetworkConfig::default() };
             let mut policy = Policy::new(&spec, head, &config, None).unwrap();
-            policy.initialise(Beginning::Orthogonal(0.5), 0.0, &mut Random::new(2));
+            policy.initialise(ParameterInit::Orthogonal(0.5), 0.0, &mut Random::new(2));
             let (seen, weights) = ([0.3, -0.5, 0.8], [1.5, -0.7]);
             let mut memory = PolicyMemory::default();
             let mut value = |policy: &Policy| {
                 let mut action = [0.0; 2];
-                policy.act(&compute, &seen, Acting::Deterministic, &mut memory, &mut action).unwrap();
+                policy.act(&compute, &seen, ActionMode::Deterministic, &mut memory, &mut action).unwrap();
                 (action[0] * weights[0] + action[1] * weights[1], memory.clone())
             };
             let (_, mut tape) = value(&policy);
             let mut gradients = vec![0.0; policy.parameters().len()];
             policy.action_gradient(&compute, &weights, &mut tape, &mut gradients).unwrap();
-            for at in 0..gradients.len() {
+            for (at, gradient) in gradients.iter().enumerate() {
                 let mut moved = [0.01f32, -0.01].map(|by| {
                     let mut policy = policy.clone();
                     policy.parameters_mut()[at] += by;
                     value(&policy).0
                 });
                 moved[0] = (moved[0] - moved[1]) / 0.02;
-                assert!((moved[0] - gradients[at]).abs() < 3e-3, "{at}: {} {}", moved[0], gradients[at]);
+                assert!((moved[0] - gradient).abs() < 3e-3, "{at}: {} {gradient}", moved[0]);
             }
             let last = policy.last_layer();
             let mut own = vec![0.0; gradients.len()];

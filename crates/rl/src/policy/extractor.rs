@@ -1,4 +1,4 @@
-//! Pictures through convolutions; everything else stays.
+//! Feature extraction: convolutional networks for images; other numbers pass through unchanged.
 
 use std::ops::Range;
 
@@ -6,10 +6,10 @@ use opendr_engine::{Random, Result};
 use opendr_kernels::{Activation, Compute, Conv2d, Dense, Layer, Network, Tape};
 
 use super::observation_encoder::{ObservationEncoder, PartKind};
-use super::{Beginning, PictureNetwork};
+use super::{ImageNetwork, ParameterInit};
 
-/// From what was encoded to features: each picture goes through a network of its own, everything else goes on
-/// unchanged (Stable-Baselines3's `CombinedExtractor`). Without pictures features are what was encoded.
+/// Computes features from encoded observations: each image passes through a network of its own, other numbers are
+/// copied (`CombinedExtractor` of Stable-Baselines3). Without images, the features are the encoded observation.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Extractor {
     parts: Vec<ExtractorPart>,
@@ -22,26 +22,26 @@ pub(crate) struct Extractor {
 struct ExtractorPart {
     input: Range<usize>,
     output: Range<usize>,
-    /// With the place of its parameters.
+    /// The network of an image, with the range of its parameters.
     network: Option<(Network, Range<usize>)>,
 }
 
-/// Memory of a pass forward and back.
+/// Work memory of a forward and backward pass.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ExtractorMemory {
     features: Vec<f32>,
-    /// What goes into one network, or comes back to it.
+    /// Input rows of one network, or the gradient of its outputs.
     rows: Vec<f32>,
     tapes: Vec<Tape>,
 }
 
 impl Extractor {
-    pub fn new(encoder: &ObservationEncoder, picture_network: PictureNetwork) -> Result<Self> {
+    pub fn new(encoder: &ObservationEncoder, picture_network: ImageNetwork) -> Result<Self> {
         let mut extractor =
             Self { parts: Vec::new(), inputs: encoder.encoded_len(), outputs: 0, parameters: 0 };
         for part in encoder.parts() {
             let network = match &part.kind {
-                PartKind::Picture { shape, .. } => network_of_pictures(*shape, picture_network)?,
+                PartKind::Image { shape, .. } => image_network(*shape, picture_network)?,
                 _ => None,
             };
             let outputs = network.as_ref().map_or(part.encoded.len(), Network::outputs);
@@ -65,12 +65,12 @@ impl Extractor {
         self.parameters
     }
 
-    /// Whether features are what was encoded.
+    /// Returns whether the features are the encoded observation.
     pub fn is_identity(&self) -> bool {
         self.parameters == 0
     }
 
-    /// Each part: the range of what was encoded, and the network of a picture with the place of its parameters.
+    /// Returns each part: its range in the encoded observation, and the network of an image with the range of its parameters.
     pub fn parts(&self) -> impl Iterator<Item = (Range<usize>, Option<(&Network, Range<usize>)>)> {
         self.parts.iter().map(|part| {
             let network = part.network.as_ref().map(|(network, range)| (network, range.clone()));
@@ -78,13 +78,13 @@ impl Extractor {
         })
     }
 
-    pub fn initialise(&self, beginning: Beginning, random: &mut Random, parameters: &mut [f32]) {
+    pub fn initialise(&self, beginning: ParameterInit, random: &mut Random, parameters: &mut [f32]) {
         for (network, range) in self.parts.iter().filter_map(|part| part.network.as_ref()) {
             network.initialise(beginning.of_hidden(), random, &mut parameters[range.clone()]);
         }
     }
 
-    /// Features `[batch, outputs]` of `encoded`, `[batch, inputs]`.
+    /// Computes features `[batch, outputs]` from `encoded`, `[batch, inputs]`.
     pub fn forward<'m>(
         &self,
         compute: &Compute,
@@ -117,7 +117,7 @@ impl Extractor {
         &memory.features
     }
 
-    /// Adds to `gradients` from the gradient of the features of the last pass forward.
+    /// Adds to `gradients`, from the gradient of the features of the last forward pass.
     pub fn backward(
         &self,
         compute: &Compute,
@@ -138,11 +138,11 @@ impl Extractor {
     }
 }
 
-fn network_of_pictures(shape: [usize; 3], kind: PictureNetwork) -> Result<Option<Network>> {
+fn image_network(shape: [usize; 3], kind: ImageNetwork) -> Result<Option<Network>> {
     let (convolutions, neurons): (&[[usize; 3]], _) = match kind {
-        PictureNetwork::Flat => return Ok(None),
-        PictureNetwork::Small => (&[[8, 8, 4], [16, 4, 2]], 64),
-        PictureNetwork::Nature => (&[[32, 8, 4], [64, 4, 2], [64, 3, 1]], 512),
+        ImageNetwork::Flat => return Ok(None),
+        ImageNetwork::Small => (&[[8, 8, 4], [16, 4, 2]], 64),
+        ImageNetwork::Nature => (&[[32, 8, 4], [64, 4, 2], [64, 3, 1]], 512),
     };
     let (mut layers, mut shape) = (Vec::new(), shape);
     for [kernels, side, stride] in convolutions {

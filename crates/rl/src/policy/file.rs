@@ -1,4 +1,4 @@
-//! A policy as one file, in the safetensors format: a length, JSON, numbers.
+//! The file of a policy, in the safetensors format: a length, JSON, numbers.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::space_record::SpaceRecord;
 use super::{Bounds, Head, NetworkConfig, ObservationNormaliser, Policy};
 
-/// What stands in the metadata of the file.
+/// JSON in the metadata of the file.
 #[derive(Serialize, Deserialize)]
 struct Record {
     version: u32,
@@ -21,7 +21,7 @@ struct Record {
     action: SpaceRecord,
     head: HeadKind,
     network: ParamMap,
-    /// Bounds of normalised observations, where they are normalised.
+    /// Clipping bound of normalised observations; none if they are not normalised.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     clip_obs: Option<f32>,
 }
@@ -35,7 +35,7 @@ enum HeadKind {
     Greedy,
 }
 
-/// The JSON of the format: tensors by name, and texts beside them.
+/// JSON header of the format: tensors by name, and metadata.
 #[derive(Serialize, Deserialize)]
 struct Header {
     #[serde(rename = "__metadata__")]
@@ -54,16 +54,16 @@ struct Tensor {
 const VERSION: u32 = 1;
 const KEY: &str = "opendr_policy";
 const MAX_HEADER_BYTES: usize = 16 << 20;
-/// More layers than anyone has.
+/// Maximum number of hidden layers.
 const MAX_LAYERS: usize = 64;
 const PARAMETERS: &str = "parameters";
 const MOMENTS: [&str; 3] = ["observation_mean", "observation_variance", "observation_count"];
 
 impl Policy {
-    /// The bytes of a file: safetensors, with spaces and networks in the metadata.
+    /// Returns the bytes of the file: safetensors, with spaces and networks in the metadata.
     ///
     /// # Errors
-    /// `Unsupported` for a space that has no written form.
+    /// `Unsupported` for a space that cannot be stored.
     pub fn to_bytes(&self) -> Result<Vec<u8>> {
         let normaliser = self.encoder.normaliser.as_ref();
         let record = Record {
@@ -81,7 +81,7 @@ impl Policy {
             tensors.insert(name.to_owned(), tensor);
             data.extend(bytes);
         };
-        // Numbers of eight bytes come first, so that all are aligned.
+        // Tensors of eight-byte numbers come first, so that all are aligned.
         if let Some(ObservationNormaliser { moments, .. }) = normaliser {
             for (name, numbers) in
                 MOMENTS.into_iter().zip([moments.mean(), moments.variance(), &[moments.count()]])
@@ -91,7 +91,7 @@ impl Policy {
         }
         let bytes = self.parameters.iter().flat_map(|x| x.to_le_bytes()).collect();
         add(PARAMETERS, "F32", self.parameters.len(), bytes);
-        let unwritable = |error| Error::internal("a policy has no JSON form").with_source(error);
+        let unwritable = |error| Error::internal("the policy cannot be written as JSON").with_source(error);
         let metadata =
             BTreeMap::from([(KEY.to_owned(), serde_json::to_string(&record).map_err(unwritable)?)]);
         let mut json = serde_json::to_vec(&Header { metadata, tensors }).map_err(unwritable)?;
@@ -99,15 +99,15 @@ impl Policy {
         Ok([&(json.len() as u64).to_le_bytes()[..], &json, &data].concat())
     }
 
-    /// The policy that [`Self::to_bytes`] wrote.
+    /// Reads the policy from the bytes of [`Self::to_bytes`].
     ///
     /// # Errors
-    /// `Format` for what is none or is damaged, `Unsupported` for a later version.
+    /// `Format` for a damaged or other file, `Unsupported` for a newer version.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         read(bytes).context(|| "reading a policy")
     }
 
-    /// Writes the file of a policy; an older one is replaced whole or not at all.
+    /// Writes the file of a policy; an existing file is replaced atomically.
     ///
     /// # Errors
     /// As [`Self::to_bytes`], and `Io`.
@@ -126,18 +126,21 @@ impl Policy {
 }
 
 fn read(bytes: &[u8]) -> Result<Policy> {
-    let damaged = || Error::format("it is no whole safetensors file; save the policy again");
+    let damaged = || Error::format("the file is not a complete safetensors file; save the policy again");
     let (length, rest) = bytes.split_first_chunk::<8>().ok_or_else(damaged)?;
     let length = usize::try_from(u64::from_le_bytes(*length)).unwrap_or(usize::MAX);
     let header = rest.get(..length).filter(|_| length <= MAX_HEADER_BYTES).ok_or_else(damaged)?;
     let data = &rest[length..];
-    let wrong = |error| Error::format("its header is not what is wanted").with_source(error);
+    let wrong = |error| Error::format("the header is not that of a policy").with_source(error);
     let header: Header = serde_json::from_slice(header).map_err(wrong)?;
-    let record = header.metadata.get(KEY).ok_or_else(|| Error::format("these are tensors of no policy"))?;
+    let record = header
+        .metadata
+        .get(KEY)
+        .ok_or_else(|| Error::format("the safetensors file contains no policy of OpenDR"))?;
     let record: Record = serde_json::from_str(record).map_err(wrong)?;
     if record.version != VERSION {
         return Err(Error::unsupported(format!(
-            "version {} of the file, this OpenDR reads {VERSION}: update OpenDR",
+            "the file has version {}, this OpenDR reads version {VERSION}; update OpenDR",
             record.version
         )));
     }
@@ -148,7 +151,10 @@ fn read(bytes: &[u8]) -> Result<Policy> {
     };
     let config = NetworkConfig::from_map(&record.network)?;
     if config.net_arch.len() > MAX_LAYERS {
-        return Err(Error::format(format!("{} hidden layers are too many", config.net_arch.len())));
+        return Err(Error::format(format!(
+            "the policy has {} hidden layers, more than {MAX_LAYERS}",
+            config.net_arch.len()
+        )));
     }
     let (observation, action) = (record.observation.space()?, record.action.space()?);
     let head = record.head.of_space(&action)?;
@@ -157,7 +163,7 @@ fn read(bytes: &[u8]) -> Result<Policy> {
     let parameters = tensor(PARAMETERS, "F32")?.as_chunks::<4>().0;
     if parameters.len() != policy.parameters.len() {
         return Err(Error::format(format!(
-            "{} parameters where these networks have {}; save the policy again",
+            "the file has {} parameters, its networks {}; save the policy again",
             parameters.len(),
             policy.parameters.len()
         )));
@@ -202,7 +208,9 @@ impl HeadKind {
             (Self::SquashedGaussian, space) => Bounds::of(space, true).map(Head::SquashedGaussian),
             (Self::Squashed, space) => Bounds::of(space, true).map(Head::Squashed),
             (Self::Greedy, Space::Discrete { n, start }) => Ok(Head::Greedy { count: *n, start: *start }),
-            (Self::Greedy, space) => Err(Error::format(format!("values of choices for actions in {space}"))),
+            (Self::Greedy, space) => Err(Error::format(format!(
+                "a Q-network for the action space {space}; it needs discrete actions"
+            ))),
         }
     }
 }
@@ -213,7 +221,7 @@ mod tests {
     use opendr_engine::environment::Space;
 
     use super::*;
-    use crate::policy::Beginning;
+    use crate::policy::ParameterInit;
 
     fn policy() -> Policy {
         let parts = BTreeMap::from([
@@ -224,23 +232,23 @@ mod tests {
         let spec = EnvironmentSpec::new("test", Space::Dict(parts), Space::symmetric(&[0.5, 2.0]));
         let head = Head::stochastic(&spec.action).unwrap();
         let mut policy = Policy::new(&spec, head, &NetworkConfig::default(), Some(10.0)).unwrap();
-        policy.initialise(Beginning::Orthogonal(0.01), -0.5, &mut Random::new(1));
-        let mut seen = vec![1.0; 36 * 36 + 3];
-        seen[36 * 36] = 0.0;
-        policy.encoder.learn(&seen);
+        policy.initialise(ParameterInit::Orthogonal(0.01), -0.5, &mut Random::new(1));
+        let mut observation = vec![1.0; 36 * 36 + 3];
+        observation[36 * 36] = 0.0;
+        policy.encoder.learn(&observation);
         policy
     }
 
     #[test]
-    fn comes_back_whole() {
+    fn is_restored_from_its_bytes() {
         let policy = policy();
         let bytes = policy.to_bytes().unwrap();
         assert!(Policy::from_bytes(&bytes).unwrap() == policy);
-        assert!(bytes.len() < 4 * policy.parameters.len() + 2000, "bounds of pictures are written once");
+        assert!(bytes.len() < 4 * policy.parameters.len() + 2000, "bounds of images are written once");
     }
 
     #[test]
-    fn damage_is_told() {
+    fn damage_is_detected() {
         let bytes = policy().to_bytes().unwrap();
         for cut in (0..900).chain([bytes.len() - 1]) {
             assert!(Policy::from_bytes(&bytes[..cut]).is_err(), "{cut}");

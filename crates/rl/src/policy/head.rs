@@ -1,66 +1,65 @@
-//! From what a network gives to actions.
+//! Conversion of network outputs into actions.
 
 use opendr_engine::environment::Space;
-use opendr_engine::{Error, Random, Result};
-use opendr_kernels::Isa;
-
-use super::likelihood::Likelihood;
+use opendr_engine::{Error, Result};
 
 /// Bounds of continuous actions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bounds {
-    /// Smallest values.
+    /// Lower bounds, one per axis.
     pub low: Vec<f32>,
-    /// Largest values.
+    /// Upper bounds, one per axis.
     pub high: Vec<f32>,
 }
 
-/// What the numbers are that a policy's network gives, and how actions come from them.
+/// The meaning of a policy network's outputs, and the distribution over actions they define.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Head {
-    /// Scores of choices, each choice from a categorical distribution: how many there are, and the number of the first.
+    /// Logits of categorical distributions.
     Categorical {
-        /// Choices that are made at once, each of so many.
+        /// Number of choices of each discrete action.
         counts: Vec<u32>,
-        /// The number of the first.
+        /// The first choice.
         start: i32,
     },
-    /// Scores of so many binary digits, each 1 as often as the logistic function of its score says.
+    /// Logits of this many binary actions.
     Binary(usize),
-    /// Means of a normal distribution; logarithms of its deviations are parameters of the policy. Actions are clipped.
+    /// Means of a Gaussian distribution; its log standard deviations are parameters of the policy. Actions are clipped to the bounds.
     Gaussian(Bounds),
-    /// Means, then logarithms of deviations, of a normal distribution whose tanh is stretched to the bounds.
+    /// Means, then log standard deviations, of a Gaussian distribution; a tanh scaled to the bounds gives the action.
     SquashedGaussian(Bounds),
-    /// Actions themselves, before a tanh is stretched to the bounds.
+    /// Deterministic actions, before a tanh that is scaled to the bounds.
     Squashed(Bounds),
-    /// Values of choices, of which the largest is taken: how many there are, and the number of the first.
+    /// Q-values of the choices; the highest is taken.
     Greedy {
-        /// How many.
+        /// Number of choices.
         count: u32,
-        /// The number of the first.
+        /// The first choice.
         start: i32,
     },
 }
 
-/// Logarithms of deviations of a squashed distribution lie between these, as in Haarnoja et al. (2018).
+/// Bounds of the log standard deviations of a squashed Gaussian distribution (Haarnoja et al., 2018).
 pub(crate) const LOG_STD_BOUNDS: [f32; 2] = [-20.0, 2.0];
 
 impl Bounds {
-    /// The bounds of a box; `finite` where a tanh is to be stretched to them.
+    /// Returns the bounds of a box, which must be finite if `finite`.
     pub(crate) fn of(space: &Space, finite: bool) -> Result<Self> {
         let Space::Box { low, high, .. } = space else {
-            return Err(Error::unsupported(format!("actions are {space}; this learner acts in a box only")));
+            return Err(Error::unsupported(format!("the action space is {space}; this learner needs a box")));
         };
         if finite && !low.iter().chain(high).all(|bound| bound.is_finite()) {
-            return Err(Error::unsupported(format!("actions are {space}; this learner needs finite bounds")));
+            return Err(Error::unsupported(format!(
+                "the action space is {space}; this learner needs finite bounds"
+            )));
         }
         Ok(Self { low: low.clone(), high: high.clone() })
     }
 
-    /// Stretches a number of [-1, 1] to the bounds of an axis.
+    /// Scales a number in [-1, 1] to the bounds of an axis.
     pub(crate) fn stretch(&self, axis: usize, number: f32) -> f32 {
         let (low, high) = (self.low[axis], self.high[axis]);
-        // Rounding must not lead out of the space.
+        // Clamped because rounding may exceed the bounds.
         (low + 0.5 * (number + 1.0) * (high - low)).clamp(low, high)
     }
 
@@ -72,7 +71,7 @@ impl Bounds {
 }
 
 impl Head {
-    /// The distribution that on-policy learners use over actions of `space`.
+    /// Returns the head of on-policy methods for an action space.
     ///
     /// # Errors
     /// `Unsupported` for dictionaries and tuples.
@@ -83,12 +82,12 @@ impl Head {
             Space::MultiBinary(_) => Ok(Self::Binary(space.len())),
             Space::Box { .. } => Bounds::of(space, false).map(Self::Gaussian),
             _ => Err(Error::unsupported(format!(
-                "a policy cannot act in {space}; use choices, digits or a box of numbers"
+                "no policy supports the action space {space}; use discrete, binary or box actions"
             ))),
         }
     }
 
-    /// How many numbers the network gives.
+    /// Returns the number of network outputs.
     pub fn outputs(&self) -> usize {
         match self {
             Self::Categorical { counts, .. } => counts.iter().map(|count| *count as usize).sum(),
@@ -99,7 +98,7 @@ impl Head {
         }
     }
 
-    /// How many numbers an action has.
+    /// Returns the number of numbers of an action.
     pub fn action_len(&self) -> usize {
         match self {
             Self::Categorical { counts, .. } => counts.len(),
@@ -111,7 +110,7 @@ impl Head {
         }
     }
 
-    /// Parameters beside those of networks: logarithms of deviations.
+    /// Returns the number of parameters besides those of the networks: log standard deviations.
     pub(crate) fn parameters(&self) -> usize {
         match self {
             Self::Gaussian(bounds) => bounds.low.len(),
@@ -119,7 +118,7 @@ impl Head {
         }
     }
 
-    /// Writes the most likely actions, as the environment takes them, from `outputs`, row after row.
+    /// Writes the most likely actions, in the environment's range, from rows of `outputs`.
     pub(crate) fn most_likely(&self, outputs: &[f32], actions: &mut [f32]) {
         let rows = outputs.chunks_exact(self.outputs()).zip(actions.chunks_exact_mut(self.action_len()));
         for (outputs, actions) in rows {
@@ -152,39 +151,7 @@ impl Head {
         }
     }
 
-    /// Writes actions by chance, as the environment takes them; those of heads without chance are the most likely ones.
-    pub(crate) fn sample(
-        &self,
-        isa: Isa,
-        outputs: &[f32],
-        log_std: &[f32],
-        random: &mut Random,
-        likelihood: &mut Likelihood,
-        actions: &mut [f32],
-    ) {
-        match self {
-            Self::Categorical { .. } | Self::Binary(_) | Self::Gaussian(_) => {
-                likelihood.sample(isa, self, outputs, log_std, random);
-                self.environment_actions(&likelihood.actions, actions);
-            }
-            Self::SquashedGaussian(bounds) => {
-                let axes = bounds.low.len();
-                let rows = outputs.chunks_exact(2 * axes).zip(actions.chunks_exact_mut(axes));
-                for (outputs, actions) in rows {
-                    let (means, log_stds) = outputs.split_at(axes);
-                    for (axis, (action, (mean, log_std))) in
-                        actions.iter_mut().zip(means.iter().zip(log_stds)).enumerate()
-                    {
-                        let deviation = log_std.clamp(LOG_STD_BOUNDS[0], LOG_STD_BOUNDS[1]).exp();
-                        *action = bounds.stretch(axis, (mean + deviation * random.normal() as f32).tanh());
-                    }
-                }
-            }
-            Self::Squashed(_) | Self::Greedy { .. } => self.most_likely(outputs, actions),
-        }
-    }
-
-    /// From actions as distributions have them to those that the environment takes.
+    /// Converts actions from the range of the distribution to that of the environment.
     pub(crate) fn environment_actions(&self, actions: &[f32], taken: &mut [f32]) {
         taken.copy_from_slice(actions);
         match self {
@@ -209,7 +176,7 @@ impl Head {
         }
     }
 
-    /// The inverse of [`Self::environment_actions`], for demonstrations.
+    /// The inverse of [`Self::environment_actions`].
     pub(crate) fn distribution_actions(&self, taken: &[f32], actions: &mut [f32]) {
         actions.copy_from_slice(taken);
         match self {
@@ -229,12 +196,12 @@ impl Head {
     }
 }
 
-/// The number of a choice.
+/// Returns the value of the choice with an index.
 fn choice(place: usize, start: i32) -> f32 {
     (place as f64 + f64::from(start)) as f32
 }
 
-/// The place of the largest number, the first of equals.
+/// Returns the index of the largest number, the first of equals.
 pub(crate) fn largest(numbers: &[f32]) -> usize {
     numbers.iter().enumerate().fold(0, |best, (at, number)| if *number > numbers[best] { at } else { best })
 }

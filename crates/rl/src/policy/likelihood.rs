@@ -1,4 +1,4 @@
-//! Probabilities of actions and their gradients, for learners whose policies are distributions.
+//! Log-probabilities of actions and their gradients.
 
 use opendr_engine::Random;
 use opendr_kernels::{
@@ -9,23 +9,23 @@ use opendr_kernels::{
 use super::Head;
 use super::head::LOG_STD_BOUNDS;
 
-/// What a distribution says of the actions of a batch, with memory that is used again.
+/// Log-probabilities and entropies of the actions of a batch, with reused work memory.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Likelihood {
-    /// The actions that were sampled: choices from 0, numbers before they are clipped.
+    /// Sampled actions: choices counted from 0, continuous actions before clipping.
     pub actions: Vec<f32>,
-    /// The logarithm of the probability, or of its density, of each row's action.
+    /// Log-probability or log-density of each row's action.
     pub log_probabilities: Vec<f32>,
-    /// The entropy of each row, in nats.
+    /// Entropy of each row, in nats.
     pub entropies: Vec<f32>,
-    /// The gradient of what the network gave.
+    /// Gradient of the network's outputs.
     pub doutputs: Vec<f32>,
     logs: Vec<f32>,
     probabilities: Vec<f32>,
 }
 
 impl Likelihood {
-    /// Samples an action for every row of `outputs`, with its log-probability. Only heads that are categorical, binary or Gaussian.
+    /// Samples an action for each row of `outputs`, with its log-probability. The head is categorical, binary or Gaussian.
     pub fn sample(&mut self, isa: Isa, head: &Head, outputs: &[f32], log_std: &[f32], random: &mut Random) {
         let rows = outputs.len() / head.outputs();
         self.actions.resize(rows * head.action_len(), 0.0);
@@ -35,13 +35,13 @@ impl Likelihood {
                 let mut rest = &self.probabilities[..];
                 for (action, count) in self.actions.iter_mut().zip(counts.iter().cycle()) {
                     let (own, behind) = rest.split_at(*count as usize);
-                    *action = chosen(own, random.unit()) as f32;
+                    *action = choice_at(own, random.unit()) as f32;
                     rest = behind;
                 }
             }
             Head::Binary(_) => {
                 for (action, score) in self.actions.iter_mut().zip(outputs) {
-                    *action = f32::from(random.unit() < f64::from(share(*score)));
+                    *action = f32::from(random.unit() < f64::from(logistic(*score)));
                 }
             }
             _ => {
@@ -57,7 +57,7 @@ impl Likelihood {
         self.actions = actions;
     }
 
-    /// Computes log-probabilities and entropies of `actions`, row after row.
+    /// Computes log-probabilities and entropies of rows of `actions`.
     pub fn evaluate(&mut self, isa: Isa, head: &Head, outputs: &[f32], log_std: &[f32], actions: &[f32]) {
         if let Head::Categorical { counts, .. } = head {
             self.softmax(isa, outputs, counts);
@@ -105,7 +105,7 @@ impl Likelihood {
                     let (mut log, mut spread) = (0.0, 0.0);
                     for (score, action) in scores.iter().zip(actions) {
                         log += action * score - softplus(*score);
-                        spread += softplus(*score) - score * share(*score);
+                        spread += softplus(*score) - score * logistic(*score);
                     }
                     self.log_probabilities.push(log);
                     self.entropies.push(spread);
@@ -129,8 +129,8 @@ impl Likelihood {
         }
     }
 
-    /// The gradient of what the network gave into `doutputs`, and that of the deviations added to `dlog_std`, where the
-    /// loss has the gradients `dlogs` by the log-probabilities of the last evaluation and `dentropy` by every entropy.
+    /// Writes the gradient of the network's outputs into `doutputs` and adds that of the log standard deviations to `dlog_std`. The
+    /// loss has the gradients `dlogs` by the log-probabilities of the last evaluation and `dentropy` by each entropy.
     pub fn backward(
         &mut self,
         head: &Head,
@@ -162,7 +162,7 @@ impl Likelihood {
             Head::Binary(_) => {
                 let scores = outputs.iter().zip(actions).zip(&mut self.doutputs);
                 for (at, ((score, action), doutput)) in scores.enumerate() {
-                    let share = share(*score);
+                    let share = logistic(*score);
                     *doutput =
                         dlogs[at / width] * (action - share) - dentropy * score * share * (1.0 - share);
                 }
@@ -189,8 +189,8 @@ impl Likelihood {
     }
 }
 
-/// The choice into whose share of [0, 1) a number falls.
-fn chosen(probabilities: &[f32], number: f64) -> usize {
+/// Returns the choice whose interval of the cumulative distribution contains a number.
+fn choice_at(probabilities: &[f32], number: f64) -> usize {
     let mut sum = 0.0;
     for (place, probability) in probabilities.iter().enumerate() {
         sum += f64::from(*probability);
@@ -198,12 +198,12 @@ fn chosen(probabilities: &[f32], number: f64) -> usize {
             return place;
         }
     }
-    // Rounding left the sum below 1; what is never chosen otherwise is not chosen here.
+    // Rounding may leave the sum below 1; choices of probability 0 are still never sampled.
     probabilities.iter().rposition(|probability| *probability > 0.0).unwrap_or(0)
 }
 
-/// How often a digit of this score is 1.
-fn share(score: f32) -> f32 {
+/// Returns the probability of 1 for a logit.
+fn logistic(score: f32) -> f32 {
     1.0 / (1.0 + (-score).exp())
 }
 
@@ -212,14 +212,14 @@ fn softplus(x: f32) -> f32 {
     x.max(0.0) + (-x.abs()).exp().ln_1p()
 }
 
-/// Numbers of demonstrations beyond these have no inverse tanh.
+/// Largest magnitude of a demonstrated action with a finite inverse tanh.
 const INNERMOST: f32 = 1.0 - 1e-6;
 
 fn clamped(log_std: f32) -> f32 {
     log_std.clamp(LOG_STD_BOUNDS[0], LOG_STD_BOUNDS[1])
 }
 
-/// Log-density of squashed actions in [-1, 1], and the entropy before squashing.
+/// Returns the log-density of squashed actions in [-1, 1], and the entropy before squashing.
 fn squashed(means: &[f32], log_stds: &[f32], actions: &[f32]) -> (f32, f32) {
     let (mut log, mut spread) = (0.0, 0.0);
     for (axis, action) in actions.iter().enumerate() {
@@ -246,7 +246,7 @@ fn squashed_backward(outputs: &[f32], actions: &[f32], [dlog, dentropy]: [f32; 2
             &mut dmeans[own],
             &mut dlog_std,
         );
-        // Beyond its bounds a logarithm has no effect.
+        // A clamped value has no gradient.
         dlog_stds[axis] = if log_std == log_stds[axis] { dlog_std[0] } else { 0.0 };
     }
 }
@@ -260,7 +260,7 @@ mod tests {
         Bounds { low: vec![-1.0; axes], high: vec![1.0; axes] }
     }
 
-    /// Compares gradients with differences, for a loss of weights on log-probabilities and entropies.
+    /// Compares gradients with finite differences, for a weighted sum of log-probabilities and entropies.
     fn assert_gradients(head: &Head, outputs: &[f32], log_std: &[f32], actions: &[f32]) {
         let (mut dlogs, dentropy) = ([1.5, -0.5], 0.25);
         let loss = |outputs: &[f32], log_std: &[f32]| {
@@ -321,6 +321,6 @@ mod tests {
                 assert!((counts[axis][place] - score.exp() / sum).abs() < 0.015, "{counts:?}");
             }
         }
-        assert_eq!(chosen(&[0.0, 0.5, 0.499_999, 0.0], 0.999_999_9), 2);
+        assert_eq!(choice_at(&[0.0, 0.5, 0.499_999, 0.0], 0.999_999_9), 2);
     }
 }

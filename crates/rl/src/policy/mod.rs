@@ -8,6 +8,7 @@ mod likelihood;
 mod network_config;
 mod observation_encoder;
 mod observation_normaliser;
+mod sampling;
 mod space_record;
 mod trunk;
 
@@ -19,16 +20,16 @@ pub(crate) use extractor::{Extractor, ExtractorMemory};
 pub(crate) use head::LOG_STD_BOUNDS;
 pub use head::{Bounds, Head};
 pub(crate) use likelihood::Likelihood;
-pub use network_config::{Beginning, Hidden, NetworkConfig, PictureNetwork};
+pub use network_config::{ActivationFn, ImageNetwork, NetworkConfig, ParameterInit};
 pub use observation_encoder::ObservationEncoder;
 pub(crate) use observation_encoder::{Part, PartKind, check_finite};
 pub(crate) use observation_normaliser::EPSILON;
 pub use observation_normaliser::ObservationNormaliser;
 pub(crate) use trunk::{Sequences, Trunk, TrunkMemory};
 
-/// A policy: what it sees, networks, what it does, and its parameters, all that is needed to act.
+/// A policy: spaces, networks, action head and parameters.
 ///
-/// Parameters are one slice: the networks of pictures, what remembers and decides behind them, logarithms of deviations.
+/// Parameters are one slice: image networks, trunk, log standard deviations.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Policy {
     action: Space,
@@ -40,8 +41,8 @@ pub struct Policy {
     pub(crate) parameters: Vec<f32>,
 }
 
-/// Memory that a policy acts in: used again, so that only the first actions allocate. What a recurrent policy knows of the
-/// episodes that it acts in is here too, row by row.
+/// Work memory of a policy, reused so that only the first actions allocate. It also holds the recurrent state of each
+/// row.
 #[derive(Debug, Clone, Default)]
 pub struct PolicyMemory {
     encoded: Vec<f32>,
@@ -54,20 +55,20 @@ pub struct PolicyMemory {
     doutputs: Vec<f32>,
 }
 
-/// How an action is taken from a distribution.
+/// How an action is chosen from a distribution.
 #[derive(Debug)]
-pub enum Acting<'a> {
-    /// The most likely one.
+pub enum ActionMode<'a> {
+    /// The most likely action.
     Deterministic,
-    /// By chance.
+    /// A sampled action.
     Sampled(&'a mut Random),
 }
 
 impl Policy {
-    /// A policy with parameters of 0; `clip` bounds normalised observations, without it they are not normalised.
+    /// Creates a policy with all parameters 0. `clip` bounds normalised observations; without it they are not normalised.
     ///
     /// # Errors
-    /// `InvalidParam` for networks that are too large, `Unsupported` for observations without numbers.
+    /// `InvalidParam` for networks that are too large, `Unsupported` for observation spaces without numbers.
     pub fn new(
         spec: &EnvironmentSpec,
         head: Head,
@@ -75,15 +76,15 @@ impl Policy {
         clip: Option<f32>,
     ) -> Result<Self> {
         let encoder = ObservationEncoder::new(&spec.observation, clip)?;
-        let extractor = Extractor::new(&encoder, config.picture_network)?;
+        let extractor = Extractor::new(&encoder, config.image_network)?;
         let trunk = config.trunk(extractor.outputs(), head.outputs())?;
         let parameters = vec![0.0; extractor.parameters() + trunk.parameters() + head.parameters()];
         let (action, config) = (spec.action.clone(), config.clone());
         Ok(Self { action, config, encoder, extractor, trunk, head, parameters })
     }
 
-    /// Writes first parameters; logarithms of deviations begin with `log_std`.
-    pub fn initialise(&mut self, beginning: Beginning, log_std: f32, random: &mut Random) {
+    /// Initialises the parameters; log standard deviations start at `log_std`.
+    pub fn initialise(&mut self, beginning: ParameterInit, log_std: f32, random: &mut Random) {
         let (extractor, rest) = self.parameters.split_at_mut(self.extractor.parameters());
         let (trunk, deviations) = rest.split_at_mut(self.trunk.parameters());
         self.extractor.initialise(beginning, random, extractor);
@@ -91,46 +92,46 @@ impl Policy {
         deviations.fill(log_std);
     }
 
-    /// What it sees.
+    /// Returns the observation space.
     pub fn observation(&self) -> &Space {
         self.encoder.space()
     }
 
-    /// What it does.
+    /// Returns the action space.
     pub fn action(&self) -> &Space {
         &self.action
     }
 
-    /// How actions come from what its network gives.
+    /// Returns the head that converts network outputs into actions.
     pub fn head(&self) -> &Head {
         &self.head
     }
 
-    /// How observations become what networks take, with the normaliser.
+    /// Returns the encoder of observations, with the normaliser.
     pub fn encoder(&self) -> &ObservationEncoder {
         &self.encoder
     }
 
-    /// All parameters.
+    /// Returns all parameters.
     pub fn parameters(&self) -> &[f32] {
         &self.parameters
     }
 
-    /// All parameters, to be changed.
+    /// Returns all parameters for modification.
     pub fn parameters_mut(&mut self) -> &mut [f32] {
         &mut self.parameters
     }
 
-    /// Logarithms of the deviations of a Gaussian policy; else none.
+    /// Returns the log standard deviations of a Gaussian policy; empty for others.
     pub fn log_std(&self) -> &[f32] {
         &self.parameters[self.extractor.parameters() + self.trunk.parameters()..]
     }
 
-    /// Becomes another that sees, acts and is made alike.
+    /// Takes the parameters and the normaliser of a policy of the same spaces and networks.
     pub(crate) fn take_over(&mut self, other: &Self) -> Result<()> {
-        if !self.is_made_like(other) {
+        if !self.is_compatible(other) {
             return Err(Error::invalid_input(format!(
-                "a policy of {:?} for {} cannot go on here; set its networks in the settings",
+                "a policy with {:?} for observations {} does not fit; use the same networks and spaces in the settings",
                 other.config,
                 other.observation()
             )));
@@ -139,36 +140,36 @@ impl Policy {
         Ok(())
     }
 
-    /// Whether another sees, acts and is made alike, but for its parameters and what its normaliser saw.
-    pub(crate) fn is_made_like(&self, other: &Self) -> bool {
+    /// Returns whether another policy has the same spaces, head and networks; parameters and normaliser statistics may differ.
+    pub(crate) fn is_compatible(&self, other: &Self) -> bool {
         (self.observation(), &self.action, &self.head, &self.config)
             == (other.observation(), &other.action, &other.head, &other.config)
             && self.encoder.normaliser.is_some() == other.encoder.normaliser.is_some()
     }
 
-    /// Whether it remembers its episode. Its memory is then to be [`reset`](PolicyMemory::reset) where one begins.
+    /// Returns whether the policy is recurrent. Its memory must be [`reset`](PolicyMemory::reset) at the start of an episode.
     pub fn is_recurrent(&self) -> bool {
         self.trunk.gru().is_some()
     }
 
-    /// Acts: `observations` are those of the environment, one or more in a row, and so are `actions`. A recurrent policy
-    /// goes on with what `memory` holds of each row; another number of rows begins anew.
+    /// Computes actions. `observations` are one or more observations of the environment, concatenated, and so are `actions`. A recurrent
+    /// policy continues from the states in `memory`; a different number of rows resets them.
     ///
     /// # Errors
-    /// `InvalidInput` when lengths do not fit, and for observations that are not finite; `Internal` for actions that are not,
-    /// from parameters that are not.
+    /// `InvalidInput` for wrong lengths and for observations that are not finite; `Internal` if damaged parameters give actions that
+    /// are not finite.
     pub fn act(
         &self,
         compute: &Compute,
         observations: &[f32],
-        acting: Acting<'_>,
+        acting: ActionMode<'_>,
         memory: &mut PolicyMemory,
         actions: &mut [f32],
     ) -> Result<()> {
         let rows = observations.len() / self.encoder.raw_len();
         if actions.len() != rows * self.head.action_len() {
             return Err(Error::invalid_input(format!(
-                "room for {} numbers of actions; {rows} observations give {} each",
+                "the buffer for actions has {} numbers; {rows} observations need {} each",
                 actions.len(),
                 self.head.action_len()
             )));
@@ -182,8 +183,8 @@ impl Policy {
             let PolicyMemory { trunk, likelihood, .. } = memory;
             let outputs = trunk.output();
             match acting {
-                Acting::Deterministic => self.head.most_likely(outputs, actions),
-                Acting::Sampled(random) => {
+                ActionMode::Deterministic => self.head.most_likely(outputs, actions),
+                ActionMode::Sampled(random) => {
                     let isa = compute.isa();
                     self.head.sample(isa, outputs, self.log_std(), random, likelihood, actions);
                 }
@@ -194,20 +195,20 @@ impl Policy {
         match actions.iter().find(|action| !action.is_finite()) {
             None => Ok(()),
             Some(action) => Err(Error::internal(format!(
-                "the policy gives the action {action}: its parameters are damaged; load or train it again"
+                "the policy returned the action {action}, its parameters are damaged; load or train it again"
             ))),
         }
     }
 
-    /// One step of every row of `memory`.
+    /// Advances every row of `memory` by one step.
     fn advance(&self, compute: &Compute, encoded: &[f32], memory: &mut PolicyMemory) {
         let PolicyMemory { extractor, trunk, states, .. } = memory;
-        let (of_pictures, rest) = self.parameters.split_at(self.extractor.parameters());
-        let features = self.extractor.forward(compute, of_pictures, encoded, extractor);
+        let (extractor_parameters, rest) = self.parameters.split_at(self.extractor.parameters());
+        let features = self.extractor.forward(compute, extractor_parameters, encoded, extractor);
         self.trunk.step(compute, &rest[..self.trunk.parameters()], features, states, trunk);
     }
 
-    /// What the network gives for what was encoded; only policies without memory.
+    /// Returns the network's outputs for encoded observations; not for recurrent policies.
     pub(crate) fn forward<'m>(
         &self,
         compute: &Compute,
@@ -215,13 +216,13 @@ impl Policy {
         memory: &'m mut PolicyMemory,
     ) -> &'m [f32] {
         let PolicyMemory { extractor, trunk, .. } = memory;
-        let (of_pictures, rest) = self.parameters.split_at(self.extractor.parameters());
-        let features = self.extractor.forward(compute, of_pictures, encoded, extractor);
+        let (extractor_parameters, rest) = self.parameters.split_at(self.extractor.parameters());
+        let features = self.extractor.forward(compute, extractor_parameters, encoded, extractor);
         let own = &rest[..self.trunk.parameters()];
         self.trunk.forward(compute, own, features, Sequences::default(), trunk)
     }
 
-    /// Adds to `gradients` from the gradient of what the last [`Self::forward`] gave.
+    /// Adds to `gradients`, from the gradient of the outputs of the last [`Self::forward`].
     pub(crate) fn backward(
         &self,
         compute: &Compute,
@@ -229,21 +230,27 @@ impl Policy {
         memory: &mut PolicyMemory,
         gradients: &mut [f32],
     ) {
-        let (of_pictures, rest) = self.parameters.split_at(self.extractor.parameters());
-        let (dpictures, drest) = gradients.split_at_mut(self.extractor.parameters());
+        let (extractor_parameters, rest) = self.parameters.split_at(self.extractor.parameters());
+        let (extractor_gradients, drest) = gradients.split_at_mut(self.extractor.parameters());
         let count = self.trunk.parameters();
         let wants_input = !self.extractor.is_identity();
         let (parameters, own) = (&rest[..count], &mut drest[..count]);
         let dfeatures =
             self.trunk.backward(compute, parameters, doutputs, &[], &mut memory.trunk, own, wants_input);
         if wants_input {
-            self.extractor.backward(compute, of_pictures, dfeatures, &mut memory.extractor, dpictures);
+            self.extractor.backward(
+                compute,
+                extractor_parameters,
+                dfeatures,
+                &mut memory.extractor,
+                extractor_gradients,
+            );
         }
     }
 }
 
 impl PolicyMemory {
-    /// Forgets what a recurrent policy knows of a row, because another episode begins there.
+    /// Resets the recurrent state of a row, at the start of an episode.
     pub fn reset(&mut self, row: usize) {
         let size = self.states.len().checked_div(self.rows).unwrap_or(0);
         if let Some(state) = self.states.get_mut(row * size..(row + 1) * size) {
@@ -251,12 +258,12 @@ impl PolicyMemory {
         }
     }
 
-    /// What a recurrent policy knows, row after row; empty for others.
+    /// Returns the recurrent states of all rows, concatenated; empty for other policies.
     pub fn states(&self) -> &[f32] {
         &self.states
     }
 
-    /// Room for the states of so many rows; others than before know nothing.
+    /// Allocates the states of `rows` rows; resets them if the number changes.
     fn provide(&mut self, rows: usize, size: usize) {
         if self.rows != rows || self.states.len() != rows * size {
             self.rows = rows;

@@ -1,4 +1,4 @@
-//! From observations to what networks take.
+//! Encoding of observations as inputs of networks.
 
 use std::ops::Range;
 
@@ -7,21 +7,21 @@ use opendr_engine::{Error, Result};
 
 use super::ObservationNormaliser;
 
-/// Sides from which on the two last axes of a box are those of a picture.
-const SMALLEST_PICTURE: usize = 16;
+/// Minimum height and width of a box that is treated as an image.
+const MIN_IMAGE_SIDE: usize = 16;
 
-/// What a part of an observation is to a network.
+/// How a part of an observation is encoded.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum PartKind {
-    /// Numbers, normalised where the policy normalises.
+    /// Numbers, normalised if the policy normalises.
     Numbers,
-    /// Choices, each of which becomes one 1 among zeros: how many, and the number of the first.
+    /// Discrete values, encoded one-hot: the number of choices of each, and the first choice.
     Choices(Vec<u32>, i32),
-    /// A picture `[channels, height, width]`, of which `low` is taken off before it is scaled: to [0, 1] where its bounds are known.
-    Picture { shape: [usize; 3], low: f32, scale: f32 },
+    /// Image `[channels, height, width]`, encoded as `(x - low) * scale`: in [0, 1] if its bounds are finite.
+    Image { shape: [usize; 3], low: f32, scale: f32 },
 }
 
-/// A part of an observation: where its numbers lie, and where those that the network takes.
+/// A part of an observation: its range in the observation and in the encoded observation.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Part {
     pub kind: PartKind,
@@ -29,18 +29,18 @@ pub(crate) struct Part {
     pub encoded: Range<usize>,
 }
 
-/// Turns observations of a space into what networks take: choices into zeros and ones, pictures into [0, 1], numbers,
-/// where a normaliser is there, to mean 0 and variance 1.
+/// Encodes observations of a space for a network: discrete values one-hot, images in [0, 1], and numbers, if there is a
+/// normaliser, with mean 0 and variance 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObservationEncoder {
     space: Space,
     parts: Vec<Part>,
-    /// What numbers were seen to be; none where they go in as they are.
+    /// Running statistics of the numbers; none if they are not normalised.
     pub normaliser: Option<ObservationNormaliser>,
 }
 
 impl ObservationEncoder {
-    /// An encoder of observations of `space`; `clip` bounds normalised numbers, without it they are not normalised.
+    /// Creates an encoder for observations of `space`. `clip` bounds normalised numbers; without it they are not normalised.
     ///
     /// # Errors
     /// `Unsupported` for a space without numbers.
@@ -48,7 +48,7 @@ impl ObservationEncoder {
         let mut encoder = Self { space: space.clone(), parts: Vec::new(), normaliser: None };
         encoder.add(space);
         if encoder.encoded_len() == 0 {
-            return Err(Error::unsupported(format!("a policy that sees nothing: observations are {space}")));
+            return Err(Error::unsupported(format!("the observation space {space} has no numbers")));
         }
         encoder.normaliser = clip.map(|clip| ObservationNormaliser::new(encoder.numbers(), clip));
         Ok(encoder)
@@ -61,14 +61,14 @@ impl ObservationEncoder {
             Space::Tuple(parts) => return parts.iter().for_each(|part| self.add(part)),
             Space::Discrete { n, start } => PartKind::Choices(vec![*n], *start),
             Space::MultiDiscrete(counts) => PartKind::Choices(counts.clone(), 0),
-            Space::Box { low, high, shape, .. } => picture(low, high, shape).unwrap_or(PartKind::Numbers),
+            Space::Box { low, high, shape, .. } => image_part(low, high, shape).unwrap_or(PartKind::Numbers),
             _ => PartKind::Numbers,
         };
         let (raw, encoded) = (raw..raw + space.len(), encoded..encoded + space.flat_len());
         self.parts.push(Part { kind, raw, encoded });
     }
 
-    /// The space of observations.
+    /// Returns the observation space.
     pub fn space(&self) -> &Space {
         &self.space
     }
@@ -77,23 +77,23 @@ impl ObservationEncoder {
         &self.parts
     }
 
-    /// How many numbers an observation has.
+    /// Returns the number of numbers of an observation.
     pub fn raw_len(&self) -> usize {
         self.parts.last().map_or(0, |part| part.raw.end)
     }
 
-    /// How many numbers a network takes.
+    /// Returns the number of numbers of an encoded observation.
     pub fn encoded_len(&self) -> usize {
         self.parts.last().map_or(0, |part| part.encoded.end)
     }
 
-    /// How many numbers can be normalised.
+    /// Returns the number of numbers that can be normalised.
     fn numbers(&self) -> usize {
         let numbers = self.parts.iter().filter(|part| part.kind == PartKind::Numbers);
         numbers.map(|part| part.raw.len()).sum()
     }
 
-    /// Takes observations, row after row, into the normaliser.
+    /// Adds rows of observations to the statistics of the normaliser.
     pub(crate) fn learn(&mut self, observations: &[f32]) {
         let Some(normaliser) = &mut self.normaliser else { return };
         for row in observations.chunks_exact(self.parts.last().map_or(1, |part| part.raw.end)) {
@@ -103,16 +103,16 @@ impl ObservationEncoder {
         }
     }
 
-    /// Writes what the network takes of observations, row after row.
+    /// Encodes rows of observations.
     ///
     /// # Errors
-    /// `InvalidInput` when the lengths do not fit, for a number that is not finite, and for a choice that is none.
+    /// `InvalidInput` for wrong lengths, for a number that is not finite, and for a discrete value out of range.
     pub fn encode(&self, observations: &[f32], encoded: &mut [f32]) -> Result<()> {
         let (raw_len, encoded_len) = (self.raw_len(), self.encoded_len());
         let rows = observations.len() / raw_len;
         if observations.len() != rows * raw_len || encoded.len() != rows * encoded_len {
             return Err(Error::invalid_input(format!(
-                "{} numbers of observations are no rows of {raw_len}; give whole observations of {}",
+                "{} observation numbers are not a multiple of {raw_len}; give whole observations of {}",
                 observations.len(),
                 self.space
             )));
@@ -137,7 +137,7 @@ impl ObservationEncoder {
                     number += raw.len();
                 }
                 PartKind::Choices(counts, start) => encode_choices(raw, counts, *start, to)?,
-                PartKind::Picture { low, scale, .. } => {
+                PartKind::Image { low, scale, .. } => {
                     for (to, pixel) in to.iter_mut().zip(raw) {
                         *to = (pixel - low) * scale;
                     }
@@ -148,14 +148,14 @@ impl ObservationEncoder {
     }
 }
 
-/// What a box is as a picture: `[height, width]`, the same with one channel behind, or anything before.
-fn picture(low: &[f32], high: &[f32], shape: &[usize]) -> Option<PartKind> {
+/// Returns a box as an image, if its shape is `[height, width]`, `[height, width, 1]` or `[..., height, width]`.
+fn image_part(low: &[f32], high: &[f32], shape: &[usize]) -> Option<PartKind> {
     let (sides, before) = match shape {
-        [height, width, 1] if *height >= SMALLEST_PICTURE => ([*height, *width], &[][..]),
+        [height, width, 1] if *height >= MIN_IMAGE_SIDE => ([*height, *width], &[][..]),
         [before @ .., height, width] => ([*height, *width], before),
         _ => return None,
     };
-    if sides.iter().any(|side| *side < SMALLEST_PICTURE) {
+    if sides.iter().any(|side| *side < MIN_IMAGE_SIDE) {
         return None;
     }
     let shape = [before.iter().product(), sides[0], sides[1]];
@@ -163,8 +163,8 @@ fn picture(low: &[f32], high: &[f32], shape: &[usize]) -> Option<PartKind> {
     let even = low.iter().all(|low| *low == first_low) && high.iter().all(|high| *high == first_high);
     let range = first_high - first_low;
     match even && range.is_finite() && range > 0.0 {
-        true => Some(PartKind::Picture { shape, low: first_low, scale: range.recip() }),
-        false => Some(PartKind::Picture { shape, low: 0.0, scale: 1.0 }),
+        true => Some(PartKind::Image { shape, low: first_low, scale: range.recip() }),
+        false => Some(PartKind::Image { shape, low: 0.0, scale: 1.0 }),
     }
 }
 
@@ -177,7 +177,7 @@ fn encode_choices(choices: &[f32], counts: &[u32], start: i32, mut to: &mut [f32
             Some(chosen) if place >= 0.0 && place.fract() == 0.0 => *chosen = 1.0,
             _ => {
                 return Err(Error::invalid_input(format!(
-                    "an observation has {choice} where one of {count} choices from {start} belongs"
+                    "the observation has the discrete value {choice}; it must be one of {count} from {start}"
                 )));
             }
         }
@@ -186,9 +186,9 @@ fn encode_choices(choices: &[f32], counts: &[u32], start: i32, mut to: &mut [f32
     Ok(())
 }
 
-/// Whether all numbers of rows of `size` are finite, with a word on the first that is not.
+/// Fails if a number in rows of `size` is not finite; the error names the first one.
 pub(crate) fn check_finite(observations: &[f32], size: usize) -> Result<()> {
-    // One pass that the compiler vectorises; the place is looked for only where something is wrong.
+    // One pass that the compiler vectorises; the index is searched only after a failure.
     if observations.iter().fold(true, |finite, number| finite & number.is_finite()) {
         return Ok(());
     }
@@ -244,7 +244,7 @@ mod tests {
         let shape = |shape: &[usize]| {
             let encoder = ObservationEncoder::new(&Space::uniform(0.0, 1.0, shape).unwrap(), None).unwrap();
             match &encoder.parts[0].kind {
-                PartKind::Picture { shape, .. } => Some(*shape),
+                PartKind::Image { shape, .. } => Some(*shape),
                 _ => None,
             }
         };

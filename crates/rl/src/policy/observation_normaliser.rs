@@ -1,18 +1,18 @@
-//! Observations of mean 0 and variance 1, with what was seen kept in the policy.
+//! Normalisation of observations to mean 0 and variance 1; the statistics are part of the policy.
 
 use opendr_simulation::wrappers::RunningMoments;
 
-/// Normalises numbers by the mean and variance of all that training saw (the observations of Stable-Baselines3's
-/// `VecNormalize`).
+/// Normalises numbers by the running mean and variance of the training, as Stable-Baselines3's `VecNormalize` does for
+/// observations.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObservationNormaliser {
-    /// What was seen.
+    /// Running statistics.
     pub moments: RunningMoments,
-    /// Normalised numbers lie within plus and minus this.
+    /// Normalised numbers are clipped to plus and minus this value.
     pub clip: f32,
 }
 
-/// What keeps a division from zero.
+/// Added to the variance, against a division by zero.
 pub(crate) const EPSILON: f64 = 1e-8;
 
 impl ObservationNormaliser {
@@ -20,7 +20,7 @@ impl ObservationNormaliser {
         Self { moments: RunningMoments::new(size), clip }
     }
 
-    /// Normalises, in place, the numbers from `first` on.
+    /// Normalises numbers in place; `first` is the index of the first among the statistics.
     pub(crate) fn normalise(&self, first: usize, numbers: &mut [f32]) {
         let (mean, variance) = (&self.moments.mean()[first..], &self.moments.variance()[first..]);
         let clip = f64::from(self.clip);

@@ -6,7 +6,7 @@ use opendr_engine::environment::{Dtype, Space};
 use opendr_engine::{Error, Result};
 use serde::{Deserialize, Serialize};
 
-/// A space as it is written. Bounds are texts, so that infinite ones have a form; where all are the same there is one.
+/// JSON form of a space. Bounds are strings, so that infinite ones can be stored; equal ones are stored once.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum SpaceRecord {
@@ -18,7 +18,7 @@ pub(super) enum SpaceRecord {
     Tuple(Vec<SpaceRecord>),
 }
 
-/// Numbers, or choices, of an element.
+/// Maximum numbers, or choices, of an element.
 const MOST_NUMBERS: usize = 1 << 24;
 
 impl SpaceRecord {
@@ -38,23 +38,23 @@ impl SpaceRecord {
                 Self::Dict(parts.collect::<Result<_>>()?)
             }
             Space::Tuple(parts) => Self::Tuple(parts.iter().map(Self::of).collect::<Result<_>>()?),
-            other => return Err(Error::unsupported(format!("{other} has no written form"))),
+            other => return Err(Error::unsupported(format!("the space {other} cannot be stored"))),
         })
     }
 
-    /// The space, where it is no larger than anyone needs.
+    /// Returns the space, if it is not too large.
     pub fn space(&self) -> Result<Space> {
         let mut left = MOST_NUMBERS;
         self.within(&mut left)
     }
 
-    /// Takes what it needs off `left`.
+    /// Returns the space and subtracts its size from `left`.
     fn within(&self, left: &mut usize) -> Result<Space> {
         Ok(match self {
             Self::Box { low, high, shape, dtype } => {
                 let count = take(shape.iter().copied(), left)?;
                 let dtype = Dtype::from_name(dtype)
-                    .ok_or_else(|| Error::format(format!("{dtype:.40?} is no type of numbers")))?;
+                    .ok_or_else(|| Error::format(format!("{dtype:.40?} is not a number type")))?;
                 Space::bounded(numbers(low, count)?, numbers(high, count)?, shape.clone())?
                     .with_dtype(dtype)?
             }
@@ -90,7 +90,7 @@ fn texts(bounds: &[f32]) -> Vec<String> {
 
 fn numbers(texts: &[String], count: usize) -> Result<Vec<f32>> {
     let number = |text: &String| {
-        text.parse::<f32>().map_err(|_| Error::format(format!("{text:.40?} is no bound of a space")))
+        text.parse::<f32>().map_err(|_| Error::format(format!("{text:.40?} is not a bound of a space")))
     };
     match texts {
         [only] => Ok(vec![number(only)?; count]),
@@ -98,12 +98,14 @@ fn numbers(texts: &[String], count: usize) -> Result<Vec<f32>> {
     }
 }
 
-/// The product of sizes, which is taken off `left`.
+/// Returns the product of sizes and subtracts it from `left`.
 fn take(sizes: impl IntoIterator<Item = usize>, left: &mut usize) -> Result<usize> {
     let product = sizes.into_iter().try_fold(1usize, |product, size| product.checked_mul(size));
     let rest = product.and_then(|product| left.checked_sub(product));
     let (Some(product), Some(rest)) = (product, rest) else {
-        return Err(Error::format(format!("a space of over {MOST_NUMBERS} numbers; the file is damaged")));
+        return Err(Error::format(format!(
+            "a space has more than {MOST_NUMBERS} numbers; the file is damaged"
+        )));
     };
     *left = rest;
     Ok(product)

@@ -1,30 +1,30 @@
-//! What stands behind the features of a policy or of its values: memory, where there is some, and hidden layers.
+//! The network on the features of a policy or critic: an optional recurrent unit, and hidden layers.
 
 use opendr_engine::Random;
 use opendr_kernels::{Compute, Gru, GruTape, Initialisation, Network, Tape};
 
-/// Hidden layers and an output, behind a gated recurrent unit where there is one. Its parameters lie before theirs.
+/// Hidden layers and an output layer, after a gated recurrent unit if there is one. The parameters of the unit come first.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Trunk {
     gru: Option<Gru>,
     network: Network,
 }
 
-/// Rows that follow each other, `[steps, sequences]`; of no meaning to what remembers nothing.
+/// Sequences of rows, `[steps, sequences]`; ignored without a recurrent unit.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Sequences<'a> {
-    /// What is remembered before the first step, `[sequences, size]`.
+    /// Recurrent states before the first step, `[sequences, size]`.
     pub states: &'a [f32],
-    /// Where an episode starts, `[steps, sequences]`: nothing is remembered there.
+    /// Whether a step starts an episode, `[steps, sequences]`; the state is reset there.
     pub starts: &'a [bool],
 }
 
-/// Memory of a pass forward and back, used again.
+/// Work memory of a forward and backward pass.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct TrunkMemory {
     tape: Tape,
     gru: GruTape,
-    /// No row starts an episode.
+    /// All false: no row starts an episode.
     no_starts: Vec<bool>,
     dfeatures: Vec<f32>,
 }
@@ -42,7 +42,7 @@ impl Trunk {
         &self.network
     }
 
-    /// Numbers that are remembered of a row.
+    /// Returns the number of numbers of a recurrent state.
     pub fn state_len(&self) -> usize {
         self.gru.map_or(0, |gru| gru.size())
     }
@@ -51,12 +51,12 @@ impl Trunk {
         self.recurrent_parameters() + self.network.parameters()
     }
 
-    /// Those of the recurrent unit, which come first.
+    /// Returns the number of parameters of the recurrent unit, which come first.
     pub fn recurrent_parameters(&self) -> usize {
         self.gru.map_or(0, |gru| gru.parameters())
     }
 
-    /// Writes first parameters; those of a recurrent unit are PyTorch's, as in Stable-Baselines3.
+    /// Initialises the parameters; those of a recurrent unit by PyTorch's default, as in Stable-Baselines3.
     pub fn initialise(&self, how: Initialisation, random: &mut Random, parameters: &mut [f32]) {
         let (of_gru, of_network) = parameters.split_at_mut(self.recurrent_parameters());
         let bound = 1.0 / (self.state_len().max(1) as f32).sqrt();
@@ -64,7 +64,7 @@ impl Trunk {
         self.network.initialise(how, random, of_network);
     }
 
-    /// What the last layer gives for the features of every step.
+    /// Computes the outputs for the features of all steps.
     pub fn forward<'m>(
         &self,
         compute: &Compute,
@@ -82,7 +82,7 @@ impl Trunk {
         self.network.forward(compute, of_network, features, tape)
     }
 
-    /// One step of every row, from `states` and into them.
+    /// Computes one step of every row and updates `states`.
     pub fn step<'m>(
         &self,
         compute: &Compute,
@@ -102,9 +102,9 @@ impl Trunk {
         self.network.forward(compute, of_network, after, tape)
     }
 
-    /// Adds to `gradients` from the gradient of what the last [`Self::forward`] gave, and gives that of the features
-    /// where `wants_input`, else nothing.
-    #[expect(clippy::too_many_arguments, reason = "what goes in and out of a backward pass")]
+    /// Adds to `gradients`, from the gradient of the outputs of the last [`Self::forward`]. Returns that of the features if
+    /// `wants_input`, else an empty slice.
+    #[expect(clippy::too_many_arguments, reason = "inputs and outputs of a backward pass")]
     pub fn backward<'m>(
         &self,
         compute: &Compute,
@@ -131,7 +131,7 @@ impl Trunk {
 }
 
 impl TrunkMemory {
-    /// What the last pass forward gave.
+    /// Returns the outputs of the last forward pass.
     pub fn output(&self) -> &[f32] {
         self.tape.output()
     }
@@ -194,7 +194,7 @@ mod tests {
         }
     }
 
-    /// Steps that are taken one by one, forgetting where episodes start, give what a sequence gives.
+    /// Steps taken one by one, with resets at episode starts, give the outputs of the sequence.
     #[test]
     fn a_sequence_is_its_steps() {
         let (trunk, parameters, features, mut states) = trunk();

@@ -1,37 +1,40 @@
-//! How much better an action was than expected.
+//! Generalised advantage estimation.
 
-/// Steps of several environments, step after step and environment after environment.
+/// Steps of several environments, ordered by step, then by environment.
 #[derive(Debug, Clone, Copy)]
 pub struct Trajectory<'a> {
-    /// What was earned; with the discounted value of the last observation where an episode was truncated.
+    /// Rewards, including the discounted value of the last observation where an episode was truncated.
     pub rewards: &'a [f32],
-    /// What each observation was thought to be worth.
+    /// Predicted value of each observation.
     pub values: &'a [f32],
     /// Whether the step ended its episode.
     pub ends: &'a [bool],
-    /// What the observations behind the last step are thought to be worth, one for each environment.
+    /// Predicted values of the observations after the last step, one per environment.
     pub last_values: &'a [f32],
 }
 
-/// Writes advantages by generalised estimation (Schulman et al., 2016, Eq. 16): sums of temporal differences, discounted by
-/// `gamma` times `lambda`, up to the end of the episode.
+/// Computes generalised advantage estimates (Schulman et al., 2016, Eq. 16): temporal differences discounted by
+/// `gamma` times `lambda`, summed up to the end of the episode.
 ///
 /// # Panics
-/// Where the lengths do not fit.
+/// If the lengths do not match.
 pub fn generalised_advantages(trajectory: Trajectory<'_>, gamma: f32, lambda: f32, advantages: &mut [f32]) {
     let Trajectory { rewards, values, ends, last_values } = trajectory;
     let (total, environments) = (rewards.len(), last_values.len());
-    assert_eq!([values.len(), ends.len(), advantages.len()], [total; 3], "steps differ in number");
-    assert!(environments > 0 && total.is_multiple_of(environments), "steps of all environments");
+    assert_eq!([values.len(), ends.len(), advantages.len()], [total; 3], "slices of different lengths");
+    assert!(
+        environments > 0 && total.is_multiple_of(environments),
+        "not a whole number of steps of all environments"
+    );
     for at in (0..total).rev() {
         let next = at + environments;
         let (next_value, next_advantage) = match next < total {
             true => (values[next], advantages[next]),
             false => (last_values[next - total], 0.0),
         };
-        let goes_on = if ends[at] { 0.0 } else { gamma };
-        let difference = rewards[at] + goes_on * next_value - values[at];
-        advantages[at] = difference + goes_on * lambda * next_advantage;
+        let discount = if ends[at] { 0.0 } else { gamma };
+        let difference = rewards[at] + discount * next_value - values[at];
+        advantages[at] = difference + discount * lambda * next_advantage;
     }
 }
 
@@ -39,7 +42,7 @@ pub fn generalised_advantages(trajectory: Trajectory<'_>, gamma: f32, lambda: f3
 mod tests {
     use super::*;
 
-    /// The sum of the definition, written out: differences up to the end of the episode or of the steps.
+    /// Compares with the sum of the definition, up to the end of the episode or of the steps.
     #[test]
     fn equals_the_sum_of_differences() {
         let (gamma, lambda) = (0.9, 0.8);

@@ -1,4 +1,4 @@
-//! What a user may set of PPO.
+//! Settings of PPO.
 
 use opendr_engine::params::Params;
 use opendr_engine::{Error, Result};
@@ -7,88 +7,88 @@ use crate::policy::NetworkConfig;
 use crate::preset::Preset;
 use crate::schedule::Schedule;
 
-/// Settings of [`Ppo`](super::Ppo). Names and defaults are those of Stable-Baselines3; what is said by objects there, such as
-/// schedules and normalising wrappers, has a word of its own here.
+/// Settings of [`Ppo`](super::Ppo). Names and defaults are those of Stable-Baselines3. Schedules and the wrapper `VecNormalize`,
+/// which are objects there, are parameters here.
 #[derive(Debug, Clone, PartialEq, Params)]
 pub struct PpoConfig {
     /// Learning rate of Adam.
     #[param(default = 3e-4, range = 0.0..=1.0, log)]
     pub learning_rate: f32,
-    /// How it changes in the course of a training.
+    /// Schedule of the learning rate.
     pub learning_rate_schedule: Schedule,
     /// Steps of each environment between two updates.
     #[param(default = 2048, range = 1..=1_000_000, log)]
     pub n_steps: usize,
-    /// Steps in a minibatch.
+    /// Steps per minibatch.
     #[param(default = 64, range = 1..=1_000_000, log)]
     pub batch_size: usize,
-    /// How often an update goes over all steps.
+    /// Passes over the collected steps per update.
     #[param(default = 10, range = 1..=1000)]
     pub n_epochs: usize,
-    /// Discount of rewards.
+    /// Discount factor.
     #[param(default = 0.99, range = 0.0..=1.0)]
     pub gamma: f32,
-    /// From one-step (0) to whole-episode (1) estimates of advantages.
+    /// Lambda of generalised advantage estimation: 0 for one-step, 1 for Monte Carlo estimates.
     #[param(default = 0.95, range = 0.0..=1.0)]
     pub gae_lambda: f32,
-    /// How far probabilities of actions may move in an update.
+    /// Clipping range of the probability ratio.
     #[param(default = 0.2, range = 0.0..=10.0)]
     pub clip_range: f32,
-    /// How that changes in the course of a training.
+    /// Schedule of the clipping range.
     pub clip_range_schedule: Schedule,
-    /// How far values may move in an update; none is anywhere. It depends on the scale of rewards.
+    /// Clipping range of the values; none means no clipping. It depends on the scale of the rewards.
     #[param(range = 0.0..=1e9)]
     pub clip_range_vf: Option<f32>,
-    /// Whether the advantages of a minibatch are brought to mean 0 and deviation 1.
+    /// Whether the advantages of a minibatch are normalised to mean 0 and standard deviation 1.
     #[param(default = true)]
     pub normalize_advantage: bool,
-    /// Weight of the entropy.
+    /// Weight of the entropy in the loss.
     #[param(default = 0.0, range = 0.0..=10.0)]
     pub ent_coef: f32,
-    /// Weight of the loss of values.
+    /// Weight of the value loss.
     #[param(default = 0.5, range = 0.0..=100.0)]
     pub vf_coef: f32,
-    /// Gradients longer than this are cut.
+    /// Maximum norm of the gradients.
     #[param(default = 0.5, range = 0.0..=1e9)]
     pub max_grad_norm: f32,
-    /// An update ends when the policy moved by one and a half times this divergence; none is never.
+    /// KL divergence at 1.5 times which an update is stopped; none means no limit.
     #[param(range = 0.0..=1e9)]
     pub target_kl: Option<f32>,
-    /// The networks of the policy.
+    /// Networks of the policy.
     #[param(flatten)]
     pub network: NetworkConfig,
-    /// Steps of an environment that a recurrent policy learns from in one go, all in one minibatch; none is as many as fit into a
-    /// minibatch. Others learn from single steps.
+    /// Steps per training sequence of a recurrent policy; a sequence lies in one minibatch. None means as many as fit into a
+    /// minibatch. Other policies train on single steps.
     #[param(range = 1..=1_000_000)]
     pub sequence_length: Option<usize>,
-    /// Neurons of the hidden layers of the values, where they are not those of the policy.
+    /// Units of the hidden layers of the value network; none means those of the policy.
     #[param(range = 1..=4096)]
     pub net_arch_vf: Option<Vec<usize>>,
-    /// Whether weights begin orthogonal, else as PyTorch's default.
+    /// Whether weights are initialised orthogonally, else by PyTorch's default.
     #[param(default = true)]
     pub ortho_init: bool,
-    /// Logarithm of the first deviation of continuous actions.
+    /// Initial log standard deviation of continuous actions.
     #[param(default = 0.0, range = -20.0..=20.0)]
     pub log_std_init: f32,
-    /// Whether observations are normalised by what training saw.
+    /// Whether observations are normalised by the running mean and variance of the training.
     #[param(default = false)]
     pub norm_obs: bool,
-    /// Whether rewards are divided by the deviation of the discounted return.
+    /// Whether rewards are divided by the standard deviation of the discounted return.
     #[param(default = false)]
     pub norm_reward: bool,
-    /// Normalised observations lie within plus and minus this.
+    /// Normalised observations are clipped to plus and minus this value.
     #[param(default = 10.0, range = 0.0..=1e9)]
     pub clip_obs: f32,
-    /// Normalised rewards lie within plus and minus this.
+    /// Normalised rewards are clipped to plus and minus this value.
     #[param(default = 10.0, range = 0.0..=1e9)]
     pub clip_reward: f32,
-    /// What fixes everything random.
+    /// Seed of all random numbers.
     #[param(default = 0)]
     pub seed: u64,
 }
 
 impl PpoConfig {
-    /// Steps of an environment that are learnt from in one go: a divisor of `n_steps`, 1 where nothing is remembered.
+    /// Returns the steps per training sequence: a divisor of `n_steps`, 1 without a recurrent unit.
     pub(super) fn steps_of_sequence(&self) -> Result<usize> {
         let longest = match (self.network.gru_size, self.sequence_length) {
             (None, _) => 1,
@@ -105,9 +105,8 @@ impl PpoConfig {
         Ok((1..=longest).rev().find(divides).unwrap_or(1))
     }
 
-    /// The settings of rl-zoo for an environment, where it has some that need nothing but PPO (a pendulum
-    /// has twice as many steps); and our own for
-    /// `UavDepthCorridor-v1`, made for what a [`Remembered`](opendr_simulation::uav_corridor::Remembered) corridor shows.
+    /// Returns the settings of rl-zoo for an environment, if PPO alone can use them (twice as many steps for `Pendulum-v1`), or those
+    /// tuned here for `UavDepthCorridor-v1` wrapped in [`FlightMemoryWrapper`](opendr_simulation::uav_corridor::FlightMemoryWrapper).
     pub fn preset(id: &str) -> Option<Preset<Self>> {
         let base = Self::default();
         let (environments, timesteps, config) = match id {

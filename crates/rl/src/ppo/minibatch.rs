@@ -1,11 +1,11 @@
-//! The loss of some steps, and its gradients.
+//! Losses of a minibatch and their gradients.
 
 use opendr_kernels::Compute;
 
 use super::rollout::Rollout;
 use crate::policy::{Head, Likelihood, Policy, Sequences, Trunk, TrunkMemory};
 
-/// Steps that are learnt from at once.
+/// The steps of a minibatch.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Minibatch {
     pub observations: Vec<f32>,
@@ -14,16 +14,16 @@ pub(super) struct Minibatch {
     advantages: Vec<f32>,
     values: Vec<f32>,
     returns: Vec<f32>,
-    /// What policy and values remember where the sequences begin.
+    /// Recurrent states of policy and critic at the start of the sequences.
     states: [Vec<f32>; 2],
-    /// Where episodes start, of policies with memory.
+    /// Steps that start an episode, for recurrent policies.
     starts: Vec<bool>,
     rows: Vec<usize>,
 }
 
 impl Minibatch {
-    /// Copies the sequences numbered `places`, their first steps first, with the advantages at mean 0 and deviation 1 where
-    /// `normalise`.
+    /// Copies the sequences with the indices `places`, ordered by step; normalises the advantages to mean 0 and standard deviation 1
+    /// if `normalise`.
     pub fn gather(&mut self, rollout: &Rollout, places: &[usize], normalise: bool) {
         let total = rollout.values.len();
         self.rows.clear();
@@ -47,14 +47,14 @@ impl Minibatch {
         }
     }
 
-    /// States where the sequences begin, and where episodes start in them.
+    /// Copies the states at the start of the sequences, and marks the episode starts in them.
     fn gather_memory(&mut self, rollout: &Rollout, places: &[usize], total: usize) {
         let sequences = total / rollout.length;
         for (states, kept) in self.states.iter_mut().zip(&rollout.states) {
             copy_rows(kept, kept.len() / sequences, places, states);
         }
         self.starts.clear();
-        // Before the first step of a sequence nothing is remembered of an episode that is over.
+        // The stored state of a sequence is already reset if an episode ended before it.
         self.starts.resize(places.len(), false);
         let later = self.rows.get(places.len()..).unwrap_or_default();
         self.starts.extend(later.iter().map(|&row| rollout.ends[row - rollout.count]));
@@ -72,7 +72,7 @@ fn copy_rows(from: &[f32], width: usize, rows: &[usize], to: &mut Vec<f32>) {
     }
 }
 
-/// Weights of the loss.
+/// Weights of the loss terms, and clipping ranges.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Weights {
     pub clip_range: f32,
@@ -81,7 +81,7 @@ pub(super) struct Weights {
     pub value: f32,
 }
 
-/// What the steps of a minibatch tell of a policy, as means.
+/// Statistics of the policy on a minibatch, as means.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct ActorLoss {
     pub policy: f32,
@@ -90,21 +90,21 @@ pub(super) struct ActorLoss {
     pub clip_fraction: f32,
 }
 
-/// The pass of a policy, with memory that is used again.
+/// Forward and backward pass of the policy, and reused work memory.
 #[derive(Debug, Clone, Default)]
 pub(super) struct ActorPass {
     pub trunk: TrunkMemory,
     pub likelihood: Likelihood,
     dlogs: Vec<f32>,
-    /// Of all parameters of the policy.
+    /// Gradients of all parameters of the policy.
     pub gradients: Vec<f32>,
-    /// Of the features, where they are wanted.
+    /// Gradient of the features, if requested.
     pub dfeatures: Vec<f32>,
     pub loss: ActorLoss,
 }
 
 impl ActorPass {
-    /// Forward and back from `features`; only the gradients of the network behind the features, and of the deviations.
+    /// Runs forward and backward from `features`. Computes the gradients of the trunk and of the standard deviations only.
     pub fn run(
         &mut self,
         compute: &Compute,
@@ -143,7 +143,7 @@ impl ActorPass {
 }
 
 impl Likelihood {
-    /// The clipped surrogate (Schulman et al., 2017, Eq. 7) and its gradient by the log-probabilities.
+    /// Computes the clipped surrogate loss (Schulman et al., 2017, Eq. 7) and its gradient by the log-probabilities.
     fn clipped_loss(&self, steps: &Minibatch, clip_range: f32, dlogs: &mut Vec<f32>) -> ActorLoss {
         let scale = 1.0 / steps.advantages.len() as f32;
         let mut loss = ActorLoss::default();
@@ -157,7 +157,7 @@ impl Likelihood {
             loss.policy -= free.min(bound);
             loss.approx_kl += (ratio - 1.0) - difference;
             loss.clip_fraction += f32::from((ratio - 1.0).abs() > clip_range);
-            // Where the bound is the smaller one, it does not move.
+            // Where the clipped term is the smaller one, the gradient is 0.
             dlogs.push(if bound < free { 0.0 } else { -scale * free });
         }
         loss.entropy = self.entropies.iter().sum();
@@ -168,20 +168,20 @@ impl Likelihood {
     }
 }
 
-/// The pass of the values, with memory that is used again.
+/// Forward and backward pass of the value network, and reused work memory.
 #[derive(Debug, Clone, Default)]
 pub(super) struct CriticPass {
     pub trunk: TrunkMemory,
     dvalues: Vec<f32>,
     pub gradients: Vec<f32>,
     pub dfeatures: Vec<f32>,
-    /// The mean squared error.
+    /// Mean squared error.
     pub loss: f32,
 }
 
 impl CriticPass {
-    /// Forward and back from `features`.
-    #[expect(clippy::too_many_arguments, reason = "what goes in and out of a pass")]
+    /// Runs forward and backward from `features`.
+    #[expect(clippy::too_many_arguments, reason = "inputs and outputs of a pass")]
     pub fn run(
         &mut self,
         compute: &Compute,

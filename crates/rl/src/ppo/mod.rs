@@ -1,4 +1,4 @@
-//! Proximal policy optimisation (Schulman et al., 2017), as Stable-Baselines3 has it.
+//! Proximal policy optimisation (Schulman et al., 2017), as in Stable-Baselines3.
 
 mod advantage;
 mod config;
@@ -22,10 +22,10 @@ use rollout::Rollout;
 
 use crate::algorithm::Report;
 use crate::interaction::Interaction;
-use crate::policy::{Beginning, ExtractorMemory, Head, Policy, Trunk};
+use crate::policy::{ExtractorMemory, Head, ParameterInit, Policy, Trunk};
 use crate::schedule::remaining;
 
-/// PPO: acts for some steps, then goes over them several times, and keeps the policy near the one that acted.
+/// PPO: collects a rollout, then makes several passes over it that keep the policy close to the one that collected it.
 ///
 /// ```
 /// use std::ops::ControlFlow;
@@ -52,7 +52,7 @@ pub struct Ppo {
     critic_adam: Adam,
     interaction: Option<Interaction>,
     reward_normaliser: Option<RewardNormaliser>,
-    /// What policy and values remember of the episodes that run.
+    /// Recurrent states of policy and critic in the running episodes.
     states: [Vec<f32>; 2],
     rollout: Rollout,
     memory: Memory,
@@ -60,7 +60,7 @@ pub struct Ppo {
     report: Report,
 }
 
-/// Memory that holds nothing from one iteration to the next.
+/// Work memory; nothing in it is kept from one iteration to the next.
 #[derive(Debug, Clone, Default)]
 struct Memory {
     extractor: ExtractorMemory,
@@ -70,21 +70,21 @@ struct Memory {
     dfeatures: Vec<f32>,
     actions: Vec<f32>,
     values: Vec<f32>,
-    /// Last observations of truncated episodes, encoded, and where those episodes were.
+    /// Last observations of truncated episodes, encoded, and the indices of their environments.
     final_encoded: Vec<f32>,
     truncated: Vec<usize>,
-    /// What the values remember where a look ahead must leave no trace.
+    /// Recurrent states of the critic for predictions that must not change `Ppo::states`.
     states: Vec<f32>,
 }
 
-/// Adam's epsilon in Stable-Baselines3's on-policy learners.
+/// Epsilon of Adam in Stable-Baselines3's on-policy algorithms.
 const EPSILON: f32 = 1e-5;
 
 impl Ppo {
-    /// A learner for environments of this kind, on one thread.
+    /// Creates an algorithm for environments with this specification, on one thread.
     ///
     /// # Errors
-    /// `InvalidParam` for settings out of range, `Unsupported` for spaces that no policy of this crate has.
+    /// `InvalidParam` for settings out of range, `Unsupported` for spaces that no policy of this crate supports.
     pub fn new(config: &PpoConfig, spec: &EnvironmentSpec) -> Result<Self> {
         config.check()?;
         config.steps_of_sequence()?;
@@ -94,9 +94,10 @@ impl Ppo {
         let of_values = config.net_arch_vf.clone().unwrap_or_else(|| config.network.net_arch.clone());
         let of_values = crate::policy::NetworkConfig { net_arch: of_values, ..config.network.clone() };
         let critic = of_values.trunk(policy.extractor.outputs(), 1)?;
-        let mut random = Random::at([config.seed, 0]);
-        let beginning =
-            |output| if config.ortho_init { Beginning::Orthogonal(output) } else { Beginning::Uniform };
+        let mut random = Random::from_key([config.seed, 0]);
+        let beginning = |output| {
+            if config.ortho_init { ParameterInit::Orthogonal(output) } else { ParameterInit::Uniform }
+        };
         policy.initialise(beginning(0.01), config.log_std_init, &mut random);
         let mut critic_parameters = vec![0.0; critic.parameters()];
         critic.initialise(beginning(1.0).of_output(), &mut random, &mut critic_parameters);
@@ -120,26 +121,26 @@ impl Ppo {
         })
     }
 
-    /// The same on other threads, which change no bit.
+    /// Uses the threads of `compute`; results do not depend on their number.
     #[must_use]
     pub fn with_compute(self, compute: Compute) -> Self {
         Self { compute, ..self }
     }
 
-    /// What observations are worth, `encoded` as networks take them, where the values remember `memory.states`.
+    /// Predicts the values of encoded observations, with the recurrent states `memory.states`.
     fn values(&mut self, encoded: &[f32]) -> &[f32] {
         let Self { policy, compute, critic, critic_parameters, memory, .. } = self;
         let Memory { extractor, critic: pass, states, .. } = memory;
-        let of_pictures = &policy.parameters[..policy.extractor.parameters()];
-        let features = policy.extractor.forward(compute, of_pictures, encoded, extractor);
+        let extractor_parameters = &policy.parameters[..policy.extractor.parameters()];
+        let features = policy.extractor.forward(compute, extractor_parameters, encoded, extractor);
         critic.step(compute, critic_parameters, features, states, &mut pass.trunk)
     }
 
-    /// What the learner thinks that observations, one or more in a row, are worth: the discounted sum of what will be
-    /// earned, normalised where rewards are. Values with memory take each for the first of an episode.
+    /// Predicts the values of one or more observations, concatenated: discounted returns, in normalised rewards if rewards are
+    /// normalised. A recurrent critic treats each as the first of an episode.
     ///
     /// # Errors
-    /// `InvalidInput` when the length does not fit, and for numbers that are not finite.
+    /// `InvalidInput` for a length that is not a multiple of an observation's, and for numbers that are not finite.
     pub fn predict_values(&mut self, observations: &[f32]) -> Result<Vec<f32>> {
         let encoder = &self.policy.encoder;
         let rows = observations.len() / encoder.raw_len();
@@ -158,7 +159,7 @@ impl Ppo {
         Ok(())
     }
 
-    /// Room for what this many environments answer.
+    /// Allocates the rollout and the states for a number of environments.
     fn prepare(&mut self, environments: usize) -> Result<()> {
         let (action, state) = (self.policy.head.action_len(), self.critic.state_len());
         let steps = [self.config.n_steps, environments, self.config.steps_of_sequence()?];
@@ -171,7 +172,7 @@ impl Ppo {
         Ok(())
     }
 
-    /// Acts for `n_steps` in every environment.
+    /// Collects `n_steps` of each environment.
     fn collect(
         &mut self,
         environments: &mut dyn VecEnvironment,
@@ -180,8 +181,8 @@ impl Ppo {
         for step in 0..self.config.n_steps {
             self.act(interaction, step);
             interaction.step(environments, &mut self.policy.encoder, &self.memory.actions)?;
-            self.earn(interaction, step)?;
-            self.forget(step);
+            self.store_rewards(interaction, step)?;
+            self.reset_states(step);
         }
         let mut last_values = std::mem::take(&mut self.memory.values);
         self.memory.states.clone_from(&self.states[1]);
@@ -192,15 +193,16 @@ impl Ppo {
         Ok(())
     }
 
-    /// Writes actions for what is seen, and what is thought of them.
+    /// Writes the next actions and stores observations, actions, log-probabilities and values.
     fn act(&mut self, interaction: &Interaction, step: usize) {
         let Self { policy, compute, critic, memory, rollout, random, states, .. } = self;
-        rollout.remember(step, [&states[0], &states[1]]);
+        rollout.store_states(step, [&states[0], &states[1]]);
         let [policy_states, critic_states] = states;
         let (count, encoded) = (interaction.count(), &interaction.encoded[..]);
         let rows = step * count..(step + 1) * count;
-        let (of_pictures, rest) = policy.parameters.split_at(policy.extractor.parameters());
-        let features = policy.extractor.forward(compute, of_pictures, encoded, &mut memory.extractor);
+        let (extractor_parameters, rest) = policy.parameters.split_at(policy.extractor.parameters());
+        let features =
+            policy.extractor.forward(compute, extractor_parameters, encoded, &mut memory.extractor);
         let (parameters, pass) = (&self.critic_parameters, &mut memory.critic.trunk);
         let values = critic.step(compute, parameters, features, critic_states, pass);
         rollout.values[rows.clone()].copy_from_slice(values);
@@ -215,9 +217,9 @@ impl Ppo {
         rollout.observations[wide(policy.encoder.encoded_len())].copy_from_slice(encoded);
     }
 
-    /// Keeps what a step earned. Where an episode was cut off by time alone, what its last observation is worth is earned
-    /// too.
-    fn earn(&mut self, interaction: &Interaction, step: usize) -> Result<()> {
+    /// Stores rewards and ends of a step. Where an episode was truncated, the discounted value of its last observation is added to the
+    /// reward.
+    fn store_rewards(&mut self, interaction: &Interaction, step: usize) -> Result<()> {
         let (count, batch) = (interaction.count(), &interaction.batch);
         let rows = step * count..(step + 1) * count;
         let ends = &mut self.rollout.ends[rows.clone()];
@@ -253,8 +255,8 @@ impl Ppo {
         Ok(())
     }
 
-    /// Nothing is remembered of episodes that ended.
-    fn forget(&mut self, step: usize) {
+    /// Resets the recurrent states where episodes ended.
+    fn reset_states(&mut self, step: usize) {
         let (size, count) = (self.critic.state_len(), self.rollout.count);
         let ends = &self.rollout.ends[step * count..(step + 1) * count];
         for (index, _) in ends.iter().enumerate().filter(|(_, end)| **end) {

@@ -1,4 +1,4 @@
-//! Rewards of a scale that learning rates are made for.
+//! Normalisation of rewards.
 
 use opendr_engine::Result;
 use opendr_engine::environment::{Snapshot, StateReader};
@@ -6,11 +6,11 @@ use opendr_simulation::wrappers::RunningMoments;
 
 use crate::policy::EPSILON;
 
-/// Divides rewards by the deviation of the discounted return (the rewards of Stable-Baselines3's `VecNormalize`).
+/// Divides rewards by the standard deviation of the discounted return, as Stable-Baselines3's `VecNormalize` does.
 #[derive(Debug, Clone)]
 pub(crate) struct RewardNormaliser {
     moments: RunningMoments,
-    /// Of the running episode of each environment.
+    /// Discounted return of the running episode of each environment.
     discounted: Vec<f64>,
     gamma: f64,
     clip: f64,
@@ -26,7 +26,7 @@ impl RewardNormaliser {
         }
     }
 
-    /// Writes normalised rewards of a step of all environments, whose episodes ended where `ends`.
+    /// Writes the normalised rewards of a step of all environments; `ends` marks those where an episode ended.
     pub fn normalise(&mut self, rewards: &[f64], ends: &[bool], normalised: &mut [f32]) {
         for (discounted, reward) in self.discounted.iter_mut().zip(rewards) {
             *discounted = *discounted * self.gamma + reward;

@@ -1,8 +1,8 @@
-//! Steps that an update learns from.
+//! The rollout: the steps collected for an update.
 
 use super::advantage::{Trajectory, generalised_advantages};
 
-/// Steps of all environments since the last update, step after step; memory that is used again.
+/// Steps of all environments since the last update, ordered by step; its memory is reused.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Rollout {
     pub observations: Vec<f32>,
@@ -13,19 +13,19 @@ pub(super) struct Rollout {
     pub ends: Vec<bool>,
     pub advantages: Vec<f32>,
     pub returns: Vec<f32>,
-    /// What policy and values remembered where each sequence begins.
+    /// Recurrent states of policy and critic at the start of each sequence.
     pub states: [Vec<f32>; 2],
-    /// The order in which an epoch takes sequences.
+    /// Order of the sequences in an epoch.
     pub order: Vec<usize>,
-    /// Steps of a sequence.
+    /// Steps per sequence.
     pub length: usize,
-    /// Environments.
+    /// Number of environments.
     pub count: usize,
 }
 
 impl Rollout {
-    /// Room for `steps` of each of `count` environments, with so many numbers of observations, actions and states; they are
-    /// learnt from in sequences of `length`.
+    /// Allocates `steps` of each of `count` environments, in sequences of `length`; the second array holds the numbers per observation,
+    /// action and state.
     pub fn new([steps, count, length]: [usize; 3], [observation, action, state]: [usize; 3]) -> Self {
         let steps = steps * count;
         let zeros = |width: usize| vec![0.0; steps * width];
@@ -45,8 +45,8 @@ impl Rollout {
         }
     }
 
-    /// Keeps what is remembered before a step, where a sequence begins.
-    pub fn remember(&mut self, step: usize, states: [&[f32]; 2]) {
+    /// Stores the recurrent states before a step that starts a sequence.
+    pub fn store_states(&mut self, step: usize, states: [&[f32]; 2]) {
         if step.is_multiple_of(self.length) {
             for (kept, states) in self.states.iter_mut().zip(states) {
                 let from = step / self.length * states.len();
@@ -55,12 +55,12 @@ impl Rollout {
         }
     }
 
-    /// The row of a step of a sequence. Those that begin together follow each other, environment after environment.
+    /// Returns the row of a step of a sequence. Sequences that start at the same step are ordered by environment.
     pub fn row(&self, sequence: usize, step: usize) -> usize {
         (sequence / self.count * self.length + step) * self.count + sequence % self.count
     }
 
-    /// Computes advantages and returns; `last_values` are those behind the last step.
+    /// Computes advantages and returns; `last_values` are the values after the last step.
     pub fn finish(&mut self, last_values: &[f32], gamma: f32, lambda: f32) {
         let (rewards, values, ends) = (&self.rewards[..], &self.values[..], &self.ends[..]);
         let trajectory = Trajectory { rewards, values, ends, last_values };
@@ -70,11 +70,11 @@ impl Rollout {
         {
             *returned = advantage + value;
         }
-        // Every update begins with the same order, so that a restored generator shuffles alike.
+        // Every update starts from the same order, so that a restored generator shuffles it the same way.
         self.order.iter_mut().enumerate().for_each(|(place, at)| *at = place);
     }
 
-    /// The share of the variance of returns that values explain; NaN where returns do not vary.
+    /// Returns the fraction of the variance of returns that the values explain; NaN if the returns do not vary.
     pub fn explained_variance(&self) -> f64 {
         let errors = self.returns.iter().zip(&self.values).map(|(a, b)| f64::from(a - b));
         1.0 - variance(errors) / variance(self.returns.iter().map(|&returned| returned.into()))

@@ -1,4 +1,4 @@
-//! What PPO writes to go on later.
+//! PPO as an [`Algorithm`], and its saved state.
 
 use opendr_engine::{Error, Result};
 use opendr_simulation::vector::VecEnvironment;
@@ -41,7 +41,7 @@ impl Algorithm for Ppo {
             self.begin(environments)?;
         }
         let Some(mut interaction) = self.interaction.take() else {
-            return Err(Error::internal("a training that did not begin"));
+            return Err(Error::internal("the training has no environments"));
         };
         let outcome = self.collect(environments, &mut interaction);
         let timesteps = interaction.timesteps;
@@ -92,7 +92,7 @@ impl Algorithm for Ppo {
             *number = words.finite()? as f32;
         }
         words.finish()?;
-        if !interaction.go_on(state.environments(), environments, &self.policy.encoder)? {
+        if !interaction.resume(state.environments(), environments, &self.policy.encoder)? {
             self.states.iter_mut().for_each(|states| states.fill(0.0));
         }
         self.report.count(interaction.timesteps, &interaction.episodes);
@@ -100,7 +100,7 @@ impl Algorithm for Ppo {
         Ok(())
     }
 
-    fn rows(&self) -> &'static [&'static str] {
+    fn array_names(&self) -> &'static [&'static str] {
         ROWS
     }
 }

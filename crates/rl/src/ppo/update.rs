@@ -1,4 +1,4 @@
-//! Learning from what was collected.
+//! The update from a rollout.
 
 use opendr_engine::Result;
 use opendr_kernels::clip_gradient_norm;
@@ -7,7 +7,7 @@ use super::Ppo;
 use super::minibatch::{ActorLoss, Weights};
 use crate::algorithm::diverged;
 
-/// Steps in a minibatch from which on actor and critic are worth a thread each.
+/// Steps per minibatch from which actor and critic run on a thread each.
 const PARALLEL_FROM: usize = 64;
 
 /// Sums over the minibatches of an update.
@@ -18,12 +18,12 @@ struct Sums {
     entropy: f64,
     value: f64,
     clip_fraction: f64,
-    /// Of the last epoch.
+    /// Sum and count of the last epoch.
     approx_kl: [f64; 2],
 }
 
 impl Ppo {
-    /// Goes over the collected steps `n_epochs` times, in minibatches.
+    /// Trains on the rollout in minibatches, `n_epochs` times.
     pub(super) fn update(&mut self, timesteps: u64, total_timesteps: u64) -> Result<()> {
         let (learning_rate, clip_range) = self.schedules(timesteps, total_timesteps);
         let config = &self.config;
@@ -58,20 +58,24 @@ impl Ppo {
         }
         self.rollout.order = order;
         outcome?;
-        self.tell(&sums, learning_rate, clip_range);
+        self.report_metrics(&sums, learning_rate, clip_range);
         Ok(())
     }
 
-    /// Losses and gradients of the sequences numbered `places`.
+    /// Computes losses and gradients of the sequences with the indices `places`.
     fn pass(&mut self, places: &[usize], weights: Weights, timesteps: u64) -> Result<()> {
         let Self { policy, compute, critic, critic_parameters, memory, rollout, .. } = self;
         let steps = &mut memory.minibatch;
         steps.gather(rollout, places, self.config.normalize_advantage);
         let steps = &*steps;
         let count = policy.extractor.parameters();
-        let of_pictures = &policy.parameters[..count];
-        let features =
-            policy.extractor.forward(compute, of_pictures, &steps.observations, &mut memory.extractor);
+        let extractor_parameters = &policy.parameters[..count];
+        let features = policy.extractor.forward(
+            compute,
+            extractor_parameters,
+            &steps.observations,
+            &mut memory.extractor,
+        );
         let wants_input = !policy.extractor.is_identity();
         let (actor_pass, critic_pass) = (&mut memory.actor, &mut memory.critic);
         let mut actor = || actor_pass.run(compute, policy, features, steps, weights, wants_input);
@@ -90,7 +94,7 @@ impl Ppo {
             memory.dfeatures.extend(both.map(|(actor, critic)| actor + critic));
             let gradients = &mut memory.actor.gradients[..count];
             let (dfeatures, extractor) = (&memory.dfeatures, &mut memory.extractor);
-            policy.extractor.backward(compute, of_pictures, dfeatures, extractor, gradients);
+            policy.extractor.backward(compute, extractor_parameters, dfeatures, extractor, gradients);
         }
         for (what, loss) in
             [("the loss of the policy", memory.actor.loss.policy), ("the loss of values", memory.critic.loss)]
@@ -102,19 +106,19 @@ impl Ppo {
         Ok(())
     }
 
-    /// Follows the gradients, unless they are not finite.
+    /// Takes a gradient step; fails if the gradients are not finite.
     fn step(&mut self, learning_rate: f32, timesteps: u64) -> Result<()> {
         let (actor, critic) = (&mut self.memory.actor.gradients, &mut self.memory.critic.gradients);
         let norm = clip_gradient_norm(&mut [actor, critic], self.config.max_grad_norm);
         if !norm.is_finite() {
-            return Err(diverged("the length of the gradient", norm.into(), timesteps));
+            return Err(diverged("the norm of the gradient", norm.into(), timesteps));
         }
         self.actor_adam.step(&self.compute, learning_rate, &mut self.policy.parameters, actor);
         self.critic_adam.step(&self.compute, learning_rate, &mut self.critic_parameters, critic);
         Ok(())
     }
 
-    fn tell(&mut self, sums: &Sums, learning_rate: f32, clip_range: f32) {
+    fn report_metrics(&mut self, sums: &Sums, learning_rate: f32, clip_range: f32) {
         let mean = |sum: f64| sum / sums.minibatches.max(1.0);
         let metrics = &mut self.report.metrics;
         metrics.set("policy_gradient_loss", mean(sums.policy));

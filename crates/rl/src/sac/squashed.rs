@@ -1,4 +1,4 @@
-//! Actions of a squashed normal distribution, through which gradients flow.
+//! Reparameterised samples of a squashed Gaussian distribution, with gradients.
 
 use opendr_engine::Random;
 use opendr_kernels::{Isa, exp_in_place, tanh_in_place};
@@ -8,23 +8,23 @@ use crate::policy::LOG_STD_BOUNDS;
 /// ln(2 pi) / 2.
 const HALF_LOG_TAU: f32 = 0.918_938_5;
 
-/// Keeps the logarithm of a saturated action finite.
+/// Keeps the logarithm finite for a saturated action.
 const SATURATED: f32 = 1e-6;
 
-/// Sampled actions in [-1, 1], with memory that is used again.
+/// Sampled actions in [-1, 1], and reused work memory.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Squashed {
     pub actions: Vec<f32>,
-    /// Logarithms of the density of each row's action.
+    /// Log-density of each row's action.
     pub log_probabilities: Vec<f32>,
-    /// The gradient of what the network gave.
+    /// Gradient of the network's outputs.
     pub doutputs: Vec<f32>,
     noise: Vec<f32>,
     deviations: Vec<f32>,
 }
 
 impl Squashed {
-    /// Samples from rows of means and logarithms of deviations, `axes` of each.
+    /// Samples from rows of `axes` means followed by `axes` log standard deviations.
     pub fn sample(&mut self, isa: Isa, outputs: &[f32], axes: usize, random: &mut Random) {
         let Self { actions, log_probabilities, noise, deviations, .. } = self;
         for row in [&mut *actions, &mut *log_probabilities, &mut *noise, &mut *deviations] {
@@ -56,8 +56,8 @@ impl Squashed {
         self.log_probabilities.iter().sum::<f32>() / self.log_probabilities.len().max(1) as f32
     }
 
-    /// The gradient of what the network gave, `outputs`, where the loss is `weight` times the sum of the log-probabilities, and
-    /// something with the gradient `dactions` by the actions. The noise stays as it is.
+    /// Computes the gradient of the network's outputs for a loss of `weight` times the sum of the log-probabilities, plus a term with
+    /// the gradient `dactions` with respect to the actions. The noise is that of the last sample.
     pub fn backward(&mut self, outputs: &[f32], weight: f32, dactions: &[f32]) {
         let axes = self.actions.len() / self.log_probabilities.len().max(1);
         self.doutputs.resize(outputs.len(), 0.0);
@@ -70,7 +70,7 @@ impl Squashed {
                 let dmean = of_density + dactions[at] * slope;
                 doutputs[axis] = dmean;
                 let log_std = outputs[axes + axis];
-                // Beyond its bounds a logarithm has no effect.
+                // A clamped value has no gradient.
                 doutputs[axes + axis] = match log_std == clamped(log_std) {
                     true => dmean * self.deviations[at] * self.noise[at] - weight,
                     false => 0.0,

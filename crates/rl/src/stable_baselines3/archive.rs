@@ -1,4 +1,4 @@
-//! Archives in archives: `model.save` writes a zip, `torch.save` within it another one.
+//! Nested archives: `model.save` writes a zip that contains the zips of `torch.save`.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -9,9 +9,9 @@ use zip::ZipArchive;
 
 use super::pickle::tensors_from_pickle;
 
-/// No member is larger; the largest policies have some megabytes.
+/// Maximum size of a member; the largest policies have a few megabytes.
 const MAX_MEMBER_BYTES: u64 = 512 << 20;
-/// Numbers of all tensors together.
+/// Maximum number of numbers in all tensors.
 const MAX_NUMBERS: usize = 128 << 20;
 
 /// A tensor of a state dictionary.
@@ -29,19 +29,19 @@ pub(super) struct Archive<'a> {
 impl<'a> Archive<'a> {
     pub fn open(bytes: &'a [u8]) -> Result<Self> {
         let zip = ZipArchive::new(Cursor::new(bytes));
-        let zip = zip.map_err(|error| Error::format("it is no zip archive").with_source(error))?;
+        let zip = zip.map_err(|error| Error::format("the file is not a zip archive").with_source(error))?;
         Ok(Self { zip })
     }
 
-    /// The bytes of a member.
+    /// Returns the bytes of a member.
     pub fn member(&mut self, name: &str) -> Result<Vec<u8>> {
         let missing =
-            |error| Error::format(format!("the archive has no readable {name:?}")).with_source(error);
+            |error| Error::format(format!("the archive has no readable member {name:?}")).with_source(error);
         let member = self.zip.by_name(name).map_err(missing)?;
         let size = member.size();
         if size > MAX_MEMBER_BYTES {
             return Err(Error::invalid_input(format!(
-                "{name:?} has {size} bytes, more than the {MAX_MEMBER_BYTES} of any policy"
+                "{name:?} has {size} bytes, more than the limit of {MAX_MEMBER_BYTES}"
             )));
         }
         let mut bytes = Vec::new();
@@ -49,7 +49,7 @@ impl<'a> Archive<'a> {
         Ok(bytes)
     }
 
-    /// The tensors of a member that `torch.save` wrote, by name.
+    /// Returns the tensors of a member written by `torch.save`, by name.
     pub fn tensors(&mut self, name: &str) -> Result<BTreeMap<String, Tensor>> {
         let bytes = self.member(name)?;
         let mut inner = Archive::open(&bytes).context(|| name.to_owned())?;
@@ -62,7 +62,9 @@ impl<'a> Archive<'a> {
         };
         let folder = pickled.trim_end_matches("data.pkl").to_owned();
         if inner.member(&format!("{folder}byteorder")).is_ok_and(|order| order != b"little") {
-            return Err(Error::unsupported("numbers whose highest byte comes first"));
+            return Err(Error::unsupported(
+                "the tensors are big-endian; save the policy on a little-endian machine",
+            ));
         }
         let mut storages = BTreeMap::<String, Vec<u8>>::new();
         let (mut tensors, mut total) = (BTreeMap::new(), 0usize);
@@ -70,7 +72,9 @@ impl<'a> Archive<'a> {
             let count = place.shape.iter().try_fold(1usize, |count, size| count.checked_mul(*size));
             total = total.saturating_add(count.unwrap_or(usize::MAX));
             let Some(count) = count.filter(|_| total <= MAX_NUMBERS) else {
-                return Err(Error::invalid_input(format!("{name} makes more numbers than a policy has")));
+                return Err(Error::invalid_input(format!(
+                    "with {name}, the tensors exceed {MAX_NUMBERS} numbers"
+                )));
             };
             if !storages.contains_key(&place.storage) {
                 let member = format!("{folder}data/{}", place.storage);
@@ -78,9 +82,9 @@ impl<'a> Archive<'a> {
             }
             let storage = storages.get(&place.storage).map_or(&[][..], |bytes| bytes.as_chunks::<4>().0);
             let end = place.offset.checked_add(count);
-            let numbers = end.and_then(|end| storage.get(place.offset..end)).ok_or_else(|| {
-                Error::format(format!("{name} lies beyond the end of its numbers; the file is damaged"))
-            })?;
+            let numbers = end
+                .and_then(|end| storage.get(place.offset..end))
+                .ok_or_else(|| Error::format(format!("{name} exceeds its storage; the file is damaged")))?;
             let numbers = numbers.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
             tensors.insert(name, Tensor { shape: place.shape, numbers });
         }

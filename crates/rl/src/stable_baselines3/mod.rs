@@ -1,4 +1,4 @@
-//! Policies of Stable-Baselines3: what `model.save` wrote, without running any of it.
+//! Import of policies of Stable-Baselines3 from the files of `model.save`, without running any code in them.
 
 mod archive;
 mod pickle;
@@ -12,9 +12,9 @@ use serde::Deserialize;
 
 use archive::{Archive, Tensor};
 
-use crate::policy::{Bounds, Head, Hidden, NetworkConfig, PictureNetwork, Policy};
+use crate::policy::{ActivationFn, Bounds, Head, ImageNetwork, NetworkConfig, Policy};
 
-/// What of the JSON member `data` is read; objects in it are passed over.
+/// The parts of the JSON member `data` that are read; serialised objects are skipped.
 #[derive(Deserialize)]
 struct Settings {
     #[serde(default)]
@@ -23,63 +23,70 @@ struct Settings {
     policy_kwargs: serde_json::Value,
 }
 
-/// Names of tensors by the learner that wrote them.
+/// Names of tensors, by the algorithm that wrote them.
 struct Family {
     name: &'static str,
-    /// What the names of hidden layers begin with.
+    /// Prefix of the names of hidden layers.
     hidden: &'static str,
-    /// The output layer; none where it is the last of the hidden ones.
+    /// Output layer; none if it is the last of the hidden ones.
     output: Option<&'static str>,
-    /// A second output layer, whose numbers come behind those of the first.
+    /// Second output layer; its outputs follow those of the first.
     second: Option<&'static str>,
-    activation: Hidden,
+    activation: ActivationFn,
 }
 
-/// In the order in which they are looked for.
+/// The known families, in the order in which they are tried.
 const FAMILIES: &[Family] = &[
     Family {
         name: "PPO or A2C",
         hidden: "mlp_extractor.policy_net",
         output: Some("action_net"),
         second: None,
-        activation: Hidden::Tanh,
+        activation: ActivationFn::Tanh,
     },
     Family {
         name: "SAC",
         hidden: "actor.latent_pi",
         output: Some("actor.mu"),
         second: Some("actor.log_std"),
-        activation: Hidden::Relu,
+        activation: ActivationFn::Relu,
     },
-    Family { name: "TD3 or DDPG", hidden: "actor.mu", output: None, second: None, activation: Hidden::Relu },
-    Family { name: "DQN", hidden: "q_net.q_net", output: None, second: None, activation: Hidden::Relu },
+    Family {
+        name: "TD3 or DDPG",
+        hidden: "actor.mu",
+        output: None,
+        second: None,
+        activation: ActivationFn::Relu,
+    },
+    Family { name: "DQN", hidden: "q_net.q_net", output: None, second: None, activation: ActivationFn::Relu },
 ];
 
-/// Reads the policy in the bytes of a `.zip` that Stable-Baselines3's `model.save` wrote, for environments of this kind:
-/// PPO, A2C, SAC, TD3, DDPG and DQN with an `MlpPolicy`. Statistics of a `VecNormalize` are in another file, not here.
+/// Reads a policy from the bytes of a `.zip` written by Stable-Baselines3's `model.save`, for environments of this specification:
+/// PPO, A2C, SAC, TD3, DDPG and DQN with an `MlpPolicy`. Statistics of `VecNormalize` are in another file and not read.
 ///
 /// # Errors
-/// `Format` and `Integrity` for what is damaged, `Unsupported` for other policies, `InvalidInput` when the spaces do not fit.
+/// `Format` and `Integrity` for a damaged file, `Unsupported` for other policies, `InvalidInput` when the spaces do not match.
 pub fn policy_from_stable_baselines3(bytes: &[u8], spec: &EnvironmentSpec) -> Result<Policy> {
-    read(bytes, spec).context(|| "reading a policy of Stable-Baselines3")
+    read(bytes, spec).context(|| "reading a Stable-Baselines3 policy")
 }
 
 fn read(bytes: &[u8], spec: &EnvironmentSpec) -> Result<Policy> {
     let mut archive = Archive::open(bytes)?;
-    let settings: Settings = serde_json::from_slice(&archive.member("data")?)
-        .map_err(|error| Error::format("its settings are not what is wanted").with_source(error))?;
+    let settings: Settings = serde_json::from_slice(&archive.member("data")?).map_err(|error| {
+        Error::format("the member data is not the JSON of Stable-Baselines3").with_source(error)
+    })?;
     let tensors = archive.tensors("policy.pth")?;
     let is_there = |family: &&Family| tensors.contains_key(&format!("{}.0.weight", family.hidden));
     let Some(family) = FAMILIES.iter().find(is_there) else {
         let names: Vec<_> = tensors.keys().take(6).map(String::as_str).collect();
         return Err(Error::unsupported(format!(
-            "no hidden layers of an MlpPolicy among {}, ...; train it with one",
+            "the tensors {}, ... are not those of an MlpPolicy; train the policy with MlpPolicy",
             names.join(", ")
         )));
     };
     if settings.use_sde || tensors.keys().any(|name| name.contains("features_extractor")) {
         return Err(Error::unsupported(format!(
-            "a policy of {} with state-dependent exploration or pictures; train it with neither",
+            "a policy of {} with state-dependent exploration or image observations; train it with neither",
             family.name
         )));
     }
@@ -88,7 +95,7 @@ fn read(bytes: &[u8], spec: &EnvironmentSpec) -> Result<Policy> {
     let config = NetworkConfig {
         net_arch: sizes.map(|layer| layer.outputs()).collect(),
         activation_fn: family.activation_of(&settings.policy_kwargs)?,
-        picture_network: PictureNetwork::Flat,
+        image_network: ImageNetwork::Flat,
         gru_size: None,
     };
     let mut policy = Policy::new(spec, family.head(spec)?, &config, None)?;
@@ -101,9 +108,9 @@ fn read(bytes: &[u8], spec: &EnvironmentSpec) -> Result<Policy> {
     Ok(policy)
 }
 
-/// A dense layer as PyTorch has it.
+/// A dense layer of PyTorch.
 struct DenseLayer<'a> {
-    /// Neuron after neuron; those of a second layer behind those of the first.
+    /// Weights, one row per unit; those of a second layer follow.
     weights: Vec<&'a Tensor>,
     biases: Vec<&'a Tensor>,
 }
@@ -115,11 +122,13 @@ impl DenseLayer<'_> {
 }
 
 impl Family {
-    /// Every layer, the output last.
+    /// Returns all layers, the output last.
     fn layers<'a>(&self, tensors: &'a BTreeMap<String, Tensor>) -> Result<Vec<DenseLayer<'a>>> {
         let of = |name: &str, suffix: &str| {
             tensors.get(&format!("{name}.{suffix}")).ok_or_else(|| {
-                Error::format(format!("it has no {name}.{suffix}; save it again with model.save"))
+                Error::format(format!(
+                    "the policy has no tensor {name}.{suffix}; save it again with model.save"
+                ))
             })
         };
         let layer = |names: &[&str]| -> Result<_> {
@@ -127,7 +136,7 @@ impl Family {
             let biases = names.iter().map(|name| of(name, "bias")).collect::<Result<_>>()?;
             Ok(DenseLayer { weights, biases })
         };
-        // Between two layers stands an activation, which has a number too.
+        // The activations between layers are numbered, too.
         let names = (0..).step_by(2).map(|index| format!("{}.{index}", self.hidden));
         let there = names.take_while(|name| tensors.contains_key(&format!("{name}.weight")));
         let mut layers = there.map(|name| layer(&[&name])).collect::<Result<Vec<_>>>()?;
@@ -138,12 +147,14 @@ impl Family {
         Ok(layers)
     }
 
-    fn activation_of(&self, policy_kwargs: &serde_json::Value) -> Result<Hidden> {
+    fn activation_of(&self, policy_kwargs: &serde_json::Value) -> Result<ActivationFn> {
         match policy_kwargs.get("activation_fn").map(serde_json::Value::to_string) {
             None => Ok(self.activation),
-            Some(name) if name.contains(".ReLU'") => Ok(Hidden::Relu),
-            Some(name) if name.contains(".Tanh'") => Ok(Hidden::Tanh),
-            Some(name) => Err(Error::unsupported(format!("the activation {name:.80}; use tanh or ReLU"))),
+            Some(name) if name.contains(".ReLU'") => Ok(ActivationFn::Relu),
+            Some(name) if name.contains(".Tanh'") => Ok(ActivationFn::Tanh),
+            Some(name) => Err(Error::unsupported(format!(
+                "the activation function {name:.80} is not supported; use tanh or ReLU"
+            ))),
         }
     }
 
@@ -153,13 +164,15 @@ impl Family {
             ("SAC", space) => Bounds::of(space, true).map(Head::SquashedGaussian),
             ("TD3 or DDPG", space) => Bounds::of(space, true).map(Head::Squashed),
             ("DQN", Space::Discrete { n, start }) => Ok(Head::Greedy { count: *n, start: *start }),
-            ("DQN", space) => Err(Error::invalid_input(format!("a policy of DQN does not act in {space}"))),
+            ("DQN", space) => {
+                Err(Error::invalid_input(format!("a policy of DQN does not fit the action space {space}")))
+            }
             (_, space) => Head::stochastic(space),
         }
     }
 }
 
-/// Copies layers into the parameters of a policy; PyTorch's weights are the transposes of ours.
+/// Copies layers into the parameters of a policy, with the weights of PyTorch transposed.
 fn fill(policy: &mut Policy, layers: &[DenseLayer<'_>]) -> Result<()> {
     let network: &Network = policy.trunk.network();
     for (index, (own, layer)) in network.layers().iter().zip(layers).enumerate() {
@@ -172,7 +185,7 @@ fn fill(policy: &mut Policy, layers: &[DenseLayer<'_>]) -> Result<()> {
         let is_wide = layer.weights.iter().all(|weights| weights.shape.last() == Some(&inputs));
         if weights.len() != inputs * outputs || biases.len() != outputs || !is_wide {
             return Err(Error::invalid_input(format!(
-                "layer {index} has {} weights and {} biases, but {inputs} times {outputs} and {outputs} fit observations of {} and actions of {}",
+                "layer {index} has {} weights and {} biases, but needs {inputs} times {outputs} and {outputs} for observations {} and actions {}",
                 weights.len(),
                 biases.len(),
                 policy.encoder.space(),
@@ -180,7 +193,7 @@ fn fill(policy: &mut Policy, layers: &[DenseLayer<'_>]) -> Result<()> {
             )));
         }
         let (to_weights, to_biases) =
-            policy.parameters[network.parameters_of(index)].split_at_mut(inputs * outputs);
+            policy.parameters[network.parameter_range(index)].split_at_mut(inputs * outputs);
         for (neuron, row) in weights.chunks_exact(inputs).enumerate() {
             for (input, weight) in row.iter().enumerate() {
                 to_weights[input * outputs + neuron] = *weight;
@@ -194,7 +207,7 @@ fn fill(policy: &mut Policy, layers: &[DenseLayer<'_>]) -> Result<()> {
 fn copy(to: &mut [f32], from: &[f32], name: &str) -> Result<()> {
     if to.len() != from.len() {
         return Err(Error::invalid_input(format!(
-            "{name} has {} numbers, but actions have {} axes",
+            "{name} has {} numbers, but the action space has {} axes",
             from.len(),
             to.len()
         )));

@@ -1,15 +1,15 @@
-//! What PyTorch writes of a state dictionary: a pickle of names and tensors, of which nothing is run.
+//! The pickle of a PyTorch state dictionary: names and tensors. No code in it is run.
 
 use std::collections::HashMap;
 
 use opendr_engine::{Error, Result};
 
-/// Values that are made; no policy has nearly as many.
+/// Maximum number of values.
 const MAX_VALUES: usize = 1 << 18;
-/// Axes of a tensor.
+/// Maximum number of axes of a tensor.
 const MAX_AXES: usize = 8;
 
-/// Number of a value.
+/// Index of a value.
 type Id = usize;
 
 #[derive(Debug, Clone)]
@@ -25,18 +25,18 @@ enum Value {
     Tensor(TensorPlace),
 }
 
-/// Where the numbers of a tensor of single precision lie.
+/// Location of the numbers of a single-precision tensor.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct TensorPlace {
     /// The member of the archive.
     pub storage: String,
-    /// The first number in it.
+    /// Index of its first number in the storage.
     pub offset: usize,
-    /// Size of each axis; rows follow each other.
+    /// Size of each axis, in row-major order.
     pub shape: Vec<usize>,
 }
 
-/// A stack machine without the instructions that could run code.
+/// A stack machine of pickle instructions, without those that run code.
 struct Machine<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -46,10 +46,10 @@ struct Machine<'a> {
     memo: HashMap<u32, Id>,
 }
 
-/// Names and places of the tensors of a state dictionary, of protocol 2.
+/// Returns the names and locations of the tensors of a state dictionary, in protocol 2.
 ///
 /// # Errors
-/// `Format` with the byte for what is none or is cut off, `Unsupported` for what would be code.
+/// `Format`, with the byte offset, for damaged data, `Unsupported` for data that would run code.
 pub(super) fn tensors_from_pickle(bytes: &[u8]) -> Result<Vec<(String, TensorPlace)>> {
     let mut machine = Machine {
         bytes,
@@ -61,7 +61,7 @@ pub(super) fn tensors_from_pickle(bytes: &[u8]) -> Result<Vec<(String, TensorPla
     };
     let root = machine.run()?;
     let Value::Dictionary(entries) = machine.value(root) else {
-        return Err(Error::format("the pickle holds no dictionary of tensors"));
+        return Err(Error::format("the pickle is not a dictionary of tensors"));
     };
     let named =
         entries.iter().filter_map(|(name, tensor)| match (machine.value(*name), machine.value(*tensor)) {
@@ -75,7 +75,7 @@ impl<'a> Machine<'a> {
     fn run(&mut self) -> Result<Id> {
         loop {
             if self.values.len() > MAX_VALUES {
-                return Err(self.wrong("more values than a policy has"));
+                return Err(self.wrong(&format!("more than {MAX_VALUES} values")));
             }
             match self.take(1)?[0] {
                 b'.' => return self.pop(),
@@ -125,7 +125,7 @@ impl<'a> Machine<'a> {
             }
             b'h' | b'j' => {
                 let key = self.word(if code == b'h' { 1 } else { 4 })?;
-                let kept = *self.memo.get(&key).ok_or_else(|| self.wrong("a value was never kept"))?;
+                let kept = *self.memo.get(&key).ok_or_else(|| self.wrong("a memo entry is missing"))?;
                 self.stack.push(kept);
             }
             b's' | b'u' => self.set_items(code)?,
@@ -135,10 +135,12 @@ impl<'a> Machine<'a> {
             }
             b'Q' => self.find_storage()?,
             b'R' => self.reduce()?,
-            // Beside its entries a state dictionary has versions of modules, which nobody needs.
+            // The state beside the entries holds module versions, which are not needed.
             b'b' => drop(self.pop()?),
             _ => {
-                return Err(self.wrong(&format!("instruction {code:#04x} is unknown to a state dictionary")));
+                return Err(
+                    self.wrong(&format!("instruction {code:#04x} does not belong in a state dictionary"))
+                );
             }
         }
         Ok(())
@@ -155,12 +157,12 @@ impl<'a> Machine<'a> {
         let pairs = pairs.as_chunks::<2>().0.iter().map(|[name, value]| (*name, *value));
         match self.stack.last().and_then(|id| self.values.get_mut(*id)) {
             Some(Value::Dictionary(entries)) => entries.extend(pairs),
-            _ => return Err(self.wrong("entries of what is no dictionary")),
+            _ => return Err(self.wrong("entries without a dictionary")),
         }
         Ok(())
     }
 
-    /// A persistent name: `("storage", torch.FloatStorage, key, device, length)`.
+    /// Resolves a persistent id: `("storage", torch.FloatStorage, key, device, length)`.
     fn find_storage(&mut self) -> Result<()> {
         let name = self.pop()?;
         let Value::Tuple(parts) = self.value(name) else { return Err(self.wrong("a storage has no name")) };
@@ -172,40 +174,42 @@ impl<'a> Machine<'a> {
                 Ok(())
             }
             (Value::Global(kind), _) => Err(Error::unsupported(format!(
-                "numbers of kind {kind:.40}; save the policy in single precision"
+                "storage type {kind:.40} is not supported; save the policy in single precision"
             ))),
             _ => Err(self.wrong("a storage has no name")),
         }
     }
 
-    /// The two functions that make plain data.
+    /// Calls one of the two supported functions, which only build data.
     fn reduce(&mut self) -> Result<()> {
         let (arguments, function) = (self.pop()?, self.pop()?);
         let (Value::Tuple(arguments), Value::Global(name)) = (self.value(arguments), self.value(function))
         else {
-            return Err(self.wrong("something else than a name is called"));
+            return Err(self.wrong("the called value is not a function name"));
         };
         let argument = |at: usize| arguments.get(at).map_or(&Value::None, |id| self.value(*id));
-        let made = match name.as_str() {
+        let value = match name.as_str() {
             "collections.OrderedDict" => Value::Dictionary(Vec::new()),
             "torch._utils._rebuild_tensor_v2" => {
                 let (Value::Storage(storage), Value::Number(offset)) = (argument(0), argument(1)) else {
-                    return Err(self.wrong("a tensor without numbers"));
+                    return Err(self.wrong("a tensor has no storage"));
                 };
                 let (shape, strides) = (self.sizes(argument(2))?, self.sizes(argument(3))?);
-                if strides.len() != shape.len() || !follows_rows(&shape, &strides) {
-                    return Err(Error::unsupported("a tensor whose rows do not follow each other"));
+                if strides.len() != shape.len() || !is_contiguous(&shape, &strides) {
+                    return Err(Error::unsupported(
+                        "a tensor is not contiguous; save the policy with contiguous tensors",
+                    ));
                 }
                 let offset = usize::try_from(*offset).map_err(|_| self.wrong("a negative offset"))?;
                 Value::Tensor(TensorPlace { storage: storage.clone(), offset, shape })
             }
             other => {
                 return Err(Error::unsupported(format!(
-                    "the state dictionary names {other:.80}, which is code; nothing of it was run"
+                    "the state dictionary calls {other:.80}, which is not allowed; nothing was run"
                 )));
             }
         };
-        self.push(made);
+        self.push(value);
         Ok(())
     }
 
@@ -232,7 +236,7 @@ impl<'a> Machine<'a> {
         self.stack.pop().ok_or_else(|| self.wrong("a value is missing"))
     }
 
-    /// The values since the last mark.
+    /// Pops the values since the last mark.
     fn marked(&mut self) -> Result<Vec<Id>> {
         let mark = self.marks.pop().filter(|mark| *mark <= self.stack.len());
         Ok(self.stack.split_off(mark.ok_or_else(|| self.wrong("a mark is missing"))?))
@@ -245,7 +249,7 @@ impl<'a> Machine<'a> {
         Ok(taken)
     }
 
-    /// A number of that many bytes.
+    /// Reads a little-endian number of `bytes` bytes.
     fn word(&mut self, bytes: usize) -> Result<u32> {
         Ok(self.take(bytes)?.iter().rev().fold(0, |word, byte| (word << 8) | u32::from(*byte)))
     }
@@ -263,12 +267,12 @@ impl<'a> Machine<'a> {
     }
 }
 
-/// Whether rows follow each other; the distance along an axis of one is no matter.
-fn follows_rows(shape: &[usize], strides: &[usize]) -> bool {
-    let mut wanted = Some(1usize);
+/// Returns whether a tensor is contiguous; the stride of an axis of size 1 does not matter.
+fn is_contiguous(shape: &[usize], strides: &[usize]) -> bool {
+    let mut expected = Some(1usize);
     shape.iter().zip(strides).rev().all(|(size, stride)| {
-        let fits = *size <= 1 || wanted == Some(*stride);
-        wanted = wanted.and_then(|wanted| wanted.checked_mul(*size));
+        let fits = *size <= 1 || expected == Some(*stride);
+        expected = expected.and_then(|expected| expected.checked_mul(*size));
         fits
     })
 }
@@ -280,7 +284,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn code_is_refused_and_damage_told() {
+    fn code_and_damage_are_refused() {
         let code = b"\x80\x02cos\nsystem\nX\x02\x00\x00\x00ls\x85R.";
         assert_eq!(tensors_from_pickle(code).unwrap_err().kind(), ErrorKind::Unsupported);
         for damaged in
@@ -292,8 +296,10 @@ mod tests {
     }
 
     #[test]
-    fn rows_that_follow_each_other() {
-        assert!(follows_rows(&[2, 3], &[3, 1]) && follows_rows(&[1, 3], &[99, 1]) && follows_rows(&[], &[]));
-        assert!(!follows_rows(&[2, 3], &[1, 2]) && !follows_rows(&[usize::MAX, 2, 2], &[0, 2, 1]));
+    fn contiguous_tensors_are_recognised() {
+        assert!(
+            is_contiguous(&[2, 3], &[3, 1]) && is_contiguous(&[1, 3], &[99, 1]) && is_contiguous(&[], &[])
+        );
+        assert!(!is_contiguous(&[2, 3], &[1, 2]) && !is_contiguous(&[usize::MAX, 2, 2], &[0, 2, 1]));
     }
 }

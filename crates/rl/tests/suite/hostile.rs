@@ -1,4 +1,4 @@
-//! Environments that break, and numbers that are none.
+//! Environments that fail, and numbers that are not finite.
 
 use crate::support::{Folder, environments};
 use opendr_engine::environment::{
@@ -7,7 +7,8 @@ use opendr_engine::environment::{
 use opendr_engine::{Error, ErrorKind, Result};
 use opendr_kernels::Compute;
 use opendr_rl::{
-    Acting, Algorithm, Dqn, DqnConfig, Policy, PolicyMemory, Ppo, PpoConfig, Sac, SacConfig, Td3, Td3Config,
+    ActionMode, Algorithm, Dqn, DqnConfig, Policy, PolicyMemory, Ppo, PpoConfig, Sac, SacConfig, Td3,
+    Td3Config,
 };
 use opendr_simulation::make;
 use opendr_simulation::vector::{Autoreset, EnvironmentVector, VecEnvironment};
@@ -20,7 +21,7 @@ enum Fault {
     Reward,
 }
 
-/// A pendulum, or a cart and pole, whose step number `at` goes wrong.
+/// An environment with a fault at step `at`.
 struct Faulty {
     inner: Box<dyn Environment>,
     fault: Fault,
@@ -68,7 +69,7 @@ fn faulty(id: &str, fault: Fault, at: u64) -> EnvironmentVector {
     EnvironmentVector::new(vec![world(u64::MAX), world(at)], Autoreset::SameStep, 1).unwrap()
 }
 
-/// Every learner, with the environment that it is made for here.
+/// Every algorithm, with the environment it is created for.
 fn learners() -> Vec<(&'static str, Box<dyn Algorithm>)> {
     let (pendulum, cart) = (make("Pendulum-v1").unwrap(), make("CartPole-v1").unwrap());
     let ppo = PpoConfig { n_steps: 8, ..PpoConfig::default() };
@@ -95,8 +96,8 @@ fn first_error(learner: &mut dyn Algorithm, worlds: &mut dyn VecEnvironment) -> 
 }
 
 #[test]
-fn what_goes_wrong_is_told_with_its_step() {
-    for (fault, told) in [
+fn faults_are_reported_with_their_step() {
+    for (fault, message) in [
         (Fault::Error, "the motor does not answer"),
         (Fault::Observation, "number 1 of observation 1 is inf"),
         (Fault::LastObservation, "is NaN"),
@@ -107,7 +108,7 @@ fn what_goes_wrong_is_told_with_its_step() {
             let error = first_error(&mut *learner, &mut worlds);
             let text = error.to_string();
             assert!(
-                text.contains(told) && text.contains("at time step 2"),
+                text.contains(message) && text.contains("at time step 2"),
                 "{} {fault:?}: {text}",
                 learner.name()
             );
@@ -117,7 +118,7 @@ fn what_goes_wrong_is_told_with_its_step() {
     }
 }
 
-/// A training that broke off in the middle of an iteration goes on from the last checkpoint as if nothing had broken.
+/// A training that failed within an iteration resumes from the last checkpoint with the same result.
 #[test]
 fn checkpoints_survive_an_environment_that_fails() {
     let rounds = learners().into_iter().zip(learners()).zip(learners());
@@ -142,14 +143,14 @@ fn checkpoints_survive_an_environment_that_fails() {
 }
 
 #[test]
-fn actions_and_observations_that_are_none_are_refused() {
+fn invalid_actions_and_observations_are_refused() {
     let mut worlds = environments("Pendulum-v1", 1, 1);
     let mut ppo = Ppo::new(&PpoConfig { n_steps: 8, ..PpoConfig::default() }, worlds.spec()).unwrap();
     ppo.iterate(&mut *worlds, 1000).unwrap();
     let mut policy: Policy = ppo.policy().clone();
     let (mut memory, mut actions) = (PolicyMemory::default(), [0.0; 1]);
     let mut act = |policy: &Policy, observations: &[f32]| {
-        policy.act(&Compute::single(), observations, Acting::Deterministic, &mut memory, &mut actions)
+        policy.act(&Compute::single(), observations, ActionMode::Deterministic, &mut memory, &mut actions)
     };
     act(&policy, &[1.0, 0.0, 0.5]).unwrap();
     for wrong in [&[1.0, f32::NAN, 0.0][..], &[1.0, 0.0, f32::NEG_INFINITY], &[1.0, 0.0], &[1.0; 4], &[]] {
@@ -163,11 +164,11 @@ fn actions_and_observations_that_are_none_are_refused() {
 }
 
 #[test]
-fn other_spaces_are_refused_when_a_learner_is_made() {
-    let seen = Space::symmetric(&[1.0]);
+fn unsupported_spaces_are_refused_at_construction() {
+    let space = Space::symmetric(&[1.0]);
     let unbounded = Space::symmetric(&[f32::INFINITY]);
     let kinds = |action: &Space| {
-        let spec = EnvironmentSpec::new("test", seen.clone(), action.clone());
+        let spec = EnvironmentSpec::new("test", space.clone(), action.clone());
         [
             Ppo::new(&PpoConfig::default(), &spec).map(drop),
             Sac::new(&SacConfig::default(), &spec).map(drop),
@@ -177,12 +178,12 @@ fn other_spaces_are_refused_when_a_learner_is_made() {
         .map(|outcome| outcome.map_err(|error| error.kind()))
     };
     let no = Err(ErrorKind::Unsupported);
-    assert_eq!(kinds(&seen), [Ok(()), Ok(()), Ok(()), no]);
+    assert_eq!(kinds(&space), [Ok(()), Ok(()), Ok(()), no]);
     assert_eq!(kinds(&unbounded), [Ok(()), no, no, no]);
     assert_eq!(kinds(&Space::discrete(3)), [Ok(()), no, no, Ok(())]);
     assert_eq!(kinds(&Space::MultiDiscrete(vec![2, 3])), [Ok(()), no, no, no]);
     assert_eq!(kinds(&Space::MultiBinary(vec![3])), [Ok(()), no, no, no]);
-    assert_eq!(kinds(&Space::Tuple(vec![seen.clone()])), [no; 4]);
-    let blind = EnvironmentSpec::new("blind", Space::Tuple(vec![]), seen);
+    assert_eq!(kinds(&Space::Tuple(vec![space.clone()])), [no; 4]);
+    let blind = EnvironmentSpec::new("blind", Space::Tuple(vec![]), space);
     assert_eq!(Ppo::new(&PpoConfig::default(), &blind).map(drop).unwrap_err().kind(), ErrorKind::Unsupported);
 }

@@ -1,4 +1,4 @@
-//! Policies as learners: trained, resumed, measured, saved, and wrong use told.
+//! Policies as learners: training, resuming, evaluation, saving and errors.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -60,20 +60,20 @@ fn fit_writes_a_container_that_acts() {
     assert!(statistics.curves["val_return"].len() > 1, "{statistics:?}");
     assert!(log.join("curves.svg").exists());
 
-    let seen = Observation::from_data(vec![0.0, 0.0, 0.05, 0.0]).unwrap();
-    let chosen = learner.infer(&seen).unwrap();
+    let observation = Observation::from_data(vec![0.0, 0.0, 0.05, 0.0]).unwrap();
+    let chosen = learner.infer(&observation).unwrap();
     assert!([0.0, 1.0].contains(&chosen.values[0]) && chosen.values.len() == 1, "{chosen:?}");
     let copy = folder.0.join("copy");
     learner.save(&copy).unwrap();
     let mut again = handle();
     again.load(&copy).unwrap();
-    assert_eq!(again.infer(&seen).unwrap(), chosen);
+    assert_eq!(again.infer(&observation).unwrap(), chosen);
     assert_eq!(again.model().unwrap().manifest().inputs["environment"], "CartPole-v1");
     let short = Observation::from_data(vec![0.0; 3]).unwrap();
     assert_eq!(again.infer(&short).unwrap_err().kind(), ErrorKind::InvalidInput);
 }
 
-/// Stops when so many steps are done.
+/// Stops after a number of steps.
 struct StopsAt(u64, AtomicU64);
 
 impl Progress for StopsAt {
@@ -88,9 +88,9 @@ impl Progress for StopsAt {
 }
 
 #[test]
-fn a_resumed_training_ends_as_one_that_was_not_broken_off() {
+fn a_resumed_training_gives_the_result_of_an_uninterrupted_one() {
     let (whole, parts) = (Folder::new("whole"), Folder::new("parts"));
-    // Measured at the end only, so that the last policy is the one that is written.
+    // Evaluated at the end only, so that the last policy is the one that is written.
     let mut params = short(2048);
     params.training.eval_freq = 0;
     handle().fit_in(&params, &cart, None, &FitJob::new(&whole.0)).unwrap();
@@ -105,7 +105,7 @@ fn a_resumed_training_ends_as_one_that_was_not_broken_off() {
 }
 
 #[test]
-fn an_environment_that_breaks_is_told_with_its_step_and_the_checkpoint_stays() {
+fn a_failing_environment_is_reported_with_its_step_and_the_checkpoint_stays() {
     struct Breaking(Box<dyn Environment>, u32);
     impl Environment for Breaking {
         fn spec(&self) -> &EnvironmentSpec {
@@ -144,21 +144,26 @@ fn an_environment_that_breaks_is_told_with_its_step_and_the_checkpoint_stays() {
 }
 
 #[test]
-fn an_environment_without_snapshots_begins_its_episodes_anew() {
-    struct Forgetful(Box<dyn Environment>);
-    impl Environment for Forgetful {
+fn an_environment_without_snapshots_restarts_its_episodes() {
+    struct WithoutSnapshots(Box<dyn Environment>);
+    impl Environment for WithoutSnapshots {
         fn spec(&self) -> &EnvironmentSpec {
             self.0.spec()
         }
-        fn reset(&mut self, seed: Option<u64>, options: &ResetOptions, seen: &mut [f32]) -> Result<Info> {
-            self.0.reset(seed, options, seen)
+        fn reset(
+            &mut self,
+            seed: Option<u64>,
+            options: &ResetOptions,
+            observation: &mut [f32],
+        ) -> Result<Info> {
+            self.0.reset(seed, options, observation)
         }
-        fn step(&mut self, action: &[f32], seen: &mut [f32]) -> Result<Step> {
-            self.0.step(action, seen)
+        fn step(&mut self, action: &[f32], observation: &mut [f32]) -> Result<Step> {
+            self.0.step(action, observation)
         }
     }
     let folder = Folder::new("forgetful");
-    let forgetful = || -> Result<Box<dyn Environment>> { Ok(Box::new(Forgetful(cart()?))) };
+    let forgetful = || -> Result<Box<dyn Environment>> { Ok(Box::new(WithoutSnapshots(cart()?))) };
     let stops = StopsAt(700, AtomicU64::new(0));
     let job = FitJob { progress: &stops, ..FitJob::new(&folder.0) };
     handle().fit_in(&short(2048), &forgetful, None, &job).unwrap();

@@ -1,4 +1,4 @@
-//! What is learnt is right.
+//! Trained policies and values are correct.
 
 use opendr_engine::environment::{Environment, EnvironmentSpec, Info, ResetOptions, Space, Step};
 use opendr_engine::{ErrorKind, Result};
@@ -7,7 +7,7 @@ use opendr_simulation::vector::{Autoreset, EnvironmentVector, VecEnvironment, Ve
 use opendr_simulation::wrappers::TimeLimit;
 use opendr_simulation::{make, make_vec};
 
-/// Two states that follow each other for ever; only the first one earns, `reward`. At step `broken` what is seen is NaN.
+/// Two alternating states; only the first one gives `reward`. The observation of step `broken` is NaN.
 struct Chain {
     spec: EnvironmentSpec,
     state: bool,
@@ -22,7 +22,7 @@ impl Chain {
         Self { spec, state: false, steps: 0, broken, reward }
     }
 
-    fn show(&self, observation: &mut [f32]) {
+    fn observe(&self, observation: &mut [f32]) {
         observation.copy_from_slice(&[f32::from(self.state), f32::from(!self.state)]);
         if self.steps == self.broken {
             observation[1] = f32::NAN;
@@ -37,7 +37,7 @@ impl Environment for Chain {
 
     fn reset(&mut self, _: Option<u64>, _: &ResetOptions, observation: &mut [f32]) -> Result<Info> {
         self.state = false;
-        self.show(observation);
+        self.observe(observation);
         Ok(Info::default())
     }
 
@@ -45,7 +45,7 @@ impl Environment for Chain {
         let reward = if self.state { 0.0 } else { self.reward };
         self.state = !self.state;
         self.steps += 1;
-        self.show(observation);
+        self.observe(observation);
         Ok(Step { reward, ..Step::default() })
     }
 }
@@ -55,10 +55,10 @@ fn chains(broken: u32, reward: f64) -> EnvironmentVector {
     EnvironmentVector::new((0..4).map(|_| chain()).collect(), Autoreset::SameStep, 1).unwrap()
 }
 
-/// With a discount of 0.9 the first state is worth 1 / (1 - 0.81), the second 0.9 times that. Were episodes of five
-/// steps taken for terminated, both would be worth less than 3.
+/// With a discount of 0.9 the first state has the value 1 / (1 - 0.81), the second 0.9 times that. If truncated episodes of
+/// five steps counted as terminated, both values would be below 3.
 #[test]
-fn a_time_limit_takes_no_value_away() {
+fn truncation_does_not_reduce_values() {
     let mut worlds = chains(u32::MAX, 1.0);
     let config = PpoConfig {
         gamma: 0.9,
@@ -73,19 +73,19 @@ fn a_time_limit_takes_no_value_away() {
     }
     let values = ppo.predict_values(&[0.0, 1.0, 1.0, 0.0]).unwrap();
     let first = 1.0 / (1.0 - 0.81);
-    for (value, wanted) in values.iter().zip([first, 0.9 * first]) {
-        assert!((value / wanted - 1.0).abs() < 0.02, "{values:?}");
+    for (value, expected) in values.iter().zip([first, 0.9 * first]) {
+        assert!((value / expected - 1.0).abs() < 0.02, "{values:?}");
     }
 }
 
 #[test]
-fn what_is_not_finite_is_told_with_its_step() {
+fn numbers_that_are_not_finite_are_reported_with_their_step() {
     let mut worlds = chains(21, 1.0);
     let mut ppo = Ppo::new(&PpoConfig { n_steps: 8, ..PpoConfig::default() }, worlds.spec()).unwrap();
     let error = (0..9).find_map(|_| ppo.iterate(&mut worlds, 1000).err()).unwrap();
     assert_eq!(error.kind(), ErrorKind::InvalidInput);
-    let told = error.to_string();
-    assert!(told.starts_with("at time step 84: number 1 of observation 0 is NaN"), "{told}");
+    let text = error.to_string();
+    assert!(text.starts_with("at time step 84: number 1 of observation 0 is NaN"), "{text}");
 
     let mut worlds = chains(u32::MAX, 1e30);
     let mut ppo = Ppo::new(&PpoConfig { n_steps: 8, ..PpoConfig::default() }, worlds.spec()).unwrap();
@@ -102,7 +102,7 @@ fn carts(count: usize) -> Box<dyn VecEnvironment> {
 }
 
 #[test]
-fn poles_are_balanced_longer_and_longer() {
+fn ppo_learns_to_balance_the_pole() {
     let preset = PpoConfig::preset("CartPole-v1").unwrap();
     let mut carts = carts(preset.environments);
     let mut ppo = Ppo::new(&preset.config, carts.spec()).unwrap();
@@ -117,7 +117,7 @@ fn poles_are_balanced_longer_and_longer() {
 }
 
 #[test]
-fn environments_must_tell_how_episodes_end() {
+fn environments_must_report_how_episodes_end() {
     let mut carts = make_vec("CartPole-v1", VectorOptions::new(2)).unwrap();
     let mut ppo = Ppo::new(&PpoConfig::default(), carts.spec()).unwrap();
     let error = ppo.iterate(&mut *carts, 1000).unwrap_err();

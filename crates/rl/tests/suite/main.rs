@@ -1,4 +1,4 @@
-//! The integration tests of this crate, one program: each program more is linked once more.
+//! Integration tests of this crate, in one program to save linking.
 
 #![allow(clippy::unwrap_used)]
 
@@ -13,4 +13,4 @@ mod stable_baselines3;
 mod support;
 
 #[global_allocator]
-static ALLOCATOR: opendr_test_allocator::Counting = opendr_test_allocator::Counting;
+static ALLOCATOR: opendr_test_allocator::CountingAllocator = opendr_test_allocator::CountingAllocator;

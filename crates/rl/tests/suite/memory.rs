@@ -1,15 +1,15 @@
-//! Policies that remember.
+//! Recurrent policies.
 
 use opendr_engine::environment::{Environment, EnvironmentSpec, Info, ResetOptions, Space, Step};
 use opendr_engine::{Random, Result};
 use opendr_kernels::Compute;
 use opendr_rl::{
-    Acting, Algorithm as _, Dqn, DqnConfig, EvaluationProtocol, Policy, PolicyMemory, Ppo, PpoConfig,
+    ActionMode, Algorithm as _, Dqn, DqnConfig, EvaluationProtocol, Policy, PolicyMemory, Ppo, PpoConfig,
     evaluate, onnx_from_policy,
 };
 use opendr_simulation::vector::{Autoreset, EnvironmentVector, VecEnvironment as _};
 
-/// The first observation shows a number, the others nothing; the digits to give in the third step are its sign and its opposite.
+/// Only the first observation is not 0; the correct binary actions in the third step are its sign and the opposite.
 struct Recall {
     spec: EnvironmentSpec,
     random: Random,
@@ -66,12 +66,12 @@ fn trained(gru_size: Option<usize>, timesteps: u64) -> Policy {
     ppo.policy().clone()
 }
 
-/// Without memory one of two digits is right on average: what is shown last is the same in all episodes.
+/// Without memory one of two binary actions is right on average: the last observation is the same in all episodes.
 #[test]
-fn only_memory_tells_what_was_shown() {
+fn only_recurrent_policies_recall_the_first_observation() {
     let protocol = EvaluationProtocol { episodes: 60, ..EvaluationProtocol::default() };
-    let forgetful = evaluate(&trained(None, 2000), &mut Recall::new(), &protocol).unwrap();
-    assert!((forgetful.mean_return - 1.0).abs() < 0.5, "{}", forgetful.mean_return);
+    let without_memory = evaluate(&trained(None, 2000), &mut Recall::new(), &protocol).unwrap();
+    assert!((without_memory.mean_return - 1.0).abs() < 0.5, "{}", without_memory.mean_return);
     let policy = trained(Some(8), 8000);
     let report = evaluate(&policy, &mut Recall::new(), &protocol).unwrap();
     assert!(report.mean_return > 1.9, "{}", report.mean_return);
@@ -82,20 +82,20 @@ fn only_memory_tells_what_was_shown() {
     assert!(onnx.windows(10).any(|name| name == b"next_state"));
 }
 
-/// What a row remembers is its own, and gone where its episode is over.
+/// The recurrent state of a row depends on that row only, and is reset with it.
 #[test]
-fn rows_remember_for_themselves() {
+fn rows_have_independent_states() {
     let policy = trained(Some(8), 400);
     let compute = Compute::single();
-    let states = |shown: &[&[f32]], forgets: Option<usize>| {
-        let (mut memory, mut actions) = (PolicyMemory::default(), vec![0.0; 2 * shown[0].len()]);
-        for (step, observations) in shown.iter().enumerate() {
+    let states = |steps: &[&[f32]], reset: Option<usize>| {
+        let (mut memory, mut actions) = (PolicyMemory::default(), vec![0.0; 2 * steps[0].len()]);
+        for (step, observations) in steps.iter().enumerate() {
             if step == 1
-                && let Some(row) = forgets
+                && let Some(row) = reset
             {
                 memory.reset(row);
             }
-            policy.act(&compute, observations, Acting::Deterministic, &mut memory, &mut actions).unwrap();
+            policy.act(&compute, observations, ActionMode::Deterministic, &mut memory, &mut actions).unwrap();
         }
         memory.states().to_vec()
     };
@@ -103,12 +103,12 @@ fn rows_remember_for_themselves() {
     let (first, second) = both.split_at(8);
     assert!(first != second);
     assert_eq!(first, states(&[&[1.0], &[0.0]], None));
-    let forgot = states(&[&[1.0, -1.0], &[0.0, 0.0]], Some(1));
-    assert_eq!((&forgot[..8], &forgot[8..]), (first, &states(&[&[0.0]], None)[..]));
+    let after_reset = states(&[&[1.0, -1.0], &[0.0, 0.0]], Some(1));
+    assert_eq!((&after_reset[..8], &after_reset[8..]), (first, &states(&[&[0.0]], None)[..]));
 }
 
 #[test]
-fn learners_of_single_steps_refuse_memory() {
+fn methods_of_single_steps_refuse_recurrent_units() {
     let spec = EnvironmentSpec::new("choice", Space::symmetric(&[1.0]), Space::discrete(2));
     let mut config = DqnConfig::default();
     config.network.gru_size = Some(8);

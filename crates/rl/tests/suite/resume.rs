@@ -1,4 +1,4 @@
-//! A training that was stopped, saved and loaded goes on as if nothing had happened, and threads change no bit.
+//! A resumed training gives the same result bit for bit, with any number of threads.
 
 use crate::support::{Folder, TOTAL, assert_resumes, environments};
 use opendr_engine::ErrorKind;
@@ -85,7 +85,7 @@ fn off_policy_learners_resume_bit_for_bit() {
 }
 
 #[test]
-fn checkpoints_of_others_are_refused() {
+fn checkpoints_of_other_algorithms_are_refused() {
     let folder = Folder::new("refused");
     let mut worlds = environments("CartPole-v1", 2, 1);
     let config = PpoConfig { n_steps: 16, ..PpoConfig::default() };

@@ -1,9 +1,9 @@
-//! Policies that Stable-Baselines3 saved do here what they did there.
+//! Imported policies of Stable-Baselines3 give the same actions.
 //!
-//! `tests/rl/write_stable_baselines3.py` made what lies in `data`.
+//! `tests/rl/write_stable_baselines3.py` wrote the files in `data`.
 
 use opendr_kernels::Compute;
-use opendr_rl::{Acting, PolicyMemory, policy_from_stable_baselines3};
+use opendr_rl::{ActionMode, PolicyMemory, policy_from_stable_baselines3};
 use opendr_simulation::make;
 
 const POLICIES: [(&str, &str, &[u8]); 5] = [
@@ -25,17 +25,17 @@ fn actions_are_those_of_stable_baselines3() {
         let policy = policy_from_stable_baselines3(bytes, make(id).unwrap().spec()).unwrap();
         let (wanted, mut actions) = (numbers("actions"), vec![9.0; 8]);
         let (compute, mut memory) = (Compute::single(), PolicyMemory::default());
-        let acting = Acting::Deterministic;
+        let acting = ActionMode::Deterministic;
         policy.act(&compute, &numbers("observations"), acting, &mut memory, &mut actions).unwrap();
         for (action, wanted) in actions.iter().zip(&wanted) {
             assert!((action - wanted).abs() < 1e-6, "{name}: {actions:?} {wanted:?}");
         }
-        assert!(wanted.iter().any(|action| *action != wanted[0]), "{name} always does the same");
+        assert!(wanted.iter().any(|action| *action != wanted[0]), "{name} always gives the same action");
     }
 }
 
 #[test]
-fn what_does_not_fit_is_refused() {
+fn mismatched_and_damaged_policies_are_refused() {
     let (cart, pendulum) = (make("CartPole-v1").unwrap(), make("Pendulum-v1").unwrap());
     assert!(policy_from_stable_baselines3(POLICIES[0].2, pendulum.spec()).is_err());
     assert!(policy_from_stable_baselines3(POLICIES[2].2, cart.spec()).is_err());
@@ -44,7 +44,7 @@ fn what_does_not_fit_is_refused() {
         for cut in [0, 1, bytes.len() / 2, bytes.len() - 1] {
             assert!(policy_from_stable_baselines3(&bytes[..cut], world.spec()).is_err());
         }
-        // Whatever is damaged, nothing panics.
+        // No damaged file causes a panic.
         for at in (0..bytes.len()).step_by(7) {
             let mut damaged = bytes.to_vec();
             damaged[at] ^= 0x55;

@@ -1,4 +1,4 @@
-//! `sensor_msgs/CompressedImage`, as `image_transport`'s plugins `compressed` and `compressedDepth` send it.
+//! `sensor_msgs/CompressedImage`, as in `image_transport`'s plugins `compressed` and `compressedDepth`.
 
 use opendr_engine::data::{Image, Pixels};
 use opendr_engine::{Error, Result};
@@ -6,11 +6,11 @@ use opendr_messages::sensor_msgs;
 use opendr_vision::{Encoder, decode, encode_depth_png};
 
 use super::depth_compressed;
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
-/// The content decides how it is read (JPEG, PNG, WebP, BMP), not the word in `format`, which drivers write in many ways.
-/// Pictures of 8 bits are written as JPEG, of 16 as PNG, which loses nothing; floats as `compressedDepth`.
-impl Bridged<sensor_msgs::CompressedImage> for Image {
+/// The format (JPEG, PNG, WebP, BMP) is detected from the content, since drivers write `format` in many ways. 8-bit images are
+/// written as JPEG, 16-bit images losslessly as PNG; floating-point images are refused.
+impl FromToMessage<sensor_msgs::CompressedImage> for Image {
     fn from_message(message: sensor_msgs::CompressedImage, _: &RosBridge) -> Result<Self> {
         let image = if message.format.contains("compressedDepth") {
             depth_compressed::read(&message.format, &message.data)?
@@ -29,12 +29,12 @@ impl Bridged<sensor_msgs::CompressedImage> for Image {
             Pixels::U16(_) if self.channels() == 1 => ("16UC1; png compressed ", encode_depth_png(self)?),
             Pixels::F32(_) if self.channels() == 1 => {
                 return Err(Error::invalid_input(
-                    "floats do not fit a compressed picture; send sensor_msgs/msg/Image, or millimetres as u16",
+                    "floating-point images cannot be compressed; send sensor_msgs/msg/Image, or millimetres as u16",
                 ));
             }
             Pixels::U16(_) | Pixels::F32(_) => {
                 return Err(Error::invalid_input(
-                    "only pictures of 8 bits have several channels when compressed",
+                    "only 8-bit images can have several channels when compressed",
                 ));
             }
         };
@@ -43,7 +43,7 @@ impl Bridged<sensor_msgs::CompressedImage> for Image {
     }
 }
 
-/// A PNG of 16 bits keeps them, everything else becomes 8.
+/// Decodes an image; a 16-bit PNG keeps its depth, others become 8-bit.
 fn read_whole(data: &[u8]) -> Result<Image> {
     const BIT_DEPTH_OF_PNG: usize = 24;
     if data.starts_with(b"\x89PNG") && data.get(BIT_DEPTH_OF_PNG..BIT_DEPTH_OF_PNG + 2) == Some(&[16, 0]) {

@@ -1,18 +1,18 @@
-//! `image_transport`'s plugin `compressedDepth`: 12 bytes, then a PNG of 16 bits.
+//! `image_transport`'s plugin `compressedDepth`: 12 bytes, then a 16-bit PNG.
 
 use opendr_engine::data::{Image, Layout, PixelFormat, Pixels};
 use opendr_engine::{Error, Result};
 
-/// Kind of compression, then the two numbers that turn inverse depth into metres.
+/// Size of the head: kind of compression, then the two coefficients from inverse depth to metres.
 const HEAD_BYTES: usize = 12;
 
-/// Reads `16UC1` as it is, `32FC1` from its inverse depth: `a / (sample - b)` metres, 0 meaning not known (NaN).
+/// Reads `16UC1` unchanged, and `32FC1` from inverse depth: `a / (sample - b)` metres, where 0 means unknown (NaN).
 pub(super) fn read(format: &str, data: &[u8]) -> Result<Image> {
     let short = || Error::format(format!("{} bytes are too few for compressedDepth", data.len()));
     let (head, png) = data.split_at_checked(HEAD_BYTES).ok_or_else(short)?;
     if !png.starts_with(b"\x89PNG") {
         return Err(Error::unsupported(
-            "compressedDepth that is no PNG (RVL); set its parameter format to png",
+            "compressedDepth is not a PNG but RVL; set its parameter format to png",
         ));
     }
     let image = opendr_vision::Decoder::default().decode_depth(png)?;

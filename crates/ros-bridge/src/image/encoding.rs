@@ -1,27 +1,27 @@
-//! The words for how the samples of a `sensor_msgs/Image` lie (`sensor_msgs/image_encodings.hpp`).
+//! Encodings of `sensor_msgs/Image` (`sensor_msgs/image_encodings.hpp`).
 
 use opendr_engine::data::{PixelFormat, Pixels};
 use opendr_engine::{Error, Result};
 use opendr_vision::{BayerPattern, Yuv422};
 
-/// How the bytes of a picture are read.
+/// Encoding of an image's samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Encoding {
-    /// 8 bits a sample.
+    /// 8 bits per sample.
     U8(PixelFormat),
-    /// 16 bits a sample.
+    /// 16 bits per sample.
     U16(PixelFormat),
-    /// Floats.
+    /// 32-bit floats.
     F32(PixelFormat),
-    /// One colour a pixel, in a mosaic; 1 or 2 bytes a sample.
+    /// Bayer mosaic; 1 or 2 bytes per sample.
     Bayer(BayerPattern, usize),
-    /// Two pixels that share their colour.
+    /// YUV with chroma shared by two pixels.
     Yuv422(Yuv422),
 }
 
 impl Encoding {
-    /// The encoding of a word. Of the words that name no colours, `8UC3`, `16UC3`, `8UC4` and `16UC4` are read as
-    /// OpenCV's order (blue first), as `cv_bridge` hands them out, and `32FC3` as red first.
+    /// Parses the name of an encoding. Of the names without colours, `8UC3`, `16UC3`, `8UC4` and `16UC4` are read as BGR(A), as in
+    /// `cv_bridge`, and `32FC3` as RGB.
     pub(super) fn parse(word: &str) -> Result<Self> {
         use PixelFormat::{Bgr, Bgra, Grey, Rgb, Rgba};
         Ok(match word {
@@ -52,7 +52,7 @@ impl Encoding {
                 });
                 return mosaic.ok_or_else(|| {
                     Error::unsupported(format!(
-                        "the encoding {word:?}; OpenDR reads mono8/16, rgb8/16, bgr8/16, rgba8/16, bgra8/16, \
+                        "unsupported encoding {word:?}; OpenDR reads mono8/16, rgb8/16, bgr8/16, rgba8/16, bgra8/16, \
                          8UC1/3/4, 16UC1/3/4, 32FC1/3/4, bayer_*8/16, yuv422, uyvy, yuyv and yuv422_yuy2"
                     ))
                 });
@@ -60,7 +60,7 @@ impl Encoding {
         })
     }
 
-    /// The word for samples of a picture, which lie pixel by pixel.
+    /// Returns the name of the encoding of interleaved samples.
     pub(super) fn word(pixels: &Pixels, format: PixelFormat) -> Result<&'static str> {
         use PixelFormat::{Bgr, Bgra, Grey, Rgb, Rgba};
         Ok(match (pixels, format) {
@@ -78,12 +78,12 @@ impl Encoding {
             (Pixels::F32(_), Rgb) => "32FC3",
             (Pixels::F32(_), Rgba) => "32FC4",
             (Pixels::F32(_), Bgr | Bgra) => {
-                return Err(Error::invalid_input("ROS has no floats with blue first; give red first"));
+                return Err(Error::invalid_input("ROS has no encoding for floats in BGR order; use RGB"));
             }
         })
     }
 
-    /// Bytes that a row of `width` pixels takes at least.
+    /// Returns the minimum number of bytes of a row of `width` pixels.
     pub(super) fn row_bytes(self, width: usize) -> Option<usize> {
         match self {
             Self::U8(format) => width.checked_mul(format.channels()),

@@ -1,4 +1,4 @@
-//! Pictures: `sensor_msgs/Image` and `sensor_msgs/CompressedImage`.
+//! Images: `sensor_msgs/Image` and `sensor_msgs/CompressedImage`.
 
 mod compressed;
 mod depth_compressed;

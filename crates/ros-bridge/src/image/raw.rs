@@ -6,10 +6,10 @@ use opendr_messages::sensor_msgs;
 use opendr_vision::{rgb_from_bayer, rgb_from_yuv422};
 
 use super::encoding::Encoding;
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
-/// Samples keep their type and their order; rows lose their padding. Mosaics and YUV become RGB of 8 bits.
-impl Bridged<sensor_msgs::Image> for Image {
+/// Samples keep type and order; padding of rows is removed. Bayer mosaics and YUV become 8-bit RGB.
+impl FromToMessage<sensor_msgs::Image> for Image {
     fn from_message(message: sensor_msgs::Image, _: &RosBridge) -> Result<Self> {
         let header = header_from_message(&message.header);
         let encoding = Encoding::parse(&message.encoding)?;
@@ -30,7 +30,7 @@ impl Bridged<sensor_msgs::Image> for Image {
                 Self::from_rgb8(rgb_from_bayer(&samples, width, height, pattern)?, width, height)?
             }
             Encoding::Bayer(pattern, _) => {
-                // The high bytes: what a picture of 8 bits shows.
+                // The high bytes are the 8-bit image.
                 let high = |bytes: [u8; 2]| if message.is_bigendian == 0 { bytes[1] } else { bytes[0] };
                 let samples: Vec<u8> = rows.numbers(&message.data, high);
                 Self::from_rgb8(rgb_from_bayer(&samples, width, height, pattern)?, width, height)?
@@ -64,7 +64,7 @@ impl Bridged<sensor_msgs::Image> for Image {
     }
 }
 
-/// The samples pixel by pixel, each as bytes.
+/// Returns the interleaved samples as bytes.
 fn bytes<T: Copy, const N: usize>(image: &Image, samples: &[T], write: impl Fn(T) -> [u8; N]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(samples.len() * N);
     match image.layout() {
@@ -80,11 +80,14 @@ fn bytes<T: Copy, const N: usize>(image: &Image, samples: &[T], write: impl Fn(T
 }
 
 fn side(length: usize) -> Result<u32> {
-    u32::try_from(length)
-        .map_err(|_| Error::invalid_input(format!("a side of {length}; ROS holds up to 4,294,967,295")))
+    u32::try_from(length).map_err(|_| {
+        Error::invalid_input(format!(
+            "the image has a side of {length} pixels; ROS allows at most 4,294,967,295"
+        ))
+    })
 }
 
-/// Where the rows lie, checked against what was sent.
+/// Layout of the rows, checked against the size of the data.
 struct Rows {
     width: usize,
     height: usize,
@@ -103,7 +106,7 @@ impl Rows {
             || needed.is_none_or(|needed| needed > message.data.len())
         {
             return Err(Error::format(format!(
-                "a {} picture of {width}x{height} pixels needs rows of {row_bytes} bytes; the message has {} bytes in \
+                "a {} image of {width}x{height} pixels needs rows of {row_bytes} bytes; the message has {} bytes in \
                  rows of {step}",
                 message.encoding,
                 message.data.len()
@@ -112,7 +115,7 @@ impl Rows {
         Ok(Self { width, height, step, row_bytes })
     }
 
-    /// The rows without what lies between them; the same memory when nothing does.
+    /// Returns the rows without padding; reuses the memory if there is none.
     fn bytes(&self, mut data: Vec<u8>) -> Vec<u8> {
         let wanted = self.row_bytes * self.height;
         if self.step > self.row_bytes {

@@ -1,4 +1,4 @@
-//! Messages as drivers and other people's nodes write them, and as nobody should.
+//! Messages in the forms of drivers and other nodes, and malformed messages.
 
 use opendr_engine::ErrorKind;
 use opendr_engine::data::{Calibration, Image, PixelFormat, Pixels, PointCloud, Timeseries};
@@ -25,7 +25,7 @@ fn rows_lose_their_padding() {
 }
 
 #[test]
-fn colours_by_every_word() {
+fn every_encoding_is_read() {
     let read = |encoding: &str, data: Vec<u8>, step| -> Image {
         bridge().from_message(picture(encoding, 2, 2, step, data)).unwrap()
     };
@@ -40,7 +40,7 @@ fn colours_by_every_word() {
 }
 
 #[test]
-fn broken_pictures_are_told() {
+fn broken_images_are_refused() {
     let broken = [
         picture("rgb8", 2, 2, 6, vec![0; 11]),
         picture("rgb8", 2, 2, 5, vec![0; 12]),
@@ -67,7 +67,7 @@ fn broken_pictures_are_told() {
 }
 
 #[test]
-fn depth_that_is_sent_inverted() {
+fn inverse_depth_is_read() {
     let samples =
         Image::new(vec![0_u16, 100, 200], 3, 1, PixelFormat::Grey, opendr_engine::data::Layout::Hwc);
     let png = opendr_vision::encode_depth_png(&samples.unwrap()).unwrap();
@@ -166,7 +166,7 @@ fn the_best_hypothesis_and_turned_boxes() {
 }
 
 #[test]
-fn numbers_that_are_none() {
+fn nan_is_handled() {
     let info = sensor_msgs::CameraInfo { p: [f64::NAN; 12], ..Default::default() };
     let error = bridge().from_message::<Calibration, _>(info).unwrap_err().to_string();
     assert!(error.contains("NaN"), "{error}");

@@ -1,4 +1,4 @@
-//! Every type through every message that stands for it, as bytes of ROS 1 and ROS 2, and back.
+//! Round trips of every type through each of its messages, as bytes of ROS 1 and ROS 2.
 
 use opendr_engine::data::{
     Audio, Calibration, Image, ImageWithDetections, Layout, Observation, PixelFormat, PointCloud,
@@ -11,7 +11,7 @@ use opendr_engine::target::{
     WhisperSegment, WhisperTranscription,
 };
 use opendr_engine::{Header, Value, ValueType};
-use opendr_messages::{Message, MessageType, Wire};
+use opendr_messages::{Message, MessageType, WireFormat};
 use opendr_ros_bridge::{RosBridge, message_types};
 
 fn header() -> Header {
@@ -75,7 +75,7 @@ fn poses() -> PoseList {
     ])
 }
 
-/// Values of a type that every message but the first may simplify.
+/// Test values of a type; messages other than the first may simplify them.
 fn values(value_type: ValueType) -> Vec<Value> {
     let segment = WhisperSegment { id: 3, text: "ja".into(), tokens: vec![1, -2], ..Default::default() };
     let mut value: Value = match value_type {
@@ -157,7 +157,7 @@ fn values(value_type: ValueType) -> Vec<Value> {
     vec![value]
 }
 
-/// Turns that a quaternion cannot keep to the last bit, and the angle of view, which is computed.
+/// Rounds rotations, which a quaternion does not keep exactly, and the observation angle, which is computed.
 fn rounded(mut value: Value) -> Value {
     let round = |found: &mut BoundingBox3D| {
         found.rotation_y = (found.rotation_y * 1e6).round() / 1e6;
@@ -180,7 +180,7 @@ fn every_type_survives_its_first_message() {
         let message_type = message_types(value_type).next().unwrap();
         for value in values(value_type) {
             let message = bridge.message_from_value(value.as_value_ref(), message_type).unwrap();
-            for wire in [Wire::Cdr, Wire::Ros1] {
+            for wire in [WireFormat::Cdr, WireFormat::Ros1] {
                 let bytes = message.to_bytes(wire).unwrap();
                 let read = Message::from_bytes(message_type, wire, &bytes).unwrap();
                 assert_eq!(read.to_bytes(wire).unwrap(), bytes, "{} {wire:?}", value_type.name());
@@ -192,7 +192,7 @@ fn every_type_survives_its_first_message() {
 }
 
 #[test]
-fn other_messages_carry_what_they_can() {
+fn other_messages_keep_their_fields() {
     let bridge = RosBridge { jpeg_quality: 100, ..RosBridge::default() };
     let pass = |value: &Value, message_type| {
         let message = bridge.message_from_value(value.as_value_ref(), message_type).unwrap();
@@ -215,7 +215,7 @@ fn other_messages_carry_what_they_can() {
 }
 
 #[test]
-fn classes_go_by_name_or_number() {
+fn classes_are_written_by_name_or_index() {
     let mut boxes = boxes();
     boxes.classes = Classes::from_iter(["person", "bicycle"]);
     let read = |bridge: RosBridge| -> BoundingBoxList {

@@ -1,4 +1,4 @@
-//! The picture with what was found in it.
+//! Publication of annotated images.
 
 use std::sync::Arc;
 
@@ -11,18 +11,18 @@ use opendr_vision::draw::{Style, draw};
 use super::inbox::Set;
 use crate::{Graph, Publisher, Qos};
 
-/// Compressed, since DDS loses most of large messages between two machines' default settings; raw for who asks for it.
+/// Topics of annotated images: compressed, since DDS with default settings loses most large messages between machines, and raw.
 pub(super) struct Annotated {
     port: usize,
     compressed: Arc<dyn Publisher>,
     raw: Arc<dyn Publisher>,
 }
 
-/// Who draws does not want to wait for who looks.
+/// Quality of service with a queue of one, so that the node never waits for a viewer.
 const QOS: Qos = Qos { reliable: true, latched: false, depth: 1 };
 
 impl Annotated {
-    /// The topics of a learner that takes a picture and finds something that can be drawn.
+    /// Advertises the topics for a learner with an image input and an output that can be drawn.
     pub(super) fn new(graph: &mut dyn Graph, entry: &Entry) -> Result<Option<Self>> {
         let drawn = |value_type| {
             matches!(
@@ -44,7 +44,7 @@ impl Annotated {
         Ok(Some(Self { port, compressed, raw }))
     }
 
-    /// Draws and sends, where somebody looks.
+    /// Draws and publishes the image, if there are subscribers.
     pub(super) fn publish(&self, set: &Set, outputs: &Outputs, bridge: &RosBridge) -> Result<()> {
         let listened = [&self.compressed, &self.raw].map(|publisher| publisher.subscribers() > 0);
         let Some(Some(frame)) = set.get(self.port) else { return Ok(()) };

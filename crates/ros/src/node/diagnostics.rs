@@ -1,4 +1,4 @@
-//! How the node is doing, once a second on `/diagnostics`.
+//! Diagnostics of the node, once per second on `/diagnostics`.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -20,13 +20,13 @@ pub(super) struct Diagnostics {
     node: String,
     hardware: String,
     since: Instant,
-    /// Of the period that runs.
+    /// Processing times of the current period, in milliseconds.
     processing_ms: Vec<f64>,
     latency_ms: Vec<f64>,
     late: u64,
     errors: u64,
     last_error: Option<String>,
-    /// Of all periods.
+    /// Number of inferences of all periods.
     processed: u64,
     failed: u64,
 }
@@ -61,7 +61,7 @@ impl Diagnostics {
         self.late += 1;
     }
 
-    /// Whether it is the first error of its text in this period: worth a line in the log.
+    /// Adds an error and returns whether its text is new in this period, so that it should be logged.
     pub(super) fn add_error(&mut self, error: &str) -> bool {
         self.errors += 1;
         self.failed += 1;
@@ -72,7 +72,7 @@ impl Diagnostics {
         new
     }
 
-    /// Tells how it was when a second is over.
+    /// Publishes the diagnostics when a second is over.
     pub(super) fn tick(&mut self, counts: Counts) -> Result<()> {
         if self.since.elapsed() < PERIOD {
             return Ok(());
@@ -86,7 +86,7 @@ impl Diagnostics {
             (None, 0, _) => (DiagnosticStatus::OK, "running".to_owned()),
         };
         let values = [
-            ("frames a second", format!("{:.1}", self.processing_ms.len() as f64 / seconds)),
+            ("frames per second", format!("{:.1}", self.processing_ms.len() as f64 / seconds)),
             ("processing p50 (ms)", percentile(&mut self.processing_ms, 0.5)),
             ("processing p99 (ms)", percentile(&mut self.processing_ms, 0.99)),
             ("latency p50 (ms)", percentile(&mut self.latency_ms, 0.5)),

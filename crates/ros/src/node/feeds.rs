@@ -1,4 +1,4 @@
-//! Topics that several learners of a process listen to: received and decoded once.
+//! Subscriptions shared by the learners of a process: each message is received and decoded once.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -12,14 +12,14 @@ use crate::Graph;
 
 type Listeners = Arc<Mutex<Vec<(Arc<Inbox>, usize)>>>;
 
-/// The topics of a process by their absolute name, message and the type that is made of it.
+/// Shared subscriptions of a process, by absolute name, message type and value type.
 #[derive(Default)]
-pub struct Feeds {
+pub struct SharedSubscriptions {
     feeds: Vec<((String, MessageType, ValueType), Listeners)>,
 }
 
-impl Feeds {
-    /// Hands the messages of a topic to the port `port` of `inbox`, too.
+impl SharedSubscriptions {
+    /// Delivers the messages of a topic also to the port `port` of `inbox`.
     pub(super) fn subscribe(
         &mut self,
         graph: &mut dyn Graph,

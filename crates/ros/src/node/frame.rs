@@ -1,4 +1,4 @@
-//! One message on its way to the learners that share it.
+//! One received message, shared by several learners.
 
 use std::sync::{Mutex, OnceLock, PoisonError};
 
@@ -6,17 +6,17 @@ use opendr_engine::{Error, Result, Value, ValueType};
 use opendr_messages::Message;
 use opendr_ros_bridge::{RosBridge, nanoseconds, time};
 
-/// A message that becomes a value when the first asks for it.
+/// A message that is converted to a value at the first use.
 pub(crate) struct Frame {
     message: Mutex<Option<Result<Message>>>,
     value_type: ValueType,
     value: OnceLock<Result<Value>>,
-    /// When the datum was taken, else when it came; nanoseconds of the ROS's clock.
+    /// Stamp of the datum, else the time of arrival, in nanoseconds of the ROS clock.
     pub(crate) stamp_ns: i64,
 }
 
 impl Frame {
-    /// A message that came at `now_ns`; one without a stamp gets that.
+    /// Creates a frame of a message that arrived at `now_ns`, which is the stamp of a message without one.
     pub(crate) fn new(mut message: Result<Message>, value_type: ValueType, now_ns: i64) -> Self {
         let mut stamp_ns = now_ns;
         if let Ok(message) = &mut message
@@ -31,12 +31,12 @@ impl Frame {
         Self { message, value_type, value: OnceLock::new(), stamp_ns }
     }
 
-    /// The value: read once, whoever asks.
+    /// Returns the value, which is converted once.
     pub(crate) fn value(&self) -> Result<&Value> {
         let read = || {
             let message = self.message.lock().unwrap_or_else(PoisonError::into_inner).take();
             let message =
-                message.unwrap_or_else(|| Err(Error::internal("a message that was read before")))?;
+                message.unwrap_or_else(|| Err(Error::internal("the message was already converted")))?;
             let stamped = message.header().is_some();
             let mut value = RosBridge::default().value_from_message(self.value_type, message)?;
             if !stamped {

@@ -1,4 +1,4 @@
-//! Messages that wait for a learner: never a queue that grows, and of pictures only the newest.
+//! Bounded queue of messages for a learner; of images only the newest is kept.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
@@ -9,29 +9,29 @@ use opendr_engine::learner::Entry;
 
 use super::frame::Frame;
 
-/// Messages that are kept for each port while others of the set are missing.
+/// Number of messages kept per port while others of the set are missing.
 const DEPTH: usize = 32;
-/// Pieces of a stream that are kept for a learner that is slow for a while.
+/// Number of chunks of a stream kept for a temporarily slow learner.
 const STREAM_DEPTH: usize = 512;
 
-/// Whether every message of a type counts, as of sound and signals; of pictures and clouds only the newest does.
+/// Returns whether every message of a type is processed, as of audio and signals; of images and point clouds only the newest is.
 pub(super) const fn is_streamed(value_type: ValueType) -> bool {
     matches!(value_type, ValueType::Audio | ValueType::Timeseries)
 }
 
-/// One frame for each port that has one.
+/// One frame per port; `None` for a port without one.
 pub(crate) type Set = Vec<Option<Arc<Frame>>>;
 
-/// How a port takes its messages.
+/// Consumption of messages by a port.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// The newest that fits the others.
+    /// The newest message that matches the others.
     Newest,
-    /// One after the other.
+    /// Every message in order.
     Stream,
-    /// Where there is one that fits.
+    /// A matching message, if there is one.
     Optional,
-    /// Once a stream.
+    /// One message per stream.
     Init,
 }
 
@@ -46,7 +46,7 @@ struct State {
     counts: Counts,
 }
 
-/// What came, and what was left out because newer came.
+/// Numbers of received messages and of those skipped for newer ones.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct Counts {
     pub(crate) received: u64,
@@ -96,7 +96,7 @@ impl Inbox {
         self.arrived.notify_all();
     }
 
-    /// The next set, whose stamps lie within `slop_ns`; `None` when there is none in time.
+    /// Returns the next set whose stamps differ by at most `slop_ns`; `None` after `timeout`.
     pub(crate) fn take(&self, slop_ns: i64, timeout: Duration) -> Option<Set> {
         let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         let mut set = None;
@@ -128,7 +128,7 @@ impl Inbox {
                 set.push(None);
                 continue;
             };
-            // What is older than what was taken is of no use any more.
+            // Messages older than the taken ones are dropped.
             let older = queue.drain(..at).count();
             if !matches!(self.kinds.get(port), Some(Kind::Optional)) {
                 state.counts.dropped += older as u64;
@@ -138,7 +138,7 @@ impl Inbox {
         Some(set)
     }
 
-    /// The places of a set around one message of the leading port.
+    /// Returns the queue positions of a set around one message of the leading port.
     fn set_around(&self, state: &State, lead: usize, at: usize, slop_ns: i64) -> Option<Vec<Option<usize>>> {
         let stamp = state.queues.get(lead)?.get(at)?.stamp_ns;
         let apart = |frame: &Arc<Frame>| frame.stamp_ns.saturating_sub(stamp).saturating_abs();
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn of_pictures_the_newest_counts() {
+    fn newest_image_is_used() {
         let inbox = Inbox::of(vec![Kind::Newest]);
         assert_eq!(stamps(&inbox), None);
         (1..=100).for_each(|stamp| inbox.put(0, frame(stamp)));
@@ -184,14 +184,14 @@ mod tests {
     }
 
     #[test]
-    fn pieces_come_one_after_the_other() {
+    fn chunks_are_processed_in_order() {
         let inbox = Inbox::of(vec![Kind::Stream]);
         (1..=3).for_each(|stamp| inbox.put(0, frame(stamp)));
         assert_eq!([stamps(&inbox), stamps(&inbox)], [Some(vec![Some(1)]), Some(vec![Some(2)])]);
     }
 
     #[test]
-    fn sets_belong_together() {
+    fn sets_are_matched_by_stamp() {
         let inbox = Inbox::of(vec![Kind::Newest, Kind::Newest, Kind::Optional]);
         for stamp in [100, 200, 300] {
             inbox.put(0, frame(stamp));

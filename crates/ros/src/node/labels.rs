@@ -1,4 +1,4 @@
-//! What class numbers mean, told to everybody who asks.
+//! Publication of class names as `vision_msgs/LabelInfo`.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -10,19 +10,19 @@ use opendr_ros_bridge::label_info;
 
 use crate::{Graph, Publisher, Qos};
 
-/// A latched message that is also sent again when somebody new listens: RustDDS keeps nothing for who comes late.
+/// A latched message that is also sent again to new subscribers, since RustDDS keeps no message for late ones.
 pub(super) struct Labels {
     publisher: Arc<dyn Publisher>,
     info: vision_msgs::LabelInfo,
     listeners: usize,
-    /// When it is sent once more, for who had not heard of this node by then.
+    /// Time of one repetition, for subscribers that discover the node late.
     again: Option<Instant>,
 }
 
 const SECOND_TIME: Duration = Duration::from_secs(1);
 
 impl Labels {
-    /// The topic, where there are names, and a message in this ROS.
+    /// Advertises the topic, if there are class names and this version of ROS has the message.
     pub(super) fn new(graph: &mut dyn Graph, classes: &Classes) -> Result<Option<Self>> {
         if classes.is_empty() {
             return Ok(None);
@@ -33,7 +33,7 @@ impl Labels {
                 publisher.publish(info.clone().into())?;
                 Ok(Some(Self { publisher, info, listeners: 0, again: None }))
             }
-            // ROS 1 has no such message.
+            // ROS 1 does not have the message.
             Err(error) if error.kind() == ErrorKind::Unsupported => Ok(None),
             Err(error) => Err(error),
         }

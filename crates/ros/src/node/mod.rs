@@ -1,4 +1,4 @@
-//! A learner as a node.
+//! Learners as nodes.
 
 mod annotated;
 mod diagnostics;
@@ -11,7 +11,7 @@ mod params;
 mod topics;
 mod worker;
 
-pub use feeds::Feeds;
+pub use feeds::SharedSubscriptions;
 pub use params::NodeParams;
 pub use topics::{NodeOptions, TopicOptions, default_topics};
 
@@ -27,24 +27,24 @@ use crate::{Graph, ParameterTable};
 use inbox::Inbox;
 use worker::Worker;
 
-/// A learner that takes its inputs from topics and answers on others.
+/// A learner as a node: it subscribes to its inputs and publishes its outputs.
 pub struct LearnerNode {
     worker: Worker,
 }
 
 impl LearnerNode {
-    /// Declares topics, parameters and services of a loaded learner on `graph`, which is started after that. Nodes of one
-    /// process share `feeds`, so that a picture is received and decoded once for all of them.
+    /// Declares topics, parameters and services of a loaded learner on `graph`, which starts afterwards. Nodes of one process share
+    /// `feeds`, so that each image is received and decoded once.
     ///
     /// # Errors
-    /// `InvalidInput` for a topic that is no name or a message that does not stand for its type; `NotFound` for a learner
-    /// without a model; `Io` when the network cannot be used.
+    /// `InvalidInput` for an invalid topic name or a message type that does not match; `NotFound` for a learner without a model;
+    /// `Io` when the network cannot be used.
     pub fn new(
         graph: &mut dyn Graph,
         entry: &'static Entry,
         learner: Box<dyn AnyLearner>,
         options: NodeOptions,
-        feeds: &mut Feeds,
+        feeds: &mut SharedSubscriptions,
     ) -> Result<Self> {
         options.check(entry)?;
         let inbox = Arc::new(Inbox::new(entry));
@@ -61,18 +61,18 @@ impl LearnerNode {
         Ok(Self { worker })
     }
 
-    /// Whether the node works: while it is false, inputs are left out and nothing is sent.
+    /// Returns the flag of the active node; while it is false, inputs are skipped and nothing is published.
     pub fn active(&self) -> Arc<AtomicBool> {
         self.worker.active()
     }
 
-    /// Works until `stop` says so.
+    /// Runs until `stop` returns true.
     pub fn run(self, stop: &dyn Fn() -> bool) {
         self.worker.run(stop);
     }
 }
 
-/// The learner's parameters and the node's own in one table.
+/// Declares the parameters of the learner and of the node in one table.
 fn declare_parameters(
     graph: &mut dyn Graph,
     entry: &'static Entry,
@@ -89,7 +89,7 @@ fn declare_parameters(
     for (index, field) in NodeParams::FIELDS.iter().enumerate() {
         if entry.params.iter().any(|other| other.name == field.name) {
             return Err(Error::internal(format!(
-                "{} has a parameter {} of nodes",
+                "{} has a parameter {}, which is reserved for nodes",
                 entry.spec.name, field.name
             )));
         }

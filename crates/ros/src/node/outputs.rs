@@ -1,4 +1,4 @@
-//! What a learner answers, on its way to topics.
+//! Publication of a learner's outputs.
 
 use std::sync::Arc;
 
@@ -10,14 +10,14 @@ use opendr_ros_bridge::{RosBridge, view_action};
 use super::topics::TopicOptions;
 use crate::{Graph, Publisher, Qos};
 
-/// One output with its topic.
+/// Topic of one output.
 struct OutputTopic {
     name: String,
     message_type: MessageType,
     publisher: Arc<dyn Publisher>,
 }
 
-/// The topics that a node answers on.
+/// Topics of a node's outputs.
 pub(super) struct OutputTopics {
     topics: Vec<OutputTopic>,
     view_action: Arc<dyn Publisher>,
@@ -35,7 +35,7 @@ impl OutputTopics {
         Ok(Self { topics: own, view_action })
     }
 
-    /// Sends every output that has a topic.
+    /// Publishes every output that has a topic.
     pub(super) fn publish(&self, outputs: &Outputs, bridge: &RosBridge) -> Result<()> {
         for topic in &self.topics {
             let Some(value) = outputs.get(&topic.name) else { continue };
@@ -50,12 +50,12 @@ impl OutputTopics {
         Ok(())
     }
 
-    /// Whether the node moves something: one that falls silent must stop it.
+    /// Returns whether the node commands velocities, which it must set to zero when inputs stop.
     pub(super) fn command_velocity(&self) -> bool {
         self.velocities().next().is_some()
     }
 
-    /// Commands all velocities to be 0.
+    /// Commands all velocities to zero.
     pub(super) fn stop(&self, now_ns: i64) -> Result<()> {
         for topic in self.velocities() {
             let mut still = opendr_engine::target::RlTarget::from(vec![0.0; 6]);

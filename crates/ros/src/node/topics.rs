@@ -1,4 +1,4 @@
-//! Which topics a node has: from the tables of its learner.
+//! Topics of a node, from the ports and outputs of its learner.
 
 use opendr_engine::learner::Entry;
 use opendr_engine::{Error, Result, ValueType};
@@ -8,32 +8,32 @@ use opendr_ros_bridge::message_types;
 use super::inbox::is_streamed;
 use crate::{NodeParams, Qos};
 
-/// A topic for a port or an output.
+/// Topic of a port or an output.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TopicOptions {
-    /// The port or output.
+    /// Name of the port or output.
     pub name: String,
-    /// The topic: `/absolute`, `relative` to the namespace or `~/private` to the node.
+    /// Name of the topic: `/absolute`, `relative` to the namespace or `~/private` to the node.
     pub topic: String,
-    /// The message.
+    /// Message type.
     pub message_type: MessageType,
     /// Quality of service.
     pub qos: Qos,
 }
 
-/// What a node subscribes to, publishes, and how it behaves.
+/// Topics and parameters of a node.
 #[derive(Debug, Clone, Default)]
 pub struct NodeOptions {
-    /// A topic for each port; a port without one gets nothing.
+    /// Topics of the ports; a port without one gets no input.
     pub inputs: Vec<TopicOptions>,
-    /// A topic for each output; an output without one is not sent.
+    /// Topics of the outputs; an output without one is not published.
     pub outputs: Vec<TopicOptions>,
-    /// The node's own parameters.
+    /// Parameters of the node.
     pub params: NodeParams,
 }
 
-/// The usual topics of a learner: `image_raw` for its picture, the port's name for other inputs, `~/OUTPUT` for what it
-/// answers.
+/// Returns the default topics of a learner: `image_raw` for its image, the port's name for other inputs, `~/OUTPUT` for its
+/// outputs.
 pub fn default_topics(entry: &Entry) -> NodeOptions {
     let usual = |name: &'static str, value_type, topic: String, qos| {
         let message_type = message_types(value_type).next()?;
@@ -66,7 +66,7 @@ impl NodeOptions {
             }
             let known: Vec<_> = message_types(value_type).map(MessageType::ros2_name).collect();
             Err(Error::invalid_input(format!(
-                "{} is no message for {} ({}); there are {}",
+                "{} is not a message for {} ({}); there are {}",
                 topic.message_type.ros2_name(),
                 topic.name,
                 value_type.name(),

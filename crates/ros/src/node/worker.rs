@@ -1,4 +1,4 @@
-//! The loop of a node: take the newest inputs, infer, answer.
+//! Loop of a node: takes the newest inputs, runs inference, publishes the outputs.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -17,7 +17,7 @@ use super::outputs::OutputTopics;
 use super::{NodeOptions, NodeParams};
 use crate::{Clock, Graph, Log, Publisher, Qos, Severity};
 
-/// How long the loop waits for inputs before it looks at everything else.
+/// Maximum wait of the loop for inputs before it handles resets, diagnostics and the stop.
 const PATIENCE: Duration = Duration::from_millis(50);
 
 pub(super) struct Worker {
@@ -35,7 +35,7 @@ pub(super) struct Worker {
     latency: Arc<dyn Publisher>,
     clock: Clock,
     log: Log,
-    /// When the last input was answered; `None` before the first and after a stop.
+    /// Time of the last processed input; `None` before the first and after velocities were set to zero.
     moving_since: Option<Instant>,
 }
 
@@ -92,17 +92,17 @@ impl Worker {
                 None => self.idle(&params),
             };
             let labelled = self.labels.as_mut().map_or(Ok(()), Labels::tick);
-            for told in [done, labelled, self.diagnostics.tick(self.inbox.counts())] {
-                if let Err(error) = told {
-                    self.tell(&error);
+            for result in [done, labelled, self.diagnostics.tick(self.inbox.counts())] {
+                if let Err(error) = result {
+                    self.report(&error);
                 }
             }
         }
-        // Nothing goes on moving when the node is stopped.
+        // Velocities are set to zero when the node stops.
         if self.moving_since.is_some()
             && let Err(error) = self.outputs.stop((self.clock)())
         {
-            self.tell(&error);
+            self.report(&error);
         }
     }
 
@@ -138,7 +138,7 @@ impl Worker {
         if params.deadline_ms > 0.0 && processing_ms > params.deadline_ms {
             self.diagnostics.add_late();
             let deadline = params.deadline_ms;
-            self.tell(&Error::new(
+            self.report(&Error::new(
                 opendr_engine::ErrorKind::Device,
                 format!("an inference took {processing_ms:.1} ms, longer than the deadline of {deadline} ms"),
             ));
@@ -151,7 +151,7 @@ impl Worker {
         Ok(())
     }
 
-    /// Not active: what moves is stopped, and what comes later begins a new stream.
+    /// Handles the inactive state: sets velocities to zero; the next input begins a new stream.
     fn rest(&mut self) -> Result<()> {
         self.stream.reset();
         if self.moving_since.take().is_some() {
@@ -160,7 +160,7 @@ impl Worker {
         Ok(())
     }
 
-    /// No input: what moves is stopped when that lasts.
+    /// Handles a time without input: sets velocities to zero after the timeout.
     fn idle(&mut self, params: &NodeParams) -> Result<()> {
         let timeout = Duration::from_secs_f64(params.timeout_ms * 1e-3);
         if params.timeout_ms > 0.0 && self.moving_since.is_some_and(|since| since.elapsed() > timeout) {
@@ -174,8 +174,8 @@ impl Worker {
         Ok(())
     }
 
-    /// Tells an error, once a second for each.
-    fn tell(&mut self, error: &Error) {
+    /// Logs an error, once per second for each text.
+    fn report(&mut self, error: &Error) {
         let text = error.to_string();
         if self.diagnostics.add_error(&text) {
             (self.log)(Severity::Warn, &text);

@@ -1,4 +1,4 @@
-//! Managed nodes: others (a bring-up, Nav2's lifecycle manager) say when a node works (`lifecycle_msgs`, the states of
+//! Lifecycle nodes, whose state a manager controls, such as that of Nav2 (`lifecycle_msgs`, states of
 //! <https://design.ros2.org/articles/node_lifecycle.html>).
 
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,7 +18,7 @@ use super::typed_services::TypedServices;
 use crate::clock::system_time_ns;
 use crate::{Publisher, Qos};
 
-/// A transition: its number, its label, from which state it goes to which.
+/// A transition: id, label, start state and goal state.
 type Row = (u8, &'static str, u8, u8);
 
 const UNCONFIGURED: u8 = State::PRIMARY_STATE_UNCONFIGURED;
@@ -39,7 +39,7 @@ const TRANSITIONS: [Row; 7] = [
     (Transition::TRANSITION_ACTIVE_SHUTDOWN, "shutdown", ACTIVE, FINALIZED),
 ];
 
-/// The state, and what follows from it.
+/// State machine of a node.
 struct Machine {
     state: Mutex<u8>,
     active: Arc<AtomicBool>,
@@ -47,7 +47,7 @@ struct Machine {
     events: Arc<dyn Publisher>,
 }
 
-/// Serves the states of `node`, which begins unconfigured: `active` says whether it works, `over` that it has been shut down.
+/// Serves the lifecycle of `node`, which starts unconfigured. Sets `active` in the active state and `over` after a shutdown.
 pub(super) fn start(
     node: &mut impl TypedServices,
     active: Arc<AtomicBool>,
@@ -83,7 +83,7 @@ impl Machine {
         *self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Goes the way that is asked for, by label or number; whether there is one from here.
+    /// Performs the requested transition, by label or id; returns whether the current state has it.
     fn change(&self, request: &ChangeStateRequest) -> bool {
         let asked = &request.transition;
         let mut now = self.state.lock().unwrap_or_else(PoisonError::into_inner);
@@ -100,7 +100,7 @@ impl Machine {
             start_state: state(*from),
             goal_state: state(*to),
         };
-        // Who follows events may ask.
+        // Subscribers that miss the event can query the state.
         let _ = self.events.publish(event.into());
         true
     }

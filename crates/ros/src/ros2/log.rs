@@ -9,7 +9,7 @@ use opendr_ros_bridge::time;
 use crate::clock::system_time_ns;
 use crate::{Graph, Log, Qos, Severity};
 
-/// As rclcpp offers `/rosout`.
+/// Quality of service of `/rosout` in rclcpp.
 const QOS: Qos = Qos { reliable: true, latched: true, depth: 1000 };
 
 pub(super) fn start(node: &mut impl Graph) -> Result<Log> {
@@ -30,7 +30,7 @@ pub(super) fn start(node: &mut impl Graph) -> Result<Log> {
             msg: text.to_owned(),
             ..Default::default()
         };
-        // The terminal has it.
+        // The line is already on the terminal.
         let _ = publisher.publish(log.into());
     }))
 }

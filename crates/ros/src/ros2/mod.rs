@@ -1,36 +1,36 @@
 //! ROS 2, over DDS or Zenoh.
 
 mod dds;
+mod error;
 mod lifecycle;
 mod log;
 mod parameter_services;
+mod ros2_node;
 mod typed_services;
 #[cfg(feature = "zenoh")]
 mod zenoh;
 
-use std::fmt::Debug;
 use std::net::IpAddr;
 use std::str::FromStr;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
-use opendr_engine::{Error, ErrorKind, Result};
+use opendr_engine::{Error, Result};
 
-use crate::{Graph, Names};
+use crate::Names;
+pub use ros2_node::Ros2Node;
 
-/// What carries the messages.
+/// Middleware of ROS 2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Middleware {
-    /// As Fast DDS and Cyclone DDS speak it.
+    /// DDS, compatible with Fast DDS and Cyclone DDS.
     Dds,
-    /// As `rmw_zenoh_cpp` speaks it; in builds with the feature `zenoh`.
+    /// Zenoh, compatible with `rmw_zenoh_cpp`; needs the feature `zenoh`.
     Zenoh,
 }
 
 impl FromStr for Middleware {
     type Err = Error;
 
-    /// Of `dds`, `zenoh`, or the name of an RMW implementation.
+    /// Parses `dds`, `zenoh`, or the name of an RMW implementation.
     fn from_str(text: &str) -> Result<Self> {
         match text {
             "zenoh" | "rmw_zenoh_cpp" => Ok(Self::Zenoh),
@@ -40,24 +40,24 @@ impl FromStr for Middleware {
             | "rmw_cyclonedds_cpp"
             | "rmw_connextdds" => Ok(Self::Dds),
             other => Err(Error::invalid_param(format!(
-                "the middleware {other:?}; give dds, zenoh, or the name of an RMW implementation"
+                "unknown middleware {other:?}; give dds, zenoh, or the name of an RMW implementation"
             ))),
         }
     }
 }
 
-/// How to take part in ROS 2.
+/// Options for joining ROS 2.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Ros2Options {
-    /// What carries the messages; as `RMW_IMPLEMENTATION` says, or DDS, when it is not given.
+    /// Middleware (default: that of `RMW_IMPLEMENTATION`, else DDS).
     pub middleware: Option<Middleware>,
-    /// The domain; `ROS_DOMAIN_ID` or 0 when it is not given.
+    /// Domain id (default: `ROS_DOMAIN_ID`, else 0).
     pub domain_id: Option<u16>,
-    /// The addresses of the networks that DDS uses; all when there is none.
+    /// Addresses of the networks that DDS uses; all if empty.
     pub networks: Vec<IpAddr>,
 }
 
-/// A participant of DDS or a session of Zenoh, which several nodes of a process share.
+/// A DDS participant or Zenoh session, shared by the nodes of a process.
 pub struct Ros2(Joined);
 
 enum Joined {
@@ -66,28 +66,12 @@ enum Joined {
     Zenoh(zenoh::Session),
 }
 
-/// A node of ROS 2.
-pub trait Ros2Node: Graph {
-    /// Has others say when the node works, by the services of a managed node: `active` is false until then. Call it before
-    /// [`Ros2Node::start`].
-    ///
-    /// # Errors
-    /// `Io` when the network cannot be used.
-    fn manage(&mut self, active: Arc<AtomicBool>) -> Result<()>;
-
-    /// Starts to answer: call it once everything is declared.
-    ///
-    /// # Errors
-    /// `Io` when the network cannot be used.
-    fn start(&mut self) -> Result<()>;
-}
-
 impl Ros2 {
     /// Joins the domain.
     ///
     /// # Errors
-    /// `InvalidParam` for a domain or a middleware that is none; `Unsupported` for a middleware that this build has not;
-    /// `Io` when the network cannot be used.
+    /// `InvalidParam` for an invalid domain or middleware; `Unsupported` for a middleware that this build does not contain; `Io`
+    /// when the network cannot be used.
     pub fn new(options: &Ros2Options) -> Result<Self> {
         let domain_id = match (options.domain_id, std::env::var("ROS_DOMAIN_ID")) {
             (Some(domain_id), _) => domain_id,
@@ -96,9 +80,11 @@ impl Ros2 {
             })?,
             _ => 0,
         };
-        // The ports of higher domains lie beyond 65,535 (DDSI-RTPS 9.6.1.1).
+        // The ports of higher domains exceed 65,535 (DDSI-RTPS 9.6.1.1).
         if domain_id > 232 {
-            return Err(Error::invalid_param(format!("the domain {domain_id}; give a number from 0 to 232")));
+            return Err(Error::invalid_param(format!(
+                "the domain id is {domain_id}; give a number from 0 to 232"
+            )));
         }
         let middleware = match (options.middleware, std::env::var("RMW_IMPLEMENTATION")) {
             (Some(middleware), _) => middleware,
@@ -113,15 +99,15 @@ impl Ros2 {
             Middleware::Zenoh => Ok(Self(Joined::Zenoh(zenoh::Session::new(domain_id)?))),
             #[cfg(not(feature = "zenoh"))]
             Middleware::Zenoh => Err(Error::unsupported(
-                "this build speaks DDS alone: build it with --features zenoh, or let RMW_IMPLEMENTATION name a DDS",
+                "this build supports only DDS: build with --features zenoh, or set RMW_IMPLEMENTATION to a DDS implementation",
             )),
         }
     }
 
-    /// A node in the domain.
+    /// Creates a node in the domain.
     ///
     /// # Errors
-    /// `InvalidInput` for names that are none; `Io` when the network cannot be used.
+    /// `InvalidInput` for invalid names; `Io` when the network cannot be used.
     pub fn node(&self, names: Names) -> Result<Box<dyn Ros2Node>> {
         match &self.0 {
             Joined::Dds(participant) => Ok(Box::new(participant.node(names)?)),
@@ -131,13 +117,10 @@ impl Ros2 {
     }
 }
 
-#[cold]
-fn network_error(what: &str, error: &dyn Debug) -> Error {
-    Error::new(ErrorKind::Io, format!("{what}: {error:?}; see whether the network can be used"))
-}
-
 #[cfg(test)]
 mod tests {
+    use opendr_engine::ErrorKind;
+
     use super::*;
 
     #[test]
@@ -155,7 +138,7 @@ mod tests {
 
     #[cfg(not(feature = "zenoh"))]
     #[test]
-    fn a_build_without_zenoh_says_so() {
+    fn a_build_without_zenoh_is_reported() {
         let options = Ros2Options { middleware: Some(Middleware::Zenoh), ..Ros2Options::default() };
         assert_eq!(Ros2::new(&options).err().map(|error| error.kind()), Some(ErrorKind::Unsupported));
     }

@@ -1,5 +1,5 @@
-//! The services by which `ros2 param`, rqt and other nodes see and set parameters: with ranges, descriptions, and read-only
-//! ones.
+//! Parameter services, by which `ros2 param`, rqt and other nodes read and set parameters, with ranges, descriptions and read-only
+//! parameters.
 
 use std::sync::atomic::AtomicI64;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -22,10 +22,10 @@ use super::typed_services::TypedServices;
 use crate::clock::{self, system_time_ns};
 use crate::{ParameterTable, Publisher, Qos};
 
-/// As rclcpp offers `/parameter_events`.
+/// Quality of service of `/parameter_events` in rclcpp.
 const EVENTS: Qos = Qos { reliable: true, latched: false, depth: 1000 };
 
-/// Serves `table`; `sim_time` follows the simulation's clock from now on where the table says so.
+/// Serves `table`; `sim_time` follows the simulated clock if the parameter is set.
 pub(super) fn start(
     node: &mut impl TypedServices,
     table: Arc<ParameterTable>,
@@ -80,7 +80,7 @@ struct Setter {
 }
 
 impl Setter {
-    /// Sets all of them or none.
+    /// Sets all parameters or none.
     fn set(&self, parameters: Vec<Parameter>) -> SetParametersResult {
         let _guard = self.one_at_a_time.lock().unwrap_or_else(PoisonError::into_inner);
         let wanted = |parameter: &Parameter| (parameter.name.clone(), param_value(&parameter.value));
@@ -97,7 +97,7 @@ impl Setter {
                     changed_parameters: parameters,
                     ..Default::default()
                 };
-                // Who follows events may ask.
+                // Subscribers that miss the event can query the parameters.
                 let _ = self.events.publish(event.into());
                 SetParametersResult { successful: true, ..Default::default() }
             }
@@ -107,7 +107,7 @@ impl Setter {
 }
 
 fn list(table: &ParameterTable, request: &ListParametersRequest) -> ListParametersResponse {
-    // No name has a dot, so a prefix is a whole name.
+    // Names contain no dot, so a prefix is a whole name.
     let wanted =
         |name: &str| request.prefixes.is_empty() || request.prefixes.iter().any(|prefix| prefix == name);
     let rows = table.rows();
@@ -120,7 +120,7 @@ fn value_of(table: &ParameterTable, name: &str) -> ParameterValue {
     table.get(name).map(|(field, value)| message_from_value(field, &value)).unwrap_or_default()
 }
 
-/// A value as its field has it: a whole number in a field of numbers is one with a fraction.
+/// Converts a value to the type of its field: an integer in a floating-point field becomes a double.
 fn message_from_value(field: &Field, value: &ParamValue) -> ParameterValue {
     let mut message = ParameterValue::default();
     match (field.kind, value) {
@@ -193,7 +193,7 @@ fn descriptor(field: &Field, value: &ParamValue) -> ParameterDescriptor {
         r#type: message_from_value(field, value).r#type,
         description: field.doc.to_owned(),
         read_only: !field.live,
-        // What may be absent changes its type.
+        // An optional parameter may change its type.
         dynamic_typing: field.optional,
         ..Default::default()
     };

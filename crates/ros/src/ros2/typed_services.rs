@@ -1,13 +1,13 @@
-//! Services of any type.
+//! Typed services.
 
 use opendr_engine::Result;
 use opendr_messages::RosService;
 
 use crate::Graph;
 
-/// What parameters and lifecycle of ROS 2 are built on, whichever network carries them.
+/// Typed services of a middleware, on which the parameter and lifecycle services are built.
 pub(super) trait TypedServices: Graph {
-    /// Answers requests, from a thread that all services of the node may share.
+    /// Serves requests, on a thread that all services of the node may share.
     fn serve_typed<S: RosService>(
         &mut self,
         service: &str,

@@ -1,4 +1,4 @@
-//! Calling a master or node.
+//! XML-RPC calls of masters and nodes.
 
 use std::io::{BufReader, Write};
 use std::time::Duration;
@@ -11,11 +11,10 @@ use crate::ParameterValue;
 use crate::connection::{Timed, connect};
 use crate::xml_rpc::{response_from_xml, xml_from_call};
 
-/// Calls `method` of the server at `uri`, which has `time` to be connected to and as much again to answer.
+/// Calls `method` of the server at `uri`; `time` limits the connection, and again the response.
 ///
 /// # Errors
-/// `Network` when the peer does not answer, `Format` when it answers something else, `Unsupported` for a
-/// fault.
+/// `Network` when the peer does not respond, `Format` for an invalid response, `Unsupported` for a fault.
 pub(crate) fn call(
     uri: &HttpUri,
     method: &str,
@@ -36,15 +35,15 @@ fn ask(uri: &HttpUri, method: &str, params: &[ParameterValue], time: Duration) -
         uri.port,
         body.len()
     );
-    (&mut &stream)
-        .write_all(request.as_bytes())
-        .map_err(|error| Error::network("the peer broke off while it was being asked").with_source(error))?;
+    (&mut &stream).write_all(request.as_bytes()).map_err(|error| {
+        Error::network("the peer closed the connection during the request").with_source(error)
+    })?;
     let response = read_message(&mut BufReader::new(Timed::new(&stream, time)))?
-        .ok_or_else(|| Error::network("the peer closed the connection without an answer"))?;
+        .ok_or_else(|| Error::network("the peer closed the connection without a response"))?;
     if response.first_line.split(' ').nth(1) != Some("200") {
-        return Err(Error::network(format!("the peer answered {:.80?}", response.first_line)));
+        return Err(Error::network(format!("the peer responded {:.80?}", response.first_line)));
     }
     response_from_xml(&response.body)?.map_err(|fault| {
-        Error::unsupported(format!("the peer told of fault {}: {:.500}", fault.code, fault.text))
+        Error::unsupported(format!("the peer returned fault {}: {:.500}", fault.code, fault.text))
     })
 }

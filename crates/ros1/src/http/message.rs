@@ -1,33 +1,32 @@
-//! Reading one HTTP request or response.
+//! Parsing of HTTP requests and responses.
 
 use std::io::{BufRead, ErrorKind, Read};
 
 use opendr_engine::{Error, Result};
 
-/// The first line and the fields of any request, in bytes.
+/// Maximum size of the first line and header fields, in bytes.
 const MOST_HEAD: u64 = 16 << 10;
 
-/// The body of an answer: all parameters of a master are a few megabytes.
+/// Maximum size of a response body in bytes; all parameters of a master are a few megabytes.
 const MOST_ANSWER: u64 = 64 << 20;
 
-/// The body of a request, which anybody may send, many at a time.
+/// Maximum size of a request body in bytes; any peer may send several at once.
 const MOST_REQUEST: u64 = 8 << 20;
 
-/// What came in.
+/// A received HTTP message.
 #[derive(Debug, PartialEq)]
 pub(crate) struct HttpMessage {
     /// `POST /RPC2 HTTP/1.1` or `HTTP/1.1 200 OK`.
     pub first_line: String,
-    /// Whether the peer goes on with this connection.
+    /// Whether the peer keeps the connection open.
     pub stays_open: bool,
     pub body: Vec<u8>,
 }
 
-/// The next message, or nothing at the connection's end. A response may leave out its length, a request may
-/// not.
+/// Reads the next message; returns `None` at the end of the connection. A response may omit its length, a request may not.
 ///
 /// # Errors
-/// `Format` for anything but HTTP or more than is allowed, `Network` when the peer breaks off or is too slow.
+/// `Format` for invalid or oversized messages, `Network` when the peer disconnects or is too slow.
 pub(crate) fn read_message(stream: &mut impl BufRead) -> Result<Option<HttpMessage>> {
     let mut head = stream.take(MOST_HEAD);
     let Some(first_line) = line(&mut head)? else { return Ok(None) };
@@ -36,36 +35,39 @@ pub(crate) fn read_message(stream: &mut impl BufRead) -> Result<Option<HttpMessa
     let mut stays_open = first_line.contains("HTTP/1.1");
     let mut length = None;
     loop {
-        let field = line(&mut head)?.ok_or_else(|| broken_off("the head"))?;
+        let field = line(&mut head)?.ok_or_else(|| disconnected("the head"))?;
         if field.is_empty() {
             break;
         }
         let (name, value) = field.split_once(':').unwrap_or((&field, ""));
         let value = value.trim();
         if name.eq_ignore_ascii_case("content-length") {
-            let told = value.parse::<u64>().ok().filter(|told| *told <= most);
-            length =
-                Some(told.ok_or_else(|| Error::format(format!("a body of {value:.40?} bytes over HTTP")))?);
+            let announced = value.parse::<u64>().ok().filter(|announced| *announced <= most);
+            length = Some(announced.ok_or_else(|| {
+                Error::format(format!("an HTTP message has a body of {value:.40?} bytes, which is too long"))
+            })?);
         } else if name.eq_ignore_ascii_case("connection") {
             stays_open = !value.eq_ignore_ascii_case("close");
         } else if name.eq_ignore_ascii_case("transfer-encoding") {
-            return Err(Error::format(format!("a body in {value:.40?} over HTTP; send Content-Length")));
+            return Err(Error::format(format!(
+                "an HTTP message has the transfer encoding {value:.40?}; send Content-Length"
+            )));
         }
     }
     let mut body = Vec::new();
     match length {
         Some(length) => {
-            // The buffer grows with what arrives, not with what is announced.
+            // The buffer grows with the received bytes, not with the announced length.
             let read = stream.take(length).read_to_end(&mut body).map_err(network)?;
             if read as u64 != length {
-                return Err(broken_off("the body"));
+                return Err(disconnected("the body"));
             }
         }
         None if is_response => {
             stays_open = false;
             stream.take(most).read_to_end(&mut body).map_err(network)?;
         }
-        None => return Err(Error::format("a request without Content-Length over HTTP")),
+        None => return Err(Error::format("an HTTP request has no Content-Length")),
     }
     Ok(Some(HttpMessage { first_line, stays_open, body }))
 }
@@ -78,20 +80,20 @@ fn line(head: &mut impl BufRead) -> Result<Option<String>> {
         Some(b'\n') => {
             Ok(Some(String::from_utf8_lossy(bytes.strip_suffix(b"\r").unwrap_or(&bytes)).into_owned()))
         }
-        Some(_) => Err(Error::format("the head of an HTTP message breaks off or is too long")),
+        Some(_) => Err(Error::format("the head of an HTTP message is incomplete or too long")),
     }
 }
 
-fn broken_off(part: &str) -> Error {
-    Error::network(format!("the peer broke off within {part} of an HTTP message"))
+fn disconnected(part: &str) -> Error {
+    Error::network(format!("the peer disconnected within {part} of an HTTP message"))
 }
 
 fn network(error: std::io::Error) -> Error {
-    let told = match error.kind() {
+    let announced = match error.kind() {
         ErrorKind::TimedOut | ErrorKind::WouldBlock => "the peer is too slow",
-        _ => "the connection broke off",
+        _ => "the connection was interrupted",
     };
-    Error::network(told).with_source(error)
+    Error::network(announced).with_source(error)
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Answering calls on one connection.
+//! XML-RPC server on one connection.
 
 use std::io::{BufRead, BufReader, Write};
 use std::net::TcpStream;
@@ -13,19 +13,19 @@ use crate::connection::Timed;
 use crate::lock::lock;
 use crate::xml_rpc::{Fault, call_from_xml, xml_from_fault, xml_from_response};
 
-/// A connection without a call is closed after this time.
+/// Time after which a connection without a call is closed.
 const IDLE_TIME: Duration = Duration::from_secs(60);
 
-/// One call is read at a time, for a call in parts takes many times its length.
+/// Lock that allows one call to be read at a time, since a parsed call takes many times its length.
 static READING: Mutex<()> = Mutex::new(());
 
-/// A call must have come in whole within this time.
+/// Time limit of receiving a call.
 const CALL_TIME: Duration = Duration::from_secs(10);
 
-/// Answers calls from `stream` with `answer` until the peer leaves.
+/// Serves calls from `stream` with `answer` until the peer disconnects.
 ///
 /// # Errors
-/// What the peer did wrong; it has been told where HTTP has a way to.
+/// The error of an invalid request, which the peer also receives as an HTTP status.
 pub(crate) fn serve_connection(
     stream: &TcpStream,
     answer: impl Fn(&str, Vec<ParameterValue>) -> Result<ParameterValue, Fault>,

@@ -1,10 +1,10 @@
-//! `http://host:port/`, as masters and nodes are called.
+//! URIs of masters and nodes, `http://host:port/`.
 
 use std::fmt;
 
 use opendr_engine::{Error, Result};
 
-/// Where a master or node listens.
+/// URI of a master or node.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct HttpUri {
     pub host: String,
@@ -16,11 +16,11 @@ impl HttpUri {
     /// `InvalidParam` for anything but `http://host:port`, with or without a path.
     pub fn new(text: &str) -> Result<Self> {
         Self::parse(text.trim(), "http://").ok_or_else(|| {
-            Error::invalid_param(format!("{text:.200?} is no address such as http://localhost:11311"))
+            Error::invalid_param(format!("{text:.200?} is not an address such as http://localhost:11311"))
         })
     }
 
-    /// The host and port of `text` after `scheme`; port 80 where `http` has none.
+    /// Parses host and port of `text` after `scheme`; port 80 if there is none.
     pub fn parse(text: &str, scheme: &str) -> Option<Self> {
         let rest = text.strip_prefix(scheme)?;
         let place = rest.split('/').next().unwrap_or(rest);
@@ -34,7 +34,7 @@ impl HttpUri {
     }
 }
 
-/// `host` as an address has it: IPv6 stands in brackets.
+/// Returns `host` in the form of a URI, with brackets around IPv6 addresses.
 pub(crate) fn host_in_uri(host: &str) -> String {
     if host.contains(':') { format!("[{host}]") } else { host.to_owned() }
 }
@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn addresses_are_read() {
+    fn addresses_are_parsed() {
         let of = |text: &str| HttpUri::new(text).map(|uri| uri.to_string()).ok();
         assert_eq!(of("http://localhost:11311").unwrap(), "http://localhost:11311/");
         assert_eq!(of("http://10.0.0.1:80/RPC2").unwrap(), "http://10.0.0.1:80/");

@@ -1,4 +1,4 @@
-//! Getting and setting parameters.
+//! Access to parameters.
 
 use opendr_engine::{Error, ErrorKind, Result};
 
@@ -7,19 +7,18 @@ use crate::master::CALL_TIME;
 use crate::{Node, ParameterValue};
 
 impl Node {
-    /// The parameter `key`; a namespace is a struct.
+    /// Returns the parameter `key`; a namespace is a struct.
     ///
     /// # Errors
-    /// `NotFound` when it is not set, `InvalidParam` for a name that is not valid, `Network` without a
-    /// master.
+    /// `NotFound` when it is not set, `InvalidParam` for an invalid name, `Network` without a master.
     pub fn parameter(&self, key: &str) -> Result<ParameterValue> {
         self.graph.master.call("getParam", &[self.resolve(key)?.into()])
     }
 
-    /// The parameter `key`, or nothing when it is not set.
+    /// Returns the parameter `key`, or `None` when it is not set.
     ///
     /// # Errors
-    /// `InvalidParam` for a name that is not valid, `Network` without a master.
+    /// `InvalidParam` for an invalid name, `Network` without a master.
     pub fn parameter_if_set(&self, key: &str) -> Result<Option<ParameterValue>> {
         match self.parameter(key) {
             Ok(value) => Ok(Some(value)),
@@ -36,16 +35,16 @@ impl Node {
         self.graph.master.call("setParam", &[self.resolve(key)?.into(), value.into()]).map(|_| ())
     }
 
-    /// Whether the parameter `key` is set.
+    /// Returns whether the parameter `key` is set.
     ///
     /// # Errors
     /// As [`Node::parameter`].
     pub fn has_parameter(&self, key: &str) -> Result<bool> {
         let answer = self.graph.master.call("hasParam", &[self.resolve(key)?.into()])?;
-        answer.as_bool().ok_or_else(|| Error::format("hasParam of the master answered no truth value"))
+        answer.as_bool().ok_or_else(|| Error::format("hasParam of the master did not return a Boolean"))
     }
 
-    /// Takes the parameter `key` away.
+    /// Deletes the parameter `key`.
     ///
     /// # Errors
     /// As [`Node::parameter`].
@@ -53,7 +52,7 @@ impl Node {
         self.graph.master.call("deleteParam", &[self.resolve(key)?.into()]).map(|_| ())
     }
 
-    /// The full name of the nearest parameter `key`, looked for from the node's namespace upwards.
+    /// Returns the full name of the nearest parameter `key`, searched from the node's namespace upwards.
     ///
     /// # Errors
     /// As [`Node::parameter`].
@@ -66,7 +65,7 @@ impl Node {
         }
     }
 
-    /// The full names of all parameters.
+    /// Returns the full names of all parameters.
     ///
     /// # Errors
     /// `Network` without a master.
@@ -74,9 +73,8 @@ impl Node {
         self.graph.master.call_for_texts("getParamNames", &[])
     }
 
-    /// Calls `changed` with the full name and the new value whenever `key` or a parameter below it changes; a
-    /// parameter that was taken away is an empty struct. Returns the value of now, an empty struct where
-    /// there is none.
+    /// Calls `changed` with the full name and the new value whenever `key` or a parameter below it changes; a deleted parameter is an
+    /// empty struct. Returns the current value, or an empty struct if it is not set.
     ///
     /// # Errors
     /// As [`Node::parameter`].

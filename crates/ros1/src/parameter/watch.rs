@@ -1,4 +1,4 @@
-//! Being told of parameters that change.
+//! Notification of parameter changes.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -13,16 +13,16 @@ use crate::name::canonical;
 
 type Changed = Box<dyn Fn(&str, &ParameterValue) + Send + Sync>;
 
-/// A parameter that the master tells changes of.
+/// A watched parameter.
 pub(crate) struct Watch {
     pub key: String,
     changed: Changed,
-    /// One change is told after the other.
-    telling: Mutex<()>,
+    /// Lock that serialises the calls of `changed`.
+    calling: Mutex<()>,
 }
 
 impl Watch {
-    /// Asks the master to tell.
+    /// Subscribes to the parameter at the master.
     pub fn register(&self, graph: &Graph) -> Result<ParameterValue> {
         let params = [graph.api_uri.as_str().into(), self.key.as_str().into()];
         let value = graph.register("subscribeParam", &params)?;
@@ -30,20 +30,20 @@ impl Watch {
     }
 }
 
-/// Tells every watch of `key` or what lies above it.
-pub(crate) fn tell(graph: &Graph, key: &str, value: &ParameterValue) {
+/// Notifies every watch of `key` or of a namespace that contains it.
+pub(crate) fn notify(graph: &Graph, key: &str, value: &ParameterValue) {
     let key = canonical(key);
     let watches: Vec<_> = lock(&graph.watches).clone();
     for watch in watches {
         let below = key.strip_prefix(&watch.key).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'));
         if below || watch.key == "/" {
-            let _telling = lock(&watch.telling);
+            let _calling = lock(&watch.calling);
             graph.guarded("the owner's function for parameters", || (watch.changed)(&key, value));
         }
     }
 }
 
-/// A parameter that is watched until this goes.
+/// Handle of a watched parameter; dropping it ends the watch.
 pub struct ParameterWatch {
     graph: Arc<Graph>,
     watch: Arc<Watch>,
@@ -51,7 +51,7 @@ pub struct ParameterWatch {
 
 impl ParameterWatch {
     pub(crate) fn new(graph: &Arc<Graph>, key: &str, changed: Changed) -> Result<(Self, ParameterValue)> {
-        let watch = Arc::new(Watch { key: key.to_owned(), changed, telling: Mutex::default() });
+        let watch = Arc::new(Watch { key: key.to_owned(), changed, calling: Mutex::default() });
         let mut watches = lock(&graph.watches);
         if graph.is_ended() {
             return Err(Error::network("the node was shut down; create a new one"));
@@ -63,7 +63,7 @@ impl ParameterWatch {
         Ok((handle, value))
     }
 
-    /// The parameter's full name.
+    /// Returns the parameter's full name.
     pub fn key(&self) -> &str {
         &self.watch.key
     }

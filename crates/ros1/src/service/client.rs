@@ -1,4 +1,4 @@
-//! Calling services.
+//! Service clients.
 
 use std::fmt;
 use std::io::Read;
@@ -17,7 +17,7 @@ use crate::lock::lock;
 use crate::tcpros::{Header, read_body, read_length, write_frame};
 use crate::types::agree;
 
-/// Calls one service, over one connection that stays open; it is made again when the service was restarted.
+/// Client of one service, over a persistent connection that is renewed after a restart of the service.
 pub struct ServiceClient {
     graph: Arc<Graph>,
     name: String,
@@ -27,23 +27,23 @@ pub struct ServiceClient {
 }
 
 impl ServiceClient {
-    /// Will call `name`, a full name.
+    /// Creates a client of the service with the full name `name`.
     pub(crate) fn new(graph: &Arc<Graph>, name: String, kind: ServiceType) -> Self {
         Self { graph: Arc::clone(graph), name, kind, time: ANSWER_TIME, connection: Mutex::default() }
     }
 
-    /// Lets an answer take `time`, a minute otherwise.
+    /// Sets the time limit of a response (default: a minute).
     #[must_use]
     pub fn with_timeout(mut self, time: Duration) -> Self {
         self.time = time;
         self
     }
 
-    /// Sends `request` and waits for the response. Calls of several threads come one after the other.
+    /// Sends `request` and waits for the response. Calls of several threads run one after the other.
     ///
     /// # Errors
-    /// `NotFound` when there is no such service, `Network` when it does not answer in time, `InvalidInput`
-    /// when its type is another, `Unsupported` with the service's own words when it fails.
+    /// `NotFound` for an unknown service, `Network` when it does not respond in time, `InvalidInput` for another type, `Unsupported`
+    /// with the service's message when it fails.
     pub fn call(&self, request: &[u8]) -> Result<Vec<u8>> {
         let mut connection = lock(&self.connection);
         let kept = connection.take().filter(is_usable);
@@ -75,14 +75,14 @@ impl ServiceClient {
         .write(&stream)?;
         let header = Header::read(&mut Timed::new(&stream, HANDSHAKE_TIME))?;
         if let Some(error) = header.get("error") {
-            return Err(Error::invalid_input(format!("it refused the connection: {error:.500}")));
+            return Err(Error::invalid_input(format!("the service refused the connection: {error:.500}")));
         }
         let sum = header.get("md5sum").unwrap_or("*");
         if !agree(sum, &self.kind.md5sum) {
             return Err(Error::invalid_input(format!(
-                "it is {} with md5 sum {sum:.40}, but this node expects {} with {}; build both against \
+                "the service has type {} with md5 sum {sum:.40}, but this node expects {} with {}; build both against \
                  the same definition",
-                header.get("type").unwrap_or("of a type it does not tell"),
+                header.get("type").unwrap_or("(unknown)"),
                 self.kind.name,
                 self.kind.md5sum
             )));
@@ -90,19 +90,20 @@ impl ServiceClient {
         Ok(stream)
     }
 
-    /// The response, or the service's words for why there is none.
+    /// Returns the response, or the error message of the service.
     fn ask(&self, stream: &TcpStream, request: &[u8]) -> Result<Result<Vec<u8>, String>> {
-        let broken = |error| Error::network("it broke off or took too long").with_source(error);
+        let broken = |error| Error::network("the service disconnected or took too long").with_source(error);
         stream.set_write_timeout(Some(self.time))?;
         write_frame(&mut &*stream, b"", request).map_err(broken)?;
         let mut reader = Timed::new(stream, self.time);
         let mut code = [0];
         reader.read_exact(&mut code).map_err(broken)?;
         let length = read_length(&mut reader).map_err(broken)?;
-        let length = length.ok_or_else(|| Error::network("it broke off within its answer"))? as usize;
+        let length =
+            length.ok_or_else(|| Error::network("the service disconnected within its response"))? as usize;
         if length > self.graph.max_message_bytes {
             return Err(Error::format(format!(
-                "an answer of {length} bytes; at most {} are taken (NodeOptions::max_message_bytes)",
+                "the response has {length} bytes; at most {} are allowed (NodeOptions::max_message_bytes)",
                 self.graph.max_message_bytes
             )));
         }
@@ -118,14 +119,14 @@ impl fmt::Debug for ServiceClient {
     }
 }
 
-/// Whether a service that sends nothing unasked has left its connection open.
+/// Returns whether the connection is still open; an idle service sends no data.
 fn is_usable(stream: &TcpStream) -> bool {
     stream.set_nonblocking(true).is_ok()
         && matches!(stream.peek(&mut [0]), Err(error) if error.kind() == std::io::ErrorKind::WouldBlock)
         && stream.set_nonblocking(false).is_ok()
 }
 
-/// Whether service `name` answers.
+/// Checks that the service `name` responds.
 pub(crate) fn probe(graph: &Graph, name: &str) -> Result<()> {
     let stream = connect_to(graph, name)?;
     let caller = graph.names.node();
@@ -137,6 +138,6 @@ fn connect_to(graph: &Graph, name: &str) -> Result<TcpStream> {
     let uri = graph.master.call("lookupService", &[name.into()])?;
     let uri = uri.as_str().unwrap_or_default();
     let place = HttpUri::parse(uri, "rosrpc://")
-        .ok_or_else(|| Error::format(format!("the master says it is at {uri:.200?}, which is no address")))?;
+        .ok_or_else(|| Error::format(format!("the master returned {uri:.200?}, which is not an address")))?;
     connect(&place.host, place.port, HANDSHAKE_TIME)
 }

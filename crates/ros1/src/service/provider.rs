@@ -1,4 +1,4 @@
-//! A service that the node offers.
+//! Services of the node.
 
 use std::io::{BufReader, Write};
 use std::net::TcpStream;
@@ -11,10 +11,10 @@ use crate::graph::Graph;
 use crate::tcpros::{Header, read_body, read_length, write_frame};
 use crate::types::agree;
 
-/// What answers requests: the response, or why there is none.
+/// Handler of requests; returns the response or an error message.
 pub(crate) type Handler = Box<dyn Fn(&[u8]) -> Result<Vec<u8>, String> + Send + Sync>;
 
-/// A service that the node offers, with what getBusStats tells of it.
+/// A service of the node, with its statistics for getBusStats.
 pub(crate) struct Service {
     pub name: String,
     pub kind: ServiceType,
@@ -37,18 +37,18 @@ impl Service {
         }
     }
 
-    /// Tells the master of the service.
+    /// Registers the service with the master.
     pub fn register(&self, graph: &Graph) -> Result<()> {
         let params = [self.name.as_str().into(), graph.service_uri().into(), graph.api_uri.as_str().into()];
         graph.register("registerService", &params).map(|_| ())
     }
 
-    /// Answers the client that sent `header`: once, or until it leaves when it asked for that.
+    /// Serves the client that sent `header`: once, or until it disconnects if it requested a persistent connection.
     pub fn serve(&self, graph: &Graph, header: &Header, stream: &TcpStream) -> Result<()> {
         let sum = header.need("md5sum")?;
         if !agree(sum, &self.kind.md5sum) {
             let error = Error::invalid_input(format!(
-                "{} asked for service {} with md5 sum {sum:.40}, but it is {} with {}; build \
+                "{} requested service {} with md5 sum {sum:.40}, but its type is {} with {}; build \
                  both against the same definition",
                 header.get("callerid").unwrap_or("a client"),
                 self.name,
@@ -76,8 +76,10 @@ impl Service {
         let mut request = Vec::new();
         while let Some(length) = read_length(&mut reader)? {
             if length as usize > graph.max_message_bytes {
-                let text =
-                    format!("a request of {length} bytes; at most {} are taken", graph.max_message_bytes);
+                let text = format!(
+                    "the request has {length} bytes; at most {} are allowed",
+                    graph.max_message_bytes
+                );
                 write_frame(&mut &*stream, &[0], text.as_bytes())?;
                 return Err(Error::format(text).context(format!("serving {}", self.name)));
             }

@@ -1,4 +1,4 @@
-//! The owner's handle on a service that is offered.
+//! Handles of the node's services.
 
 use std::fmt;
 use std::sync::Arc;
@@ -11,14 +11,14 @@ use crate::ServiceType;
 use crate::graph::Graph;
 use crate::lock::lock;
 
-/// A service that is offered until this goes.
+/// Handle of an offered service; dropping it ends the service.
 pub struct ServiceServer {
     graph: Arc<Graph>,
     service: Arc<Service>,
 }
 
 impl ServiceServer {
-    /// Offers `name`, a full name.
+    /// Offers the service with the full name `name`.
     pub(crate) fn new(graph: &Arc<Graph>, name: &str, kind: ServiceType, handler: Handler) -> Result<Self> {
         kind.check_concrete()?;
         let service = Arc::new(Service::new(name, kind, handler));
@@ -27,17 +27,17 @@ impl ServiceServer {
             return Err(Error::network("the node was shut down; create a new one"));
         }
         if services.contains_key(name) {
-            return Err(Error::invalid_param(format!("service {name} is offered by this node already")));
+            return Err(Error::invalid_param(format!("this node already offers service {name}")));
         }
         services.insert(name.to_owned(), Arc::clone(&service));
         drop(services);
-        // A refused service leaves again when `server` goes.
+        // If the registration fails, dropping `server` removes the service.
         let server = Self { graph: Arc::clone(graph), service };
         server.service.register(graph)?;
         Ok(server)
     }
 
-    /// The service's full name.
+    /// Returns the service's full name.
     pub fn name(&self) -> &str {
         &self.service.name
     }

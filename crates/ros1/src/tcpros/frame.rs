@@ -1,11 +1,11 @@
-//! Messages with their length in front.
+//! Messages with a length prefix.
 
 use std::io::{self, ErrorKind, IoSlice, Read, Write};
 
-/// Bytes that are made room for before any has arrived.
+/// Initial capacity of the buffer, in bytes.
 const FIRST_ROOM: usize = 64 << 10;
 
-/// The length of the next message, or nothing at the connection's end.
+/// Reads the length of the next message; returns `None` at the end of the connection.
 pub(crate) fn read_length(stream: &mut impl Read) -> io::Result<Option<u32>> {
     let mut length = [0; 4];
     let mut filled = 0;
@@ -21,8 +21,8 @@ pub(crate) fn read_length(stream: &mut impl Read) -> io::Result<Option<u32>> {
     Ok(Some(u32::from_le_bytes(length)))
 }
 
-/// Fills `buffer` with the next `length` bytes. It grows to twice what has arrived, never to what is
-/// announced; what room it has from earlier messages is used as it is.
+/// Fills `buffer` with the next `length` bytes. The buffer grows to twice the received bytes, never to the announced length; its
+/// capacity from earlier messages is reused.
 pub(crate) fn read_body(stream: &mut impl Read, length: usize, buffer: &mut Vec<u8>) -> io::Result<()> {
     buffer.truncate(length);
     let mut filled = 0;
@@ -40,7 +40,7 @@ pub(crate) fn read_body(stream: &mut impl Read, length: usize, buffer: &mut Vec<
     Ok(())
 }
 
-/// Writes `start`, the length of `body`, and `body`, in one call of the system where it takes it all.
+/// Writes `start`, the length of `body`, and `body`, in one system call if possible.
 pub(crate) fn write_frame(stream: &mut impl Write, start: &[u8], body: &[u8]) -> io::Result<()> {
     let length =
         u32::try_from(body.len()).map_err(|_| io::Error::from(ErrorKind::InvalidInput))?.to_le_bytes();
@@ -62,7 +62,7 @@ pub(crate) fn write_frame(stream: &mut impl Write, start: &[u8], body: &[u8]) ->
 mod tests {
     use super::*;
 
-    /// Gives and takes few bytes at a time.
+    /// Reads and writes a few bytes at a time.
     struct Slow(Vec<u8>, usize);
 
     impl Read for Slow {
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn an_announced_length_takes_no_memory() {
+    fn an_announced_length_allocates_no_memory() {
         let mut buffer = Vec::new();
         let error = read_body(&mut Slow(vec![1; 100], 0), u32::MAX as usize, &mut buffer).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::UnexpectedEof);

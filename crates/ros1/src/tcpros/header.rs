@@ -1,4 +1,4 @@
-//! The connection header.
+//! Connection headers.
 
 use std::io::{Read, Write};
 use std::net::TcpStream;
@@ -8,10 +8,10 @@ use opendr_engine::{Error, Result};
 use super::frame::read_body;
 use crate::connection::Timed;
 
-/// A header with the longest message definition is some ten kilobytes.
+/// Maximum size of a header in bytes; one with the longest message definition has some ten kilobytes.
 const MOST_HEADER: u32 = 1 << 20;
 
-/// Fields, each with a name and a text.
+/// Fields of name and value.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Header(Vec<(String, String)>);
 
@@ -20,34 +20,33 @@ impl Header {
         Self(fields.into_iter().map(|(name, value)| (name.to_owned(), value.to_owned())).collect())
     }
 
-    /// What a peer is told before its connection is closed.
+    /// Creates the header that a peer receives before its connection is closed.
     pub fn error(text: &str) -> Self {
         Self::new([("error", text)])
     }
 
-    /// The fields in `bytes`, which come after the header's length. Text that is not UTF-8 is read with
-    /// marks.
+    /// Parses the fields in `bytes`, which follow the header's length. Invalid UTF-8 is replaced.
     ///
     /// # Errors
-    /// `Format` for a field that leaves `bytes` or has no `=`.
+    /// `Format` for a field that exceeds `bytes` or has no `=`.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         let mut fields = Vec::new();
         let mut rest = bytes;
         while !rest.is_empty() {
             let (length, after) = rest
                 .split_first_chunk()
-                .ok_or_else(|| Error::format("a TCPROS header ends within a field's length"))?;
+                .ok_or_else(|| Error::format("the TCPROS header ends within the length of a field"))?;
             let length = u32::from_le_bytes(*length) as usize;
             let (field, after) = after.split_at_checked(length).ok_or_else(|| {
                 Error::format(format!(
-                    "a TCPROS header with a field of {length} bytes, {} are left",
+                    "the TCPROS header has a field of {length} bytes, but only {} are left",
                     after.len()
                 ))
             })?;
             let equals = field
                 .iter()
                 .position(|byte| *byte == b'=')
-                .ok_or_else(|| Error::format("a TCPROS header with a field without ="))?;
+                .ok_or_else(|| Error::format("the TCPROS header has a field without ="))?;
             let (name, value) = field.split_at(equals);
             let text = |bytes| String::from_utf8_lossy(bytes).into_owned();
             fields.push((text(name), text(value.get(1..).unwrap_or_default())));
@@ -56,7 +55,7 @@ impl Header {
         Ok(Self(fields))
     }
 
-    /// The header with its length in front.
+    /// Returns the header with its length prefix.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = vec![0; 4];
         for (name, value) in &self.0 {
@@ -70,31 +69,33 @@ impl Header {
         bytes
     }
 
-    /// The field `name`, of several the last.
+    /// Returns the field `name`; of several, the last.
     pub fn get(&self, name: &str) -> Option<&str> {
         self.0.iter().rev().find(|(found, _)| found == name).map(|(_, value)| value.as_str())
     }
 
-    /// The field `name`.
+    /// Returns the field `name`.
     ///
     /// # Errors
-    /// `Format` when there is none.
+    /// `Format` when it is missing.
     pub fn need(&self, name: &str) -> Result<&str> {
-        self.get(name).ok_or_else(|| Error::format(format!("a TCPROS header without the field {name}")))
+        self.get(name).ok_or_else(|| Error::format(format!("the TCPROS header has no field {name}")))
     }
 
-    /// Reads the header that a connection starts with.
+    /// Reads the header at the start of a connection.
     ///
     /// # Errors
-    /// `Format` for anything but a header of at most 1 MB, `Network` for a peer that breaks off or is too
-    /// slow.
+    /// `Format` for an invalid header or one above 1 MiB, `Network` for a peer that disconnects or is too slow.
     pub fn read(stream: &mut Timed<'_>) -> Result<Self> {
-        let broken = |error| Error::network("the peer broke off before its TCPROS header").with_source(error);
+        let broken =
+            |error| Error::network("the peer disconnected before its TCPROS header").with_source(error);
         let mut length = [0; 4];
         stream.read_exact(&mut length).map_err(broken)?;
         let length = u32::from_le_bytes(length);
         if length > MOST_HEADER {
-            return Err(Error::format(format!("a TCPROS header of {length} bytes; is the peer a ROS node?")));
+            return Err(Error::format(format!(
+                "the TCPROS header has {length} bytes; check that the peer is a ROS node"
+            )));
         }
         let mut bytes = Vec::new();
         read_body(stream, length as usize, &mut bytes).map_err(broken)?;
@@ -108,7 +109,7 @@ impl Header {
     pub fn write(&self, mut stream: &TcpStream) -> Result<()> {
         let sent = stream.write_all(&self.to_bytes());
         sent.map_err(|error| {
-            Error::network("the peer broke off within the TCPROS handshake").with_source(error)
+            Error::network("the peer disconnected within the TCPROS handshake").with_source(error)
         })
     }
 }
@@ -134,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn the_bytes_of_the_wiki() {
+    fn bytes_equal_the_example_of_the_wiki() {
         // The example of the page on connection headers.
         let header = Header::new([("callerid", "/rostopic_4767_1316912741557"), ("latching", "1")]);
         let bytes = header.to_bytes();

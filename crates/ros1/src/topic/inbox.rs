@@ -1,4 +1,4 @@
-//! What has come in and waits for the owner.
+//! Queue of received messages.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -9,45 +9,45 @@ use std::time::{Duration, Instant, SystemTime};
 
 use crate::lock::{lock, wait};
 
-/// Buffers kept beside those of the queue: one being read into, one in the owner's hands.
+/// Number of buffers besides those of the queue: one being filled, one in use by the owner.
 const MORE_SPARE: usize = 2;
 
-/// Who publishes, as its connection header says.
+/// Publisher of a message, from its connection header.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PublisherInfo {
-    /// The publishing node's name.
+    /// Name of the publishing node.
     pub caller_id: String,
-    /// The address of its XML-RPC server.
+    /// URI of its XML-RPC server.
     pub uri: String,
-    /// The messages' type.
+    /// Message type.
     pub type_name: String,
-    /// The type's md5 sum.
+    /// md5 sum of the type.
     pub md5sum: String,
-    /// The type's definition, where the publisher tells it.
+    /// Definition of the type, if the publisher sends it.
     pub definition: String,
-    /// Whether the first message was there before the connection.
+    /// Whether the topic is latched, so that the first message may be older than the connection.
     pub latching: bool,
 }
 
-/// A message as it came.
+/// A received message.
 #[derive(Debug)]
 pub struct ReceivedMessage {
     /// The message in ROS 1's format.
     pub bytes: MessageBytes,
-    /// Who sent it.
+    /// Publisher of the message.
     pub publisher: Arc<PublisherInfo>,
-    /// When its last byte had come in.
+    /// Time of arrival of the last byte.
     pub received_at: SystemTime,
 }
 
-/// The bytes of a message, in a buffer that goes back to its subscription.
+/// Bytes of a message, in a buffer that returns to its subscription when dropped.
 pub struct MessageBytes {
     bytes: Vec<u8>,
     home: Weak<Inbox>,
 }
 
 impl MessageBytes {
-    /// The bytes for good, without a copy.
+    /// Takes the bytes out, without a copy.
     pub fn into_vec(mut self) -> Vec<u8> {
         std::mem::take(&mut self.bytes)
     }
@@ -77,7 +77,7 @@ impl Drop for MessageBytes {
     }
 }
 
-/// The queue of one subscription.
+/// Queue of one subscription.
 #[derive(Debug)]
 pub(crate) struct Inbox {
     queue: Mutex<Queue>,
@@ -94,7 +94,7 @@ struct Queue {
 }
 
 impl Inbox {
-    /// A queue of at most `most` messages.
+    /// Creates a queue of at most `most` messages.
     pub fn new(most: usize) -> Self {
         Self {
             queue: Mutex::default(),
@@ -105,10 +105,10 @@ impl Inbox {
         }
     }
 
-    /// A buffer to read the next message of `length` bytes into.
+    /// Returns a buffer for the next message of `length` bytes.
     pub fn buffer(&self, length: usize) -> Vec<u8> {
         let buffer = lock(&self.spare).pop().unwrap_or_default();
-        // One long message does not keep its memory for short ones.
+        // The buffer of one long message is not kept for short ones.
         if buffer.capacity() / 8 > length.max(1 << 10) { Vec::new() } else { buffer }
     }
 
@@ -119,7 +119,7 @@ impl Inbox {
         }
     }
 
-    /// Puts a message at the end; the oldest goes when there are too many.
+    /// Appends a message; drops the oldest if the queue is full.
     pub fn push(self: &Arc<Self>, bytes: Vec<u8>, publisher: Arc<PublisherInfo>) {
         let bytes = MessageBytes { bytes, home: Arc::downgrade(self) };
         let message = ReceivedMessage { bytes, publisher, received_at: SystemTime::now() };
@@ -138,7 +138,7 @@ impl Inbox {
         drop(oldest);
     }
 
-    /// The next message, waited for until `until`, without an end when there is none.
+    /// Waits for the next message until `until`, or without limit.
     pub fn pop(&self, until: Option<Instant>) -> Option<ReceivedMessage> {
         let mut queue = lock(&self.queue);
         loop {
@@ -156,7 +156,7 @@ impl Inbox {
         }
     }
 
-    /// The newest message, without those before it.
+    /// Returns the newest message and drops those before it.
     pub fn pop_newest(&self) -> Option<ReceivedMessage> {
         let mut messages = std::mem::take(&mut lock(&self.queue).messages);
         let newest = messages.pop_back();
@@ -164,7 +164,7 @@ impl Inbox {
         newest
     }
 
-    /// Takes no more messages.
+    /// Closes the queue to further messages.
     pub fn close(&self) {
         lock(&self.queue).closed = true;
         self.changed.notify_all();
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slow_owner_gets_the_newest_and_buffers_go_round() {
+    fn a_slow_owner_gets_the_newest_and_buffers_are_reused() {
         let inbox = Arc::new(Inbox::new(2));
         for at in 0..5 {
             let mut buffer = inbox.buffer(1);

@@ -1,4 +1,4 @@
-//! A connection to one publisher.
+//! Connections to publishers.
 
 use std::io::BufReader;
 use std::net::TcpStream;
@@ -19,33 +19,32 @@ use crate::tasks::Cancel;
 use crate::tcpros::{Header, read_body, read_length};
 use crate::types::agree;
 
-/// The first wait before connecting again, doubled up to the last.
+/// First and maximum wait before a reconnection; the wait doubles each time.
 const WAITS: [Duration; 2] = [Duration::from_millis(100), Duration::from_secs(5)];
 
-/// Failures in a row before an unreachable publisher is told of.
+/// Number of successive failures before an unreachable publisher is reported.
 const PATIENCE: u32 = 4;
 
-/// A connection to one publisher, made again whenever it breaks, with what getBusStats and getBusInfo tell of
-/// it.
+/// A connection to one publisher, renewed when it breaks, with its statistics for getBusStats and getBusInfo.
 #[derive(Debug)]
 pub(crate) struct Link {
     pub id: u32,
-    /// The address of the publisher's XML-RPC server.
+    /// URI of the publisher's XML-RPC server.
     pub uri: String,
     pub connected: AtomicBool,
-    /// Whether a restarted master does not know of the publisher: the connection is kept, but not made again.
+    /// Whether a restarted master does not know the publisher; the connection is kept, but not renewed.
     pub orphaned: AtomicBool,
-    /// Whether no thread serves the link any more.
+    /// Whether the thread of the link has ended.
     pub finished: AtomicBool,
     pub received_bytes: AtomicU64,
     pub received_messages: AtomicU64,
-    /// The two ends of the connection.
+    /// Both ends of the connection, as text.
     pub ends: Mutex<String>,
     cancel: Mutex<Option<Arc<Cancel>>>,
 }
 
 impl Link {
-    /// Connects to the publisher at `uri`, on a thread of its own.
+    /// Starts the thread that connects to the publisher at `uri`.
     pub fn start(graph: &Arc<Graph>, subscribed: &Arc<Subscribed>, uri: &str) -> Result<Arc<Self>> {
         let link = Arc::new(Self {
             id: graph.connection_id(),
@@ -76,23 +75,23 @@ impl Link {
     }
 
     fn run(&self, graph: &Graph, subscribed: &Subscribed, cancel: &Cancel) {
-        let (mut pause, mut failures, mut told) = (WAITS[0], 0, String::new());
-        while !cancel.is_asked() {
+        let (mut pause, mut failures, mut reported) = (WAITS[0], 0, String::new());
+        while !cancel.is_cancelled() {
             let before = self.received_messages.load(Ordering::Relaxed);
             let ended = self.receive(graph, subscribed, cancel);
             self.connected.store(false, Ordering::Relaxed);
             cancel.release();
             if self.received_messages.load(Ordering::Relaxed) > before {
-                (pause, failures, told) = (WAITS[0], 0, String::new());
+                (pause, failures, reported) = (WAITS[0], 0, String::new());
             }
             if let Err(error) = ended {
-                // A publisher that goes is no problem, one that stays out of reach is; each is told once.
+                // A disconnected publisher is not an error, but one that stays unreachable is reported once.
                 failures += 1;
                 let text = error.to_string();
                 let serious = error.kind() != ErrorKind::Network || failures >= PATIENCE;
-                if serious && text != told && !cancel.is_asked() {
+                if serious && text != reported && !cancel.is_cancelled() {
                     graph.problem(error.context(format!("receiving {} from {}", subscribed.topic, self.uri)));
-                    told = text;
+                    reported = text;
                 }
             }
             if self.orphaned.load(Ordering::Relaxed) || cancel.wait(pause) {
@@ -110,11 +109,11 @@ impl Link {
         *lock(&self.ends) = ends(&stream);
         self.connected.store(true, Ordering::Relaxed);
         let mut reader = BufReader::with_capacity(64 << 10, &stream);
-        let broken = |error| Error::network("the publisher broke off").with_source(error);
+        let broken = |error| Error::network("the publisher disconnected").with_source(error);
         while let Some(length) = read_length(&mut reader).map_err(broken)? {
             if length as usize > graph.max_message_bytes {
                 return Err(Error::format(format!(
-                    "a message of {length} bytes; at most {} are taken (NodeOptions::max_message_bytes)",
+                    "a message has {length} bytes; at most {} are allowed (NodeOptions::max_message_bytes)",
                     graph.max_message_bytes
                 )));
             }
@@ -127,7 +126,7 @@ impl Link {
         Err(Error::network("the publisher closed the connection"))
     }
 
-    /// Asks the publisher where its messages come from, and connects there.
+    /// Requests the publisher's TCPROS address and connects to it.
     fn open(&self, graph: &Graph, topic: &str) -> Result<TcpStream> {
         let uri = HttpUri::new(&self.uri)?;
         let protocols = ParameterValue::List(vec![ParameterValue::List(vec!["TCPROS".into()])]);
@@ -141,11 +140,12 @@ impl Link {
                 ParameterValue::Int(port),
                 ..,
             ] if protocol == "TCPROS" => {
-                let port = u16::try_from(*port)
-                    .map_err(|_| Error::format(format!("the publisher names port {port} for TCPROS")))?;
+                let port = u16::try_from(*port).map_err(|_| {
+                    Error::format(format!("the publisher returned the invalid port {port} for TCPROS"))
+                })?;
                 connect(host, port, HANDSHAKE_TIME)
             }
-            _ => Err(Error::unsupported("the publisher offers no TCPROS")),
+            _ => Err(Error::unsupported("the publisher does not support TCPROS")),
         }
     }
 
@@ -184,12 +184,12 @@ impl Link {
     }
 }
 
-/// A node that has not come as far as its topic, or has left it, is no problem: it is asked again.
+/// Converts the error of a node that does not publish the topic yet, or no longer, so that it is retried without a report.
 fn not_yet(error: &Error) -> Error {
     Error::network(error.to_string())
 }
 
-/// The two ends of a connection, as `rosnode info` reads them.
+/// Returns both ends of a connection in the format of `rosnode info`.
 pub(crate) fn ends(stream: &TcpStream) -> String {
     let port = stream.local_addr().map(|address| address.port()).unwrap_or_default();
     let peer = stream.peer_addr().map(|address| address.to_string()).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! What waits to go to one subscriber.
+//! Queue of messages to one subscriber.
 
 use std::collections::VecDeque;
 use std::io::ErrorKind;
@@ -10,20 +10,20 @@ use std::time::Duration;
 use crate::lock::{lock, wait};
 use crate::tcpros::write_frame;
 
-/// How often a silent publisher looks whether its subscriber is still there.
+/// Interval at which an idle publisher checks that its subscriber is connected.
 const LOOK_TIME: Duration = Duration::from_millis(500);
 
-/// The queue of one connection, with what getBusStats and getBusInfo tell of it.
+/// Queue of one connection, with its statistics for getBusStats and getBusInfo.
 #[derive(Debug)]
 pub(crate) struct Outbox {
     pub id: u32,
-    /// The subscriber's name.
+    /// Name of the subscriber.
     pub caller_id: String,
-    /// Its address and port, and our port.
+    /// Both ends of the connection, as text.
     pub ends: String,
     pub sent_bytes: AtomicU64,
     pub sent_messages: AtomicU64,
-    /// Messages dropped because the subscriber was too slow.
+    /// Number of messages dropped because the subscriber was too slow.
     pub dropped: AtomicU64,
     queue: Mutex<Queue>,
     changed: Condvar,
@@ -43,7 +43,7 @@ enum Next {
 }
 
 impl Outbox {
-    /// A queue of at most `most` messages.
+    /// Creates a queue of at most `most` messages.
     pub fn new(id: u32, caller_id: &str, ends: String, most: usize) -> Self {
         Self {
             id,
@@ -58,7 +58,7 @@ impl Outbox {
         }
     }
 
-    /// Puts `message` at the end; tells whether the oldest had to go.
+    /// Appends `message`; returns whether the oldest was dropped.
     pub fn push(&self, message: Arc<Vec<u8>>) -> bool {
         let mut queue = lock(&self.queue);
         let full = queue.messages.len() >= self.most;
@@ -71,7 +71,7 @@ impl Outbox {
         full
     }
 
-    /// Lets the connection end once what waits has gone out.
+    /// Closes the connection after the queued messages are sent.
     pub fn close(&self) {
         lock(&self.queue).closed = true;
         self.changed.notify_one();
@@ -89,7 +89,7 @@ impl Outbox {
         }
     }
 
-    /// Sends what comes, until the subscriber leaves or the queue is closed.
+    /// Sends messages until the subscriber disconnects or the queue is closed.
     pub fn send_all(&self, mut stream: &TcpStream) {
         loop {
             match self.next() {
@@ -107,7 +107,7 @@ impl Outbox {
     }
 }
 
-/// Whether a peer that never sends anything is still there.
+/// Returns whether a peer that sends no data is still connected.
 fn is_open(stream: &TcpStream) -> bool {
     if stream.set_nonblocking(true).is_err() {
         return false;

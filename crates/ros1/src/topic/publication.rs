@@ -1,4 +1,4 @@
-//! A topic that the node publishes.
+//! Published topics.
 
 use std::net::TcpStream;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
@@ -15,17 +15,17 @@ use crate::tasks::Cancel;
 use crate::tcpros::Header;
 use crate::types::agree;
 
-/// Buffers that are kept for the next messages.
+/// Maximum number of spare buffers for further messages.
 const MOST_SPARE: usize = 4;
 
-/// A topic that the node publishes, with its subscribers.
+/// A published topic with its subscribers.
 #[derive(Debug)]
 pub(crate) struct Publication {
     pub topic: String,
     pub kind: TopicType,
     pub latched: AtomicBool,
     pub queue_size: AtomicUsize,
-    /// Handles that the owner has.
+    /// Number of the owner's handles.
     pub handles: AtomicUsize,
     pub dropped: AtomicU64,
     subscribers: Mutex<Subscribers>,
@@ -36,7 +36,7 @@ pub(crate) struct Publication {
 #[derive(Debug, Default)]
 struct Subscribers {
     outboxes: Vec<Arc<Outbox>>,
-    /// The last message of a latched topic.
+    /// Last message of a latched topic.
     last: Option<Arc<Vec<u8>>>,
     closed: bool,
 }
@@ -56,14 +56,14 @@ impl Publication {
         }
     }
 
-    /// Tells the master of the topic.
+    /// Registers the topic with the master.
     pub fn register(&self, graph: &Graph) -> Result<()> {
         let params =
             [self.topic.as_str().into(), self.kind.name.as_str().into(), graph.api_uri.as_str().into()];
         graph.register("registerPublisher", &params).map(|_| ())
     }
 
-    /// Whether a message would go anywhere.
+    /// Returns whether a message would be sent or latched.
     pub fn is_heard(&self) -> bool {
         self.latched.load(Ordering::Relaxed) || !lock(&self.subscribers).outboxes.is_empty()
     }
@@ -88,14 +88,14 @@ impl Publication {
         Ok(())
     }
 
-    /// `bytes` in a buffer that no subscriber waits for any more.
+    /// Copies `bytes` into a buffer that is free again, or a new one.
     pub fn buffer(&self, bytes: &[u8]) -> Arc<Vec<u8>> {
         let mut spare = lock(&self.spare);
         let free = spare.iter_mut().position(|buffer| Arc::get_mut(buffer).is_some());
         let mut buffer = free.map(|at| spare.swap_remove(at)).unwrap_or_default();
         drop(spare);
         match Arc::get_mut(&mut buffer) {
-            // One long message does not keep its memory for short ones.
+            // The buffer of one long message is not kept for short ones.
             Some(vec) if vec.capacity() / 8 <= bytes.len().max(1 << 10) => {
                 vec.clear();
                 vec.extend_from_slice(bytes);
@@ -109,12 +109,12 @@ impl Publication {
         buffer
     }
 
-    /// The subscribers there are.
+    /// Returns the current subscribers.
     pub fn outboxes(&self) -> Vec<Arc<Outbox>> {
         lock(&self.subscribers).outboxes.clone()
     }
 
-    /// Waits until there are `count` subscribers, `time` at most; tells whether there are.
+    /// Waits for `count` subscribers, for at most `time`; returns whether there are so many.
     pub fn wait_for_subscribers(&self, count: usize, time: Duration) -> bool {
         let until = Instant::now() + time;
         let mut subscribers = lock(&self.subscribers);
@@ -128,7 +128,7 @@ impl Publication {
         !subscribers.closed
     }
 
-    /// Takes no more messages; what waits still goes out.
+    /// Closes the topic to further messages; queued ones are still sent.
     pub fn close(&self) {
         let mut subscribers = lock(&self.subscribers);
         subscribers.closed = true;
@@ -136,7 +136,7 @@ impl Publication {
         self.joined.notify_all();
     }
 
-    /// What `header` of a subscriber asks for that is not published here.
+    /// Checks that the type in the `header` of a subscriber matches.
     fn clash(&self, header: &Header) -> Result<()> {
         let sum = header.need("md5sum")?;
         let name = header.get("type").unwrap_or("*");
@@ -144,7 +144,7 @@ impl Publication {
             return Ok(());
         }
         Err(Error::invalid_input(format!(
-            "{} asked for {} as {name:.80} with md5 sum {sum:.40}, but this node publishes {} with {}; \
+            "{} requested {} as {name:.80} with md5 sum {sum:.40}, but this node publishes {} with {}; \
              build both against the same definition",
             header.get("callerid").unwrap_or("a subscriber"),
             self.topic,
@@ -153,7 +153,7 @@ impl Publication {
         )))
     }
 
-    /// Serves the subscriber that sent `header` until it leaves.
+    /// Serves the subscriber that sent `header` until it disconnects.
     pub fn serve(&self, graph: &Graph, header: &Header, stream: &TcpStream, cancel: &Cancel) -> Result<()> {
         if let Err(error) = self.clash(header) {
             Header::error(&error.to_string()).write(stream)?;

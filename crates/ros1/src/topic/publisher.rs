@@ -1,4 +1,4 @@
-//! The owner's handle on a topic that is published.
+//! Handles of published topics.
 
 use std::fmt;
 use std::sync::Arc;
@@ -12,12 +12,12 @@ use crate::TopicType;
 use crate::graph::Graph;
 use crate::lock::lock;
 
-/// How a topic is published.
+/// Options of a publisher.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PublisherOptions {
-    /// Whether a new subscriber gets the last message at once.
+    /// Whether a new subscriber receives the last message at once.
     pub latched: bool,
-    /// Messages that wait for a slow subscriber before the oldest is dropped, at least 1.
+    /// Maximum number of queued messages per subscriber, at least 1; the oldest is dropped.
     pub queue_size: usize,
 }
 
@@ -27,14 +27,14 @@ impl Default for PublisherOptions {
     }
 }
 
-/// A topic that is published until the last handle on it goes; what is queued then has a moment to go out.
+/// Handle of a published topic. Dropping the last handle ends the publication; queued messages are still sent for a short time.
 pub struct Publisher {
     graph: Arc<Graph>,
     publication: Arc<Publication>,
 }
 
 impl Publisher {
-    /// Publishes `topic`, a full name.
+    /// Publishes the topic with the full name `topic`.
     pub(crate) fn new(
         graph: &Arc<Graph>,
         topic: &str,
@@ -43,7 +43,9 @@ impl Publisher {
     ) -> Result<Self> {
         kind.check_concrete()?;
         if options.queue_size == 0 {
-            return Err(Error::invalid_param("a queue_size of 0; give at least 1, the newest message alone"));
+            return Err(Error::invalid_param(
+                "queue_size is 0; give at least 1, which keeps the newest message only",
+            ));
         }
         let mut publications = lock(&graph.publications);
         if graph.is_ended() {
@@ -58,7 +60,7 @@ impl Publisher {
             }
             Some(there) => {
                 return Err(Error::invalid_param(format!(
-                    "{topic} is published as {} by this node already, not as {}",
+                    "this node already publishes {topic} as {}, not as {}",
                     there.kind.name, kind.name
                 )));
             }
@@ -66,17 +68,16 @@ impl Publisher {
         };
         publications.insert(topic.to_owned(), Arc::clone(&publication));
         drop(publications);
-        // A refused topic leaves again when `publisher` goes.
+        // If the registration fails, dropping `publisher` removes the topic.
         let publisher = Self { graph: Arc::clone(graph), publication };
         publisher.publication.register(graph)?;
         Ok(publisher)
     }
 
-    /// Queues a copy of `message` for every subscriber; never waits for one.
+    /// Queues a copy of `message` for every subscriber, without waiting.
     ///
     /// # Errors
-    /// `InvalidInput` for a message longer than `NodeOptions::max_message_bytes`, `Network` once the node is
-    /// shut down.
+    /// `InvalidInput` for a message longer than `NodeOptions::max_message_bytes`, `Network` after the shutdown of the node.
     pub fn publish(&self, message: &[u8]) -> Result<()> {
         self.check(message.len())?;
         if !self.publication.is_heard() && !self.graph.is_ended() {
@@ -100,27 +101,27 @@ impl Publisher {
             return Ok(());
         }
         Err(Error::invalid_input(format!(
-            "a message of {length} bytes on {}; at most {most} are allowed (NodeOptions::max_message_bytes)",
+            "a message on {} has {length} bytes; at most {most} are allowed (NodeOptions::max_message_bytes)",
             self.topic()
         )))
     }
 
-    /// The topic's full name.
+    /// Returns the topic's full name.
     pub fn topic(&self) -> &str {
         &self.publication.topic
     }
 
-    /// How many subscribers are connected.
+    /// Returns the number of connected subscribers.
     pub fn subscriber_count(&self) -> usize {
         self.publication.outboxes().len()
     }
 
-    /// Waits until `count` subscribers are connected, `time` at most; tells whether they are.
+    /// Waits for `count` connected subscribers, for at most `time`; returns whether there are so many.
     pub fn wait_for_subscribers(&self, count: usize, time: Duration) -> bool {
         self.publication.wait_for_subscribers(count, time)
     }
 
-    /// How many messages slow subscribers have missed, summed over all of them.
+    /// Returns the number of messages dropped for slow subscribers, summed over all.
     pub fn dropped(&self) -> u64 {
         self.publication.dropped.load(Ordering::Relaxed)
     }

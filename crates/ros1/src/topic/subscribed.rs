@@ -1,4 +1,4 @@
-//! A topic that the node subscribes to.
+//! Subscribed topics.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::Ordering;
@@ -12,17 +12,17 @@ use crate::graph::Graph;
 use crate::lock::lock;
 use crate::{ParameterValue, TopicType};
 
-/// Publishers of one topic; a list of more is a mistake or an attack.
+/// Maximum number of publishers of one topic; a longer list is an error or an attack.
 const MOST_PUBLISHERS: usize = 256;
 
-/// A topic that the node subscribes to, with a link to each of its publishers.
+/// A subscribed topic with a link to each of its publishers.
 pub(crate) struct Subscribed {
     pub topic: String,
     pub kind: TopicType,
     pub tcp_nodelay: bool,
     pub inbox: Arc<Inbox>,
     graph: Weak<Graph>,
-    /// Held while publishers change, so that an older list never replaces a newer one.
+    /// Lock held while publishers change, so that an older list never replaces a newer one.
     changing: Mutex<()>,
     links: Mutex<BTreeMap<String, Arc<Link>>>,
 }
@@ -40,8 +40,8 @@ impl Subscribed {
         }
     }
 
-    /// Tells the master of the subscription, and connects to the publishers it answers with. A master that is
-    /// told again may have been restarted, and many nodes never register twice: connections that work stay.
+    /// Registers the subscription with the master and connects to the publishers that it returns. With `again`, the master may have
+    /// been restarted; since many nodes never register twice, working connections are kept.
     pub fn register(self: &Arc<Self>, again: bool) -> Result<()> {
         let Some(graph) = self.graph.upgrade() else { return Ok(()) };
         let params =
@@ -53,7 +53,7 @@ impl Subscribed {
         Ok(())
     }
 
-    /// The master told of the publishers that there are now.
+    /// Applies the master's list of current publishers.
     pub fn update(self: &Arc<Self>, publishers: &[String]) {
         let _changing = lock(&self.changing);
         if let Some(graph) = self.graph.upgrade() {
@@ -64,9 +64,9 @@ impl Subscribed {
     fn set_publishers(self: &Arc<Self>, graph: &Arc<Graph>, uris: &[String], again: bool) {
         if uris.len() > MOST_PUBLISHERS {
             graph.problem(Error::unsupported(format!(
-                "{} publishers of {}; {MOST_PUBLISHERS} are listened to",
-                uris.len(),
-                self.topic
+                "{} has {} publishers; only {MOST_PUBLISHERS} are connected",
+                self.topic,
+                uris.len()
             )));
         }
         let wanted = uris.iter().take(MOST_PUBLISHERS).collect::<BTreeSet<_>>();
@@ -93,12 +93,12 @@ impl Subscribed {
         }
     }
 
-    /// The links there are.
+    /// Returns the current links.
     pub fn links(&self) -> Vec<Arc<Link>> {
         lock(&self.links).values().cloned().collect()
     }
 
-    /// Ends every link, and what waits for messages.
+    /// Ends every link, and closes the queue.
     pub fn close(&self) {
         self.inbox.close();
         for link in std::mem::take(&mut *lock(&self.links)).values() {
@@ -107,9 +107,9 @@ impl Subscribed {
     }
 }
 
-/// The texts of a list.
+/// Returns the URIs in a list.
 pub(crate) fn uris(value: &ParameterValue) -> Result<Vec<String>> {
     let texts =
         value.as_list().and_then(|list| list.iter().map(|uri| uri.as_str().map(str::to_owned)).collect());
-    texts.ok_or_else(|| Error::format("a list of publishers that holds something else than addresses"))
+    texts.ok_or_else(|| Error::format("the list of publishers contains a value that is not an address"))
 }

@@ -1,4 +1,4 @@
-//! The owner's handle on a topic that is subscribed to.
+//! Handles of subscribed topics.
 
 use std::fmt;
 use std::sync::Arc;
@@ -13,12 +13,12 @@ use crate::TopicType;
 use crate::graph::Graph;
 use crate::lock::lock;
 
-/// How a topic is subscribed to.
+/// Options of a subscription.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SubscriberOptions {
-    /// Messages that wait for a slow owner before the oldest is dropped; 1 keeps the newest alone.
+    /// Maximum number of queued messages; the oldest is dropped. 1 keeps only the newest.
     pub queue_size: usize,
-    /// Whether publishers are asked to send small messages at once.
+    /// Whether publishers are requested to disable Nagle's algorithm, so that small messages are sent at once.
     pub tcp_nodelay: bool,
 }
 
@@ -28,17 +28,16 @@ impl Default for SubscriberOptions {
     }
 }
 
-/// Messages of a topic, until it goes.
+/// Subscription to a topic, which ends when it is dropped.
 ///
-/// Publishers are read from all the time; who takes messages too slowly misses the oldest, and never holds up
-/// a publisher.
+/// Messages are received continuously. If they are taken too slowly, the oldest are dropped, and publishers are never blocked.
 pub struct Subscription {
     graph: Arc<Graph>,
     subscribed: Arc<Subscribed>,
 }
 
 impl Subscription {
-    /// Subscribes to `topic`, a full name.
+    /// Subscribes to the topic with the full name `topic`.
     pub(crate) fn new(
         graph: &Arc<Graph>,
         topic: &str,
@@ -47,7 +46,9 @@ impl Subscription {
     ) -> Result<Self> {
         kind.check()?;
         if options.queue_size == 0 {
-            return Err(Error::invalid_param("a queue_size of 0; give at least 1, the newest message alone"));
+            return Err(Error::invalid_param(
+                "queue_size is 0; give at least 1, which keeps the newest message only",
+            ));
         }
         let inbox = Inbox::new(options.queue_size);
         let subscribed = Arc::new(Subscribed::new(graph, topic, kind, options.tcp_nodelay, inbox));
@@ -57,37 +58,37 @@ impl Subscription {
         }
         subscriptions.push(Arc::clone(&subscribed));
         drop(subscriptions);
-        // A refused topic leaves again when `subscription` goes.
+        // If the registration fails, dropping `subscription` removes the topic.
         let subscription = Self { graph: Arc::clone(graph), subscribed };
         subscription.subscribed.register(false)?;
         Ok(subscription)
     }
 
-    /// The next message, waited for until there is one; nothing once the node is shut down.
+    /// Waits for the next message; returns `None` after the shutdown of the node.
     pub fn recv(&self) -> Option<ReceivedMessage> {
         self.subscribed.inbox.pop(None)
     }
 
-    /// The next message, waited for `time` at most.
+    /// Waits for the next message, for at most `time`.
     pub fn recv_timeout(&self, time: Duration) -> Option<ReceivedMessage> {
         self.subscribed.inbox.pop(Instant::now().checked_add(time))
     }
 
-    /// The next message, if there is one.
+    /// Returns the next message, if there is one.
     pub fn try_recv(&self) -> Option<ReceivedMessage> {
         self.recv_timeout(Duration::ZERO)
     }
 
-    /// The newest message, if there is one; those before it are dropped.
+    /// Returns the newest message, if there is one, and drops those before it.
     pub fn latest(&self) -> Option<ReceivedMessage> {
         self.subscribed.inbox.pop_newest()
     }
 
-    /// Calls `take` with every message, on a thread of its own, until the listener goes. What comes in while
-    /// it is busy waits as the options say. A panic in it is told to `NodeOptions::on_problem`.
+    /// Calls `take` with every message, on a thread of its own, until the listener is dropped. Messages queue while it runs. A panic
+    /// in it is reported to `NodeOptions::on_error`.
     ///
     /// # Errors
-    /// `Network` once the node is shut down, `Io` when the system has no more threads.
+    /// `Network` after the shutdown of the node, `Io` when the system has no more threads.
     pub fn on_message(self, mut take: impl FnMut(ReceivedMessage) + Send + 'static) -> Result<Listener> {
         let (graph, subscribed) = (Arc::clone(&self.graph), Arc::clone(&self.subscribed));
         self.graph.tasks.spawn("listener", move |_| {
@@ -98,28 +99,28 @@ impl Subscription {
         Ok(Listener { subscription: self })
     }
 
-    /// The topic's full name.
+    /// Returns the topic's full name.
     pub fn topic(&self) -> &str {
         &self.subscribed.topic
     }
 
-    /// How many publishers are connected.
+    /// Returns the number of connected publishers.
     pub fn publisher_count(&self) -> usize {
         let links = self.subscribed.links();
         links.iter().filter(|link| link.connected.load(Ordering::Relaxed)).count()
     }
 
-    /// How many messages have come in from the publishers there are now.
+    /// Returns the number of messages received from the current publishers.
     pub fn received(&self) -> u64 {
         self.subscribed.links().iter().map(|link| link.received_messages.load(Ordering::Relaxed)).sum()
     }
 
-    /// How many messages a slow owner has missed.
+    /// Returns the number of dropped messages.
     pub fn dropped(&self) -> u64 {
         self.subscribed.inbox.dropped.load(Ordering::Relaxed)
     }
 
-    /// Whether the node is shut down: no message will come any more.
+    /// Returns whether the node is shut down, so that no message follows.
     pub fn is_closed(&self) -> bool {
         self.subscribed.inbox.is_closed()
     }
@@ -147,15 +148,14 @@ impl fmt::Debug for Subscription {
     }
 }
 
-/// A function that is called with every message of a topic, until this goes. A call that runs then is not
-/// waited for.
+/// Handle of a message callback; dropping it ends the calls, without waiting for a running one.
 #[derive(Debug)]
 pub struct Listener {
     subscription: Subscription,
 }
 
 impl Listener {
-    /// The subscription, for its counts.
+    /// Returns the subscription, for its counts.
     pub fn subscription(&self) -> &Subscription {
         &self.subscription
     }

@@ -1,4 +1,4 @@
-//! Base64 with padding, as RFC 4648 has it; white space between the letters is passed over.
+//! Base64 with padding (RFC 4648); white space is skipped.
 
 const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
@@ -15,7 +15,7 @@ pub(super) fn base64_from_bytes(bytes: &[u8]) -> String {
     text
 }
 
-/// Nothing where `text` holds other letters or ends within a byte.
+/// Decodes `text`; returns `None` for other characters or an incomplete byte.
 pub(super) fn bytes_from_base64(text: &str) -> Option<Vec<u8>> {
     let letters: Vec<u8> = text.bytes().filter(|byte| !byte.is_ascii_whitespace()).collect();
     let padding = letters.iter().rev().take_while(|letter| **letter == b'=').count();

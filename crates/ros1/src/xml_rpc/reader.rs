@@ -1,4 +1,4 @@
-//! Reading XML-RPC, from anybody.
+//! Parsing of untrusted XML-RPC.
 
 use std::collections::BTreeMap;
 
@@ -8,24 +8,24 @@ use roxmltree::{Document, Node, ParsingOptions};
 use super::base64::bytes_from_base64;
 use super::{MOST_NESTED, ParameterValue};
 
-/// Elements and texts of one call, far more than any has.
+/// Maximum number of XML nodes of one call, far more than in any real one.
 const MOST_NODES: u32 = 1 << 20;
 
-/// A call that came in.
+/// A received call.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct MethodCall {
     pub method: String,
     pub params: Vec<ParameterValue>,
 }
 
-/// What a peer answers instead of a value.
+/// Fault response of a peer.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Fault {
     pub code: i32,
     pub text: String,
 }
 
-/// The call in `body`.
+/// Parses the call in `body`.
 ///
 /// # Errors
 /// `Format` for anything but an XML-RPC call in UTF-8.
@@ -43,7 +43,7 @@ pub(crate) fn call_from_xml(body: &[u8]) -> Result<MethodCall> {
     })
 }
 
-/// The value in the response `body`, or the fault.
+/// Parses the response in `body`, which is a value or a fault.
 ///
 /// # Errors
 /// `Format` for anything but an XML-RPC response in UTF-8.
@@ -53,8 +53,8 @@ pub(crate) fn response_from_xml(body: &[u8]) -> Result<Result<ParameterValue, Fa
             let param = child(child(root, "params")?, "param")?;
             return value(child(param, "value")?, 0).map(Ok);
         };
-        let told = value(child(fault, "value")?, 0)?;
-        let member = |name| told.as_struct().and_then(|members| members.get(name));
+        let fault_value = value(child(fault, "value")?, 0)?;
+        let member = |name| fault_value.as_struct().and_then(|members| members.get(name));
         let code = member("faultCode").and_then(ParameterValue::as_int).unwrap_or(-1);
         let text = member("faultString").and_then(ParameterValue::as_str).unwrap_or("no reason given");
         Ok(Err(Fault { code, text: text.to_owned() }))
@@ -63,11 +63,11 @@ pub(crate) fn response_from_xml(body: &[u8]) -> Result<Result<ParameterValue, Fa
 
 fn with_root<T>(body: &[u8], root: &str, read: impl FnOnce(Node<'_, '_>) -> Result<T>) -> Result<T> {
     let text = str::from_utf8(body).map_err(|error| {
-        Error::format(format!("XML-RPC that is not UTF-8 after {} bytes", error.valid_up_to()))
+        Error::format(format!("the XML-RPC message is not UTF-8 after {} bytes", error.valid_up_to()))
     })?;
     let options = ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
     let document = Document::parse_with_options(text.trim_start(), options)
-        .map_err(|error| Error::format(format!("no XML: {error}")))?;
+        .map_err(|error| Error::format(format!("invalid XML: {error}")))?;
     let found = document.root_element();
     if !found.has_tag_name(root) {
         return Err(Error::format(format!("found <{:.40}> instead of <{root}>", found.tag_name().name())));
@@ -81,17 +81,17 @@ fn value(node: Node<'_, '_>, depth: usize) -> Result<ParameterValue> {
     }
     let Some(typed) = elements(node).next() else { return Ok(ParameterValue::String(text(node))) };
     let text = || text(typed);
-    let wrong = |what: &str| Error::format(format!("{:.40?} is no {what} of XML-RPC", text()));
+    let wrong = |what: &str| Error::format(format!("{:.40?} is not a {what} of XML-RPC", text()));
     Ok(match typed.tag_name().name() {
         "string" => ParameterValue::String(text()),
-        // Python writes i8 where it is told to; what fits is taken.
+        // Python may write i8; values that fit 32 bits are accepted.
         "int" | "i4" | "i8" | "i2" | "i1" => {
             ParameterValue::Int(text().trim().parse().map_err(|_| wrong("32-bit integer"))?)
         }
         "boolean" => match text().trim() {
             "1" | "true" => ParameterValue::Bool(true),
             "0" | "false" => ParameterValue::Bool(false),
-            _ => return Err(wrong("truth value")),
+            _ => return Err(wrong("Boolean")),
         },
         "double" => ParameterValue::Double(text().trim().parse().map_err(|_| wrong("number"))?),
         "dateTime.iso8601" => ParameterValue::DateTime(text().trim().to_owned()),
@@ -117,12 +117,12 @@ fn elements<'a>(node: Node<'a, 'a>) -> impl Iterator<Item = Node<'a, 'a>> {
 }
 
 fn child<'a>(node: Node<'a, 'a>, tag: &str) -> Result<Node<'a, 'a>> {
-    elements(node)
-        .find(|child| child.has_tag_name(tag))
-        .ok_or_else(|| Error::format(format!("<{:.40}> without <{tag}>: no XML-RPC", node.tag_name().name())))
+    elements(node).find(|child| child.has_tag_name(tag)).ok_or_else(|| {
+        Error::format(format!("<{:.40}> has no <{tag}>, which XML-RPC requires", node.tag_name().name()))
+    })
 }
 
-/// The text of a node, whichever comments break it up.
+/// Returns the text of a node, with comments removed.
 fn text(node: Node<'_, '_>) -> String {
     node.children().filter(Node::is_text).filter_map(|part| part.text()).collect()
 }

@@ -42,7 +42,7 @@ fn value(xml: &str) -> Option<ParameterValue> {
 }
 
 #[test]
-fn values_as_others_write_them() {
+fn values_in_the_forms_of_other_writers() {
     let string = |text: &str| Some(ParameterValue::String(text.to_owned()));
     assert_eq!(value("<value>bare &lt; text</value>"), string("bare < text"));
     assert_eq!(value("<value/>"), string(""));
@@ -65,7 +65,7 @@ fn values_as_others_write_them() {
 }
 
 #[test]
-fn faults_are_told() {
+fn faults_are_returned() {
     let fault = response_from_xml(xml_from_fault(3, "no <such>\u{1} method").as_bytes()).unwrap();
     assert_eq!(fault, Err(Fault { code: 3, text: "no <such> method".to_owned() }));
 }

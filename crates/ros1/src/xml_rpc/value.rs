@@ -1,8 +1,8 @@
-//! A value of XML-RPC, and so of the parameter server.
+//! Values of XML-RPC and of the parameter server.
 
 use std::collections::BTreeMap;
 
-/// What a parameter holds.
+/// Value of a parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ParameterValue {
     /// `<boolean>`.
@@ -19,22 +19,22 @@ pub enum ParameterValue {
     Struct(BTreeMap<String, Self>),
     /// `<base64>`.
     Base64(Vec<u8>),
-    /// `<dateTime.iso8601>`, as it is written: `19980717T14:08:55`.
+    /// `<dateTime.iso8601>` in its text form: `19980717T14:08:55`.
     DateTime(String),
 }
 
 impl ParameterValue {
-    /// The truth value.
+    /// Returns the value of a Boolean.
     pub fn as_bool(&self) -> Option<bool> {
         if let Self::Bool(value) = self { Some(*value) } else { None }
     }
 
-    /// The integer.
+    /// Returns the value of an integer.
     pub fn as_int(&self) -> Option<i32> {
         if let Self::Int(value) = self { Some(*value) } else { None }
     }
 
-    /// The number, whether written as an integer or not.
+    /// Returns the value of a double or an integer.
     pub fn as_double(&self) -> Option<f64> {
         match self {
             Self::Double(value) => Some(*value),
@@ -43,17 +43,17 @@ impl ParameterValue {
         }
     }
 
-    /// The text.
+    /// Returns the text of a string.
     pub fn as_str(&self) -> Option<&str> {
         if let Self::String(value) = self { Some(value) } else { None }
     }
 
-    /// The members of a list.
+    /// Returns the elements of a list.
     pub fn as_list(&self) -> Option<&[Self]> {
         if let Self::List(values) = self { Some(values) } else { None }
     }
 
-    /// The members of a struct.
+    /// Returns the members of a struct.
     pub fn as_struct(&self) -> Option<&BTreeMap<String, Self>> {
         if let Self::Struct(members) = self { Some(members) } else { None }
     }

@@ -1,4 +1,4 @@
-//! Writing XML-RPC.
+//! Writing of XML-RPC.
 
 use std::fmt::Write;
 
@@ -7,7 +7,7 @@ use opendr_engine::{Error, Result};
 use super::base64::base64_from_bytes;
 use super::{MOST_NESTED, ParameterValue};
 
-/// The body of a call.
+/// Returns the body of a call.
 ///
 /// # Errors
 /// `InvalidInput` for text that XML cannot hold (control characters), or lists nested too deeply.
@@ -24,7 +24,7 @@ pub(crate) fn xml_from_call(method: &str, params: &[ParameterValue]) -> Result<S
     Ok(xml)
 }
 
-/// The body of a response. Errors as [`xml_from_call`].
+/// Returns the body of a response. Errors as [`xml_from_call`].
 pub(crate) fn xml_from_response(value: &ParameterValue) -> Result<String> {
     let mut xml = "<?xml version=\"1.0\"?>\n<methodResponse><params><param>".to_owned();
     write_value(&mut xml, value, 0)?;
@@ -32,12 +32,12 @@ pub(crate) fn xml_from_response(value: &ParameterValue) -> Result<String> {
     Ok(xml)
 }
 
-/// The body of a response that tells of a fault.
+/// Returns the body of a fault response.
 pub(crate) fn xml_from_fault(code: i32, text: &str) -> String {
     let text: String = text.chars().filter(|letter| allowed(*letter)).collect();
     let fault = [("faultCode".to_owned(), code.into()), ("faultString".to_owned(), text.into())];
     let mut xml = "<?xml version=\"1.0\"?>\n<methodResponse><fault>".to_owned();
-    // Cannot fail: the text was just freed of what XML does not allow.
+    // Cannot fail, since characters that XML does not allow were removed.
     write_value(&mut xml, &ParameterValue::Struct(fault.into()), 0).ok();
     xml.push_str("</fault></methodResponse>\n");
     xml
@@ -45,10 +45,12 @@ pub(crate) fn xml_from_fault(code: i32, text: &str) -> String {
 
 fn write_value(xml: &mut String, value: &ParameterValue, depth: usize) -> Result<()> {
     if depth > MOST_NESTED {
-        return Err(Error::invalid_input(format!("a value nested more than {MOST_NESTED} deep; flatten it")));
+        return Err(Error::invalid_input(format!(
+            "the value is nested more than {MOST_NESTED} deep; flatten it"
+        )));
     }
     xml.push_str("<value>");
-    // Writing to a text does not fail.
+    // Writing to a String cannot fail.
     match value {
         ParameterValue::Bool(value) => drop(write!(xml, "<boolean>{}</boolean>", u8::from(*value))),
         ParameterValue::Int(value) => drop(write!(xml, "<int>{value}</int>")),
@@ -89,12 +91,12 @@ fn write_text(xml: &mut String, text: &str) -> Result<()> {
             '&' => xml.push_str("&amp;"),
             '<' => xml.push_str("&lt;"),
             '>' => xml.push_str("&gt;"),
-            // A reader makes a bare one into a line feed.
+            // XML readers convert a bare carriage return into a line feed.
             '\r' => xml.push_str("&#13;"),
             _ if allowed(letter) => xml.push(letter),
             _ => {
                 return Err(Error::invalid_input(format!(
-                    "text with the character {letter:?}, which XML cannot hold; hand it over as Base64"
+                    "the text contains {letter:?}, which XML cannot hold; send it as Base64"
                 )));
             }
         }
@@ -102,7 +104,7 @@ fn write_text(xml: &mut String, text: &str) -> Result<()> {
     Ok(())
 }
 
-/// Whether XML 1.0 may hold a character.
+/// Returns whether XML 1.0 allows a character.
 fn allowed(letter: char) -> bool {
     !matches!(letter, '\0'..='\x08' | '\x0b' | '\x0c' | '\x0e'..='\x1f' | '\u{fffe}' | '\u{ffff}')
 }

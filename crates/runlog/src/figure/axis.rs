@@ -1,4 +1,4 @@
-//! Where numbers lie on an axis.
+//! Axes of figures.
 
 /// The range of an axis and its ticks.
 pub struct Axis {
@@ -8,7 +8,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// An axis around `values` with some five ticks at round numbers; 0 to 1 when the values lie there.
+    /// Creates an axis around `values` with about five ticks at round numbers; 0 to 1 if the values are in that range.
     pub fn around(values: impl Iterator<Item = f64>) -> Self {
         let range = values.filter(|value| value.is_finite()).fold(None, |range, value| match range {
             None => Some((value, value)),
@@ -30,12 +30,12 @@ impl Axis {
         }
     }
 
-    /// 0 at the low end, 1 at the high end.
+    /// Returns the relative position of a value: 0 at the low end, 1 at the high end.
     pub fn share(&self, value: f64) -> f64 {
         (value - self.low) / (self.high - self.low)
     }
 
-    /// The ticks and what is written beside them.
+    /// Returns the ticks and their labels.
     pub fn ticks(&self) -> impl Iterator<Item = (f64, String)> {
         let count = ((self.high - self.low) / self.step).round() as usize;
         let places = (-self.step.log10().floor()).clamp(0.0, 9.0) as usize;

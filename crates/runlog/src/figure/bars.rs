@@ -1,10 +1,10 @@
-//! Bars below each other, as long as their numbers.
+//! Horizontal bar charts.
 
 use std::fmt::Write as _;
 
 use opendr_metrics::Bars;
 
-use super::{escaped, opening};
+use super::markup::{escaped, opening};
 
 const WIDTH: f64 = 640.0;
 const LABELS: f64 = 170.0;

@@ -1,13 +1,13 @@
-//! Lines over two axes.
+//! Line charts.
 
 use std::fmt::Write as _;
 
 use opendr_metrics::Curves;
 
 use super::axis::Axis;
-use super::{escaped, opening};
+use super::markup::{escaped, opening};
 
-/// Told apart by people who see few colours, too (Okabe and Ito 2008).
+/// Colours that are distinguishable with colour vision deficiency (Okabe and Ito 2008).
 const COLOURS: [&str; 8] =
     ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#b0a000"];
 pub const WIDTH: f64 = 720.0;
@@ -16,8 +16,8 @@ const LEFT: f64 = 70.0;
 const RIGHT: f64 = 200.0;
 const TOP: f64 = 40.0;
 const BOTTOM: f64 = 55.0;
-/// Lines of the legend.
-const MOST_LABELS: usize = 22;
+/// Maximum lines of the legend.
+const MAX_LABELS: usize = 22;
 
 pub fn svg(curves: &Curves) -> String {
     let points = || curves.lines.iter().flat_map(|line| &line.points);
@@ -63,14 +63,14 @@ pub fn svg(curves: &Curves) -> String {
             for (at, [px, py]) in run.iter().enumerate() {
                 write!(path, "{}{:.1} {:.1}", if at == 0 { 'M' } else { 'L' }, x(*px), y(*py)).ok();
             }
-            // What stands alone is a dot.
+            // A single point is drawn as a dot.
             path.push_str(if run.len() == 1 { "h0" } else { "" });
         }
         let width = if path.contains("h0") && !path.contains('L') { 4 } else { 2 };
         add(format_args!(
             "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" stroke-linecap=\"round\"/>\n"
         ));
-        if at < MOST_LABELS {
+        if at < MAX_LABELS {
             let (x, y) = (WIDTH - RIGHT + 14.0, TOP + 10.0 + 18.0 * at as f64);
             add(format_args!(
                 "<path d=\"M{x} {y}h18\" stroke=\"{colour}\" stroke-width=\"3\"/><text x=\"{}\" y=\"{}\">{}</text>\n",

@@ -1,13 +1,13 @@
-//! A confusion matrix: rows are truth, columns are answers, shades are shares of a row.
+//! Confusion matrices: rows are the ground truth, columns the predictions, shades the fraction of a row.
 
 use std::fmt::Write as _;
 
 use opendr_metrics::Matrix;
 
-use super::{escaped, opening};
+use super::markup::{escaped, opening};
 
-/// With more classes cells get no numbers.
-const MOST_NUMBERS: usize = 24;
+/// Maximum number of classes for which cells show numbers.
+const MAX_NUMBERED_CLASSES: usize = 24;
 const LABELS: f64 = 130.0;
 const TOP: f64 = 40.0;
 
@@ -32,7 +32,7 @@ pub fn svg(matrix: &Matrix) -> String {
                 shade(90.0),
                 shade(160.0)
             ));
-            if count <= MOST_NUMBERS && *number > 0 {
+            if count <= MAX_NUMBERED_CLASSES && *number > 0 {
                 let ink = if share > 0.5 { "#fff" } else { "#333" };
                 add(format_args!(
                     "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\" font-size=\"{:.1}\" fill=\"{ink}\">{number}</text>",

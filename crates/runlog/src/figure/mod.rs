@@ -1,13 +1,16 @@
-//! Figures as SVG files, without fonts or scripts of their own.
+//! Figures as SVG, without embedded fonts or scripts.
 
 mod axis;
 mod bars;
 mod curves;
+mod markup;
 mod matrix;
 
 use opendr_metrics::{Curves, Figure};
 
-/// The figure's name and its picture as SVG text.
+use markup::opening;
+
+/// Returns a figure's name and its SVG text.
 pub fn svg_from_figure(figure: &Figure) -> (&str, String) {
     match figure {
         Figure::Curves(curves) => (&curves.name, curves::svg(curves)),
@@ -17,7 +20,7 @@ pub fn svg_from_figure(figure: &Figure) -> (&str, String) {
     }
 }
 
-/// Curves below each other in one picture, as SVG text.
+/// Returns curves stacked vertically in one image, as SVG text.
 pub fn svg_from_panels(panels: &[Curves]) -> String {
     let mut svg = opening(curves::WIDTH, curves::HEIGHT * panels.len() as f64, "");
     for (at, panel) in panels.iter().enumerate() {
@@ -28,30 +31,13 @@ pub fn svg_from_panels(panels: &[Curves]) -> String {
     svg + "</svg>\n"
 }
 
-/// Text of any origin between tags.
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-}
-
-/// The beginning of a picture of `width` x `height` with a title.
-fn opening(width: f64, height: f64, title: &str) -> String {
-    format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
-         height=\"{height}\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#333\">\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n\
-         <text x=\"{}\" y=\"22\" font-size=\"15\" text-anchor=\"middle\">{}</text>\n",
-        width / 2.0,
-        escaped(title)
-    )
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use opendr_metrics::{Bars, Line, Matrix};
 
     #[test]
-    fn figures_are_well_formed_whatever_they_hold() {
+    fn figures_are_well_formed_for_any_content() {
         let line =
             |label: &str, points: &[[f64; 2]]| Line { label: label.to_owned(), points: points.to_vec() };
         let curves = Curves {

@@ -1,4 +1,4 @@
-//! Two links of which only the joint between them has a motor (Sutton, Generalization in reinforcement learning, 1996).
+//! Acrobot: two links with a motor at the joint between them (Sutton, Generalization in reinforcement learning, 1996).
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -7,29 +7,29 @@ use opendr_engine::data::Image;
 use opendr_engine::environment::{EnvironmentSpec, ResetOptions, Space};
 use opendr_engine::params::Params;
 
-use super::dynamics::{Classic, Dynamics, Outcome, reset_bounds};
+use super::dynamics::{Classic, Dynamics, Transition, reset_bounds};
 use super::pictures;
 use crate::NumpyRandom;
 use crate::sine_cosine::sine_cosine;
 
-/// `Acrobot-v1`: torques of -1, 0, 1 N m; the end of the lower link has to swing above a line.
+/// `Acrobot-v1`: torques of -1, 0, 1 N m; the goal is to swing the end of the lower link above a line.
 pub type Acrobot = Classic<AcrobotDynamics>;
 
-/// What a user may set of `Acrobot-v1`.
+/// Parameters of `Acrobot-v1`.
 #[derive(Debug, Clone, Params)]
 pub struct AcrobotParams {
-    /// The equations of the paper (NIPS 1995) instead of those of Sutton and Barto's book.
+    /// Uses the equations of the paper (NIPS 1995) instead of those of Sutton and Barto's book.
     #[param(default = false)]
     pub nips: bool,
-    /// Largest noise added to the torque, in N m.
+    /// Maximum noise added to the torque, in N m.
     #[param(default = 0.0, range = 0.0..=100.0)]
     pub torque_noise: f64,
-    /// Time of one step in seconds.
+    /// Duration of one step, in seconds.
     #[param(default = 0.2, range = 0.0001..=1.0)]
     pub time_step: f64,
 }
 
-/// The equations: angles of both links (rad, the second relative to the first), their speeds (rad/s).
+/// Dynamics of [`Acrobot`]. State: angles of both links (rad, the second relative to the first), their angular velocities (rad/s).
 #[derive(Debug, Clone)]
 pub struct AcrobotDynamics {
     params: AcrobotParams,
@@ -37,7 +37,7 @@ pub struct AcrobotDynamics {
 
 const MAX_SPEED: [f64; 2] = [4.0 * PI, 9.0 * PI];
 const GRAVITY: f64 = 9.8;
-/// Length (m) and mass (kg) of a link, its centre of mass (m), its moment of inertia (kg m^2).
+/// Length (m) and mass (kg) of a link, distance of its centre of mass (m), moment of inertia (kg m^2).
 const LENGTH: f64 = 1.0;
 const MASS: f64 = 1.0;
 const CENTRE: f64 = 0.5;
@@ -63,11 +63,11 @@ impl Dynamics for AcrobotDynamics {
 
     fn initial(&self, random: &mut NumpyRandom, options: &ResetOptions) -> Result<[f64; 4]> {
         let (low, high) = reset_bounds(options, -0.1, 0.1)?;
-        // Gymnasium rounds the first state, and only that, to single precision.
+        // Gymnasium rounds only the initial state to single precision.
         Ok([(); 4].map(|()| f64::from(random.uniform(low, high) as f32)))
     }
 
-    fn advance(&self, state: &mut [f64; 4], action: &[f32], random: &mut NumpyRandom) -> Outcome {
+    fn advance(&self, state: &mut [f64; 4], action: &[f32], random: &mut NumpyRandom) -> Transition {
         let mut torque = f64::from(action[0]) - 1.0;
         let noise = self.params.torque_noise;
         if noise > 0.0 {
@@ -82,7 +82,7 @@ impl Dynamics for AcrobotDynamics {
         ];
         let height = -cosine(state[0]) - cosine(state[1] + state[0]);
         let terminated = height > 1.0;
-        Outcome { reward: if terminated { 0.0 } else { -1.0 }, terminated }
+        Transition { reward: if terminated { 0.0 } else { -1.0 }, terminated }
     }
 
     fn observe(&self, state: &[f64; 4], observation: &mut [f32]) {
@@ -93,13 +93,13 @@ impl Dynamics for AcrobotDynamics {
         }
     }
 
-    fn picture(&self, state: &[f64; 4]) -> Result<Option<Image>> {
+    fn render(&self, state: &[f64; 4]) -> Result<Option<Image>> {
         pictures::acrobot(*state).map(Some)
     }
 }
 
 impl AcrobotDynamics {
-    /// One step of the fourth-order Runge-Kutta rule.
+    /// Integrates one step by the fourth-order Runge-Kutta method.
     fn integrated(&self, state: [f64; 4], torque: f64) -> [f64; 4] {
         let time = self.params.time_step;
         let along = |slope: [f64; 4], time: f64| -> [f64; 4] {
@@ -140,9 +140,9 @@ fn cosine(angle: f64) -> f64 {
     sine_cosine(angle).1
 }
 
-/// An angle within [-pi, pi], by whole turns.
+/// Wraps an angle to [-pi, pi].
 fn wrapped(angle: f64) -> f64 {
-    // Gymnasium subtracts turn by turn; no state of its own is more than a few turns off.
+    // Gymnasium subtracts 2 pi repeatedly; its own states are at most a few turns off.
     let mut angle = if angle.abs() < 100.0 { angle } else { (angle + PI).rem_euclid(TAU) - PI };
     while angle > PI {
         angle -= TAU;

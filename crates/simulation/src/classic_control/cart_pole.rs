@@ -1,30 +1,30 @@
-//! A pole on a cart (Barto, Sutton and Anderson, Neuronlike adaptive elements, 1983).
+//! Cart-pole (Barto, Sutton and Anderson, Neuronlike adaptive elements, 1983).
 
 use opendr_engine::Result;
 use opendr_engine::data::Image;
 use opendr_engine::environment::{EnvironmentSpec, ResetOptions, Space};
 use opendr_engine::params::Params;
 
-use super::dynamics::{Classic, Dynamics, Outcome, reset_bounds};
+use super::dynamics::{Classic, Dynamics, Transition, reset_bounds};
 use super::pictures;
 use crate::NumpyRandom;
 use crate::sine_cosine::sine_cosine;
 
-/// `CartPole-v1`: push the cart left (0) or right (1) so that the pole stays up.
+/// `CartPole-v1`: push the cart left (0) or right (1) to keep the pole upright.
 pub type CartPole = Classic<CartPoleDynamics>;
 
-/// What a user may set of `CartPole-v1`.
+/// Parameters of `CartPole-v1`.
 #[derive(Debug, Clone, Params)]
 pub struct CartPoleParams {
-    /// Rewards of Sutton and Barto: 0 for each step, -1 for the fall, instead of 1 for each step.
+    /// Uses the rewards of Sutton and Barto: 0 per step and -1 for a fall, instead of 1 per step.
     #[param(default = false)]
     pub sutton_barto_reward: bool,
-    /// Semi-implicit instead of explicit Euler steps.
+    /// Uses semi-implicit instead of explicit Euler integration.
     #[param(default = false)]
     pub semi_implicit: bool,
 }
 
-/// The equations: position (m), speed (m/s), angle of the pole (rad), its speed (rad/s).
+/// Dynamics of [`CartPole`]. State: position (m), velocity (m/s), angle of the pole (rad), angular velocity (rad/s).
 #[derive(Debug, Clone)]
 pub struct CartPoleDynamics {
     params: CartPoleParams,
@@ -64,11 +64,11 @@ impl Dynamics for CartPoleDynamics {
     }
 
     #[inline]
-    fn advance(&self, state: &mut [f64; 4], action: &[f32], _: &mut NumpyRandom) -> Outcome {
+    fn advance(&self, state: &mut [f64; 4], action: &[f32], _: &mut NumpyRandom) -> Transition {
         let push = if action[0] == 1.0 { FORCE } else { -FORCE };
         *state = moved(*state, push, self.params.semi_implicit);
         let terminated = has_fallen(*state);
-        Outcome { reward: reward(self.params.sutton_barto_reward, terminated), terminated }
+        Transition { reward: reward(self.params.sutton_barto_reward, terminated), terminated }
     }
 
     fn observe(&self, state: &[f64; 4], observation: &mut [f32]) {
@@ -77,12 +77,12 @@ impl Dynamics for CartPoleDynamics {
         }
     }
 
-    fn picture(&self, state: &[f64; 4]) -> Result<Option<Image>> {
+    fn render(&self, state: &[f64; 4]) -> Result<Option<Image>> {
         pictures::cart_pole(*state).map(Some)
     }
 }
 
-/// The state one time step later.
+/// Returns the state one time step later.
 #[inline(always)]
 pub(crate) fn moved(state: [f64; 4], push: f64, semi_implicit: bool) -> [f64; 4] {
     let [x, speed, angle, turning] = state;

@@ -1,4 +1,4 @@
-//! What a small world of a few numbers is, and the environment around it.
+//! The trait for environments whose state is a few numbers, and the environment around it.
 
 use opendr_engine::data::Image;
 use opendr_engine::environment::{
@@ -7,54 +7,54 @@ use opendr_engine::environment::{
 use opendr_engine::params::Params;
 use opendr_engine::{Error, Result};
 
-use crate::{NumpyRandom, Registered};
+use crate::{NumpyRandom, RegisteredEnvironment};
 
-/// What a step brought beside the next state.
+/// Result of a step, besides the next state.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Outcome {
-    /// The reward.
+pub struct Transition {
+    /// Reward.
     pub reward: f64,
-    /// Whether the task ended.
+    /// Whether the episode terminated.
     pub terminated: bool,
 }
 
-/// The equations of a world whose state is a few numbers.
+/// Dynamics of an environment whose state is a few numbers.
 pub trait Dynamics: Clone + Send + Sized + 'static {
     /// Name and version.
     const ID: &'static str;
-    /// What a user may set.
+    /// Parameters of the environment.
     type Params: Params;
-    /// The state: `[f64; N]`.
+    /// Type of the state: `[f64; N]`.
     type State: AsRef<[f64]> + AsMut<[f64]> + Copy + Default + Send;
 
-    /// The world with these parameters.
+    /// Creates the dynamics.
     fn new(params: &Self::Params) -> Self;
 
-    /// Spaces and limits.
+    /// Returns spaces and limits.
     fn spec(&self) -> EnvironmentSpec;
 
-    /// The state in which an episode begins.
+    /// Returns an initial state.
     ///
     /// # Errors
-    /// `InvalidParam` for options that do not fit.
+    /// `InvalidParam` for invalid options.
     fn initial(&self, random: &mut NumpyRandom, options: &ResetOptions) -> Result<Self::State>;
 
-    /// Takes one step. `action` is of the action space, but for numbers of a box beyond its bounds, which are clipped.
-    fn advance(&self, state: &mut Self::State, action: &[f32], random: &mut NumpyRandom) -> Outcome;
+    /// Advances the state by one step. `action` is in the action space, except that box actions may exceed the bounds and are clipped.
+    fn advance(&self, state: &mut Self::State, action: &[f32], random: &mut NumpyRandom) -> Transition;
 
-    /// Writes what is seen of a state.
+    /// Writes the observation of a state.
     fn observe(&self, state: &Self::State, observation: &mut [f32]);
 
-    /// A picture of a state, where there is one.
+    /// Renders a state, if the environment can be rendered.
     ///
     /// # Errors
-    /// None that states of the world have.
-    fn picture(&self, _state: &Self::State) -> Result<Option<Image>> {
+    /// None for states of the environment.
+    fn render(&self, _state: &Self::State) -> Result<Option<Image>> {
         Ok(None)
     }
 }
 
-/// The environment around [`Dynamics`], without a time limit.
+/// The environment of a [`Dynamics`], without a time limit.
 #[derive(Debug, Clone)]
 pub struct Classic<D: Dynamics> {
     dynamics: D,
@@ -64,21 +64,21 @@ pub struct Classic<D: Dynamics> {
 }
 
 impl<D: Dynamics> Classic<D> {
-    /// The state, after a reset.
+    /// Returns the state; none before the first reset.
     pub fn state(&self) -> Option<&[f64]> {
         self.state.as_ref().map(AsRef::as_ref)
     }
 
-    /// Goes on from another state.
+    /// Sets the state.
     ///
     /// # Errors
-    /// `InvalidInput` for a wrong count, and for numbers that are not finite.
+    /// `InvalidInput` for a wrong length, and for numbers that are not finite.
     pub fn set_state(&mut self, numbers: &[f64]) -> Result<()> {
         let mut state = D::State::default();
         let own = state.as_mut();
         if numbers.len() != own.len() || numbers.iter().any(|number| !number.is_finite()) {
             return Err(Error::invalid_input(format!(
-                "a state of {} is {} finite numbers, not {numbers:?}",
+                "the state of {} has {} finite numbers, not {numbers:?}",
                 D::ID,
                 own.len()
             )));
@@ -105,7 +105,7 @@ impl<D: Dynamics> Classic<D> {
     }
 }
 
-impl<D: Dynamics> Registered for Classic<D> {
+impl<D: Dynamics> RegisteredEnvironment for Classic<D> {
     const ID: &'static str = D::ID;
     type Params = D::Params;
 
@@ -125,7 +125,7 @@ impl<D: Dynamics> Environment for Classic<D> {
         if let Some(seed) = seed {
             self.random = Some(NumpyRandom::new(seed));
         }
-        let random = self.random.get_or_insert_with(NumpyRandom::from_chance);
+        let random = self.random.get_or_insert_with(NumpyRandom::from_entropy);
         let state = self.dynamics.initial(random, options)?;
         self.state = Some(state);
         self.observe(&state, observation)?;
@@ -135,8 +135,8 @@ impl<D: Dynamics> Environment for Classic<D> {
     fn step(&mut self, action: &[f32], observation: &mut [f32]) -> Result<Step> {
         self.check_action(action)?;
         let mut state = self.state.ok_or_else(|| not_begun(&self.spec))?;
-        let random = self.random.get_or_insert_with(NumpyRandom::from_chance);
-        let Outcome { reward, terminated } = self.dynamics.advance(&mut state, action, random);
+        let random = self.random.get_or_insert_with(NumpyRandom::from_entropy);
+        let Transition { reward, terminated } = self.dynamics.advance(&mut state, action, random);
         self.state = Some(state);
         self.observe(&state, observation)?;
         Ok(Step { reward, terminated, ..Step::default() })
@@ -144,13 +144,13 @@ impl<D: Dynamics> Environment for Classic<D> {
 
     fn render(&mut self) -> Result<Option<Image>> {
         let state = self.state.as_ref().ok_or_else(|| not_begun(&self.spec))?;
-        self.dynamics.picture(state)
+        self.dynamics.render(state)
     }
 
     fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
         let state = self.state.as_ref().ok_or_else(|| not_begun(&self.spec))?;
         snapshot.extend_numbers(state.as_ref().iter().copied());
-        self.random.clone().unwrap_or_else(NumpyRandom::from_chance).save(snapshot);
+        self.random.clone().unwrap_or_else(NumpyRandom::from_entropy).save(snapshot);
         Ok(())
     }
 
@@ -177,21 +177,22 @@ pub(crate) fn check_length(spec: &EnvironmentSpec, observation: &[f32]) -> Resul
     Err(Error::invalid_input(format!("an observation of {} has {wanted} numbers, not {count}", spec.id)))
 }
 
-/// Gymnasium's `maybe_parse_reset_bounds`: `low` and `high` of the initial state.
+/// Returns `low` and `high` of the initial state: Gymnasium's `maybe_parse_reset_bounds`.
 pub(super) fn reset_bounds(options: &ResetOptions, low: f64, high: f64) -> Result<(f64, f64)> {
     let (low, high) = (reset_number(options, "low", low)?, reset_number(options, "high", high)?);
     if low > high {
         return Err(Error::invalid_param(format!(
-            "option low is {low}, above high, which is {high}; exchange them"
+            "option low is {low}, greater than high = {high}; swap them"
         )));
     }
     Ok((low, high))
 }
 
-/// An option that is a finite number.
+/// Returns an option that must be a finite number.
 pub(super) fn reset_number(options: &ResetOptions, name: &str, default: f64) -> Result<f64> {
     let Some(value) = options.get(name) else { return Ok(default) };
-    value.as_float().filter(|number| number.is_finite()).ok_or_else(|| {
-        Error::invalid_param(format!("option {name} is {value}, but has to be a finite number"))
-    })
+    value
+        .as_float()
+        .filter(|number| number.is_finite())
+        .ok_or_else(|| Error::invalid_param(format!("option {name} is {value}; give a finite number")))
 }

@@ -1,4 +1,4 @@
-//! Gymnasium's classic control: the same states, rewards and endings as its version 1.4.
+//! Classic control environments with the states, rewards and ends of episodes of Gymnasium 1.4.
 
 mod acrobot;
 pub(crate) mod cart_pole;
@@ -12,7 +12,7 @@ mod tests;
 
 pub use acrobot::{Acrobot, AcrobotParams};
 pub use cart_pole::{CartPole, CartPoleParams};
-pub use dynamics::{Classic, Dynamics, Outcome};
+pub use dynamics::{Classic, Dynamics, Transition};
 pub(crate) use dynamics::{check_length, not_begun};
 pub use mountain_car::{MountainCar, MountainCarParams};
 pub use mountain_car_continuous::MountainCarContinuous;

@@ -1,11 +1,11 @@
-//! The mountain car with a continuous motor.
+//! The mountain car with continuous actions.
 
 use opendr_engine::Result;
 use opendr_engine::data::Image;
 use opendr_engine::environment::{EnvironmentSpec, ResetOptions, Space};
 
-use super::dynamics::{Classic, Dynamics, Outcome, reset_bounds};
-use super::mountain_car::{MAX_SPEED, MountainCarParams, POSITIONS, seen};
+use super::dynamics::{Classic, Dynamics, Transition, reset_bounds};
+use super::mountain_car::{MAX_SPEED, MountainCarParams, POSITIONS, observation_space};
 use super::pictures;
 use crate::NumpyRandom;
 use crate::sine_cosine::sine_cosine;
@@ -13,10 +13,9 @@ use crate::sine_cosine::sine_cosine;
 /// `MountainCarContinuous-v0`: a force in [-1, 1], which costs a tenth of its square.
 pub type MountainCarContinuous = Classic<MountainCarContinuousDynamics>;
 
-/// The equations: position, speed, and 1 for the first state of an episode.
+/// Dynamics of [`MountainCarContinuous`]. State: position, velocity, and 1 for the initial state.
 ///
-/// Gymnasium keeps that first state in double precision, rounds every later one to single and computes with what it
-/// has; so does this.
+/// As in Gymnasium, the initial state has double precision and every later one is rounded to single precision.
 #[derive(Debug, Clone)]
 pub struct MountainCarContinuousDynamics {
     goal_velocity: f64,
@@ -36,7 +35,7 @@ impl Dynamics for MountainCarContinuousDynamics {
     }
 
     fn spec(&self) -> EnvironmentSpec {
-        EnvironmentSpec::new(Self::ID, seen(), Space::symmetric(&[1.0]))
+        EnvironmentSpec::new(Self::ID, observation_space(), Space::symmetric(&[1.0]))
             .with_max_episode_steps(999)
             .with_reward_threshold(90.0)
             .with_reward_range(-0.1, 100.0)
@@ -47,7 +46,7 @@ impl Dynamics for MountainCarContinuousDynamics {
         Ok([random.uniform(low, high), 0.0, 1.0])
     }
 
-    fn advance(&self, state: &mut [f64; 3], action: &[f32], _: &mut NumpyRandom) -> Outcome {
+    fn advance(&self, state: &mut [f64; 3], action: &[f32], _: &mut NumpyRandom) -> Transition {
         let [position, speed, first] = *state;
         let own = |number: f64| if first == 1.0 { number } else { single(number) };
         let asked = f64::from(action[0]);
@@ -65,7 +64,7 @@ impl Dynamics for MountainCarContinuousDynamics {
 
         let terminated = position >= own(GOAL) && speed >= self.goal_velocity;
         *state = [single(position), single(speed), 0.0];
-        Outcome { reward: if terminated { 100.0 } else { 0.0 } - asked * asked * 0.1, terminated }
+        Transition { reward: if terminated { 100.0 } else { 0.0 } - asked * asked * 0.1, terminated }
     }
 
     fn observe(&self, state: &[f64; 3], observation: &mut [f32]) {
@@ -74,12 +73,12 @@ impl Dynamics for MountainCarContinuousDynamics {
         }
     }
 
-    fn picture(&self, state: &[f64; 3]) -> Result<Option<Image>> {
+    fn render(&self, state: &[f64; 3]) -> Result<Option<Image>> {
         pictures::mountain_car(state[0], GOAL).map(Some)
     }
 }
 
-/// Rounded to single precision: of one operation on singles, that is the single result.
+/// Rounds to single precision; for one operation on singles, this is the single-precision result.
 fn single(number: f64) -> f64 {
     f64::from(number as f32)
 }

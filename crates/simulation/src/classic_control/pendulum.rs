@@ -1,4 +1,4 @@
-//! A pendulum to swing up with a weak motor.
+//! Pendulum: swing up with a weak motor.
 
 use std::f64::consts::{PI, TAU};
 
@@ -7,23 +7,23 @@ use opendr_engine::data::Image;
 use opendr_engine::environment::{EnvironmentSpec, ResetOptions, Space};
 use opendr_engine::params::Params;
 
-use super::dynamics::{Classic, Dynamics, Outcome, reset_number};
+use super::dynamics::{Classic, Dynamics, Transition, reset_number};
 use super::pictures;
 use crate::NumpyRandom;
 use crate::sine_cosine::sine_cosine;
 
-/// `Pendulum-v1`: a torque of at most 2 N m; seen are cosine, sine and speed.
+/// `Pendulum-v1`: a torque of at most 2 N m; the observation is cosine, sine and angular velocity.
 pub type Pendulum = Classic<PendulumDynamics>;
 
-/// What a user may set of `Pendulum-v1`.
+/// Parameters of `Pendulum-v1`.
 #[derive(Debug, Clone, Params)]
 pub struct PendulumParams {
-    /// Gravity in m/s^2.
+    /// Gravitational acceleration, in m/s^2.
     #[param(default = 10.0, range = 0.0..=1000.0)]
     pub g: f64,
 }
 
-/// The equations: angle from upright (rad, not wrapped), speed (rad/s).
+/// Dynamics of [`Pendulum`]. State: angle from upright (rad, not wrapped), angular velocity (rad/s).
 #[derive(Debug, Clone)]
 pub struct PendulumDynamics {
     gravity: f64,
@@ -55,9 +55,9 @@ impl Dynamics for PendulumDynamics {
         Ok(high.map(|high| random.uniform(-high, high)))
     }
 
-    fn advance(&self, state: &mut [f64; 2], action: &[f32], _: &mut NumpyRandom) -> Outcome {
+    fn advance(&self, state: &mut [f64; 2], action: &[f32], _: &mut NumpyRandom) -> Transition {
         let [angle, speed] = *state;
-        // NumPy computes what hangs on the torque alone in single precision.
+        // NumPy computes terms of the torque alone in single precision.
         let torque = action[0].clamp(-MAX_TORQUE, MAX_TORQUE);
         let from_upright = (angle + PI).rem_euclid(TAU) - PI;
         let effort = f64::from(0.001 * (torque * torque));
@@ -66,7 +66,7 @@ impl Dynamics for PendulumDynamics {
         let speed = speed + (weight + f64::from(3.0 * torque)) * TIME_STEP;
         let speed = speed.clamp(-MAX_SPEED, MAX_SPEED);
         *state = [angle + speed * TIME_STEP, speed];
-        Outcome { reward: -cost, terminated: false }
+        Transition { reward: -cost, terminated: false }
     }
 
     fn observe(&self, [angle, speed]: &[f64; 2], observation: &mut [f32]) {
@@ -76,7 +76,7 @@ impl Dynamics for PendulumDynamics {
         }
     }
 
-    fn picture(&self, state: &[f64; 2]) -> Result<Option<Image>> {
+    fn render(&self, state: &[f64; 2]) -> Result<Option<Image>> {
         pictures::pendulum(*state).map(Some)
     }
 }

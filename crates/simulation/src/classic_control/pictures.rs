@@ -1,4 +1,4 @@
-//! Pictures of the classic worlds, of the sizes, proportions and colours that Gymnasium draws.
+//! Rendering of the classic environments, in the sizes, proportions and colours of Gymnasium.
 
 use opendr_engine::Result;
 use opendr_engine::data::Image;
@@ -10,7 +10,7 @@ fn single((sine, cosine): (f64, f64)) -> (f32, f32) {
     (sine as f32, cosine as f32)
 }
 
-/// 600 x 400: a cart on a rail.
+/// Renders a cart on a rail, 600 x 400 pixels.
 pub(super) fn cart_pole([x, _, angle, _]: [f64; 4]) -> Result<Image> {
     const SCALE: f32 = 600.0 / 4.8;
     let mut drawing = Drawing::new(600, 400)?;
@@ -19,7 +19,7 @@ pub(super) fn cart_pole([x, _, angle, _]: [f64; 4]) -> Result<Image> {
     drawing.turned_box(centre, [25.0, 15.0], (0.0, 1.0), BLACK);
     let (sine, cosine) = single(sine_cosine(angle));
     let axle = [centre[0], centre[1] + 7.5];
-    // The pole begins half its width below the axle.
+    // The pole starts half its width below the axle.
     let middle = SCALE / 2.0 - 5.0;
     let pole = [axle[0] + middle * sine, axle[1] + middle * cosine];
     drawing.turned_box(pole, [5.0, SCALE / 2.0], (-sine, cosine), [202, 152, 101]);
@@ -27,7 +27,7 @@ pub(super) fn cart_pole([x, _, angle, _]: [f64; 4]) -> Result<Image> {
     Ok(drawing.finish())
 }
 
-/// 500 x 500: a rod around its axle.
+/// Renders a rod around its axle, 500 x 500 pixels.
 pub(super) fn pendulum([angle, _]: [f64; 2]) -> Result<Image> {
     const SCALE: f32 = 500.0 / 4.4;
     let mut drawing = Drawing::new(500, 500)?;
@@ -38,7 +38,7 @@ pub(super) fn pendulum([angle, _]: [f64; 2]) -> Result<Image> {
     Ok(drawing.finish())
 }
 
-/// 500 x 500: two links, and the line to reach.
+/// Renders two links and the goal line, 500 x 500 pixels.
 pub(super) fn acrobot([first, second, ..]: [f64; 4]) -> Result<Image> {
     const SCALE: f32 = 500.0 / 4.4;
     let mut drawing = Drawing::new(500, 500)?;
@@ -55,7 +55,7 @@ pub(super) fn acrobot([first, second, ..]: [f64; 4]) -> Result<Image> {
     Ok(drawing.finish())
 }
 
-/// 600 x 400: a car between hills, and a flag at the goal.
+/// Renders a car between hills and a flag at the goal, 600 x 400 pixels.
 pub(super) fn mountain_car(position: f64, goal: f64) -> Result<Image> {
     const SCALE: f32 = 600.0 / 1.8;
     let on_hill = |x: f64| {
@@ -67,7 +67,7 @@ pub(super) fn mountain_car(position: f64, goal: f64) -> Result<Image> {
         let [from, to] = [step, step + 1].map(|step| on_hill(-1.2 + 1.8 * f64::from(step) / 99.0));
         drawing.line(from, to, 1.0, BLACK);
     }
-    // Gymnasium turns the car by the slope's cosine as if it were the angle.
+    // As in Gymnasium, the car is rotated by the cosine of the slope as if it were the angle.
     let (sine, cosine) = single(sine_cosine(sine_cosine(3.0 * position).1));
     let [x, y] = on_hill(position);
     let place = |ahead: f32, up: f32| [x + cosine * ahead - sine * up, y + 10.0 + sine * ahead + cosine * up];

@@ -2,15 +2,15 @@ use opendr_engine::environment::Environment;
 use opendr_engine::params::{ParamMap, ParamValue};
 
 use super::*;
-use crate::{Registered, make};
+use crate::{RegisteredEnvironment, make};
 
 /// Gymnasium 1.4: `make(id).reset(seed=42)`.
 #[test]
-fn a_seed_begins_as_in_gymnasium() {
-    for (id, wanted) in FIRST {
-        let mut seen = vec![0.0; wanted.len()];
-        make(id).unwrap().reset(Some(42), &ParamMap::new(), &mut seen).unwrap();
-        assert_eq!(seen, *wanted, "{id}");
+fn initial_states_match_gymnasium() {
+    for (id, expected) in FIRST {
+        let mut observation = vec![0.0; expected.len()];
+        make(id).unwrap().reset(Some(42), &ParamMap::new(), &mut observation).unwrap();
+        assert_eq!(observation, *expected, "{id}");
     }
 }
 
@@ -28,25 +28,25 @@ fn options_move_the_first_state() {
     let options = |low: f64, high: f64| {
         ParamMap::from([("low".to_owned(), ParamValue::from(low)), ("high".to_owned(), high.into())])
     };
-    let mut seen = [0.0; 4];
-    environment.reset(Some(1), &options(0.1, 0.1), &mut seen).unwrap();
-    assert_eq!(seen, [0.1; 4]);
-    assert!(environment.reset(Some(1), &options(0.2, 0.1), &mut seen).is_err());
-    assert!(environment.reset(Some(1), &options(f64::NAN, 0.1), &mut seen).is_err());
+    let mut observation = [0.0; 4];
+    environment.reset(Some(1), &options(0.1, 0.1), &mut observation).unwrap();
+    assert_eq!(observation, [0.1; 4]);
+    assert!(environment.reset(Some(1), &options(0.2, 0.1), &mut observation).is_err());
+    assert!(environment.reset(Some(1), &options(f64::NAN, 0.1), &mut observation).is_err());
 }
 
 #[test]
 fn parameters_change_the_world() {
     let run = |params: CartPoleParams| {
         let mut environment = CartPole::new(&params).unwrap();
-        let mut seen = [0.0; 4];
-        environment.reset(Some(3), &ParamMap::new(), &mut seen).unwrap();
+        let mut observation = [0.0; 4];
+        environment.reset(Some(3), &ParamMap::new(), &mut observation).unwrap();
         let mut rewards = Vec::new();
         loop {
-            let step = environment.step(&[1.0], &mut seen).unwrap();
+            let step = environment.step(&[1.0], &mut observation).unwrap();
             rewards.push(step.reward);
             if step.terminated {
-                return (rewards, seen);
+                return (rewards, observation);
             }
         }
     };
@@ -60,17 +60,17 @@ fn parameters_change_the_world() {
 #[test]
 fn states_are_checked() {
     let mut environment = Pendulum::new(&PendulumParams::default()).unwrap();
-    let mut seen = [0.0; 3];
-    assert!(environment.step(&[0.0], &mut seen).unwrap_err().to_string().contains("never reset"));
+    let mut observation = [0.0; 3];
+    assert!(environment.step(&[0.0], &mut observation).unwrap_err().to_string().contains("never reset"));
     assert!(environment.set_state(&[0.0]).is_err());
     assert!(environment.set_state(&[0.0, f64::INFINITY]).is_err());
     environment.set_state(&[0.5, 0.0]).unwrap();
-    assert!(environment.step(&[f32::NAN], &mut seen).is_err());
-    assert!(environment.step(&[0.0], &mut seen[..2]).is_err());
+    assert!(environment.step(&[f32::NAN], &mut observation).is_err());
+    assert!(environment.step(&[0.0], &mut observation[..2]).is_err());
     environment.set_state(&[0.5, 0.0]).unwrap();
-    environment.step(&[7.0], &mut seen).unwrap();
+    environment.step(&[7.0], &mut observation).unwrap();
     let clipped = environment.state().unwrap().to_vec();
     environment.set_state(&[0.5, 0.0]).unwrap();
-    environment.step(&[2.0], &mut seen).unwrap();
+    environment.step(&[2.0], &mut observation).unwrap();
     assert_eq!(environment.state().unwrap(), clipped);
 }

@@ -17,7 +17,7 @@ use super::{
 use crate::classic_control::{check_length, not_begun};
 use crate::multirotor::{MASS, Vector, dot, minus, numbers};
 use crate::sine_cosine::sine_cosine;
-use crate::{NumpyRandom, Registered};
+use crate::{NumpyRandom, RegisteredEnvironment};
 
 /// `QuadTrack-v1`: track a moving reference while the plant changes at 20 s.
 ///
@@ -69,7 +69,7 @@ enum Purpose {
 /// Distance to the reference at which an episode is lost, metres.
 const LOST: f64 = 20.0;
 
-impl Registered for QuadTrack {
+impl RegisteredEnvironment for QuadTrack {
     const ID: &'static str = "QuadTrack-v1";
     type Params = QuadTrackParams;
 
@@ -111,7 +111,7 @@ impl QuadTrack {
 
 impl Place {
     fn random(self, purpose: Purpose) -> Random {
-        Random::at([self.stream, self.episode, self.step, purpose as u64])
+        Random::from_key([self.stream, self.episode, self.step, purpose as u64])
     }
 }
 
@@ -237,7 +237,7 @@ impl Environment for QuadTrack {
                 Place { episode: place.episode.wrapping_add(1), step: 0, ..*place }
             }
             (seed, _) => {
-                let stream = seed.unwrap_or_else(|| NumpyRandom::from_chance().bits());
+                let stream = seed.unwrap_or_else(|| NumpyRandom::from_entropy().bits());
                 Place { stream, episode: 0, step: 0 }
             }
         };

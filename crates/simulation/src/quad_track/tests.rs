@@ -2,7 +2,7 @@ use opendr_engine::environment::{Environment, ResetOptions};
 use opendr_engine::params::ParamValue;
 
 use super::*;
-use crate::{Registered as _, make};
+use crate::{RegisteredEnvironment as _, make};
 
 fn options(pairs: &[(&str, f64)]) -> ResetOptions {
     pairs.iter().map(|(name, value)| ((*name).to_owned(), ParamValue::Float(*value))).collect()

@@ -1,4 +1,4 @@
-//! A shape somewhere in the world.
+//! Bodies: shapes with a pose.
 
 use opendr_engine::{Error, Result};
 
@@ -9,13 +9,13 @@ use super::{Shape, Vector, dot, minus};
 pub struct Body {
     shape: Shape,
     position: Vector,
-    /// Rows are the axes of the body's frame, in the world.
+    /// Rows are the axes of the body's frame, in world coordinates.
     body_from_world: [Vector; 3],
     label: u16,
 }
 
 impl Body {
-    /// A body whose frame is turned by the unit quaternion `[w, x, y, z]`, which is normalised first.
+    /// Creates a body rotated by the quaternion `[w, x, y, z]`, which is normalised first.
     ///
     /// # Errors
     /// `InvalidInput` when a size is not positive, a number not finite, or the quaternion zero.
@@ -36,7 +36,7 @@ impl Body {
         Ok(Self { shape, position, body_from_world, label })
     }
 
-    /// A body whose axes are the world's.
+    /// Creates a body with the axes of the world.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -44,14 +44,14 @@ impl Body {
         Self::new(shape, position, [1.0, 0.0, 0.0, 0.0], label)
     }
 
-    /// The same body at `position`, turned by `yaw` about the vertical, counter-clockwise in radians.
+    /// Returns the body at `position`, rotated by `yaw` about the vertical axis, counter-clockwise in radians.
     ///
     /// # Errors
     /// `InvalidInput` when a number is not finite.
-    pub fn carried(&self, position: Vector, yaw: f32) -> Result<Self> {
+    pub fn moved(&self, position: Vector, yaw: f32) -> Result<Self> {
         if !yaw.is_finite() || !position.iter().all(|part| part.is_finite()) {
             return Err(Error::invalid_input(format!(
-                "a body cannot stand at {position:?}, turned by {yaw}"
+                "the pose of a body is {position:?} with yaw {yaw}; give finite numbers"
             )));
         }
         let (sin, cos) = yaw.sin_cos();
@@ -59,22 +59,22 @@ impl Body {
         Ok(Self { position, body_from_world, ..self.clone() })
     }
 
-    /// What it is.
+    /// Returns the shape.
     pub fn shape(&self) -> &Shape {
         &self.shape
     }
 
-    /// Where the centre of its frame is.
+    /// Returns the position of the origin of its frame.
     pub fn position(&self) -> Vector {
         self.position
     }
 
-    /// What a picture of labels shows.
+    /// Returns the label.
     pub fn label(&self) -> u16 {
         self.label
     }
 
-    /// The distance of a point of the world from the surface; negative inside a solid.
+    /// Returns the distance of a world point from the surface; negative inside a solid.
     pub fn distance(&self, point: Vector) -> f32 {
         self.shape.distance(self.point_in_body(point))
     }
@@ -87,7 +87,7 @@ impl Body {
         self.body_from_world.map(|axis| dot(axis, direction))
     }
 
-    /// The outward normal at a point of the world on the surface.
+    /// Returns the outward normal at a world point on the surface.
     pub(super) fn normal(&self, point: Vector) -> Vector {
         let normal = self.shape.normal(self.point_in_body(point));
         std::array::from_fn(|axis| (0..3).map(|row| normal[row] * self.body_from_world[row][axis]).sum())

@@ -2,46 +2,45 @@
 
 use opendr_engine::{Error, Result};
 
-use super::paint::paint;
-use super::{LANES, Pose, Scene, Vector, dot, length, minus};
+use super::{LANES, Pose, Vector, dot, length, minus};
 
-/// A camera with square pixels, the optical axis through the middle of the picture.
+/// A camera with square pixels and the optical axis through the image centre.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Camera {
     width: usize,
     height: usize,
-    /// Half of a pixel's side, one metre ahead.
+    /// Half of a pixel's side, at one metre ahead.
     scale: f32,
-    /// How far to the left each column looks, over how far ahead; filled up to whole packets.
+    /// Slope to the left of each column, padded to whole packets.
     pub(super) columns: Vec<[f32; LANES]>,
-    /// How far up each row looks, over how far ahead.
+    /// Slope upwards of each row.
     pub(super) rows: Vec<f32>,
 }
 
-/// How far ahead each pixel sees, and what.
+/// Depth and body of each pixel.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DepthBuffer {
-    width: usize,
+    pub(super) width: usize,
     pub(super) packets: Vec<[f32; LANES]>,
     pub(super) bodies: Vec<[u32; LANES]>,
 }
 
-/// Pixels that a body may cover: rows, and packets of columns.
+/// Pixels that may show a body: rows, and packets of columns.
 pub(super) struct Patch {
     pub rows: std::ops::Range<usize>,
     pub packets: std::ops::Range<usize>,
 }
 
 impl Camera {
-    /// A camera that sees `half_width` metres to either side, one metre ahead: the tangent of half its angle of view.
+    /// Creates a camera; `half_width` is the tangent of half its horizontal field of view.
     ///
     /// # Errors
-    /// `InvalidParam` for no pixel or more than 2^24, and for a half width that is not in 1e-3..=1e3.
+    /// `InvalidParam` for no pixels or more than 2^24, and for a half width outside 1e-3..=1e3.
     pub fn new(width: usize, height: usize, half_width: f32) -> Result<Self> {
         let fits = width.checked_mul(height).is_some_and(|pixels| (1..=1 << 24).contains(&pixels));
         if !fits || !(1e-3..=1e3).contains(&half_width) {
             return Err(Error::invalid_param(format!(
-                "a camera of {width} x {height} pixels with a half width of {half_width}; give 1 to 2^24 pixels and 0.001 to 1000"
+                "the camera has {width} x {height} pixels and a half width of {half_width}; give 1 to 2^24 pixels and 0.001 to 1000"
             )));
         }
         let scale = half_width / width as f32;
@@ -55,24 +54,24 @@ impl Camera {
         Ok(Self { width, height, scale, columns: columns.collect(), rows: rows.collect() })
     }
 
-    /// Pixels a row.
+    /// Returns the width in pixels.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows.
+    /// Returns the height in pixels.
     pub fn height(&self) -> usize {
         self.height
     }
 
-    /// The direction of a pixel's middle, ahead, left and up; one metre ahead.
+    /// Returns the direction of a pixel's centre: ahead, left and up, at one metre ahead.
     pub fn direction(&self, column: usize, row: usize) -> Vector {
         let left = self.columns.get(column / LANES).map_or(0.0, |packet| packet[column % LANES]);
         [1.0, left, self.rows.get(row).copied().unwrap_or(0.0)]
     }
 
-    /// Where a point of the world is in the picture, pixels from its upper left corner; `None` for a point that is not
-    /// ahead.
+    /// Projects a world point to pixel coordinates from the upper left corner; `None` for a point that is not ahead of
+    /// the camera.
     pub fn project(&self, pose: &Pose, point: Vector) -> Option<[f32; 2]> {
         let aside = minus(point, pose.position);
         let [ahead, left, up] = pose.axes.map(|axis| dot(axis, aside));
@@ -80,32 +79,15 @@ impl Camera {
         (ahead > 0.0).then(|| [place(self.width, left), place(self.height, up)])
     }
 
-    /// Looks at a scene, at most `range` metres ahead (along the optical axis, as depth cameras measure).
-    ///
-    /// Bodies are painted one after the other into the pixels that they may cover; the nearest stays.
-    pub fn look(&self, scene: &Scene, pose: &Pose, range: f32, seen: &mut DepthBuffer) {
-        let packets = self.columns.len() * self.height;
-        seen.width = self.width;
-        seen.packets.clear();
-        seen.packets.resize(packets, [range; LANES]);
-        seen.bodies.clear();
-        seen.bodies.resize(packets, [u32::MAX; LANES]);
-        for (body, number) in scene.bodies().iter().zip(0..) {
-            if let Some(patch) = self.patch(pose, body.position(), body.shape().reach(), range) {
-                paint(self, pose, body, number, patch, seen);
-            }
-        }
-    }
-
-    /// The pixels that a ball may cover.
-    fn patch(&self, pose: &Pose, centre: Vector, radius: f32, range: f32) -> Option<Patch> {
+    /// Returns the pixels that a ball may cover.
+    pub(super) fn patch(&self, pose: &Pose, centre: Vector, radius: f32, range: f32) -> Option<Patch> {
         let aside = minus(centre, pose.position);
         let [ahead, left, up] = pose.axes.map(|axis| dot(axis, aside));
         let all = Patch { rows: 0..self.height, packets: 0..self.columns.len() };
         if radius.is_infinite() {
             return Some(all);
         }
-        // A hair larger than it is, for what is rounded.
+        // Slightly enlarged, against rounding.
         let radius = radius * 1.0001 + 1e-4;
         if ahead < -radius || ahead - radius > range {
             return None;
@@ -129,7 +111,7 @@ impl Camera {
     }
 }
 
-/// Smallest and largest slope of the tangents from the origin to a circle; `None` where one of them points backwards.
+/// Returns the slopes of the tangents from the origin to a circle; `None` if one points backwards.
 fn slopes(ahead: f32, aside: f32, radius: f32, distance: f32) -> Option<(f32, f32)> {
     if ahead <= radius {
         return None;
@@ -140,12 +122,12 @@ fn slopes(ahead: f32, aside: f32, radius: f32, distance: f32) -> Option<(f32, f3
 }
 
 impl DepthBuffer {
-    /// How far ahead the pixels see, row after row.
+    /// Returns the depth of the pixels in metres, row by row.
     pub fn depths(&self) -> impl Iterator<Item = f32> + '_ {
         self.in_rows(&self.packets)
     }
 
-    /// The numbers of the bodies that the pixels see, row after row; `None` for nothing within the range.
+    /// Returns the index of the body in each pixel, row by row; `None` if nothing is in range.
     pub fn bodies(&self) -> impl Iterator<Item = Option<usize>> + '_ {
         self.in_rows(&self.bodies).map(|number| (number != u32::MAX).then_some(number as usize))
     }

@@ -1,12 +1,12 @@
-//! Ground of any height over a grid.
+//! Terrain as heights on a grid.
 
 use opendr_engine::{Error, Result};
 
 use super::triangle::Triangle;
 use super::{Mesh, Vector};
 
-/// Heights over a grid in the plane z = 0, whose middle is the origin; two triangles for each cell. Below is solid;
-/// beside the grid is nothing.
+/// Heights on a grid in the plane z = 0, centred on the origin, with two triangles per cell. Solid below the surface;
+/// empty outside the grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeightField {
     heights: Vec<f32>,
@@ -17,11 +17,11 @@ pub struct HeightField {
 }
 
 impl HeightField {
-    /// Heights in metres, those of the smallest y first, along x; points lie `spacing` metres apart.
+    /// Creates a field from heights in metres, in rows along x from the smallest y; points are `spacing` metres apart.
     ///
     /// # Errors
-    /// `InvalidInput` when there are fewer than two columns or rows, more than a million points, not one height for
-    /// each, or a number that is not finite and below 1e5.
+    /// `InvalidInput` for fewer than two columns or rows, more than 2^20 points, a wrong number of heights, or a number that is
+    /// not finite or not below 1e5.
     pub fn new(heights: &[f32], columns: usize, spacing: f32) -> Result<Self> {
         let rows = heights.len() / columns.max(1);
         let fits = columns >= 2 && rows >= 2 && rows * columns == heights.len() && heights.len() <= 1 << 20;
@@ -29,7 +29,7 @@ impl HeightField {
         let is_spaced = spacing > 0.0 && spacing < 1e3;
         if !(fits && is_finite && is_spaced) {
             return Err(Error::invalid_input(format!(
-                "{} heights in {columns} columns, {spacing} m apart; give at least 2 of each, at most 2^20 heights, numbers below 1e5 and a spacing below 1e3",
+                "the field has {} heights in {columns} columns, {spacing} m apart; give at least 2 columns and rows, at most 2^20 heights below 1e5 and a spacing below 1e3",
                 heights.len()
             )));
         }
@@ -49,7 +49,7 @@ impl HeightField {
         Ok(Self { heights: heights.to_vec(), columns, rows, spacing, surface })
     }
 
-    /// The height at a place of the plane; `None` beside the grid.
+    /// Returns the height at a point of the plane; `None` outside the grid.
     pub fn height(&self, x: f32, y: f32) -> Option<f32> {
         let place = |at: f32, count: usize| {
             let cells = (count - 1) as f32;
@@ -68,7 +68,7 @@ impl HeightField {
         })
     }
 
-    /// The distance of a point from the surface; negative below.
+    /// Returns the distance of a point from the surface; negative below.
     pub fn distance(&self, point: Vector) -> f32 {
         let distance = self.surface.distance(point);
         let is_below = self.height(point[0], point[1]).is_some_and(|height| point[2] < height);

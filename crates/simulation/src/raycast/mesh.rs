@@ -1,11 +1,11 @@
-//! Surfaces of triangles, in a tree of boxes.
+//! Triangle meshes with a bounding volume hierarchy.
 
 use opendr_engine::{Error, Result};
 
 use super::triangle::Triangle;
 use super::{Directions, LANES, Vector, dot, length, minus, unit};
 
-/// Triangles with a tree of boxes around them: rays and distances ask a few of many.
+/// A triangle mesh with a tree of bounding boxes, so that rays and distances test few triangles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
     nodes: Vec<Node>,
@@ -13,40 +13,40 @@ pub struct Mesh {
     reach: f32,
 }
 
-/// A box. A leaf has triangles; any other node is followed by its first child, and names its second.
+/// A bounding box. A leaf has triangles; any other node is followed by its first child and stores the index of its second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Node {
     low: Vector,
     high: Vector,
-    /// First triangle, or second child.
+    /// Index of the first triangle, or of the second child.
     begin: u32,
-    /// How many triangles; 0 where there are children.
+    /// Number of triangles; 0 for a node with children.
     count: u32,
 }
 
-/// Triangles of a leaf.
+/// Maximum triangles of a leaf.
 const LEAF: usize = 4;
-/// More than the tree is deep: halves of at most 2^22 triangles.
+/// Maximum depth of the tree: halving of 2^22 triangles, with reserve.
 const DEPTH: usize = 32;
-const MOST: usize = 1 << 22;
+const MAX_TRIANGLES: usize = 1 << 22;
 
 impl Mesh {
-    /// The triangles of three `vertices` each; seen from outside the corners go round counter-clockwise.
+    /// Creates a mesh of triangles with three `vertices` each, counter-clockwise seen from outside.
     ///
     /// # Errors
-    /// `InvalidInput` for no triangle or more than four million, for a vertex that there is not or that is not finite
-    /// and below 1e6.
+    /// `InvalidInput` for no triangle or more than 2^22, for an invalid vertex index, and for a coordinate that is not finite
+    /// or not below 1e6.
     pub fn new(vertices: &[Vector], faces: &[[u32; 3]]) -> Result<Self> {
-        if faces.is_empty() || faces.len() > MOST {
+        if faces.is_empty() || faces.len() > MAX_TRIANGLES {
             return Err(Error::invalid_input(format!(
-                "a mesh of {} triangles; give 1 to {MOST}",
+                "the mesh has {} triangles; give 1 to {MAX_TRIANGLES}",
                 faces.len()
             )));
         }
         let is_wrong = |vertex: &Vector| !vertex.iter().all(|part| part.abs() < 1e6);
         if let Some(at) = vertices.iter().position(is_wrong) {
             return Err(Error::invalid_input(format!(
-                "vertex {at} of a mesh is {:?}; give finite numbers below 1e6",
+                "vertex {at} of the mesh is {:?}; give finite numbers below 1e6",
                 vertices[at]
             )));
         }
@@ -59,14 +59,14 @@ impl Mesh {
             triangles.push(triangle(face).ok_or_else(|| {
                 let count = vertices.len();
                 Error::invalid_input(format!(
-                    "triangle {at} of a mesh has corners {face:?} of {count} vertices"
+                    "triangle {at} of the mesh has the vertices {face:?} of {count}; give indices below {count}"
                 ))
             })?);
         }
         Ok(Self::of(triangles))
     }
 
-    /// `triangles` is not empty.
+    /// Builds the tree; `triangles` must not be empty.
     pub(super) fn of(mut triangles: Vec<Triangle>) -> Self {
         let mut nodes = Vec::with_capacity(2 * triangles.len().div_ceil(LEAF));
         let corners = triangles.iter().flat_map(Triangle::corners);
@@ -75,7 +75,7 @@ impl Mesh {
         Self { nodes, triangles, reach }
     }
 
-    /// How many triangles there are.
+    /// Returns the number of triangles.
     pub fn triangles(&self) -> usize {
         self.triangles.len()
     }
@@ -84,12 +84,12 @@ impl Mesh {
         self.reach
     }
 
-    /// The distance of a point from the surface, never negative.
+    /// Returns the distance of a point from the surface; never negative.
     pub fn distance(&self, point: Vector) -> f32 {
         self.nearest(point).0
     }
 
-    /// The normal of the triangle nearest to a point.
+    /// Returns the normal of the triangle nearest to a point.
     pub(super) fn normal(&self, point: Vector) -> Vector {
         unit(self.nearest(point).1.normal())
     }
@@ -111,7 +111,7 @@ impl Mesh {
                 }
                 continue;
             }
-            // The nearer child shortens rays before the farther is asked.
+            // The nearer child shortens rays before the farther one is tested.
             let [near, far] = self.in_order([at + 1, node.begin], origin);
             (stack[open], stack[open + 1]) = (far, near);
             open += 2;
@@ -149,7 +149,7 @@ impl Mesh {
         &self.triangles[node.begin as usize..(node.begin + node.count) as usize]
     }
 
-    /// Two nodes, the nearer to a point first.
+    /// Returns two nodes, the nearer to a point first.
     fn in_order(&self, [a, b]: [u32; 2], point: Vector) -> [u32; 2] {
         let distance = |number: u32| {
             let node = &self.nodes[number as usize];
@@ -170,7 +170,7 @@ impl Node {
         length([over(0), over(1), over(2)])
     }
 
-    /// Whether a ray of the packet meets the box before it ends.
+    /// Returns whether a ray of the packet enters the box before its end.
     #[inline(always)]
     fn is_met(&self, origin: Vector, inverse: &Directions, distances: &[f32; LANES]) -> bool {
         let mut met = false;
@@ -179,18 +179,18 @@ impl Node {
             for axis in 0..3 {
                 let one = (self.low[axis] - origin[axis]) * inverse[axis][lane];
                 let other = (self.high[axis] - origin[axis]) * inverse[axis][lane];
-                // NaN, on a side of the box that the ray lies in, leaves both as they were.
+                // NaN, for a ray within a side of the box, leaves both unchanged.
                 entry = entry.max(one.min(other));
                 exit = exit.min(one.max(other));
             }
-            // Rounding must not lose a triangle that lies in a side of its box.
+            // With a margin, so that rounding loses no triangle within a side of its box.
             met |= entry <= exit * 1.000_001;
         }
         met
     }
 }
 
-/// Brings triangles into the order of a tree of boxes, and adds its nodes; `first` is the number of the first triangle.
+/// Sorts triangles into tree order and appends the nodes; `first` is the index of the first triangle.
 fn divide(triangles: &mut [Triangle], first: u32, nodes: &mut Vec<Node>) {
     let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
     for corner in triangles.iter().flat_map(Triangle::corners) {

@@ -1,7 +1,7 @@
-//! Rays against bodies of simple shapes, height fields and meshes: depth, normals, labels, colours, distances, and
-//! movements that miss nothing.
+//! Ray casting against simple shapes, height fields and meshes: depth, normals, labels, colours, distances, and collision
+//! tests of moving balls.
 //!
-//! Lengths in metres, in any one frame ("world"); a body has a frame of its own, in which its shape is centred.
+//! Lengths are in metres, in one world frame; a body has a frame of its own, in which its shape is centred.
 
 mod body;
 mod camera;
@@ -10,6 +10,7 @@ mod mesh;
 mod packet;
 mod paint;
 mod pose;
+mod render;
 mod scene;
 mod shading;
 mod shape;
@@ -29,7 +30,7 @@ pub use shape::Shape;
 /// A point or direction.
 pub type Vector = [f32; 3];
 
-/// Rays that are followed together: one vector register of AVX-512, two of AVX2, four of NEON.
+/// Rays that are processed together: one vector register of AVX-512, two of AVX2, four of NEON.
 const LANES: usize = 16;
 
 /// Directions of several rays: one array for each axis.
@@ -51,13 +52,13 @@ fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The vector of length 1 in this direction; up where there is none.
+/// Returns the vector scaled to length 1; up for the zero vector.
 fn unit(vector: Vector) -> Vector {
     let size = length(vector);
     if size > 0.0 { vector.map(|part| part / size) } else { [0.0, 0.0, 1.0] }
 }
 
-/// The point at `distance` from `origin`.
+/// Returns the point at `distance` from `origin`.
 pub(crate) fn along(origin: Vector, direction: Vector, distance: f32) -> Vector {
     std::array::from_fn(|axis| origin[axis] + distance * direction[axis])
 }

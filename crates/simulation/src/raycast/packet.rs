@@ -1,8 +1,8 @@
-//! Several rays at once.
+//! Packets of rays.
 
 use super::{Body, Directions, LANES, Vector};
 
-/// Rays from one point, with what they have met so far.
+/// Rays from one point with their nearest hits so far.
 #[derive(Debug, Clone)]
 pub(super) struct RayPacket {
     origin: Vector,
@@ -12,7 +12,7 @@ pub(super) struct RayPacket {
 }
 
 impl RayPacket {
-    /// Rays along unit vectors, at most [`LANES`]; they see `range` metres far.
+    /// Creates rays along unit vectors, at most [`LANES`], with a length of `range` metres.
     pub fn new(origin: Vector, directions: &[Vector], range: f32) -> Self {
         let mut own = [[0.0; LANES], [0.0; LANES], [1.0; LANES]];
         for (lane, direction) in directions.iter().take(LANES).enumerate() {
@@ -23,7 +23,7 @@ impl RayPacket {
         Self { origin, directions: own, distances: [range; LANES], bodies: [u32::MAX; LANES] }
     }
 
-    /// Keeps what is nearer than all before.
+    /// Updates the nearest hits with a body.
     pub fn meet(&mut self, body: &Body, number: u32) {
         let axes =
             [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| body.direction_in_body(axis));

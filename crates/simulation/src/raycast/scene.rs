@@ -1,22 +1,22 @@
-//! Bodies together.
+//! Scenes: collections of bodies.
 
 use opendr_engine::{Error, Result};
 
 use super::packet::RayPacket;
 use super::{Body, LANES, Vector, along, length, minus};
 
-/// What a ray met.
+/// A ray's hit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
-    /// How far it went.
+    /// Distance from the ray's origin.
     pub distance: f32,
-    /// Away from the surface, also where it was met from inside.
+    /// Outward surface normal, also for a hit from inside.
     pub normal: Vector,
-    /// The body's label.
+    /// Label of the body.
     pub label: u16,
 }
 
-/// Bodies that rays and movements meet.
+/// Bodies for rays and collision tests.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Scene {
     bodies: Vec<Body>,
@@ -28,20 +28,20 @@ impl Scene {
         self.bodies.push(body);
     }
 
-    /// Removes all bodies and keeps their memory.
+    /// Removes all bodies and keeps the allocation.
     pub fn clear(&mut self) {
         self.bodies.clear();
     }
 
-    /// The bodies, in the order in which they were added.
+    /// Returns the bodies in the order in which they were added.
     pub fn bodies(&self) -> &[Body] {
         &self.bodies
     }
 
-    /// Writes how far each ray from `origin` along a unit vector goes, at most `range`.
+    /// Writes the length of each ray from `origin` along a unit vector, at most `range`.
     ///
     /// # Errors
-    /// `InvalidInput` when there is not one distance for each direction.
+    /// `InvalidInput` when the numbers of distances and directions differ.
     pub fn depths(
         &self,
         origin: Vector,
@@ -54,10 +54,10 @@ impl Scene {
         })
     }
 
-    /// Writes what each ray from `origin` along a unit vector meets within `range`.
+    /// Writes the hit of each ray from `origin` along a unit vector within `range`.
     ///
     /// # Errors
-    /// `InvalidInput` when there is not one place for each direction.
+    /// `InvalidInput` when the numbers of hits and directions differ.
     pub fn hits(
         &self,
         origin: Vector,
@@ -85,7 +85,9 @@ impl Scene {
     ) -> Result<()> {
         if places != directions.len() {
             let rays = directions.len();
-            return Err(Error::invalid_input(format!("{places} places for {rays} rays; give one for each")));
+            return Err(Error::invalid_input(format!(
+                "the output has {places} places for {rays} rays; give one per ray"
+            )));
         }
         for (number, rays) in directions.chunks(LANES).enumerate() {
             let mut packet = RayPacket::new(origin, rays, range);
@@ -97,20 +99,20 @@ impl Scene {
         Ok(())
     }
 
-    /// The distance of a point from the nearest surface: negative inside a body, infinite without bodies.
+    /// Returns the distance of a point from the nearest surface: negative inside a body, infinite without bodies.
     pub fn distance(&self, point: Vector) -> f32 {
         self.bodies.iter().map(|body| body.distance(point)).fold(f32::INFINITY, f32::min)
     }
 
-    /// How far a ball of `radius` gets on the way from `from` to `to` before it touches a body; `None` when it arrives.
+    /// Returns how far a ball of `radius` moves from `from` towards `to` before it touches a body; `None` if it arrives.
     ///
-    /// It advances by what is certainly free (Hart, Sphere tracing, 1996), so that nothing thin is stepped over; a gap
-    /// of less than a tenth of a millimetre, or a millionth of the way, counts as a touch.
+    /// It uses sphere tracing (Hart, 1996), so that no thin body is missed; a gap below a tenth of a millimetre, or
+    /// a millionth of the way, counts as a touch.
     pub fn sweep(&self, from: Vector, to: Vector, radius: f32) -> Option<f32> {
         let way = minus(to, from);
         let far = length(way);
         let direction = if far > 0.0 { way.map(|part| part / far) } else { way };
-        // Below the resolution of single precision nothing would move.
+        // Smaller steps are lost in single precision.
         let touch = 1e-4_f32.max(far * 1e-6);
         let mut travelled = 0.0;
         loop {

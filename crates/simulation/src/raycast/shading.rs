@@ -1,22 +1,22 @@
-//! Colours of what a camera sees.
+//! Shading of rendered images.
 
 use opendr_engine::Result;
 use opendr_engine::data::Image;
 
 use super::{Camera, DepthBuffer, Pose, Scene, Shape, Vector, along, dot, unit};
 
-/// Light and colours: Lambert's law under a sun and a sky, a chequered ground.
+/// Colours and lights: Lambertian shading with sun and sky, chequered ground.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shading {
-    /// Colours by label, from the first again after the last.
+    /// Colours by label; labels beyond the list wrap around.
     pub colours: Vec<[u8; 3]>,
-    /// Where the sun stands.
+    /// Direction of the sun.
     pub sun: Vector,
-    /// The share of light that comes from everywhere.
+    /// Fraction of ambient light.
     pub ambient: f32,
-    /// The sky at the horizon and overhead.
+    /// Colours of the sky at the horizon and at the zenith.
     pub sky: [[u8; 3]; 2],
-    /// Side of the ground's squares in metres.
+    /// Side of the ground's squares, in metres.
     pub square: f32,
 }
 
@@ -33,16 +33,16 @@ impl Default for Shading {
 }
 
 impl Shading {
-    /// An RGB picture of what `camera` sees of `scene` from `pose`, at most `range` metres ahead.
+    /// Renders an RGB image of `scene` from `pose`, up to `range` metres ahead.
     ///
     /// # Errors
-    /// None that a [`Camera`] allows.
-    pub fn picture(&self, camera: &Camera, scene: &Scene, pose: &Pose, range: f32) -> Result<Image> {
-        let mut seen = DepthBuffer::default();
-        camera.look(scene, pose, range, &mut seen);
+    /// None for a valid [`Camera`].
+    pub fn render(&self, camera: &Camera, scene: &Scene, pose: &Pose, range: f32) -> Result<Image> {
+        let mut buffer = DepthBuffer::default();
+        camera.render_depth(scene, pose, range, &mut buffer);
         let mut pixels = Vec::with_capacity(3 * camera.width() * camera.height());
-        for (at, (depth, body)) in seen.depths().zip(seen.bodies()).enumerate() {
-            let direction = pose.turned(camera.direction(at % camera.width(), at / camera.width()));
+        for (at, (depth, body)) in buffer.depths().zip(buffer.bodies()).enumerate() {
+            let direction = pose.to_world(camera.direction(at % camera.width(), at / camera.width()));
             let point = along(pose.position, direction, depth);
             let colour = match body {
                 None => self.sky(unit(direction)),
@@ -62,7 +62,7 @@ impl Shading {
     fn surface(&self, scene: &Scene, number: usize, point: Vector, direction: Vector) -> [f32; 3] {
         let Some(body) = scene.bodies().get(number) else { return [0.0; 3] };
         let normal = body.normal(point);
-        // A surface is seen from the side from which it is looked at.
+        // The normal points to the side that the camera looks at.
         let normal = if dot(normal, direction) > 0.0 { normal.map(|part| -part) } else { normal };
         let sunlight = dot(normal, unit(self.sun)).max(0.0);
         let light = self.ambient + (1.0 - self.ambient) * sunlight;

@@ -1,39 +1,39 @@
-//! Shapes in their own frame: where a ray meets them, how far away they are.
+//! Shapes in their own frame: intersections with rays, and distances.
 
 use std::sync::Arc;
 
 use super::{Directions, HeightField, LANES, Mesh, Vector, length, unit};
 
-/// A shape in its own frame, centred there.
+/// A shape, centred in its own frame.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
-    /// All points at `radius` or less from the centre.
+    /// A ball.
     Sphere {
-        /// In metres.
+        /// Radius in metres.
         radius: f32,
     },
-    /// From minus to plus `half` along each axis.
+    /// A box from minus to plus `half` along each axis.
     Box {
-        /// Half of the length of each edge.
+        /// Half of the edge lengths, in metres.
         half: Vector,
     },
-    /// Around the z axis.
+    /// A cylinder around the z axis.
     Cylinder {
-        /// In metres.
+        /// Radius in metres.
         radius: f32,
-        /// Half of the height.
+        /// Half of the height, in metres.
         half_height: f32,
     },
-    /// All points with z of 0 or less.
+    /// All points with z <= 0.
     HalfSpace,
-    /// Ground of any height, solid below.
+    /// Terrain, solid below its surface.
     HeightField(Arc<HeightField>),
-    /// A surface of triangles. It has no inside.
+    /// A triangle mesh; it has no inside.
     Mesh(Arc<Mesh>),
 }
 
 impl Shape {
-    /// Whether all sizes are positive and finite.
+    /// Returns whether all sizes are positive and finite.
     pub(super) fn is_valid(&self) -> bool {
         let positive = |size: f32| size > 0.0 && size < 1e6;
         match self {
@@ -44,7 +44,7 @@ impl Shape {
         }
     }
 
-    /// The radius of a ball around the centre with all of it inside.
+    /// Returns the radius of the bounding ball around the centre.
     pub(super) fn reach(&self) -> f32 {
         match self {
             Self::Sphere { radius } => *radius,
@@ -56,7 +56,7 @@ impl Shape {
         }
     }
 
-    /// The distance of a point from the surface; negative inside a solid. Exact, so a ball of that radius is free.
+    /// Returns the distance of a point from the surface; negative inside a solid. It is exact, as sphere tracing needs.
     pub fn distance(&self, point: Vector) -> f32 {
         let [x, y, z] = point;
         match self {
@@ -76,7 +76,7 @@ impl Shape {
         }
     }
 
-    /// The direction away from the surface nearest to a point.
+    /// Returns the outward normal of the surface at the point nearest to `point`.
     pub(super) fn normal(&self, point: Vector) -> Vector {
         let [x, y, z] = point;
         match self {
@@ -96,7 +96,7 @@ impl Shape {
         }
     }
 
-    /// Shortens the rays from `origin` that meet the surface, from either side, before they end. How far they go counts
+    /// Shortens the rays from `origin` that hit the surface, from either side, before they end. Lengths of rays are
     /// in lengths of their directions.
     #[inline(always)]
     pub(super) fn meet(&self, origin: Vector, directions: &Directions, distances: &mut [f32; LANES]) {
@@ -113,8 +113,8 @@ impl Shape {
     }
 }
 
-/// The nearer of entry and exit that lies ahead and before the ray's end. The loops over lanes have no branches: the
-/// compiler turns them into vectors.
+/// Returns the nearer of entry and exit that is ahead and before the ray's end. The loops over lanes have no branches, so
+/// that the compiler vectorises them.
 #[inline(always)]
 fn shortened(end: f32, entry: f32, exit: f32, meets: bool) -> f32 {
     let distance = if entry > 0.0 { entry } else { exit };
@@ -163,7 +163,7 @@ pub(super) fn meet_box(half: Vector, origin: Vector, directions: &Directions, di
     }
 }
 
-/// The distances at which a ray enters and leaves `-half..=half` along one axis.
+/// Returns the distances at which a ray enters and leaves `-half..=half` along one axis.
 #[inline(always)]
 fn slab(half: f32, origin: f32, direction: f32) -> (f32, f32) {
     let inverse = 1.0 / direction;
@@ -171,8 +171,8 @@ fn slab(half: f32, origin: f32, direction: f32) -> (f32, f32) {
     (smaller(one, other), larger(one, other))
 }
 
-/// One instruction, where `f32::min` has to look after NaN: that comes of a face that the ray lies in, and the second
-/// is then the answer.
+/// One instruction, unlike `f32::min`, which handles NaN. NaN occurs for a ray within a face; the second argument is the right
+/// result then.
 #[inline(always)]
 fn smaller(one: f32, other: f32) -> f32 {
     if one < other { one } else { other }
@@ -198,7 +198,7 @@ pub(super) fn meet_cylinder(
         let square = radius * radius * across - moment * moment;
         let inverse = 1.0 / across.max(1e-30);
         let (nearest, half) = (-(x * dx + y * dy) * inverse, square.max(0.0).sqrt() * inverse);
-        // A ray along the axis is within the radius always or never.
+        // A ray along the axis is always or never within the radius.
         let is_along = across < 1e-12;
         let within = is_along & (x * x + y * y <= radius * radius);
         let aside_entry = if within { f32::NEG_INFINITY } else { nearest - half };

@@ -4,7 +4,7 @@ use opendr_engine::Random;
 
 use super::*;
 
-fn unit_by_chance(random: &mut Random) -> Vector {
+fn random_unit_vector(random: &mut Random) -> Vector {
     let vector = [(); 3].map(|()| random.normal() as f32);
     vector.map(|part| part / length(vector))
 }
@@ -21,7 +21,7 @@ fn bodies() -> Vec<Body> {
 }
 
 #[test]
-fn distances_in_closed_form() {
+fn distances_match_closed_forms() {
     let close = |a: f32, b: f32| (a - b).abs() <= 1e-4 * b.abs();
     let met = |shape: &Shape, origin, direction: Vector| {
         let mut scene = Scene::default();
@@ -59,9 +59,9 @@ fn distances_in_closed_form() {
     ));
 }
 
-/// The distance is independent code: a ray must end on the surface, and nothing may lie before its end.
+/// The distance is independent code: a ray must end on the surface, and no surface may lie before its end.
 #[test]
-fn rays_end_where_the_distance_says() {
+fn rays_end_on_the_surface() {
     let mut random = Random::new(5);
     for body in bodies() {
         let mut scene = Scene::default();
@@ -69,7 +69,7 @@ fn rays_end_where_the_distance_says() {
         let mut met = 0;
         for _ in 0..3000 {
             let origin = [(); 3].map(|()| random.uniform(-2.0, 2.0));
-            let directions: Vec<_> = (0..5).map(|_| unit_by_chance(&mut random)).collect();
+            let directions: Vec<_> = (0..5).map(|_| random_unit_vector(&mut random)).collect();
             let mut hits = [None; 5];
             scene.hits(origin, &directions, 30.0, &mut hits).unwrap();
             let side = body.distance(origin).signum();
@@ -92,9 +92,9 @@ fn rays_end_where_the_distance_says() {
     }
 }
 
-/// A million ways through bodies of every kind: whatever fine steps meet, the sweep meets no later.
+/// A million ways through bodies of all kinds: the sweep must stop no later than a test with small steps.
 #[test]
-fn a_sweep_misses_nothing() {
+fn a_sweep_misses_no_body() {
     let mut random = Random::new(8);
     let mut all = bodies();
     all.push(Body::upright(Shape::Box { half: [0.001, 3.0, 3.0] }, [0.0; 3], 0).unwrap());
@@ -103,7 +103,7 @@ fn a_sweep_misses_nothing() {
         let mut scene = Scene::default();
         scene.add(all[way % all.len()].clone());
         let from = [(); 3].map(|()| random.uniform(-2.5, 2.5));
-        let direction = unit_by_chance(&mut random);
+        let direction = random_unit_vector(&mut random);
         let far = random.uniform(0.05, 1.5);
         let to = along(from, direction, far);
         let end = scene.sweep(from, to, 0.1);
@@ -148,12 +148,12 @@ fn a_cube_of_triangles_is_a_box() {
     let mut random = Random::new(3);
     for _ in 0..3000 {
         let origin = [(); 3].map(|()| random.uniform(-2.0, 2.0));
-        let directions: Vec<_> = (0..20).map(|_| unit_by_chance(&mut random)).collect();
+        let directions: Vec<_> = (0..20).map(|_| random_unit_vector(&mut random)).collect();
         let [mut one, mut other] = [vec![None; 20], vec![None; 20]];
         cube.hits(origin, &directions, 9.0, &mut one).unwrap();
         triangles.hits(origin, &directions, 9.0, &mut other).unwrap();
         for (one, other) in one.iter().zip(&other) {
-            // A ray that grazes an edge may be met by one and not by the other.
+            // A ray that grazes an edge may hit only one of them.
             let (Some(one), Some(other)) = (one, other) else { continue };
             assert!((one.distance - other.distance).abs() <= 1e-4 * one.distance, "{one:?} {other:?}");
         }
@@ -166,7 +166,7 @@ fn a_cube_of_triangles_is_a_box() {
     assert!(dot(top.normal([0.2, 0.1, 1.3]), [0.0, 0.0, 1.0]) > 0.999);
 }
 
-/// Every triangle asked one by one, in double precision.
+/// Tests every triangle one by one, in double precision.
 #[test]
 fn a_tree_of_boxes_loses_no_triangle() {
     let mut random = Random::new(4);
@@ -181,25 +181,25 @@ fn a_tree_of_boxes_loses_no_triangle() {
     let mut met = 0;
     for _ in 0..300 {
         let origin = [(); 3].map(|()| random.uniform(-6.0, 6.0));
-        let directions: Vec<_> = (0..33).map(|_| unit_by_chance(&mut random)).collect();
+        let directions: Vec<_> = (0..33).map(|_| random_unit_vector(&mut random)).collect();
         let mut depths = [0.0; 33];
         scene.depths(origin, &directions, 50.0, &mut depths).unwrap();
         for (depth, direction) in depths.into_iter().zip(&directions) {
             let corners = |face: &[u32; 3]| face.map(|at| vertices[at as usize].map(f64::from));
             let all = faces.iter().filter_map(|face| brute_force(corners(face), origin, *direction));
-            let (wanted, edge) = all.fold((50.0, 1.0), |best, hit| if hit.0 < best.0 { hit } else { best });
-            // Within single precision of an edge either answer is right.
+            let (expected, edge) = all.fold((50.0, 1.0), |best, hit| if hit.0 < best.0 { hit } else { best });
+            // At an edge, within single precision, both results are right.
             assert!(
-                (f64::from(depth) - wanted).abs() <= 1e-4 * wanted.max(0.1) || edge < 1e-4,
-                "{depth} {wanted}"
+                (f64::from(depth) - expected).abs() <= 1e-4 * expected.max(0.1) || edge < 1e-4,
+                "{depth} {expected}"
             );
-            met += usize::from(wanted < 50.0);
+            met += usize::from(expected < 50.0);
         }
     }
     assert!(met > 1000, "{met}");
 }
 
-/// Where a ray meets a triangle, and how far within it, as a share: by Cramer's rule.
+/// Returns where a ray hits a triangle, and the smallest barycentric coordinate, by Cramer's rule.
 fn brute_force(corners: [[f64; 3]; 3], origin: Vector, direction: Vector) -> Option<(f64, f64)> {
     let [a, b, c] = corners;
     let minus = |p: [f64; 3], q: [f64; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
@@ -217,7 +217,7 @@ fn brute_force(corners: [[f64; 3]; 3], origin: Vector, direction: Vector) -> Opt
 }
 
 #[test]
-fn a_slope_of_heights_is_a_plane() {
+fn an_inclined_height_field_is_a_plane() {
     let (columns, spacing) = (9, 0.5);
     let slope = |x: f32, y: f32| 0.3 * x - 0.2 * y + 0.1;
     let place = |at: usize| (at as f32 - 4.0) * spacing;
@@ -247,12 +247,12 @@ fn a_slope_of_heights_is_a_plane() {
     assert!(Mesh::new(&[[f32::NAN; 3]], &[[0, 0, 0]]).is_err());
 }
 
-/// Patches, depth along the axis and wide vectors beside single rays.
+/// Compares camera images, with patches, axial depth and wide vectors, with single rays.
 #[test]
-fn a_camera_sees_what_rays_meet() {
+fn camera_images_match_single_rays() {
     let mut random = Random::new(7);
     let camera = Camera::new(37, 21, 0.7).unwrap();
-    let mut seen = DepthBuffer::default();
+    let mut buffer = DepthBuffer::default();
     let mut nothing = 0;
     for _ in 0..60 {
         let mut scene = Scene::default();
@@ -265,20 +265,20 @@ fn a_camera_sees_what_rays_meet() {
             scene.add(Body::new(shape, place, turned, 0).unwrap());
         }
         let place = [(); 3].map(|()| random.uniform(-4.0, 4.0));
-        let pose = Pose::looking(place, [(); 3].map(|()| random.uniform(-2.0, 2.0)));
-        camera.look(&scene, &pose, 1e4, &mut seen);
+        let pose = Pose::looking_at(place, [(); 3].map(|()| random.uniform(-2.0, 2.0)));
+        camera.render_depth(&scene, &pose, 1e4, &mut buffer);
         let mut differing = 0;
-        for (at, (depth, body)) in seen.depths().zip(seen.bodies()).enumerate() {
+        for (at, (depth, body)) in buffer.depths().zip(buffer.bodies()).enumerate() {
             let direction = camera.direction(at % 37, at / 37);
             let size = length(direction);
             let mut hits = [None];
-            let unit = pose.turned(direction).map(|part| part / size);
+            let unit = pose.to_world(direction).map(|part| part / size);
             scene.hits(pose.position, &[unit], 1e4 * size, &mut hits).unwrap();
-            let wanted = hits[0].map_or(1e4, |hit| hit.distance / size);
+            let expected = hits[0].map_or(1e4, |hit| hit.distance / size);
             nothing += usize::from(body.is_none());
-            differing += usize::from((depth - wanted).abs() > 1e-4 * wanted.max(0.1));
+            differing += usize::from((depth - expected).abs() > 1e-4 * expected.max(0.1));
         }
-        // Rays that graze.
+        // Grazing rays.
         assert!(differing <= 3, "{differing}");
     }
     assert!((1000..40_000).contains(&nothing), "{nothing}");
@@ -286,13 +286,13 @@ fn a_camera_sees_what_rays_meet() {
 }
 
 #[test]
-fn light_shows_sides_and_sky() {
+fn shading_distinguishes_sides_and_sky() {
     let mut scene = Scene::default();
     scene.add(Body::upright(Shape::HalfSpace, [0.0; 3], 0).unwrap());
     scene.add(Body::upright(Shape::Sphere { radius: 1.0 }, [4.0, 0.0, 1.5], 1).unwrap());
     let camera = Camera::new(64, 64, 0.5).unwrap();
-    let pose = Pose::looking([0.0, 0.0, 1.5], [4.0, 0.0, 1.5]);
-    let picture = Shading::default().picture(&camera, &scene, &pose, 50.0).unwrap();
+    let pose = Pose::looking_at([0.0, 0.0, 1.5], [4.0, 0.0, 1.5]);
+    let picture = Shading::default().render(&camera, &scene, &pose, 50.0).unwrap();
     let pixels = picture.hwc_u8(opendr_engine::data::PixelFormat::Rgb);
     let pixel = |column: usize, row: usize| &pixels[3 * (64 * row + column)..][..3];
     let brightness = |column, row| pixel(column, row).iter().map(|part| i32::from(*part)).sum::<i32>();
@@ -304,7 +304,7 @@ fn light_shows_sides_and_sky() {
 }
 
 #[test]
-fn wrong_bodies_are_refused() {
+fn invalid_bodies_are_refused() {
     let sphere = |radius| Body::upright(Shape::Sphere { radius }, [0.0; 3], 0);
     assert!(sphere(0.0).is_err() && sphere(f32::NAN).is_err() && sphere(f32::INFINITY).is_err());
     assert!(Body::upright(Shape::HalfSpace, [f32::NAN, 0.0, 0.0], 0).is_err());

@@ -2,7 +2,7 @@
 
 use super::{Directions, LANES, Vector, along, cross, dot, minus};
 
-/// A corner and the edges from it.
+/// A corner and the two edges from it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Triangle {
     corner: Vector,
@@ -19,12 +19,12 @@ impl Triangle {
         [self.corner, along(self.corner, ab, 1.0), along(self.corner, ac, 1.0)]
     }
 
-    /// The direction from which the corners go round counter-clockwise; not of length 1.
+    /// Returns the normal on the side from which the corners are counter-clockwise; not normalised.
     pub fn normal(&self) -> Vector {
         cross(self.edges[0], self.edges[1])
     }
 
-    /// Shortens the rays that meet it (Möller and Trumbore, Fast, minimum storage ray/triangle intersection, 1997).
+    /// Shortens the rays that hit it (Möller and Trumbore, Fast, minimum storage ray/triangle intersection, 1997).
     #[inline(always)]
     pub fn meet(&self, origin: Vector, directions: &Directions, distances: &mut [f32; LANES]) {
         let [ab, ac] = self.edges;
@@ -38,14 +38,14 @@ impl Triangle {
             let u = dot(from_corner, across) * inverse;
             let v = dot(direction, moment) * inverse;
             let distance = ahead * inverse;
-            // A hair beyond the edge counts, or rays would pass between two triangles.
+            // With a margin, so that no ray passes between two triangles.
             let inside = (u >= -1e-6) & (v >= -1e-6) & (u + v <= 1.000_001);
             let meets = inside & (distance > 0.0) & (distance < distances[lane]);
             distances[lane] = if meets { distance } else { distances[lane] };
         }
     }
 
-    /// The point of it nearest to `point` (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).
+    /// Returns its point nearest to `point` (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).
     pub fn nearest(&self, point: Vector) -> Vector {
         let [ab, ac] = self.edges;
         let from_a = minus(point, self.corner);

@@ -1,27 +1,27 @@
-//! The body of a car: a side view drawn with few corners, narrower towards the roof, on four wheels.
+//! Meshes of cars: a side view with few corners, narrower towards the roof, on four wheels.
 
 use opendr_engine::{Random, Result};
 
 use crate::raycast::{Mesh, Vector};
 
-/// Side views, from the rear bumper over the roof to the front: shares of length (0 rear, 1 front) and height.
+/// Side view of a car, from the rear bumper over the roof to the front; x is a fraction of the length (0 rear), y of the height.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CarShape {
     /// With a trunk.
     Sedan,
-    /// Cut off behind.
+    /// Cut off at the rear.
     Hatchback,
-    /// Long roof.
+    /// Estate with a long roof.
     Estate,
     /// High, with a steep windscreen.
     Suv,
 }
 
 impl CarShape {
-    /// All of them.
+    /// All shapes.
     pub const ALL: [Self; 4] = [Self::Sedan, Self::Hatchback, Self::Estate, Self::Suv];
 
-    /// Corners from the rear bumper over the roof to the front bumper.
+    /// Returns the corners from the rear bumper over the roof to the front bumper.
     fn profile(self) -> [[f32; 2]; 8] {
         match self {
             Self::Sedan => [
@@ -67,8 +67,8 @@ impl CarShape {
         }
     }
 
-    /// A body of this shape within `[length, width, height]`, centred on the middle of its floor, front along x; corners
-    /// vary a little.
+    /// Returns a mesh of this shape within `[length, width, height]`, with its origin at the middle of the floor and the front along x;
+    /// corners vary a little at random.
     ///
     /// # Errors
     /// `InvalidInput` when a size is not finite.
@@ -94,7 +94,7 @@ impl CarShape {
             faces.extend([[a, a + 1, b], [b, a + 1, b + 1]]);
         }
         for side in 0..2 {
-            // A fan about the middle of the side.
+            // A triangle fan around the middle of the side.
             vertices.push([0.0, width / 2.0 * if side == 0 { -1.0 } else { 1.0 }, 0.4 * height]);
             let middle = vertices.len() as u32 - 1;
             faces.extend((0..count).map(|at| [middle, 2 * at + side, 2 * ((at + 1) % count) + side]));
@@ -106,7 +106,7 @@ impl CarShape {
     }
 }
 
-/// The outer side of a wheel: a square on its corner is enough for a lidar.
+/// Adds the outer side of a wheel: a square on its corner, enough for a lidar.
 fn wheel(vertices: &mut Vec<Vector>, faces: &mut Vec<[u32; 3]>, x: f32, y: f32, size: f32) {
     let first = vertices.len() as u32;
     let half = size / 2.0;

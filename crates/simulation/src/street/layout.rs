@@ -1,4 +1,4 @@
-//! What stands on a street.
+//! Layout of a street: its objects and their places.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
@@ -10,46 +10,46 @@ use opendr_engine::{Random, Result};
 use super::CarShape;
 use crate::raycast::{Body, Scene, Shape, Vector};
 
-/// What a body of a street is.
+/// Kind of an object of a street.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StreetKind {
-    /// Of the sizes of KITTI's cars.
+    /// A car, of the sizes of KITTI's cars.
     Car,
-    /// A person on foot.
+    /// A pedestrian.
     Pedestrian,
-    /// A box on wheels.
+    /// A truck: a box on wheels.
     Truck,
-    /// Walls, poles and trunks.
-    Solid,
+    /// Walls, poles and tree trunks.
+    Structure,
     /// Crowns, hedges and bushes, which rays enter.
-    Leaves,
-    /// What all stand on.
+    Vegetation,
+    /// The ground.
     Ground,
 }
 
-/// An object with a truth.
+/// An object with its ground truth.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StreetObject {
-    /// What it is.
+    /// Kind of the object.
     pub kind: StreetKind,
-    /// Where it is, in the lidar's frame.
-    pub place: LidarBox,
-    /// Share of the light that its surface returns.
+    /// Box of the object, in the lidar's frame.
+    pub bounding_box: LidarBox,
+    /// Reflectance of its surface, 0 to 1.
     pub reflectance: f32,
 }
 
 /// A street, in the frame of the lidar.
 #[derive(Debug, Clone, Default)]
 pub struct Street {
-    /// What rays meet; the label of a body is the number of its entry in [`Street::objects`].
+    /// Bodies of the street; the label of a body is an index into [`Street::objects`].
     pub scene: Scene,
-    /// All that stands there.
+    /// All objects.
     pub objects: Vec<StreetObject>,
     pub(super) ground: Ground,
     floors: Vec<RotatedRectangle>,
 }
 
-/// A plane a little out of level.
+/// A slightly inclined plane.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Ground {
     height: f32,
@@ -62,27 +62,27 @@ impl Ground {
     }
 }
 
-/// KITTI's mount, metres above the ground.
+/// Height of KITTI's lidar above the ground, in metres.
 const MOUNT: f32 = 1.73;
-/// Where objects may be: ahead, and to either side.
+/// Extent of the street: ahead, and to either side, in metres.
 const AHEAD: f32 = 62.0;
 const ASIDE: f32 = 30.0;
-/// The car that carries the lidar.
+/// Footprint of the car that carries the lidar.
 pub(super) const OWN: RotatedRectangle =
     RotatedRectangle { center: [0.0, 0.0], size: [6.0, 2.6], angle: 0.0 };
-/// Tries to find a free place.
+/// Number of attempts to find a free place.
 const TRIES: usize = 12;
 
 impl Street {
-    /// A street of `random`'s choice.
+    /// Creates a random street.
     ///
     /// # Errors
-    /// None that the choice of numbers allows.
+    /// None for the sizes used.
     pub fn new(random: &mut Random) -> Result<Self> {
         let slopes = [0.008 * random.normal() as f32, 0.008 * random.normal() as f32];
         let ground = Ground { height: -MOUNT + 0.03 * random.normal() as f32, slopes };
         let mut street = Self { ground, floors: vec![OWN], ..Self::default() };
-        // Half of the turn's sine and cosine for a turn of the plane's normal; slopes are small.
+        // Quaternion of a small rotation of the plane's normal: half of the slopes.
         let rotation = [1.0, slopes[1] / 2.0, -slopes[0] / 2.0, 0.0];
         street.push(StreetKind::Ground, LidarBox { center: [0.0; 3], size: [0.0; 3], yaw: 0.0 }, random);
         street.scene.add(Body::new(Shape::HalfSpace, [0.0, 0.0, ground.height], rotation, 0)?);
@@ -116,18 +116,18 @@ impl Street {
         Ok(street)
     }
 
-    /// Notes an object and gives its label.
+    /// Adds an object and returns its label.
     fn push(&mut self, kind: StreetKind, place: LidarBox, random: &mut Random) -> u16 {
         let reflectance = match kind {
             StreetKind::Car | StreetKind::Truck => random.uniform(0.02, 0.9),
             StreetKind::Ground => random.uniform(0.1, 0.4),
             _ => random.uniform(0.05, 0.6),
         };
-        self.objects.push(StreetObject { kind, place, reflectance });
+        self.objects.push(StreetObject { kind, bounding_box: place, reflectance });
         u16::try_from(self.objects.len() - 1).unwrap_or(u16::MAX)
     }
 
-    /// A free place of `size` (length, width, height) that `choose` (x, y, yaw) proposes; its floor is then taken.
+    /// Returns a free place of `size` (length, width, height) among those that `choose` (x, y, yaw) proposes, and occupies it.
     fn place(
         &mut self,
         size: Vector,
@@ -140,7 +140,7 @@ impl Street {
             let around = [size[0] + margin, size[1] + margin].map(f64::from);
             let center = [x, y].map(f64::from);
             let floor = RotatedRectangle { center, size: around, angle: f64::from(yaw) };
-            if self.floors.iter().all(|other| floor.shared_area(other) == 0.0) {
+            if self.floors.iter().all(|other| floor.intersection_area(other) == 0.0) {
                 self.floors.push(floor);
                 let z = f64::from(self.ground.at(x, y));
                 let yaw = f64::from(yaw);
@@ -171,7 +171,7 @@ impl Street {
             }
             let (sin, cos) = road.sin_cos();
             let along = random.uniform(3.0, 55.0);
-            // A road that crosses does so ahead.
+            // Cross traffic is placed ahead.
             let (along, ahead) =
                 if cos.abs() < 0.5 { (along - 28.0, random.uniform(8.0, 30.0)) } else { (along, 0.0) };
             let aside = lane + 0.3 * random.normal() as f32;
@@ -218,14 +218,14 @@ impl Street {
             let aside = random.uniform(6.0, 22.0) * if random.chance(0.5) { 1.0 } else { -1.0 };
             [random.uniform(2.0, AHEAD), aside, road + across]
         });
-        self.add_box(place, StreetKind::Solid, random)
+        self.add_box(place, StreetKind::Structure, random)
     }
 
     fn add_pole(&mut self, random: &mut Random) -> Result<()> {
         let (radius, height) = (random.uniform(0.04, 0.2), random.uniform(2.0, 7.0));
         let place = self.place([2.0 * radius, 2.0 * radius, height], 0.2, random, anywhere);
         let Some(place) = place else { return Ok(()) };
-        let label = self.push(StreetKind::Solid, place, random);
+        let label = self.push(StreetKind::Structure, place, random);
         let [x, y, z] = place.center;
         let shape = Shape::Cylinder { radius, half_height: height / 2.0 };
         self.add(shape, [x, y, z + f64::from(height) / 2.0], 0.0, label)
@@ -237,10 +237,10 @@ impl Street {
         let place = self.place([2.0 * radius, 2.0 * radius, trunk + 2.0 * crown], 0.3, random, anywhere);
         let Some(place) = place else { return Ok(()) };
         let [x, y, z] = place.center;
-        let label = self.push(StreetKind::Solid, place, random);
+        let label = self.push(StreetKind::Structure, place, random);
         let shape = Shape::Cylinder { radius, half_height: trunk };
         self.add(shape, [x, y, z + f64::from(trunk)], 0.0, label)?;
-        let label = self.push(StreetKind::Leaves, place, random);
+        let label = self.push(StreetKind::Vegetation, place, random);
         self.add(Shape::Sphere { radius: crown }, [x, y, z + f64::from(trunk + crown)], 0.0, label)
     }
 
@@ -251,19 +251,19 @@ impl Street {
                 let [x, y, _] = anywhere(random);
                 [x, y, road]
             });
-            return self.add_box(place, StreetKind::Leaves, random);
+            return self.add_box(place, StreetKind::Vegetation, random);
         }
         let radius = random.uniform(0.4, 1.4);
         let size = [2.0 * radius, 2.0 * radius, radius];
         let Some(place) = self.place(size, 0.2, random, anywhere) else { return Ok(()) };
-        let label = self.push(StreetKind::Leaves, place, random);
+        let label = self.push(StreetKind::Vegetation, place, random);
         self.add(Shape::Sphere { radius }, place.center, 0.0, label)
     }
 
     fn add_box(&mut self, place: Option<LidarBox>, kind: StreetKind, random: &mut Random) -> Result<()> {
         let Some(place) = place else { return Ok(()) };
         let label = self.push(kind, place, random);
-        // Some way into the ground, which slopes.
+        // Boxes reach into the ground, which is inclined.
         let [x, y, z] = place.center;
         let half = place.size.map(|side| side as f32 / 2.0);
         self.add(Shape::Box { half }, [x, y, z + place.size[2] / 2.0 - 0.2], place.yaw, label)
@@ -280,7 +280,7 @@ fn anywhere(random: &mut Random) -> [f32; 3] {
     [random.uniform(3.0, AHEAD), random.uniform(-ASIDE, ASIDE), random.uniform(-PI, PI)]
 }
 
-/// Whether a car is where the lidar looks.
+/// Returns whether a car is in the lidar's field of view.
 fn is_within(place: &LidarBox) -> bool {
     place.center[0] > 2.0 && place.center[0] < f64::from(AHEAD) && place.center[1].abs() < f64::from(ASIDE)
 }

@@ -1,8 +1,8 @@
-//! Streets as a lidar on a car sees them: cars, pedestrians, trucks, walls, poles, trees and hedges on sloping ground, made
-//! at random from a seed, with the truth of where the objects are.
+//! Random street scenes for a lidar on a car: cars, pedestrians, trucks, walls, poles, trees and hedges on inclined ground, with
+//! the ground truth of the objects.
 //!
-//! What comes out is synthetic and says so. Its geometry is KITTI's (A. Geiger et al., "Are we ready for autonomous
-//! driving?", CVPR 2012): sensor, height above ground, calibration, sizes of cars, rules of what counts as hidden.
+//! The data is synthetic. Its geometry is KITTI's (A. Geiger et al., "Are we ready for autonomous
+//! driving?", CVPR 2012): sensor, height above ground, calibration, sizes of cars, levels of occlusion.
 
 mod car_body;
 mod drives;

@@ -1,4 +1,4 @@
-//! How what stands on a street moves.
+//! Motion of the objects of a street.
 
 use opendr_engine::overlap::RotatedRectangle;
 use opendr_engine::target::LidarBox;
@@ -8,28 +8,28 @@ use super::layout::OWN;
 use super::{Street, StreetKind, StreetObject};
 use crate::raycast::Scene;
 
-/// Speeds of a street's objects, and of the car that carries the lidar.
+/// Velocities of a street's objects and of the car that carries the lidar.
 #[derive(Debug, Clone)]
 pub(super) struct Motion {
-    /// Of each object along its own yaw, m/s.
+    /// Speed of each object along its yaw, in m/s.
     speeds: Vec<f64>,
     own: OwnMotion,
 }
 
-/// A drive along an arc.
+/// Motion along an arc.
 #[derive(Debug, Clone, Copy)]
 struct OwnMotion {
-    /// m/s.
+    /// Speed, in m/s.
     speed: f64,
-    /// rad/s, not 0.
+    /// Yaw rate, in rad/s; not 0.
     turn: f64,
 }
 
-/// How often what moves is checked not to drive through anything, seconds.
+/// Interval of collision checks, in seconds.
 const STEP: f64 = 0.2;
 
 impl OwnMotion {
-    /// Where the lidar is after `time` seconds, and where it looks, as seen from where it was at first.
+    /// Returns position and yaw of the lidar after `time` seconds, relative to the start.
     fn pose(self, time: f64) -> ([f64; 2], f64) {
         let yaw = self.turn * time;
         let radius = self.speed / self.turn;
@@ -42,7 +42,7 @@ impl OwnMotion {
     }
 }
 
-/// Where an object is that drives straight on.
+/// Returns the place of an object that moves straight ahead.
 fn moved(place: &LidarBox, speed: f64, time: f64) -> LidarBox {
     let (sin, cos) = place.yaw.sin_cos();
     let [x, y, z] = place.center;
@@ -50,7 +50,7 @@ fn moved(place: &LidarBox, speed: f64, time: f64) -> LidarBox {
 }
 
 impl Motion {
-    /// A motion of `random`'s choice in which nothing drives through anything for `seconds`.
+    /// Creates a random motion in which nothing collides for `seconds`.
     pub fn new(street: &Street, seconds: f64, random: &mut Random) -> Self {
         let turn = 0.02 * random.normal() + 1e-6;
         let own = OwnMotion { speed: 0.0, turn };
@@ -64,7 +64,7 @@ impl Motion {
                 StreetKind::Car => (0.6, [1.0, 12.0]),
                 StreetKind::Truck => (0.4, [1.0, 9.0]),
                 StreetKind::Pedestrian => (0.7, [0.5, 1.8]),
-                StreetKind::Solid | StreetKind::Leaves | StreetKind::Ground => continue,
+                StreetKind::Structure | StreetKind::Vegetation | StreetKind::Ground => continue,
             };
             if random.chance(share) {
                 motion.speeds[number] = f64::from(random.uniform(low, high));
@@ -77,7 +77,7 @@ impl Motion {
     }
 
     fn floor(&self, object: &StreetObject, number: usize, time: f64) -> RotatedRectangle {
-        moved(&object.place, self.speeds[number], time).standing_box().floor
+        moved(&object.bounding_box, self.speeds[number], time).upright_box().base
     }
 
     fn is_own_way_free(&self, street: &Street, seconds: f64) -> bool {
@@ -86,11 +86,11 @@ impl Motion {
 
     fn is_way_free(&self, street: &Street, number: usize, seconds: f64) -> bool {
         let own = |time| self.floor(&street.objects[number], number, time);
-        times(seconds).all(|time| own(time).shared_area(&self.own.floor(time)) == 0.0)
+        times(seconds).all(|time| own(time).intersection_area(&self.own.floor(time)) == 0.0)
             && self.is_free(street, seconds, Some(number), own)
     }
 
-    /// Whether what is on `floor` meets none of the objects but the one called `own`.
+    /// Returns whether `floor` overlaps no object other than `own`.
     fn is_free(
         &self,
         street: &Street,
@@ -101,16 +101,16 @@ impl Motion {
         let others = street.objects.iter().enumerate();
         let mut others = others.filter(|(at, other)| Some(*at) != own && other.kind != StreetKind::Ground);
         others.all(|(at, other)| {
-            times(seconds).all(|time| floor(time).shared_area(&self.floor(other, at, time)) == 0.0)
+            times(seconds).all(|time| floor(time).intersection_area(&self.floor(other, at, time)) == 0.0)
         })
     }
 
-    /// The street after `time` seconds, as the lidar then sees it.
+    /// Returns the street after `time` seconds, in the frame of the lidar at that time.
     pub fn street_at(&self, street: &Street, time: f64) -> Result<Street> {
         let ([own_x, own_y], own_yaw) = self.own.pose(time);
         let (sin, cos) = own_yaw.sin_cos();
-        // From where the lidar was at first to where it is; the ground keeps its slope under the car.
-        let seen = |[x, y, z]: [f64; 3]| {
+        // From the lidar's first frame to its current one; the ground keeps its slope under the car.
+        let in_new_frame = |[x, y, z]: [f64; 3]| {
             let (dx, dy) = (x - own_x, y - own_y);
             let [new_x, new_y] = [cos * dx + sin * dy, cos * dy - sin * dx];
             let rise = street.ground.at(new_x as f32, new_y as f32) - street.ground.at(x as f32, y as f32);
@@ -120,9 +120,9 @@ impl Motion {
         later.scene = Scene::default();
         for (object, speed) in later.objects.iter_mut().zip(&self.speeds) {
             if object.kind != StreetKind::Ground {
-                object.place = moved(&object.place, *speed, time);
-                object.place.center = seen(object.place.center);
-                object.place.yaw -= own_yaw;
+                object.bounding_box = moved(&object.bounding_box, *speed, time);
+                object.bounding_box.center = in_new_frame(object.bounding_box.center);
+                object.bounding_box.yaw -= own_yaw;
             }
         }
         for body in street.scene.bodies() {
@@ -135,9 +135,9 @@ impl Motion {
                 continue;
             }
             let center = body.position().map(f64::from);
-            let place = LidarBox { center, ..object.place };
-            let position = seen(moved(&place, *speed, time).center);
-            later.scene.add(body.carried(position.map(|part| part as f32), -own_yaw as f32)?);
+            let place = LidarBox { center, ..object.bounding_box };
+            let position = in_new_frame(moved(&place, *speed, time).center);
+            later.scene.add(body.moved(position.map(|part| part as f32), -own_yaw as f32)?);
         }
         Ok(later)
     }

@@ -1,4 +1,4 @@
-//! Scans of streets with a label for each point.
+//! Scans of streets as a data set for segmentation.
 
 use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
 use opendr_engine::target::{Classes, Heatmap};
@@ -6,14 +6,14 @@ use opendr_engine::{Error, Result};
 
 use super::{StreetKind, StreetScans};
 
-/// The scans of [`StreetScans`], each point with 1000 times its class and, of cars, pedestrians and trucks, the number of its object
-/// in its class, from 1.
+/// The scans of [`StreetScans`] with a label for each point: 1000 times its class, plus for cars, pedestrians and trucks the instance
+/// number within the class, from 1.
 #[derive(Debug, Clone)]
 pub struct StreetSegments {
     scans: StreetScans,
 }
 
-/// The classes, and whether they are countable.
+/// Classes, and whether each is a thing class.
 const CLASSES: [(&str, bool); 6] = [
     ("car", true),
     ("pedestrian", true),
@@ -24,10 +24,10 @@ const CLASSES: [(&str, bool); 6] = [
 ];
 
 impl StreetSegments {
-    /// The numbers of the countable classes.
+    /// Indices of the thing classes.
     pub const THINGS: [u32; 3] = [0, 1, 2];
 
-    /// `count` scans of the streets that follow from `seed`.
+    /// Creates `count` scans of the streets of `seed`.
     pub fn new(seed: u64, count: usize) -> Self {
         Self { scans: StreetScans::new(seed, count) }
     }
@@ -38,8 +38,8 @@ fn class_of(kind: StreetKind) -> usize {
         StreetKind::Car => 0,
         StreetKind::Pedestrian => 1,
         StreetKind::Truck => 2,
-        StreetKind::Solid => 3,
-        StreetKind::Leaves => 4,
+        StreetKind::Structure => 3,
+        StreetKind::Vegetation => 4,
         StreetKind::Ground => 5,
     }
 }
@@ -64,10 +64,10 @@ impl DatasetIterator for StreetSegments {
             })
             .collect();
         let label = |label: u16| {
-            let found = labels.get(usize::from(label)).copied();
-            found.ok_or_else(|| Error::internal("a return of no object"))
+            let object_label = labels.get(usize::from(label)).copied();
+            object_label.ok_or_else(|| Error::internal("a return without an object"))
         };
-        let labels = returns.iter().map(|seen| label(seen.label)).collect::<Result<Vec<_>>>()?;
+        let labels = returns.iter().map(|hit| label(hit.label)).collect::<Result<Vec<_>>>()?;
         let mut map = Heatmap::from_labels(labels, &[returns.len()])?;
         map.classes = self.classes();
         map.header = cloud.cloud.header.clone();
@@ -99,7 +99,7 @@ mod tests {
             labels.iter().filter(|label| **label / 1000 == class).count() as f64 / labels.len() as f64
         };
         assert!(share(5) > 0.2 && share(0) > 0.0, "{} {}", share(5), share(0));
-        // What is low is the ground.
+        // Low points belong to the ground.
         let low =
             scan.cloud.points().zip(labels.iter()).filter(|(point, _)| point[2] < -1.6 && point[0] < 8.0);
         let [ground, others] = low.fold([0, 0], |[ground, others], (_, label)| match label {

@@ -15,7 +15,7 @@ fn scan(index: usize) -> (PointCloudWithCalibration, BoundingBox3DList) {
     }
 }
 
-/// Points within 10 cm of a box, but for those near the ground.
+/// Counts the points within 10 cm of a box, except those near the ground.
 fn points_in(place: &LidarBox, cloud: &PointCloud) -> usize {
     let (sin, cos) = place.yaw.sin_cos();
     let inside = |point: &&[f32]| {
@@ -28,7 +28,7 @@ fn points_in(place: &LidarBox, cloud: &PointCloud) -> usize {
 }
 
 #[test]
-fn a_scan_follows_from_seed_and_number() {
+fn a_scan_depends_on_seed_and_index() {
     let (cloud, boxes) = scan(3);
     assert_eq!((cloud.clone(), boxes.clone()), scan(3));
     assert_ne!(cloud.cloud, scan(4).0.cloud);
@@ -37,7 +37,7 @@ fn a_scan_follows_from_seed_and_number() {
 }
 
 #[test]
-fn boxes_hold_what_was_seen_of_their_objects() {
+fn boxes_contain_the_points_of_their_objects() {
     let mut cars = 0;
     for index in 0..8 {
         let (scan, boxes) = scan(index);
@@ -52,7 +52,7 @@ fn boxes_hold_what_was_seen_of_their_objects() {
 }
 
 #[test]
-fn cars_have_the_sizes_of_kittis() {
+fn cars_have_the_sizes_of_kitti() {
     let cars: Vec<_> =
         (0..12).flat_map(|index| scan(index).1.boxes).filter(|found| found.name == "Car".into()).collect();
     let mean = |axis: usize| cars.iter().map(|car| car.dimensions[axis]).sum::<f32>() / cars.len() as f32;
@@ -74,9 +74,9 @@ fn frames(drives: &StreetDrives) -> Vec<(PointCloudWithCalibration, TrackingAnno
     (0..drives.len()).map(frame).collect()
 }
 
-/// What a box says lies where the points are, in every frame; some objects drive, some stand, and none jumps.
+/// Boxes contain the points of their objects in every frame; some objects move, some stand, and none jumps.
 #[test]
-fn drives_carry_their_objects_along() {
+fn drives_move_their_objects() {
     let drives = StreetDrives::new(6, 2, 8);
     assert!(drives.get(16).is_err() && drives.sequence(7) == Some(0) && drives.sequence(8) == Some(1));
     let frames = frames(&drives);

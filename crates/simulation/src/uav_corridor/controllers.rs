@@ -1,35 +1,35 @@
-//! Controllers without learning, to compare policies with and to build them on.
+//! Hand-written controllers, as baselines for policies.
 
 use opendr_engine::environment::{Controller, Space};
 use opendr_engine::{Error, Result};
 
-use super::{CorridorSight, SIDE, TURN};
+use super::{CorridorObservation, SIDE, TURN};
 
-/// Flies by what is seen, and by what it remembers of the flight.
+/// A controller that acts on the current observation and on its own state.
 pub trait CorridorController {
-    /// Forgets the last flight.
+    /// Resets the controller for a new flight.
     fn begin(&mut self);
 
-    /// Heading and change of yaw, each within [-1, 1] as in `UavDepthCorridor-v1`.
-    fn act(&mut self, sight: &CorridorSight) -> [f32; 2];
+    /// Returns heading and change of yaw, each in [-1, 1] as in `UavDepthCorridor-v1`.
+    fn act(&mut self, sight: &CorridorObservation) -> [f32; 2];
 }
 
-/// A controller that reads observations: for evaluations, and where any [`Controller`] is taken.
+/// Adapts a [`CorridorController`] to raw observations, as a [`Controller`].
 #[derive(Debug, Clone)]
-pub struct BySight<C> {
+pub struct ObservationController<C> {
     controller: C,
     space: Space,
-    sight: CorridorSight,
+    sight: CorridorObservation,
 }
 
-impl<C: CorridorController> BySight<C> {
-    /// `controller`, for observations of `space`.
+impl<C: CorridorController> ObservationController<C> {
+    /// Wraps a controller for observations of `space`.
     pub fn new(controller: C, space: Space) -> Self {
-        Self { controller, space, sight: CorridorSight::default() }
+        Self { controller, space, sight: CorridorObservation::default() }
     }
 }
 
-impl<C: CorridorController> Controller for BySight<C> {
+impl<C: CorridorController> Controller for ObservationController<C> {
     fn reset(&mut self) {
         self.controller.begin();
     }
@@ -38,51 +38,53 @@ impl<C: CorridorController> Controller for BySight<C> {
         self.sight.read(&self.space, observation)?;
         let length = action.len();
         let action = action.as_mut_array().ok_or_else(|| {
-            Error::invalid_input(format!("room for {length} numbers of an action; it has 2, heading and yaw"))
+            Error::invalid_input(format!(
+                "the buffer of the action has {length} numbers; give 2, heading and yaw"
+            ))
         })?;
         *action = self.controller.act(&self.sight);
         Ok(())
     }
 }
 
-/// Straight ahead, whatever comes.
+/// Flies straight ahead.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Straight;
+pub struct StraightController;
 
-/// By hand: towards the freest columns of the picture, near the bearing of the target.
+/// Flies towards the free columns of the depth image nearest to the target's bearing.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Reactive {
+pub struct ReactiveController {
     yaw: f32,
 }
 
-/// The sum of a pull towards the target and a push away from each column of the picture (Khatib, Real-time obstacle
+/// Potential field: attraction to the target and repulsion from each column of the depth image (Khatib, Real-time obstacle
 /// avoidance for manipulators and mobile robots, 1986).
 #[derive(Debug, Clone, Copy, Default)]
 pub struct PotentialField {
     yaw: f32,
 }
 
-/// Columns that are looked at together.
+/// Columns that are processed together.
 const BLOCK: usize = 4;
 const COLUMNS: usize = SIDE / BLOCK;
-/// Rows in which an obstacle would be met.
+/// Rows at the height of the flight.
 const ROWS: std::ops::Range<usize> = 20..44;
 const LARGEST: f32 = TURN as f32;
 
-impl CorridorController for Straight {
+impl CorridorController for StraightController {
     fn begin(&mut self) {}
 
-    fn act(&mut self, _: &CorridorSight) -> [f32; 2] {
+    fn act(&mut self, _: &CorridorObservation) -> [f32; 2] {
         [0.0; 2]
     }
 }
 
-impl CorridorController for Reactive {
+impl CorridorController for ReactiveController {
     fn begin(&mut self) {
         self.yaw = 0.0;
     }
 
-    fn act(&mut self, sight: &CorridorSight) -> [f32; 2] {
+    fn act(&mut self, sight: &CorridorObservation) -> [f32; 2] {
         let (columns, wanted) = (columns(sight), bearing_of_target(sight));
         let (mut best, mut heading) = (f32::NEG_INFINITY, 0.0);
         for at in 0..COLUMNS {
@@ -93,7 +95,7 @@ impl CorridorController for Reactive {
             }
         }
         let turn = if best < 2.5 {
-            // Nothing is free ahead: look towards the middle of the corridor.
+            // Nothing is free ahead: turn towards the middle of the corridor.
             if offset(sight, self.yaw) > 0.0 { -LARGEST } else { LARGEST }
         } else {
             (wanted + self.yaw).clamp(-0.4, 0.4) - self.yaw + 0.5 * heading
@@ -107,7 +109,7 @@ impl CorridorController for PotentialField {
         self.yaw = 0.0;
     }
 
-    fn act(&mut self, sight: &CorridorSight) -> [f32; 2] {
+    fn act(&mut self, sight: &CorridorObservation) -> [f32; 2] {
         const REACH: f32 = 5.0;
         const PUSH: f32 = 1.2;
         let (sine, cosine) = bearing_of_target(sight).sin_cos();
@@ -125,7 +127,7 @@ impl CorridorController for PotentialField {
     }
 }
 
-/// Scales angles to an action, and keeps account of the yaw as the environment does.
+/// Scales angles to an action, and tracks the yaw as the environment does.
 fn action(yaw: &mut f32, heading: f32, turn: f32) -> [f32; 2] {
     let action = [heading, turn].map(|angle| (angle / LARGEST).clamp(-1.0, 1.0));
     let right_angle = std::f32::consts::FRAC_PI_2;
@@ -133,8 +135,8 @@ fn action(yaw: &mut f32, heading: f32, turn: f32) -> [f32; 2] {
     action
 }
 
-/// The smallest depth in each block of columns.
-fn columns(sight: &CorridorSight) -> [f32; COLUMNS] {
+/// Returns the smallest depth in each block of columns.
+fn columns(sight: &CorridorObservation) -> [f32; COLUMNS] {
     let mut columns = [f32::INFINITY; COLUMNS];
     for row in ROWS {
         for (at, depth) in sight.depths[row * SIDE..(row + 1) * SIDE].iter().enumerate() {
@@ -144,24 +146,24 @@ fn columns(sight: &CorridorSight) -> [f32; COLUMNS] {
     columns
 }
 
-/// How far to the left the middle of a block of columns lies, radians.
+/// Returns the bearing of the middle of a block of columns, in radians to the left.
 fn bearing(column: usize) -> f32 {
     (super::HALF_WIDTH * (1.0 - 2.0 * (column as f32 + 0.5) / COLUMNS as f32)).atan()
 }
 
-/// How far the drone could fly in this direction with 0.6 m to either side.
+/// Returns the free distance in a direction, with 0.6 m to either side.
 fn free_width(columns: &[f32; COLUMNS], heading: f32) -> f32 {
     let in_the_way = |at: usize| (bearing(at) - heading).abs().sin() * columns[at] < 0.6;
     let nearest = (0..COLUMNS).filter(|at| in_the_way(*at)).map(|at| columns[at]);
     nearest.fold(super::RANGE, f32::min)
 }
 
-fn bearing_of_target(sight: &CorridorSight) -> f32 {
+fn bearing_of_target(sight: &CorridorObservation) -> f32 {
     sight.target[1].atan2(sight.target[0])
 }
 
-/// How far to the left of the corridor's middle the drone is.
-fn offset(sight: &CorridorSight, yaw: f32) -> f32 {
+/// Returns the offset of the drone from the middle of the corridor, to the left.
+fn offset(sight: &CorridorObservation, yaw: f32) -> f32 {
     let (sine, cosine) = yaw.sin_cos();
     -(sine * sight.target[0] + cosine * sight.target[1])
 }

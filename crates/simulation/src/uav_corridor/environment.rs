@@ -1,4 +1,4 @@
-//! The environment: steps, rewards, ends.
+//! The corridor environment: steps, rewards, ends of episodes.
 
 use std::collections::BTreeMap;
 
@@ -16,20 +16,20 @@ use super::{
 };
 use crate::classic_control::{check_length, not_begun};
 use crate::raycast::{Pose, Vector};
-use crate::{NumpyRandom, Registered};
+use crate::{NumpyRandom, RegisteredEnvironment};
 
-/// `UavDepthCorridor-v1`: fly 30 m through obstacles by depth camera and the way to a target 5 m ahead.
+/// `UavDepthCorridor-v1`: fly 30 m through obstacles, with a depth camera and the direction to a target 5 m ahead.
 ///
-/// An action is heading and change of yaw, each +-22.5 degrees; the drone then flies one metre. Seen are depth of 64 x
-/// 64 pixels up to 15 m, a byte each as in OpenDR, and the target in metres: ahead, left, up. The reward of a step is 2
-/// |dx| - 0.4 |y| - 0.3 |yaw|, less 2 or 10 with an obstacle in the ball of 1.5 m or 1 m ahead; 20 for the finish, -10
-/// off the track, -20 for a collision, each an end. After 100 steps an episode is truncated. The info of each step has
-/// `success` and `collision`, 0 or 1.
+/// An action is heading and change of yaw, each +-22.5 degrees; the drone then flies one metre. The observation is a depth image of
+/// 64 x 64 pixels up to 15 m, one byte per pixel as in OpenDR, and the target in metres: ahead, left, up. The reward of a step is
+/// 2 |dx| - 0.4 |y| - 0.3 |yaw|, less 2 or 10 with an obstacle in a ball of radius 1.5 m or 1 m ahead; 20 for the finish, -10
+/// off the track, -20 for a collision, which all terminate the episode. After 100 steps the episode is truncated. The info of each
+/// step has `success` and `collision`, 0 or 1.
 #[derive(Debug, Clone)]
 pub struct UavDepthCorridor {
     spec: EnvironmentSpec,
     params: UavDepthCorridorParams,
-    /// Those of this episode.
+    /// Options of this episode.
     options: CorridorOptions,
     place: Option<Place>,
     world: CorridorWorld,
@@ -38,7 +38,7 @@ pub struct UavDepthCorridor {
     path: Vec<Vector>,
 }
 
-/// Everything random follows from it.
+/// Key of all random numbers of a step.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     stream: u64,
@@ -46,7 +46,7 @@ struct Place {
     step: u64,
 }
 
-/// What random numbers are for.
+/// Uses of random numbers.
 #[derive(Clone, Copy)]
 enum Purpose {
     World,
@@ -54,14 +54,14 @@ enum Purpose {
     Camera,
 }
 
-/// OpenDR's choices as heading and yaw.
+/// OpenDR's discrete actions as heading and yaw.
 const CHOICES: [[f32; 2]; 7] =
     [[1.0, 1.0], [1.0, 0.0], [0.0, 1.0], [0.0, 0.0], [0.0, -1.0], [-1.0, 0.0], [-1.0, -1.0]];
-/// How far ahead the balls are in which an obstacle costs reward, their radius, and what it costs.
+/// Distance ahead and radius of the balls in which an obstacle reduces the reward, and by how much.
 const SAFETY: [(f32, f32, f64); 2] = [(1.0, 1.5, 2.0), (0.5, 1.0, 10.0)];
 const LIMIT: u32 = 100;
 
-impl Registered for UavDepthCorridor {
+impl RegisteredEnvironment for UavDepthCorridor {
     const ID: &'static str = "UavDepthCorridor-v1";
     type Params = UavDepthCorridorParams;
 
@@ -71,7 +71,7 @@ impl Registered for UavDepthCorridor {
 }
 
 impl UavDepthCorridor {
-    /// The environment under a name of its own.
+    /// Creates the environment with another id.
     pub(super) fn called(id: &str, params: &UavDepthCorridorParams) -> Result<Self> {
         let options = params.options.clone().checked()?;
         let action = match params.form.discrete {
@@ -94,36 +94,36 @@ impl UavDepthCorridor {
         })
     }
 
-    /// The world of this episode.
+    /// Returns the world of this episode.
     pub fn world(&self) -> &CorridorWorld {
         &self.world
     }
 
-    /// Where the drone is, metres.
+    /// Returns the position of the drone, in metres.
     pub fn position(&self) -> Vector {
         self.flight.position()
     }
 
-    /// How far it is turned to the left, rad.
+    /// Returns the yaw of the drone, in radians to the left.
     pub fn yaw(&self) -> f64 {
         self.flight.yaw()
     }
 
-    /// Where it is and which way it looks.
+    /// Returns the pose of the drone.
     pub fn pose(&self) -> Pose {
         self.flight.pose()
     }
 
-    /// Where it was after each step of this episode.
+    /// Returns the positions at the start and after each step of this episode.
     pub fn path(&self) -> &[Vector] {
         &self.path
     }
 
     fn random(&self, place: Place, purpose: Purpose) -> Random {
-        Random::at([place.stream, place.episode, place.step, purpose as u64])
+        Random::from_key([place.stream, place.episode, place.step, purpose as u64])
     }
 
-    /// Makes the world of a place and puts the drone at its start.
+    /// Generates the world of an episode and puts the drone at its start.
     fn begin(&mut self, place: Place) -> Result<()> {
         self.world.generate(&mut self.random(place, Purpose::World), &self.options)?;
         let wind = self.params.form.dynamics.then(|| {
@@ -172,8 +172,8 @@ impl UavDepthCorridor {
         Ok(())
     }
 
-    /// Reward and whether the flight is over, from where a step began and whether it ended in a collision.
-    fn judged(&self, from: Vector, collided: bool) -> Step {
+    /// Returns reward and end of a step, from the position before it and whether it ended in a collision.
+    fn evaluate_step(&self, from: Vector, collided: bool) -> Step {
         let [x, y, _] = self.flight.position();
         let finished = x > FINISH;
         let (reward, terminated) = match (finished, y.abs() > HALF_TRACK, collided) {
@@ -202,7 +202,7 @@ impl UavDepthCorridor {
     }
 }
 
-/// Depth, target and, where asked for, pose.
+/// Returns the space of depth, target and, if enabled, pose.
 fn observation_space(params: &UavDepthCorridorParams) -> Result<Space> {
     let right_angle = std::f32::consts::FRAC_PI_2;
     let pose = [f32::INFINITY, if params.form.dynamics { 2.0 * right_angle } else { right_angle }];
@@ -223,7 +223,7 @@ fn observation_space(params: &UavDepthCorridorParams) -> Result<Space> {
     Ok(Space::Dict(parts))
 }
 
-/// A horizontal wind of any direction, at most `most` m/s.
+/// Returns a random horizontal wind of at most `most` m/s.
 fn mean_wind(random: &mut Random, most: f64) -> [f64; 3] {
     loop {
         let [x, y] = [(); 2].map(|()| 2.0 * random.unit() - 1.0);
@@ -247,7 +247,7 @@ impl Environment for UavDepthCorridor {
         let place = match (seed, self.place) {
             (None, Some(place)) => Place { episode: place.episode.wrapping_add(1), step: 0, ..place },
             (seed, _) => {
-                let stream = seed.unwrap_or_else(|| NumpyRandom::from_chance().bits());
+                let stream = seed.unwrap_or_else(|| NumpyRandom::from_entropy().bits());
                 Place { stream, episode: 0, step: 0 }
             }
         };
@@ -267,7 +267,7 @@ impl Environment for UavDepthCorridor {
         let collided = self.flight.advance(action, self.world.scene(), &mut random);
         self.path.push(self.flight.position());
         self.observe(place, observation)?;
-        Ok(self.judged(from, collided))
+        Ok(self.evaluate_step(from, collided))
     }
 
     fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
@@ -290,6 +290,6 @@ impl Environment for UavDepthCorridor {
 
     fn render(&mut self) -> Result<Option<Image>> {
         self.place.ok_or_else(|| not_begun(&self.spec))?;
-        super::picture::picture(self).map(Some)
+        super::picture::picture(self.world.scene(), self.pose(), &self.path).map(Some)
     }
 }

@@ -1,4 +1,4 @@
-//! What a drone knows of its surroundings from all that it saw: a memory for policies without one.
+//! A map of the surroundings from past observations, for policies without memory.
 
 use opendr_engine::Result;
 use opendr_engine::environment::{Snapshot, Space, StateReader};
@@ -6,41 +6,42 @@ use opendr_engine::environment::{Snapshot, Space, StateReader};
 use super::lookahead::Lookahead;
 use super::way_costs::WayCosts;
 use super::{
-    CAMERA_HEIGHT, CorridorSight, FINISH, HALF_TRACK, HALF_WIDTH, RADIUS, RANGE, SIDE, START, TARGET, TURN,
+    CAMERA_HEIGHT, CorridorObservation, FINISH, HALF_TRACK, HALF_WIDTH, RADIUS, RANGE, SIDE, START, TARGET,
+    TURN,
 };
 use crate::sine_cosine::sine_cosine;
 
-/// Turns observations of the corridor, one after the other, into what is known of the surroundings.
+/// Turns consecutive observations of the corridor into features of the surroundings.
 ///
-/// The camera sees 45 degrees, and most collisions happen beside it. So the drone remembers, in a map of points at the
-/// height of its flight, what it saw in the last [`FRAMES`](Self::FRAMES) steps. It keeps account of where it is by its own actions, and of its yaw and its
-/// offset from the middle of the corridor by the way to the target. It has nothing that is not in OpenDR's observation.
+/// The camera has a field of view of 45 degrees, and most collisions happen beside it. The memory therefore keeps the points at the
+/// height of the flight from the last [`FRAMES`](Self::FRAMES) steps. It estimates the position from its own actions, and yaw and
+/// offset from the middle of the corridor from the direction to the target. It uses nothing beyond OpenDR's observation.
 ///
-/// What it writes are [`LEN`](Self::LEN) numbers: how far it could fly in each of [`WAYS`](Self::WAYS) directions, from the left to the right, as a
-/// share of 10 m; how much nearer the end of the map comes there; what it proposes to do; then the detour, offset, sine and cosine of the yaw, how
-/// far it came, height to gain, and its last action. A policy need not find the way: what it answers is added to the
-/// proposal, [`corrected`](Self::corrected) (residual reinforcement learning; Silver et al., 2018, Johannink et al., 2019).
+/// It writes [`LEN`](Self::LEN) numbers: the free distance in each of [`WAYS`](Self::WAYS) directions, from left to right, as a
+/// fraction of 10 m; how much nearer the end of the map comes in each, at two distances; a proposed action; then detour, offset, sine
+/// and cosine of the yaw, progress, height to gain, and the last action. A policy need not find the way: its action is added to the
+/// proposal by [`corrected_action`](Self::corrected_action) (residual reinforcement learning; Silver et al., 2018, Johannink et al., 2019).
 #[derive(Debug, Clone, PartialEq)]
 pub struct FlightMemory {
-    sight: CorridorSight,
+    sight: CorridorObservation,
     place: Option<Place>,
     action: [f32; 2],
     proposal: [f32; 2],
-    /// Of the last frames, frame after frame; what was not seen is infinitely far away.
+    /// Points of the last frames, frame by frame; infinite where nothing was observed.
     points: Vec<[f32; 2]>,
-    /// Where the next frame goes.
+    /// Index of the next frame.
     next: usize,
     /// Cosine and sine of the directions.
     directions: Vec<[f32; 2]>,
-    /// Points around the drone, ahead and left; memory that is used again.
+    /// Points around the drone, ahead and left; reused memory.
     near: Vec<[f32; 2]>,
-    /// The same, along the corridor and to the left.
+    /// The same points, along the corridor and to the left.
     along: Vec<[f32; 2]>,
     costs: WayCosts,
     lookahead: Lookahead,
 }
 
-/// Where the drone thinks that it is.
+/// Estimated place of the drone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Place {
     x: f64,
@@ -48,15 +49,15 @@ struct Place {
     yaw: f64,
 }
 
-/// Half the thickness of the slice of the world that the drone flies through.
+/// Half the thickness of the horizontal slice that the drone flies through.
 const SLICE: f32 = RADIUS + 0.05;
-/// What is kept free to both sides of a way.
+/// Clearance to both sides of a path.
 const ASIDE: f32 = RADIUS + 0.05;
-/// Ways are followed so far.
+/// Maximum length of a path, in metres.
 const REACH: f32 = 10.0;
-/// How far away it says how much nearer the end of the map is.
+/// Distances at which the approach to the end of the map is measured, in metres.
 const STEPS: [f32; 2] = [1.0, 2.5];
-/// Directions in half of the view and beyond it, to one side, and the angle between two of the latter.
+/// Numbers of directions, to one side, in half of the field of view and beyond it.
 const INNER: usize = 8;
 const OUTER: usize = 14;
 
@@ -70,7 +71,7 @@ impl Default for FlightMemory {
             [cosine as f32, sine as f32]
         };
         Self {
-            sight: CorridorSight::default(),
+            sight: CorridorObservation::default(),
             place: None,
             action: [0.0; 2],
             proposal: [0.0; 2],
@@ -86,17 +87,17 @@ impl Default for FlightMemory {
 }
 
 impl FlightMemory {
-    /// How many steps it remembers.
+    /// Number of steps in the memory.
     pub const FRAMES: usize = 10;
-    /// Directions in which it says how far it could fly: 22.5 degrees to both sides in 16 steps, then on to 101 degrees in steps of 5.6.
+    /// Number of directions: 22.5 degrees to both sides in 16 steps, then on to 101 degrees in steps of 5.6.
     pub const WAYS: usize = 2 * (INNER + OUTER) + 1;
-    /// How many numbers it writes.
+    /// Number of features.
     pub const LEN: usize = 3 * Self::WAYS + 10;
 
-    /// The space of what it writes.
+    /// Returns the space of the features.
     ///
     /// # Errors
-    /// None; a space is checked when it is made.
+    /// None; the space is valid.
     pub fn space() -> Result<Space> {
         let (ways, rest) = (Self::WAYS, f32::INFINITY);
         let low = [vec![0.0; ways], vec![-1.0; 2 * ways + 2], vec![-rest; 6], vec![-1.0; 2]].concat();
@@ -104,7 +105,7 @@ impl FlightMemory {
         Space::bounded(low, high, vec![Self::LEN])
     }
 
-    /// Forgets the flight.
+    /// Resets the memory for a new flight.
     pub fn reset(&mut self) {
         self.place = None;
         self.action = [0.0; 2];
@@ -113,30 +114,30 @@ impl FlightMemory {
         self.next = 0;
     }
 
-    /// The action that a policy means: what was proposed when the drone last saw something, and the policy's correction.
-    pub fn corrected(&self, correction: [f32; 2]) -> [f32; 2] {
+    /// Returns the action for a policy's correction: the last proposal plus the correction.
+    pub fn corrected_action(&self, correction: [f32; 2]) -> [f32; 2] {
         let [heading, turn] = self.proposal;
         [heading + correction[0], turn + correction[1]].map(|part| part.clamp(-1.0, 1.0))
     }
 
-    /// Notes what the drone was told to do: heading and change of yaw, each within [-1, 1].
-    pub fn acted(&mut self, action: [f32; 2]) {
+    /// Records the action taken: heading and change of yaw, each in [-1, 1].
+    pub fn record_action(&mut self, action: [f32; 2]) {
         self.action = action.map(|part| part.clamp(-1.0, 1.0));
         if let Some(place) = &mut self.place {
             *place = place.moved(self.action);
         }
     }
 
-    /// Takes in an observation of `space`, that of the environment, and writes what is known then.
+    /// Adds an observation of `space`, the environment's observation space, and writes the features.
     ///
     /// # Errors
-    /// `InvalidInput` for what is no observation of the corridor.
-    pub fn see(&mut self, space: &Space, observation: &[f32], known: &mut [f32; Self::LEN]) -> Result<()> {
+    /// `InvalidInput` for an observation that is not of the corridor.
+    pub fn update(&mut self, space: &Space, observation: &[f32], known: &mut [f32; Self::LEN]) -> Result<()> {
         self.sight.read(space, observation)?;
         let expected = self.place.unwrap_or(Place { x: START.into(), y: 0.0, yaw: 0.0 });
         let place = expected.corrected(self.sight.target);
         self.place = Some(place);
-        self.remember(place);
+        self.add_points(place);
         self.gather(place);
         let (sine, cosine) = sine_cosine(place.yaw);
         let (sine, cosine) = (sine as f32, cosine as f32);
@@ -178,8 +179,8 @@ impl FlightMemory {
         Ok(())
     }
 
-    /// Puts the nearest point of each column of the picture, at the height of the flight, on the map.
-    fn remember(&mut self, place: Place) {
+    /// Adds the nearest point of each image column at the height of the flight to the map.
+    fn add_points(&mut self, place: Place) {
         let slope = |at: usize| HALF_WIDTH * (1.0 - 2.0 * (at as f32 + 0.5) / SIDE as f32);
         let mut nearest = [f32::INFINITY; SIDE];
         for (row, depths) in self.sight.depths.chunks_exact(SIDE).enumerate() {
@@ -195,7 +196,7 @@ impl FlightMemory {
         let frame = &mut self.points[self.next * SIDE..(self.next + 1) * SIDE];
         for (column, (point, ahead)) in frame.iter_mut().zip(nearest).enumerate() {
             let left = ahead * slope(column);
-            // What lies at the end of the range may be nothing.
+            // A point at the end of the range may be empty space.
             let is_seen = ahead < 0.98 * RANGE;
             *point = match is_seen {
                 true => [x + cosine * ahead - sine * left, y + sine * ahead + cosine * left],
@@ -205,7 +206,7 @@ impl FlightMemory {
         self.next = (self.next + 1) % Self::FRAMES;
     }
 
-    /// The points within reach, as seen from the drone.
+    /// Collects the points within reach, relative to the drone.
     fn gather(&mut self, place: Place) {
         let (sine, cosine) = sine_cosine(place.yaw);
         let ([x, y], [sine, cosine]) =
@@ -223,16 +224,16 @@ impl FlightMemory {
         snapshot.extend_numbers(place);
         snapshot.push(self.next as u64);
         let points = self.points.iter().flatten();
-        let told = self.action.iter().chain(&self.proposal);
-        snapshot.extend_numbers(told.chain(points).map(|number| f64::from(*number)));
+        let actions = self.action.iter().chain(&self.proposal);
+        snapshot.extend_numbers(actions.chain(points).map(|number| f64::from(*number)));
     }
 
     pub(super) fn load(&mut self, state: &mut StateReader<'_>) -> Result<()> {
         let [x, y, yaw] = [state.number()?, state.number()?, state.number()?];
         self.place = (x.is_finite() && y.is_finite() && yaw.is_finite()).then_some(Place { x, y, yaw });
         self.next = state.count(Self::FRAMES - 1)?;
-        let told = self.action.iter_mut().chain(&mut self.proposal);
-        for number in told.chain(self.points.iter_mut().flatten()) {
+        let actions = self.action.iter_mut().chain(&mut self.proposal);
+        for number in actions.chain(self.points.iter_mut().flatten()) {
             *number = state.number()? as f32;
         }
         Ok(())
@@ -240,7 +241,7 @@ impl FlightMemory {
 }
 
 impl Place {
-    /// Where a step of one metre leads.
+    /// Returns the place after a step of one metre.
     fn moved(self, [heading, turn]: [f32; 2]) -> Self {
         let right_angle = std::f64::consts::FRAC_PI_2;
         let (sine, cosine) = sine_cosine(self.yaw + f64::from(heading) * TURN);
@@ -248,8 +249,8 @@ impl Place {
         Self { x: self.x + cosine, y: self.y + sine, yaw }
     }
 
-    /// With offset and yaw by the way to the target, which lies a known way along the corridor, in its middle. Its
-    /// distance tells the offset but for the side, which is the one that fits what was expected.
+    /// Corrects offset and yaw by the direction to the target, which is a known distance ahead in the middle of the corridor. Its
+    /// distance determines the offset up to the side; the side nearer to the expected place is taken.
     fn corrected(self, [ahead, left, _]: [f32; 3]) -> Self {
         let [ahead, left, along] = [ahead, left, TARGET].map(f64::from);
         let offset = (ahead * ahead + left * left - along * along).max(0.0).sqrt();
@@ -263,11 +264,11 @@ impl Place {
     }
 }
 
-/// How far a ball of radius [`ASIDE`] could fly in a direction before it meets a point, at most [`REACH`].
+/// Returns how far a ball of radius [`ASIDE`] can fly in a direction before it touches a point, at most [`REACH`].
 fn free_way(points: &[[f32; 2]], [cosine, sine]: [f32; 2]) -> f32 {
     let met = |[ahead, left]: &[f32; 2]| {
         let (along, across) = (cosine * ahead + sine * left, cosine * left - sine * ahead);
-        // A parabola for the ball's front: near enough, and without a root.
+        // A parabola approximates the ball's front without a square root.
         let front = along - ASIDE + across * across / ASIDE;
         if along > 0.0 && across.abs() < ASIDE { front } else { REACH }
     };

@@ -1,35 +1,35 @@
-//! What a drone that cannot stop should do next.
+//! Choice of the next action by lookahead.
 
 use super::way_costs::WayCosts;
 use super::{RADIUS, TURN};
 use crate::sine_cosine::sine_cosine;
 
-/// The cheapest of all flights of two steps, by the drone's own rules: each step leads a metre on, at most 22.5 degrees from where the
-/// drone looks, and only then it looks elsewhere. What lies behind them costs what [`WayCosts`] say, which know of no such
-/// rules, so that they alone lead into gaps from which nothing leads out.
+/// Finds the cheapest flight of two steps under the drone's motion model: each step moves one metre ahead, at most 22.5 degrees from the
+/// viewing direction, and turns only then. The costs beyond the two steps are those of [`WayCosts`], which ignore the motion model and
+/// would alone lead into dead ends.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Lookahead {
-    /// Directions ahead and left, from the right to the left.
+    /// Directions ahead and left, from right to left.
     fan: [[f32; 2]; FAN],
 }
 
-/// Directions in [`TURN`].
+/// Number of directions in [`TURN`].
 const PARTS: usize = 4;
-/// Directions of the first step.
+/// Number of directions of the first step.
 const HEADINGS: usize = 2 * PARTS + 1;
-/// Directions of any step: after a turn and with a heading.
+/// Number of directions of any step, after a turn and with a heading.
 const FAN: usize = 2 * HEADINGS - 1;
-/// Every second direction is tried in the second step: so many after each turn.
+/// Number of directions of the second step after each turn: every second one.
 const ONWARD: usize = PARTS + 1;
-/// Changes of yaw: to the right, none, to the left.
+/// Changes of yaw: right, none, left.
 const TURNS: usize = 3;
-/// Where a metre is looked at.
+/// Number of points at which a metre is evaluated.
 const SAMPLES: u8 = 5;
-/// What it costs to touch something, to use a rudder fully, and to look aside by [`TURN`].
+/// Costs of a contact, of a full heading angle, and of looking aside by [`TURN`].
 const TOUCH: f32 = 100.0;
 const RUDDER: f32 = 0.05;
 const ASIDE: f32 = 0.1;
-/// Points nearer to a way than this are touched.
+/// Points nearer to a path than this count as contact.
 const TOUCHED: f32 = RADIUS + 0.02;
 
 impl Default for Lookahead {
@@ -44,8 +44,8 @@ impl Default for Lookahead {
 }
 
 impl Lookahead {
-    /// Heading and change of yaw of the cheapest flight, each within [-1, 1], for a drone in the middle of `costs` and of
-    /// `points`, given along the corridor and to the left as the costs are.
+    /// Returns heading and change of yaw of the cheapest flight, each in [-1, 1], for a drone in the middle of `costs` and of
+    /// `points`, both given along the corridor and to the left.
     pub fn action(&self, costs: &WayCosts, points: &[[f32; 2]], yaw: f64) -> [f32; 2] {
         let (sine, cosine) = sine_cosine(yaw);
         let (sine, cosine) = (sine as f32, cosine as f32);
@@ -62,7 +62,7 @@ impl Lookahead {
             for turned in 0..TURNS {
                 let turn = turned as f32 - 1.0;
                 let aside = (yaw / TURN) as f32 + turn;
-                // The yaw ends at a right angle, four times the largest change.
+                // The yaw is limited to a right angle, four times the largest change.
                 if turn != 0.0 && aside.abs() > 4.5 {
                     continue;
                 }
@@ -78,7 +78,7 @@ impl Lookahead {
     }
 }
 
-/// What it costs to fly a metre on.
+/// Returns the cost of flying one metre.
 fn metre(costs: &WayCosts, [x, y]: [f32; 2], [ahead, left]: [f32; 2]) -> f32 {
     let part = 1.0 / f32::from(SAMPLES);
     let far = |sample| part * f32::from(sample);
@@ -86,7 +86,7 @@ fn metre(costs: &WayCosts, [x, y]: [f32; 2], [ahead, left]: [f32; 2]) -> f32 {
     part * weights.sum::<f32>()
 }
 
-/// Whether the drone would touch one of the points on the next metre.
+/// Returns whether the drone would touch one of the points in the next metre.
 fn is_touched(points: &[[f32; 2]], [ahead, left]: [f32; 2]) -> bool {
     points.iter().any(|[x, y]| {
         let along = (ahead * x + left * y).clamp(0.0, 1.0);
@@ -106,9 +106,9 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_is_it_flies_straight_on() {
+    fn without_obstacles_it_flies_straight_ahead() {
         assert_eq!(action(&[], 0.0), [0.0; 2]);
-        // It looks back along the corridor as soon as it may.
+        // It turns back along the corridor as soon as possible.
         let [heading, turn] = action(&[], TURN);
         assert!(heading < -0.5 && turn == -1.0, "{heading} {turn}");
         assert_eq!(action(&[], -4.0 * TURN), [1.0; 2]);
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn it_touches_nothing_that_it_can_miss() {
+    fn it_avoids_every_avoidable_point() {
         for left in [-0.2, 0.0, 0.2] {
             let point = [1.0, left];
             let [heading, _] = action(&[point], 0.0);

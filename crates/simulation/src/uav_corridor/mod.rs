@@ -1,6 +1,6 @@
-//! A drone with a depth camera between obstacles: OpenDR's end-to-end planning without Webots and ROS.
+//! A drone with a depth camera among obstacles: OpenDR's end-to-end planning without Webots and ROS.
 //!
-//! World, sensor, actions and rewards have the numbers of OpenDR's `UAVDepthPlanningEnv` and `ObstacleRandomizer`
+//! World, sensor, actions and rewards have the parameters of OpenDR's `UAVDepthPlanningEnv` and `ObstacleRandomizer`
 //! (Ugurlu, Pham and Kayacan, Sim-to-real deep reinforcement learning for safe end-to-end planning of aerial robots,
 //! 2022). Positions in metres, x along the corridor, y to the left, z up.
 
@@ -21,34 +21,36 @@ mod variants;
 mod way_costs;
 mod world;
 
-pub use controllers::{BySight, CorridorController, PotentialField, Reactive, Straight};
+pub use controllers::{
+    CorridorController, ObservationController, PotentialField, ReactiveController, StraightController,
+};
 pub use environment::UavDepthCorridor;
 pub use flight_memory::FlightMemory;
 pub use options::{CorridorForm, CorridorOptions, UavDepthCorridorParams};
-pub use remembered::Remembered;
-pub use sight::CorridorSight;
+pub use remembered::FlightMemoryWrapper;
+pub use sight::CorridorObservation;
 pub(crate) use variants::registrations;
 pub use variants::{Dense, Discrete, Dynamic, Noisy};
 pub use world::CorridorWorld;
 
 /// Pixels of the depth camera in each direction.
 pub const SIDE: usize = 64;
-/// How far the depth camera sees, metres.
+/// Range of the depth camera, in metres.
 pub const RANGE: f32 = 15.0;
-/// The tangent of half the camera's angle of view, 45 degrees.
+/// Tangent of half the camera's field of view of 45 degrees.
 const HALF_WIDTH: f32 = 0.414_213_57;
-/// The drone is a ball of this radius, metres.
+/// Radius of the drone as a ball, in metres.
 const RADIUS: f32 = 0.25;
-/// Where the camera is above the drone's centre, metres.
+/// Height of the camera above the drone's centre, in metres.
 const CAMERA_HEIGHT: f32 = 0.1;
-/// Where a flight begins, and where it is over: x.
+/// x of the start and of the finish, in metres.
 const START: f32 = -10.0;
 const FINISH: f32 = 20.0;
-/// The height at which the drone is to fly.
+/// Desired height of the flight, in metres.
 const HEIGHT: f32 = 2.5;
-/// Farther to the side than this the drone is off the track.
+/// Half width of the track, in metres.
 const HALF_TRACK: f32 = 5.0;
-/// How far ahead of the drone the target moves.
+/// Distance of the target ahead of the drone, in metres.
 const TARGET: f32 = 5.0;
-/// Largest change of heading and of yaw: 22.5 degrees.
+/// Maximum change of heading and of yaw: 22.5 degrees.
 const TURN: f64 = std::f64::consts::PI / 8.0;

@@ -1,73 +1,73 @@
-//! What can be chosen of the corridor.
+//! Parameters of the corridor.
 
 use opendr_engine::params::Params;
 use opendr_engine::{Error, Result};
 
-/// What can be chosen of each flight: when the environment is made, and by the options of a reset.
+/// Options of each flight, set at construction or by the options of a reset.
 #[derive(Debug, Clone, PartialEq, Params)]
 pub struct CorridorOptions {
-    /// Fewest obstacles.
+    /// Minimum number of obstacles.
     #[param(default = 2, range = 0..=15)]
     pub min_obstacles: u32,
-    /// Most obstacles; OpenDR has at most five of each of its three shapes.
+    /// Maximum number of obstacles; OpenDR has at most five of each of its three shapes.
     #[param(default = 6, range = 0..=15)]
     pub max_obstacles: u32,
-    /// How likely there are walls to both sides.
+    /// Probability of walls on both sides.
     #[param(default = 0.5, range = 0.0..=1.0)]
     pub walls: f32,
-    /// Deviation of a measured depth, as a share of it.
+    /// Standard deviation of a measured depth, as a fraction of it.
     #[param(default = 0.0, range = 0.0..=1.0)]
     pub range_noise: f32,
-    /// Share of pixels that measure nothing; they read as nothing within range (REP 117).
+    /// Fraction of pixels without a measurement; they read as out of range (REP 117).
     #[param(default = 0.0, range = 0.0..=1.0)]
     pub dropped_pixels: f32,
-    /// Largest mean wind, with gusts of a third of it; moves a drone with dynamics only.
+    /// Maximum mean wind, with gusts of a third of it; it affects only a drone with dynamics.
     #[param(default = 3.0, range = 0.0..=15.0, unit = "m/s")]
     pub wind: f32,
 }
 
-/// What an environment is made for.
+/// Spaces and dynamics of an environment, fixed at construction.
 #[derive(Debug, Clone, PartialEq, Params)]
 pub struct CorridorForm {
-    /// OpenDR's seven choices instead of two numbers.
+    /// Uses OpenDR's seven discrete actions instead of two numbers.
     #[param(default = false)]
     pub discrete: bool,
-    /// A quadrotor with inertia, rotors that lag, drag and wind, instead of a body that goes where it is told.
+    /// Simulates a quadrotor with inertia, rotor lag, drag and wind, instead of moving it to each commanded position.
     #[param(default = false)]
     pub dynamics: bool,
-    /// One box instead of OpenDR's dictionary: depth as a share of the range, then the other numbers.
+    /// Uses one box instead of OpenDR's dictionary: depth as a fraction of the range, then the other numbers.
     #[param(default = false)]
     pub flat: bool,
-    /// Also shows the offset from the middle of the corridor (m) and the yaw (rad), which OpenDR does not.
+    /// Adds the offset from the middle of the corridor (m) and the yaw (rad) to the observation; OpenDR has neither.
     #[param(default = false)]
     pub pose: bool,
 }
 
-/// What a user may set of `UavDepthCorridor-v1`.
+/// Parameters of `UavDepthCorridor-v1`.
 #[derive(Debug, Clone, PartialEq, Params)]
 pub struct UavDepthCorridorParams {
-    /// What a reset can choose too.
+    /// Options that a reset can change.
     #[param(flatten)]
     pub options: CorridorOptions,
-    /// What stays.
+    /// Spaces and dynamics.
     #[param(flatten)]
     pub form: CorridorForm,
 }
 
 impl CorridorOptions {
-    /// Checks fields alone and together.
+    /// Checks each field, and the fields together.
     pub(super) fn checked(self) -> Result<Self> {
         self.check()?;
         if self.min_obstacles > self.max_obstacles {
             return Err(Error::invalid_param(format!(
-                "min_obstacles is {}, above max_obstacles, which is {}; exchange them or set both",
+                "min_obstacles is {}, greater than max_obstacles = {}; swap them or set both",
                 self.min_obstacles, self.max_obstacles
             )));
         }
         Ok(self)
     }
 
-    /// In the order of the fields.
+    /// Returns the fields as numbers, in their order.
     pub(super) fn numbers(&self) -> [f64; 6] {
         [
             f64::from(self.min_obstacles),
@@ -79,7 +79,7 @@ impl CorridorOptions {
         ]
     }
 
-    /// As [`Self::numbers`] writes them.
+    /// Reads what [`Self::numbers`] returns.
     pub(super) fn of_numbers(numbers: [f64; 6]) -> Result<Self> {
         let [fewest, most, walls, noise, dropped, wind] = numbers;
         let options = Self {

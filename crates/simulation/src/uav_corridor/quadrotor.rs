@@ -1,6 +1,6 @@
-//! A quadrotor that is sent to positions.
+//! A quadrotor under position control.
 //!
-//! Rotors of first order, drag in moving air; position and velocity are held around the attitude controller of
+//! First-order rotors, drag in moving air; position and velocity are controlled around the attitude controller of
 //! [`multirotor`](crate::multirotor).
 
 use opendr_engine::environment::{Snapshot, StateReader};
@@ -8,33 +8,34 @@ use opendr_engine::{Random, Result};
 
 use crate::multirotor::{self, DRAG, GRAVITY, MASS, Matrix, Vector, dot, minus, numbers, plus};
 
-/// State and air around it. Metres, seconds, newtons; x ahead, y left, z up.
+/// State of the quadrotor and wind. Metres, seconds, newtons; x ahead, y left, z up.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Quadrotor {
     pub position: Vector,
     velocity: Vector,
-    /// World from body: w, x, y, z.
+    /// World from body, as w, x, y, z.
     attitude: [f64; 4],
-    /// About the body's axes, rad/s.
+    /// Angular velocity about the body's axes, in rad/s.
     rates: Vector,
-    /// Front left, front right, rear left, rear right.
+    /// Thrusts front left, front right, rear left, rear right.
     thrusts: [f64; 4],
-    /// What the controller has learnt of the wind: an acceleration.
+    /// Integral term of the controller against wind, as an acceleration.
     trim: Vector,
     mean_wind: Vector,
     gust: Vector,
 }
 
-/// Seconds of one step.
+/// Duration of one step, in seconds.
 pub(super) const TIME_STEP: f64 = 0.004;
 const ROTOR_LAG: f64 = 0.05;
 const MAX_SPEED: f64 = 1.5;
 const MAX_TILT: f64 = 0.5;
-/// Gusts: their part of the mean wind, and how long they last.
+/// Gusts as a fraction of the mean wind, and their correlation time.
 const GUSTS: f64 = 1.0 / 3.0;
 const GUST_TIME: f64 = 1.0;
+
 impl Quadrotor {
-    /// Hovering, in air that moves with `mean_wind`.
+    /// Creates a hovering drone in air that moves with `mean_wind`.
     pub fn hovering(position: Vector, mean_wind: Vector) -> Self {
         Self {
             position,
@@ -48,16 +49,16 @@ impl Quadrotor {
         }
     }
 
-    /// Ahead, left and up: the body's axes in the world.
+    /// Returns the body's axes ahead, left and up in world coordinates.
     pub fn axes(&self) -> Matrix {
         multirotor::axes(self.attitude)
     }
 
-    /// Flies for [`TIME_STEP`] towards a position, with a heading given by its cosine and sine.
+    /// Simulates [`TIME_STEP`] towards a position, with a heading given by its cosine and sine.
     pub fn advance(&mut self, goal: Vector, heading: [f64; 2]) {
-        let wanted = self.wanted_thrusts(goal, heading);
-        for (thrust, wanted) in self.thrusts.iter_mut().zip(wanted) {
-            *thrust += (wanted - *thrust) * (TIME_STEP / ROTOR_LAG);
+        let commanded = self.commanded_thrusts(goal, heading);
+        for (thrust, commanded) in self.thrusts.iter_mut().zip(commanded) {
+            *thrust += (commanded - *thrust) * (TIME_STEP / ROTOR_LAG);
         }
         let axes = self.axes();
         let total: f64 = self.thrusts.iter().sum();
@@ -71,12 +72,12 @@ impl Quadrotor {
         self.turn();
     }
 
-    /// Euler's equations, and the quaternion after them.
+    /// Integrates Euler's equations and the attitude quaternion.
     fn turn(&mut self) {
         multirotor::turn(&mut self.attitude, &mut self.rates, self.thrusts, TIME_STEP);
     }
 
-    fn wanted_thrusts(&mut self, goal: Vector, heading: [f64; 2]) -> [f64; 4] {
+    fn commanded_thrusts(&mut self, goal: Vector, heading: [f64; 2]) -> [f64; 4] {
         let way = minus(goal, self.position, 1.0).map(|part| 1.5 * part);
         let speed = dot(way, way).sqrt();
         let way = way.map(|part| part * (MAX_SPEED / speed.max(MAX_SPEED)));
@@ -90,7 +91,7 @@ impl Quadrotor {
         multirotor::thrusts_towards(force, heading, &self.axes(), self.rates)
     }
 
-    /// Changes the gusts, as after `seconds`: a Gauss-Markov process, the simplest form of Dryden's spectrum.
+    /// Updates the gusts after `seconds`: a Gauss-Markov process, the simplest form of Dryden's spectrum.
     pub fn blow(&mut self, random: &mut Random, seconds: f64) {
         let deviation = GUSTS * dot(self.mean_wind, self.mean_wind).sqrt();
         let part = seconds / GUST_TIME;
@@ -124,7 +125,7 @@ mod tests {
     use crate::multirotor::INERTIA;
 
     #[test]
-    fn hovers_and_goes_where_it_is_sent() {
+    fn hovers_and_reaches_its_goal() {
         let mut drone = Quadrotor::hovering([0.0, 0.0, 2.5], [0.0; 3]);
         (0..250).for_each(|_| drone.advance([0.0, 0.0, 2.5], [1.0, 0.0]));
         assert!(drone.position[0].abs() < 1e-9 && (drone.position[2] - 2.5).abs() < 1e-9, "{drone:?}");
@@ -134,9 +135,9 @@ mod tests {
         assert!((drone.axes()[0][0] - 0.8).abs() < 0.01 && (drone.axes()[0][1] - 0.6).abs() < 0.01);
     }
 
-    /// Without rotors it falls, and its momentum of rotation in the world stays.
+    /// Without rotors it falls, and its angular momentum in the world is constant.
     #[test]
-    fn physics_hold() {
+    fn free_fall_conserves_angular_momentum() {
         let mut drone = Quadrotor::hovering([0.0; 3], [0.0; 3]);
         drone.thrusts = [0.0; 4];
         drone.rates = [3.0, 0.1, 2.0];
@@ -153,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn wind_moves_it_and_is_held_against() {
+    fn wind_is_compensated() {
         let mut drone = Quadrotor::hovering([0.0; 3], [2.0, 4.0, 0.0]);
         let mut random = Random::new(1);
         let (mut farthest, mut last) = (0.0_f64, 0.0_f64);

@@ -1,4 +1,4 @@
-//! The corridor as a drone with a memory knows it.
+//! The corridor with a flight memory, as a wrapper.
 
 use opendr_engine::data::Image;
 use opendr_engine::environment::{
@@ -8,26 +8,26 @@ use opendr_engine::{Error, Result};
 
 use super::FlightMemory;
 
-/// A corridor that shows what a [`FlightMemory`] writes instead of the last picture alone, and whose actions correct what
-/// the memory proposes: what policies are trained in. Who always answers zero flies as the memory proposes.
+/// A wrapper whose observations are the features of a [`FlightMemory`], and whose actions correct its proposals. Policies are
+/// trained in it; the action zero follows the proposals.
 #[derive(Debug, Clone)]
-pub struct Remembered<E> {
+pub struct FlightMemoryWrapper<E> {
     inner: E,
     spec: EnvironmentSpec,
     memory: FlightMemory,
     observation: Vec<f32>,
 }
 
-impl<E: Environment> Remembered<E> {
-    /// `inner`, one of the corridors with two numbers as action, with a memory.
+impl<E: Environment> FlightMemoryWrapper<E> {
+    /// Wraps a corridor whose action is two numbers.
     ///
     /// # Errors
-    /// `Unsupported` for an environment of other actions.
+    /// `Unsupported` for an environment with other actions.
     pub fn new(inner: E) -> Result<Self> {
         let mut spec = inner.spec().clone();
         if spec.action != Space::symmetric(&[1.0; 2]) {
             return Err(Error::unsupported(format!(
-                "a memory of flights in {}, whose actions are {}; take a corridor without choices",
+                "the environment {} has actions {}; use a corridor without discrete actions",
                 spec.id, spec.action
             )));
         }
@@ -36,19 +36,19 @@ impl<E: Environment> Remembered<E> {
         Ok(Self { inner, spec, memory: FlightMemory::default(), observation })
     }
 
-    fn show(&mut self, known: &mut [f32]) -> Result<()> {
+    fn write_features(&mut self, known: &mut [f32]) -> Result<()> {
         let length = known.len();
         let known = known.as_mut_array().ok_or_else(|| {
             Error::invalid_input(format!(
-                "room for {length} numbers; observations have {}",
+                "the buffer has {length} numbers; observations have {}",
                 FlightMemory::LEN
             ))
         })?;
-        self.memory.see(&self.inner.spec().observation, &self.observation, known)
+        self.memory.update(&self.inner.spec().observation, &self.observation, known)
     }
 }
 
-impl<E: Environment> Environment for Remembered<E> {
+impl<E: Environment> Environment for FlightMemoryWrapper<E> {
     fn spec(&self) -> &EnvironmentSpec {
         &self.spec
     }
@@ -56,21 +56,21 @@ impl<E: Environment> Environment for Remembered<E> {
     fn reset(&mut self, seed: Option<u64>, options: &ResetOptions, observation: &mut [f32]) -> Result<Info> {
         let info = self.inner.reset(seed, options, &mut self.observation)?;
         self.memory.reset();
-        self.show(observation)?;
+        self.write_features(observation)?;
         Ok(info)
     }
 
     fn step(&mut self, action: &[f32], observation: &mut [f32]) -> Result<Step> {
         let &[heading, turn] = action else {
             return Err(Error::invalid_input(format!(
-                "{} numbers as action; give heading and yaw",
+                "the action has {} numbers; give heading and yaw",
                 action.len()
             )));
         };
-        let action = self.memory.corrected([heading, turn]);
+        let action = self.memory.corrected_action([heading, turn]);
         let step = self.inner.step(&action, &mut self.observation)?;
-        self.memory.acted(action);
-        self.show(observation)?;
+        self.memory.record_action(action);
+        self.write_features(observation)?;
         Ok(step)
     }
 

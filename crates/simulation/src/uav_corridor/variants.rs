@@ -1,13 +1,13 @@
-//! The corridor under several names.
+//! Variants of the corridor with other defaults.
 
 use opendr_engine::Result;
 use opendr_engine::params::{ParamMap, Params};
 
 use super::{CorridorForm, CorridorOptions, UavDepthCorridor, UavDepthCorridorParams};
 use crate::Registration;
-use crate::registry::checked;
+use crate::registration::checked;
 
-/// `UavDepthCorridor-discrete-v1`: seven choices.
+/// `UavDepthCorridor-discrete-v1`: seven discrete actions.
 #[derive(Debug, Clone, Params)]
 pub struct Discrete {
     /// As in `UavDepthCorridor-v1`.
@@ -51,7 +51,7 @@ pub struct Noisy {
     pub form: CorridorForm,
 }
 
-/// The corridor with other defaults.
+/// Parameters of a corridor with other defaults.
 trait Variant: Params {
     const ID: &'static str;
 
@@ -77,7 +77,7 @@ variants! {
     Noisy = "UavDepthCorridor-noisy-v1"
 }
 
-/// All of them, and the plain one.
+/// Returns the entries of all variants and of the plain corridor.
 pub(crate) fn registrations() -> [Registration; 5] {
     [
         Registration::of::<UavDepthCorridor>(),

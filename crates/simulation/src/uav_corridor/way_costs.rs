@@ -1,31 +1,31 @@
-//! What it costs to fly on from the places around the drone.
+//! Costs of flying on from the cells around the drone.
 
 use super::{HALF_TRACK, RADIUS};
 
-/// Costs of the ways from cells around the drone to the end of the map, in metres of free way: found backwards, column by
-/// column, as a way that never turns back (dynamic programming; Bellman, 1957). What was not seen is free.
+/// Costs of paths from cells around the drone to the end of the map, in metres of free path. They are computed backwards, column by
+/// column, for paths that never turn back (dynamic programming; Bellman, 1957). Unobserved cells are free.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct WayCosts {
-    /// What a metre costs in each cell, column after column.
+    /// Cost of a metre in each cell, column by column.
     weights: Vec<f32>,
     costs: Vec<f32>,
-    /// Cells with something in them, and their numbers.
+    /// Cells that contain points, and their indices.
     is_marked: Vec<bool>,
     marked: Vec<usize>,
 }
 
-/// The side of a cell, metres.
+/// Side of a cell, in metres.
 const CELL: f32 = 0.2;
-/// Cells before, behind, and to each side of the drone's.
+/// Numbers of cells ahead, behind, and to each side of the drone.
 const AHEAD: usize = 50;
 const BEHIND: usize = 5;
 const ASIDE: usize = 25;
 const COLUMNS: usize = BEHIND + 1 + AHEAD;
 const ROWS: usize = 2 * ASIDE + 1;
-/// Centres of cells nearer to something than this cannot, or better should not, be flown over, and what that costs.
+/// Distances to a point below which a cell is blocked or narrow, and the cost of such a cell.
 const BLOCKED: (f32, f32) = (RADIUS + 0.05, 10.0);
 const NARROW: (f32, f32) = (RADIUS + 0.3, 2.0);
-/// Cells from whose middle a narrow one may lie.
+/// Radius, in cells, within which a point affects costs.
 const SPREAD: usize = 3;
 
 impl Default for WayCosts {
@@ -41,8 +41,8 @@ impl Default for WayCosts {
 }
 
 impl WayCosts {
-    /// Finds the costs between points of things, given as seen from the drone along the corridor and to the left, for a drone
-    /// `offset` to the left of the middle with `left` metres to go.
+    /// Computes the costs for points given relative to the drone, along the corridor and to the left. The drone is `offset` to the left of
+    /// the middle and has `left` metres to go.
     pub fn find(&mut self, points: impl Iterator<Item = [f32; 2]>, offset: f32, left: f32) {
         self.mark(points);
         self.weights.fill(1.0);
@@ -72,7 +72,7 @@ impl WayCosts {
         }
     }
 
-    /// Makes the cells around one with something in it dear.
+    /// Raises the costs of the cells around an occupied one.
     fn spread(&mut self, column: usize, row: usize) {
         let around = |at: usize, count: usize| at.saturating_sub(SPREAD)..(at + SPREAD + 1).min(count);
         for other in around(column, COLUMNS) {
@@ -90,7 +90,7 @@ impl WayCosts {
         }
     }
 
-    /// Costs of each column from those of the next one.
+    /// Computes the costs of each column from those of the next one.
     fn fly_back(&mut self, left: f32) {
         const DIAGONAL: f32 = std::f32::consts::SQRT_2 * CELL;
         self.costs.fill(0.0);
@@ -112,16 +112,16 @@ impl WayCosts {
         }
     }
 
-    /// What a metre costs at a place, ahead and left of the drone.
+    /// Returns the cost of a metre at a place, ahead and left of the drone.
     pub fn weight(&self, [ahead, left]: [f32; 2]) -> f32 {
         let cell = |metres: f32, before: usize, count: usize| {
-            // Below zero saturates.
+            // Negative numbers saturate at 0.
             ((metres / CELL + before as f32 + 0.5) as usize).min(count - 1)
         };
         self.weights[cell(ahead, BEHIND, COLUMNS) * ROWS + cell(left, ASIDE, ROWS)]
     }
 
-    /// What it costs to fly on from a place, ahead and left of the drone, between the cells around it.
+    /// Returns the cost of flying on from a place, ahead and left of the drone, interpolated between cells.
     pub fn at(&self, [ahead, left]: [f32; 2]) -> f32 {
         let place = |metres: f32, before: usize, count: usize| {
             let cells = (metres / CELL + before as f32).clamp(0.0, count as f32 - 1.001);
@@ -141,7 +141,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ways_lead_around() {
+    fn paths_lead_around_walls() {
         let mut costs = WayCosts::default();
         costs.find(std::iter::empty(), 0.0, 30.0);
         assert!((costs.at([0.0; 2]) - 10.0).abs() < 1e-3, "{}", costs.at([0.0; 2]));
@@ -151,7 +151,7 @@ mod tests {
         costs.find(wall(), 0.0, 30.0);
         let (left, right) = (costs.at([1.0, 1.0]), costs.at([1.0, -1.0]));
         assert!(right < left && right > 9.2 && left < 12.0, "{left} {right}");
-        // Behind the finish everything is free.
+        // Beyond the finish everything is free.
         costs.find(wall(), 0.0, 3.0);
         assert!((2.5..3.5).contains(&costs.at([0.0; 2])), "{}", costs.at([0.0; 2]));
         costs.find(std::iter::empty(), 4.5, 30.0);

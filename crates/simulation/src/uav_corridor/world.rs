@@ -1,35 +1,35 @@
-//! Obstacles and walls by chance.
+//! Random generation of obstacles and walls.
 
 use opendr_engine::{Random, Result};
 
 use super::{CorridorOptions, FINISH, HALF_TRACK, HEIGHT, RADIUS, START};
 use crate::raycast::{Body, Scene, Shape, Vector};
 
-/// What one flight meets: obstacles, walls in every second world, the ground.
+/// The world of one flight: obstacles, walls if drawn, the ground.
 #[derive(Debug, Clone, Default)]
 pub struct CorridorWorld {
     scene: Scene,
-    /// The first so many bodies are obstacles.
+    /// Number of obstacles, which are the first bodies.
     obstacles: usize,
     walls: Option<f32>,
     start: f32,
 }
 
-/// Labels in pictures.
+/// Labels of the bodies.
 const GROUND: u16 = 0;
 const WALL: u16 = 1;
 const CYLINDER: u16 = 2;
 const BOX: u16 = 3;
 const SPHERE: u16 = 4;
-/// Of each shape.
-const MOST: usize = 5;
-/// Where walls begin and end, how high and how thick they are.
+/// Maximum number of each shape.
+const MAX_PER_SHAPE: usize = 5;
+/// x of the ends of the walls, their height and thickness.
 const WALL_ENDS: (f32, f32) = (-11.0, 19.0);
 const WALL_HEIGHT: f32 = 6.0;
 const WALL_THICKNESS: f32 = 0.2;
 
 impl CorridorWorld {
-    /// Another world, by the numbers of OpenDR's `ObstacleRandomizer`.
+    /// Generates a new world with the distribution of OpenDR's `ObstacleRandomizer`.
     pub(super) fn generate(&mut self, random: &mut Random, options: &CorridorOptions) -> Result<()> {
         self.scene.clear();
         self.start = random.uniform(-0.5, 0.5);
@@ -50,12 +50,12 @@ impl CorridorWorld {
         Ok(())
     }
 
-    /// How many cylinders, boxes and spheres: drawn anew while there are too many of one.
+    /// Returns the numbers of cylinders, boxes and spheres, drawn again while there are too many of one.
     fn counts(&self, random: &mut Random) -> [usize; 3] {
         loop {
             let mut counts = [0; 3];
             (0..self.obstacles).for_each(|_| counts[random.below(3)] += 1);
-            if counts.iter().all(|count| *count <= MOST) {
+            if counts.iter().all(|count| *count <= MAX_PER_SHAPE) {
                 return counts;
             }
         }
@@ -72,33 +72,33 @@ impl CorridorWorld {
         Ok(())
     }
 
-    /// Where the flight begins.
+    /// Returns the start of the flight.
     pub fn start(&self) -> Vector {
         [START, self.start, HEIGHT]
     }
 
-    /// Obstacles, then walls, then the ground. Labels: 0 ground, 1 wall, 2 cylinder, 3 box, 4 sphere.
+    /// Returns the scene: obstacles, then walls, then the ground. Labels: 0 ground, 1 wall, 2 cylinder, 3 box, 4 sphere.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// The obstacles alone.
+    /// Returns the obstacles without walls and ground.
     pub fn obstacles(&self) -> &[Body] {
         &self.scene.bodies()[..self.obstacles]
     }
 
-    /// How far the walls are from the middle, where there are walls.
+    /// Returns the distance of the walls from the middle; none without walls.
     pub fn walls(&self) -> Option<f32> {
         self.walls
     }
 
-    /// Whether a ball of `radius` there touches an obstacle.
+    /// Returns whether a ball of `radius` touches an obstacle.
     pub(super) fn is_occupied(&self, centre: Vector, radius: f32) -> bool {
         self.obstacles().iter().any(|body| body.distance(centre) < radius)
     }
 
-    /// Whether there is any way to the finish at the height of the flight, on a grid of 0.1 m: what a perfect pilot
-    /// who knows the world could reach.
+    /// Returns whether a path to the finish exists at the height of the flight, on a grid of 0.1 m: an upper bound for any
+    /// controller.
     pub fn is_passable(&self) -> bool {
         const STEPS: f32 = 10.0;
         let columns = ((FINISH - START) * STEPS) as usize + 1;
@@ -107,10 +107,11 @@ impl CorridorWorld {
             let point = [START + column as f32 / STEPS, row as f32 / STEPS - HALF_TRACK, HEIGHT];
             self.scene.distance(point) >= RADIUS
         };
-        let mut seen = vec![false; columns * rows];
+        let mut visited = vec![false; columns * rows];
         let mut open = vec![(0, ((self.start + HALF_TRACK) * STEPS) as usize)];
         while let Some((column, row)) = open.pop() {
-            if column >= columns || row >= rows || std::mem::replace(&mut seen[column * rows + row], true) {
+            if column >= columns || row >= rows || std::mem::replace(&mut visited[column * rows + row], true)
+            {
                 continue;
             }
             if !is_free(column, row) {
@@ -119,7 +120,7 @@ impl CorridorWorld {
             if column == columns - 1 {
                 return true;
             }
-            // Below zero wraps, and lies beyond the grid then.
+            // Negative indices wrap to values beyond the grid.
             open.extend([(column.wrapping_sub(1), row), (column, row.wrapping_sub(1))]);
             open.extend([(column, row + 1), (column + 1, row)]);
         }
@@ -130,7 +131,7 @@ impl CorridorWorld {
 fn obstacle(random: &mut Random, label: u16) -> Result<Body> {
     let aside = 2.5 * random.normal() as f32;
     let position = [random.uniform(-7.0, 20.0), aside, random.uniform(2.0, 3.0)];
-    // Four normal numbers are a rotation, each as likely as the others.
+    // Four normal numbers are a uniformly distributed rotation.
     let rotation = [(); 4].map(|()| random.normal() as f32);
     let mut size = |low: f32, high: f32| random.uniform(low, high) / 2.0;
     let shape = match label {

@@ -1,30 +1,30 @@
-//! What many environments answer.
+//! Results of a step of several environments.
 
 use opendr_engine::environment::{EnvironmentSpec, Info, Step};
 use opendr_engine::{Error, Result};
 
-/// Memory for the answers of many environments, used again from step to step; environment after environment.
+/// Buffers for the results of several environments, reused from step to step and ordered by environment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Batch {
-    /// The observations to act on next.
+    /// Current observations.
     pub observations: Vec<f32>,
-    /// The rewards.
+    /// Rewards.
     pub rewards: Vec<f64>,
-    /// Where the task itself ended.
+    /// Whether the episode terminated.
     pub terminated: Vec<bool>,
-    /// Where the episode was cut from outside.
+    /// Whether the episode was truncated.
     pub truncated: Vec<bool>,
-    /// What else is known; of the first observation where an episode began.
+    /// Infos; those of the reset where an episode began.
     pub infos: Vec<Info>,
-    /// The last observations of episodes that ended in this step; with
-    /// [`Autoreset::SameStep`](super::Autoreset::SameStep), and valid where `terminated` or `truncated`.
+    /// Last observations of the episodes that ended in this step, under
+    /// [`Autoreset::SameStep`](super::Autoreset::SameStep); valid where `terminated` or `truncated`.
     pub final_observations: Vec<f32>,
-    /// What else is known of those.
+    /// Infos of those last steps.
     pub final_infos: Vec<Info>,
 }
 
 impl Batch {
-    /// Memory for `count` environments.
+    /// Allocates buffers for `count` environments.
     pub fn new(spec: &EnvironmentSpec, count: usize) -> Self {
         let numbers = spec.observation.len() * count;
         Self {
@@ -38,7 +38,7 @@ impl Batch {
         }
     }
 
-    /// For how many environments there is memory.
+    /// Returns the number of environments.
     pub fn count(&self) -> usize {
         self.rewards.len()
     }
@@ -52,7 +52,7 @@ impl Batch {
             return Ok(());
         }
         Err(Error::invalid_input(format!(
-            "this batch is not made for {count} of {}; make it with Batch::new",
+            "the batch does not fit {count} environments of {}; create it with Batch::new",
             spec.id
         )))
     }
@@ -64,7 +64,7 @@ impl Batch {
         self.infos[index] = step.info;
     }
 
-    /// Copies the answers of environments `from`, `from` + 1, ...
+    /// Copies the results of a part into the rows from `from` on.
     pub(super) fn copy_from(&mut self, part: &Self, from: usize) {
         let (to, size) = (from + part.count(), self.observations.len() / self.count().max(1));
         self.observations[from * size..to * size].copy_from_slice(&part.observations);

@@ -1,4 +1,4 @@
-//! `CartPole-v1` many times, states in arrays that the compiler turns into vectors.
+//! `CartPole-v1` vectorised: states in arrays for SIMD.
 
 use opendr_engine::environment::{EnvironmentSpec, ResetOptions, Snapshot, StateReader};
 use opendr_engine::params::Params as _;
@@ -10,7 +10,7 @@ use crate::NumpyRandom;
 use crate::classic_control::cart_pole::{CartPoleDynamics, CartPoleParams, has_fallen, moved};
 use crate::classic_control::{Dynamics as _, not_begun};
 
-/// Carts with poles. Answers, seeds and autoreset are those of as many single environments, bit for bit.
+/// Vectorised cart-poles. Results, seeds and autoreset equal those of single environments bit for bit.
 pub struct CartPoleVector {
     dynamics: CartPoleDynamics,
     params: CartPoleParams,
@@ -24,7 +24,7 @@ pub struct CartPoleVector {
     never_reset: usize,
 }
 
-/// One array for each number of the state.
+/// One array per number of the state.
 struct States {
     x: Vec<f64>,
     speed: Vec<f64>,
@@ -33,10 +33,10 @@ struct States {
 }
 
 impl CartPoleVector {
-    /// `count` environments with the same parameters.
+    /// Creates `count` environments with the same parameters.
     ///
     /// # Errors
-    /// `InvalidParam` when `count` is 0 or above a million.
+    /// `InvalidParam` when `count` is 0 or above 2^20.
     pub fn new(params: &CartPoleParams, count: usize, autoreset: Autoreset) -> Result<Self> {
         params.check()?;
         check_count(count)?;
@@ -62,18 +62,18 @@ impl CartPoleVector {
         index: usize,
         seed: Option<u64>,
         options: &ResetOptions,
-        seen: &mut [f32],
+        observation: &mut [f32],
     ) -> Result<()> {
         self.never_reset -= usize::from(self.randoms[index].is_none());
         if let Some(seed) = seed {
             self.randoms[index] = Some(NumpyRandom::new(seed));
         }
-        let random = self.randoms[index].get_or_insert_with(NumpyRandom::from_chance);
+        let random = self.randoms[index].get_or_insert_with(NumpyRandom::from_entropy);
         let state = self.dynamics.initial(random, options)?;
         let states = &mut self.states;
         [states.x[index], states.speed[index], states.angle[index], states.turning[index]] = state;
         (self.elapsed[index], self.over[index]) = (0, false);
-        self.dynamics.observe(&state, &mut seen[4 * index..4 * index + 4]);
+        self.dynamics.observe(&state, &mut observation[4 * index..4 * index + 4]);
         Ok(())
     }
 
@@ -98,7 +98,7 @@ impl CartPoleVector {
         Ok(())
     }
 
-    /// Begins the episodes that are over, which `over` and the batch tell.
+    /// Resets the environments whose episodes are over, as recorded in `over` and the batch.
     fn begin_ended(&mut self, was_over: bool, batch: &mut Batch) -> Result<()> {
         let options = ResetOptions::new();
         for index in 0..self.over.len() {
@@ -183,7 +183,7 @@ impl VecEnvironment for CartPoleVector {
         Ok(())
     }
 
-    /// As single carts behind their wrappers write it: whether it is over, told twice, and the steps so far.
+    /// The format of single environments in their wrappers: whether the episode is over, twice, and the steps so far.
     fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
         let States { x, speed, angle, turning } = &self.states;
         for (index, random) in self.randoms.iter().enumerate() {
@@ -214,7 +214,7 @@ impl VecEnvironment for CartPoleVector {
     }
 }
 
-/// Moves every cart. Wider vectors change no bit: no operation is fused.
+/// Advances all carts. Wider vectors change no bit: no operation is fused.
 fn move_all(
     actions: &[f32],
     x: &mut [f64],
@@ -225,7 +225,7 @@ fn move_all(
 ) {
     #[cfg(target_arch = "x86_64")]
     if std::is_x86_feature_detected!("avx2") {
-        // SAFETY: the processor has what the function is compiled for.
+        // SAFETY: the CPU supports the features that the function is compiled for.
         return unsafe { move_all_avx2(actions, x, speed, angle, turning, semi_implicit) };
     }
     move_each(actions, x, speed, angle, turning, semi_implicit);
@@ -244,7 +244,7 @@ fn move_all_avx2(
     move_each(actions, x, speed, angle, turning, semi_implicit);
 }
 
-/// The slices are arguments, so that the compiler knows that they are apart.
+/// The slices are arguments, so that the compiler knows that they do not overlap.
 #[inline(always)]
 fn move_each(
     actions: &[f32],
@@ -272,9 +272,11 @@ fn find_fallen(x: &[f64], angle: &[f64], terminated: &mut [bool]) {
 }
 
 #[inline(never)]
-fn observe_all(x: &[f64], speed: &[f64], angle: &[f64], turning: &[f64], seen: &mut [f32]) {
+fn observe_all(x: &[f64], speed: &[f64], angle: &[f64], turning: &[f64], observation: &mut [f32]) {
     let states = x.iter().zip(speed).zip(angle.iter().zip(turning));
-    for (seen, ((x, speed), (angle, turning))) in seen.as_chunks_mut::<4>().0.iter_mut().zip(states) {
-        *seen = [*x as f32, *speed as f32, *angle as f32, *turning as f32];
+    for (observation, ((x, speed), (angle, turning))) in
+        observation.as_chunks_mut::<4>().0.iter_mut().zip(states)
+    {
+        *observation = [*x as f32, *speed as f32, *angle as f32, *turning as f32];
     }
 }

@@ -1,14 +1,14 @@
-//! The environments that one thread steps.
+//! The environments of one thread.
 
 use opendr_engine::environment::{Environment, EnvironmentSpec, ResetOptions, Snapshot, StateReader, Step};
 use opendr_engine::{Error, Result, ResultExt as _};
 
 use super::{Autoreset, Batch};
 
-/// Some environments, with memory for what goes in and what comes out, so that all of it can be handed to a thread.
+/// Some environments with their inputs and outputs, so that all can be sent to a thread.
 pub(super) struct Chunk {
     environments: Vec<Box<dyn Environment>>,
-    /// Number of the first among all.
+    /// Index of the first environment.
     first: usize,
     autoreset: Autoreset,
     over: Vec<bool>,
@@ -20,7 +20,7 @@ pub(super) struct Chunk {
     pub outcome: Result<()>,
 }
 
-/// What a chunk shall do.
+/// A command to a chunk.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Order {
     Reset,
@@ -49,12 +49,12 @@ impl Chunk {
         }
     }
 
-    /// Number of the first environment, and of the one after the last.
+    /// Returns the range of indices of the environments.
     pub fn range(&self) -> std::ops::Range<usize> {
         self.first..self.first + self.environments.len()
     }
 
-    /// Does what was ordered, in all environments even when one fails; the first error is kept.
+    /// Executes a command in all environments, even when one fails; keeps the first error.
     pub fn run(&mut self, order: Order) {
         self.outcome = Ok(());
         for index in 0..self.environments.len() {
@@ -110,7 +110,7 @@ impl Chunk {
                     Ok(())
                 }
                 Autoreset::Disabled => Err(episode_is_over()),
-                Autoreset::SameStep => Err(Error::internal("an ended episode was not begun anew")),
+                Autoreset::SameStep => Err(Error::internal("an ended episode was not reset")),
             };
         }
         let count = self.over.len();
@@ -130,7 +130,7 @@ impl Chunk {
     }
 }
 
-/// The numbers of one environment among those of `count`.
+/// Returns the numbers of one environment among those of `count`.
 fn row_mut(numbers: &mut [f32], index: usize, count: usize) -> &mut [f32] {
     let size = numbers.len() / count;
     &mut numbers[index * size..(index + 1) * size]

@@ -1,4 +1,4 @@
-//! Any environments side by side, on threads that stay.
+//! Environments stepped by a pool of threads.
 
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{self, JoinHandle};
@@ -9,8 +9,8 @@ use opendr_engine::{Error, Result};
 use super::chunk::{Chunk, Order};
 use super::{Autoreset, Batch, Seeds, VecEnvironment, check_actions, check_count, check_reset};
 
-/// Environments of one kind (Gymnasium's `SyncVectorEnv` and `AsyncVectorEnv`). Every environment has its own stream of
-/// random numbers, so the answers are the same for any number of threads.
+/// Environments with the same spaces (Gymnasium's `SyncVectorEnv` and `AsyncVectorEnv`). Each has its own random
+/// numbers, so results do not depend on the number of threads.
 pub struct EnvironmentVector {
     spec: EnvironmentSpec,
     count: usize,
@@ -20,10 +20,10 @@ pub struct EnvironmentVector {
 }
 
 impl EnvironmentVector {
-    /// `environments`, stepped by `threads` threads, the calling one among them.
+    /// Creates a vector of `environments`, stepped by `threads` threads including the calling one.
     ///
     /// # Errors
-    /// `InvalidParam` when there is none or a million, `InvalidInput` when their spaces differ.
+    /// `InvalidParam` for none or more than 2^20 environments, `InvalidInput` when their spaces differ.
     pub fn new(
         mut environments: Vec<Box<dyn Environment>>,
         autoreset: Autoreset,
@@ -37,7 +37,7 @@ impl EnvironmentVector {
         if let Some(at) = environments.iter().position(|other| differs(other.spec())) {
             let other = environments[at].spec();
             return Err(Error::invalid_input(format!(
-                "environment {at}, {}, acts by {} and sees {}, but {} acts by {} and sees {}; take one kind",
+                "environment {at}, {}, has actions {} and observations {}, but {} has actions {} and observations {}; use environments of equal spaces",
                 other.id, other.action, other.observation, spec.id, spec.action, spec.observation
             )));
         }
@@ -55,7 +55,7 @@ impl EnvironmentVector {
         Ok(Self { spec, count, autoreset, own, workers })
     }
 
-    /// Fills the chunks, lets all of them work, and gathers what they answer.
+    /// Fills the chunks, runs them in parallel, and gathers their results.
     fn run(&mut self, order: Order, batch: &mut Batch, mut fill: impl FnMut(&mut Chunk)) -> Result<()> {
         for worker in &mut self.workers {
             worker.begin(order, &mut fill)?;
@@ -111,7 +111,7 @@ impl VecEnvironment for EnvironmentVector {
         self.run(Order::Step, batch, |chunk| {
             let range = chunk.range();
             chunk.actions.copy_from_slice(&actions[range.start * size..range.end * size]);
-            // Episodes that begin by themselves begin as by a plain reset.
+            // An automatic reset has no options.
             chunk.options.clear();
         })
     }
@@ -133,27 +133,27 @@ impl VecEnvironment for EnvironmentVector {
     }
 }
 
-/// A thread that waits for its chunk, works on it and gives it back: nothing is shared, nothing is allocated.
+/// A thread that receives its chunk, runs it and sends it back: nothing is shared or allocated.
 struct Worker {
     chunk: Option<Box<Chunk>>,
     orders: Option<SyncSender<(Order, Box<Chunk>)>>,
-    answers: Receiver<Box<Chunk>>,
+    results: Receiver<Box<Chunk>>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Worker {
     fn new(chunk: Chunk) -> Result<Self> {
         let (orders, ordered) = sync_channel::<(Order, Box<Chunk>)>(1);
-        let (answer, answers) = sync_channel(1);
+        let (result, results) = sync_channel(1);
         let thread = thread::Builder::new().name("environments".to_owned()).spawn(move || {
             for (order, mut chunk) in ordered {
                 chunk.run(order);
-                if answer.send(chunk).is_err() {
+                if result.send(chunk).is_err() {
                     return;
                 }
             }
         })?;
-        Ok(Self { chunk: Some(Box::new(chunk)), orders: Some(orders), answers, thread: Some(thread) })
+        Ok(Self { chunk: Some(Box::new(chunk)), orders: Some(orders), results, thread: Some(thread) })
     }
 
     fn begin(&mut self, order: Order, fill: &mut impl FnMut(&mut Chunk)) -> Result<()> {
@@ -164,7 +164,7 @@ impl Worker {
     }
 
     fn end(&mut self) -> Result<&mut Chunk> {
-        let chunk = self.answers.recv().map_err(|_| thread_ended())?;
+        let chunk = self.results.recv().map_err(|_| thread_ended())?;
         Ok(self.chunk.insert(chunk))
     }
 }
@@ -173,12 +173,12 @@ impl Drop for Worker {
     fn drop(&mut self) {
         self.orders = None;
         if let Some(thread) = self.thread.take() {
-            // A panic was told by the step that met it.
+            // The step that caused a panic has already reported it.
             let _ = thread.join();
         }
     }
 }
 
 fn thread_ended() -> Error {
-    Error::internal("an environment panicked and ended its thread; make the environments anew")
+    Error::internal("an environment panicked and ended its thread; create the environments again")
 }

@@ -1,4 +1,4 @@
-//! Many environments of one kind, stepped together.
+//! Vectorised environments: several of one kind, stepped together.
 
 mod batch;
 mod cart_pole_vector;
@@ -14,28 +14,28 @@ pub use batch::Batch;
 pub use cart_pole_vector::CartPoleVector;
 pub use environment_vector::EnvironmentVector;
 
-/// When an environment whose episode ended begins the next one (Gymnasium's `AutoresetMode`).
+/// When an environment is reset after the end of an episode (Gymnasium's `AutoresetMode`).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Autoreset {
-    /// The step after the end ignores its action: it answers with the first observation and a reward of 0.
+    /// In the next step, which ignores its action and returns the first observation and a reward of 0.
     #[default]
     NextStep,
-    /// The step that ends an episode answers with the first observation of the next one; the last is in
+    /// In the step that ends an episode. It returns the first observation of the next episode; the last one is in
     /// [`Batch::final_observations`].
     SameStep,
-    /// Never: the caller resets, with a mask.
+    /// Never; the caller resets with a mask.
     Disabled,
 }
 
-/// Where the environments' random numbers begin.
+/// Seeds of the environments.
 #[derive(Debug, Clone, Copy, Default)]
 pub enum Seeds<'a> {
-    /// Each goes on with its stream, or begins one by chance.
+    /// Each environment continues its random numbers, or starts with a random seed.
     #[default]
-    Chance,
-    /// Environment `i` begins with the seed plus `i`.
+    Random,
+    /// Environment `i` has the seed `seed + i`.
     From(u64),
-    /// One for each environment.
+    /// One seed per environment.
     Each(&'a [Option<u64>]),
 }
 
@@ -43,7 +43,7 @@ impl Seeds<'_> {
     fn check(&self, count: usize) -> Result<()> {
         match self {
             Self::Each(seeds) if seeds.len() != count => Err(Error::invalid_input(format!(
-                "{} seeds for {count} environments; give one for each",
+                "{} seeds for {count} environments; give one per environment",
                 seeds.len()
             ))),
             _ => Ok(()),
@@ -52,28 +52,28 @@ impl Seeds<'_> {
 
     fn at(&self, index: usize) -> Option<u64> {
         match self {
-            Self::Chance => None,
+            Self::Random => None,
             Self::From(seed) => Some(seed.wrapping_add(index as u64)),
             Self::Each(seeds) => seeds.get(index).copied().flatten(),
         }
     }
 }
 
-/// Environments that are stepped together. What they answer does not depend on threads.
+/// Environments that are stepped together. Results do not depend on the number of threads.
 pub trait VecEnvironment: Send {
-    /// What each of them is.
+    /// Returns the specification of each environment.
     fn spec(&self) -> &EnvironmentSpec;
 
-    /// How many there are.
+    /// Returns the number of environments.
     fn count(&self) -> usize;
 
-    /// When episodes begin anew.
+    /// Returns when environments are reset automatically.
     fn autoreset(&self) -> Autoreset;
 
-    /// Begins an episode in every environment, or where `mask` says so, and writes the first observations.
+    /// Resets all environments, or those with `mask` true, and writes the first observations.
     ///
     /// # Errors
-    /// `InvalidInput` when seeds, mask or batch are of another size, or the mask is nowhere true; else as
+    /// `InvalidInput` when seeds, mask or batch have another size, or the mask is all false; else as
     /// [`reset`](opendr_engine::environment::Environment::reset).
     fn reset(
         &mut self,
@@ -83,34 +83,34 @@ pub trait VecEnvironment: Send {
         batch: &mut Batch,
     ) -> Result<()>;
 
-    /// Takes one step in every environment; `actions` lie in a row.
+    /// Takes one step in every environment; `actions` are concatenated.
     ///
     /// # Errors
-    /// `InvalidInput` when actions or batch are of another size, when an action is none, before the first reset, and
-    /// without autoreset where an episode is over. The message names the environment; the others may have
+    /// `InvalidInput` when actions or batch have another size, for an invalid action, before the first reset, and
+    /// without autoreset after the end of an episode. The message names the environment; the others may have
     /// taken their step.
     fn step(&mut self, actions: &[f32], batch: &mut Batch) -> Result<()>;
 
-    /// Writes everything that decides the future of all environments.
+    /// Writes the state of all environments.
     ///
     /// # Errors
-    /// `Unsupported` where a world cannot be written, `InvalidInput` before the first reset.
+    /// `Unsupported` for environments without snapshots, `InvalidInput` before the first reset.
     fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
         let _ = snapshot;
-        Err(Error::unsupported(format!("{} keeps no snapshots side by side", self.spec().id)))
+        Err(Error::unsupported(format!("{} has no snapshots of several environments", self.spec().id)))
     }
 
-    /// Takes back what [`Self::save_state`] wrote, in the same order.
+    /// Reads what [`Self::save_state`] wrote, in the same order.
     ///
     /// # Errors
-    /// `Unsupported` where a world cannot be written, `Format` when the snapshot is of something else.
+    /// `Unsupported` for environments without snapshots, `Format` for a snapshot of something else.
     fn load_state(&mut self, state: &mut StateReader<'_>) -> Result<()> {
         let _ = state;
-        Err(Error::unsupported(format!("{} keeps no snapshots side by side", self.spec().id)))
+        Err(Error::unsupported(format!("{} has no snapshots of several environments", self.spec().id)))
     }
 
-    /// The state of all environments, to come back to. The last [`Batch`] is the caller's to keep: the next action
-    /// follows from it. Threads and arrays leave no trace in it.
+    /// Returns the state of all environments. The caller keeps the last [`Batch`], on which the next action
+    /// depends. A snapshot does not depend on threads or on how the states are stored.
     ///
     /// # Errors
     /// As [`Self::save_state`].
@@ -120,10 +120,10 @@ pub trait VecEnvironment: Send {
         Ok(snapshot)
     }
 
-    /// Goes back to a state: the same actions then have the same outcome, bit for bit.
+    /// Restores a state: the same actions then have the same results, bit for bit.
     ///
     /// # Errors
-    /// `InvalidInput` for a snapshot of others, or of another count of them, else as [`Self::load_state`]. After an
+    /// `InvalidInput` for a snapshot of other environments or another count, else as [`Self::load_state`]. After an
     /// error the environments must be reset.
     fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
         let mut state = snapshot.read(&snapshot_id(self.spec(), self.count()))?;
@@ -132,24 +132,24 @@ pub trait VecEnvironment: Send {
     }
 }
 
-/// What a snapshot of several is a snapshot of.
+/// Returns the id of a snapshot of several environments.
 fn snapshot_id(spec: &EnvironmentSpec, count: usize) -> String {
     format!("{count} x {}", spec.id)
 }
 
-/// How [`make_vec`](crate::make_vec) makes environments.
+/// Options of [`make_vec`](crate::make_vec).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct VectorOptions {
-    /// How many environments.
+    /// Number of environments.
     pub count: usize,
-    /// When episodes begin anew.
+    /// When environments are reset automatically.
     pub autoreset: Autoreset,
-    /// How many threads step them; those so light that threads would slow them down ignore it.
+    /// Number of threads; ignored by environments that are faster on one.
     pub threads: usize,
 }
 
 impl VectorOptions {
-    /// `count` environments on one thread.
+    /// Creates options for `count` environments on one thread, with the default autoreset.
     pub fn new(count: usize) -> Self {
         Self { count, autoreset: Autoreset::default(), threads: 1 }
     }
@@ -159,23 +159,23 @@ impl VectorOptions {
     }
 }
 
-/// A number of environments that memory allows.
+/// Checks that a number of environments is in range.
 fn check_count(count: usize) -> Result<usize> {
-    const MOST: usize = 1 << 20;
-    if (1..=MOST).contains(&count) {
+    const MAX: usize = 1 << 20;
+    if (1..=MAX).contains(&count) {
         return Ok(count);
     }
-    Err(Error::invalid_param(format!("{count} environments; give 1 to {MOST}")))
+    Err(Error::invalid_param(format!("{count} environments; give 1 to {MAX}")))
 }
 
-/// Checks sizes of what comes with a reset.
+/// Checks the sizes of the arguments of a reset.
 fn check_reset(seeds: &Seeds<'_>, mask: Option<&[bool]>, count: usize) -> Result<()> {
     seeds.check(count)?;
     match mask {
         Some(mask) if mask.len() != count || !mask.contains(&true) => {
             let (len, chosen) = (mask.len(), mask.iter().filter(|chosen| **chosen).count());
             Err(Error::invalid_input(format!(
-                "a mask of {len} with {chosen} chosen for {count} environments; give one for each, at least one true"
+                "the mask has {len} values, {chosen} of them true, for {count} environments; give one per environment, at least one true"
             )))
         }
         _ => Ok(()),
@@ -184,13 +184,13 @@ fn check_reset(seeds: &Seeds<'_>, mask: Option<&[bool]>, count: usize) -> Result
 
 /// Checks the number of actions of a step.
 fn check_actions(actions: &[f32], spec: &EnvironmentSpec, count: usize) -> Result<()> {
-    let wanted = spec.action.len() * count;
-    if actions.len() == wanted {
+    let expected = spec.action.len() * count;
+    if actions.len() == expected {
         return Ok(());
     }
     let given = actions.len();
     Err(Error::invalid_input(format!(
-        "{given} numbers of actions for {count} of {}; give {wanted}, environment after environment",
+        "{given} action numbers for {count} environments of {}; give {expected}, ordered by environment",
         spec.id
     )))
 }

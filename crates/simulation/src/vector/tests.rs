@@ -12,35 +12,35 @@ fn several(id: &str, count: usize, mode: Autoreset, threads: usize) -> Environme
     EnvironmentVector::new(environments, mode, threads).unwrap()
 }
 
-/// Every answer of `steps` steps from seed 3 on; ended episodes are begun anew where the mode does not.
+/// Returns the batches of `steps` steps from seed 3; resets ended episodes if the mode does not.
 fn played(vector: &mut dyn VecEnvironment, steps: usize) -> Vec<Batch> {
     let (spec, count) = (vector.spec().clone(), vector.count());
     let (mut batch, mut random) = (Batch::new(&spec, count), Random::new(7));
     let mut actions = vec![0.0; spec.action.len() * count];
     vector.reset(Seeds::From(3), &ResetOptions::new(), None, &mut batch).unwrap();
-    let mut answers = vec![batch.clone()];
+    let mut batches = vec![batch.clone()];
     for _ in 0..steps {
         for action in actions.chunks_mut(spec.action.len()) {
             spec.action.sample_into(&mut random, action);
         }
         vector.step(&actions, &mut batch).unwrap();
-        answers.push(batch.clone());
+        batches.push(batch.clone());
         let over: Vec<_> = batch.terminated.iter().zip(&batch.truncated).map(|(a, b)| a | b).collect();
         if vector.autoreset() == Autoreset::Disabled && over.contains(&true) {
-            vector.reset(Seeds::Chance, &ResetOptions::new(), Some(&over), &mut batch).unwrap();
+            vector.reset(Seeds::Random, &ResetOptions::new(), Some(&over), &mut batch).unwrap();
         }
     }
-    answers
+    batches
 }
 
 #[test]
 fn threads_change_nothing() {
     for mode in MODES {
-        let wanted = played(&mut several("Pendulum-v1", 7, mode, 1), 210);
+        let expected = played(&mut several("Pendulum-v1", 7, mode, 1), 210);
         for threads in [2, 3, 20] {
             assert_eq!(
                 played(&mut several("Pendulum-v1", 7, mode, threads), 210),
-                wanted,
+                expected,
                 "{mode:?} {threads}"
             );
         }
@@ -59,9 +59,9 @@ fn carts_in_arrays_are_single_carts() {
     }
 }
 
-/// A snapshot does not tell threads or arrays apart, and each goes on from it as the others.
+/// Snapshots do not depend on threads or arrays, and every vector continues from them the same way.
 #[test]
-fn all_go_on_from_a_snapshot() {
+fn all_continue_from_a_snapshot() {
     let arrays = |mode| Box::new(CartPoleVector::new(&CartPoleParams::default(), 5, mode).unwrap());
     for mode in [Autoreset::NextStep, Autoreset::SameStep] {
         let mut makers: [Box<dyn VecEnvironment>; 3] = [
@@ -70,7 +70,7 @@ fn all_go_on_from_a_snapshot() {
             arrays(mode),
         ];
         assert!(makers.iter().all(|vector| vector.snapshot().is_err()));
-        // Far enough that some have ended.
+        // Long enough that some episodes have ended.
         let played: Vec<_> = makers.iter_mut().map(|vector| played(&mut **vector, 40)).collect();
         assert!(played.iter().all(|batches| *batches == played[0]));
         let snapshots: Vec<_> = makers.iter().map(|vector| vector.snapshot().unwrap()).collect();
@@ -84,36 +84,38 @@ fn all_go_on_from_a_snapshot() {
                 })
                 .collect()
         };
-        let wanted = on(&mut *makers[0]);
-        assert!(wanted.iter().any(|batch| batch.terminated.contains(&true)));
+        let expected = on(&mut *makers[0]);
+        assert!(expected.iter().any(|batch| batch.terminated.contains(&true)));
         for vector in &mut makers {
             vector.restore(&snapshots[0]).unwrap();
             let got = on(&mut **vector);
-            assert!(got.iter().zip(&wanted).all(|(got, wanted)| got.observations == wanted.observations
-                && got.terminated == wanted.terminated));
+            assert!(
+                got.iter().zip(&expected).all(|(got, expected)| got.observations == expected.observations
+                    && got.terminated == expected.terminated)
+            );
         }
         let mut fewer = several("CartPole-v1", 4, mode, 1);
         assert!(fewer.restore(&snapshots[0]).is_err());
     }
 }
 
-/// Gymnasium's order of events, by one cart that falls after a few pushes.
+/// Compares the order of events with Gymnasium, for a cart that falls after a few pushes.
 #[test]
-fn episodes_begin_anew_as_in_gymnasium() {
+fn autoreset_matches_gymnasium() {
     let ends = |mode| {
         let mut vector = several("CartPole-v1", 1, mode, 1);
         let mut batch = Batch::new(vector.spec(), 1);
         vector.reset(Seeds::From(1), &ResetOptions::new(), None, &mut batch).unwrap();
         let mut single = make("CartPole-v1").unwrap();
-        let mut seen = vec![0.0; 4];
-        single.reset(Some(1), &ResetOptions::new(), &mut seen).unwrap();
+        let mut observation = vec![0.0; 4];
+        single.reset(Some(1), &ResetOptions::new(), &mut observation).unwrap();
         while !batch.terminated[0] {
             vector.step(&[1.0], &mut batch).unwrap();
-            single.step(&[1.0], &mut seen).unwrap();
+            single.step(&[1.0], &mut observation).unwrap();
         }
-        let last = seen.clone();
-        single.reset(None, &ResetOptions::new(), &mut seen).unwrap();
-        (vector, batch, last, seen)
+        let last = observation.clone();
+        single.reset(None, &ResetOptions::new(), &mut observation).unwrap();
+        (vector, batch, last, observation)
     };
     let (mut vector, mut batch, last, first) = ends(Autoreset::NextStep);
     assert_eq!(batch.observations, last);
@@ -129,7 +131,7 @@ fn episodes_begin_anew_as_in_gymnasium() {
 }
 
 #[test]
-fn wrong_sizes_and_actions_are_told() {
+fn wrong_sizes_and_actions_are_reported() {
     for mut vector in [
         Box::new(several("CartPole-v1", 3, Autoreset::NextStep, 2)) as Box<dyn VecEnvironment>,
         Box::new(CartPoleVector::new(&CartPoleParams::default(), 3, Autoreset::NextStep).unwrap()),
@@ -138,9 +140,9 @@ fn wrong_sizes_and_actions_are_told() {
         assert!(vector.step(&[0.0; 3], &mut batch).is_err());
         let none = ResetOptions::new();
         assert!(vector.reset(Seeds::Each(&[None; 2]), &none, None, &mut batch).is_err());
-        assert!(vector.reset(Seeds::Chance, &none, Some(&[false; 3]), &mut batch).is_err());
+        assert!(vector.reset(Seeds::Random, &none, Some(&[false; 3]), &mut batch).is_err());
         let mut small = Batch::new(vector.spec(), 2);
-        assert!(vector.reset(Seeds::Chance, &none, None, &mut small).is_err());
+        assert!(vector.reset(Seeds::Random, &none, None, &mut small).is_err());
         vector.reset(Seeds::From(0), &none, None, &mut batch).unwrap();
         assert!(vector.step(&[0.0; 2], &mut batch).is_err());
         let error = vector.step(&[0.0, 1.0, f32::NAN], &mut batch).unwrap_err().to_string();
@@ -164,14 +166,14 @@ impl Environment for Faulty {
         self.0.spec()
     }
 
-    fn reset(&mut self, seed: Option<u64>, options: &ResetOptions, seen: &mut [f32]) -> Result<Info> {
-        self.0.reset(seed, options, seen)
+    fn reset(&mut self, seed: Option<u64>, options: &ResetOptions, observation: &mut [f32]) -> Result<Info> {
+        self.0.reset(seed, options, observation)
     }
 
-    fn step(&mut self, action: &[f32], seen: &mut [f32]) -> Result<Step> {
+    fn step(&mut self, action: &[f32], observation: &mut [f32]) -> Result<Step> {
         self.1 += 1;
         assert!(self.1 < 2, "a fault");
-        self.0.step(action, seen)
+        self.0.step(action, observation)
     }
 }
 
@@ -187,7 +189,7 @@ fn a_panic_of_a_thread_is_an_error() {
     assert!(vector.step(&[0.0; 2], &mut batch).is_err());
 }
 
-/// Steps on with fixed actions and gives what was answered.
+/// Takes steps with fixed actions and returns the batches.
 fn played_on(vector: &mut dyn VecEnvironment, actions: &[f32]) -> Vec<Batch> {
     let mut batch = Batch::new(vector.spec(), vector.count());
     let mut step = || {
@@ -198,7 +200,7 @@ fn played_on(vector: &mut dyn VecEnvironment, actions: &[f32]) -> Vec<Batch> {
 }
 
 #[test]
-fn states_come_back_in_any_number_of_threads() {
+fn states_are_restored_with_any_number_of_threads() {
     for mode in [Autoreset::NextStep, Autoreset::SameStep] {
         let carts = || CartPoleVector::new(&CartPoleParams::default(), 5, mode).unwrap();
         let pairs: [[Box<dyn VecEnvironment>; 2]; 2] = [
@@ -209,13 +211,13 @@ fn states_come_back_in_any_number_of_threads() {
             assert!(vector.snapshot().is_err());
             played(&mut *vector, 37);
             let snapshot = vector.snapshot().unwrap();
-            let wanted = played_on(&mut *vector, &[1.0, 0.0, 1.0, 1.0, 0.0]);
+            let expected = played_on(&mut *vector, &[1.0, 0.0, 1.0, 1.0, 0.0]);
             other.restore(&snapshot).unwrap();
             let got = played_on(&mut *other, &[1.0, 0.0, 1.0, 1.0, 0.0]);
-            // What stands in a batch where no episode ended is left over from before.
-            for (got, wanted) in got.iter().zip(&wanted) {
-                assert_eq!(got.observations, wanted.observations, "{mode:?}");
-                assert_eq!(got.terminated, wanted.terminated, "{mode:?}");
+            // Final observations are leftovers where no episode ended.
+            for (got, expected) in got.iter().zip(&expected) {
+                assert_eq!(got.observations, expected.observations, "{mode:?}");
+                assert_eq!(got.terminated, expected.terminated, "{mode:?}");
             }
             assert!(several("CartPole-v1", 4, mode, 1).restore(&snapshot).is_err());
         }

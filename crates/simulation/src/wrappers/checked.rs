@@ -1,4 +1,4 @@
-//! Environments that tell of wrong use instead of going on.
+//! Checks of the calls to an environment.
 
 use opendr_engine::data::Image;
 use opendr_engine::environment::{
@@ -8,8 +8,8 @@ use opendr_engine::{Error, Result};
 
 use crate::classic_control::{check_length, not_begun};
 
-/// Checks the order of calls (Gymnasium's `OrderEnforcing`), actions, and what comes back (`PassiveEnvChecker`). Wrong
-/// use is an error here, not a warning, and leaves the environment as it was.
+/// Checks the order of calls (Gymnasium's `OrderEnforcing`), actions, observations and rewards (`PassiveEnvChecker`). Wrong
+/// use is an error, not a warning, and leaves the environment unchanged.
 #[derive(Debug, Clone)]
 pub struct Checked<E> {
     inner: E,
@@ -21,12 +21,12 @@ enum Phase {
     New,
     Running,
     Over,
-    /// A step failed halfway.
+    /// A step failed.
     Broken,
 }
 
 impl<E: Environment> Checked<E> {
-    /// `inner` with checks.
+    /// Wraps an environment.
     pub fn new(inner: E) -> Self {
         Self { inner, phase: Phase::New }
     }
@@ -41,7 +41,7 @@ impl<E: Environment> Checked<E> {
                 spec.id
             ))),
             Phase::Broken => Err(Error::invalid_input(format!(
-                "the last call of {} failed and left no state; call reset before the next step",
+                "the last call of {} failed; call reset before the next step",
                 spec.id
             ))),
         }
@@ -51,7 +51,7 @@ impl<E: Environment> Checked<E> {
         match observation.iter().position(|number| number.is_nan()) {
             None => Ok(()),
             Some(at) => Err(Error::internal(format!(
-                "number {at} of an observation of {} is NaN; its equations diverged, check its parameters",
+                "number {at} of the observation of {} is NaN, its equations diverged; check its parameters",
                 self.inner.spec().id
             ))),
         }
@@ -82,7 +82,7 @@ impl<E: Environment> Environment for Checked<E> {
         self.check_observation(observation)?;
         if !step.reward.is_finite() {
             let (id, reward) = (&self.inner.spec().id, step.reward);
-            return Err(Error::internal(format!("a reward of {id} is {reward}; check its parameters")));
+            return Err(Error::internal(format!("the reward of {id} is {reward}; check its parameters")));
         }
         self.phase = if step.is_over() { Phase::Over } else { Phase::Running };
         Ok(step)

@@ -1,4 +1,4 @@
-//! The last observations instead of the last one: a memory for policies without one.
+//! Stacking of the last observations.
 
 use opendr_engine::data::Image;
 use opendr_engine::environment::{
@@ -6,8 +6,8 @@ use opendr_engine::environment::{
 };
 use opendr_engine::{Error, Result};
 
-/// Shows the last observations, oldest first, along a new first axis (Gymnasium's `FrameStackObservation`). At the
-/// beginning of an episode its first observation stands for those before it.
+/// Stacks the last observations, oldest first, along a new first axis (Gymnasium's `FrameStackObservation`). At the
+/// start of an episode its first observation is repeated.
 #[derive(Debug, Clone)]
 pub struct FrameStack<E> {
     inner: E,
@@ -19,16 +19,18 @@ impl<E: Environment> FrameStack<E> {
     /// Stacks `count` observations.
     ///
     /// # Errors
-    /// `InvalidParam` when `count` is 0 or too large, `Unsupported` when observations are no box.
+    /// `InvalidParam` when `count` is 0 or too large, `Unsupported` when the observation space is not a box.
     pub fn new(inner: E, count: usize) -> Result<Self> {
         let mut spec = inner.spec().clone();
         let Space::Box { low, high, shape, dtype } = &spec.observation else {
             let space = &spec.observation;
-            return Err(Error::unsupported(format!("{space} cannot be stacked; flatten it to a box first")));
+            return Err(Error::unsupported(format!(
+                "the observation space {space} cannot be stacked; flatten it to a box first"
+            )));
         };
         if count == 0 || low.len().checked_mul(count).is_none_or(|numbers| numbers > 1 << 28) {
             return Err(Error::invalid_param(format!(
-                "{count} frames of {} numbers; give at least 1, and at most 2^28 numbers",
+                "{count} frames of {} numbers; give at least 1 frame and at most 2^28 numbers",
                 low.len()
             )));
         }
@@ -38,11 +40,11 @@ impl<E: Environment> FrameStack<E> {
         Ok(Self { inner, frames: vec![0.0; spec.observation.len()], spec })
     }
 
-    fn show(&self, observation: &mut [f32]) -> Result<()> {
+    fn write_stack(&self, observation: &mut [f32]) -> Result<()> {
         if observation.len() != self.frames.len() {
-            let (wanted, count) = (self.frames.len(), observation.len());
+            let (expected, count) = (self.frames.len(), observation.len());
             return Err(Error::invalid_input(format!(
-                "stacked observations of {} have {wanted} numbers, not {count}",
+                "stacked observations of {} have {expected} numbers, not {count}",
                 self.spec.id
             )));
         }
@@ -66,16 +68,16 @@ impl<E: Environment> Environment for FrameStack<E> {
         for begin in (size..self.frames.len()).step_by(size.max(1)) {
             self.frames.copy_within(..size, begin);
         }
-        self.show(observation)?;
+        self.write_stack(observation)?;
         Ok(info)
     }
 
     fn step(&mut self, action: &[f32], observation: &mut [f32]) -> Result<Step> {
         let size = self.size();
-        // The newest takes the place of the oldest, and then its own.
+        // The inner environment writes the newest over the oldest; the rotation then moves it to the end.
         let step = self.inner.step(action, &mut self.frames[..size])?;
         self.frames.rotate_left(size);
-        self.show(observation)?;
+        self.write_stack(observation)?;
         Ok(step)
     }
 

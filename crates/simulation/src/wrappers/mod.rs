@@ -1,4 +1,4 @@
-//! Environments around environments.
+//! Wrappers of environments.
 
 mod checked;
 mod frame_stack;

@@ -1,4 +1,4 @@
-//! Observations of mean 0 and variance 1.
+//! Normalisation of observations to mean 0 and variance 1.
 
 use opendr_engine::data::Image;
 use opendr_engine::environment::{
@@ -8,34 +8,41 @@ use opendr_engine::{Error, Result};
 
 use super::RunningMoments;
 
-/// Normalises observations by the mean and variance of all that were seen (Gymnasium's `NormalizeObservation`).
+/// Normalises observations by their running mean and variance (Gymnasium's `NormalizeObservation`).
 #[derive(Debug, Clone)]
 pub struct NormaliseObservation<E> {
     inner: E,
     spec: EnvironmentSpec,
-    /// What was seen: to be saved with a policy.
+    /// Running statistics of the observations; save them with a policy.
     pub moments: RunningMoments,
-    /// Whether observations still change the moments; not while a policy is evaluated.
-    pub learning: bool,
+    /// Whether observations update the statistics; disable it for evaluations.
+    pub update_statistics: bool,
 }
 
 impl<E: Environment> NormaliseObservation<E> {
-    /// Normalises from nothing seen.
+    /// Wraps an environment, with no observations counted.
     ///
     /// # Errors
-    /// `Unsupported` when observations are no box.
+    /// `Unsupported` when the observation space is not a box.
     pub fn new(inner: E) -> Result<Self> {
         let mut spec = inner.spec().clone();
         let Space::Box { shape, .. } = &spec.observation else {
             let space = &spec.observation;
-            return Err(Error::unsupported(format!("{space} has no mean; flatten it to a box first")));
+            return Err(Error::unsupported(format!(
+                "the observation space {space} cannot be normalised; flatten it to a box first"
+            )));
         };
         spec.observation = Space::uniform(f32::NEG_INFINITY, f32::INFINITY, shape)?;
-        Ok(Self { inner, moments: RunningMoments::new(spec.observation.len()), spec, learning: true })
+        Ok(Self {
+            inner,
+            moments: RunningMoments::new(spec.observation.len()),
+            spec,
+            update_statistics: true,
+        })
     }
 
-    fn show(&mut self, observation: &mut [f32]) {
-        if self.learning {
+    fn normalise(&mut self, observation: &mut [f32]) {
+        if self.update_statistics {
             self.moments.add(observation.iter().copied().map(f64::from));
         }
         self.moments.normalise(observation);
@@ -49,13 +56,13 @@ impl<E: Environment> Environment for NormaliseObservation<E> {
 
     fn reset(&mut self, seed: Option<u64>, options: &ResetOptions, observation: &mut [f32]) -> Result<Info> {
         let info = self.inner.reset(seed, options, observation)?;
-        self.show(observation);
+        self.normalise(observation);
         Ok(info)
     }
 
     fn step(&mut self, action: &[f32], observation: &mut [f32]) -> Result<Step> {
         let step = self.inner.step(action, observation)?;
-        self.show(observation);
+        self.normalise(observation);
         Ok(step)
     }
 

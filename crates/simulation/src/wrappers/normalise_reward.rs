@@ -1,4 +1,4 @@
-//! Rewards of a scale that learning rates are made for.
+//! Normalisation of rewards.
 
 use opendr_engine::data::Image;
 use opendr_engine::environment::{
@@ -9,34 +9,41 @@ use opendr_engine::{Error, Result};
 use super::RunningMoments;
 use super::running_moments::EPSILON;
 
-/// Divides rewards by the deviation of the discounted return (Gymnasium's `NormalizeReward`).
+/// Divides rewards by the standard deviation of the discounted return (Gymnasium's `NormalizeReward`).
 #[derive(Debug, Clone)]
 pub struct NormaliseReward<E> {
     inner: E,
     spec: EnvironmentSpec,
     discount: f64,
     discounted: f64,
-    /// What was earned: to be saved with a policy.
+    /// Running statistics of the discounted return; save them with a policy.
     pub moments: RunningMoments,
-    /// Whether rewards still change the moments.
-    pub learning: bool,
+    /// Whether rewards update the statistics.
+    pub update_statistics: bool,
 }
 
 impl<E: Environment> NormaliseReward<E> {
-    /// Normalises by returns with this discount, 0.99 as a rule.
+    /// Wraps an environment; `discount` is usually 0.99.
     ///
     /// # Errors
     /// `InvalidParam` when it is not in [0, 1].
     pub fn new(inner: E, discount: f64) -> Result<Self> {
         if !(0.0..=1.0).contains(&discount) {
-            return Err(Error::invalid_param(format!("a discount of {discount}; give one in [0, 1]")));
+            return Err(Error::invalid_param(format!("the discount is {discount}; give a number in [0, 1]")));
         }
         let spec = EnvironmentSpec {
             reward_range: (f64::NEG_INFINITY, f64::INFINITY),
             reward_threshold: None,
             ..inner.spec().clone()
         };
-        Ok(Self { inner, spec, discount, discounted: 0.0, moments: RunningMoments::new(1), learning: true })
+        Ok(Self {
+            inner,
+            spec,
+            discount,
+            discounted: 0.0,
+            moments: RunningMoments::new(1),
+            update_statistics: true,
+        })
     }
 }
 
@@ -51,10 +58,10 @@ impl<E: Environment> Environment for NormaliseReward<E> {
 
     fn step(&mut self, action: &[f32], observation: &mut [f32]) -> Result<Step> {
         let mut step = self.inner.step(action, observation)?;
-        // As Gymnasium: the return of a truncated episode runs on into the next one.
+        // As in Gymnasium, the return continues after a truncated episode.
         let carried = if step.terminated { 0.0 } else { self.discounted * self.discount };
         self.discounted = carried + step.reward;
-        if self.learning {
+        if self.update_statistics {
             self.moments.add([self.discounted]);
         }
         step.reward /= (self.moments.variance()[0] + EPSILON).sqrt();

@@ -1,10 +1,10 @@
-//! Mean and variance of what has been seen so far.
+//! Running mean and variance.
 
 use opendr_engine::environment::{Snapshot, StateReader};
 use opendr_engine::{Error, Result};
 
-/// Mean and variance of each of several numbers, sample after sample (Chan, Golub and LeVeque, 1979), as Gymnasium's
-/// `RunningMeanStd`: begins with mean 0, variance 1 and the weight of 1e-4 samples.
+/// Running mean and variance of each of several numbers (Chan, Golub and LeVeque, 1979), as Gymnasium's
+/// `RunningMeanStd`: starts with mean 0, variance 1 and the weight of 1e-4 samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunningMoments {
     mean: Vec<f64>,
@@ -13,15 +13,15 @@ pub struct RunningMoments {
 }
 
 impl RunningMoments {
-    /// Of `size` numbers.
+    /// Creates the moments of `size` numbers.
     pub fn new(size: usize) -> Self {
         Self { mean: vec![0.0; size], variance: vec![1.0; size], count: 1e-4 }
     }
 
-    /// What [`Self::mean`], [`Self::variance`] and [`Self::count`] told.
+    /// Restores moments from the values of [`Self::mean`], [`Self::variance`] and [`Self::count`].
     ///
     /// # Errors
-    /// `Format` when they differ in length, one is not finite, or a variance or the count is negative.
+    /// `Format` when the lengths differ, a number is not finite, or a variance or the count is negative.
     pub fn from_parts(mean: Vec<f64>, variance: Vec<f64>, count: f64) -> Result<Self> {
         let is_sound = |number: &f64| number.is_finite() && *number >= 0.0;
         let sound =
@@ -30,7 +30,7 @@ impl RunningMoments {
             return Ok(Self { mean, variance, count });
         }
         Err(Error::format(format!(
-            "{} means and {} variances of {count} samples: there is one of each, all finite, no variance negative",
+            "{} means and {} variances of {count} samples; they must have equal length, be finite, and no variance be negative",
             mean.len(),
             variance.len()
         )))
@@ -47,7 +47,7 @@ impl RunningMoments {
         self.count = total;
     }
 
-    /// Takes in what another has seen: the outcome does not depend on which saw what.
+    /// Merges the samples of another; the result does not depend on how samples were divided.
     pub fn merge(&mut self, other: &Self) {
         let total = self.count + other.count;
         let own = self.mean.iter_mut().zip(&mut self.variance);
@@ -62,37 +62,37 @@ impl RunningMoments {
         self.count = total;
     }
 
-    /// The means.
+    /// Returns the means.
     pub fn mean(&self) -> &[f64] {
         &self.mean
     }
 
-    /// The variances.
+    /// Returns the variances.
     pub fn variance(&self) -> &[f64] {
         &self.variance
     }
 
-    /// How many samples were added, and 1e-4.
+    /// Returns the number of samples, plus 1e-4.
     pub fn count(&self) -> f64 {
         self.count
     }
 
-    /// Brings each number to mean 0 and variance 1.
+    /// Normalises numbers in place to mean 0 and variance 1.
     pub fn normalise(&self, numbers: &mut [f32]) {
         for (number, (mean, variance)) in numbers.iter_mut().zip(self.mean.iter().zip(&self.variance)) {
             *number = ((f64::from(*number) - mean) / (variance + EPSILON).sqrt()) as f32;
         }
     }
 
-    /// Writes all into a snapshot.
+    /// Writes the moments into a snapshot.
     pub fn save(&self, snapshot: &mut Snapshot) {
         snapshot.extend_numbers(self.mean.iter().chain(&self.variance).copied().chain([self.count]));
     }
 
-    /// Takes back what [`Self::save`] wrote, of as many numbers.
+    /// Reads what [`Self::save`] wrote, for the same size.
     ///
     /// # Errors
-    /// `Format` at the end of the snapshot and for what is not finite.
+    /// `Format` at the end of the snapshot and for numbers that are not finite.
     pub fn load(&mut self, state: &mut StateReader<'_>) -> Result<()> {
         for number in self.mean.iter_mut().chain(&mut self.variance).chain([&mut self.count]) {
             *number = state.finite()?;
@@ -101,5 +101,5 @@ impl RunningMoments {
     }
 }
 
-/// What keeps a division from zero.
+/// Added to the variance, against a division by zero.
 pub(super) const EPSILON: f64 = 1e-8;

@@ -1,4 +1,4 @@
-//! Episodes that are cut after a number of steps.
+//! Truncation of episodes after a number of steps.
 
 use opendr_engine::data::Image;
 use opendr_engine::environment::{
@@ -6,8 +6,8 @@ use opendr_engine::environment::{
 };
 use opendr_engine::{Error, Result};
 
-/// Truncates an episode when it has the steps of the spec's `max_episode_steps`. It never terminates one: the last
-/// state has a value.
+/// Truncates an episode after the `max_episode_steps` of the spec. Truncation is not termination: the last
+/// state still has a value.
 #[derive(Debug, Clone)]
 pub struct TimeLimit<E> {
     inner: E,
@@ -16,7 +16,7 @@ pub struct TimeLimit<E> {
 }
 
 impl<E: Environment> TimeLimit<E> {
-    /// `inner` with a limit of its own instead of its spec's.
+    /// Wraps an environment with a limit that replaces the one of its spec.
     ///
     /// # Errors
     /// `InvalidParam` when `max_episode_steps` is 0.

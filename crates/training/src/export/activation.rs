@@ -4,7 +4,7 @@ use std::f32::consts::FRAC_1_SQRT_2;
 
 use burn::backend::ir::{ActivationOperationIr, DimOpIr, TensorIr};
 use opendr_engine::Result;
-use opendr_onnx::{Operator, Wire};
+use opendr_onnx::{GraphTensor, Operator};
 
 use super::lowering::Lowering;
 
@@ -47,12 +47,12 @@ fn along(graph: &mut Lowering<'_>, name: &'static str, op: &DimOpIr) -> Result<(
     graph.apply(Operator::new(name).int("axis", op.axis as i64), &[&op.input], &op.out)
 }
 
-/// `x / 2 * (1 + erf(x / √2))`; ONNX has an operator for it from opset 20 on.
+/// Exact GELU, `x / 2 * (1 + erf(x / √2))`; ONNX has an operator for it only from opset 20 on.
 fn gelu(graph: &mut Lowering<'_>, input: &TensorIr, out: &TensorIr) -> Result<()> {
     let x = graph.wire(input)?;
-    let scaled = graph.step_like(Operator::new("Mul"), &[&x, &Wire::scalar(FRAC_1_SQRT_2)], &x)?;
+    let scaled = graph.step_like(Operator::new("Mul"), &[&x, &GraphTensor::scalar(FRAC_1_SQRT_2)], &x)?;
     let erf = graph.step_like(Operator::new("Erf"), &[&scaled], &x)?;
-    let shifted = graph.step_like(Operator::new("Add"), &[&erf, &Wire::scalar(1.0)], &x)?;
+    let shifted = graph.step_like(Operator::new("Add"), &[&erf, &GraphTensor::scalar(1.0)], &x)?;
     let product = graph.step_like(Operator::new("Mul"), &[&x, &shifted], &x)?;
-    graph.write(Operator::new("Mul"), &[&product, &Wire::scalar(0.5)], out)
+    graph.write(Operator::new("Mul"), &[&product, &GraphTensor::scalar(0.5)], out)
 }

@@ -1,8 +1,8 @@
-//! Sums, products, powers, bounds and borders.
+//! Arithmetic, powers, clamping and padding.
 
 use burn::backend::ir::{BinaryOpIr, NumericOperationIr, PadModeIr, PadOpIr, ScalarOpIr, TensorIr};
 use opendr_engine::Result;
-use opendr_onnx::{Kind, Operator, Wire};
+use opendr_onnx::{ElementType, GraphTensor, Operator};
 
 use super::lowering::{Lowering, kind_from_dtype, scalar};
 
@@ -52,7 +52,7 @@ fn with_scalar(graph: &mut Lowering<'_>, name: &'static str, op: &ScalarOpIr) ->
     graph.write(Operator::new(name), &[&x, &value], &op.out)
 }
 
-/// A power; squares as products, which are faster and keep the sign out of the logarithm.
+/// Writes a power; squares are products, which are faster and also correct for negative bases.
 pub(super) fn power(graph: &mut Lowering<'_>, op: &ScalarOpIr) -> Result<()> {
     if op.rhs.elem::<f64>() == 2.0 {
         return graph.apply(Operator::new("Mul"), &[&op.lhs, &op.lhs], &op.out);
@@ -61,12 +61,12 @@ pub(super) fn power(graph: &mut Lowering<'_>, op: &ScalarOpIr) -> Result<()> {
 }
 
 /// Burn's remainder has the sign of the divisor: ONNX's `Mod` for integers, `x - y * floor(x / y)` for floats.
-fn remainder(graph: &mut Lowering<'_>, x: &Wire, y: &Wire, out: &TensorIr) -> Result<()> {
-    if kind_from_dtype(out.dtype)? == Kind::Int {
+fn remainder(graph: &mut Lowering<'_>, x: &GraphTensor, y: &GraphTensor, out: &TensorIr) -> Result<()> {
+    if kind_from_dtype(out.dtype)? == ElementType::Int {
         return graph.write(Operator::new("Mod"), &[x, y], out);
     }
     let dims = graph.dims(out);
-    let quotient = graph.step(Operator::new("Div"), &[x, y], Kind::Float, dims)?;
+    let quotient = graph.step(Operator::new("Div"), &[x, y], ElementType::Float, dims)?;
     let whole = graph.step_like(Operator::new("Floor"), &[&quotient], &quotient)?;
     let taken = graph.step_like(Operator::new("Mul"), &[&whole, y], &quotient)?;
     graph.write(Operator::new("Sub"), &[x, &taken], out)
@@ -75,7 +75,7 @@ fn remainder(graph: &mut Lowering<'_>, x: &Wire, y: &Wire, out: &TensorIr) -> Re
 fn pad(graph: &mut Lowering<'_>, op: &PadOpIr) -> Result<()> {
     let missing = op.input.shape.num_dims().saturating_sub(op.padding.len());
     let pads = || std::iter::repeat_n(&(0, 0), missing).chain(&op.padding);
-    let pads = Wire::ints(pads().map(|pad| pad.0 as i64).chain(pads().map(|pad| pad.1 as i64)));
+    let pads = GraphTensor::ints(pads().map(|pad| pad.0 as i64).chain(pads().map(|pad| pad.1 as i64)));
     let x = graph.wire(&op.input)?;
     match op.mode {
         PadModeIr::Constant(value) => {

@@ -4,7 +4,7 @@ use burn::backend::ir::{
     BaseOperationIr, BinaryOpIr, BoolOperationIr, NumericOperationIr, ScalarOpIr, TensorIr,
 };
 use opendr_engine::Result;
-use opendr_onnx::{Kind, Operator, Wire};
+use opendr_onnx::{ElementType, GraphTensor, Operator};
 
 use super::lowering::{Lowering, scalar};
 use super::rearrangement::cast;
@@ -64,8 +64,8 @@ fn with_scalar(graph: &mut Lowering<'_>, name: &'static str, op: &ScalarOpIr) ->
     graph.write(Operator::new(name), &[&x, &value], &op.out)
 }
 
-fn unequal(graph: &mut Lowering<'_>, x: &Wire, y: &Wire, out: &TensorIr) -> Result<()> {
+fn unequal(graph: &mut Lowering<'_>, x: &GraphTensor, y: &GraphTensor, out: &TensorIr) -> Result<()> {
     let dims = graph.dims(out);
-    let equal = graph.step(Operator::new("Equal"), &[x, y], Kind::Bool, dims)?;
+    let equal = graph.step(Operator::new("Equal"), &[x, y], ElementType::Bool, dims)?;
     graph.write(Operator::new("Not"), &[&equal], out)
 }

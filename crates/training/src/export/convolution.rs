@@ -2,7 +2,7 @@
 
 use burn::backend::ir::{ModuleOperationIr, TensorIr};
 use opendr_engine::Result;
-use opendr_onnx::{Operator, Wire};
+use opendr_onnx::{GraphTensor, Operator};
 
 use super::lowering::Lowering;
 
@@ -52,7 +52,7 @@ fn write(
 ) -> Result<()> {
     let (x, weight) = (graph.wire(x)?, graph.wire(weight)?);
     let bias = bias.map(|bias| graph.wire(bias)).transpose()?;
-    let inputs: Vec<&Wire> = [&x, &weight].into_iter().chain(&bias).collect();
+    let inputs: Vec<&GraphTensor> = [&x, &weight].into_iter().chain(&bias).collect();
     graph.write(operator, &inputs, out)
 }
 
@@ -64,7 +64,7 @@ pub(super) fn ints(values: &[usize]) -> Vec<i64> {
     values.iter().map(|&value| value as i64).collect()
 }
 
-/// ONNX's order: all that goes before, then all that goes after.
+/// ONNX's order: padding before each axis, then padding after each axis.
 pub(super) fn pads(padding: &[(usize, usize)]) -> Vec<i64> {
     padding.iter().map(|pad| pad.0 as i64).chain(padding.iter().map(|pad| pad.1 as i64)).collect()
 }

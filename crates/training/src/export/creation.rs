@@ -1,8 +1,8 @@
-//! Tensors of one value.
+//! Tensors filled with one value.
 
 use burn::backend::ir::{BaseOperationIr, NumericOperationIr, ScalarIr, TensorIr};
 use opendr_engine::Result;
-use opendr_onnx::{Operator, Wire};
+use opendr_onnx::{GraphTensor, Operator};
 
 use super::lowering::{Lowering, scalar};
 
@@ -26,6 +26,6 @@ pub(super) fn lower_numeric(graph: &mut Lowering<'_>, operation: &NumericOperati
 fn fill(graph: &mut Lowering<'_>, value: ScalarIr, out: &TensorIr) -> Result<()> {
     let value = scalar(value, out.dtype)?;
     let sizes = graph.sizes(out);
-    let shape: Wire = graph.shape(&sizes)?;
+    let shape: GraphTensor = graph.shape(&sizes)?;
     graph.write(Operator::new("Expand"), &[&value, &shape], out)
 }

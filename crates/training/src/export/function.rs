@@ -1,8 +1,8 @@
-//! Functions of one number, and conversions.
+//! Element-wise functions and conversions.
 
 use burn::backend::ir::{FloatOperationIr, IntOperationIr, TensorIr, UnaryOpIr};
 use opendr_engine::Result;
-use opendr_onnx::{Operator, Wire};
+use opendr_onnx::{GraphTensor, Operator};
 
 use super::arithmetic::power;
 use super::lowering::Lowering;
@@ -35,7 +35,7 @@ pub(super) fn lower(graph: &mut Lowering<'_>, operation: &FloatOperationIr) -> R
         Op::IsInf(op) => unary(graph, "IsInf", op)?,
         Op::Log1p(op) => {
             let x = graph.wire(&op.input)?;
-            let shifted = graph.step_like(Operator::new("Add"), &[&x, &Wire::scalar(1.0)], &x)?;
+            let shifted = graph.step_like(Operator::new("Add"), &[&x, &GraphTensor::scalar(1.0)], &x)?;
             graph.write(Operator::new("Log"), &[&shifted], &op.out)?;
         }
         Op::Trunc(op) => {

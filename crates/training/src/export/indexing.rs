@@ -1,4 +1,4 @@
-//! Elements picked and put by index or mask.
+//! Gather, scatter and masks.
 
 use burn::backend::ir::{BaseOperationIr, ModuleOperationIr};
 use burn::backend::tensor::IndexingUpdateOp;
@@ -59,7 +59,7 @@ fn reduction(update: &IndexingUpdateOp) -> &'static str {
         IndexingUpdateOp::Assign => "none",
         IndexingUpdateOp::Add => "add",
         IndexingUpdateOp::Mul => "mul",
-        // Beyond opset 17; ONNX Runtime names the attribute in its refusal.
+        // Beyond opset 17; ONNX Runtime's error names the attribute.
         IndexingUpdateOp::Min => "min",
         IndexingUpdateOp::Max => "max",
     }

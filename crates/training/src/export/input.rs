@@ -1,4 +1,4 @@
-//! What a network is given.
+//! Inputs of a network.
 
 use std::marker::PhantomData;
 
@@ -6,9 +6,9 @@ use burn::backend::capture::{CaptureBackend, TensorId};
 use burn::tensor::kind::Basic;
 use burn::tensor::{Bool, Device, Float, Int, Tensor};
 use opendr_engine::{Error, Result};
-use opendr_onnx::Kind;
+use opendr_onnx::ElementType;
 
-/// One input of a model: `Input::new("image", [1, 3, 300, 300])`.
+/// Input of a model: `Input::new("image", [1, 3, 300, 300])`.
 #[derive(Debug, Clone)]
 pub struct Input<const D: usize, K = Float> {
     name: String,
@@ -18,22 +18,22 @@ pub struct Input<const D: usize, K = Float> {
 }
 
 impl<const D: usize> Input<D> {
-    /// Floats under a name, of these sizes.
+    /// Creates an input of floats.
     pub fn new(name: impl Into<String>, shape: [usize; D]) -> Self {
         Self { name: name.into(), shape, open: None, kind: PhantomData }
     }
 }
 
 impl<const D: usize> Input<D, Int> {
-    /// Integers under a name, of these sizes.
+    /// Creates an input of integers.
     pub fn int(name: impl Into<String>, shape: [usize; D]) -> Self {
         Self { name: name.into(), shape, open: None, kind: PhantomData }
     }
 }
 
 impl<const D: usize, K> Input<D, K> {
-    /// Leaves the size along `axis` open, whatever `shape` says: it is called `batch` in the file, and every input of
-    /// the model that has an open axis has the same size there.
+    /// Makes the size along `axis` dynamic, whatever `shape` says. It is called `batch` in the file, and all inputs with a
+    /// dynamic axis share its size.
     #[must_use]
     pub fn open(mut self, axis: usize) -> Self {
         self.open = Some(axis);
@@ -41,21 +41,21 @@ impl<const D: usize, K> Input<D, K> {
     }
 }
 
-/// An input without its types.
+/// An input without its static types.
 #[derive(Debug)]
 pub struct Declared {
     pub(super) name: String,
-    pub(super) kind: Kind,
+    pub(super) kind: ElementType,
     pub(super) shape: Vec<usize>,
     pub(super) open: Option<usize>,
 }
 
-/// Kinds of elements that a model takes and gives: floats, integers, truth values.
+/// Element types of inputs and outputs: floats, integers, booleans.
 pub trait ElementKind: Basic + Sized {
-    /// The kind in ONNX.
-    const ONNX: Kind;
+    /// The element type in ONNX.
+    const ONNX: ElementType;
 
-    /// What the recording knows the tensor by.
+    /// Returns the id of the tensor in the recording.
     #[doc(hidden)]
     fn id<const D: usize>(tensor: Tensor<D, Self>) -> Result<TensorId>;
 }
@@ -63,12 +63,12 @@ pub trait ElementKind: Basic + Sized {
 macro_rules! impl_element_kind {
     ($($kind:ident),*) => {$(
         impl ElementKind for $kind {
-            const ONNX: Kind = Kind::$kind;
+            const ONNX: ElementType = ElementType::$kind;
 
             fn id<const D: usize>(tensor: Tensor<D, Self>) -> Result<TensorId> {
                 let tensor = tensor.try_into_primitive::<CaptureBackend>().map_err(|_| {
                     Error::internal(
-                        "the forward pass left the device of its input; make new tensors on `input.device()`",
+                        "the forward pass uses a tensor on another device than its input; create tensors on `input.device()`",
                     )
                 })?;
                 Ok(tensor.id())
@@ -81,14 +81,14 @@ impl_element_kind!(Float, Int, Bool);
 
 /// One [`Input`], or a tuple of up to six.
 pub trait Inputs {
-    /// The tensors that `forward` gets for them.
+    /// Tensors passed to `forward`.
     type Tensors;
 
-    /// The inputs in order.
+    /// Returns the inputs in order.
     #[doc(hidden)]
     fn declared(&self) -> Vec<Declared>;
 
-    /// Tensors without values, of size `batch` along the open axes, and what they are known by.
+    /// Creates tensors without values, of size `batch` along the open axes, and appends their ids.
     #[doc(hidden)]
     fn tensors(&self, batch: usize, device: &Device, ids: &mut Vec<TensorId>) -> Result<Self::Tensors>;
 }
@@ -109,7 +109,7 @@ impl<const D: usize, K: ElementKind> Inputs for Input<D, K> {
         let mut shape = self.shape;
         if let Some(axis) = self.open {
             let dim = shape.get_mut(axis).ok_or_else(|| {
-                Error::internal(format!("input {:?} of {D} axes has no axis {axis} to open", self.name))
+                Error::internal(format!("input {:?} has {D} axes and no axis {axis}", self.name))
             })?;
             *dim = batch;
         }

@@ -1,35 +1,29 @@
-//! From a recording to a graph.
+//! The ONNX graph under construction.
 
 use std::collections::HashMap;
 
 use burn::backend::capture::TensorId;
-use burn::backend::ir::{ModuleOperationIr, OperationIr, ScalarIr, TensorIr};
+use burn::backend::ir::{ScalarIr, TensorIr};
 use burn::tensor::{DType, Element, TensorData};
-use opendr_engine::{Error, Result, ResultExt};
-use opendr_onnx::proto::GraphProto;
-use opendr_onnx::{Array, Builder, Data, Dim, Kind, Operator, Wire};
+use opendr_engine::{Error, Result};
+use opendr_onnx::{Array, Builder, Data, Dim, ElementType, GraphTensor, Operator};
 
 use super::input::Declared;
-use super::operation_name::operation_name;
 use super::sizes::{Size, Sizes};
 use super::trace::Trace;
-use super::{
-    activation, arithmetic, attention, comparison, convolution, creation, function, indexing, matrix,
-    normalization, pooling, rearrangement, recurrent, reduction, resampling, sorting,
-};
 
-/// The graph as far as it is written, and what its tensors are called.
+/// The graph under construction, and the names of its tensors.
 pub(super) struct Lowering<'a> {
-    trace: &'a Trace,
-    sizes: &'a Sizes,
-    builder: Builder,
-    wires: HashMap<TensorId, Wire>,
-    /// An input with an open axis, and that axis: where the size of the batch is read.
-    open: Option<(Wire, usize)>,
+    pub(super) trace: &'a Trace,
+    pub(super) sizes: &'a Sizes,
+    pub(super) builder: Builder,
+    pub(super) wires: HashMap<TensorId, GraphTensor>,
+    /// An input with an open axis, and the axis: the source of the batch size.
+    open: Option<(GraphTensor, usize)>,
 }
 
 impl<'a> Lowering<'a> {
-    /// A graph with inputs.
+    /// Creates a graph with inputs.
     pub(super) fn new(
         trace: &'a Trace,
         sizes: &'a Sizes,
@@ -45,7 +39,7 @@ impl<'a> Lowering<'a> {
         for (&id, input) in trace.inputs.iter().zip(inputs) {
             if outputs.contains(&input.name.as_str()) {
                 return Err(Error::internal(format!(
-                    "input and output of the model are both called {:?}",
+                    "an input and an output of the model are both called {:?}",
                     input.name
                 )));
             }
@@ -63,215 +57,167 @@ impl<'a> Lowering<'a> {
         Ok(Self { trace, sizes, builder, wires, open })
     }
 
-    /// Writes all operations and gives the graph its outputs.
-    ///
-    /// # Errors
-    /// `Unsupported` that names an operation that is not lowered.
-    pub(super) fn lower(mut self, outputs: &[&str]) -> Result<GraphProto> {
-        for operation in &self.trace.operations {
-            // Inputs are recorded as tensors without values.
-            if operation.outputs().all(|tensor| self.wires.contains_key(&tensor.id)) {
-                continue;
-            }
-            let context = || format!("cannot export {}", operation_name(operation));
-            if !self.operation(operation).context(context)? {
-                return Err(Error::unsupported(format!(
-                    "{} has no counterpart in ONNX here; write the layer in other terms, or add it to \
-                     crates/training/src/export",
-                    operation_name(operation)
-                )));
-            }
-        }
-        for (&id, name) in self.trace.outputs.iter().zip(outputs) {
-            let wire = self.wire_of(id)?;
-            let open: Vec<&str> = self.sizes.of_id(id).iter().map(|size| size.open_name()).collect();
-            self.builder.output(name, &wire, "", &open)?;
-        }
-        Ok(self.builder.finish("network"))
-    }
-
-    fn operation(&mut self, operation: &OperationIr) -> Result<bool> {
-        match operation {
-            OperationIr::BaseFloat(base) | OperationIr::BaseInt(base) | OperationIr::BaseBool(base) => {
-                Ok(rearrangement::lower(self, base)?
-                    || indexing::lower(self, base)?
-                    || creation::lower(self, base)?
-                    || comparison::lower(self, base)?
-                    || reduction::lower_base(self, base)?)
-            }
-            OperationIr::NumericFloat(_, numeric) | OperationIr::NumericInt(_, numeric) => {
-                Ok(arithmetic::lower(self, numeric)?
-                    || reduction::lower(self, numeric)?
-                    || comparison::lower_numeric(self, numeric)?
-                    || sorting::lower(self, numeric)?
-                    || creation::lower_numeric(self, numeric)?)
-            }
-            OperationIr::Bool(bool) => comparison::lower_bool(self, bool),
-            OperationIr::Int(int) => function::lower_int(self, int),
-            OperationIr::Float(_, float) => Ok(function::lower(self, float)?
-                || matrix::lower(self, float)?
-                || resampling::lower_grid(self, float)?),
-            OperationIr::Activation(activation) => activation::lower(self, activation),
-            OperationIr::Module(module) => self.module(module),
-            OperationIr::Custom(custom) => recurrent::lower(self, custom),
-            OperationIr::Init(_) | OperationIr::Drop(_) => Ok(true),
-            OperationIr::Distributed(_) => Ok(false),
-        }
-    }
-
-    fn module(&mut self, module: &ModuleOperationIr) -> Result<bool> {
-        Ok(convolution::lower(self, module)?
-            || pooling::lower(self, module)?
-            || normalization::lower(self, module)?
-            || matrix::lower_module(self, module)?
-            || resampling::lower(self, module)?
-            || indexing::lower_module(self, module)?
-            || attention::lower(self, module)?)
-    }
-
-    /// The tensor in the graph.
-    pub(super) fn wire(&mut self, tensor: &TensorIr) -> Result<Wire> {
+    /// Returns the wire of a tensor.
+    pub(super) fn wire(&mut self, tensor: &TensorIr) -> Result<GraphTensor> {
         self.wire_of(tensor.id)
     }
 
-    fn wire_of(&mut self, id: TensorId) -> Result<Wire> {
+    /// Returns the wire of the tensor with this id.
+    pub(super) fn wire_of(&mut self, id: TensorId) -> Result<GraphTensor> {
         if let Some(wire) = self.wires.get(&id) {
             return Ok(wire.clone());
         }
         let value = self.trace.values.get(&id).ok_or_else(|| {
             Error::unsupported(
-                "uses a tensor that is not in the model: an index of a maximum, or memory without values",
+                "uses a tensor that is not in the model: an index of a maximum, or an uninitialised tensor",
             )
         })?;
         let name = self.trace.names.get(&id).map_or("constant", String::as_str);
-        let wire = Wire::named_constant(name, array_from_data(value)?);
+        let wire = GraphTensor::named_constant(name, array_from_data(value)?);
         self.wires.insert(id, wire.clone());
         Ok(wire)
     }
 
-    /// Sizes of a tensor.
+    /// Returns the sizes of a tensor.
     pub(super) fn sizes(&self, tensor: &TensorIr) -> Vec<Size> {
         self.sizes.of(tensor)
     }
 
-    /// Sizes of a tensor, `None` where open.
+    /// Returns the sizes of a tensor, `None` for open ones.
     pub(super) fn dims(&self, tensor: &TensorIr) -> Vec<Dim> {
         self.sizes(tensor).into_iter().map(Size::fixed).collect()
     }
 
-    /// Makes `out` the name of `wire`.
-    pub(super) fn define(&mut self, out: &TensorIr, wire: Wire) {
+    /// Binds `out` to `wire`.
+    pub(super) fn define(&mut self, out: &TensorIr, wire: GraphTensor) {
         self.wires.insert(out.id, wire);
     }
 
     /// Writes an operator between tensors of the recording.
     pub(super) fn apply(&mut self, operator: Operator, inputs: &[&TensorIr], out: &TensorIr) -> Result<()> {
-        let inputs: Vec<Wire> = inputs.iter().map(|input| self.wire(input)).collect::<Result<_>>()?;
+        let inputs: Vec<GraphTensor> = inputs.iter().map(|input| self.wire(input)).collect::<Result<_>>()?;
         self.write(operator, &inputs.iter().collect::<Vec<_>>(), out)
     }
 
-    /// Writes an operator that makes a tensor of the recording.
-    pub(super) fn write(&mut self, operator: Operator, inputs: &[&Wire], out: &TensorIr) -> Result<()> {
+    /// Writes an operator whose output is a tensor of the recording.
+    pub(super) fn write(
+        &mut self,
+        operator: Operator,
+        inputs: &[&GraphTensor],
+        out: &TensorIr,
+    ) -> Result<()> {
         let wire = self.step(operator, inputs, kind_from_dtype(out.dtype)?, self.dims(out))?;
         self.define(out, wire);
         Ok(())
     }
 
-    /// Writes an operator that makes a tensor of no name in the recording.
+    /// Writes an operator whose output is not in the recording.
     pub(super) fn step(
         &mut self,
         operator: Operator,
-        inputs: &[&Wire],
-        kind: Kind,
+        inputs: &[&GraphTensor],
+        kind: ElementType,
         dims: Vec<Dim>,
-    ) -> Result<Wire> {
+    ) -> Result<GraphTensor> {
         let hint = operator.name().to_lowercase();
         self.builder.add(&hint, operator, inputs, kind, dims)
     }
 
-    /// As [`Lowering::step`], for an operator whose result is like `model` in kind and sizes.
-    pub(super) fn step_like(&mut self, operator: Operator, inputs: &[&Wire], model: &Wire) -> Result<Wire> {
+    /// Like [`Lowering::step`], for an output with the type and sizes of `model`.
+    pub(super) fn step_like(
+        &mut self,
+        operator: Operator,
+        inputs: &[&GraphTensor],
+        model: &GraphTensor,
+    ) -> Result<GraphTensor> {
         self.step(operator, inputs, model.kind(), model.dims().to_vec())
     }
 
-    /// Writes an operator with several results.
+    /// Writes an operator with several outputs.
     pub(super) fn step_many(
         &mut self,
         operator: Operator,
-        inputs: &[&Wire],
-        outputs: Vec<(Kind, Vec<Dim>)>,
-    ) -> Result<Vec<Wire>> {
+        inputs: &[&GraphTensor],
+        outputs: Vec<(ElementType, Vec<Dim>)>,
+    ) -> Result<Vec<GraphTensor>> {
         let hint = operator.name().to_lowercase();
         self.builder.add_many(&hint, operator, inputs, outputs)
     }
 
-    /// Sizes as a list that the graph computes where they are open.
-    pub(super) fn shape(&mut self, sizes: &[Size]) -> Result<Wire> {
+    /// Returns sizes as a tensor, which the graph computes where they are open.
+    pub(super) fn shape(&mut self, sizes: &[Size]) -> Result<GraphTensor> {
         let fixed: Option<Vec<usize>> = sizes.iter().map(|size| size.fixed()).collect();
         if let Some(fixed) = fixed {
-            return Ok(Wire::ints(fixed.into_iter().map(|size| size as i64)));
+            return Ok(GraphTensor::ints(fixed.into_iter().map(|size| size as i64)));
         }
         let mut parts = Vec::with_capacity(sizes.len());
         for size in sizes {
             parts.push(match size {
-                Size::Fixed(size) => Wire::ints([*size as i64]),
+                Size::Fixed(size) => GraphTensor::ints([*size as i64]),
                 Size::Batch(times) => self.batch(*times)?,
             });
         }
-        let parts: Vec<&Wire> = parts.iter().collect();
-        self.step(Operator::new("Concat").int("axis", 0), &parts, Kind::Int, vec![Some(sizes.len())])
+        let parts: Vec<&GraphTensor> = parts.iter().collect();
+        self.step(Operator::new("Concat").int("axis", 0), &parts, ElementType::Int, vec![Some(sizes.len())])
     }
 
-    /// That many times the batch, as a list of one.
-    fn batch(&mut self, times: usize) -> Result<Wire> {
+    /// Returns `times` the batch size, as a tensor of one element.
+    fn batch(&mut self, times: usize) -> Result<GraphTensor> {
         let (input, axis) = self
             .open
             .clone()
-            .ok_or_else(|| Error::internal("an open size in a model without an open axis"))?;
-        let shape = self.step(Operator::new("Shape"), &[&input], Kind::Int, vec![Some(input.rank())])?;
-        let index = Wire::ints([axis as i64]);
-        let size =
-            self.step(Operator::new("Gather").int("axis", 0), &[&shape, &index], Kind::Int, vec![Some(1)])?;
+            .ok_or_else(|| Error::internal("a size is open, but the model has no open axis"))?;
+        let shape =
+            self.step(Operator::new("Shape"), &[&input], ElementType::Int, vec![Some(input.rank())])?;
+        let index = GraphTensor::ints([axis as i64]);
+        let size = self.step(
+            Operator::new("Gather").int("axis", 0),
+            &[&shape, &index],
+            ElementType::Int,
+            vec![Some(1)],
+        )?;
         match times {
             1 => Ok(size),
             times => {
-                let times = Wire::ints([times as i64]);
-                self.step(Operator::new("Mul"), &[&size, &times], Kind::Int, vec![Some(1)])
+                let times = GraphTensor::ints([times as i64]);
+                self.step(Operator::new("Mul"), &[&size, &times], ElementType::Int, vec![Some(1)])
             }
         }
     }
 }
 
-/// The kind of ONNX that stands for a type of Burn.
-pub(super) fn kind_from_dtype(dtype: DType) -> Result<Kind> {
+/// Returns the ONNX element type of a Burn type.
+pub(super) fn kind_from_dtype(dtype: DType) -> Result<ElementType> {
     match dtype {
-        DType::QFloat(_) => Err(Error::unsupported("quantised tensors are not exported; dequantise first")),
-        dtype if dtype.is_float() => Ok(Kind::Float),
-        dtype if dtype.is_bool() => Ok(Kind::Bool),
-        _ => Ok(Kind::Int),
+        DType::QFloat(_) => {
+            Err(Error::unsupported("quantised tensors cannot be exported; dequantise them first"))
+        }
+        dtype if dtype.is_float() => Ok(ElementType::Float),
+        dtype if dtype.is_bool() => Ok(ElementType::Bool),
+        _ => Ok(ElementType::Int),
     }
 }
 
-/// A number of the kind that tensors of `dtype` have.
-pub(super) fn scalar(value: ScalarIr, dtype: DType) -> Result<Wire> {
-    Ok(Wire::constant(match kind_from_dtype(dtype)? {
-        Kind::Float => Array::scalar(value.elem()),
-        Kind::Int => Array::int(value.elem()),
-        Kind::Bool => array(Vec::new(), Data::Bool(vec![value.elem()]))?,
+/// Returns a scalar of the element type of `dtype`.
+pub(super) fn scalar(value: ScalarIr, dtype: DType) -> Result<GraphTensor> {
+    Ok(GraphTensor::constant(match kind_from_dtype(dtype)? {
+        ElementType::Float => Array::scalar(value.elem()),
+        ElementType::Int => Array::int(value.elem()),
+        ElementType::Bool => array(Vec::new(), Data::Bool(vec![value.elem()]))?,
     }))
 }
 
-/// Elements under dimensions.
+/// Returns a constant of these dimensions.
 pub(super) fn array(dims: Vec<usize>, data: Data) -> Result<Array> {
-    Array::new(dims, data).ok_or_else(|| Error::internal("a constant has fewer elements than its sizes say"))
+    Array::new(dims, data).ok_or_else(|| Error::internal("the elements of a constant do not match its sizes"))
 }
 
-/// Elements of a tensor that exists.
+/// Returns the elements of a tensor as a constant.
 pub(super) fn array_from_data(data: &TensorData) -> Result<Array> {
     let values = match kind_from_dtype(data.dtype())? {
-        Kind::Float => Data::Float(elements(data)?),
-        Kind::Int => Data::Int(elements(data)?),
-        Kind::Bool => Data::Bool(elements(data)?),
+        ElementType::Float => Data::Float(elements(data)?),
+        ElementType::Int => Data::Int(elements(data)?),
+        ElementType::Bool => Data::Bool(elements(data)?),
     };
     array(data.shape().to_vec(), values)
 }

@@ -1,8 +1,8 @@
-//! Products of matrices.
+//! Matrix products.
 
 use burn::backend::ir::{FloatOperationIr, ModuleOperationIr};
 use opendr_engine::Result;
-use opendr_onnx::{Kind, Operator};
+use opendr_onnx::{ElementType, Operator};
 
 use super::lowering::Lowering;
 
@@ -14,7 +14,7 @@ pub(super) fn lower(graph: &mut Lowering<'_>, operation: &FloatOperationIr) -> R
     Ok(true)
 }
 
-/// `x W + b`, with `W` of `[in, out]`.
+/// Writes `x W + b`, with `W` of shape `[in, out]`.
 pub(super) fn lower_module(graph: &mut Lowering<'_>, operation: &ModuleOperationIr) -> Result<bool> {
     let ModuleOperationIr::Linear(op) = operation else { return Ok(false) };
     let Some(bias) = &op.bias else {
@@ -23,7 +23,7 @@ pub(super) fn lower_module(graph: &mut Lowering<'_>, operation: &ModuleOperation
     };
     let (x, weight, bias) = (graph.wire(&op.x)?, graph.wire(&op.weight)?, graph.wire(bias)?);
     let dims = graph.dims(&op.out);
-    let product = graph.step(Operator::new("MatMul"), &[&x, &weight], Kind::Float, dims)?;
+    let product = graph.step(Operator::new("MatMul"), &[&x, &weight], ElementType::Float, dims)?;
     graph.write(Operator::new("Add"), &[&product, &bias], &op.out)?;
     Ok(true)
 }

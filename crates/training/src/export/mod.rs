@@ -1,9 +1,9 @@
-//! Trained network to ONNX.
+//! Export of a trained network to ONNX.
 //!
 //! [`onnx`] runs the network's forward pass once on a device that records operations instead of executing them
-//! (`burn-capture`), and writes what was recorded with [`opendr_onnx::Builder`], which evaluates what is known. The
-//! network is taken as it infers: without dropout, with the running statistics of its batch normalisations, which end
-//! up in the weights of the convolutions before them.
+//! (`burn-capture`), and writes the recording with [`opendr_onnx::Builder`], which folds constants. The network is exported in
+//! inference mode: without dropout, with the running statistics of its batch normalisations, which are folded into the
+//! convolutions before them.
 //!
 //! ```
 //! use burn::nn::LinearConfig;
@@ -24,16 +24,15 @@
 //!
 //! # Open batch
 //!
-//! A recording knows numbers, not where they come from. With [`Input::open`] the forward pass is recorded twice, with
-//! two sizes: what stays is fixed, what grows in proportion is the batch, and anything else is an error that names the
-//! operation. Nothing is executed, so neither recording costs more than its list of operations.
+//! A recording contains sizes, not their origin. With [`Input::open`] the forward pass is recorded twice, with two batch sizes:
+//! sizes that stay equal are fixed, sizes in proportion to the batch follow it, and anything else is an error with the name of
+//! the operation. Nothing is executed, so a recording costs no more than its list of operations.
 //!
 //! # Adding an operation
 //!
-//! Each family of operations has a file. A function there gets the operation as `burn-ir` describes it and writes
-//! nodes through `Lowering`; it answers `false` for what it does not know, which becomes the
-//! error that the user sees. What ONNX has no operator for, but Burn has (bicubic resizing, adaptive pooling of odd
-//! sizes), is often linear: then Burn computes the matrix.
+//! Each family of operations has a file. Its functions receive an operation as described by `burn-ir` and write nodes through
+//! `Lowering`; they return `false` for an unknown operation, which becomes an error. Operations of Burn without an ONNX
+//! operator (bicubic resizing, adaptive pooling of uneven sizes) are often linear: Burn then computes their matrix.
 
 mod activation;
 mod arithmetic;
@@ -48,6 +47,7 @@ mod lowering;
 mod matrix;
 mod normalization;
 mod operation_name;
+mod operations;
 mod output;
 mod pooling;
 mod rearrangement;
@@ -70,21 +70,21 @@ use lowering::Lowering;
 use sizes::Sizes;
 use trace::Trace;
 
-/// Sizes that an open axis is recorded with. No layer has them by chance, and neither divides the other.
+/// Batch sizes of the two recordings. No layer has these sizes by chance, and neither divides the other.
 const BATCHES: [usize; 2] = [97, 101];
 
-/// Writes `network` as an ONNX model (opset 17, IR version 8).
+/// Exports `network` as an ONNX model (opset 17, IR version 8).
 ///
-/// `inputs` is one [`Input`], or a tuple of them; `forward` gets a tensor for each. `forward` answers a tensor of any
-/// rank and kind, or a tuple, array or vector of them, which become the model's outputs under the names in `outputs`.
-/// Floats are written as `f32`, integers as `i64`.
+/// `inputs` is one [`Input`], or a tuple of them; `forward` receives a tensor for each and returns a tensor of any rank and
+/// element type, or a tuple, array or vector of tensors. These become the model's outputs with the names in `outputs`. Floats
+/// are written as `f32`, integers as `i64`.
 ///
 /// # Errors
-/// `Unsupported` when `forward` uses an operation that is not lowered, or its result depends on an open axis in
-/// another way than by its size; `Internal` when the number of names is not the number of outputs.
+/// `Unsupported` when `forward` uses an operation without lowering, or its result depends on an open axis other than by its
+/// size; `Internal` when the number of names differs from the number of outputs.
 ///
 /// # Panics
-/// Where `forward` does: Burn's shape checks panic.
+/// When `forward` panics, such as by Burn's shape checks.
 pub fn onnx<M: Module, I: Inputs, O: Outputs>(
     network: &M,
     inputs: I,
@@ -106,7 +106,7 @@ pub fn onnx<M: Module, I: Inputs, O: Outputs>(
     };
     if trace.outputs.len() != outputs.len() {
         return Err(Error::internal(format!(
-            "the network gives {} outputs, but there are {} names: {}",
+            "the network has {} outputs, but there are {} names: {}",
             trace.outputs.len(),
             outputs.len(),
             outputs.join(", ")

@@ -2,7 +2,7 @@
 
 use burn::backend::ir::ModuleOperationIr;
 use opendr_engine::Result;
-use opendr_onnx::{Operator, Wire};
+use opendr_onnx::{GraphTensor, Operator};
 
 use super::lowering::Lowering;
 
@@ -17,7 +17,7 @@ pub(super) fn lower(graph: &mut Lowering<'_>, operation: &ModuleOperationIr) -> 
                 Operator::new("LayerNormalization").int("axis", -1).float("epsilon", op.epsilon.elem());
             let (x, gamma) = (graph.wire(&op.input)?, graph.wire(&op.gamma)?);
             let beta = op.beta.as_ref().map(|beta| graph.wire(beta)).transpose()?;
-            let inputs: Vec<&Wire> = [&x, &gamma].into_iter().chain(&beta).collect();
+            let inputs: Vec<&GraphTensor> = [&x, &gamma].into_iter().chain(&beta).collect();
             graph.write(operator, &inputs, &op.out)?;
         }
         _ => return Ok(false),

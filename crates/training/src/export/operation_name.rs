@@ -1,8 +1,8 @@
-//! What an operation is called in messages.
+//! Names of operations in messages.
 
 use burn::backend::ir::OperationIr;
 
-/// The operation and the sizes it works on: `Conv2d of [1, 3, 8, 8], [4, 3, 3, 3] to [1, 4, 6, 6]`.
+/// Returns the operation with the sizes of its tensors: `Conv2d of [1, 3, 8, 8], [4, 3, 3, 3] to [1, 4, 6, 6]`.
 pub(super) fn operation_name(operation: &OperationIr) -> String {
     let sizes = |tensors: Vec<String>| tensors.join(", ");
     let inputs = sizes(operation.inputs().map(|tensor| format!("{:?}", tensor.shape.as_slice())).collect());
@@ -10,7 +10,7 @@ pub(super) fn operation_name(operation: &OperationIr) -> String {
     format!("{} of {inputs} to {outputs}", variant(operation))
 }
 
-/// The innermost variant: `Conv2d` of `Module(Conv2d(Conv2dOpIr { .. }))`.
+/// Returns the innermost variant: `Conv2d` of `Module(Conv2d(Conv2dOpIr { .. }))`.
 fn variant(operation: &OperationIr) -> String {
     if let OperationIr::Custom(custom) = operation {
         return custom.id.clone();

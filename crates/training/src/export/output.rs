@@ -1,4 +1,4 @@
-//! What a network answers.
+//! Outputs of a network.
 
 use burn::backend::capture::TensorId;
 use burn::tensor::Tensor;
@@ -6,9 +6,9 @@ use opendr_engine::Result;
 
 use super::input::ElementKind;
 
-/// A tensor of any rank and kind; or tuples (up to eight), arrays and vectors of them.
+/// A tensor of any rank and element type; or tuples (up to eight), arrays and vectors of them.
 pub trait Outputs {
-    /// What the recording knows the tensors by, in order.
+    /// Appends the ids of the tensors in the recording, in order.
     #[doc(hidden)]
     fn ids(self, ids: &mut Vec<TensorId>) -> Result<()>;
 }

@@ -1,4 +1,4 @@
-//! Maxima and means over windows.
+//! Maximum and average pooling.
 
 use burn::backend::ir::{ModuleOperationIr, TensorIr};
 use opendr_engine::Result;
@@ -23,7 +23,7 @@ pub(super) fn lower(graph: &mut Lowering<'_>, operation: &ModuleOperationIr) -> 
     macro_rules! mean {
         ($op:expr, $kernel:expr, $stride:expr, $padding:expr) => {{
             let window = Window { kernel: $kernel, stride: $stride, padding: $padding, dilation: &[1; 2] };
-            // Where a border beyond the padding would count, runtimes do not agree.
+            // Runtimes disagree on whether a border beyond the padding counts.
             if $op.ceil_mode
                 && $op.count_include_pad
                 && window.pads(true, &$op.x, &$op.out) != window.pads(false, &$op.x, &$op.out)
@@ -38,7 +38,7 @@ pub(super) fn lower(graph: &mut Lowering<'_>, operation: &ModuleOperationIr) -> 
     match operation {
         Op::MaxPool1d(op) => maximum!(op, &[op.kernel_size], &[op.stride], &[op.padding], &[op.dilation]),
         Op::MaxPool2d(op) => maximum!(op, &op.kernel_size, &op.stride, &op.padding, &op.dilation),
-        // The places of the maxima are only for the way back.
+        // The indices of the maxima are needed only for the backward pass.
         Op::MaxPool1dWithIndices(op) => {
             maximum!(op, &[op.kernel_size], &[op.stride], &[op.padding], &[op.dilation])
         }
@@ -65,7 +65,8 @@ impl Window<'_> {
             .ints("pads", pads(&self.pads(ceil, x, out)))
     }
 
-    /// Padding before and after each axis; what `ceil` adds to the result is padding after, on which all runtimes agree.
+    /// Returns the padding before and after each axis; the extra output of `ceil` becomes padding after, on which all runtimes
+    /// agree.
     fn pads(&self, ceil: bool, x: &TensorIr, out: &TensorIr) -> Vec<(usize, usize)> {
         let axis = |axis: usize| {
             let (kernel, stride, before) = (self.kernel[axis], self.stride[axis], self.padding[axis]);

@@ -1,9 +1,9 @@
-//! Elements moved, repeated and converted, not changed.
+//! Operations that move, repeat or convert elements.
 
 use burn::backend::ir::{BaseOperationIr, SliceOpIr, TensorIr};
 use burn::tensor::Slice;
 use opendr_engine::{Error, Result};
-use opendr_onnx::{Operator, Wire};
+use opendr_onnx::{GraphTensor, Operator};
 
 use super::lowering::{Lowering, kind_from_dtype};
 use super::sizes::Size;
@@ -22,12 +22,12 @@ pub(super) fn lower(graph: &mut Lowering<'_>, operation: &BaseOperationIr) -> Re
         Op::Flip(op) => {
             let axes = || op.axes.iter().map(|&axis| axis as i64);
             let count = op.axes.len();
-            let (starts, steps) = (Wire::ints(vec![-1; count]), Wire::ints(vec![-1; count]));
-            let ends = Wire::ints(vec![i64::MIN; count]);
+            let (starts, steps) = (GraphTensor::ints(vec![-1; count]), GraphTensor::ints(vec![-1; count]));
+            let ends = GraphTensor::ints(vec![i64::MIN; count]);
             let x = graph.wire(&op.input)?;
             graph.write(
                 Operator::new("Slice"),
-                &[&x, &starts, &ends, &Wire::ints(axes()), &steps],
+                &[&x, &starts, &ends, &GraphTensor::ints(axes()), &steps],
                 &op.out,
             )?;
         }
@@ -43,7 +43,7 @@ pub(super) fn lower(graph: &mut Lowering<'_>, operation: &BaseOperationIr) -> Re
     Ok(true)
 }
 
-/// The same numbers as another kind. Burn's types of one kind are one type in the file.
+/// Writes a conversion to another element type. Burn's types of one kind are one type in the file.
 pub(super) fn cast(graph: &mut Lowering<'_>, input: &TensorIr, out: &TensorIr) -> Result<()> {
     let (x, kind) = (graph.wire(input)?, kind_from_dtype(out.dtype)?);
     if x.kind() == kind {
@@ -53,7 +53,7 @@ pub(super) fn cast(graph: &mut Lowering<'_>, input: &TensorIr, out: &TensorIr) -
     graph.write(Operator::new("Cast").int("to", kind.data_type() as i64), &[&x], out)
 }
 
-/// One open size can be left to the runtime to infer; further ones are computed.
+/// One open size is inferred by the runtime; further ones are computed.
 fn reshape(graph: &mut Lowering<'_>, input: &TensorIr, out: &TensorIr) -> Result<()> {
     let (from, to) = (graph.sizes(input), graph.sizes(out));
     let x = graph.wire(input)?;
@@ -63,13 +63,13 @@ fn reshape(graph: &mut Lowering<'_>, input: &TensorIr, out: &TensorIr) -> Result
     }
     let open = to.iter().filter(|size| size.fixed().is_none()).count();
     let shape = match open {
-        1 => Wire::ints(to.iter().map(|size| size.fixed().map_or(-1, |size| size as i64))),
+        1 => GraphTensor::ints(to.iter().map(|size| size.fixed().map_or(-1, |size| size as i64))),
         _ => graph.shape(&to)?,
     };
     graph.write(Operator::new("Reshape"), &[&x, &shape], out)
 }
 
-/// ONNX expands both ways, so that a one keeps an open size.
+/// ONNX broadcasts both ways, so a size of one keeps an open size.
 fn expand(graph: &mut Lowering<'_>, input: &TensorIr, out: &TensorIr) -> Result<()> {
     let (from, to) = (graph.sizes(input), graph.sizes(out));
     let x = graph.wire(input)?;
@@ -103,12 +103,12 @@ fn repeat(
     match (from.get(axis), to.get(axis)) {
         (Some(Size::Fixed(1)), _) => expand(graph, input, out),
         (Some(Size::Fixed(_)), Some(Size::Batch(_))) => Err(Error::unsupported(
-            "repeats several elements as often as the batch is large; repeat one, and reshape",
+            "repeats several elements by the batch size; repeat one element and reshape",
         )),
         _ => {
             let repeats = (0..from.len()).map(|other| if other == axis { times as i64 } else { 1 });
             let x = graph.wire(input)?;
-            graph.write(Operator::new("Tile"), &[&x, &Wire::ints(repeats)], out)
+            graph.write(Operator::new("Tile"), &[&x, &GraphTensor::ints(repeats)], out)
         }
     }
 }
@@ -129,15 +129,15 @@ fn slice(graph: &mut Lowering<'_>, op: &SliceOpIr) -> Result<()> {
         return Ok(());
     }
     let bounds: Vec<(i64, i64)> = cut.iter().map(|(_, range)| bounds(range)).collect();
-    let starts = Wire::ints(bounds.iter().map(|bounds| bounds.0));
-    let ends = Wire::ints(bounds.iter().map(|bounds| bounds.1));
-    let axes = Wire::ints(cut.iter().map(|(axis, _)| *axis as i64));
-    let steps = Wire::ints(cut.iter().map(|(_, range)| range.step as i64));
+    let starts = GraphTensor::ints(bounds.iter().map(|bounds| bounds.0));
+    let ends = GraphTensor::ints(bounds.iter().map(|bounds| bounds.1));
+    let axes = GraphTensor::ints(cut.iter().map(|(axis, _)| *axis as i64));
+    let steps = GraphTensor::ints(cut.iter().map(|(_, range)| range.step as i64));
     graph.write(Operator::new("Slice"), &[&x, &starts, &ends, &axes, &steps], &op.out)
 }
 
-/// First position and the one after the last. With a negative step Burn goes through `start..end` backwards, while
-/// ONNX wants the position to start from, and the one before the last.
+/// Returns the first position and the one after the last. With a negative step Burn traverses `start..end` backwards, while
+/// ONNX takes the first position and the one before the last.
 fn bounds(range: &Slice) -> (i64, i64) {
     let (start, end) = (range.start as i64, range.end.map(|end| end as i64));
     match range.step > 0 {

@@ -1,8 +1,8 @@
-//! Sums, means and extremes over axes.
+//! Reductions over axes.
 
 use burn::backend::ir::{BaseOperationIr, NumericOperationIr, ReduceDimOpIr, TensorIr};
 use opendr_engine::Result;
-use opendr_onnx::{Kind, Operator, Wire};
+use opendr_onnx::{ElementType, GraphTensor, Operator};
 
 use super::lowering::Lowering;
 
@@ -41,7 +41,8 @@ pub(super) fn lower(graph: &mut Lowering<'_>, operation: &NumericOperationIr) ->
             reduce(graph, "ReduceMin", &x, &[op.dim], &op.out)?;
         }
         Op::CumSum(op) => {
-            let (x, axis) = (graph.wire(&op.input)?, Wire::constant(opendr_onnx::Array::int(op.axis as i64)));
+            let (x, axis) =
+                (graph.wire(&op.input)?, GraphTensor::constant(opendr_onnx::Array::int(op.axis as i64)));
             graph.write(Operator::new("CumSum"), &[&x, &axis], &op.out)?;
         }
         _ => return Ok(false),
@@ -49,7 +50,7 @@ pub(super) fn lower(graph: &mut Lowering<'_>, operation: &NumericOperationIr) ->
     Ok(true)
 }
 
-/// Whether all or any are true, as the least or the largest of zeros and ones.
+/// Writes all and any, as minimum and maximum of zeros and ones.
 pub(super) fn lower_base(graph: &mut Lowering<'_>, operation: &BaseOperationIr) -> Result<bool> {
     use BaseOperationIr as Op;
     let (name, input, axes, out) = match operation {
@@ -60,11 +61,11 @@ pub(super) fn lower_base(graph: &mut Lowering<'_>, operation: &BaseOperationIr) 
         _ => return Ok(false),
     };
     let x = graph.wire(input)?;
-    let to_float = Operator::new("Cast").int("to", Kind::Float.data_type() as i64);
-    let numbers = graph.step(to_float, &[&x], Kind::Float, x.dims().to_vec())?;
+    let to_float = Operator::new("Cast").int("to", ElementType::Float.data_type() as i64);
+    let numbers = graph.step(to_float, &[&x], ElementType::Float, x.dims().to_vec())?;
     let one = reduced(graph, name, &numbers, &axes)?;
-    let one = as_large_as(graph, one, out)?;
-    graph.write(Operator::new("Cast").int("to", Kind::Bool.data_type() as i64), &[&one], out)?;
+    let one = reshaped_as(graph, one, out)?;
+    graph.write(Operator::new("Cast").int("to", ElementType::Bool.data_type() as i64), &[&one], out)?;
     Ok(true)
 }
 
@@ -85,36 +86,41 @@ fn whole(graph: &mut Lowering<'_>, name: &'static str, input: &TensorIr, out: &T
 fn reduce(
     graph: &mut Lowering<'_>,
     name: &'static str,
-    x: &Wire,
+    x: &GraphTensor,
     axes: &[usize],
     out: &TensorIr,
 ) -> Result<()> {
     let result = reduced(graph, name, x, axes)?;
-    let result = as_large_as(graph, result, out)?;
+    let result = reshaped_as(graph, result, out)?;
     graph.define(out, result);
     Ok(())
 }
 
-/// The reduction, with ones where the axes were.
-fn reduced(graph: &mut Lowering<'_>, name: &'static str, x: &Wire, axes: &[usize]) -> Result<Wire> {
+/// Returns the reduction with size one along the axes.
+fn reduced(
+    graph: &mut Lowering<'_>,
+    name: &'static str,
+    x: &GraphTensor,
+    axes: &[usize],
+) -> Result<GraphTensor> {
     let mut dims = x.dims().to_vec();
     axes.iter().for_each(|&axis| dims[axis] = Some(1));
     let axes = axes.iter().map(|&axis| axis as i64);
     let operator = Operator::new(name).int("keepdims", 1);
     match name {
-        // Axes are an input of the sum from opset 13 on, of the others from 18 on.
-        "ReduceSum" => graph.step(operator, &[x, &Wire::ints(axes)], x.kind(), dims),
+        // The axes are an input of the sum from opset 13 on, of the others from 18 on.
+        "ReduceSum" => graph.step(operator, &[x, &GraphTensor::ints(axes)], x.kind(), dims),
         _ => graph.step(operator.ints("axes", axes), &[x], x.kind(), dims),
     }
 }
 
-/// Burn's reductions keep the axis, or answer `[1]`.
-fn as_large_as(graph: &mut Lowering<'_>, x: Wire, out: &TensorIr) -> Result<Wire> {
+/// Burn's reductions keep the axis, or return `[1]`.
+fn reshaped_as(graph: &mut Lowering<'_>, x: GraphTensor, out: &TensorIr) -> Result<GraphTensor> {
     if x.rank() == out.shape.num_dims() {
         return Ok(x);
     }
     let dims = graph.dims(out);
-    let shape = Wire::ints(out.shape.iter().map(|&dim| dim as i64));
+    let shape = GraphTensor::ints(out.shape.iter().map(|&dim| dim as i64));
     graph.step(Operator::new("Reshape"), &[&x, &shape], x.kind(), dims)
 }
 

@@ -1,4 +1,4 @@
-//! Pictures made larger and smaller.
+//! Resizing of images.
 
 use burn::backend::ir::{
     FloatOperationIr, GridSamplePaddingModeIr, InterpolateModeIr, InterpolateOpIr, ModuleOperationIr,
@@ -8,7 +8,7 @@ use burn::tensor::module::{adaptive_avg_pool2d, interpolate};
 use burn::tensor::ops::InterpolateOptions;
 use burn::tensor::{Device, Tensor};
 use opendr_engine::{Error, Result};
-use opendr_onnx::{Kind, Operator, Wire};
+use opendr_onnx::{ElementType, GraphTensor, Operator};
 
 use super::lowering::{Lowering, array_from_data};
 
@@ -26,7 +26,7 @@ pub(super) fn lower(graph: &mut Lowering<'_>, operation: &ModuleOperationIr) -> 
     Ok(true)
 }
 
-/// Values of a picture at the places that a grid says.
+/// Writes grid sampling.
 pub(super) fn lower_grid(graph: &mut Lowering<'_>, operation: &FloatOperationIr) -> Result<bool> {
     let FloatOperationIr::GridSample2d(op) = operation else { return Ok(false) };
     let mode = match op.options.mode {
@@ -58,7 +58,7 @@ fn resize(graph: &mut Lowering<'_>, op: &InterpolateOpIr) -> Result<()> {
         InterpolateModeIr::Bilinear => Operator::new("Resize")
             .text("mode", "linear")
             .text("coordinate_transformation_mode", if corners { "align_corners" } else { "half_pixel" }),
-        // rten has no cubic mode, ONNX no Lanczos; both are linear in the picture.
+        // rten has no cubic mode, ONNX no Lanczos; both are linear in the image.
         mode => {
             let options = InterpolateOptions::new(mode.clone().into()).with_align_corners(corners);
             let resized = |picture, size| interpolate(picture, options.clone().with_output_size(size));
@@ -69,13 +69,14 @@ fn resize(graph: &mut Lowering<'_>, op: &InterpolateOpIr) -> Result<()> {
     };
     let scales = [1.0, 1.0, scale(height, size[0])?, scale(width, size[1])?];
     let scales = opendr_onnx::Array::new(vec![4], opendr_onnx::Data::Float(scales.to_vec()));
-    let scales = scales.map(Wire::constant).ok_or_else(|| Error::internal("four scales are not four"))?;
+    let scales =
+        scales.map(GraphTensor::constant).ok_or_else(|| Error::internal("resizing needs four scales"))?;
     let x = graph.wire(&op.x)?;
-    graph.write(operator, &[&x, &Wire::absent(), &scales], &op.out)
+    graph.write(operator, &[&x, &GraphTensor::absent(), &scales], &op.out)
 }
 
-/// The factor with which a runtime, which rounds down in single precision, gets from one size to the other. Sizes
-/// themselves cannot be given: in opset 17 that of the batch would be among them.
+/// Returns the factor with which a runtime, which rounds down in single precision, gets from one size to the other. The sizes
+/// themselves cannot be used: in opset 17 the batch size would be among them.
 fn scale(from: usize, to: usize) -> Result<f32> {
     let exact = (to as f64 / from as f64) as f32;
     [exact, exact.next_up()]
@@ -83,10 +84,12 @@ fn scale(from: usize, to: usize) -> Result<f32> {
         .find(|scale| {
             (from as f32 * scale).floor() as usize == to && (from as f64 * f64::from(*scale)) as usize == to
         })
-        .ok_or_else(|| Error::unsupported(format!("no factor resizes {from} to {to} in single precision")))
+        .ok_or_else(|| {
+            Error::unsupported(format!("resizing {from} to {to} has no factor in single precision"))
+        })
 }
 
-/// Means over windows that divide the input as evenly as they can.
+/// Writes adaptive average pooling, over windows that divide the input as evenly as possible.
 fn mean(graph: &mut Lowering<'_>, x: &TensorIr, size: &[usize], out: &TensorIr) -> Result<()> {
     if size.iter().all(|&size| size == 1) {
         return graph.apply(Operator::new("GlobalAveragePool"), &[x], out);
@@ -106,11 +109,11 @@ fn mean(graph: &mut Lowering<'_>, x: &TensorIr, size: &[usize], out: &TensorIr) 
 }
 
 fn sides(tensor: &TensorIr) -> Result<[usize; 4]> {
-    tensor.shape.as_slice().try_into().map_err(|_| Error::internal("a picture of other than four axes"))
+    tensor.shape.as_slice().try_into().map_err(|_| Error::internal("an image needs four axes"))
 }
 
-/// What a linear function does to the rows of a picture, as the matrix `[rows after, rows before]`: Burn computes it
-/// from the picture that is the unit matrix.
+/// Returns the matrix `[rows after, rows before]` of a linear function on the rows of an image: Burn computes it from the unit
+/// matrix.
 fn matrix(rows: usize, function: impl Fn(Tensor<4>) -> Tensor<4>) -> Result<Tensor<2>> {
     let unit = Tensor::<2>::eye(rows, &Device::flex()).reshape([1, 1, rows, rows]);
     let result = function(unit);
@@ -118,21 +121,22 @@ fn matrix(rows: usize, function: impl Fn(Tensor<4>) -> Tensor<4>) -> Result<Tens
     Ok(result.reshape([after, before]))
 }
 
-/// Applies one matrix to the last axis, or one to the rows and one to the columns of a picture.
+/// Applies one matrix to the last axis, or one to the rows and one to the columns of an image.
 fn separable(graph: &mut Lowering<'_>, x: &TensorIr, matrices: &[Tensor<2>], out: &TensorIr) -> Result<()> {
     let mut picture = graph.wire(x)?;
     let dims = graph.dims(out);
-    let constant = |matrix: Tensor<2>| Ok::<_, Error>(Wire::constant(array_from_data(&matrix.into_data())?));
+    let constant =
+        |matrix: Tensor<2>| Ok::<_, Error>(GraphTensor::constant(array_from_data(&matrix.into_data())?));
     let columns = match matrices {
         [rows, columns] => {
             let mut between = picture.dims().to_vec();
             between[2] = dims.get(2).copied().flatten();
             let rows = constant(rows.clone())?;
-            picture = graph.step(Operator::new("MatMul"), &[&rows, &picture], Kind::Float, between)?;
+            picture = graph.step(Operator::new("MatMul"), &[&rows, &picture], ElementType::Float, between)?;
             columns
         }
         [columns] => columns,
-        _ => return Err(Error::unsupported("resamples other than one or two axes")),
+        _ => return Err(Error::unsupported("resampling is supported over one or two axes only")),
     };
     let columns = constant(columns.clone().transpose())?;
     graph.write(Operator::new("MatMul"), &[&picture, &columns], out)

@@ -1,4 +1,4 @@
-//! Which sizes are fixed and which follow the batch.
+//! Fixed sizes and sizes that follow the batch.
 
 use std::collections::HashMap;
 
@@ -10,17 +10,17 @@ use opendr_engine::{Error, Result};
 use super::operation_name::operation_name;
 use super::trace::Trace;
 
-/// The size of a tensor along one axis.
+/// Size of a tensor along one axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Size {
     /// The same for every batch.
     Fixed(usize),
-    /// That many times the batch.
+    /// A multiple of the batch size.
     Batch(usize),
 }
 
 impl Size {
-    /// The size, if it is fixed.
+    /// Returns the size if it is fixed.
     pub(super) fn fixed(self) -> Option<usize> {
         match self {
             Self::Fixed(size) => Some(size),
@@ -28,22 +28,22 @@ impl Size {
         }
     }
 
-    /// What the size is called in the file; empty where it has no name.
+    /// Returns the name of the size in the file; empty where it has none.
     pub(super) fn open_name(self) -> &'static str {
         if self == Self::Batch(1) { "batch" } else { "" }
     }
 }
 
-/// The sizes of all tensors of a recording.
+/// Sizes of all tensors of a recording.
 pub(super) enum Sizes {
-    /// As they were recorded.
+    /// As recorded.
     Fixed,
-    /// As two recordings together say.
+    /// Reconciled from two recordings.
     Reconciled(HashMap<TensorId, Vec<Size>>),
 }
 
 impl Sizes {
-    /// The sizes of one tensor.
+    /// Returns the sizes of a tensor.
     pub(super) fn of(&self, tensor: &TensorIr) -> Vec<Size> {
         let recorded = || tensor.shape.iter().map(|&dim| Size::Fixed(dim)).collect();
         match self {
@@ -52,7 +52,7 @@ impl Sizes {
         }
     }
 
-    /// The sizes of the tensor with that id, if they were reconciled.
+    /// Returns the sizes of the tensor with this id, if they were reconciled.
     pub(super) fn of_id(&self, id: TensorId) -> &[Size] {
         match self {
             Self::Fixed => &[],
@@ -60,11 +60,11 @@ impl Sizes {
         }
     }
 
-    /// Compares recordings with two sizes of the batch. They have to be alike but for sizes that are proportional to
-    /// the batch; slices of `first` that count from the end of such an axis are rewritten to say so.
+    /// Compares recordings with two batch sizes. They must be equal except for sizes in proportion to the batch; slices of
+    /// `first` that count from the end of such an axis are rewritten accordingly.
     ///
     /// # Errors
-    /// `Unsupported` that names the operation that differs.
+    /// `Unsupported` with the name of the operation that differs.
     pub(super) fn reconciled(first: &mut Trace, second: &Trace, batches: [usize; 2]) -> Result<Self> {
         if first.operations.len() != second.operations.len() {
             return Err(Error::unsupported(format!(
@@ -86,7 +86,7 @@ impl Sizes {
     }
 }
 
-/// Tensors and ranges of an operation, in the order in which Burn visits them.
+/// Tensors and ranges of an operation, in the order of Burn's visitor.
 #[derive(Default)]
 struct Collected {
     tensors: Vec<TensorIr>,
@@ -111,7 +111,7 @@ impl Collected {
     }
 }
 
-/// Puts tensors and ranges into an operation, in the same order.
+/// Replaces tensors and ranges of an operation, in the same order.
 struct Replaced<T, R> {
     tensors: T,
     ranges: R,
@@ -142,7 +142,7 @@ fn reconcile(
     let of_b = Collected::from_operation(b);
     let differs = || {
         Error::unsupported(format!(
-            "{} depends on the size of the batch in another way than by the sizes of its tensors; it cannot be \
+            "{} depends on the batch size other than by the sizes of its tensors; it cannot be \
              exported with an open batch",
             operation_name(b)
         ))
@@ -155,7 +155,7 @@ fn reconcile(
         let paired = pair(&x.shape, &y.shape, batches).filter(|_| same).ok_or_else(differs)?;
         sizes.insert(x.id, paired);
     }
-    // With its own tensors and ranges put into it, the other recording has to be equal.
+    // With its own tensors and ranges replaced, the other recording must be equal.
     let mut copy = b.clone();
     copy.visit_mut(&mut Replaced { tensors: of_a.tensors.into_iter(), ranges: of_a.ranges.into_iter() });
     if let (Some(BaseOperationIr::RepeatDim(x)), Some(BaseOperationIr::RepeatDim(y))) =
@@ -197,7 +197,7 @@ fn pair(a: &[usize], b: &[usize], batches: [usize; 2]) -> Option<Vec<Size>> {
     (a.len() == b.len()).then(|| a.iter().zip(b).map(size).collect())?
 }
 
-/// Lets positions on an axis that grows count from the end, where that is what both recordings did.
+/// Makes positions on a growing axis count from its end, where both recordings agree on that.
 fn reconcile_slices(a: &mut SliceOpIr, b: &SliceOpIr) -> Option<()> {
     let dims = a.tensor.shape.iter().zip(b.tensor.shape.iter());
     for ((x, y), (&dim_x, &dim_y)) in a.ranges.iter_mut().zip(&b.ranges).zip(dims) {
@@ -218,14 +218,14 @@ fn reconcile_slices(a: &mut SliceOpIr, b: &SliceOpIr) -> Option<()> {
     Some(())
 }
 
-/// Tensors made from data have to be the same for every batch.
+/// Checks that tensors created from data are the same for every batch.
 fn check_values(first: &Trace, second: &Trace, ids: &HashMap<TensorId, TensorId>) -> Result<()> {
     for (id, value) in &first.values {
         if let Some(other) = ids.get(id).and_then(|id| second.values.get(id))
             && value.as_bytes() != other.as_bytes()
         {
             return Err(Error::unsupported(format!(
-                "the forward pass makes a constant of sizes {:?} that depends on the size of the batch; make it from \
+                "the forward pass creates a constant of sizes {:?} that depends on the batch size; create it from \
                  one row and expand it",
                 value.shape().as_slice()
             )));

@@ -1,8 +1,8 @@
-//! Sorted values and the largest of them.
+//! Sorting and top-k.
 
 use burn::backend::ir::{NumericOperationIr, TensorIr};
 use opendr_engine::{Error, Result};
-use opendr_onnx::{Kind, Operator, Wire};
+use opendr_onnx::{ElementType, GraphTensor, Operator};
 
 use super::lowering::Lowering;
 
@@ -37,8 +37,8 @@ fn sort(
     let x = graph.wire(x)?;
     let operator =
         Operator::new("TopK").int("axis", axis as i64).int("largest", i64::from(descending)).int("sorted", 1);
-    let outputs = vec![(x.kind(), dims.clone()), (Kind::Int, dims)];
-    let sorted = graph.step_many(operator, &[&x, &Wire::ints([count as i64])], outputs)?;
+    let outputs = vec![(x.kind(), dims.clone()), (ElementType::Int, dims)];
+    let sorted = graph.step_many(operator, &[&x, &GraphTensor::ints([count as i64])], outputs)?;
     for (out, wire) in [values, places].into_iter().zip(sorted) {
         if let Some(out) = out {
             graph.define(out, wire);

@@ -35,7 +35,7 @@ fn linear() -> burn::nn::Linear {
 }
 
 #[test]
-fn sizes_names_and_weights_stand_in_the_model() {
+fn the_model_contains_sizes_names_and_weights() {
     let input = Input::new("features", [7, 4]).open(0);
     let graph = graph(onnx(&linear(), input, &["logits"], |network, x| network.forward(x)));
     assert_eq!(operators(&graph), ["MatMul", "Add"]);
@@ -73,7 +73,7 @@ fn several_inputs_and_kinds() {
 }
 
 #[test]
-fn what_is_not_lowered_is_named_with_its_sizes() {
+fn operations_without_lowering_are_named_with_their_sizes() {
     let input = Input::new("image", [1, 2, 4, 4]);
     let options = UnfoldOptions::new([1, 1], [0, 0], [1, 1]);
     let error = onnx(&linear(), input, &["y"], |_, x| unfold4d(x, [2, 2], options.clone())).unwrap_err();
@@ -88,7 +88,7 @@ fn random_numbers_are_refused() {
 }
 
 #[test]
-fn what_depends_on_the_batch_is_refused() {
+fn values_that_depend_on_the_batch_are_refused() {
     let refused = |forward: fn(Tensor<2>) -> Tensor<2>| {
         let error = onnx(&linear(), Input::new("x", [1, 4]).open(0), &["y"], |_, x| forward(x)).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::Unsupported);
@@ -113,20 +113,20 @@ fn what_depends_on_the_batch_is_refused() {
 }
 
 #[test]
-fn a_name_too_few_is_refused() {
+fn a_missing_output_name_is_refused() {
     let error =
         onnx(&linear(), Input::new("x", [1, 4]), &["a", "b"], |network, x| network.forward(x)).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::Internal);
 }
 
 #[test]
-fn one_input_can_be_given_out_as_it_is() {
+fn an_input_can_be_an_output() {
     let graph = graph(onnx(&linear(), Input::new("x", [1, 4]), &["y"], |_, x| x));
     assert_eq!(operators(&graph), ["Identity"]);
 }
 
 #[test]
-fn a_training_network_is_exported_as_it_infers() {
+fn a_training_network_is_exported_in_inference_mode() {
     let device = Device::flex().autodiff();
     let conv = Conv2dConfig::new([1, 2], [3, 3]).with_padding(PaddingConfig2d::Same).init(&device);
     let norm = burn::nn::BatchNormConfig::new(2).init(&device);

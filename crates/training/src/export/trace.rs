@@ -1,4 +1,4 @@
-//! The recording of one forward pass.
+//! Recording of one forward pass.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -11,13 +11,13 @@ use opendr_engine::{Error, Result};
 use super::input::Inputs;
 use super::output::Outputs;
 
-/// Operations in the order in which they were recorded; every tensor has an id of its own.
+/// Operations in the order of recording; every tensor has its own id.
 #[derive(Debug, Default)]
 pub(super) struct Trace {
     pub(super) operations: Vec<OperationIr>,
     pub(super) inputs: Vec<TensorId>,
     pub(super) outputs: Vec<TensorId>,
-    /// Elements of the parameters, and of tensors that the forward pass made from data.
+    /// Elements of the parameters, and of tensors that the forward pass creates from data.
     pub(super) values: BTreeMap<TensorId, TensorData>,
     /// Paths of the parameters in the network.
     pub(super) names: HashMap<TensorId, String>,
@@ -31,12 +31,12 @@ impl Trace {
         batch: usize,
         forward: &impl Fn(&M, I::Tensors) -> O,
     ) -> Result<Self> {
-        // A device of its own: its tensors must not be found in Burn's caches by a later recording.
+        // Each recording has its own device, so that Burn's caches return no tensors of an earlier one.
         let device = Device::capture();
         let mut recorded = Ok(Self::default());
         let captured = device.capture_scope(|scope| {
             recorded = Self::run(&network.clone().to_device(&device), inputs, batch, &device, forward);
-            // Inputs are tensors without values made inside of the scope, so the scope has no boundary to check.
+            // Inputs are created without values inside of the scope, so the scope has no boundary to check.
             scope.complete([], [])
         });
         let mut trace = recorded?;
@@ -63,12 +63,12 @@ impl Trace {
     }
 }
 
-/// Gives every parameter its initial value, if it has none yet: it would be recorded as a random number otherwise.
+/// Initialises every lazy parameter; it would be recorded as a random number otherwise.
 pub(super) fn initialise<M: Module>(network: &M) {
     network.visit(&mut Parameters::default());
 }
 
-/// Finds the paths of the parameters; looking at one makes Burn initialise it.
+/// Collects the paths of the parameters; reading a parameter makes Burn initialise it.
 #[derive(Default)]
 struct Parameters {
     path: Vec<String>,

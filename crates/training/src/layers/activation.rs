@@ -7,17 +7,17 @@ use burn::tensor::{Tensor, activation};
 use opendr_engine::{Error, Result};
 use serde::{Deserialize, Serialize};
 
-/// What follows a convolution.
+/// Activation function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Activation {
-    /// Nothing.
+    /// No activation.
     Identity,
     /// `max(0, x)`.
     Relu,
     /// `min(max(0, x), 6)`.
     Relu6,
-    /// `x`, or a tenth of it where it is negative.
+    /// `x`, or `0.1 x` for negative values.
     LeakyRelu,
     /// `x · min(max(0, x / 6 + 1/2), 1)` (MobileNetV3).
     HardSwish,
@@ -32,7 +32,7 @@ pub enum Activation {
 }
 
 impl Activation {
-    /// All of them.
+    /// All activations.
     pub const ALL: [Self; 9] = [
         Self::Identity,
         Self::Relu,
@@ -45,7 +45,7 @@ impl Activation {
         Self::Tanh,
     ];
 
-    /// Name in parameters.
+    /// Returns the name in parameters.
     pub fn name(self) -> &'static str {
         match self {
             Self::Identity => "identity",
@@ -60,7 +60,7 @@ impl Activation {
         }
     }
 
-    /// Applies it to every element.
+    /// Applies the activation to every element.
     pub fn apply<const D: usize>(self, x: Tensor<D>) -> Tensor<D> {
         match self {
             Self::Identity => x,
@@ -88,7 +88,7 @@ impl FromStr for Activation {
     fn from_str(name: &str) -> Result<Self> {
         Self::ALL.into_iter().find(|activation| activation.name() == name).ok_or_else(|| {
             let names = Self::ALL.map(Self::name).join(", ");
-            Error::invalid_param(format!("no activation is called {name:?}; there are {names}"))
+            Error::invalid_param(format!("unknown activation {name:?}; choose one of {names}"))
         })
     }
 }

@@ -8,30 +8,30 @@ use burn::tensor::{Device, Tensor};
 
 use super::activation::Activation;
 
-/// Sizes of a [`ConvNormAct`].
+/// Configuration of a [`ConvNormAct`].
 #[derive(Config, Debug)]
 pub struct ConvNormActConfig {
-    /// Channels of input and output.
+    /// Number of input and output channels.
     pub channels: [usize; 2],
     /// Side of the kernel, odd.
     #[config(default = 3)]
     pub kernel: usize,
-    /// Step between windows.
+    /// Stride.
     #[config(default = 1)]
     pub stride: usize,
-    /// Step between elements of a window.
+    /// Dilation.
     #[config(default = 1)]
     pub dilation: usize,
-    /// Groups of channels that do not mix.
+    /// Number of groups.
     #[config(default = 1)]
     pub groups: usize,
-    /// What follows the normalisation.
+    /// Activation after the normalisation.
     #[config(default = "Activation::Relu")]
     pub activation: Activation,
 }
 
 impl ConvNormActConfig {
-    /// A block with as much padding as keeps the size at stride 1, and weights drawn after He et al. (2015).
+    /// Initialises a block with padding that keeps the size at stride 1, and weights after He et al. (2015).
     pub fn init(&self, device: &Device) -> ConvNormAct {
         let pad = self.dilation * (self.kernel - 1) / 2;
         let conv = Conv2dConfig::new(self.channels, [self.kernel; 2])
@@ -53,20 +53,20 @@ impl ConvNormActConfig {
     }
 }
 
-/// Convolution without bias, batch normalisation, activation; one convolution once it is exported.
+/// Convolution without bias, batch normalisation, activation; exported as one convolution.
 #[derive(Module, Debug)]
 pub struct ConvNormAct {
     /// The convolution.
     pub conv: Conv2d,
-    /// The normalisation of its result.
+    /// The normalisation.
     pub norm: BatchNorm,
-    /// What follows.
+    /// The activation.
     #[module(skip)]
     pub activation: Activation,
 }
 
 impl ConvNormAct {
-    /// `[batch, channels, height, width]` to `[batch, channels, ⌈height / stride⌉, ⌈width / stride⌉]`.
+    /// Returns `[batch, channels, ⌈height / stride⌉, ⌈width / stride⌉]` of `[batch, channels, height, width]`.
     pub fn forward(&self, x: Tensor<4>) -> Tensor<4> {
         self.activation.apply(self.norm.forward(self.conv.forward(x)))
     }

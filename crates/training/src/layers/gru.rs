@@ -7,17 +7,17 @@ use burn::tensor::{Device, Tensor};
 
 use crate::export::record_gru;
 
-/// Sizes of a [`Gru`].
+/// Configuration of a [`Gru`].
 #[derive(Config, Debug)]
 pub struct GruConfig {
-    /// Features of one step of the input.
+    /// Number of input features.
     pub input_size: usize,
-    /// Features of the state.
+    /// Number of features of the state.
     pub hidden_size: usize,
 }
 
-/// One layer of gated recurrent units, from a state of zeros (Cho et al., 2014), as PyTorch's `nn.GRU` computes it
-/// with `batch_first=True`:
+/// One layer of gated recurrent units with a zero initial state (Cho et al., 2014), equal to PyTorch's `nn.GRU` with
+/// `batch_first=True`:
 ///
 /// ```text
 /// r = σ(W_ir x + b_ir + W_hr h + b_hr)
@@ -26,7 +26,7 @@ pub struct GruConfig {
 /// h' = (1 - z) n + z h
 /// ```
 ///
-/// Exported, it is ONNX's `GRU` with `linear_before_reset`. Parameters have PyTorch's names and sizes.
+/// It is exported as ONNX's `GRU` with `linear_before_reset`. Parameters have PyTorch's names and shapes.
 #[derive(Module, Debug)]
 pub struct Gru {
     /// `[3 hidden, input]`: `W_ir`, `W_iz`, `W_in`.
@@ -40,7 +40,7 @@ pub struct Gru {
 }
 
 impl GruConfig {
-    /// Weights and biases uniform within `1 / √hidden`, as PyTorch begins.
+    /// Initialises weights and biases uniformly within `1 / √hidden`, as PyTorch does.
     pub fn init(&self, device: &Device) -> Gru {
         let bound = 1.0 / (self.hidden_size as f64).sqrt();
         let initializer = Initializer::Uniform { min: -bound, max: bound };
@@ -55,7 +55,7 @@ impl GruConfig {
 }
 
 impl Gru {
-    /// The state after every step, `[batch, time, hidden]`, for input `[batch, time, features]`.
+    /// Returns the states of all steps, `[batch, time, hidden]`, for input `[batch, time, features]`.
     pub fn forward(&self, input: Tensor<3>) -> Tensor<3> {
         let (weight, recurrence) = (self.weight_ih_l0.val(), self.weight_hh_l0.val());
         let (bias, recurrence_bias) = (self.bias_ih_l0.val(), self.bias_hh_l0.val());
@@ -64,7 +64,7 @@ impl Gru {
         }
         let [batch, time, features] = input.dims();
         let [gates, hidden] = recurrence.dims();
-        // What does not depend on the state, for all steps at once.
+        // Terms that do not depend on the state, for all steps at once.
         let projected = input.reshape([batch * time, features]).matmul(weight.transpose()) + bias.unsqueeze();
         let projected = projected.reshape([batch, time, gates]);
         let recurrence = recurrence.transpose();
@@ -84,7 +84,7 @@ impl Gru {
         Tensor::stack(states, 1)
     }
 
-    /// The state after the last step, `[batch, hidden]`.
+    /// Returns the state after the last step, `[batch, hidden]`.
     pub fn last(&self, input: Tensor<3>) -> Tensor<2> {
         let states = self.forward(input);
         let [batch, time, hidden] = states.dims();

@@ -7,27 +7,27 @@ use burn::tensor::{Device, Tensor};
 use super::activation::Activation;
 use super::conv_norm_act::{ConvNormAct, ConvNormActConfig};
 
-/// Sizes of an [`InvertedResidual`].
+/// Configuration of an [`InvertedResidual`].
 #[derive(Config, Debug)]
 pub struct InvertedResidualConfig {
-    /// Channels of input and output.
+    /// Number of input and output channels.
     pub channels: [usize; 2],
-    /// Factor from the channels of the input to those of the depthwise convolution.
+    /// Factor from the input channels to those of the depthwise convolution.
     #[config(default = 6)]
     pub expansion: usize,
     /// Side of the depthwise kernel, odd.
     #[config(default = 3)]
     pub kernel: usize,
-    /// Step between its windows.
+    /// Stride of the depthwise convolution.
     #[config(default = 1)]
     pub stride: usize,
-    /// What follows the first two convolutions.
+    /// Activation of the first two convolutions.
     #[config(default = "Activation::Relu6")]
     pub activation: Activation,
 }
 
 impl InvertedResidualConfig {
-    /// A block with random weights.
+    /// Initialises a block with random weights.
     pub fn init(&self, device: &Device) -> InvertedResidual {
         let [from, to] = self.channels;
         let wide = from * self.expansion;
@@ -47,20 +47,20 @@ impl InvertedResidualConfig {
     }
 }
 
-/// Narrow to wide, a depthwise convolution, back to narrow, around a shortcut where sizes allow (Sandler et al., 2018).
+/// Expansion, depthwise convolution and projection, with a residual connection where sizes allow (Sandler et al., 2018).
 #[derive(Module, Debug)]
 pub struct InvertedResidual {
-    /// To more channels; none where the expansion is 1.
+    /// Expansion; `None` where the factor is 1.
     pub expand: Option<ConvNormAct>,
-    /// Over space, channel by channel.
+    /// Depthwise convolution.
     pub depthwise: ConvNormAct,
-    /// To fewer channels, without activation.
+    /// Projection, without activation.
     pub project: ConvNormAct,
     residual: bool,
 }
 
 impl InvertedResidual {
-    /// `[batch, channels, height, width]` to `[batch, channels, ⌈height / stride⌉, ⌈width / stride⌉]`.
+    /// Returns `[batch, channels, ⌈height / stride⌉, ⌈width / stride⌉]` of `[batch, channels, height, width]`.
     pub fn forward(&self, x: Tensor<4>) -> Tensor<4> {
         let wide = match &self.expand {
             Some(expand) => expand.forward(x.clone()),

@@ -25,37 +25,37 @@ const BLOCKS: [(usize, usize); 13] = [
     (1024, 1),
 ];
 
-/// Sizes of a [`MobileNetV1`].
+/// Configuration of a [`MobileNetV1`].
 #[derive(Config, Debug)]
 pub struct MobileNetV1Config {
     /// Factor on the number of channels; the product is rounded down, and at least 8.
     #[config(default = 1.0)]
     pub width: f64,
-    /// Stride of the last block: 8, 16 or 32. Below 32, later blocks keep their size instead of halving it, which is
-    /// how PoseNet uses the network. With [`dilated`](Self::dilated) they see as far as before.
+    /// Stride of the last block: 8, 16 or 32. Below 32, later blocks keep their size instead of halving it, as in PoseNet. With
+    /// [`dilated`](Self::dilated) the receptive field stays the same.
     #[config(default = 32)]
     pub output_stride: usize,
-    /// Whether blocks after a stride that was left out are dilated in its stead.
+    /// Whether blocks after an omitted stride are dilated instead.
     #[config(default = false)]
     pub dilated: bool,
-    /// Strides at which [`MobileNetV1::features`] answers, in rising order.
+    /// Strides whose features [`MobileNetV1::features`] returns, in increasing order.
     #[config(default = "vec![32]")]
     pub taps: Vec<usize>,
-    /// Channels of the input.
+    /// Number of input channels.
     #[config(default = 3)]
     pub input_channels: usize,
-    /// Blocks, from the first, of the thirteen.
+    /// Number of blocks, from the first of the thirteen.
     #[config(default = 13)]
     pub blocks: usize,
 }
 
 impl MobileNetV1Config {
-    /// Channels of `channels` at this width.
+    /// Returns `channels` scaled by the width.
     pub fn scaled(&self, channels: usize) -> usize {
         ((channels as f64 * self.width) as usize).max(8)
     }
 
-    /// A network with random weights.
+    /// Initialises a network with random weights.
     pub fn init(&self, device: &Device) -> MobileNetV1 {
         let mut channels = self.scaled(32);
         let stem = ConvNormActConfig::new([self.input_channels, channels])
@@ -89,22 +89,21 @@ impl MobileNetV1Config {
 /// MobileNetV1 (Howard et al., 2017) without its classifier, with ReLU6.
 #[derive(Module, Debug)]
 pub struct MobileNetV1 {
-    /// The first convolution, of stride 2; `Conv2d_0` in TensorFlow's weights.
+    /// First convolution, of stride 2; `Conv2d_0` in TensorFlow's weights.
     pub stem: ConvNormAct,
-    /// The others; `Conv2d_1_depthwise` and `Conv2d_1_pointwise` are the halves of the first of them.
+    /// Further blocks; `Conv2d_1_depthwise` and `Conv2d_1_pointwise` are the halves of the first one.
     pub blocks: Vec<SeparableConv>,
-    /// Blocks whose result [`features`](Self::features) answers.
+    /// Blocks whose output [`features`](Self::features) returns.
     taps: Vec<usize>,
 }
 
 impl MobileNetV1 {
-    /// The last block's result.
+    /// Returns the output of the last block.
     pub fn forward(&self, x: Tensor<4>) -> Tensor<4> {
         self.blocks.iter().fold(self.stem.forward(x), |x, block| block.forward(x))
     }
 
-    /// The result of the last block of each stride among the configuration's taps; a stride that no block has is left
-    /// out.
+    /// Returns the output of the last block of each stride in the configuration's taps; strides that no block has are skipped.
     pub fn features(&self, x: Tensor<4>) -> Vec<Tensor<4>> {
         let mut x = self.stem.forward(x);
         let mut features = Vec::with_capacity(self.taps.len());
@@ -117,7 +116,7 @@ impl MobileNetV1 {
         features
     }
 
-    /// Channels of what [`features`](Self::features) answers.
+    /// Returns the number of channels of the outputs of [`features`](Self::features).
     pub fn feature_channels(&self) -> Vec<usize> {
         let channels = |&tap: &usize| Some(self.blocks.get(tap)?.pointwise.conv.weight.dims()[0]);
         self.taps.iter().filter_map(channels).collect()

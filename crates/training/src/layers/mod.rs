@@ -1,4 +1,4 @@
-//! Layers and backbones that learners share.
+//! Layers and backbones shared by learners.
 
 mod activation;
 mod conv_norm_act;

@@ -1,4 +1,4 @@
-//! ResNet of 18 layers.
+//! ResNet-18.
 
 use burn::config::Config;
 use burn::module::Module;
@@ -9,24 +9,24 @@ use burn::tensor::activation::relu;
 use burn::tensor::module::adaptive_avg_pool2d;
 use burn::tensor::{Device, Tensor};
 
-/// Sizes of a [`ResNet18`].
+/// Configuration of a [`ResNet18`].
 #[derive(Config, Debug)]
 pub struct ResNet18Config {
     /// Number of classes.
     pub classes: usize,
-    /// Channels of the input.
+    /// Number of input channels.
     #[config(default = 3)]
     pub input_channels: usize,
-    /// Channels of the first stage; each of the three after it has twice as many as the one before.
+    /// Channels of the first stage; each further stage doubles them.
     #[config(default = 64)]
     pub width: usize,
-    /// Whether pictures are small (32 x 32): the first convolution then is 3 x 3 of stride 1, without pooling after it.
+    /// Whether images are small (32 x 32): the first convolution is 3 x 3 of stride 1, without pooling after it.
     #[config(default = false)]
     pub small: bool,
 }
 
 impl ResNet18Config {
-    /// A network with random weights.
+    /// Initialises a network with random weights.
     pub fn init(&self, device: &Device) -> ResNet18 {
         let width = self.width;
         let (kernel, stride) = if self.small { (3, 1) } else { (7, 2) };
@@ -58,23 +58,23 @@ fn convolution(channels: [usize; 2], kernel: usize, stride: usize, device: &Devi
         .init(device)
 }
 
-/// Two convolutions around a shortcut.
+/// Two convolutions with a residual connection.
 #[derive(Module, Debug)]
 pub struct BasicBlock {
-    /// The first convolution, which may halve the size.
+    /// First convolution, which may halve the size.
     pub conv1: Conv2d,
-    /// The normalisation of its result.
+    /// Normalisation of the first convolution.
     pub bn1: BatchNorm,
-    /// The second convolution.
+    /// Second convolution.
     pub conv2: Conv2d,
-    /// The normalisation of its result.
+    /// Normalisation of the second convolution.
     pub bn2: BatchNorm,
-    /// What the shortcut does where sizes differ.
+    /// Projection of the residual connection where sizes differ.
     pub downsample: Option<(Conv2d, BatchNorm)>,
 }
 
 impl BasicBlock {
-    /// A block with random weights.
+    /// Creates a block with random weights.
     pub fn new(channels: [usize; 2], stride: usize, device: &Device) -> Self {
         let [from, to] = channels;
         let shortcut = || (convolution([from, to], 1, stride, device), BatchNormConfig::new(to).init(device));
@@ -87,7 +87,7 @@ impl BasicBlock {
         }
     }
 
-    /// `[batch, channels, height, width]` to `[batch, channels, ⌈height / stride⌉, ⌈width / stride⌉]`.
+    /// Returns `[batch, channels, ⌈height / stride⌉, ⌈width / stride⌉]` of `[batch, channels, height, width]`.
     pub fn forward(&self, x: Tensor<4>) -> Tensor<4> {
         let result = relu(self.bn1.forward(self.conv1.forward(x.clone())));
         let result = self.bn2.forward(self.conv2.forward(result));
@@ -102,31 +102,31 @@ impl BasicBlock {
 /// ResNet-18 (He et al., 2016). Parameters have torchvision's names.
 #[derive(Module, Debug)]
 pub struct ResNet18 {
-    /// The first convolution.
+    /// First convolution.
     pub conv1: Conv2d,
-    /// The normalisation of its result.
+    /// Normalisation of the first convolution.
     pub bn1: BatchNorm,
     pool: Option<MaxPool2d>,
-    /// Stride 4 (1 for small pictures).
+    /// Stage of stride 4 (1 for small images).
     pub layer1: Vec<BasicBlock>,
-    /// Stride 8 (2).
+    /// Stage of stride 8 (2).
     pub layer2: Vec<BasicBlock>,
-    /// Stride 16 (4).
+    /// Stage of stride 16 (4).
     pub layer3: Vec<BasicBlock>,
-    /// Stride 32 (8).
+    /// Stage of stride 32 (8).
     pub layer4: Vec<BasicBlock>,
     /// The classifier.
     pub fc: Linear,
 }
 
 impl ResNet18 {
-    /// Logits `[batch, classes]` of pictures `[batch, channels, height, width]`.
+    /// Returns logits `[batch, classes]` of images `[batch, channels, height, width]`.
     pub fn forward(&self, x: Tensor<4>) -> Tensor<2> {
         let [_, _, _, features] = self.features(x);
         self.fc.forward(adaptive_avg_pool2d(features, [1, 1]).flatten(1, 3))
     }
 
-    /// The results of the four stages.
+    /// Returns the outputs of the four stages.
     pub fn features(&self, x: Tensor<4>) -> [Tensor<4>; 4] {
         let x = relu(self.bn1.forward(self.conv1.forward(x)));
         let x = match &self.pool {

@@ -7,27 +7,27 @@ use burn::tensor::{Device, Tensor};
 use super::activation::Activation;
 use super::conv_norm_act::{ConvNormAct, ConvNormActConfig};
 
-/// Sizes of a [`SeparableConv`].
+/// Configuration of a [`SeparableConv`].
 #[derive(Config, Debug)]
 pub struct SeparableConvConfig {
-    /// Channels of input and output.
+    /// Number of input and output channels.
     pub channels: [usize; 2],
-    /// Side of the kernel of the depthwise half, odd.
+    /// Side of the depthwise kernel, odd.
     #[config(default = 3)]
     pub kernel: usize,
-    /// Step between its windows.
+    /// Stride of the depthwise convolution.
     #[config(default = 1)]
     pub stride: usize,
-    /// Step between elements of its windows.
+    /// Dilation of the depthwise convolution.
     #[config(default = 1)]
     pub dilation: usize,
-    /// What follows each half.
+    /// Activation of each half.
     #[config(default = "Activation::Relu")]
     pub activation: Activation,
 }
 
 impl SeparableConvConfig {
-    /// A block with random weights.
+    /// Initialises a block with random weights.
     pub fn init(&self, device: &Device) -> SeparableConv {
         let [from, to] = self.channels;
         let depthwise = ConvNormActConfig::new([from, from])
@@ -41,17 +41,17 @@ impl SeparableConvConfig {
     }
 }
 
-/// A convolution in each channel, then one over the channels (Howard et al., 2017).
+/// A depthwise convolution followed by a pointwise one (Howard et al., 2017).
 #[derive(Module, Debug)]
 pub struct SeparableConv {
-    /// Over space, channel by channel.
+    /// Depthwise convolution.
     pub depthwise: ConvNormAct,
-    /// Over channels, point by point.
+    /// Pointwise convolution.
     pub pointwise: ConvNormAct,
 }
 
 impl SeparableConv {
-    /// `[batch, channels, height, width]` to `[batch, channels, ⌈height / stride⌉, ⌈width / stride⌉]`.
+    /// Returns `[batch, channels, ⌈height / stride⌉, ⌈width / stride⌉]` of `[batch, channels, height, width]`.
     pub fn forward(&self, x: Tensor<4>) -> Tensor<4> {
         self.pointwise.forward(self.depthwise.forward(x))
     }

@@ -1,4 +1,4 @@
-//! Values put into a module.
+//! Writes values into a module.
 
 use std::collections::HashMap;
 
@@ -7,7 +7,7 @@ use burn::tensor::{DType, Tensor, TensorData};
 
 use crate::weights::slot::Walk;
 
-/// Values by the path of their parameter, as many as it has and in its layout.
+/// Values by the path of their parameter, in the parameter's length and layout.
 pub(super) type Plan = HashMap<String, Vec<f32>>;
 
 struct Fill {
@@ -33,7 +33,7 @@ impl ModuleMapper for Fill {
     }
 }
 
-/// The module with the plan's values; other parameters stay as they are, and all keep their place in an optimiser.
+/// Returns the module with the plan's values; other parameters are unchanged, and all keep their ids in the optimiser.
 pub(super) fn fill<M: Module>(module: M, plan: Plan) -> M {
     module.map(&mut Fill { walk: Walk::default(), plan })
 }

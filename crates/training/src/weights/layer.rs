@@ -5,9 +5,9 @@ use std::collections::HashMap;
 use crate::weights::Weight;
 use crate::weights::slot::Slot;
 
-/// Something with the name and the axes of a parameter: a weight of a file, or a place for one.
+/// Item with the name and the axes of a parameter: a weight of a file, or a parameter of a module.
 pub(super) trait Named {
-    /// The layer, and the parameter's name in it.
+    /// Returns the layer, and the parameter's name within it.
     fn split(&self) -> (&str, &str);
     fn axes(&self) -> usize;
 }
@@ -32,7 +32,7 @@ impl Named for Slot {
     }
 }
 
-/// A convolution or a dense layer.
+/// A convolution or a linear layer.
 #[derive(Debug)]
 pub(super) struct Layer<'a, T> {
     pub kernel: &'a T,
@@ -40,7 +40,7 @@ pub(super) struct Layer<'a, T> {
     pub norm: Option<Norm<'a, T>>,
 }
 
-/// The batch norm that follows a layer.
+/// The batch normalisation after a layer.
 #[derive(Debug)]
 pub(super) struct Norm<'a, T> {
     pub scale: &'a T,
@@ -49,7 +49,7 @@ pub(super) struct Norm<'a, T> {
     pub variance: &'a T,
 }
 
-/// The layers in the order in which they first appear.
+/// Returns the layers in the order of their first appearance.
 pub(super) fn layers<'a, T: Named>(items: impl Iterator<Item = &'a T>) -> Vec<Layer<'a, T>> {
     let mut groups: Vec<HashMap<&str, &'a T>> = Vec::new();
     let mut numbers: HashMap<&str, usize> = HashMap::new();

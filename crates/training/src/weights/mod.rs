@@ -1,4 +1,4 @@
-//! Weights of others, read into a Burn module: safetensors, PyTorch checkpoints, ONNX models.
+//! Import of pretrained weights into a Burn module: safetensors, PyTorch checkpoints, ONNX models.
 //!
 //! ```no_run
 //! use opendr_training::weights::{Rules, WeightTable};
@@ -12,6 +12,7 @@
 //! # }
 //! ```
 
+mod apply;
 mod fill;
 mod layer;
 mod names;
@@ -19,6 +20,7 @@ mod onnx;
 mod order;
 mod pattern;
 mod pytorch;
+mod read;
 mod report;
 mod rules;
 mod safetensors;

@@ -1,4 +1,4 @@
-//! Weights by name.
+//! Matching of weights by name.
 
 use std::collections::HashMap;
 
@@ -8,14 +8,14 @@ use crate::weights::fill::Plan;
 use crate::weights::slot::Slot;
 use crate::weights::{Mismatch, Report, Rules, Weight, WeightTable};
 
-/// What goes where when names decide.
+/// Returns the plan that assigns weights by name, and its report.
 pub(super) fn plan(slots: &[Slot], table: &WeightTable, rules: &Rules) -> Result<(Plan, Report)> {
     rules.check()?;
     let mut by_name: HashMap<String, &Weight> = HashMap::new();
     for weight in table.weights() {
         if let Some(other) = by_name.insert(rules.renamed(weight.name()), weight) {
             return Err(Error::invalid_param(format!(
-                "the renamings give {:.80?} and {:.80?} one name",
+                "the renames map {:.80?} and {:.80?} to the same name",
                 other.name(),
                 weight.name()
             )));
@@ -29,21 +29,21 @@ pub(super) fn plan(slots: &[Slot], table: &WeightTable, rules: &Rules) -> Result
         };
         if slot.file_shape() == weight.shape() {
             plan.insert(slot.path.clone(), slot.values_from_file(weight.values()));
-            report.taken.push(slot.path.clone());
+            report.loaded.push(slot.path.clone());
         } else {
             report.mismatched.push(Mismatch {
                 parameter: slot.path.clone(),
-                wanted: slot.file_shape(),
-                given: weight.shape().to_vec(),
+                expected: slot.file_shape(),
+                actual: weight.shape().to_vec(),
             });
         }
     }
     let left = table.weights().iter().filter(|weight| by_name.contains_key(&rules.renamed(weight.name())));
-    report.left = left.map(|weight| weight.name().to_owned()).collect();
+    report.unexpected = left.map(|weight| weight.name().to_owned()).collect();
     Ok((plan, report))
 }
 
-/// The names that a parameter answers to.
+/// Returns the names of weights that match a parameter.
 fn names_of(slot: &Slot) -> Vec<String> {
     let (module, name) = slot.split();
     let dot = if module.is_empty() { "" } else { "." };

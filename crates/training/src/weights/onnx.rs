@@ -1,26 +1,27 @@
-//! The initialisers of an ONNX model, named by the layer that uses them.
+//! Initialisers of an ONNX model, named by the layer that uses them.
 
 use std::collections::HashMap;
 
 use opendr_engine::{Error, Result};
 use opendr_onnx::model_from_bytes;
-use opendr_onnx::proto::{AttributeProto, GraphProto, NodeProto};
+use opendr_onnx::proto::{GraphProto, NodeProto};
 
 use crate::weights::WeightTable;
 
 mod constants;
 
-use constants::{Constant, Constants};
+use constants::{Constant, Constants, attribute};
 
-/// The weights in the order of the graph's nodes, under their initialiser's name without `.weight`: convolutions, dense
-/// layers (also a product and a sum), batch norms, slopes and recurrent layers. Integers become the floats they stand for.
+/// Returns the weights in the order of the graph's nodes, under their initialiser's name without `.weight`: convolutions,
+/// linear layers (also a product followed by a sum), batch normalisations, slopes and recurrent layers. Quantised integers are
+/// dequantised to floats.
 pub(super) fn table_from_onnx(bytes: &[u8]) -> Result<WeightTable> {
     let graph = model_from_bytes(bytes)?.graph.unwrap_or_default();
     let mut walk =
         Walk { constants: Constants::of(&graph)?, table: WeightTable::default(), open: HashMap::new() };
     walk.nodes(&graph)?;
     match walk.table.weights() {
-        [] => Err(Error::format("an ONNX model without weights; is it a network?")),
+        [] => Err(Error::format("the ONNX model has no weights; check that it is a network")),
         _ => Ok(walk.table),
     }
 }
@@ -28,14 +29,14 @@ pub(super) fn table_from_onnx(bytes: &[u8]) -> Result<WeightTable> {
 struct Walk<'g> {
     constants: Constants<'g>,
     table: WeightTable,
-    /// Outputs of layers without a bias, which a sum may still bring.
+    /// Outputs of layers without a bias, which a following sum may add.
     open: HashMap<&'g str, Open>,
 }
 
 struct Open {
     layer: String,
     outputs: usize,
-    /// How many axes follow that of the outputs.
+    /// Number of axes after that of the outputs.
     behind: usize,
 }
 
@@ -72,7 +73,7 @@ impl<'g> Walk<'g> {
         Ok(())
     }
 
-    /// A constant that the table has room for.
+    /// Returns a constant that fits into the table.
     fn constant(&self, name: &str) -> Result<Option<Constant>> {
         match self.constants.count(name) {
             Some(count) => {
@@ -83,7 +84,7 @@ impl<'g> Walk<'g> {
         }
     }
 
-    /// Adds a weight; layers that share one get it once.
+    /// Adds a weight; a weight shared by layers is added once.
     fn add(&mut self, name: String, constant: Constant) -> Result<()> {
         if self.table.has(&name) {
             return Ok(());
@@ -91,7 +92,7 @@ impl<'g> Walk<'g> {
         self.table.add(name, constant.shape, constant.values)
     }
 
-    /// A layer with its kernel as the second input, outputs along `axis`, and perhaps a bias as the third.
+    /// Adds a layer with its kernel as second input, outputs along `axis`, and an optional bias as third input.
     fn kernel(&mut self, node: &'g NodeProto, axis: usize, change: impl FnOnce(&mut Constant)) -> Result<()> {
         let Some(input) = node.input.get(1) else { return Ok(()) };
         let Some(mut kernel) = self.constant(input)?.filter(|kernel| kernel.shape.len() >= 2) else {
@@ -116,7 +117,7 @@ impl<'g> Walk<'g> {
         }
     }
 
-    /// A sum that is the bias of the layer before it.
+    /// Adds the bias of the layer before a sum.
     fn sum(&mut self, node: &NodeProto) -> Result<()> {
         let [a, b] = &node.input[..] else { return Ok(()) };
         for (layer, bias) in [(a, b), (b, a)] {
@@ -155,8 +156,4 @@ impl<'g> Walk<'g> {
         }
         Ok(())
     }
-}
-
-fn attribute<'n>(node: &'n NodeProto, name: &str) -> Option<&'n AttributeProto> {
-    node.attribute.iter().find(|attribute| attribute.name == name)
 }

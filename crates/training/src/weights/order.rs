@@ -1,4 +1,4 @@
-//! Weights by the order of the layers.
+//! Matching of weights by the order of the layers.
 
 use std::collections::HashSet;
 
@@ -9,7 +9,7 @@ use crate::weights::layer::{Layer, Norm, layers};
 use crate::weights::slot::Slot;
 use crate::weights::{Report, Rules, Weight, WeightTable};
 
-/// What goes where when the order decides.
+/// Returns the plan that assigns weights by the order of the layers, and its report.
 pub(super) fn plan(slots: &[Slot], table: &WeightTable, rules: &Rules) -> Result<(Plan, Report)> {
     let wanted = layers(slots.iter().filter(|slot| slot.covered));
     let given = layers(table.weights().iter());
@@ -33,15 +33,15 @@ pub(super) fn plan(slots: &[Slot], table: &WeightTable, rules: &Rules) -> Result
     }
     let mut report = Report::default();
     for slot in slots.iter().filter(|slot| slot.covered) {
-        let list = if plan.contains_key(&slot.path) { &mut report.taken } else { &mut report.missing };
+        let list = if plan.contains_key(&slot.path) { &mut report.loaded } else { &mut report.missing };
         list.push(slot.path.clone());
     }
     let left = table.weights().iter().map(Weight::name).filter(|name| !used.contains(name));
-    report.left = left.map(str::to_owned).collect();
+    report.unexpected = left.map(str::to_owned).collect();
     Ok((plan, report))
 }
 
-/// A layer of the module and the layer of the file that goes into it.
+/// A layer of the module and the layer of the file that is assigned to it.
 struct Pair<'a> {
     place: &'a Layer<'a, Slot>,
     source: &'a Layer<'a, Weight>,
@@ -54,7 +54,7 @@ impl Pair<'_> {
         let shape = place.kernel.file_shape();
         if shape != source.kernel.shape() {
             return Err(Error::invalid_input(format!(
-                "shape {:?} does not go into {shape:?}; is it a file of this architecture, and the network as wide?",
+                "shape {:?} does not fit {shape:?}; the file must be of this architecture and width",
                 source.kernel.shape()
             )));
         }
@@ -73,13 +73,15 @@ impl Pair<'_> {
         match place.bias {
             Some(slot) => put(plan, slot, bias),
             None if bias.iter().all(|number| *number == 0.0) => {}
-            None => return Err(Error::invalid_input("a bias, which the network's layer has not")),
+            None => {
+                return Err(Error::invalid_input("the file has a bias, but the network's layer has none"));
+            }
         }
         plan.insert(place.kernel.path.clone(), place.kernel.values_from_file(&kernel));
         Ok(())
     }
 
-    /// Both have a norm. A bias that the module's layer lacks is taken off the mean.
+    /// Both have a normalisation. A bias that the module's layer lacks is subtracted from the mean.
     fn keep_norm(
         &self,
         place: &Norm<'_, Slot>,
@@ -99,7 +101,7 @@ impl Pair<'_> {
         Ok(())
     }
 
-    /// The norm was folded into the file's kernel: it passes on what it gets, and may hold the bias.
+    /// The normalisation is folded into the file's kernel: the module's becomes an identity, which may hold the bias.
     fn make_identity(&self, place: &Norm<'_, Slot>, bias: &mut [f32], plan: &mut Plan) {
         let outputs = bias.len();
         let mut shift = vec![0.0; outputs];
@@ -113,10 +115,10 @@ impl Pair<'_> {
         put(plan, place.variance, vec![1.0 - self.epsilon; outputs]);
     }
 
-    /// The module has no norm: the file's goes into kernel and bias.
+    /// The module has no normalisation: the file's is folded into kernel and bias.
     fn fold_norm(&self, source: &Norm<'_, Weight>, kernel: &mut [f32], bias: &mut [f32]) -> Result<()> {
         if self.place.kernel.transposed {
-            return Err(Error::unsupported("a norm cannot be folded into a transposed convolution"));
+            return Err(Error::unsupported("a normalisation cannot be folded into a transposed convolution"));
         }
         let [scale, shift, mean, variance] = [source.scale, source.shift, source.mean, source.variance]
             .map(|weight| numbers(weight, bias.len()));
@@ -135,12 +137,12 @@ fn put(plan: &mut Plan, slot: &Slot, values: Vec<f32>) {
     plan.insert(slot.path.clone(), values);
 }
 
-/// The numbers of a bias or a part of a norm, one for each output.
+/// Returns the values of a bias or a part of a normalisation, one per output.
 fn numbers(weight: &Weight, outputs: usize) -> Result<Vec<f32>> {
     match weight.values() {
         values if values.len() == outputs => Ok(values.to_vec()),
         values => Err(Error::invalid_input(format!(
-            "{:.80?} has {} numbers for {outputs} outputs",
+            "{:.80?} has {} values for {outputs} outputs",
             weight.name(),
             values.len()
         ))),

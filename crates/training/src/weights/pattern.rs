@@ -1,8 +1,8 @@
-//! Patterns of names, with stars.
+//! Name patterns with stars.
 
 use opendr_engine::{Error, Result};
 
-/// A name in which `*` stands for any text, and what it becomes: `features.*.conv.*` -> `blocks.*.*`.
+/// A name pattern in which `*` matches any text, and its replacement: `features.*.conv.*` -> `blocks.*.*`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Pattern {
     from: String,
@@ -14,19 +14,19 @@ impl Pattern {
         Self { from: from.to_owned(), to: to.to_owned() }
     }
 
-    /// Both sides have as many stars.
+    /// Checks that both sides have the same number of stars.
     pub fn check(&self) -> Result<()> {
         let stars = |text: &str| text.matches('*').count();
         if stars(&self.from) != stars(&self.to) || self.from.contains("**") {
             return Err(Error::invalid_param(format!(
-                "renaming {:?} to {:?}: give as many stars on both sides, with text between them",
+                "renaming {:?} to {:?}: both sides need the same number of stars, with text between them",
                 self.from, self.to
             )));
         }
         Ok(())
     }
 
-    /// What `name` becomes, if it matches. A star takes as little as it can, the last one the rest.
+    /// Returns the replacement of `name`, if it matches. A star matches as little as possible, the last one the rest.
     pub fn renamed(&self, name: &str) -> Option<String> {
         let mut texts = self.from.split('*');
         let mut rest = name.strip_prefix(texts.next()?)?;

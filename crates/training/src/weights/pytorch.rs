@@ -1,4 +1,4 @@
-//! PyTorch's checkpoints, through the reader of burn-store: it knows the pickles that `torch.save` writes and runs nothing.
+//! PyTorch checkpoints, through the reader of burn-store: it parses the pickles of `torch.save` and executes nothing.
 
 use std::cmp::Ordering;
 use std::path::Path;
@@ -9,7 +9,7 @@ use opendr_onnx::FloatType;
 
 use crate::weights::WeightTable;
 
-/// The floating-point tensors of a checkpoint; those within dictionaries are named `KEY.NAME`.
+/// Returns the floating-point tensors of a checkpoint; those within dictionaries are named `KEY.NAME`.
 pub(super) fn table_from_pytorch(path: &Path) -> Result<WeightTable> {
     let reader = PytorchReader::new(path).map_err(error_from_pytorch)?;
     let mut tensors: Vec<(String, Tensor)> = reader.into_tensors().into_iter().collect();
@@ -18,7 +18,7 @@ pub(super) fn table_from_pytorch(path: &Path) -> Result<WeightTable> {
         .into_iter()
         .filter_map(|(name, tensor)| Some((name, element_of(tensor.dtype())?, tensor)))
         .collect();
-    // A view may ask for far more than the file holds: all are counted before one is read.
+    // A view may claim far more elements than the file holds: all are counted before one is read.
     let mut numbers = 0;
     for (name, _, tensor) in &tensors {
         numbers = WeightTable::checked_numbers(numbers, tensor.num_elements(), name)?;
@@ -29,7 +29,7 @@ pub(super) fn table_from_pytorch(path: &Path) -> Result<WeightTable> {
         table.add_elements(name, tensor.shape().to_vec(), element, &bytes)?;
     }
     if table.weights().is_empty() {
-        return Err(Error::format("a pickle without weights; save model.state_dict(), or use safetensors"));
+        return Err(Error::format("the pickle has no weights; save model.state_dict(), or use safetensors"));
     }
     Ok(table)
 }
@@ -55,13 +55,13 @@ fn error_from_pytorch(error: PytorchError) -> Error {
             error.into()
         }
         error => Error::format(
-            "not a checkpoint of PyTorch, or a damaged one; get it anew, or save model.state_dict()",
+            "the file is not a PyTorch checkpoint, or is damaged; download it again, or save model.state_dict()",
         )
         .with_source(error),
     }
 }
 
-/// By name, where digits count as the number they write: `conv2` before `conv10`.
+/// Compares names, with digits by the number they form: `conv2` before `conv10`.
 pub(super) fn natural_order(a: &str, b: &str) -> Ordering {
     let parts = |text: &str| -> Vec<(bool, usize, String)> {
         let mut parts: Vec<(bool, usize, String)> = Vec::new();
@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn layers_come_by_their_number() {
+    fn layers_are_sorted_by_their_number() {
         let mut names = ["f.10.weight", "f.2.weight", "f.2.bias", "f.1.conv.0.weight", "f.1.bn.weight"];
         names.sort_by(|a, b| natural_order(a, b));
         assert_eq!(names, ["f.1.bn.weight", "f.1.conv.0.weight", "f.2.bias", "f.2.weight", "f.10.weight"]);

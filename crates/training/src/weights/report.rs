@@ -1,43 +1,43 @@
-//! What became of the weights of a file.
+//! Report of an import of weights.
 
 use std::fmt;
 
 use opendr_engine::{Error, Result};
 
-/// A weight that does not fit the parameter of its name.
+/// A weight whose shape differs from that of its parameter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Mismatch {
-    /// The module's name of the parameter.
+    /// Name of the parameter in the module.
     pub parameter: String,
-    /// Its shape in the module.
-    pub wanted: Vec<usize>,
-    /// Its shape in the file.
-    pub given: Vec<usize>,
+    /// Shape in the module.
+    pub expected: Vec<usize>,
+    /// Shape in the file.
+    pub actual: Vec<usize>,
 }
 
-/// What was taken, what was left, and what is missing.
+/// Result of an import: loaded, missing, mismatched and unused weights.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Report {
-    /// Parameters that have their values from the file now, by the module's names.
-    pub taken: Vec<String>,
-    /// Parameters that the file has nothing for, by the module's names; they are as they were.
+    /// Parameters with values from the file, by the module's names.
+    pub loaded: Vec<String>,
+    /// Parameters without a weight in the file, by the module's names; they are unchanged.
     pub missing: Vec<String>,
-    /// Parameters for which the file has another shape; they are as they were.
+    /// Parameters for which the file has another shape; they are unchanged.
     pub mismatched: Vec<Mismatch>,
-    /// Weights that went nowhere, by the file's names.
-    pub left: Vec<String>,
+    /// Unused weights, by the file's names.
+    pub unexpected: Vec<String>,
 }
 
-/// How many names a message shows.
-const SHOWN: usize = 3;
+/// Maximum number of names in a message.
+const MAX_NAMES: usize = 3;
 
 impl Report {
-    /// The report, when every parameter that the rules cover has its values from the file.
+    /// Checks that every parameter covered by the rules has its values from the file.
     ///
     /// # Errors
-    /// `InvalidInput` that names the first ones that have none.
+    /// `InvalidInput` with the names of the first parameters that have none.
     pub fn complete(&self) -> Result<()> {
-        if let Some(Mismatch { parameter, wanted, given }) = self.mismatched.first() {
+        if let Some(Mismatch { parameter, expected: wanted, actual: given }) = self.mismatched.first() {
             return Err(Error::invalid_input(format!(
                 "{} weights do not fit: {parameter} is {wanted:?} in the network and {given:?} in the file",
                 self.mismatched.len()
@@ -46,19 +46,19 @@ impl Report {
         match self.missing.len() {
             0 => Ok(()),
             count => Err(Error::invalid_input(format!(
-                "the file has no weights for {count} of {} parameters: {}; its own {} were left: {}",
-                count + self.taken.len(),
+                "the file has no weights for {count} of {} parameters: {}; {} of its weights are unused: {}",
+                count + self.loaded.len(),
                 first(&self.missing),
-                self.left.len(),
-                first(&self.left),
+                self.unexpected.len(),
+                first(&self.unexpected),
             ))),
         }
     }
 }
 
 fn first(names: &[String]) -> String {
-    let mut text = names.iter().take(SHOWN).map(String::as_str).collect::<Vec<_>>().join(", ");
-    if names.len() > SHOWN {
+    let mut text = names.iter().take(MAX_NAMES).map(String::as_str).collect::<Vec<_>>().join(", ");
+    if names.len() > MAX_NAMES {
         text += ", ...";
     }
     text
@@ -66,17 +66,17 @@ fn first(names: &[String]) -> String {
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { taken, missing, mismatched, left } = self;
+        let Self { loaded: taken, missing, mismatched, unexpected: left } = self;
         let all = taken.len() + missing.len() + mismatched.len();
-        write!(f, "{} of {all} parameters taken", taken.len())?;
+        write!(f, "{} of {all} parameters loaded", taken.len())?;
         if !missing.is_empty() {
             write!(f, "; missing: {}", first(missing))?;
         }
-        if let [Mismatch { parameter, wanted, given }, ..] = &mismatched[..] {
+        if let [Mismatch { parameter, expected: wanted, actual: given }, ..] = &mismatched[..] {
             write!(f, "; {} of another shape: {parameter} ({given:?} for {wanted:?})", mismatched.len())?;
         }
         if !left.is_empty() {
-            write!(f, "; {} weights left: {}", left.len(), first(left))?;
+            write!(f, "; {} weights unused: {}", left.len(), first(left))?;
         }
         Ok(())
     }

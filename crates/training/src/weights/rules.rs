@@ -1,10 +1,10 @@
-//! Which weight goes where.
+//! Rules that assign weights to parameters.
 
 use opendr_engine::Result;
 
 use crate::weights::pattern::Pattern;
 
-/// How the weights of a file find the parameters of a module.
+/// Rules that assign the weights of a file to the parameters of a module.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rules {
     by_order: bool,
@@ -15,45 +15,46 @@ pub struct Rules {
 }
 
 impl Rules {
-    /// A parameter takes the weight of its own name, as it is in the module: `backbone.conv.weight`. A norm's `gamma`
-    /// and `beta` also answer to `weight` and `bias`.
+    /// Creates rules by name: a parameter takes the weight of its own path in the module, such as `backbone.conv.weight`. The
+    /// `gamma` and `beta` of a normalisation also match `weight` and `bias`.
     pub fn by_name() -> Self {
         Self { by_order: false, renames: Vec::new(), only: Vec::new(), skip: Vec::new(), epsilon: 1e-5 }
     }
 
-    /// The layers of the file, in its order, go into the layers of the module, in the order of its fields; each pair
-    /// has to agree in shape. A layer is a convolution or a dense layer, with its bias and the norm that follows.
+    /// Creates rules by order: the layers of the file, in its order, are assigned to the layers of the module, in the order of
+    /// its fields; each pair must agree in shape. A layer is a convolution or a linear layer, with its bias and the
+    /// normalisation after it.
     ///
-    /// Norms that were folded into the file's convolutions become identities in the module; norms that the module
-    /// lacks are folded into its convolutions. An identity has no statistics of its own: such norms have to be
-    /// frozen ([`Module::freeze`](burn::module::Module::freeze)) while the network trains.
+    /// Normalisations that were folded into the file's convolutions become identities in the module; normalisations that the
+    /// module lacks are folded into its convolutions. An identity has no statistics: such normalisations must be frozen
+    /// ([`Module::freeze`](burn::module::Module::freeze)) while the network trains.
     pub fn by_order() -> Self {
         Self { by_order: true, ..Self::by_name() }
     }
 
-    /// The same with weights called `from` named `to`; `*` stands for any text on both sides, and a prefix is taken off
-    /// by `rename("module.*", "*")`. Later ones see what earlier ones made.
+    /// Renames weights from `from` to `to`; `*` matches any text on both sides, so `rename("module.*", "*")` removes a prefix.
+    /// Later renames apply to the results of earlier ones.
     #[must_use]
     pub fn rename(mut self, from: &str, to: &str) -> Self {
         self.renames.push(Pattern::new(from, to));
         self
     }
 
-    /// The same for the part of the module called `path` alone; several times, for several parts.
+    /// Restricts the rules to the part `path` of the module; may be repeated for several parts.
     #[must_use]
     pub fn only(mut self, path: &str) -> Self {
         self.only.push(path.to_owned());
         self
     }
 
-    /// The same without the part of the module called `path`.
+    /// Excludes the part `path` of the module.
     #[must_use]
     pub fn skip(mut self, path: &str) -> Self {
         self.skip.push(path.to_owned());
         self
     }
 
-    /// The same with what is added to a norm's variance; the default is 1e-5.
+    /// Sets the epsilon of the normalisations' variance; the default is 1e-5.
     #[must_use]
     pub fn norm_epsilon(self, epsilon: f64) -> Self {
         Self { epsilon, ..self }
@@ -67,7 +68,7 @@ impl Rules {
         self.epsilon
     }
 
-    /// Whether a parameter is to get a weight at all.
+    /// Whether a parameter gets a weight.
     pub(super) fn cover(&self, parameter: &str) -> bool {
         let within = |path: &String| {
             parameter.strip_prefix(path.as_str()).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
@@ -79,7 +80,7 @@ impl Rules {
         self.renames.iter().try_for_each(Pattern::check)
     }
 
-    /// What a weight is called after all renamings.
+    /// Returns the name of a weight after all renames.
     pub(super) fn renamed(&self, name: &str) -> String {
         self.renames.iter().fold(name.to_owned(), |name, pattern| pattern.renamed(&name).unwrap_or(name))
     }

@@ -6,12 +6,12 @@ use opendr_import::SafetensorsFile;
 use crate::weights::WeightTable;
 use crate::weights::pytorch::natural_order;
 
-/// The floating-point tensors of a file; integers of checkpoints are counters and no weights.
+/// Returns the floating-point tensors of a file; integers in checkpoints are counters and not weights.
 pub(super) fn table_from_safetensors(bytes: &[u8]) -> Result<WeightTable> {
     let file = SafetensorsFile::read(bytes)?;
     if file.metadata("producer") == Some("burn") {
         return Err(Error::unsupported(
-            "weights that Burn saved; load them with burn-store, which knows their layout",
+            "the weights were saved by Burn; load them with burn-store, which supports their layout",
         ));
     }
     let mut tensors: Vec<_> = file.floats().collect();

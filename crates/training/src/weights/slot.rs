@@ -1,31 +1,31 @@
-//! The parameters of a module, in the order of its fields.
+//! Parameters of a module, in the order of its fields.
 
 use burn::module::{Module, ModuleVisitor, Param};
 use burn::tensor::Tensor;
 
 use crate::weights::Rules;
 
-/// A place for a weight.
+/// A parameter of a module.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Slot {
-    /// Where it is, e.g. `backbone.conv.weight`.
+    /// Path of the parameter, e.g. `backbone.conv.weight`.
     pub path: String,
     pub shape: Vec<usize>,
-    /// Whether it is the matrix of a dense layer: `[inputs, outputs]` here, the other way round in files.
+    /// Whether it is the matrix of a linear layer: `[inputs, outputs]` in Burn, transposed in files.
     pub dense: bool,
     /// Whether it is the kernel of a transposed convolution, `[inputs, outputs, ..]`.
     pub transposed: bool,
-    /// Whether the rules give it a weight.
+    /// Whether the rules cover it.
     pub covered: bool,
 }
 
 impl Slot {
-    /// The module that it belongs to, and its name there.
+    /// Returns the path of the module, and the parameter's name in it.
     pub fn split(&self) -> (&str, &str) {
         self.path.rsplit_once('.').unwrap_or(("", &self.path))
     }
 
-    /// Its shape as files have it.
+    /// Returns the shape in files.
     pub fn file_shape(&self) -> Vec<usize> {
         match self.shape[..] {
             [inputs, outputs] if self.dense => vec![outputs, inputs],
@@ -33,7 +33,7 @@ impl Slot {
         }
     }
 
-    /// Values as the module has them.
+    /// Returns values of a file in the module's layout.
     pub fn values_from_file(&self, values: &[f32]) -> Vec<f32> {
         match self.shape[..] {
             [inputs, outputs] if self.dense => {
@@ -45,7 +45,7 @@ impl Slot {
     }
 }
 
-/// Where a walk through a module is.
+/// Position in a traversal of a module.
 #[derive(Default)]
 pub(super) struct Walk {
     names: Vec<String>,
@@ -63,14 +63,14 @@ impl Walk {
         self.containers.pop();
     }
 
-    /// The parameter here. Variants of an enum are no part of its name.
+    /// Returns the path of the current parameter, without variants of enums.
     pub fn path(&self) -> String {
         let variant = |container: &String| container.starts_with("Enum:");
         let names = self.names.iter().zip(&self.containers).filter(|(_, container)| !variant(container));
         names.map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(".")
     }
 
-    /// The type of the module whose parameter this is.
+    /// Returns the type of the current module.
     fn container(&self) -> &str {
         self.containers.last().and_then(|container| container.strip_prefix("Struct:")).unwrap_or_default()
     }
@@ -99,7 +99,7 @@ impl ModuleVisitor for Slots<'_> {
     }
 }
 
-/// The floating-point parameters and running statistics of a module.
+/// Returns the floating-point parameters and running statistics of a module.
 pub(super) fn slots<M: Module>(module: &M, rules: &Rules) -> Vec<Slot> {
     let mut visitor = Slots { walk: Walk::default(), rules, slots: Vec::new() };
     module.visit(&mut visitor);

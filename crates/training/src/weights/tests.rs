@@ -69,7 +69,7 @@ fn numbers(count: usize, seed: u64) -> Vec<f32> {
     (0..count).map(|_| random.uniform(-1.0, 1.0)).collect()
 }
 
-/// A convolution, perhaps with bias and norm, and a dense layer, as PyTorch names and lays them.
+/// Returns a convolution, optionally with bias and normalisation, and a linear layer, with PyTorch's names and layout.
 fn weights(bias: bool, norm: bool) -> Vec<(String, Vec<usize>, Vec<f32>)> {
     let mut weights = vec![("0.weight".to_owned(), vec![2, 1, 2, 2], numbers(8, 1))];
     if bias {
@@ -106,7 +106,7 @@ fn safetensors(weights: &[(String, Vec<usize>, Vec<f32>)]) -> Vec<u8> {
     [&(header.len() as u64).to_le_bytes(), header.as_slice(), data.as_slice()].concat()
 }
 
-/// What `torch.save(state_dict)` writes, in pickle protocol 2.
+/// Returns the bytes that `torch.save(state_dict)` writes, in pickle protocol 2.
 fn checkpoint(weights: &[(String, Vec<usize>, Vec<f32>)]) -> Vec<u8> {
     let text = |text: &str| [b"X", &(text.len() as u32).to_le_bytes()[..], text.as_bytes()].concat();
     let number = |number: usize| [b"J", &(number as u32).to_le_bytes()[..]].concat();
@@ -136,7 +136,7 @@ fn checkpoint(weights: &[(String, Vec<usize>, Vec<f32>)]) -> Vec<u8> {
     zip.finish().unwrap().into_inner()
 }
 
-/// A file that lives as long as the test.
+/// A file that is removed at the end of the test.
 struct Temporary(PathBuf);
 
 impl Temporary {
@@ -154,7 +154,7 @@ impl Drop for Temporary {
 }
 
 #[test]
-fn every_kind_of_file_gives_the_same_table() {
+fn every_format_yields_the_same_table() {
     let wanted = table(true, true);
     let safetensors = Temporary::new("a.bin", &safetensors(&weights(true, true)));
     let checkpoint = Temporary::new("b.bin", &checkpoint(&weights(true, true)));
@@ -168,11 +168,11 @@ fn every_kind_of_file_gives_the_same_table() {
 }
 
 #[test]
-fn names_find_their_parameters() {
+fn weights_are_assigned_by_name() {
     let rules = Rules::by_name().rename("0.*", "conv.*").rename("1.*", "norm.*").rename("2.*", "dense.*");
     let (module, report) = table(true, true).apply(normed(true), &rules).unwrap();
     report.complete().unwrap();
-    assert_eq!((report.taken.len(), report.left.len()), (8, 0));
+    assert_eq!((report.loaded.len(), report.unexpected.len()), (8, 0));
     let dense: Vec<f32> = module.dense.weight.val().into_data().try_to_vec().unwrap();
     let [a, b, c, d, e, f] = numbers(6, 6)[..] else { panic!() };
     assert_eq!(dense, [a, c, e, b, d, f]);
@@ -181,22 +181,22 @@ fn names_find_their_parameters() {
 }
 
 #[test]
-fn what_does_not_fit_is_told() {
+fn mismatches_are_reported() {
     let rules = Rules::by_name().rename("0.*", "conv.*");
     let mut table = table(true, false);
     table.add("dense.bias", vec![5], vec![0.0; 5]).unwrap();
     let (_, report) = table.apply(plain(true), &rules).unwrap();
-    assert_eq!(report.taken, ["conv.weight", "conv.bias"]);
+    assert_eq!(report.loaded, ["conv.weight", "conv.bias"]);
     assert_eq!(report.missing, ["dense.weight"]);
-    assert_eq!(report.mismatched[0].given, [5]);
-    assert_eq!(report.left, ["2.weight", "2.bias"]);
+    assert_eq!(report.mismatched[0].actual, [5]);
+    assert_eq!(report.unexpected, ["2.weight", "2.bias"]);
     let error = report.complete().unwrap_err();
     assert!(error.kind() == ErrorKind::InvalidInput && error.to_string().contains("dense.bias"), "{error}");
 
     let (_, report) = table.apply(plain(true), &rules.clone().skip("dense")).unwrap();
     report.complete().unwrap();
     let (_, report) = table.apply(plain(true), &rules.only("dense.weight")).unwrap();
-    assert_eq!((report.taken.len(), report.missing.len()), (0, 1));
+    assert_eq!((report.loaded.len(), report.missing.len()), (0, 1));
     let clash = Rules::by_name().rename("0.*", "2.*");
     assert_eq!(table.apply(plain(true), &clash).unwrap_err().kind(), ErrorKind::InvalidParam);
 }
@@ -210,7 +210,7 @@ fn norms_are_kept_made_and_folded() {
         module.run()
     };
     for bias in [true, false] {
-        // With a norm in the file: kept, its bias in the mean, or folded.
+        // With a normalisation in the file: kept, its bias in the mean, or folded.
         let source = table(bias, true);
         let wanted = run_normed(&source, true);
         assert_near(&run_normed(&source, false), &wanted);
@@ -240,7 +240,7 @@ fn layers_out_of_order_are_refused_by_number() {
 
     let (_, report) = table(true, false).apply(conv(true), &Rules::by_order()).unwrap();
     report.complete().unwrap();
-    assert_eq!(report.left, ["2.weight", "2.bias"]);
+    assert_eq!(report.unexpected, ["2.weight", "2.bias"]);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Convolutions of any parameters come out as Burn computes them.
+//! Exported convolutions of any parameters equal Burn's.
 
 use burn::module::Module;
 use burn::nn::PaddingConfig2d;
@@ -8,7 +8,7 @@ use opendr_inference::{Builtin, OnnxRuntime, Runtime, Session, TensorView};
 use opendr_training::export::{self, Input};
 use proptest::prelude::*;
 
-/// What a convolution may be made of.
+/// Parameters of a convolution.
 #[derive(Debug, Clone)]
 struct Parameters {
     groups: usize,
@@ -50,7 +50,7 @@ impl Parameters {
             .init(device)
     }
 
-    /// Padded within its kernel, as a transposed convolution has to be.
+    /// Padded within its kernel, as a transposed convolution must be.
     fn transposed(&self, device: &Device) -> ConvTranspose2d {
         let within = |axis: usize| self.padding[axis].min(self.kernel[axis] - 1);
         ConvTranspose2dConfig::new(self.channels, self.kernel)
@@ -63,7 +63,7 @@ impl Parameters {
     }
 }
 
-/// The largest difference between Burn and a runtime, as a share of the largest magnitude.
+/// Returns the largest difference between Burn and a runtime, as a share of the largest magnitude.
 fn difference<M: Module>(
     runtime: &dyn Runtime,
     network: &M,

@@ -1,11 +1,11 @@
-//! What is exported answers as Burn does, in both runtimes.
+//! Exported models return Burn's outputs in both runtimes.
 
 use crate::architectures;
 use crate::architectures::case::{Run, Values};
 use opendr_engine::{Device, Error, Result};
 use opendr_inference::{Builtin, OnnxRuntime, Runtime, Session, TensorView};
 
-/// Share of an output's largest magnitude by which a runtime may differ from Burn.
+/// Maximum difference between a runtime and Burn, as a share of an output's largest magnitude.
 const TOLERANCE: f32 = 1e-4;
 
 fn outputs(runtime: &dyn Runtime, run: &Run) -> Result<Vec<Values>> {
@@ -13,16 +13,16 @@ fn outputs(runtime: &dyn Runtime, run: &Run) -> Result<Vec<Values>> {
     let session = Session::open_with(runtime, model, Device::Cpu)?;
     let input = TensorView::new(&run.input.shape, &run.input.values)?;
     let mut outputs = Vec::new();
-    session.run(&[input], |answers| {
-        for answer in answers {
-            outputs.push(Values { shape: answer.shape().to_vec(), values: answer.values::<f32>()?.to_vec() });
+    session.run(&[input], |results| {
+        for result in results {
+            outputs.push(Values { shape: result.shape().to_vec(), values: result.values::<f32>()?.to_vec() });
         }
         Ok(())
     })?;
     Ok(outputs)
 }
 
-/// The largest difference as a share of the largest magnitude; infinite where there is a NaN or sizes differ.
+/// Returns the largest difference as a share of the largest magnitude; infinite where there is a NaN or sizes differ.
 fn difference(ours: &Values, burn: &Values) -> f32 {
     if ours.shape != burn.shape {
         return f32::INFINITY;
@@ -32,7 +32,7 @@ fn difference(ours: &Values, burn: &Values) -> f32 {
     apart.fold(0.0, |largest, apart| if apart.is_nan() { f32::INFINITY } else { largest.max(apart) })
 }
 
-/// What is wrong, one line each.
+/// Returns the differences, one line each.
 fn disagreements(runtime: &dyn Runtime) -> Vec<String> {
     let _turn = crate::turn();
     let mut wrong = Vec::new();
@@ -60,13 +60,13 @@ fn disagreements(runtime: &dyn Runtime) -> Vec<String> {
 }
 
 #[test]
-fn the_builtin_runtime_answers_as_burn() {
+fn the_builtin_runtime_equals_burn() {
     let wrong = disagreements(&Builtin);
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 #[test]
-fn onnx_runtime_answers_as_burn() {
+fn onnx_runtime_equals_burn() {
     let onnx_runtime =
         OnnxRuntime::find().expect("set ORT_DYLIB_PATH to the library of ONNX Runtime 1.23 or later");
     let wrong = disagreements(&*onnx_runtime);

@@ -1,4 +1,4 @@
-//! The loop of every `fit`: it learns, resumes bit for bit after a kill, and tells what went wrong.
+//! The training loop of every `fit`: it learns, resumes bit for bit after a kill, and reports errors.
 
 use std::env;
 use std::fs;
@@ -7,14 +7,14 @@ use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-use crate::small::{Network, Spirals, TellApart};
+use crate::small::{ClassifyPoints, Network, Spirals};
 use crate::turn;
 use opendr_engine::learner::FitJob;
 use opendr_engine::model::Model;
 use opendr_engine::{Device, ErrorKind, Progress, Random, Result, Statistics, Unit};
-use opendr_training::{OptimizerKind, ScheduleKind, Score, TrainingParams, begin, fit_network};
+use opendr_training::{OptimizerKind, ScheduleKind, Score, TrainingParams, fit_network, seeded_device};
 
-/// Set for the process that is killed: where it trains.
+/// Environment variable with the output folder of the process that is killed.
 const CHILD: &str = "OPENDR_TEST_TRAINS_INTO";
 
 fn scratch(name: &str) -> PathBuf {
@@ -40,8 +40,8 @@ fn params() -> TrainingParams {
 
 fn train(params: &TrainingParams, dataset: &Spirals, job: &FitJob<'_>) -> Result<Statistics> {
     let _turn = turn();
-    let network = Network::new(&begin(job, params)?);
-    fit_network(&TellApart::default(), network, params, dataset, None, job)
+    let network = Network::new(&seeded_device(job, params)?);
+    fit_network(&ClassifyPoints::default(), network, params, dataset, None, job)
 }
 
 fn job(output: &Path) -> FitJob<'_> {
@@ -66,7 +66,7 @@ fn every_optimiser_learns() {
     }
 }
 
-/// The child's part of the next test; nothing when it is not the child.
+/// The child's part of the next test; no effect outside of the child.
 #[test]
 fn child_trains() {
     let Some(output) = env::var_os(CHILD).map(PathBuf::from) else { return };
@@ -107,7 +107,7 @@ fn killed_and_resumed_is_the_same() {
     }
 }
 
-/// Stops after so many steps.
+/// Stops after a number of steps.
 struct StopAfter(AtomicU64);
 
 impl Progress for StopAfter {
@@ -136,7 +136,7 @@ fn stopped_and_resumed_is_the_same_with_its_log() {
     let stop = StopAfter(AtomicU64::new(33));
     let first = FitJob { progress: &stop, logging_path: Some(&logs[1]), ..job(&stopped) };
     assert_eq!(train(&params(), &dataset, &first).unwrap().get("steps"), Some(33.0));
-    assert!(stopped.join("model/weights.bin").exists(), "what was reached is there to be used");
+    assert!(stopped.join("model/weights.bin").exists(), "the container of a stopped training is written");
     let again = FitJob { resume: true, logging_path: Some(&logs[1]), ..job(&stopped) };
     let resumed = train(&params(), &dataset, &again).unwrap();
     assert!(weights(&whole) == weights(&stopped));
@@ -156,7 +156,7 @@ fn an_earlier_training_is_never_overwritten() {
     train(&params, &dataset, &job(&output)).unwrap();
     let error = train(&params, &dataset, &job(&output)).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::InvalidInput);
-    assert!(error.to_string().contains("resume it, or give another folder"), "{error}");
+    assert!(error.to_string().contains("resume it, or use another folder"), "{error}");
     let resumed = FitJob { resume: true, ..job(&output) };
     let other = TrainingParams { batch_size: 16, ..params.clone() };
     let error = train(&other, &dataset, &resumed).unwrap_err();
@@ -170,7 +170,7 @@ fn an_earlier_training_is_never_overwritten() {
 }
 
 #[test]
-fn a_loss_that_is_no_number_names_step_samples_and_checkpoint() {
+fn a_nan_loss_names_step_samples_and_checkpoint() {
     let output = scratch("nan");
     let params = TrainingParams { checkpoint_after_iter: 1, accumulate: 1, epochs: 1, ..params() };
     let error = train(&params, &Spirals { count: 320, broken: Some(77) }, &job(&output)).unwrap_err();
@@ -193,13 +193,14 @@ fn the_best_by_metric_is_kept_and_early_stopping_stops() {
         seen.push(Model::open(candidate)?.file("weights.bin")?);
         let value = values[seen.len() - 1];
         let numbers = [("score".to_owned(), value)].into();
-        Ok(Score { name: "score".to_owned(), value, is_error: false, numbers, picture: None })
+        Ok(Score { name: "score".to_owned(), value, is_error: false, numbers, image: None })
     };
     let _turn = turn();
     let job = job(&output);
-    let network = Network::new(&begin(&job, &params).unwrap());
+    let network = Network::new(&seeded_device(&job, &params).unwrap());
     let statistics =
-        fit_network(&TellApart::default(), network, &params, &dataset, Some(&mut validate), &job).unwrap();
+        fit_network(&ClassifyPoints::default(), network, &params, &dataset, Some(&mut validate), &job)
+            .unwrap();
     assert_eq!(statistics.curves["val_score"], values[..5]);
     assert_eq!((statistics.get("best"), statistics.get("best_step")), (Some(0.5), Some(4.0)));
     assert!(weights(&output) == seen[1]);
@@ -214,8 +215,8 @@ fn a_batch_too_large_for_memory_is_refused() {
     let params = TrainingParams { batch_size: 65_536, accumulate: 1, ..params() };
     let _turn = turn();
     let job = job(&output);
-    let network = Network::new(&begin(&job, &params).unwrap());
-    let objective = TellApart { ballast: 8 << 20 };
+    let network = Network::new(&seeded_device(&job, &params).unwrap());
+    let objective = ClassifyPoints { ballast: 8 << 20 };
     let dataset = Spirals { count: 65_536, broken: None };
     let error = fit_network(&objective, network, &params, &dataset, None, &job).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::InvalidParam);
@@ -224,7 +225,7 @@ fn a_batch_too_large_for_memory_is_refused() {
 }
 
 #[test]
-fn what_cannot_be_trained_is_told() {
+fn invalid_trainings_are_refused() {
     let output = scratch("refused");
     let error = train(&params(), &Spirals { count: 0, broken: None }, &job(&output)).unwrap_err();
     assert!(error.kind() == ErrorKind::InvalidInput && error.to_string().contains("empty"));

@@ -1,4 +1,4 @@
-//! The integration tests of this crate, one program: each program more is linked once more.
+//! Integration tests of this crate as one program, since each program is linked separately.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -10,7 +10,7 @@ mod small;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Burn's random numbers are one stream a process: who draws some waits for a turn.
+/// Locks Burn's random number generator, which is shared by the process.
 fn turn() -> MutexGuard<'static, ()> {
     static TURN: Mutex<()> = Mutex::new(());
     TURN.lock().unwrap_or_else(PoisonError::into_inner)

@@ -1,4 +1,4 @@
-//! PPO on CartPole as something that a tuner carries out.
+//! PPO on CartPole as a tunable training.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -12,14 +12,14 @@ use opendr_simulation::vector::{Autoreset, VecEnvironment, VectorOptions};
 use opendr_simulation::{make, make_vec};
 use opendr_tuning::{Distribution, SearchSpace, Training};
 
-/// Steps of environments in a whole training.
+/// Environment steps of a whole training.
 pub const LENGTH: u64 = 49_152;
 
 pub struct CartPoleTraining<'a> {
     ppo: Ppo,
     carts: Box<dyn VecEnvironment>,
     cart: Box<dyn Environment>,
-    /// Steps that all trainings have taken.
+    /// Total steps of all trainings.
     steps: &'a AtomicU64,
 }
 
@@ -34,7 +34,7 @@ impl<'a> CartPoleTraining<'a> {
 }
 
 impl Training for CartPoleTraining<'_> {
-    /// The mean return of twenty episodes, always the same.
+    /// Returns the mean return of twenty fixed episodes.
     fn advance(&mut self, until: u64) -> Result<Option<f64>> {
         let before = self.ppo.report().timesteps;
         while self.ppo.report().timesteps < until {
@@ -54,7 +54,7 @@ impl Training for CartPoleTraining<'_> {
     }
 }
 
-/// What rl-zoo searches for PPO, as far as it is not the network.
+/// Returns the search space of rl-zoo for PPO, without the network.
 pub fn space() -> Result<SearchSpace> {
     SearchSpace::new()
         .with("learning_rate", Distribution::log_float(1e-5, 1.0)?)?

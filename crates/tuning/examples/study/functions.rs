@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use opendr_engine::Result;
 use opendr_tuning::Trial;
 
-/// Branin's: 0.397887 at three places.
+/// Branin's function; minimum 0.397887 at three points.
 pub fn branin(trial: &Trial<'_>) -> Result<f64> {
     let (x, y) = (trial.float("x")?, trial.float("y")?);
     let valley = y - 5.1 / (4.0 * PI * PI) * x * x + 5.0 / PI * x - 6.0;
@@ -27,7 +27,7 @@ const CENTRES: [[f64; 6]; 4] = [
     [4047.0, 8828.0, 8732.0, 5743.0, 1091.0, 381.0],
 ];
 
-/// Hartmann's with six axes: -3.32237.
+/// Hartmann's function with six axes; minimum -3.32237.
 pub fn hartmann6(trial: &Trial<'_>) -> Result<f64> {
     let x = places::<6>(trial)?;
     let peak = |at: usize| {
@@ -37,13 +37,13 @@ pub fn hartmann6(trial: &Trial<'_>) -> Result<f64> {
     Ok(-(0..4).map(peak).sum::<f64>())
 }
 
-/// Rosenbrock's with five axes: 0 where all are 1.
+/// Rosenbrock's function with five axes; minimum 0 where all are 1.
 pub fn rosenbrock5(trial: &Trial<'_>) -> Result<f64> {
     let x = places::<5>(trial)?;
     Ok((0..4).map(|at| 100.0 * (x[at + 1] - x[at] * x[at]).powi(2) + (1.0 - x[at]).powi(2)).sum())
 }
 
-/// Like a training: 0 at a learning rate of 10^-3.5, batches of 256, a discount of 0.99 and Adam.
+/// Resembles a training: minimum 0 at a learning rate of 10^-3.5, batches of 256, a discount of 0.99 and Adam.
 pub fn mixed(trial: &Trial<'_>) -> Result<f64> {
     let (lr, batch, gamma) = (trial.float("lr")?, trial.float("batch")?, trial.float("gamma")?);
     let bowl = (lr.log10() + 3.5).powi(2)

@@ -7,10 +7,10 @@ use crate::records::{StudyRecord, TrialRecord, TrialState};
 
 /// Asynchronous successive halving (Li et al. 2020, "A system for massively parallel hyperparameter tuning").
 ///
-/// Rungs stand at `first`, `first * factor`, `first * factor^2`, ... steps. A trial that reaches one is paused unless it is
-/// among the best 1 / `factor` of all that ever did; as more reach the rung, paused ones come to be among them, and are
-/// asked for again, those of the highest rung first, before any new trial is begun. The trial decides itself when it is
-/// complete, and is so at its last step whatever the advice.
+/// Rungs are at `first`, `first * factor`, `first * factor^2`, ... steps. A trial that reaches a rung is paused unless it is
+/// among the best 1 / `factor` of all that have reached it. As more trials reach the rung, paused ones may become part of the best; they
+/// are then resumed, from the highest rung first, before any new trial starts. A trial completes at its last step, whatever the
+/// advice.
 #[derive(Debug, Clone, Copy)]
 pub struct Asha {
     first: i64,
@@ -18,35 +18,35 @@ pub struct Asha {
 }
 
 impl Asha {
-    /// Rungs at `first * factor^k` steps.
+    /// Creates a pruner with rungs at `first * factor^k` steps.
     ///
     /// # Errors
     /// `InvalidParam` when `first` is below 1 or `factor` below 2.
     pub fn new(first: i64, factor: i64) -> Result<Self> {
         if first < 1 || factor < 2 {
             return Err(Error::invalid_param(format!(
-                "rungs at {first} * {factor}^k steps: give a first of 1 or more and a factor of 2 or more"
+                "rungs at {first} * {factor}^k steps; give a first rung of 1 or more and a factor of 2 or more"
             )));
         }
         Ok(Self { first, factor })
     }
 
-    /// The same with the first `rungs` left out.
+    /// Returns the same pruner without the first `rungs`.
     pub(crate) fn without_rungs(self, rungs: u32) -> Self {
         Self { first: self.rung(rungs), factor: self.factor }
     }
 
-    /// The steps of a rung.
+    /// Returns the step of a rung.
     fn rung(&self, number: u32) -> i64 {
         self.first.saturating_mul(self.factor.saturating_pow(number))
     }
 
-    /// The highest rung that has been reached by `step`; `None` before the first.
+    /// Returns the highest rung at or below `step`; `None` before the first.
     fn rung_at(&self, step: i64) -> Option<u32> {
         (0..63).take_while(|rung| self.rung(*rung) <= step && self.rung(*rung) < i64::MAX).last()
     }
 
-    /// The numbers of those trials that are among the best at a rung, of all that have reached it.
+    /// Returns the numbers of the trials that are among the best at a rung, of all that have reached it.
     pub(crate) fn best_at(
         &self,
         rung: u32,
@@ -60,7 +60,7 @@ impl Asha {
         };
         let trials = study.trials.iter().filter(|trial| trial.state != TrialState::Failed && among(trial));
         let mut reached: Vec<_> = trials.filter_map(loss).collect();
-        // Of equals the first: it has waited longest.
+        // Of equals the first, which has waited longest.
         reached.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         reached.truncate(reached.len() / self.factor as usize);
         reached.into_iter().map(|(_, number)| number).collect()
@@ -76,7 +76,7 @@ impl Asha {
         let rung = steps.next().and_then(|step| self.rung_at(step));
         let before = steps.next().and_then(|step| self.rung_at(step));
         match rung {
-            // Only the first report at a rung, or beyond it, is the one to be judged by.
+            // Only the first report at or beyond a rung counts.
             Some(rung)
                 if Some(rung) != before && !self.best_at(rung, study, among).contains(&trial.number) =>
             {
@@ -86,7 +86,7 @@ impl Asha {
         }
     }
 
-    /// The paused trial at the highest rung that has come to be among its best.
+    /// Returns the paused trial at the highest rung that is now among the best there.
     pub(crate) fn promotable_among(
         &self,
         study: &StudyRecord,

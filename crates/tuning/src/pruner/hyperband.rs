@@ -5,18 +5,18 @@ use opendr_engine::{Error, Random, Result};
 use crate::pruner::{Advice, Asha, Pruner};
 use crate::records::{StudyRecord, TrialRecord};
 
-/// Successive halving with several first rungs side by side, against configurations that only show late how good they are
-/// (Li et al. 2018, "Hyperband"). Each trial belongs to one bracket by its number, and is compared with those of its own
-/// only; brackets with early rungs have more trials, so that each costs about the same.
+/// Successive halving with several first rungs in parallel, for configurations whose quality shows late
+/// (Li et al. 2018, "Hyperband"). The number of a trial determines its bracket, and it is compared within that bracket
+/// only; brackets with early rungs have more trials, so that all cost about the same.
 #[derive(Debug, Clone)]
 pub struct Hyperband {
     brackets: Vec<Asha>,
-    /// How many of so many trials belong to each.
+    /// Number of trials of each bracket in one cycle.
     shares: Vec<usize>,
 }
 
 impl Hyperband {
-    /// First rungs at `first`, `first * factor`, ... steps, as far as `last`, the steps of a whole trial.
+    /// Creates brackets with first rungs at `first`, `first * factor`, ... steps, up to `last`, the steps of a whole trial.
     ///
     /// # Errors
     /// `InvalidParam` when `first` is below 1, `factor` below 2 or `last` below `first`.
@@ -24,7 +24,7 @@ impl Hyperband {
         let asha = Asha::new(first, factor)?;
         if last < first {
             return Err(Error::invalid_param(format!(
-                "the last step {last} lies before the first rung {first}"
+                "the last step {last} is before the first rung {first}; give a larger one"
             )));
         }
         let count = std::iter::successors(Some(first), |steps| steps.checked_mul(factor))
@@ -38,9 +38,9 @@ impl Hyperband {
         Ok(Self { brackets, shares: (0..count).map(share).collect() })
     }
 
-    /// The bracket of a trial.
+    /// Returns the bracket of a trial.
     pub fn bracket(&self, number: usize) -> usize {
-        let mut at = Random::at([number as u64]).below(self.shares.iter().sum());
+        let mut at = Random::from_key([number as u64]).below(self.shares.iter().sum());
         let bracket = self.shares.iter().position(|share| {
             let here = at < *share;
             at = at.saturating_sub(*share);
@@ -60,7 +60,7 @@ impl Pruner for Hyperband {
     fn promotable(&self, study: &StudyRecord) -> Option<usize> {
         let promotable = |(bracket, asha): (usize, &Asha)| {
             let among = |trial: &TrialRecord| self.bracket(trial.number) == bracket;
-            // Rungs of later brackets stand higher.
+            // Rungs of later brackets are at more steps.
             asha.promotable_among(study, &among).map(|(rung, number)| (rung as usize + bracket, number))
         };
         self.brackets

@@ -1,15 +1,15 @@
-//! The median rule.
+//! Median pruning.
 
 use crate::pruner::{Advice, Pruner};
 use crate::records::{StudyRecord, TrialRecord};
 
-/// Stops a trial whose best report is worse than the median of what the complete trials reported at its step (Golovin et al.
+/// Stops a trial whose best report is worse than the median of the complete trials' reports at the same step (Golovin et al.
 /// 2017, "Google Vizier").
 #[derive(Debug, Clone, Copy)]
 pub struct Median {
-    /// So many trials must be complete before one is stopped.
+    /// Number of complete trials before any trial is stopped.
     pub startup_trials: usize,
-    /// Before this step none is stopped.
+    /// Number of steps before a trial is stopped.
     pub warmup_steps: i64,
 }
 

@@ -1,4 +1,4 @@
-//! When a trial is not worth going on.
+//! Pruners: early stopping of unpromising trials.
 
 mod asha;
 mod hyperband;
@@ -10,30 +10,30 @@ pub use asha::Asha;
 pub use hyperband::Hyperband;
 pub use median::Median;
 
-/// What to do with a trial after a report.
+/// A pruner's decision after a report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Advice {
-    /// Go on.
+    /// Continue the trial.
     Continue,
-    /// Keep the state and end here for now: answer [`Outcome::Paused`](crate::Outcome::Paused). Should the trial turn out to
-    /// be among the best, it is asked for again, and goes on from that state.
+    /// Save the state and return [`Outcome::Paused`](crate::Outcome::Paused). If the trial later turns out to
+    /// be among the best, it is resumed from that state.
     Pause,
-    /// End here: answer [`Outcome::Pruned`](crate::Outcome::Pruned).
+    /// End the trial: return [`Outcome::Pruned`](crate::Outcome::Pruned).
     Stop,
 }
 
-/// Judges trials by what they report on their way. All that a pruner knows is in the study's record.
+/// Decides about trials from their intermediate reports. A pruner has no state besides the study's record.
 pub trait Pruner: Send + Sync {
-    /// What to do with `trial`, which has just reported.
+    /// Returns the decision about `trial`, which has just reported.
     fn advice(&self, study: &StudyRecord, trial: &TrialRecord) -> Advice;
 
-    /// The number of the paused trial that should go on next, if any should.
+    /// Returns the number of the paused trial to resume next, if any.
     fn promotable(&self, _study: &StudyRecord) -> Option<usize> {
         None
     }
 }
 
-/// Lets every trial end.
+/// Stops no trial.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct NoPruner;
 

@@ -15,7 +15,11 @@ fn the_median_stops_the_worse_half() {
     for value in [1.0, 2.0, 3.0, f64::NAN] {
         let trial = study.ask(&space).unwrap();
         for step in 0..4 {
-            assert_eq!(trial.report(step, value).unwrap(), Continue, "there is nothing to compare with yet");
+            assert_eq!(
+                trial.report(step, value).unwrap(),
+                Continue,
+                "there are too few trials to compare with"
+            );
         }
         trial.tell(Outcome::from(1.0)).unwrap();
     }
@@ -64,7 +68,7 @@ fn rungs_promote_the_best_third() {
 }
 
 #[test]
-fn brackets_begin_later_and_are_fewer() {
+fn later_brackets_have_fewer_trials() {
     let hyperband = Hyperband::new(1, 9, 3).unwrap();
     let mut counts = [0; 3];
     (0..3000).for_each(|number| counts[hyperband.bracket(number)] += 1);
@@ -74,9 +78,9 @@ fn brackets_begin_later_and_are_fewer() {
     let mut first_pause = [i64::MAX; 3];
     for _ in 0..80 {
         let trial = study.ask(&space).unwrap();
-        let begun = trial.record().unwrap().last_report().map_or(0, |(step, _)| step);
+        let resumed_at = trial.record().unwrap().last_report().map_or(0, |(step, _)| step);
         let mut outcome = Outcome::from(1.0);
-        for step in begun + 1..=9 {
+        for step in resumed_at + 1..=9 {
             if trial.report(step, -(trial.number() as f64)).unwrap() == Pause {
                 let first = &mut first_pause[hyperband.bracket(trial.number())];
                 *first = step.min(*first);
@@ -87,6 +91,6 @@ fn brackets_begin_later_and_are_fewer() {
         trial.tell(outcome).unwrap();
     }
     assert_eq!(first_pause, [1, 3, 9]);
-    assert!(study.snapshot().trials.len() < 80, "some went on");
+    assert!(study.snapshot().trials.len() < 80, "some trials were resumed");
     assert!(Hyperband::new(3, 2, 3).is_err());
 }

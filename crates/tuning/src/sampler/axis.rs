@@ -1,23 +1,23 @@
-//! A distribution laid on the line from 0 to 1.
+//! Mapping of distributions to the unit interval.
 
 use crate::Distribution;
 
-/// Where the numbers of a distribution lie between 0 and 1. Discrete numbers are bins of equal width (of equal ratio where
-/// the scale is logarithmic), so half a step is added at each end.
+/// Maps the numbers of a distribution to [0, 1]. Discrete numbers are bins of equal width (of equal ratio on
+/// a logarithmic scale), so half a step is added at each end.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Axis {
-    /// Numbers with an order.
+    /// Ordered numbers.
     Line(Line),
-    /// So many choices without one.
+    /// A number of unordered choices.
     Choices(usize),
 }
 
-/// Numbers with an order.
+/// Ordered numbers on a linear or logarithmic scale.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line {
     low: f64,
     high: f64,
-    /// 0 when all numbers between are possible.
+    /// 0 for a continuous range.
     step: f64,
     log: bool,
 }
@@ -35,7 +35,7 @@ impl Axis {
         }
     }
 
-    /// The number at `unit`, a place from 0 to 1.
+    /// Returns the number at `unit`, in [0, 1].
     pub fn number_from_unit(&self, unit: f64) -> f64 {
         match self {
             Self::Line(line) => line.number_from_unit(unit),
@@ -45,7 +45,7 @@ impl Axis {
 }
 
 impl Line {
-    /// Start and length on the scale.
+    /// Returns start and length on the scale.
     fn extent(&self) -> (f64, f64) {
         let (start, end) =
             (self.scaled(self.low - self.step / 2.0), self.scaled(self.high + self.step / 2.0));
@@ -72,7 +72,7 @@ impl Line {
         number.clamp(self.low, self.high)
     }
 
-    /// The ends of the bin around `number`; `None` when numbers are no bins.
+    /// Returns the ends of the bin around `number`; `None` for a continuous range.
     pub fn bin(&self, number: f64) -> Option<(f64, f64)> {
         let half = self.step / 2.0;
         (half > 0.0).then(|| (self.unit_from_number(number - half), self.unit_from_number(number + half)))

@@ -1,4 +1,4 @@
-//! Evolution of a normal distribution.
+//! Covariance matrix adaptation.
 
 use opendr_engine::{Random, Result};
 use serde_json::{Value, json};
@@ -6,21 +6,21 @@ use serde_json::{Value, json};
 use crate::records::{StudyRecord, TrialRecord};
 use crate::sampler::axis::Axis;
 use crate::sampler::symmetric_eigen::eigen_from_symmetric;
-use crate::sampler::{Drawn, Sampler, stream};
+use crate::sampler::{DrawnParameters, Sampler, stream};
 use crate::space::Parameter;
 
-/// The system attribute with a trial's generation and its place before it was rounded.
+/// System attribute with a trial's generation and its position before rounding.
 const NOTE: &str = "opendr:cma_es";
-/// Share of each axis.
+/// Initial standard deviation, as a fraction of each axis.
 const FIRST_WIDTH: f64 = 1.0 / 6.0;
-/// How often a place beyond the ends is drawn again before it is cut off.
+/// Number of redraws of a position outside the range before it is clipped.
 const REDRAWS: usize = 100;
 
 /// The covariance matrix adaptation evolution strategy (Hansen, "The CMA evolution strategy: a tutorial", 2016), for
-/// numbers with an order; choices without one are drawn at random. For a few hundred trials and more, where good values
-/// lie along a valley.
+/// ordered numbers; unordered choices are drawn at random. Suited to a few hundred trials or more, and to objectives with
+/// correlated parameters.
 ///
-/// It keeps no state: each generation is computed anew from the places that the complete trials noted, so that workers
+/// It keeps no state: each generation is recomputed from the positions stored in the complete trials, so that workers
 /// share one evolution.
 #[derive(Debug, Clone, Copy)]
 pub struct CmaEs {
@@ -28,19 +28,19 @@ pub struct CmaEs {
 }
 
 impl CmaEs {
-    /// The search that belongs to `seed`.
+    /// Creates the sampler.
     pub fn new(seed: u64) -> Self {
         Self { seed }
     }
 }
 
 impl Sampler for CmaEs {
-    fn draw(&self, study: &StudyRecord, number: usize, wanted: &[&Parameter]) -> Result<Drawn> {
-        let mut random = stream(self.seed, number, wanted);
-        let axes: Vec<Axis> = wanted.iter().map(|parameter| Axis::new(&parameter.distribution)).collect();
+    fn draw(&self, study: &StudyRecord, number: usize, parameters: &[&Parameter]) -> Result<DrawnParameters> {
+        let mut random = stream(self.seed, number, parameters);
+        let axes: Vec<Axis> = parameters.iter().map(|parameter| Axis::new(&parameter.distribution)).collect();
         let size = axes.iter().filter(|axis| matches!(axis, Axis::Line(_))).count();
-        // Parameters under a condition evolve by themselves.
-        let note = format!("{NOTE}:{}", wanted.first().map_or("", |parameter| parameter.name.as_str()));
+        // Conditional parameters evolve separately.
+        let note = format!("{NOTE}:{}", parameters.first().map_or("", |parameter| parameter.name.as_str()));
         let (generation, evolution) = Evolution::of(study, &note, size);
         let place = evolution.draw(&mut random);
         let mut units = place.iter();
@@ -54,14 +54,14 @@ impl Sampler for CmaEs {
         } else {
             Vec::new()
         };
-        Ok(Drawn { numbers, notes })
+        Ok(DrawnParameters { numbers, system_attributes: notes })
     }
 }
 
-/// What does not change over the generations.
+/// Constants of the evolution.
 struct Rates {
     population: usize,
-    /// Of the better half, sum 1.
+    /// Recombination weights of the better half, with sum 1.
     weights: Vec<f64>,
     effective: f64,
     width: f64,
@@ -69,7 +69,7 @@ struct Rates {
     path: f64,
     one: f64,
     many: f64,
-    /// Expected length of a normal vector.
+    /// Expected length of a standard normal vector.
     length: f64,
 }
 
@@ -125,7 +125,7 @@ impl Evolution {
         }
     }
 
-    /// The generation that is to be drawn from, after all that are complete.
+    /// Returns the generation to sample from, after all complete ones.
     fn of(study: &StudyRecord, note: &str, size: usize) -> (usize, Self) {
         let mut evolution = Self::new(size);
         let noted: Vec<_> = study.complete().filter_map(|trial| noted(trial, note, size)).collect();
@@ -161,7 +161,7 @@ impl Evolution {
         place.iter().map(|unit| unit.clamp(0.0, 1.0)).collect()
     }
 
-    /// The next generation, from the places of this, the best first (equations 6 to 12, 24 to 37 of the tutorial).
+    /// Computes the next generation from the positions of this one, best first (equations 6 to 12, 24 to 37 of the tutorial).
     fn step(&mut self, places: &[&[f64]]) {
         let (size, rates) = (self.size, &self.rates);
         let steps: Vec<Vec<f64>> = places
@@ -179,7 +179,7 @@ impl Evolution {
         self.width_path.iter_mut().zip(&whitened).for_each(|(path, step)| *path = keep * *path + push * step);
         let length = self.width_path.iter().map(|part| part * part).sum::<f64>().sqrt();
         self.generation += 1;
-        // While the width grows fast, the path of the covariance waits.
+        // While the step size grows fast, the covariance path is not updated.
         let warm = (1.0 - keep.powi(2 * self.generation as i32)).sqrt();
         let wait = length / warm >= (1.4 + 2.0 / (size as f64 + 1.0)) * rates.length;
         let push = if wait { 0.0 } else { (rates.path * (2.0 - rates.path) * rates.effective).sqrt() };
@@ -197,12 +197,12 @@ impl Evolution {
             self.covariance[at] = keep * self.covariance[at] + rates.one * one + rates.many * many;
         }
         self.mean.iter_mut().zip(&mean_step).for_each(|(mean, step)| *mean += self.width * step);
-        // Wider than the space says nothing more.
+        // A step size wider than the space has no further effect.
         self.width *= ((rates.width / rates.damping) * (length / rates.length - 1.0)).exp();
         self.width = self.width.clamp(1e-12, 1.0);
     }
 
-    /// The vector, as the distribution with covariance 1 has it.
+    /// Transforms a vector to a distribution with identity covariance.
     fn whitened(&self, vector: &[f64]) -> Vec<f64> {
         let size = self.size;
         let (values, vectors) = eigen_from_symmetric(self.covariance.clone(), size);
@@ -212,13 +212,13 @@ impl Evolution {
     }
 }
 
-/// A square matrix times a vector.
+/// Multiplies a square matrix by a vector.
 fn product(matrix: &[f64], vector: &[f64]) -> Vec<f64> {
     let row = |row: &[f64]| row.iter().zip(vector).map(|(a, b)| a * b).sum();
     matrix.chunks_exact(vector.len().max(1)).map(row).collect()
 }
 
-/// Generation and place of a trial that noted them.
+/// Returns generation and position of a trial that stored them.
 fn noted<'a>(trial: &'a TrialRecord, note: &str, size: usize) -> Option<(usize, Vec<f64>, &'a TrialRecord)> {
     let noted = trial.system_attributes.get(note)?;
     let generation = usize::try_from(noted.get("generation")?.as_u64()?).ok()?;

@@ -1,4 +1,4 @@
-//! How the next trial is chosen.
+//! Samplers: the choice of parameters.
 
 mod axis;
 mod cma_es;
@@ -18,31 +18,31 @@ pub use quasi_random::QuasiRandom;
 pub use random::RandomSearch;
 pub use tpe::Tpe;
 
-/// Parameters of a trial.
+/// Parameters drawn for a trial.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Drawn {
-    /// One number for each parameter, as its distribution understands it.
+pub struct DrawnParameters {
+    /// One number per parameter, in the representation of its distribution.
     pub numbers: Vec<f64>,
-    /// What the sampler needs to know of the trial later: system attributes of it.
-    pub notes: Vec<(String, Value)>,
+    /// System attributes of the trial that the sampler needs later.
+    pub system_attributes: Vec<(String, Value)>,
 }
 
-/// Chooses parameters.
+/// Chooses parameters of trials.
 ///
-/// All that a sampler knows is in the study's record, and all that is random follows from its seed and the trial's number:
-/// so a study that goes on from its file, in whichever process, goes on with what it would have done.
+/// A sampler has no state besides the study's record, and its random numbers depend only on its seed and the trial's number.
+/// A resumed study therefore continues as an uninterrupted one, in any process.
 pub trait Sampler: Send + Sync {
-    /// Numbers for the parameters `wanted`, which take part together, of trial `number`.
+    /// Draws numbers for `parameters`, which are active together, of trial `number`.
     ///
     /// # Errors
     /// When the sampler cannot search such parameters.
-    fn draw(&self, study: &StudyRecord, number: usize, wanted: &[&Parameter]) -> Result<Drawn>;
+    fn draw(&self, study: &StudyRecord, number: usize, parameters: &[&Parameter]) -> Result<DrawnParameters>;
 }
 
-/// Streams of random numbers of a sampler by trial and group of parameters.
-fn stream(seed: u64, number: usize, wanted: &[&Parameter]) -> opendr_engine::Random {
-    let group = wanted.first().map_or(0, |parameter| parameter.position);
-    opendr_engine::Random::at([seed, number as u64, group as u64])
+/// Returns the random numbers of a sampler for a trial and a group of parameters.
+fn stream(seed: u64, number: usize, parameters: &[&Parameter]) -> opendr_engine::Random {
+    let group = parameters.first().map_or(0, |parameter| parameter.position);
+    opendr_engine::Random::from_key([seed, number as u64, group as u64])
 }
 
 #[cfg(test)]

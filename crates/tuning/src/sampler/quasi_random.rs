@@ -4,53 +4,53 @@ use opendr_engine::{Random, Result};
 
 use crate::records::StudyRecord;
 use crate::sampler::axis::Axis;
-use crate::sampler::{Drawn, Sampler};
+use crate::sampler::{DrawnParameters, Sampler};
 use crate::space::Parameter;
 
-/// Places that fill the space more evenly than random ones: Halton's sequence with randomly permuted digits (Owen 2017, "A
-/// randomized Halton algorithm in R"). The number of the trial is the place in the sequence, so workers share one.
+/// Low-discrepancy points: Halton's sequence with randomly permuted digits (Owen 2017, "A
+/// randomized Halton algorithm in R"). The number of the trial is the index in the sequence, so workers share one.
 #[derive(Debug, Clone, Copy)]
 pub struct QuasiRandom {
     seed: u64,
 }
 
 impl QuasiRandom {
-    /// The sequence that belongs to `seed`.
+    /// Creates the sampler.
     pub fn new(seed: u64) -> Self {
         Self { seed }
     }
 }
 
 impl Sampler for QuasiRandom {
-    fn draw(&self, _: &StudyRecord, number: usize, wanted: &[&Parameter]) -> Result<Drawn> {
+    fn draw(&self, _: &StudyRecord, number: usize, parameters: &[&Parameter]) -> Result<DrawnParameters> {
         let unit = |it: &&Parameter| scrambled_halton(self.seed, number, it.position);
         let numbers =
-            wanted.iter().map(|it| Axis::new(&it.distribution).number_from_unit(unit(it))).collect();
-        Ok(Drawn { numbers, notes: Vec::new() })
+            parameters.iter().map(|it| Axis::new(&it.distribution).number_from_unit(unit(it))).collect();
+        Ok(DrawnParameters { numbers, system_attributes: Vec::new() })
     }
 }
 
-/// Element `index` of dimension `dimension`, in [0, 1).
+/// Returns element `index` of dimension `dimension`, in [0, 1).
 fn scrambled_halton(seed: u64, index: usize, dimension: usize) -> f64 {
     let base = prime(dimension);
     let (mut rest, mut unit, mut weight) = (index, 0.0, 1.0);
     let mut digits: Vec<usize> = Vec::with_capacity(base);
     for digit in 0.. {
         weight /= base as f64;
-        // Digits beyond the resolution of a double change nothing.
+        // Digits below the resolution of a double have no effect.
         if weight < f64::EPSILON / 4.0 {
             break;
         }
         digits.clear();
         digits.extend(0..base);
-        Random::at([seed, dimension as u64, digit]).shuffle(&mut digits);
+        Random::from_key([seed, dimension as u64, digit]).shuffle(&mut digits);
         unit += weight * digits[rest % base] as f64;
         rest /= base;
     }
     unit.min(1.0 - f64::EPSILON)
 }
 
-/// Prime number `index`, from 2.
+/// Returns prime number `index`, from 2.
 fn prime(index: usize) -> usize {
     let is_prime = |number: &usize| {
         (2..).take_while(|part| part * part <= *number).all(|part| !number.is_multiple_of(part))

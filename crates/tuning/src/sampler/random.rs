@@ -4,27 +4,27 @@ use opendr_engine::Result;
 
 use crate::records::StudyRecord;
 use crate::sampler::axis::Axis;
-use crate::sampler::{Drawn, Sampler, stream};
+use crate::sampler::{DrawnParameters, Sampler, stream};
 use crate::space::Parameter;
 
-/// Every value as likely as any other (Bergstra and Bengio 2012).
+/// Samples uniformly (Bergstra and Bengio 2012).
 #[derive(Debug, Clone, Copy)]
 pub struct RandomSearch {
     seed: u64,
 }
 
 impl RandomSearch {
-    /// The search that belongs to `seed`.
+    /// Creates the sampler.
     pub fn new(seed: u64) -> Self {
         Self { seed }
     }
 }
 
 impl Sampler for RandomSearch {
-    fn draw(&self, _: &StudyRecord, number: usize, wanted: &[&Parameter]) -> Result<Drawn> {
-        let mut random = stream(self.seed, number, wanted);
+    fn draw(&self, _: &StudyRecord, number: usize, parameters: &[&Parameter]) -> Result<DrawnParameters> {
+        let mut random = stream(self.seed, number, parameters);
         let numbers =
-            wanted.iter().map(|it| Axis::new(&it.distribution).number_from_unit(random.unit())).collect();
-        Ok(Drawn { numbers, notes: Vec::new() })
+            parameters.iter().map(|it| Axis::new(&it.distribution).number_from_unit(random.unit())).collect();
+        Ok(DrawnParameters { numbers, system_attributes: Vec::new() })
     }
 }

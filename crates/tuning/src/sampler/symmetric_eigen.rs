@@ -1,10 +1,10 @@
 //! Eigenvalues and eigenvectors of small symmetric matrices.
 
-/// More sweeps are never needed; convergence is quadratic.
+/// Maximum number of sweeps; convergence is quadratic.
 const SWEEPS: usize = 50;
 
-/// The eigenvalues of a symmetric matrix of `size` rows, in no order, and the eigenvectors as the columns of a second
-/// matrix of rows (Jacobi's method).
+/// Returns the eigenvalues of a symmetric matrix of `size` rows, in no order, and the eigenvectors as columns of a
+/// matrix stored in rows (Jacobi's method).
 pub fn eigen_from_symmetric(mut matrix: Vec<f64>, size: usize) -> (Vec<f64>, Vec<f64>) {
     let mut vectors: Vec<f64> =
         (0..size * size).map(|at| if at / size == at % size { 1.0 } else { 0.0 }).collect();
@@ -24,7 +24,7 @@ pub fn eigen_from_symmetric(mut matrix: Vec<f64>, size: usize) -> (Vec<f64>, Vec
     ((0..size).map(|at| matrix[at * size + at]).collect(), vectors)
 }
 
-/// Turns the plane of axes `p` and `q` so that their element becomes 0.
+/// Rotates the plane of axes `p` and `q` so that their off-diagonal element becomes 0.
 fn rotate(matrix: &mut [f64], vectors: &mut [f64], size: usize, p: usize, q: usize) {
     let element = matrix[p * size + q];
     if element == 0.0 {
@@ -59,11 +59,11 @@ mod tests {
             let matrix: Vec<f64> =
                 (0..size * size).map(|at| half[at] + half[at % size * size + at / size]).collect();
             let (values, vectors) = eigen_from_symmetric(matrix.clone(), size);
-            for (at, wanted) in matrix.iter().enumerate() {
+            for (at, expected) in matrix.iter().enumerate() {
                 let (row, column) = (at / size, at % size);
-                let made: f64 =
+                let product: f64 =
                     (0..size).map(|k| vectors[row * size + k] * values[k] * vectors[column * size + k]).sum();
-                assert!((made - wanted).abs() < 1e-12, "{size}: {made} {wanted}");
+                assert!((product - expected).abs() < 1e-12, "{size}: {product} {expected}");
             }
         }
     }

@@ -42,7 +42,7 @@ fn numbers(sampler: impl Sampler + 'static, trials: usize) -> (f64, Vec<Vec<f64>
 }
 
 #[test]
-fn a_seed_is_a_search() {
+fn a_seed_determines_the_search() {
     type Make = fn(u64) -> Box<dyn Sampler>;
     let samplers: [Make; 4] = [
         |seed| Box::new(RandomSearch::new(seed)),
@@ -57,7 +57,7 @@ fn a_seed_is_a_search() {
     }
 }
 
-/// `Box<dyn Sampler>` as a sampler.
+/// Adapts `Box<dyn Sampler>` to `Sampler`.
 struct Boxed(Box<dyn Sampler>);
 
 impl Sampler for Boxed {
@@ -65,14 +65,14 @@ impl Sampler for Boxed {
         &self,
         study: &crate::StudyRecord,
         number: usize,
-        wanted: &[&crate::Parameter],
-    ) -> opendr_engine::Result<crate::Drawn> {
-        self.0.draw(study, number, wanted)
+        parameters: &[&crate::Parameter],
+    ) -> opendr_engine::Result<crate::DrawnParameters> {
+        self.0.draw(study, number, parameters)
     }
 }
 
 #[test]
-fn a_study_goes_on_as_if_it_had_not_ended() {
+fn a_resumed_study_draws_the_same_trials() {
     let folder = std::env::temp_dir().join(format!("opendr-resume-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     let path = folder.join("study.log");
@@ -95,7 +95,7 @@ fn learning_samplers_beat_random_search() {
     let random = mean(&|seed| numbers(RandomSearch::new(seed), 80).0);
     let tpe = mean(&|seed| numbers(Tpe::new(seed), 80).0);
     assert!(tpe < 0.3 * random, "{tpe} {random}");
-    // CMA-ES knows nothing of choices, so on a valley without any.
+    // CMA-ES does not model choices, so the function has none.
     let space = (0..4).try_fold(SearchSpace::new(), |space, at| {
         space.with(format!("x{at}"), Distribution::float(-2.0, 2.0)?)
     });

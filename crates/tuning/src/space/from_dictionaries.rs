@@ -1,4 +1,4 @@
-//! Search spaces as OpenDR's tuner takes them.
+//! Search spaces from OpenDR's hyperparameter dictionaries.
 
 use opendr_engine::{Error, Result};
 use serde::Deserialize;
@@ -54,7 +54,7 @@ fn one() -> i64 {
 }
 
 impl SearchSpace {
-    /// The space of OpenDR's hyperparameter dictionaries: each has `name`, `type` (one of `categorical`,
+    /// Creates the space of OpenDR's hyperparameter dictionaries: each has `name`, `type` (one of `categorical`,
     /// `discrete_uniform`, `float`, `int`, `loguniform`, `uniform`) and the arguments of that type.
     ///
     /// ```
@@ -69,7 +69,7 @@ impl SearchSpace {
     /// ```
     ///
     /// # Errors
-    /// `InvalidParam` with the dictionary that is none of these.
+    /// `InvalidParam` with the invalid dictionary.
     pub fn from_dictionaries(dictionaries: &[Value]) -> Result<Self> {
         dictionaries.iter().try_fold(Self::new(), |space, dictionary| {
             let read = Dictionary::deserialize(dictionary).map_err(|error| {

@@ -1,4 +1,4 @@
-//! Search spaces from tables of parameters.
+//! Search spaces from the parameters of learners.
 
 use std::collections::BTreeMap;
 
@@ -9,11 +9,11 @@ use serde_json::Value;
 use crate::{Distribution, SearchSpace};
 
 impl SearchSpace {
-    /// The space of those of `fields` that are named: ranges, choices and scale as the learner states them. Where a range
-    /// that is searched by factors begins at 0, two decades to each side of the default stand for it.
+    /// Creates the space of the named fields, with the ranges, choices and scales that the learner declares. A
+    /// logarithmic range that begins at 0 is replaced by two decades on each side of the default.
     ///
     /// # Errors
-    /// `InvalidParam` when there is no such field, or it states neither range nor choices.
+    /// `InvalidParam` for an unknown field, or one without range and choices.
     pub fn from_fields(fields: &[Field], names: &[&str]) -> Result<Self> {
         names.iter().try_fold(Self::new(), |space, name| {
             space.with(*name, distribution_from_field(field_named(fields, name)?)?)
@@ -21,11 +21,11 @@ impl SearchSpace {
     }
 }
 
-/// The defaults of the fields that are named, as [`Study::enqueue`](crate::Study::enqueue) takes them: what a learner does
-/// without tuning is a good first trial.
+/// Returns the defaults of the named fields, for [`Study::enqueue`](crate::Study::enqueue): a learner's defaults are a good
+/// first trial.
 ///
 /// # Errors
-/// `InvalidParam` when there is no such field.
+/// `InvalidParam` for an unknown field.
 pub fn defaults_from_fields(fields: &[Field], names: &[&str]) -> Result<BTreeMap<String, Value>> {
     let value =
         |name: &&str| Ok(((*name).to_owned(), json_from_value(&field_named(fields, name)?.default.value())));
@@ -35,7 +35,7 @@ pub fn defaults_from_fields(fields: &[Field], names: &[&str]) -> Result<BTreeMap
 fn field_named<'a>(fields: &'a [Field], name: &str) -> Result<&'a Field> {
     fields.iter().find(|field| field.name == name).ok_or_else(|| {
         let names: Vec<_> = fields.iter().map(|field| field.name).collect();
-        Error::invalid_param(format!("no parameter {name:?} to tune; there are {}", names.join(", ")))
+        Error::invalid_param(format!("no parameter {name:?} to tune; available: {}", names.join(", ")))
     })
 }
 
@@ -50,7 +50,7 @@ fn distribution_from_field(field: &Field) -> Result<Distribution> {
             let (mut low, mut high) = (range.low, range.high);
             if field.log_scale && low <= 0.0 {
                 let default = field.default.value().as_float().filter(|default| *default > 0.0);
-                let default = default.ok_or_else(|| unknown("a search by factors cannot begin at 0"))?;
+                let default = default.ok_or_else(|| unknown("a logarithmic range cannot begin at 0"))?;
                 (low, high) = (default / 100.0, high.min(default * 100.0));
             }
             match (field.kind, field.log_scale) {
@@ -61,7 +61,7 @@ fn distribution_from_field(field: &Field) -> Result<Distribution> {
             }
             .map_err(|error| error.context(field.name))
         }
-        _ => Err(unknown("it states neither range nor choices")),
+        _ => Err(unknown("the parameter has neither range nor choices")),
     }
 }
 

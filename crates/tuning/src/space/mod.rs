@@ -1,4 +1,4 @@
-//! What a study searches through.
+//! Search spaces.
 
 mod from_dictionaries;
 mod from_fields;
@@ -10,25 +10,25 @@ use crate::Distribution;
 
 pub use from_fields::defaults_from_fields;
 
-/// When a parameter takes part: only where another has one of some values.
+/// Condition of a parameter: it is active only when another has one of some values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Condition {
-    /// The other parameter, which stands before this one.
+    /// Name of the other parameter, which precedes this one.
     pub parent: String,
-    /// Its values with which this one takes part.
+    /// Values of the other parameter with which this one is active.
     pub values: Vec<Value>,
 }
 
-/// One parameter of a [`SearchSpace`].
+/// A parameter of a [`SearchSpace`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameter {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// What it may be.
+    /// Distribution.
     pub distribution: Distribution,
-    /// When it takes part; `None` for always.
+    /// Condition; `None` if the parameter is always active.
     pub condition: Option<Condition>,
-    /// Its place in the space.
+    /// Index in the space.
     pub(crate) position: usize,
 }
 
@@ -52,23 +52,23 @@ pub struct SearchSpace {
 }
 
 impl SearchSpace {
-    /// A space without parameters.
+    /// Creates a space without parameters.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// With one more parameter.
+    /// Adds a parameter.
     ///
     /// # Errors
-    /// `InvalidParam` when there is one of this name, or no value is in the distribution.
+    /// `InvalidParam` for a duplicate name, or an empty distribution.
     pub fn with(self, name: impl Into<String>, distribution: Distribution) -> Result<Self> {
         self.added(name.into(), distribution, None)
     }
 
-    /// With one more parameter, which takes part only where `parent` has one of `values`.
+    /// Adds a parameter that is active only when `parent` has one of `values`.
     ///
     /// # Errors
-    /// As [`SearchSpace::with`], and when there is no `parent` before it or that cannot take one of `values`.
+    /// As [`SearchSpace::with`], and when no earlier parameter is called `parent` or it cannot take one of `values`.
     pub fn with_when<T: Into<Value>>(
         self,
         name: impl Into<String>,
@@ -78,7 +78,9 @@ impl SearchSpace {
     ) -> Result<Self> {
         let name = name.into();
         let Some(other) = self.parameters.iter().find(|known| known.name == parent) else {
-            return Err(Error::invalid_param(format!("{name}: no parameter {parent:?} stands before it")));
+            return Err(Error::invalid_param(format!(
+                "{name}: no earlier parameter {parent:?}; add it before this one"
+            )));
         };
         let values: Vec<Value> = values.into_iter().map(Into::into).collect();
         for value in &values {
@@ -97,7 +99,7 @@ impl SearchSpace {
         condition: Option<Condition>,
     ) -> Result<Self> {
         if self.parameters.iter().any(|known| known.name == name) {
-            return Err(Error::invalid_param(format!("parameter {name:?} stands twice in the search space")));
+            return Err(Error::invalid_param(format!("parameter {name:?} occurs twice in the search space")));
         }
         let distribution = distribution.checked().map_err(|error| error.context(name.as_str()))?;
         let position = self.parameters.len();
@@ -105,12 +107,12 @@ impl SearchSpace {
         Ok(self)
     }
 
-    /// The parameters, in the order in which they are drawn.
+    /// Returns the parameters, in the order in which they are drawn.
     pub fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }
 
-    /// The parameters by condition, in order: those of a group take part together, so that they can be drawn together.
+    /// Groups the parameters by condition, in order; those of a group are active together and drawn together.
     pub(crate) fn groups(&self) -> Vec<Vec<&Parameter>> {
         let mut groups: Vec<Vec<&Parameter>> = Vec::new();
         for parameter in &self.parameters {

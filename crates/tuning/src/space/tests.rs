@@ -5,7 +5,7 @@ use serde_json::json;
 use super::*;
 use crate::defaults_from_fields;
 
-/// What a user may set.
+/// Parameters of the test.
 #[derive(Debug, Clone, Params)]
 struct Sample {
     /// The learning rate.
@@ -47,7 +47,7 @@ fn fields_become_distributions() {
 }
 
 #[test]
-fn dictionaries_of_opendr_are_understood() {
+fn dictionaries_of_opendr_become_spaces() {
     let space = SearchSpace::from_dictionaries(&[
         json!({"name": "a", "type": "categorical", "choices": ["sgd", 3, null]}),
         json!({"name": "b", "type": "discrete_uniform", "low": 0, "high": 1, "q": 0.25}),
@@ -82,7 +82,7 @@ fn dictionaries_of_opendr_are_understood() {
 }
 
 #[test]
-fn conditions_need_a_parent_that_can_hold() {
+fn conditions_need_a_possible_parent() {
     let space = || SearchSpace::new().with("a", Distribution::categorical(["x", "y"])?);
     let unit = || Distribution::float(0.0, 1.0).unwrap();
     assert!(space().unwrap().with_when("b", unit(), "c", ["x"]).is_err());

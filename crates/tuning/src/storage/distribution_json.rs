@@ -1,4 +1,4 @@
-//! Distributions as Optuna's files write them.
+//! Distributions in the JSON of Optuna's files.
 
 use opendr_engine::{Error, Result, ResultExt};
 use serde::Deserialize;
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use crate::Distribution;
 use crate::storage::python_json::{text_from_value, value_from_text};
 
-/// The classes of Optuna; the aliases and those after the third are from before its version 3.
+/// Optuna's classes; the aliases and those after the third predate its version 3.
 #[derive(Deserialize)]
 #[serde(tag = "name", content = "attributes")]
 enum Stored {
@@ -39,11 +39,12 @@ fn none<T>() -> Option<T> {
     None
 }
 
-/// The distribution that a text means.
+/// Parses a distribution.
 pub fn distribution_from_json(text: &str) -> Result<Distribution> {
     let what = || "reading a distribution";
-    let stored = Stored::deserialize(value_from_text(text).context(what)?)
-        .map_err(|error| Error::format("not one of Optuna's").with_source(error).context(what()))?;
+    let stored = Stored::deserialize(value_from_text(text).context(what)?).map_err(|error| {
+        Error::format("the distribution is none of Optuna's").with_source(error).context(what())
+    })?;
     let float = |Range { low, high, log, step }| Distribution::Float { low, high, log, step };
     let int = |Range { low, high, log, step }: Range<i64>| Distribution::Int {
         low,
@@ -56,14 +57,14 @@ pub fn distribution_from_json(text: &str) -> Result<Distribution> {
         Stored::LogFloat(range) => float(Range { log: true, ..range }),
         Stored::SteppedFloat { low, high, q } => float(Range { low, high, log: false, step: Some(q) }),
         Stored::Int(range) => int(range),
-        // Optuna wrote a step there that had no effect.
+        // Optuna stored a step there that has no effect.
         Stored::LogInt(range) => int(Range { log: true, step: Some(1), ..range }),
         Stored::Categorical { choices } => Distribution::Categorical { choices },
     };
     distribution.checked().map_err(|error| Error::format(error.message()).context(what()))
 }
 
-/// The text of a distribution.
+/// Returns a distribution as text.
 pub fn json_from_distribution(distribution: &Distribution) -> String {
     text_from_value(&match distribution {
         Distribution::Float { low, high, log, step } => {
@@ -83,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn distributions_come_through() {
+    fn distributions_round_trip() {
         for distribution in [
             Distribution::float(-1.0, 1e-7),
             Distribution::log_float(1e-300, 1e300),

@@ -1,4 +1,4 @@
-//! The journal: a file with one operation a line, to which every worker appends.
+//! Optuna's journal: a file with one operation per line, to which every worker appends.
 
 use std::fs::{File, OpenOptions};
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
@@ -10,10 +10,10 @@ use crate::storage::lock::Lock;
 use crate::storage::operation::Operation;
 use crate::storage::python_json::{text_from_value, value_from_text};
 
-/// No line of ours comes near; one without end would fill the memory.
-const LONGEST_LINE: u64 = 64 << 20;
+/// Maximum length of a line, against files without line ends.
+const MAX_LINE_BYTES: u64 = 64 << 20;
 
-/// Where a journal stands, and how far it was read.
+/// A journal file and the position up to which it has been read.
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,
@@ -27,7 +27,7 @@ struct Position {
 }
 
 impl Journal {
-    /// The journal at `path`, made when there is none.
+    /// Opens the journal at `path`; creates it if missing.
     pub fn open(path: &Path) -> Result<Self> {
         let what = || format!("opening the journal {}", path.display());
         let path = std::path::absolute(path).context(what)?;
@@ -39,21 +39,23 @@ impl Journal {
         Lock::acquire(&self.path)
     }
 
-    /// Hands over what was appended since the last time, by whom.
+    /// Passes the operations appended since the last call, with their workers, to `apply`.
     pub fn read_new(&mut self, apply: impl FnMut(Operation, &str)) -> Result<()> {
         let reading = || format!("reading the journal {}", self.path.display());
         let mut file = File::open(&self.path).context(reading)?;
         if file.metadata().context(reading)?.len() < self.read.byte {
-            return Err(Error::integrity("it was cut or replaced while it was in use; open the study again")
-                .context(reading()));
+            return Err(Error::integrity(
+                "the file was truncated or replaced while in use; open the study again",
+            )
+            .context(reading()));
         }
         file.seek(SeekFrom::Start(self.read.byte)).context(reading)?;
         read_lines(&mut BufReader::new(file), &mut self.read, apply)
             .context(|| format!("reading the journal {}", self.path.display()))
     }
 
-    /// Appends and brings to the disk. What a writer that was killed left of its last line is cut off first: no reader has
-    /// taken it for a line.
+    /// Appends operations and syncs the file. First, an incomplete last line of a killed writer is cut off, which no reader has
+    /// processed.
     pub fn append(&self, _held: &Lock, operations: &[Operation], worker: &str) -> Result<()> {
         let mut text = String::new();
         for operation in operations {
@@ -74,12 +76,12 @@ impl Journal {
     }
 }
 
-/// Hands over the operations of `bytes`.
+/// Passes the operations in `bytes` to `apply`.
 pub fn read_text(bytes: &[u8], apply: impl FnMut(Operation, &str)) -> Result<()> {
     read_lines(&mut &bytes[..], &mut Position::default(), apply)
 }
 
-/// A last line without an end is being written, or was when its writer was killed: it is left out.
+/// Skips a last line without a line end: it is being written, or its writer was killed.
 fn read_lines(
     reader: &mut impl BufRead,
     at: &mut Position,
@@ -88,18 +90,18 @@ fn read_lines(
     let mut line = Vec::new();
     loop {
         line.clear();
-        let length = reader.by_ref().take(LONGEST_LINE).read_until(b'\n', &mut line)? as u64;
+        let length = reader.by_ref().take(MAX_LINE_BYTES).read_until(b'\n', &mut line)? as u64;
         if line.last() != Some(&b'\n') {
-            if length == LONGEST_LINE {
+            if length == MAX_LINE_BYTES {
                 return Err(Error::format(format!(
-                    "line {} is longer than {LONGEST_LINE} bytes",
+                    "line {} is longer than {MAX_LINE_BYTES} bytes",
                     at.line + 1
                 )));
             }
             return Ok(());
         }
         let (operation, worker) = operation_from_line(&line).map_err(|error| {
-            error.context(format!("line {}: damaged, or no journal of a study", at.line + 1))
+            error.context(format!("line {} is damaged, or the file is not a journal of Optuna", at.line + 1))
         })?;
         apply(operation, &worker);
         at.byte += length;
@@ -108,11 +110,12 @@ fn read_lines(
 }
 
 fn operation_from_line(line: &[u8]) -> Result<(Operation, String)> {
-    let text = std::str::from_utf8(line).map_err(|error| Error::format("no UTF-8").with_source(error))?;
+    let text = std::str::from_utf8(line)
+        .map_err(|error| Error::format("the line is not UTF-8").with_source(error))?;
     Operation::from_json(&value_from_text(text)?)
 }
 
-/// The length of the file up to the end of its last whole line.
+/// Returns the length of the file up to the end of its last complete line.
 fn whole_lines(file: &mut File, length: u64) -> std::io::Result<u64> {
     let mut end = length;
     let mut block = [0; 4096];

@@ -1,4 +1,4 @@
-//! One writer at a time, between processes.
+//! File locks between processes.
 
 use std::ffi::OsString;
 use std::fs;
@@ -10,21 +10,21 @@ use std::time::{Duration, Instant, SystemTime};
 
 use opendr_engine::{Error, Result};
 
-/// A lock is broken when the file has not changed for so long: its holder was killed. Optuna waits as long.
+/// Time without changes to the file after which a lock is broken, as its holder must have been killed; the same as Optuna's.
 const GRACE: Duration = Duration::from_secs(30);
-const LONGEST_WAIT: Duration = Duration::from_millis(200);
+const MAX_WAIT: Duration = Duration::from_millis(200);
 
 static COUNTER: AtomicU64 = AtomicU64::new(0);
 
-/// The lock of a file while this lives: a symbolic link beside it, as Optuna's `JournalFileSymlinkLock` makes it, and
-/// where there are none a new file, as its `JournalFileOpenLock`. Each respects the other.
+/// Holds the lock of a file until dropped: a symbolic link beside it, like Optuna's `JournalFileSymlinkLock`, or
+/// without symbolic links a new file, like its `JournalFileOpenLock`. Both respect each other.
 #[derive(Debug)]
 pub struct Lock {
     path: PathBuf,
 }
 
 impl Lock {
-    /// Waits until nobody else holds the lock of `file`, an absolute path.
+    /// Waits for the lock of `file`, an absolute path.
     pub fn acquire(file: &Path) -> Result<Self> {
         let mut path = file.as_os_str().to_owned();
         path.push(".lock");
@@ -36,7 +36,7 @@ impl Lock {
                 Ok(()) => return Ok(Self { path }),
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
                 Err(error) => {
-                    let what = format!("cannot lock {}: name a folder that may be written", file.display());
+                    let what = format!("cannot lock {}; use a writable folder", file.display());
                     return Err(Error::io(what).with_source(error));
                 }
             }
@@ -48,7 +48,7 @@ impl Lock {
                 unchanged.1 = Instant::now();
             }
             thread::sleep(wait);
-            wait = LONGEST_WAIT.min(wait * 2);
+            wait = MAX_WAIT.min(wait * 2);
         }
     }
 }
@@ -64,7 +64,7 @@ fn last_change(file: &Path) -> Option<(SystemTime, u64)> {
     Some((facts.modified().ok()?, facts.len()))
 }
 
-/// By another name first, so that of two who remove it one only does.
+/// Renames the lock before removal, so that only one of two processes removes it.
 fn remove(lock: &Path) {
     let mut name = OsString::from(lock.as_os_str());
     name.push(format!("{}-{}.rename", std::process::id(), COUNTER.fetch_add(1, Ordering::Relaxed)));

@@ -1,4 +1,4 @@
-//! Where studies are kept.
+//! Storage of studies.
 
 mod distribution_json;
 mod journal;
@@ -19,8 +19,8 @@ pub(crate) use operation::{NewTrial, Notes, Operation};
 pub(crate) use replay::Replay;
 pub(crate) use worker::is_dead;
 
-/// Where studies are kept: in memory, or in a file that Optuna's `JournalStorage` reads and goes on with, and the other
-/// way round. Several processes, Optuna's among them, may work on one file at a time.
+/// Storage of studies: in memory, or in a journal file that is compatible with Optuna's `JournalStorage` in both
+/// directions. Several processes, including Optuna's, may use one file at a time.
 #[derive(Debug)]
 pub struct Storage {
     replay: Replay,
@@ -29,35 +29,35 @@ pub struct Storage {
 }
 
 impl Storage {
-    /// Studies that end with the process.
+    /// Creates a storage in memory.
     pub fn memory() -> Self {
         Self { replay: Replay::default(), journal: None, worker: worker::this_worker() }
     }
 
-    /// Studies in Optuna's journal at `path`, which is made when there is none.
+    /// Opens Optuna's journal at `path`; creates it if missing.
     ///
     /// # Errors
-    /// `Io` when the file can be neither read nor made; `Format` with the line when it is no journal.
+    /// `Io` when the file can be neither read nor created; `Format` with the line when it is not a journal.
     pub fn journal(path: impl AsRef<Path>) -> Result<Self> {
         let mut storage = Self { journal: Some(Journal::open(path.as_ref())?), ..Self::memory() };
         storage.refresh()?;
         Ok(storage)
     }
 
-    /// The studies of a journal's bytes, in memory.
+    /// Reads the studies of a journal's bytes into memory.
     ///
     /// # Errors
-    /// `Format` with the line that is no operation.
+    /// `Format` with the invalid line.
     pub fn from_journal_bytes(bytes: &[u8]) -> Result<Self> {
         let mut storage = Self::memory();
         journal::read_text(bytes, |operation, worker| storage.replay.apply(operation, worker))?;
         Ok(storage)
     }
 
-    /// The studies of Optuna's SQLite file, in memory. To go on with one, [`copy_study`](Storage::copy_study) it.
+    /// Reads the studies of Optuna's SQLite file into memory. To continue one, [`copy_study`](Storage::copy_study) it.
     ///
     /// # Errors
-    /// `Io` or `NotFound` when the file cannot be read, `Unsupported` while another program writes it or its schema is not
+    /// `Io` or `NotFound` when the file cannot be read, `Unsupported` while another program writes it or when its schema is not
     /// version 12, `Format` when it is damaged.
     pub fn sqlite(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
@@ -66,7 +66,7 @@ impl Storage {
             .context(|| format!("reading {}", path.display()))
     }
 
-    /// The studies of the bytes of Optuna's SQLite file, in memory.
+    /// Reads the studies of the bytes of Optuna's SQLite file into memory.
     ///
     /// # Errors
     /// As [`Storage::sqlite`].
@@ -78,21 +78,21 @@ impl Storage {
         Ok(storage)
     }
 
-    /// The studies.
+    /// Returns the studies.
     pub fn studies(&self) -> impl Iterator<Item = &StudyRecord> {
         self.replay.studies().map(|(_, study)| study)
     }
 
-    /// Copies a study with its trials to the end of another storage.
+    /// Appends a copy of a study with its trials to another storage.
     ///
     /// # Errors
-    /// `NotFound` when there is no study called `name`; `InvalidParam` when there is one in the other storage; `Io`.
+    /// `NotFound` when there is no study `name`; `InvalidParam` when the other storage has one; `Io`.
     pub fn copy_study(&self, name: &str, other: &mut Self) -> Result<()> {
         let study = self.studies().find(|study| study.name == name).ok_or_else(|| self.no_study(name))?;
         other.transact(|replay, _| {
             if replay.studies().any(|(_, known)| known.name == name) {
                 return Err(Error::invalid_param(format!(
-                    "there is a study {name:?} already; delete it or copy elsewhere"
+                    "the study {name:?} already exists; delete it or copy elsewhere"
                 )));
             }
             let id = replay.created_studies();
@@ -112,7 +112,7 @@ impl Storage {
         })
     }
 
-    /// Reads what others have written.
+    /// Reads changes by other processes.
     pub(crate) fn refresh(&mut self) -> Result<()> {
         let replay = &mut self.replay;
         self.journal
@@ -120,7 +120,7 @@ impl Storage {
             .map_or(Ok(()), |journal| journal.read_new(|operation, worker| replay.apply(operation, worker)))
     }
 
-    /// Lets `decide` look at the newest state and write, while nobody else does.
+    /// Calls `decide` with the newest state and writes its operations, under the lock.
     pub(crate) fn transact(
         &mut self,
         decide: impl FnOnce(&Replay, &str) -> Result<Vec<Operation>>,
@@ -148,8 +148,8 @@ impl Storage {
     fn no_study(&self, name: &str) -> Error {
         let names: Vec<_> = self.studies().map(|study| format!("{:?}", study.name)).collect();
         Error::not_found(match names.is_empty() {
-            true => format!("no study {name:?}; there are none"),
-            false => format!("no study {name:?}; there are {}", names.join(", ")),
+            true => format!("no study {name:?}; the storage has none"),
+            false => format!("no study {name:?}; available: {}", names.join(", ")),
         })
     }
 }

@@ -1,25 +1,25 @@
-//! JSON as Python writes and reads it: numbers may be `NaN`, `Infinity` and `-Infinity`.
+//! JSON as Python writes and reads it, with `NaN`, `Infinity` and `-Infinity`.
 
 use opendr_engine::{Error, Result};
 use serde_json::Value;
 
-/// Stands before the name of a number that JSON has not, in a string; of the private use area of Unicode.
+/// Prefix of a string that stands for a non-JSON number; from Unicode's private use area.
 const MARK: char = '\u{e0f7}';
 const NAMES: [&str; 3] = ["NaN", "-Infinity", "Infinity"];
 
-/// The value that a text means; numbers that JSON has not become what [`number_from_value`] understands.
+/// Parses a value; non-JSON numbers become strings for [`number_from_value`].
 pub fn value_from_text(text: &str) -> Result<Value> {
     let read = |text: &str| {
-        serde_json::from_str(text).map_err(|error| Error::format("no valid JSON").with_source(error))
+        serde_json::from_str(text).map_err(|error| Error::format("invalid JSON").with_source(error))
     };
-    // Few texts hold such numbers, most of which are read as they are.
+    // Few texts contain such numbers; the others parse directly.
     match read(text) {
         Err(_) if NAMES.iter().any(|name| text.contains(name)) => read(&marked(text)),
         result => result,
     }
 }
 
-/// The text of a value, in one line.
+/// Returns a value as text, in one line.
 pub fn text_from_value(value: &Value) -> String {
     let mut text = value.to_string();
     if text.contains(MARK) {
@@ -30,7 +30,7 @@ pub fn text_from_value(value: &Value) -> String {
     text
 }
 
-/// A number as a value.
+/// Returns a number as a value.
 pub fn value_from_number(number: f64) -> Value {
     match serde_json::Number::from_f64(number) {
         Some(number) => Value::Number(number),
@@ -39,7 +39,7 @@ pub fn value_from_number(number: f64) -> Value {
     }
 }
 
-/// The number that a value is, if it is one.
+/// Returns the number of a value, if it is one.
 pub fn number_from_value(value: &Value) -> Option<f64> {
     match value {
         Value::Number(number) => number.as_f64(),
@@ -53,7 +53,7 @@ pub fn number_from_value(value: &Value) -> Option<f64> {
     }
 }
 
-/// The text with such numbers, outside of strings, made strings.
+/// Replaces non-JSON numbers outside of strings by strings.
 fn marked(text: &str) -> String {
     let mut out = String::with_capacity(text.len() + 64);
     let (mut rest, mut in_string) = (text, false);
@@ -86,7 +86,7 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn numbers_that_json_has_not_come_through() {
+    fn non_json_numbers_round_trip() {
         let text = r#"{"a":[NaN,-Infinity,1.5,Infinity],"b":"NaN \" Infinity"}"#;
         let value = value_from_text(text).unwrap();
         let numbers: Vec<f64> =
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_json_is_refused() {
+    fn invalid_json_is_refused() {
         for wrong in ["", "{", "NaNa", "[Infinity", "\"Na", "{NaN:1}x", "\\NaN", "\"\\"] {
             assert!(value_from_text(wrong).is_err(), "{wrong}");
         }

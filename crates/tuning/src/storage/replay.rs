@@ -1,17 +1,17 @@
-//! What a list of operations comes to.
+//! State of studies after a list of operations.
 
 use std::collections::BTreeMap;
 
 use crate::records::{StudyRecord, TrialRecord, TrialState};
 use crate::storage::operation::{NewTrial, Notes, Operation};
 
-/// Studies as their operations left them. What does not fit (a change of what is finished, or does not exist) has no
-/// effect, as in Optuna: two workers may have tried the same, and the first in the file has won.
+/// Studies after their operations. Invalid operations, such as changes of finished or missing trials, have no
+/// effect, as in Optuna: if two workers try the same, the first in the file wins.
 #[derive(Debug, Default)]
 pub struct Replay {
     studies: BTreeMap<usize, StudyRecord>,
     created_studies: usize,
-    /// Study and number of every trial, by its number in the storage.
+    /// Study and number of every trial, indexed by its number in the storage.
     places: Vec<(usize, usize)>,
 }
 
@@ -24,12 +24,12 @@ impl Replay {
         self.studies.get(&id)
     }
 
-    /// The number that the next study will have.
+    /// Returns the number of studies created so far, which is the number of the next one.
     pub fn created_studies(&self) -> usize {
         self.created_studies
     }
 
-    /// The number that the next trial will have in the storage.
+    /// Returns the number of the next trial in the storage.
     pub fn next_trial(&self) -> usize {
         self.places.len()
     }
@@ -70,7 +70,7 @@ impl Replay {
             Operation::SetState { trial, state, values, at } => {
                 let Some(trial) = self.unfinished(trial) else { return };
                 match state {
-                    // Whoever comes second has not got it.
+                    // The trial belongs to the first worker.
                     TrialState::Running if trial.state == TrialState::Running => return,
                     TrialState::Running => {
                         trial.started = Some(at);

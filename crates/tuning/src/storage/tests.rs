@@ -14,7 +14,7 @@ fn file(name: &str) -> PathBuf {
     folder.join("study.log")
 }
 
-/// A study with all there is, in a journal.
+/// Fills a journal with a study that uses all features.
 fn filled(path: &Path) -> StudyRecord {
     let study = Study::open(Storage::journal(path).unwrap(), "all", &[Direction::Maximize])
         .unwrap()
@@ -27,13 +27,13 @@ fn filled(path: &Path) -> StudyRecord {
             space.with("net", Distribution::categorical([json!("a"), json!(null), json!([1, 2])])?)
         })
         .unwrap();
-    study.note_of_study("why \"NaN\"", json!({"a": [1, 2.5, null]})).unwrap();
+    study.set_study_attribute("why \"NaN\"", json!({"a": [1, 2.5, null]})).unwrap();
     let trial = study.ask(&space).unwrap();
     assert_eq!(trial.report(1, f64::INFINITY).unwrap(), Advice::Continue);
-    trial.note("path", "out/é").unwrap();
+    trial.set_user_attribute("path", "out/é").unwrap();
     trial.tell(Outcome::from(f64::INFINITY)).unwrap();
     let trial = study.ask(&space).unwrap();
-    assert_eq!(trial.report(1, f64::NAN).unwrap(), Advice::Continue, "an infinite median says nothing");
+    assert_eq!(trial.report(1, f64::NAN).unwrap(), Advice::Continue, "an infinite median stops no trial");
     trial.tell(Outcome::Pruned).unwrap();
     study.ask(&space).unwrap().tell(Outcome::Paused(json!({"checkpoint": 3}))).unwrap();
     study.ask(&space).unwrap().tell(Outcome::Failed("no disk".to_owned())).unwrap();
@@ -43,13 +43,13 @@ fn filled(path: &Path) -> StudyRecord {
     study.snapshot()
 }
 
-/// Records as text, since NaN is not equal to itself.
+/// Compares records as text, since NaN is not equal to itself.
 fn text(study: &StudyRecord) -> String {
     format!("{study:?}")
 }
 
 #[test]
-fn a_journal_gives_back_what_was_written() {
+fn a_journal_round_trips() {
     let path = file("back");
     let written = filled(&path);
     assert_eq!(written.trials[4].params["lr"].number, 1e-3);
@@ -82,18 +82,18 @@ fn a_torn_last_line_is_left_out_and_cut_off() {
     drop(journal);
     let study = Study::open(Storage::journal(&path).unwrap(), "all", &[Direction::Maximize]).unwrap();
     assert_eq!(text(&study.snapshot()), text(&written));
-    study.note_of_study("after", json!(1)).unwrap();
+    study.set_study_attribute("after", json!(1)).unwrap();
     assert!(!fs::read_to_string(&path).unwrap().contains("\"x{"));
     assert_eq!(Storage::journal(&path).unwrap().studies().next().unwrap().user_attributes["after"], json!(1));
     fs::remove_dir_all(path.parent().unwrap()).unwrap();
 }
 
 #[test]
-fn a_damaged_line_is_told_by_its_number() {
+fn a_damaged_line_is_reported_by_its_number() {
     let good = "{\"op_code\":0,\"worker_id\":\"w\",\"study_name\":\"s\",\"directions\":[1]}\n";
     assert_eq!(Storage::from_journal_bytes(good.as_bytes()).unwrap().studies().count(), 1);
     let create = "{\"op_code\":4,\"worker_id\":\"w\",\"study_id\":0,\"datetime_start\":null";
-    for wrong in [
+    for invalid in [
         "torn{\n".to_owned(),
         "[]\n".to_owned(),
         "{\"op_code\":11,\"worker_id\":\"w\"}\n".to_owned(),
@@ -106,8 +106,8 @@ fn a_damaged_line_is_told_by_its_number() {
         "{\"op_code\":8,\"worker_id\":\"w\",\"trial_id\":0,\"user_attr\":{}}\n".to_owned(),
         "\u{fffd}\n".to_owned(),
     ] {
-        let error = Storage::from_journal_bytes(format!("{good}{wrong}{good}").as_bytes()).unwrap_err();
-        assert_eq!(error.kind(), ErrorKind::Format, "{wrong}");
+        let error = Storage::from_journal_bytes(format!("{good}{invalid}{good}").as_bytes()).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::Format, "{invalid}");
         assert!(error.to_string().contains("line 2"), "{error}");
     }
     let latin = [good.as_bytes(), &[0xe9, b'\n']].concat();
@@ -115,7 +115,7 @@ fn a_damaged_line_is_told_by_its_number() {
 }
 
 #[test]
-fn changes_of_what_is_not_there_have_no_effect() {
+fn changes_of_missing_items_have_no_effect() {
     let journal = "{\"op_code\":4,\"worker_id\":\"w\",\"study_id\":7,\"datetime_start\":null}\n\
                    {\"op_code\":7,\"worker_id\":\"w\",\"trial_id\":9,\"step\":1,\"intermediate_value\":NaN}\n\
                    {\"op_code\":6,\"worker_id\":\"w\",\"trial_id\":0,\"state\":1,\"values\":[Infinity]}\n\
@@ -161,7 +161,7 @@ fn two_handles_on_a_file_see_each_other() {
     assert_eq!(
         one.tell(6, Outcome::from(1.0)).unwrap_err().kind(),
         ErrorKind::InvalidParam,
-        "it is the other's"
+        "the trial belongs to the other worker"
     );
     queued.tell(Outcome::from(0.5)).unwrap();
     one.refresh().unwrap();

@@ -1,4 +1,4 @@
-//! Who is at a trial, and whether they still live.
+//! Identity of workers, and whether they are alive.
 
 use std::process;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -7,10 +7,10 @@ use crate::Timestamp;
 
 static COUNTER: AtomicU64 = AtomicU64::new(0);
 
-/// The beginning of the names of our workers; Optuna's begin with a random UUID.
+/// Prefix of the names of this crate's workers; Optuna's begin with a random UUID.
 const OURS: &str = "opendr";
 
-/// A name that no other worker has: the machine since its start, the process since its start, and a number.
+/// Returns a unique name: the machine with its boot, the process with its start, and a counter.
 pub fn this_worker() -> String {
     let pid = process::id();
     let (machine, begun) = (machine(), process_start(pid));
@@ -19,8 +19,8 @@ pub fn this_worker() -> String {
     format!("{OURS}|{machine}|{pid}|{begun}|{}", COUNTER.fetch_add(1, Ordering::Relaxed))
 }
 
-/// Whether the process of that worker has ended for certain. Of processes of other machines, of Optuna's, and where the
-/// system does not tell, nothing is certain.
+/// Returns whether the process of a worker has certainly ended. This is never certain for other machines, for Optuna's processes, and
+/// on systems that do not report it.
 pub fn is_dead(worker: &str) -> bool {
     let mut parts = worker.split('|');
     let (Some(OURS), Some(theirs), Some(pid), Some(begun)) =
@@ -33,7 +33,7 @@ pub fn is_dead(worker: &str) -> bool {
         && process_start(pid).is_none_or(|start| start != begun)
 }
 
-/// The machine, since it was started, as far as process numbers mean the same.
+/// Returns an identifier of the machine and its boot, within which process ids are unique.
 #[cfg(target_os = "linux")]
 fn machine() -> Option<String> {
     let boot = std::fs::read_to_string("/proc/sys/kernel/random/boot_id").ok()?;
@@ -41,11 +41,11 @@ fn machine() -> Option<String> {
     Some(format!("{} {}", boot.trim(), numbers.display()))
 }
 
-/// When a living process was started, in ticks since the machine was.
+/// Returns the start time of a running process, in ticks since boot.
 #[cfg(target_os = "linux")]
 fn process_start(pid: u32) -> Option<String> {
     let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
-    // The second field is a name in brackets, which may hold anything.
+    // The second field is a name in parentheses, which may contain anything.
     let (_, fields) = stat.rsplit_once(')')?;
     let mut fields = fields.split_whitespace();
     let state = fields.next()?;
@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_living_are_not_dead() {
+    fn running_processes_are_alive() {
         let worker = this_worker();
         assert_ne!(worker, this_worker());
         assert!(!is_dead(&worker));
@@ -86,7 +86,7 @@ mod tests {
         assert!(is_dead(&worker));
         assert!(
             is_dead(&format!("opendr|{machine}|{}|1|0", process::id())),
-            "another process has the number now"
+            "another process has the id now"
         );
     }
 }

@@ -1,8 +1,8 @@
-//! Which trial comes next, and with what parameters.
+//! Choice of the next trial and its parameters.
 
 use std::collections::BTreeMap;
 
-use opendr_engine::Result;
+use opendr_engine::{Error, Result};
 use serde_json::Value;
 
 use crate::Timestamp;
@@ -13,21 +13,29 @@ use crate::storage::{NewTrial, Notes, Operation, is_dead};
 use crate::study::{FIXED, Study, Trial, check_compatible, last_sign, outcome};
 
 impl Study {
-    /// The next trial: an interrupted one, a paused one that should go on, one of the queue, a new one where `may_begin`
-    /// allows it, or the one to be finished. Choice and parameters are written while no other worker can write, so no two get
-    /// the same, and each knows of all others.
+    /// Returns the next trial: a paused one to resume, one of the queue, or a new one.
+    ///
+    /// # Errors
+    /// `InvalidParam` when the space is incompatible with earlier trials; `Io` and `Format` of the storage.
+    pub fn ask(&self, space: &SearchSpace) -> Result<Trial<'_>> {
+        let trial = self.claim(space, |_| true)?;
+        trial.ok_or_else(|| Error::internal("the study returned no trial, though a new one was allowed"))
+    }
+
+    /// Returns the next trial: an interrupted one, a paused one to resume, one of the queue, a new one if `may_begin`
+    /// allows it, or the one to finish. Choice and parameters are written under the lock, so no two workers get
+    /// the same trial, and each takes all others into account.
     pub(super) fn claim(
         &self,
         space: &SearchSpace,
         may_begin: impl FnOnce(&StudyRecord) -> bool,
     ) -> Result<Option<Trial<'_>>> {
-        // On its own, so that what is decided next knows that their workers are dead.
-        self.write(|study| Ok(self.bury(study)))?;
+        // Written first, so that the following decision takes dead workers into account.
+        self.write(|study| Ok(self.end_abandoned(study)))?;
         let mut claimed = None;
         self.storage().transact(|replay, _| {
-            let study = replay
-                .study(self.id)
-                .ok_or_else(|| opendr_engine::Error::not_found("the study has been deleted"))?;
+            let study =
+                replay.study(self.id).ok_or_else(|| Error::not_found("the study has been deleted"))?;
             let mut operations = Vec::new();
             let interrupted = study.trials.iter().find(|trial| trial.is_interrupted());
             let queued =
@@ -38,7 +46,7 @@ impl Study {
             let (number, id, known) = match known.or_else(|| if begins { None } else { to_finish(study) }) {
                 Some(trial) => {
                     let (state, values, at) = (TrialState::Running, Vec::new(), Timestamp::now());
-                    operations.extend(trial.is_interrupted().then(|| outcome::go_on(trial)));
+                    operations.extend(trial.is_interrupted().then(|| outcome::resume(trial)));
                     operations.push(Operation::SetState { trial: trial.id, state, values, at });
                     (trial.number, trial.id, Some(trial))
                 }
@@ -61,8 +69,8 @@ impl Study {
         Ok(claimed.map(trial))
     }
 
-    /// Ends the trials whose workers are dead. One that has a state from which to go on waits.
-    fn bury(&self, study: &StudyRecord) -> Vec<Operation> {
+    /// Ends the trials of dead workers. A trial with a saved state waits instead.
+    fn end_abandoned(&self, study: &StudyRecord) -> Vec<Operation> {
         let silent = |trial: &TrialRecord| {
             self.abandoned_after
                 .zip(last_sign(trial))
@@ -77,7 +85,7 @@ impl Study {
         .collect()
     }
 
-    /// The parameters of a trial that it does not have yet.
+    /// Draws the parameters that a trial does not have yet.
     fn parameters(
         &self,
         study: &StudyRecord,
@@ -93,28 +101,25 @@ impl Study {
             let takes_part = group.first().is_some_and(|parameter| takes_part(parameter, &params));
             let missing =
                 group.into_iter().filter(|parameter| takes_part && !params.contains_key(&parameter.name));
-            let (mut given, mut wanted): (Vec<(&Parameter, f64)>, Vec<&Parameter>) = Default::default();
+            let (mut chosen, mut undrawn): (Vec<(&Parameter, f64)>, Vec<&Parameter>) = Default::default();
             for parameter in missing {
                 check_compatible(study, &parameter.name, &parameter.distribution)?;
                 let fixed = fixed.and_then(|fixed| fixed.get(&parameter.name));
-                // What a queued trial may not be is chosen, as by Optuna; whoever put it there is long gone.
+                // An invalid value of a queued trial is drawn instead, as in Optuna.
                 let fixed = fixed.and_then(|value| parameter.distribution.number_from_value(value).ok());
                 match fixed.or_else(|| only_number(&parameter.distribution)) {
-                    Some(number) => given.push((parameter, number)),
-                    None => wanted.push(parameter),
+                    Some(number) => chosen.push((parameter, number)),
+                    None => undrawn.push(parameter),
                 }
             }
-            if !wanted.is_empty() {
-                let drawn = self.sampler.draw(study, number, &wanted)?;
-                given.extend(wanted.into_iter().zip(drawn.numbers));
-                operations.extend(drawn.notes.into_iter().map(|(key, value)| Operation::NoteOfTrial {
-                    trial: id,
-                    notes: Notes::System,
-                    key,
-                    value,
+            if !undrawn.is_empty() {
+                let drawn = self.sampler.draw(study, number, &undrawn)?;
+                chosen.extend(undrawn.into_iter().zip(drawn.numbers));
+                operations.extend(drawn.system_attributes.into_iter().map(|(key, value)| {
+                    Operation::NoteOfTrial { trial: id, notes: Notes::System, key, value }
                 }));
             }
-            for (parameter, number) in given {
+            for (parameter, number) in chosen {
                 let suggestion = Suggestion { distribution: parameter.distribution.clone(), number };
                 params.insert(parameter.name.clone(), suggestion.clone());
                 operations.push(Operation::SetParam { trial: id, name: parameter.name.clone(), suggestion });
@@ -124,8 +129,8 @@ impl Study {
     }
 }
 
-/// The one to carry to its end when no trial ever came there, and none is under way: of the paused that came furthest the
-/// best, so that a study whose budget is used up has a result.
+/// Returns the trial to finish when none is complete or running: the best of the paused ones that came furthest, so that a study
+/// whose budget is used up has a result.
 fn to_finish(study: &StudyRecord) -> Option<&TrialRecord> {
     let ends = |trial: &TrialRecord| matches!(trial.state, TrialState::Complete | TrialState::Running);
     if study.directions.len() != 1 || study.trials.iter().any(ends) {
@@ -138,7 +143,7 @@ fn to_finish(study: &StudyRecord) -> Option<&TrialRecord> {
     stands.min_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))).map(|(_, trial)| trial)
 }
 
-/// Whether a parameter's condition holds.
+/// Returns whether a parameter's condition holds.
 fn takes_part(parameter: &Parameter, params: &BTreeMap<String, Suggestion>) -> bool {
     parameter.condition.as_ref().is_none_or(|condition| {
         let parent = params.get(&condition.parent);

@@ -1,4 +1,4 @@
-//! A study: trials are asked for and told about.
+//! Studies with an ask-and-tell interface.
 
 mod claim;
 mod optimize;
@@ -16,7 +16,6 @@ use serde_json::{Map, Value};
 use crate::pruner::{Advice, NoPruner, Pruner};
 use crate::records::{Direction, StudyRecord, TrialRecord, TrialState};
 use crate::sampler::{Sampler, Tpe};
-use crate::space::SearchSpace;
 use crate::storage::{NewTrial, Notes, Operation, Replay, Storage};
 use crate::{Distribution, Timestamp};
 
@@ -25,15 +24,13 @@ pub use outcome::Outcome;
 pub use seeds::{Reevaluation, fresh_seeds, training_seeds};
 pub use trial::Trial;
 
-/// When a running trial last showed that it lives, in microseconds since 1970.
+/// System attribute with the time of a running trial's last sign of life, in microseconds since 1970.
 const ALIVE: &str = "opendr:alive";
-/// Why a trial failed.
-const REASON: &str = "fail_reason";
-/// Optuna's name for the parameters of a trial in the queue.
+/// Optuna's system attribute with the parameters of a queued trial.
 const FIXED: &str = "fixed_params";
 
-/// A search: every trial asks for parameters and tells what came of them. A study may be shared by threads, and its
-/// storage by processes.
+/// A hyperparameter search with an ask-and-tell interface. Threads may share a study, and processes its
+/// storage.
 ///
 /// ```
 /// use opendr_tuning::{Direction, Distribution, Outcome, SearchSpace, Storage, Study};
@@ -60,14 +57,14 @@ pub struct Study {
 }
 
 impl Study {
-    /// The study called `name`, begun when the storage has none, with [`Tpe`] of seed 0 and no pruner.
+    /// Opens the study `name`, or creates it, with [`Tpe`] of seed 0 and no pruner.
     ///
     /// # Errors
-    /// `InvalidParam` without a direction, or when the study has others; `Io` and `Format` of the storage.
+    /// `InvalidParam` without a direction, or when the existing study has others; `Io` and `Format` of the storage.
     pub fn open(mut storage: Storage, name: &str, directions: &[Direction]) -> Result<Self> {
         if directions.is_empty() {
             return Err(Error::invalid_param(format!(
-                "study {name:?}: give a direction for each value of the objective"
+                "study {name:?} has no directions; give one for each value of the objective"
             )));
         }
         let named =
@@ -76,50 +73,41 @@ impl Study {
             let create = || Operation::CreateStudy { name: name.to_owned(), directions: directions.to_vec() };
             Ok(if named(replay).is_none() { vec![create()] } else { Vec::new() })
         })?;
-        let id =
-            named(storage.replay()).ok_or_else(|| Error::internal(format!("study {name:?} was not made")))?;
+        let id = named(storage.replay())
+            .ok_or_else(|| Error::internal(format!("study {name:?} was not created")))?;
         let known = storage.replay().study(id).map(|study| study.directions.clone()).unwrap_or_default();
         if known != directions {
             return Err(Error::invalid_param(format!(
-                "study {name:?} has the directions {known:?}, not {directions:?}: give these, or another name"
+                "study {name:?} has the directions {known:?}, not {directions:?}; give the same directions, or another name"
             )));
         }
         let (sampler, pruner) = (Box::new(Tpe::new(0)), Box::new(NoPruner));
         Ok(Self { storage: Mutex::new(storage), id, sampler, pruner, abandoned_after: None })
     }
 
-    /// With another sampler.
+    /// Sets the sampler.
     #[must_use]
     pub fn with_sampler(mut self, sampler: impl Sampler + 'static) -> Self {
         self.sampler = Box::new(sampler);
         self
     }
 
-    /// With another pruner.
+    /// Sets the pruner.
     #[must_use]
     pub fn with_pruner(mut self, pruner: impl Pruner + 'static) -> Self {
         self.pruner = Box::new(pruner);
         self
     }
 
-    /// Takes the worker of a running trial for dead after so long without a report. Without, only workers of this machine
-    /// are found dead, by their processes: those of other machines, of Optuna, and of before a restart never are.
+    /// Treats the worker of a running trial as dead after this time without a report. By default only workers of this machine
+    /// are recognised as dead, by their processes; those of other machines, of Optuna, and from before a restart are not.
     #[must_use]
     pub fn with_abandoned_after(mut self, time: Duration) -> Self {
         self.abandoned_after = Some(time);
         self
     }
 
-    /// The next trial: a paused one that should go on, one of the queue, or a new one.
-    ///
-    /// # Errors
-    /// `InvalidParam` when the space and earlier trials do not fit together; `Io` and `Format` of the storage.
-    pub fn ask(&self, space: &SearchSpace) -> Result<Trial<'_>> {
-        let trial = self.claim(space, |_| true)?;
-        trial.ok_or_else(|| Error::internal("there was no trial, though a new one was allowed"))
-    }
-
-    /// Puts a trial with these parameters into the queue; those that are not named are chosen when it is begun.
+    /// Adds a trial with these parameters to the queue; missing ones are drawn when it starts.
     ///
     /// # Errors
     /// `Io` and `Format` of the storage.
@@ -132,7 +120,7 @@ impl Study {
         })
     }
 
-    /// Notes what trial `number` measured at `step`, and judges it.
+    /// Reports the value of trial `number` at `step`. Returns the pruner's decision.
     ///
     /// # Errors
     /// `InvalidParam` when the trial is not running here, or the study has several directions; `Io` and `Format` of the
@@ -140,9 +128,7 @@ impl Study {
     pub fn report(&self, number: usize, step: i64, value: f64) -> Result<Advice> {
         self.write_of(number, |study, trial| {
             if study.directions.len() != 1 {
-                return Err(Error::invalid_param(
-                    "trials of several directions do not report: nothing says which is worse",
-                ));
+                return Err(Error::invalid_param("intermediate reports need a study with one direction"));
             }
             let report = Operation::Report { trial: trial.id, step, value };
             Ok([report].into_iter().chain(self.sign_of_life(trial)).collect())
@@ -153,11 +139,11 @@ impl Study {
         Ok(self.pruner.advice(study, trial))
     }
 
-    /// Notes something about trial `number`.
+    /// Sets a user attribute of trial `number`.
     ///
     /// # Errors
     /// `InvalidParam` when the trial is not running here; `Io` and `Format` of the storage.
-    pub fn note(&self, number: usize, key: &str, value: Value) -> Result<()> {
+    pub fn set_user_attribute(&self, number: usize, key: &str, value: Value) -> Result<()> {
         self.write_of(number, |_, trial| {
             Ok(vec![Operation::NoteOfTrial {
                 trial: trial.id,
@@ -168,33 +154,33 @@ impl Study {
         })
     }
 
-    /// Keeps the state from which trial `number` goes on should its worker die.
+    /// Saves the state from which trial `number` resumes if its worker dies.
     ///
     /// # Errors
-    /// As [`Study::note`].
+    /// As [`Study::set_user_attribute`].
     pub fn checkpoint(&self, number: usize, state: Value) -> Result<()> {
         self.write_of(number, |_, trial| Ok(vec![outcome::checkpoint(trial, state)]))
     }
 
-    /// Notes something about the study.
+    /// Sets a user attribute of the study.
     ///
     /// # Errors
     /// `Io` and `Format` of the storage.
-    pub fn note_of_study(&self, key: &str, value: Value) -> Result<()> {
+    pub fn set_study_attribute(&self, key: &str, value: Value) -> Result<()> {
         let key = key.to_owned();
         self.write(|_| Ok(vec![Operation::NoteOfStudy { study: self.id, notes: Notes::User, key, value }]))
     }
 
-    /// Ends trial `number`, for good or for now.
+    /// Ends or pauses trial `number` with an outcome.
     ///
     /// # Errors
-    /// `InvalidParam` when the trial is not running here, as after it was taken for dead, or the number of values is not that
-    /// of the directions; `Io` and `Format` of the storage.
+    /// `InvalidParam` when the trial is not running here, for instance because its worker was treated as dead, or the number of values
+    /// differs from that of the directions; `Io` and `Format` of the storage.
     pub fn tell(&self, number: usize, outcome: Outcome) -> Result<()> {
         self.write_of(number, |study, trial| outcome.operations(study, trial))
     }
 
-    /// Ends all trials that stand paused at a rung. While they are paused, a study that goes on may still want them.
+    /// Prunes all paused trials. Until then, a resumed study may continue them.
     ///
     /// # Errors
     /// `Io` and `Format` of the storage.
@@ -205,17 +191,17 @@ impl Study {
         })
     }
 
-    /// What is known of the study, by this process.
+    /// Returns a copy of the study's record, as this process has read it.
     pub fn snapshot(&self) -> StudyRecord {
         self.inspect(StudyRecord::clone)
     }
 
-    /// Looks at what is known of the study, by this process. The study waits meanwhile.
+    /// Calls `look` with the study's record, as this process has read it. The study is locked meanwhile.
     pub fn inspect<T>(&self, look: impl FnOnce(&StudyRecord) -> T) -> T {
         let storage = self.storage();
         match self.record(&storage) {
             Ok(study) => look(study),
-            // Another process has deleted it.
+            // Another process deleted the study.
             Err(_) => look(&StudyRecord {
                 name: String::new(),
                 directions: vec![Direction::Minimize],
@@ -226,7 +212,7 @@ impl Study {
         }
     }
 
-    /// Reads what other processes have written.
+    /// Reads changes by other processes.
     ///
     /// # Errors
     /// `Io` and `Format` of the storage.
@@ -234,13 +220,13 @@ impl Study {
         self.storage().refresh()
     }
 
-    /// The complete trial with the best value.
+    /// Returns the complete trial with the best value.
     pub fn best(&self) -> Option<TrialRecord> {
         self.inspect(|study| study.best().cloned())
     }
 
     fn storage(&self) -> MutexGuard<'_, Storage> {
-        // A panic elsewhere leaves the storage whole: it is changed by whole operations.
+        // A panic elsewhere leaves the storage consistent: whole operations change it.
         self.storage.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -254,7 +240,7 @@ impl Study {
         })
     }
 
-    /// Writes of a trial that this process is at.
+    /// Writes operations of a trial that this process runs.
     fn write_of(
         &self,
         number: usize,
@@ -265,7 +251,7 @@ impl Study {
             let trial = study.trials.get(number).ok_or_else(|| no_trial(number))?;
             if trial.state != TrialState::Running || trial.worker != worker {
                 return Err(Error::invalid_param(format!(
-                    "trial {number} is not running here: it is {:?}; another process may have taken this one for dead",
+                    "trial {number} is not running here, it is {:?}; another process may have treated this one as dead",
                     trial.state
                 )));
             }
@@ -273,7 +259,7 @@ impl Study {
         })
     }
 
-    /// A note that a trial lives, four times as often as needed.
+    /// Returns a sign of life of a trial, four times as often as needed.
     fn sign_of_life(&self, trial: &TrialRecord) -> Option<Operation> {
         let (now, every) = (Timestamp::now(), self.abandoned_after? / 4);
         let due = last_sign(trial).is_none_or(|last| now.since(last) >= every);
@@ -282,7 +268,7 @@ impl Study {
     }
 }
 
-/// When a trial last showed that it lives.
+/// Returns the last sign of life of a trial.
 fn last_sign(trial: &TrialRecord) -> Option<Timestamp> {
     let alive = trial.system_attributes.get(ALIVE).and_then(Value::as_i64).map(Timestamp);
     alive.max(trial.started)
@@ -292,7 +278,7 @@ fn no_trial(number: usize) -> Error {
     Error::not_found(format!("the study has no trial {number}"))
 }
 
-/// Whether `distribution` can stand beside what earlier trials had.
+/// Checks that `distribution` is compatible with those of earlier trials.
 fn check_compatible(study: &StudyRecord, name: &str, distribution: &Distribution) -> Result<()> {
     let known = study.trials.iter().find_map(|trial| trial.params.get(name));
     match known {

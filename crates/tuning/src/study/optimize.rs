@@ -1,4 +1,4 @@
-//! Trials one after the other, and side by side.
+//! Running of trials, in sequence and in parallel.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -13,7 +13,7 @@ use crate::records::{StudyRecord, TrialState};
 use crate::space::SearchSpace;
 use crate::study::{Outcome, Study, Trial};
 
-/// How much [`Study::optimize`] does.
+/// Limits of [`Study::optimize`].
 #[derive(Debug, Clone, Copy)]
 pub struct Budget {
     trials: Trials,
@@ -29,51 +29,51 @@ enum Trials {
 }
 
 impl Budget {
-    /// So many new trials.
+    /// Creates a budget of this many new trials.
     pub fn more(trials: usize) -> Self {
         Self { trials: Trials::More(trials), timeout: None, threads: 1, failures: 3 }
     }
 
-    /// As many trials as bring the study to this number, failed ones not counted: what several processes share, and what
-    /// is the same when a study goes on.
+    /// Creates a budget that brings the study to this number of trials, not counting failed ones. Several processes can share it, and
+    /// it is independent of interruptions.
     pub fn total(trials: usize) -> Self {
         Self { trials: Trials::Total(trials), ..Self::more(0) }
     }
 
-    /// No trial is begun after this time.
+    /// Sets the time after which no trial starts.
     #[must_use]
     pub fn timeout(self, timeout: Duration) -> Self {
         Self { timeout: Some(timeout), ..self }
     }
 
-    /// So many trials at a time.
+    /// Sets the number of parallel trials.
     #[must_use]
     pub fn threads(self, threads: usize) -> Self {
         Self { threads: threads.max(1), ..self }
     }
 
-    /// So many failures in a row end the study; 3 when nothing is said.
+    /// Sets the number of consecutive failures that end the study; 3 by default.
     #[must_use]
-    pub fn failures(self, failures: usize) -> Self {
+    pub fn max_failures(self, failures: usize) -> Self {
         Self { failures: failures.max(1), ..self }
     }
 
-    /// When the time is over, counted from now.
+    /// Returns the end of the time limit, counted from now.
     pub(crate) fn end(&self) -> Option<Instant> {
         self.timeout.map(|timeout| Instant::now() + timeout)
     }
 }
 
-/// Whether a study goes on after a trial.
+/// Whether a study continues after a trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Progress {
-    /// It goes on.
+    /// Continue.
     Continue,
-    /// No further trial is begun.
+    /// Start no further trial.
     Stop,
 }
 
-/// What the threads of a study share.
+/// State shared by the threads of a study.
 struct Shared {
     stop: AtomicBool,
     begun: AtomicUsize,
@@ -82,13 +82,13 @@ struct Shared {
 }
 
 impl Study {
-    /// Carries out trials until the budget is used up, and paused ones as long as any should go on. `after` sees the study
-    /// after every trial, as for a live table, and may end it.
+    /// Runs trials until the budget is used up and no paused trial should be resumed. `after` is called with the study
+    /// after every trial, for instance to print a table, and may stop the study.
     ///
-    /// An objective that returns an error or panics fails its trial; the study goes on.
+    /// An objective that returns an error or panics fails its trial; the study continues.
     ///
     /// # Errors
-    /// That of the last trial when too many fail in a row, with their trials noted; `Io` and `Format` of the storage.
+    /// The error of the last trial when too many fail in a row, after all are recorded; `Io` and `Format` of the storage.
     pub fn optimize(
         &self,
         space: &SearchSpace,
@@ -126,7 +126,7 @@ impl Study {
         shared.error.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
     }
 
-    /// Whether there was a trial.
+    /// Runs one trial. Returns whether there was one.
     fn one_trial(
         &self,
         space: &SearchSpace,

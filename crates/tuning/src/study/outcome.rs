@@ -1,4 +1,4 @@
-//! What comes of a trial.
+//! Outcomes of trials.
 
 use opendr_engine::{Error, Result};
 use serde_json::Value;
@@ -6,26 +6,28 @@ use serde_json::Value;
 use crate::Timestamp;
 use crate::records::{INTERRUPTED, PAUSED_STATE, StudyRecord, TrialRecord, TrialState};
 use crate::storage::{Notes, Operation};
-use crate::study::REASON;
 
-/// What came of a trial.
+/// System attribute with the reason of a failure.
+const REASON: &str = "fail_reason";
+
+/// Outcome of a trial.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
-    /// The values of the objective, one for each direction. NaN fails the trial: nothing is better or worse than it.
+    /// Values of the objective, one per direction. NaN fails the trial, as it cannot be compared.
     Complete(Vec<f64>),
-    /// It was stopped before its end; the last report stands for its value.
+    /// Stopped before its end; the last report counts as its value.
     Pruned,
-    /// It stands at a rung. The value is all it takes to go on, such as the path of a checkpoint:
-    /// [`Trial::resumed_from`](crate::Trial::resumed_from) gives it back.
+    /// Paused at a rung, with the state from which it resumes, such as the path of a checkpoint:
+    /// [`Trial::resumed_from`](crate::Trial::resumed_from) returns it.
     Paused(Value),
-    /// Something other than the pruner wants it to end here for now, such as a user: it is the first to be asked for when
-    /// the study goes on, with this state.
+    /// Interrupted by something other than the pruner, such as a user. It is the first trial to be resumed when
+    /// the study continues, with this state.
     Interrupted(Value),
-    /// It could not be carried out, for this reason.
+    /// Failed, with the reason.
     Failed(String),
 }
 
-/// The only value of an objective.
+/// The value of an objective with one direction.
 impl From<f64> for Outcome {
     fn from(value: f64) -> Self {
         Self::Complete(vec![value])
@@ -37,7 +39,7 @@ impl Outcome {
         match self {
             Self::Complete(values) if values.len() != study.directions.len() => {
                 Err(Error::invalid_param(format!(
-                    "trial {} has {} values, but the study {} directions",
+                    "trial {} has {} values, but the study has {} directions",
                     trial.number,
                     values.len(),
                     study.directions.len()
@@ -61,18 +63,18 @@ pub(super) fn fail(trial: &TrialRecord, reason: &str) -> Vec<Operation> {
     vec![note(trial, REASON, reason.into()), ended(trial, TrialState::Failed, Vec::new())]
 }
 
-/// The state from which the trial goes on.
+/// Saves the state from which the trial resumes.
 pub(super) fn checkpoint(trial: &TrialRecord, state: Value) -> Operation {
     note(trial, PAUSED_STATE, state)
 }
 
-/// Lets a trial wait that has a state from which to go on.
+/// Pauses a trial that has a saved state.
 pub(super) fn interrupt(trial: &TrialRecord) -> Vec<Operation> {
     vec![note(trial, INTERRUPTED, true.into()), wait(trial)]
 }
 
-/// What is noted of a trial when it is no longer interrupted.
-pub(super) fn go_on(trial: &TrialRecord) -> Operation {
+/// Marks a trial as no longer interrupted.
+pub(super) fn resume(trial: &TrialRecord) -> Operation {
     note(trial, INTERRUPTED, false.into())
 }
 

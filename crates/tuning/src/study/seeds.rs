@@ -1,4 +1,4 @@
-//! Several seeds for one configuration.
+//! Several seeds per configuration.
 
 use opendr_engine::{Error, Random, Result};
 use serde_json::{Value, json};
@@ -7,45 +7,45 @@ use crate::pruner::Advice;
 use crate::records::TrialRecord;
 use crate::study::{Outcome, Study, Trial};
 
-/// The user attribute with what each seed came to.
+/// User attribute with the value of each seed.
 const VALUES: &str = "seed_values";
-/// The user attribute of a study with what its best came to on fresh seeds.
+/// User attribute of a study with the values of its best trial on fresh seeds.
 const REEVALUATION: &str = "reevaluation";
 
-/// So many seeds, the same for every trial: differences between trials are then less of luck.
+/// Returns `count` seeds, the same for every trial, which reduces random differences between trials.
 pub fn training_seeds(seed: u64, count: usize) -> Vec<u64> {
     seeds(seed, 0, count)
 }
 
-/// So many seeds, none of which a trial has seen.
+/// Returns `count` seeds that no trial uses.
 pub fn fresh_seeds(seed: u64, count: usize) -> Vec<u64> {
     seeds(seed, 1, count)
 }
 
-/// 31 bits, which every library takes.
+/// Seeds of 31 bits, which every library accepts.
 fn seeds(seed: u64, family: u64, count: usize) -> Vec<u64> {
-    (0..count).map(|at| Random::at([seed, family, at as u64]).bits() >> 33).collect()
+    (0..count).map(|at| Random::from_key([seed, family, at as u64]).bits() >> 33).collect()
 }
 
-/// What the best trial comes to on seeds that it was not chosen by.
+/// Result of the best trial on seeds that did not select it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reevaluation {
-    /// The number of the trial.
+    /// Number of the trial.
     pub number: usize,
-    /// The value by which it was chosen: as the best of many, better than it will be again.
+    /// The value that selected it. As the best of many, it is biased.
     pub chosen_by: f64,
-    /// Its values on fresh seeds.
+    /// Values on fresh seeds.
     pub values: Vec<f64>,
 }
 
 impl Reevaluation {
-    /// Mean of the fresh values.
+    /// Returns the mean of the fresh values.
     pub fn mean(&self) -> f64 {
         mean(&self.values)
     }
 
-    /// Standard deviation of the fresh values; 0 for one.
-    pub fn deviation(&self) -> f64 {
+    /// Returns the standard deviation of the fresh values; 0 for one value.
+    pub fn std(&self) -> f64 {
         let mean = self.mean();
         let square: f64 = self.values.iter().map(|value| (value - mean).powi(2)).sum();
         (square / (self.values.len().max(2) - 1) as f64).sqrt()
@@ -57,12 +57,12 @@ fn mean(values: &[f64]) -> f64 {
 }
 
 impl Trial<'_> {
-    /// Measures this configuration with each seed; the mean is its value. The mean so far is reported with the number of
-    /// seeds as the step, so that a pruner can end the trial before the last, and a rung is a number of seeds. A trial that
-    /// goes on does not measure again what it has.
+    /// Evaluates this configuration with each seed; the mean is its value. After each seed, the running mean is reported with the number of
+    /// seeds as the step, so that a pruner can stop the trial early, and a rung is a number of seeds. A resumed
+    /// trial does not repeat seeds.
     ///
     /// # Errors
-    /// That of `measure`; as [`Study::report`].
+    /// The error of `measure`; as [`Study::report`].
     pub fn over_seeds(&self, seeds: &[u64], mut measure: impl FnMut(u64) -> Result<f64>) -> Result<Outcome> {
         let record = self.record()?;
         let known = record.user_attributes.get(VALUES).and_then(Value::as_array);
@@ -71,10 +71,10 @@ impl Trial<'_> {
         for seed in seeds.iter().skip(values.len()) {
             let value = measure(*seed)?;
             if !value.is_finite() {
-                return Ok(Outcome::Failed(format!("seed {seed} came to {value}")));
+                return Ok(Outcome::Failed(format!("the value of seed {seed} is {value}")));
             }
             values.push(value);
-            self.note(VALUES, json!(values))?;
+            self.set_user_attribute(VALUES, json!(values))?;
             match self.report(values.len() as i64, mean(&values))? {
                 Advice::Continue => {}
                 _ if values.len() == seeds.len() => {}
@@ -87,11 +87,11 @@ impl Trial<'_> {
 }
 
 impl Study {
-    /// Measures the best trial again, with seeds by which it was not chosen, and notes what came of it beside the study;
-    /// nothing once `measure` says none, as after Ctrl-C.
+    /// Evaluates the best trial again with seeds that did not select it, and stores the result in the study. Returns
+    /// none once `measure` returns none, as after Ctrl-C.
     ///
     /// # Errors
-    /// `InvalidParam` when no trial is complete, or there are no seeds; that of `measure`; `Io` and `Format` of the storage.
+    /// `InvalidParam` without a complete trial or without seeds; the error of `measure`; `Io` and `Format` of the storage.
     pub fn reevaluate_best(
         &self,
         seeds: &[u64],
@@ -100,17 +100,17 @@ impl Study {
         let best = self.best().and_then(|best| best.value().map(|value| (best, value)));
         let (Some((best, chosen_by)), false) = (best, seeds.is_empty()) else {
             return Err(Error::invalid_param(
-                "to measure the best trial again takes a complete trial and a seed",
+                "the reevaluation needs a complete trial and at least one seed",
             ));
         };
         let mut measure = measure;
         let values = seeds.iter().map(|seed| measure(&best, *seed)).collect::<Result<Option<Vec<_>>>>()?;
         let Some(values) = values else { return Ok(None) };
-        let told = Reevaluation { number: best.number, chosen_by, values };
-        self.note_of_study(
+        let reevaluation = Reevaluation { number: best.number, chosen_by, values };
+        self.set_study_attribute(
             REEVALUATION,
-            json!({"trial": told.number, "chosen_by": chosen_by, "seeds": seeds, "values": told.values, "mean": told.mean()}),
+            json!({"trial": reevaluation.number, "chosen_by": chosen_by, "seeds": seeds, "values": reevaluation.values, "mean": reevaluation.mean()}),
         )?;
-        Ok(Some(told))
+        Ok(Some(reevaluation))
     }
 }

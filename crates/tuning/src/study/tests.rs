@@ -5,7 +5,7 @@ use opendr_engine::ErrorKind;
 use serde_json::json;
 
 use super::*;
-use crate::{Asha, Median, RandomSearch};
+use crate::{Asha, Median, RandomSearch, SearchSpace};
 
 fn study() -> Study {
     Study::open(Storage::memory(), "s", &[Direction::Minimize]).unwrap().with_sampler(RandomSearch::new(5))
@@ -24,7 +24,7 @@ fn x_or_two(trial: &Trial<'_>) -> Result<Outcome> {
 }
 
 #[test]
-fn conditional_parameters_take_part_only_then() {
+fn conditional_parameters_are_active_only_under_their_condition() {
     let study = study();
     study.optimize(&space(), &Budget::more(40), x_or_two, |_, _| Progress::Continue).unwrap();
     let with = |kind: &str| {
@@ -39,7 +39,7 @@ fn conditional_parameters_take_part_only_then() {
 }
 
 #[test]
-fn wrong_use_is_told() {
+fn wrong_use_is_reported() {
     let study = study();
     let trial = study.ask(&space()).unwrap();
     assert!(trial.float("y").unwrap_err().to_string().contains("kind, one"));
@@ -50,7 +50,7 @@ fn wrong_use_is_told() {
     assert_eq!(kind(study.tell(9, Outcome::Pruned)), ErrorKind::NotFound);
     trial.tell(Outcome::from(f64::NAN)).unwrap();
     assert_eq!(study.snapshot().trials[0].state, TrialState::Failed);
-    assert_eq!(kind(study.tell(number, Outcome::from(1.0))), ErrorKind::InvalidParam, "it is told already");
+    assert_eq!(kind(study.tell(number, Outcome::from(1.0))), ErrorKind::InvalidParam, "it has already ended");
     let other = SearchSpace::new().with("one", Distribution::float(0.0, 1.0).unwrap()).unwrap();
     assert_eq!(study.ask(&other).err().unwrap().kind(), ErrorKind::InvalidParam);
     assert!(Study::open(Storage::memory(), "s", &[]).is_err());
@@ -67,12 +67,15 @@ fn queued_trials_come_first_with_their_parameters() {
     let first = study.ask(&space()).unwrap();
     assert_eq!((first.number(), first.float("x").unwrap()), (0, 0.25));
     let second = study.ask(&space()).unwrap();
-    assert!(["a", "b"].contains(&second.get::<String>("kind").unwrap().as_str()), "what cannot be is chosen");
+    assert!(
+        ["a", "b"].contains(&second.get::<String>("kind").unwrap().as_str()),
+        "an invalid value is drawn"
+    );
     assert_eq!(study.ask(&space()).unwrap().number(), 2);
 }
 
 #[test]
-fn an_objective_that_fails_fails_its_trial() {
+fn a_failing_objective_fails_its_trial() {
     let study = study();
     let calls = AtomicUsize::new(0);
     let objective = |trial: &Trial<'_>| match calls.fetch_add(1, Ordering::Relaxed) {
@@ -105,7 +108,7 @@ fn threads_share_a_study() {
 }
 
 #[test]
-fn a_silent_worker_is_taken_for_dead() {
+fn a_silent_worker_is_treated_as_dead() {
     let study = study().with_abandoned_after(Duration::from_millis(1));
     let silent = study.ask(&space()).unwrap();
     std::thread::sleep(Duration::from_millis(5));
@@ -117,7 +120,7 @@ fn a_silent_worker_is_taken_for_dead() {
     assert!(next.record().unwrap().system_attributes.contains_key(ALIVE));
 }
 
-/// The loss of a configuration falls with the steps to what it is worth.
+/// The loss of a configuration falls with the steps towards its final value.
 fn halving(trial: &Trial<'_>, steps: &AtomicUsize) -> Result<Outcome> {
     let worth = trial.float("x")?;
     let begun = trial.resumed_from().and_then(Value::as_i64).unwrap_or(0);
@@ -132,7 +135,7 @@ fn halving(trial: &Trial<'_>, steps: &AtomicUsize) -> Result<Outcome> {
 }
 
 #[test]
-fn a_promoted_trial_goes_on_where_it_stood() {
+fn a_promoted_trial_resumes_from_its_state() {
     let study = study().with_pruner(Asha::new(1, 3).unwrap());
     let space = SearchSpace::new().with("x", Distribution::float(0.0, 1.0).unwrap()).unwrap();
     let steps = AtomicUsize::new(0);
@@ -141,7 +144,7 @@ fn a_promoted_trial_goes_on_where_it_stood() {
     let record = study.snapshot();
     assert_eq!(record.trials.len(), 81);
     let reports: usize = record.trials.iter().map(|trial| trial.reports.len()).sum();
-    assert_eq!(reports, steps.load(Ordering::Relaxed), "a step was made twice");
+    assert_eq!(reports, steps.load(Ordering::Relaxed), "a step was repeated");
     assert!(reports < 81 * 27 / 5, "{reports}");
     let best = record.trials.iter().map(|trial| trial.params["x"].number).fold(1.0, f64::min);
     assert_eq!(study.best().unwrap().params["x"].number, best, "the best was promoted to the end");
@@ -152,7 +155,7 @@ fn a_promoted_trial_goes_on_where_it_stood() {
 }
 
 #[test]
-fn a_configuration_counts_after_all_its_seeds() {
+fn a_configuration_is_complete_after_all_its_seeds() {
     let study = study().with_pruner(Median { startup_trials: 3, warmup_steps: 0 });
     let space = SearchSpace::new().with("x", Distribution::float(0.0, 1.0).unwrap()).unwrap();
     let seeds = training_seeds(1, 3);
@@ -176,12 +179,12 @@ fn a_configuration_counts_after_all_its_seeds() {
         .unwrap()
         .unwrap();
     assert_eq!((again.number, again.values.len()), (best.number, 5));
-    assert!((again.mean() - again.chosen_by).abs() < 0.2 && again.deviation() > 0.0);
+    assert!((again.mean() - again.chosen_by).abs() < 0.2 && again.std() > 0.0);
     assert_eq!(study.snapshot().user_attributes["reevaluation"]["trial"], json!(best.number));
 }
 
 #[test]
-fn several_directions_have_a_front() {
+fn several_directions_have_a_pareto_front() {
     let study = Study::open(Storage::memory(), "s", &[Direction::Minimize, Direction::Maximize]).unwrap();
     let space = SearchSpace::new()
         .with("x", Distribution::float(0.0, 1.0).unwrap())

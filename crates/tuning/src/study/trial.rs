@@ -1,4 +1,4 @@
-//! A trial that is being carried out.
+//! Running trials.
 
 use std::collections::BTreeMap;
 
@@ -11,8 +11,8 @@ use crate::pruner::Advice;
 use crate::records::{Suggestion, TrialRecord};
 use crate::study::{Outcome, Study, no_trial};
 
-/// A trial that is being carried out: its parameters, and the way to tell what comes of them. One that is dropped without
-/// having been told of stays running.
+/// A running trial with its parameters; it ends by [`tell`](Self::tell). If it is dropped before,
+/// it stays running.
 pub struct Trial<'a> {
     pub(super) study: &'a Study,
     pub(super) number: usize,
@@ -21,17 +21,17 @@ pub struct Trial<'a> {
 }
 
 impl Trial<'_> {
-    /// Its number in the study.
+    /// Returns the number in the study.
     pub fn number(&self) -> usize {
         self.number
     }
 
-    /// Its parameters; those whose condition does not hold are missing.
+    /// Returns the parameters; inactive conditional ones are missing.
     pub fn params(&self) -> &BTreeMap<String, Suggestion> {
         &self.params
     }
 
-    /// Its parameters as learners take them.
+    /// Returns the parameters in the form that learners take.
     ///
     /// # Errors
     /// As [`TrialRecord::param_map`].
@@ -39,10 +39,10 @@ impl Trial<'_> {
         self.record()?.param_map()
     }
 
-    /// A parameter of any type.
+    /// Returns a parameter of any type.
     ///
     /// # Errors
-    /// `InvalidParam` when there is none of this name, as when its condition does not hold, or it is of another type.
+    /// `InvalidParam` when there is none of this name, for instance because it is inactive, or it has another type.
     pub fn get<T: DeserializeOwned>(&self, name: &str) -> Result<T> {
         let names = || self.params.keys().cloned().collect::<Vec<_>>().join(", ");
         let suggestion = self.params.get(name).ok_or_else(|| {
@@ -54,11 +54,11 @@ impl Trial<'_> {
         })?;
         let value = suggestion.value();
         let wrong =
-            |error| Error::invalid_param(format!("{name} = {value} is of another type")).with_source(error);
+            |error| Error::invalid_param(format!("{name} = {value} has another type")).with_source(error);
         serde_json::from_value(value.clone()).map_err(wrong)
     }
 
-    /// A parameter that is a number.
+    /// Returns a parameter that is a number.
     ///
     /// # Errors
     /// As [`Trial::get`].
@@ -66,7 +66,7 @@ impl Trial<'_> {
         self.get(name)
     }
 
-    /// A parameter that is a whole number.
+    /// Returns a parameter that is a whole number.
     ///
     /// # Errors
     /// As [`Trial::get`].
@@ -74,12 +74,12 @@ impl Trial<'_> {
         self.get(name)
     }
 
-    /// The state with which the trial was paused or interrupted, when it is to go on from there.
+    /// Returns the state with which the trial was paused or interrupted, if it is being resumed.
     pub fn resumed_from(&self) -> Option<&Value> {
         self.resumed.as_ref()
     }
 
-    /// The trial as the study knows it, with what it reported before it was paused.
+    /// Returns the record of the trial, with its reports before a pause.
     ///
     /// # Errors
     /// `NotFound` when another process has deleted the study.
@@ -89,7 +89,7 @@ impl Trial<'_> {
             .ok_or_else(|| no_trial(self.number))
     }
 
-    /// Notes what was measured at `step`, and asks what to do.
+    /// Reports a value at `step`. Returns the pruner's decision.
     ///
     /// # Errors
     /// As [`Study::report`].
@@ -97,23 +97,23 @@ impl Trial<'_> {
         self.study.report(self.number, step, value)
     }
 
-    /// Notes something about the trial.
+    /// Sets a user attribute of the trial.
     ///
     /// # Errors
-    /// As [`Study::note`].
-    pub fn note(&self, key: &str, value: impl Into<Value>) -> Result<()> {
-        self.study.note(self.number, key, value.into())
+    /// As [`Study::set_user_attribute`].
+    pub fn set_user_attribute(&self, key: &str, value: impl Into<Value>) -> Result<()> {
+        self.study.set_user_attribute(self.number, key, value.into())
     }
 
-    /// Keeps the state from which the trial goes on should this process die; without any, the trial is then lost.
+    /// Saves the state from which the trial resumes if this process dies; without it the trial would be lost.
     ///
     /// # Errors
-    /// As [`Study::note`].
+    /// As [`Study::set_user_attribute`].
     pub fn checkpoint(&self, state: impl Into<Value>) -> Result<()> {
         self.study.checkpoint(self.number, state.into())
     }
 
-    /// Ends the trial, for good or for now.
+    /// Ends or pauses the trial with an outcome.
     ///
     /// # Errors
     /// As [`Study::tell`].

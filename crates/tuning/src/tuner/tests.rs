@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::*;
 use crate::{Asha, Direction, Distribution, Median, RandomSearch, Storage, TrialRecord};
 
-/// The loss falls with the units to what the configuration is worth, and some for the seed.
+/// The loss falls with the units towards the value of the configuration, plus noise of the seed.
 struct Slope<'a> {
     worth: f64,
     done: u64,
@@ -48,15 +48,15 @@ fn tuner<'a>(study: Study, folder: &Path, spent: &'a AtomicU64) -> Tuner<'a> {
     Tuner::new(study, space, Plan::at(vec![1, 3, 9]).unwrap(), folder, begin).unwrap()
 }
 
-/// Units that a study's trials have come to.
+/// Sum of the units of all trials.
 fn units(study: &StudyRecord) -> u64 {
     study.trials.iter().filter_map(|trial| trial.last_report()).map(|(step, _)| step as u64).sum()
 }
 
 /// State, values, and reports by step.
-type Told = (TrialState, Vec<f64>, Vec<(i64, f64)>);
+type TrialSummary = (TrialState, Vec<f64>, Vec<(i64, f64)>);
 
-fn told(study: &StudyRecord) -> Vec<Told> {
+fn summaries(study: &StudyRecord) -> Vec<TrialSummary> {
     let of = |trial: &TrialRecord| {
         (
             trial.state,
@@ -68,12 +68,12 @@ fn told(study: &StudyRecord) -> Vec<Told> {
 }
 
 #[test]
-fn what_is_promoted_goes_on_and_counts_after_all_seeds() {
+fn promoted_trials_resume_and_complete_after_all_seeds() {
     let (folder, spent) = (folder("seeds"), AtomicU64::new(0));
     let tuner = tuner(study(), &folder, &spent);
-    assert_eq!(tuner.run(&Budget::total(60), |_, _| Progress::Continue).unwrap(), Tuning::Finished);
+    assert_eq!(tuner.run(&Budget::total(60), |_, _| Progress::Continue).unwrap(), TuningStatus::Finished);
     let record = tuner.study().snapshot();
-    assert_eq!(units(&record), spent.load(Ordering::Relaxed), "a unit was done twice");
+    assert_eq!(units(&record), spent.load(Ordering::Relaxed), "a unit was repeated");
     assert!(units(&record) < 60 * 27 / 5, "{}", units(&record));
     assert!(record.complete().count() > 0);
     for trial in record.complete() {
@@ -81,8 +81,8 @@ fn what_is_promoted_goes_on_and_counts_after_all_seeds() {
     }
     let best = record.best().unwrap();
     let noise = tuner.plan.seeds().iter().map(|seed| (seed % 1000) as f64 * 1e-5).sum::<f64>() / 3.0;
-    let wanted = best.params["x"].number + noise + 1.0 / 9.0;
-    assert!((best.value().unwrap() - wanted).abs() < 1e-12, "the mean of three seeds");
+    let expected = best.params["x"].number + noise + 1.0 / 9.0;
+    assert!((best.value().unwrap() - expected).abs() < 1e-12, "the mean of three seeds");
     let again = tuner.reevaluate().unwrap().unwrap();
     assert_eq!((again.number, again.chosen_by, again.values.len()), (best.number, best.value().unwrap(), 3));
     assert_ne!(again.mean(), again.chosen_by);
@@ -90,7 +90,7 @@ fn what_is_promoted_goes_on_and_counts_after_all_seeds() {
 }
 
 #[test]
-fn an_interrupted_study_goes_on_as_if_it_had_not_been() {
+fn an_interrupted_study_gives_the_result_of_an_uninterrupted_one() {
     let (folder, spent, other) = (folder("interrupted"), AtomicU64::new(0), AtomicU64::new(0));
     let whole = tuner(study(), &folder.join("whole"), &other);
     whole.run(&Budget::total(20), |_, _| Progress::Continue).unwrap();
@@ -107,8 +107,8 @@ fn an_interrupted_study_goes_on_as_if_it_had_not_been() {
             _ => Progress::Continue,
         };
         runs += 1;
-        if tuner.run(&Budget::total(20), three).unwrap() == Tuning::Finished {
-            assert_eq!(told(&tuner.study().snapshot()), told(&whole.study().snapshot()));
+        if tuner.run(&Budget::total(20), three).unwrap() == TuningStatus::Finished {
+            assert_eq!(summaries(&tuner.study().snapshot()), summaries(&whole.study().snapshot()));
             break;
         }
         assert_eq!(
@@ -121,7 +121,7 @@ fn an_interrupted_study_goes_on_as_if_it_had_not_been() {
         );
     }
     assert!(runs > 8, "{runs}");
-    assert_eq!(spent.load(Ordering::Relaxed), other.load(Ordering::Relaxed), "a unit was done twice");
+    assert_eq!(spent.load(Ordering::Relaxed), other.load(Ordering::Relaxed), "a unit was repeated");
     fs::remove_dir_all(folder).unwrap();
 }
 
@@ -129,17 +129,17 @@ fn an_interrupted_study_goes_on_as_if_it_had_not_been() {
 fn a_study_without_a_complete_trial_finishes_the_best() {
     let (folder, spent) = (folder("finish"), AtomicU64::new(0));
     let tuner = tuner(study(), &folder, &spent);
-    assert_eq!(tuner.run(&Budget::total(2), |_, _| Progress::Continue).unwrap(), Tuning::Finished);
+    assert_eq!(tuner.run(&Budget::total(2), |_, _| Progress::Continue).unwrap(), TuningStatus::Finished);
     let record = tuner.study().snapshot();
     let worth = |number: usize| record.trials[number].params["x"].number;
     let (best, other) = if worth(0) < worth(1) { (0, 1) } else { (1, 0) };
     assert_eq!(record.trials[best].state, TrialState::Complete);
     assert_eq!((record.trials[other].is_paused(), record.trials.len()), (true, 2));
-    assert_eq!(units(&record), spent.load(Ordering::Relaxed), "a unit was done twice");
+    assert_eq!(units(&record), spent.load(Ordering::Relaxed), "a unit was repeated");
     fs::remove_dir_all(folder).unwrap();
 }
 
-/// Stops, as by Ctrl-C, on its way to 9, until it is let go on.
+/// Stops, as by Ctrl-C, on its way to 9, until it is released.
 struct Stopping<'a>(Slope<'a>, &'a AtomicBool);
 
 impl Training for Stopping<'_> {
@@ -157,7 +157,7 @@ impl Training for Stopping<'_> {
 }
 
 #[test]
-fn a_training_that_is_stopped_goes_on_from_its_last_point() {
+fn a_stopped_training_resumes_from_its_last_point() {
     let (folder, spent, on) = (folder("halted"), AtomicU64::new(0), AtomicBool::new(false));
     let study = Study::open(Storage::memory(), "s", &[Direction::Minimize]).unwrap();
     let space = SearchSpace::new().with("x", Distribution::float(0.0, 1.0).unwrap()).unwrap();
@@ -165,12 +165,12 @@ fn a_training_that_is_stopped_goes_on_from_its_last_point() {
     let plan = Plan::at(vec![1, 3, 9]).unwrap().with_seeds(0, 1);
     let tuner = Tuner::new(study, space, plan, &folder, begin).unwrap();
     let run = || tuner.run(&Budget::total(2), |_, _| Progress::Continue).unwrap();
-    assert_eq!(run(), Tuning::Interrupted);
+    assert_eq!(run(), TuningStatus::Interrupted);
     let record = tuner.study().snapshot();
     assert!(record.trials.len() == 1 && record.trials[0].is_interrupted());
     assert_eq!(record.trials[0].last_report().unwrap().0, 3);
     on.store(true, Ordering::Relaxed);
-    assert_eq!(run(), Tuning::Finished);
+    assert_eq!(run(), TuningStatus::Finished);
     assert_eq!((tuner.study().snapshot().complete().count(), spent.load(Ordering::Relaxed)), (2, 18));
     on.store(false, Ordering::Relaxed);
     assert_eq!(tuner.reevaluate().unwrap(), None);
@@ -178,7 +178,7 @@ fn a_training_that_is_stopped_goes_on_from_its_last_point() {
 }
 
 #[test]
-fn what_a_dead_worker_was_at_goes_on_from_its_checkpoint() {
+fn trials_of_dead_workers_resume_from_their_checkpoints() {
     let (folder, spent) = (folder("dead"), AtomicU64::new(0));
     let study = Study::open(Storage::memory(), "s", &[Direction::Minimize]).unwrap();
     let tuner = tuner(study.with_abandoned_after(Duration::from_millis(50)), &folder, &spent);
@@ -186,7 +186,7 @@ fn what_a_dead_worker_was_at_goes_on_from_its_checkpoint() {
     let mut training = (tuner.begin)(&trial.param_map().unwrap(), tuner.plan.seeds()[0]).unwrap();
     trial.report(3, training.advance(3).unwrap().unwrap()).unwrap();
     training.save(&tuner.folder_of(0).join("seed_0")).unwrap();
-    trial.checkpoint(json!(Stand { values: Vec::new(), done: 3 })).unwrap();
+    trial.checkpoint(json!(TrialProgress { values: Vec::new(), done: 3 })).unwrap();
     std::thread::sleep(Duration::from_millis(60));
     tuner.run(&Budget::total(1), |_, _| Progress::Continue).unwrap();
     let record = tuner.study().snapshot();
@@ -196,12 +196,12 @@ fn what_a_dead_worker_was_at_goes_on_from_its_checkpoint() {
 }
 
 #[test]
-fn what_is_stopped_leaves_no_checkpoints() {
+fn stopped_trials_leave_no_checkpoints() {
     let (folder, spent) = (folder("stopped"), AtomicU64::new(0));
     let study = study().with_pruner(Median { startup_trials: 3, warmup_steps: 0 });
     let tuner = tuner(study, &folder, &spent);
     let late = Budget::total(20).timeout(Duration::ZERO);
-    assert_eq!(tuner.run(&late, |_, _| Progress::Continue).unwrap(), Tuning::Interrupted);
+    assert_eq!(tuner.run(&late, |_, _| Progress::Continue).unwrap(), TuningStatus::Interrupted);
     tuner.run(&Budget::total(20).threads(2), |_, _| Progress::Continue).unwrap();
     let record = tuner.study().snapshot();
     let left = |state| {

@@ -1,32 +1,32 @@
-//! What is tuned.
+//! The trait of tunable trainings.
 
 use std::path::Path;
 
 use opendr_engine::Result;
 
-/// A training of one configuration with one seed, that goes on from where it stands and never begins anew.
+/// A training of one configuration with one seed, which runs in pieces.
 ///
-/// How much of it was done is counted in whatever the [`Plan`](crate::Plan) counts: steps of environments, epochs, batches.
+/// The unit of its length is that of the [`Plan`](crate::Plan): steps of environments, epochs, batches.
 pub trait Training {
-    /// Goes on until `until` units are done in all, and measures. Where so many, or more, are done already, it only
-    /// measures. None when it was stopped from outside before it came there, as by Ctrl-C.
+    /// Trains until `until` units are done in total, and evaluates. If as many are already done, it only
+    /// evaluates. Returns none when it was stopped from outside before, as by Ctrl-C.
     ///
-    /// All trainings should be measured by the same data or episodes: differences are then less of luck.
+    /// All trainings should be evaluated on the same data or episodes, which reduces random differences.
     ///
     /// # Errors
-    /// Those of the learner; they fail the trial.
+    /// The errors of the learner, which fail the trial.
     fn advance(&mut self, until: u64) -> Result<Option<f64>>;
 
-    /// Saves all that decides the future, in a folder of its own, which appears whole or not at all.
+    /// Saves the state of the training in a folder of its own, which must appear atomically.
     ///
     /// # Errors
     /// `Io` when it cannot be written.
     fn save(&self, folder: &Path) -> Result<()>;
 
-    /// Goes back to what was saved of a training of the same configuration and seed.
+    /// Restores the saved state of a training of the same configuration and seed.
     ///
     /// # Errors
-    /// `NotFound`, `Io` and `Format` when that cannot be read.
+    /// `NotFound`, `Io` and `Format` when it cannot be read.
     fn load(&mut self, folder: &Path) -> Result<()>;
 }
 

@@ -1,6 +1,6 @@
 //! Processes that share a study by its journal, one of which is killed.
 
-// Elsewhere nothing tells that a process is dead.
+// Other systems do not report that a process is dead.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Lines};
@@ -36,8 +36,8 @@ fn space() -> SearchSpace {
     SearchSpace::new().with("x", Distribution::float(-1.0, 1.0).unwrap()).unwrap()
 }
 
-/// What each process does; no test of its own. In the first trial that it begins, or goes on with, one hangs for good, or
-/// until there is a file beside the journal.
+/// The program of each process; not a test of its own. In the first trial that it starts or resumes, it hangs forever, or
+/// until a file exists beside the journal.
 #[test]
 fn worker() {
     let Some(path) = std::env::var_os(JOURNAL) else { return };
@@ -50,12 +50,12 @@ fn worker() {
             let here = match hang.as_str() {
                 "begun" => step == 1,
                 "promoted" => begun > 0,
-                "until told" => step == 1 && !go.exists(),
+                "until released" => step == 1 && !go.exists(),
                 _ => false,
             };
             if here {
                 println!("\nhanging in {}", trial.number());
-                while hang != "until told" || !go.exists() {
+                while hang != "until released" || !go.exists() {
                     thread::sleep(Duration::from_millis(5));
                 }
             }
@@ -83,7 +83,7 @@ fn spawn(path: &Path, hang: &str) -> Child {
     command.spawn().unwrap()
 }
 
-/// Waits until the process hangs; in which trial, and what it goes on to print.
+/// Waits until the process hangs. Returns the trial, and the rest of its output.
 fn hanging(process: &mut Child) -> (usize, Lines<BufReader<ChildStdout>>) {
     let mut lines = BufReader::new(process.stdout.take().unwrap()).lines();
     let number = lines
@@ -94,13 +94,13 @@ fn hanging(process: &mut Child) -> (usize, Lines<BufReader<ChildStdout>>) {
     (number, lines)
 }
 
-/// The study after its journal, once all workers have ended.
+/// Returns the study in its journal, after all workers have ended.
 fn study_after(workers: Vec<Child>, path: &Path) -> StudyRecord {
     for worker in workers {
         assert!(worker.wait_with_output().unwrap().status.success());
     }
     let study = study(path).snapshot();
-    // Those that went on did not begin anew: no step was reported twice.
+    // Resumed trials did not restart: no step was reported twice.
     let reports = fs::read_to_string(path).unwrap().matches("intermediate_value").count();
     assert_eq!(reports, study.trials.iter().map(|trial| trial.reports.len()).sum::<usize>());
     fs::remove_file(path.with_file_name(GO)).ok();
@@ -110,15 +110,15 @@ fn study_after(workers: Vec<Child>, path: &Path) -> StudyRecord {
 }
 
 #[test]
-fn one_of_four_workers_killed_loses_its_one_trial_only() {
+fn a_killed_worker_loses_only_its_trial() {
     let path = folder("begun").join("study.log");
     let mut victim = spawn(&path, "begun");
     let (number, _lines) = hanging(&mut victim);
-    let mut others: Vec<Child> = (0..3).map(|_| spawn(&path, "until told")).collect();
+    let mut others: Vec<Child> = (0..3).map(|_| spawn(&path, "until released")).collect();
     let _lines: Vec<_> = others.iter_mut().map(hanging).collect();
     let running = |trial: &TrialRecord| trial.state == TrialState::Running;
     assert_eq!(study(&path).snapshot().trials.iter().filter(|trial| running(trial)).count(), 4);
-    // SIGKILL: nothing in the process gets to know.
+    // SIGKILL cannot be handled by the process.
     victim.kill().unwrap();
     victim.wait().unwrap();
     fs::write(path.with_file_name(GO), "").unwrap();
@@ -132,7 +132,7 @@ fn one_of_four_workers_killed_loses_its_one_trial_only() {
 }
 
 #[test]
-fn a_trial_that_had_been_paused_is_not_lost_at_all() {
+fn a_paused_trial_survives_its_worker() {
     let path = folder("promoted").join("study.log");
     let mut victim = spawn(&path, "promoted");
     let (number, _lines) = hanging(&mut victim);

@@ -1,11 +1,11 @@
-//! A learner of control, tuned.
+//! Tuning of a reinforcement learning algorithm.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use opendr_engine::params::ParamMap;
 use opendr_tuning::{
     Asha, Budget, Direction, Plan, Progress, RandomSearch, Storage, Study, Training, TrialRecord, TrialState,
-    Tuner, Tuning,
+    Tuner, TuningStatus,
 };
 
 #[path = "../../examples/cart_pole_search/training.rs"]
@@ -14,7 +14,7 @@ mod training;
 use training::{CartPoleTraining, LENGTH, space};
 
 #[test]
-fn a_promoted_training_comes_to_what_an_uninterrupted_one_does() {
+fn a_promoted_training_gives_the_result_of_an_uninterrupted_one() {
     let folder = std::env::temp_dir().join(format!("opendr-tuned-ppo-{}", std::process::id()));
     let points = [2048, 8192];
     assert!(points[1] < LENGTH);
@@ -25,12 +25,12 @@ fn a_promoted_training_comes_to_what_an_uninterrupted_one_does() {
     let plan = Plan::at(points.to_vec()).unwrap().with_seeds(0, 2);
     let seeds = plan.seeds().to_vec();
     let tuner = Tuner::new(study, space().unwrap(), plan, &folder, begin).unwrap();
-    let done = tuner.run(&Budget::total(9).failures(9), |_, _| Progress::Continue).unwrap();
-    assert_eq!(done, Tuning::Finished);
+    let done = tuner.run(&Budget::total(9).max_failures(9), |_, _| Progress::Continue).unwrap();
+    assert_eq!(done, TuningStatus::Finished);
     let record = tuner.study().snapshot();
     let paused = record.trials.iter().filter(|trial| trial.is_paused()).count();
     assert!(paused >= 6, "{paused}");
-    // Whoever was promoted has both points, and was trained to the second in two pieces.
+    // Promoted trials have both points, and were trained to the second in two pieces.
     let promoted: Vec<&TrialRecord> =
         record.trials.iter().filter(|trial| trial.reports.contains_key(&8192)).collect();
     assert!(!promoted.is_empty());
@@ -42,10 +42,10 @@ fn a_promoted_training_comes_to_what_an_uninterrupted_one_does() {
         assert_eq!(
             training.advance(points[1]).unwrap(),
             Some(trial.reports[&8192]),
-            "it goes on with the same bits"
+            "it resumes with the same bits"
         );
     }
     assert!(record.trials.iter().all(|trial| trial.state != TrialState::Running));
-    assert!(steps.load(Ordering::Relaxed) < 9 * 2 * points[1] / 2, "most was not spent on most");
+    assert!(steps.load(Ordering::Relaxed) < 9 * 2 * points[1] / 2, "most trials were not stopped early");
     std::fs::remove_dir_all(folder).unwrap();
 }

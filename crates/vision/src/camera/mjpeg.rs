@@ -1,8 +1,8 @@
-//! Frames of cameras that are JPEG but for the Huffman tables, which they leave out.
+//! Conversion of MJPEG frames, which omit the Huffman tables of JPEG.
 
 use std::borrow::Cow;
 
-/// How many codes of each length from 1 bit, then the values: tables K.3 to K.6 of ITU-T T.81.
+/// Number of codes of each length from 1 bit, then the values: tables K.3 to K.6 of ITU-T T.81.
 const DC_LENGTHS: [[u8; 16]; 2] =
     [[0, 1, 5, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0], [0, 3, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0]];
 const AC_LENGTHS: [[u8; 16]; 2] =
@@ -24,16 +24,17 @@ const AC_VALUES: [[u8; 162]; 2] = [[
     0xd2, 0xd3, 0xd4, 0xd5, 0xd6, 0xd7, 0xd8, 0xd9, 0xda, 0xe2, 0xe3, 0xe4, 0xe5, 0xe6, 0xe7, 0xe8, 0xe9, 0xea, 0xf2, 0xf3, 0xf4, 0xf5, 0xf6, 0xf7, 0xf8, 0xf9, 0xfa,
 ]];
 
-/// The frame as a whole JPEG: with the standard's tables before its scan where it has none of its own.
+/// Returns the frame as a complete JPEG; the standard Huffman tables are inserted before the scan where the frame has
+/// none.
 pub(super) fn jpeg_from_mjpeg(frame: &[u8]) -> Cow<'_, [u8]> {
-    match place_for_tables(frame) {
+    match scan_offset(frame) {
         Some(at) => [&frame[..at], &standard_tables(), &frame[at..]].concat().into(),
         None => frame.into(),
     }
 }
 
-/// Where the scan of a frame without tables begins.
-fn place_for_tables(frame: &[u8]) -> Option<usize> {
+/// Returns the byte offset of the scan of a frame without Huffman tables.
+fn scan_offset(frame: &[u8]) -> Option<usize> {
     let mut at = 2;
     loop {
         let &[0xff, marker, high, low] = frame.get(at..at + 4)? else { return None };
@@ -78,16 +79,16 @@ mod tests {
             let length = usize::from(u16::from_be_bytes([bare[at + 2], bare[at + 3]]));
             bare.drain(at..at + 2 + length);
         }
-        // Drivers pad.
+        // Drivers pad the frames.
         bare.extend([0; 64]);
         assert!(crate::decode(&bare).is_err());
         assert_eq!(crate::decode(&jpeg_from_mjpeg(&bare)).unwrap(), crate::decode(&whole).unwrap());
     }
 
     #[test]
-    fn junk_stays_junk() {
+    fn invalid_frames_are_unchanged() {
         for junk in
-            [&b""[..], b"\xff\xd8", b"\xff\xd8\xff\xe0\xff\xff\x00", b"no picture at all", &[0xff; 40]]
+            [&b""[..], b"\xff\xd8", b"\xff\xd8\xff\xe0\xff\xff\x00", b"not a JPEG at all", &[0xff; 40]]
         {
             assert_eq!(jpeg_from_mjpeg(junk), junk);
         }

@@ -1,6 +1,6 @@
-//! Cameras of the operating system.
+//! Cameras of the operating system (Video4Linux 2).
 
-// A pure conversion, built and tested everywhere.
+// Platform-independent, so it is built and tested on every system.
 #[cfg_attr(not(all(target_os = "linux", target_pointer_width = "64")), allow(dead_code))]
 mod mjpeg;
 

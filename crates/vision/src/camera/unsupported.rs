@@ -1,4 +1,4 @@
-//! Systems whose cameras are not read.
+//! Stub for systems without camera support.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use opendr_engine::{Error, Result};
 
 use crate::source::{Frame, FrameReader, SourceOptions};
 
-/// No camera: there is no value of this type.
+/// A type without values: no camera can be opened.
 #[derive(Debug)]
 pub(crate) enum Camera {}
 
@@ -15,7 +15,7 @@ impl Camera {
     /// Always `Unsupported`.
     pub(crate) fn open(path: &Path, _: &SourceOptions) -> Result<Self> {
         Err(Error::unsupported(format!(
-            "the camera {} cannot be read on this system, only on 64-bit Linux; hand frames in with \
+            "the camera {} cannot be read on this system, only on 64-bit Linux; pass frames to \
              `Source::from_frames`, or read a video",
             path.display()
         )))

@@ -1,4 +1,4 @@
-//! From bytes to an [`Image`].
+//! Decoding of image files into [`Image`].
 
 use std::fs::File;
 use std::io::{Cursor, Read};
@@ -11,29 +11,27 @@ use opendr_engine::data::{Image, Layout, PixelFormat};
 use opendr_engine::{Error, Result, ResultExt};
 
 use crate::codec::orientation::upright;
+use crate::codec::size_limit::{LIMIT_VARIABLE, check_size};
 use crate::codec::{finding, jpeg};
 
-/// Bytes that tell the format.
+/// Bytes from which the format is detected.
 const HEAD: u64 = 64;
-/// Samples of the largest picture that is read where nobody says otherwise: 89 megapixels of RGB.
+/// Default limit of samples per image: 89 megapixels of RGB.
 const MAX_SAMPLES: u64 = 1 << 28;
-/// The variable of the environment that raises or lowers it.
-pub(crate) const LIMIT_VARIABLE: &str = "OPENDR_MAX_SAMPLES";
-
-/// Reads picture files within bounds.
+/// Decodes image files within a size limit.
 ///
-/// What comes out is what the file holds, turned upright as its EXIF orientation says: `u8`, `HWC`, grey, RGB or
-/// RGBA. Palettes are resolved, 16-bit samples keep their high byte, grey with opacity becomes RGBA, CMYK and YCCK
-/// become RGB. Of an animation the first frame is read.
+/// The result is turned upright as its EXIF orientation states: `u8`, `HWC`, grey, RGB or RGBA. Palettes are
+/// resolved, 16-bit samples keep their high byte, grey with alpha becomes RGBA, CMYK and YCCK become RGB. Of an
+/// animation the first frame is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Decoder {
-    /// The largest picture that is read, in samples (width x height x channels); the header is asked before any
-    /// memory is taken. Files over twice as many bytes are not read at all.
+    /// Maximum number of samples (width x height x channels), checked against the header before memory is allocated.
+    /// Files of more than twice as many bytes are rejected unread.
     pub max_samples: u64,
 }
 
 impl Default for Decoder {
-    /// Up to as many samples as `OPENDR_MAX_SAMPLES` says, by default 2^28: 89 megapixels of RGB.
+    /// Limits the samples to the value of `OPENDR_MAX_SAMPLES`, by default 2^28: 89 megapixels of RGB.
     fn default() -> Self {
         static LIMIT: OnceLock<u64> = OnceLock::new();
         let set = || std::env::var(LIMIT_VARIABLE).ok()?.trim().parse().ok();
@@ -41,7 +39,7 @@ impl Default for Decoder {
     }
 }
 
-/// Reads the picture at `path` with the default [`Decoder`].
+/// Reads the image at `path` with the default [`Decoder`].
 ///
 /// # Errors
 /// See [`Decoder::open`].
@@ -49,7 +47,7 @@ pub fn open(path: impl AsRef<Path>) -> Result<Image> {
     Decoder::default().open(path)
 }
 
-/// Reads the picture in `bytes` with the default [`Decoder`].
+/// Decodes the image in `bytes` with the default [`Decoder`].
 ///
 /// # Errors
 /// See [`Decoder::decode`].
@@ -58,22 +56,21 @@ pub fn decode(bytes: &[u8]) -> Result<Image> {
 }
 
 impl Decoder {
-    /// Reads the picture at `path`. The content decides on the format, not the name.
+    /// Reads the image at `path`. The content determines the format, not the name.
     ///
     /// # Errors
-    /// `NotFound` or `Io` when the file cannot be read, and those of [`Decoder::decode`]; all name the path.
+    /// `NotFound` or `Io` when the file cannot be read, and the errors of [`Decoder::decode`]; all state the path.
     pub fn open(&self, path: impl AsRef<Path>) -> Result<Image> {
         let path = path.as_ref();
         let picture = self.read(path).and_then(|bytes| self.decode(&bytes));
         picture.context(|| format!("opening {}", path.display()))
     }
 
-    /// Reads the picture in `bytes`.
+    /// Decodes the image in `bytes`.
     ///
     /// # Errors
-    /// `InvalidInput` when the bytes are no picture, a damaged or a truncated one (nothing partial is returned:
-    /// half a scene is no basis for acting), or one over [`Decoder::max_samples`]; `Unsupported` for a format that
-    /// is known but not read.
+    /// `InvalidInput` when the bytes are not an image, are damaged or truncated (no partial image is returned), or
+    /// exceed [`Decoder::max_samples`]; `Unsupported` for a known format that cannot be decoded.
     pub fn decode(&self, bytes: &[u8]) -> Result<Image> {
         let (stored, orientation) = match finding::format_of(bytes)? {
             ImageFormat::Jpeg => jpeg::decode(bytes, self.max_samples)?,
@@ -87,24 +84,26 @@ impl Decoder {
         let mut file = File::open(path)?;
         let metadata = file.metadata()?;
         if metadata.is_dir() {
-            return Err(Error::invalid_input("a folder, not a picture file; name a file in it"));
+            return Err(Error::invalid_input(
+                "the path is a folder, not an image file; pass the path of a file",
+            ));
         }
         let mut bytes = Vec::new();
         file.by_ref().take(HEAD).read_to_end(&mut bytes)?;
-        // Before the rest: what is no picture need not be read, however long it is.
+        // The format is checked first, so that a large file that is not an image is not read.
         finding::format_of(&bytes)?;
         bytes.reserve(metadata.len().min(limit) as usize);
         file.take(limit).read_to_end(&mut bytes)?;
         if bytes.len() as u64 > limit {
             return Err(Error::invalid_input(format!(
-                "over {limit} bytes, too large for a picture; if it is one, set {LIMIT_VARIABLE} above {}",
+                "the file exceeds the limit of {limit} bytes; if it is an image that can be trusted, set {LIMIT_VARIABLE} above {}",
                 self.max_samples
             )));
         }
         Ok(bytes)
     }
 
-    /// Twice the samples, for 16 bits each, and room for what surrounds them.
+    /// Returns the limit of bytes: twice the samples, for 16 bits each, and space for metadata.
     fn max_bytes(&self) -> u64 {
         self.max_samples.saturating_mul(2).saturating_add(1 << 20)
     }
@@ -122,18 +121,6 @@ impl Decoder {
         let picture = DynamicImage::from_decoder(decoder).map_err(damaged)?;
         Ok((image_from_dynamic(picture)?, orientation))
     }
-}
-
-/// Refuses a header that claims more than `max_samples`.
-pub(super) fn check_size(width: u32, height: u32, channels: u8, max_samples: u64) -> Result<()> {
-    let samples = u64::from(width) * u64::from(height) * u64::from(channels);
-    if samples <= max_samples {
-        return Ok(());
-    }
-    Err(Error::invalid_input(format!(
-        "the header claims {width}x{height} pixels of {channels} channels, {samples} samples, over the limit of \
-         {max_samples}; make it smaller or, if the file can be trusted, set {LIMIT_VARIABLE} to {samples} or more"
-    )))
 }
 
 fn image_from_dynamic(picture: DynamicImage) -> Result<Image> {

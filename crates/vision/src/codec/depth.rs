@@ -1,4 +1,4 @@
-//! Depth pictures: 16-bit grey PNG, millimetres or counts as the sensor gives them.
+//! Depth images: 16-bit grey PNG, in millimetres or the units of the sensor.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -8,30 +8,32 @@ use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, L
 use opendr_engine::data::{Image, Layout, PixelFormat, Pixels};
 use opendr_engine::{Error, Result, ResultExt};
 
-use crate::codec::decode::{Decoder, check_size};
+use crate::codec::decode::Decoder;
 use crate::codec::encode::write_atomically;
 use crate::codec::finding;
+use crate::codec::size_limit::check_size;
 
 impl Decoder {
-    /// Reads the depth picture at `path`; samples keep all their bits.
+    /// Reads the depth image at `path`; samples keep all 16 bits.
     ///
     /// # Errors
-    /// `NotFound` or `Io` when the file cannot be read, and those of [`Decoder::decode_depth`]; all name the path.
+    /// `NotFound` or `Io` when the file cannot be read, and the errors of [`Decoder::decode_depth`]; all state the
+    /// path.
     pub fn open_depth(&self, path: impl AsRef<Path>) -> Result<Image> {
         let path = path.as_ref();
         let picture = self.read(path).and_then(|bytes| self.decode_depth(&bytes));
         picture.context(|| format!("opening {}", path.display()))
     }
 
-    /// Reads a grey PNG picture of 16 bits (or 8, which become the low ones): `u16`, `HWC`.
+    /// Decodes a grey PNG of 16 bits (or 8, which are zero-extended): `u16`, `HWC`.
     ///
     /// # Errors
-    /// As [`Decoder::decode`]; `InvalidInput` for other pictures.
+    /// Those of [`Decoder::decode`]; `InvalidInput` for other images.
     pub fn decode_depth(&self, bytes: &[u8]) -> Result<Image> {
         let format = finding::format_of(bytes)?;
         if format != ImageFormat::Png {
             return Err(Error::invalid_input(format!(
-                "{} holds no depth; give 16-bit grey PNG",
+                "a {} file is not a depth image; pass a 16-bit grey PNG",
                 finding::name(format)
             )));
         }
@@ -49,7 +51,7 @@ impl Decoder {
             other => {
                 let colour = other.color();
                 return Err(Error::invalid_input(format!(
-                    "a picture of {colour:?} is no depth; give 16-bit grey PNG"
+                    "an image of type {colour:?} is not a depth image; pass a 16-bit grey PNG"
                 )));
             }
         };
@@ -57,30 +59,31 @@ impl Decoder {
     }
 }
 
-/// The bytes of a 16-bit PNG file with a grey `u16` picture.
+/// Encodes a grey `u16` image as a 16-bit PNG file.
 ///
 /// # Errors
-/// `InvalidInput` for another picture, or one larger than PNG files can be.
+/// `InvalidInput` for another image type, or an image larger than PNG allows.
 pub fn encode_depth_png(image: &Image) -> Result<Vec<u8>> {
     let Pixels::U16(samples) = image.pixels() else {
-        return Err(Error::invalid_input("no 16-bit samples; give depth as u16"));
+        return Err(Error::invalid_input("a depth image needs 16-bit samples; pass u16"));
     };
     let size = (u32::try_from(image.width()).ok()).zip(u32::try_from(image.height()).ok());
     let buffer = size.and_then(|(width, height)| {
         ImageBuffer::<Luma<u16>, _>::from_raw(width, height, samples.as_slice().to_vec())
     });
-    let buffer = buffer.ok_or_else(|| Error::invalid_input("no grey picture; give depth as one channel"))?;
+    let buffer =
+        buffer.ok_or_else(|| Error::invalid_input("a depth image needs one channel; pass a grey image"))?;
     let mut bytes = Vec::new();
     let encoded = DynamicImage::ImageLuma16(buffer).write_with_encoder(PngEncoder::new(&mut bytes));
     encoded
-        .map_err(|error| Error::invalid_input("the picture does not fit a PNG file").with_source(error))?;
+        .map_err(|error| Error::invalid_input("the image is too large for a PNG file").with_source(error))?;
     Ok(bytes)
 }
 
-/// Writes a grey `u16` picture to `path` as 16-bit PNG; it appears whole or not at all.
+/// Writes a grey `u16` image to `path` as a 16-bit PNG; the write is atomic.
 ///
 /// # Errors
-/// As [`encode_depth_png`]; `NotFound` or `Io` when the folder cannot be written to; all name the path.
+/// Those of [`encode_depth_png`]; `NotFound` or `Io` when the folder is not writable; all state the path.
 pub fn save_depth(image: &Image, path: impl AsRef<Path>) -> Result<()> {
     let path = path.as_ref();
     encode_depth_png(image)
@@ -103,7 +106,9 @@ mod tests {
         let colour = Image::from_rgb8(vec![1, 2, 3], 1, 1).unwrap();
         assert!(save_depth(&colour, &path).is_err());
         crate::save(&colour, &path).unwrap();
-        assert!(Decoder::default().open_depth(&path).unwrap_err().to_string().contains("is no depth"));
+        assert!(
+            Decoder::default().open_depth(&path).unwrap_err().to_string().contains("is not a depth image")
+        );
         std::fs::remove_file(path).unwrap();
     }
 }

@@ -1,4 +1,4 @@
-//! From an [`Image`] to bytes.
+//! Encoding of [`Image`] into image files.
 
 use std::borrow::Cow;
 use std::fs;
@@ -15,15 +15,15 @@ use opendr_engine::{Error, Result, ResultExt};
 
 use crate::codec::finding;
 
-/// Writes picture files.
+/// Encodes and writes image files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Encoder {
-    /// JPEG quality, 1 (small) to 100 (good).
+    /// JPEG quality, 1 (smallest file) to 100 (best).
     pub jpeg_quality: u8,
 }
 
 impl Default for Encoder {
-    /// JPEG quality 90.
+    /// Sets JPEG quality 90.
     fn default() -> Self {
         Self { jpeg_quality: 90 }
     }
@@ -37,23 +37,23 @@ pub fn save(image: &Image, path: impl AsRef<Path>) -> Result<()> {
     Encoder::default().save(image, path)
 }
 
-/// The bytes of a PNG file with `image`; samples become `u8` as [`Image::hwc_u8`] says.
+/// Encodes `image` as a PNG file; samples are converted to `u8` by [`Image::hwc_u8`].
 ///
 /// # Errors
-/// `InvalidInput` for a picture larger than PNG files can be.
+/// `InvalidInput` for an image larger than PNG allows.
 pub fn encode_png(image: &Image) -> Result<Vec<u8>> {
     Encoder::default().encode(image, ImageFormat::Png)
 }
 
 impl Encoder {
-    /// Writes `image` to `path`; the extension (`jpg`, `jpeg`, `png`, `bmp`, `webp`) chooses the format.
+    /// Writes `image` to `path`; the extension (`jpg`, `jpeg`, `png`, `bmp`, `webp`) determines the format.
     ///
-    /// The file appears whole or not at all: it is written beside `path` and renamed. Grey stays grey; JPEG drops
-    /// opacity; WebP is lossless; samples become `u8` as [`Image::hwc_u8`] says.
+    /// The write is atomic: a temporary file beside `path` is renamed. Grey stays grey; JPEG drops the alpha channel;
+    /// WebP is lossless; samples are converted to `u8` by [`Image::hwc_u8`].
     ///
     /// # Errors
     /// `Unsupported` for another extension, `InvalidParam` for a JPEG quality outside 1..=100, `NotFound` or `Io`
-    /// when the folder cannot be written to; all name the path.
+    /// when the folder is not writable; all state the path.
     pub fn save(&self, image: &Image, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
         let written = format_of(path)
@@ -62,11 +62,11 @@ impl Encoder {
         written.context(|| format!("saving {}", path.display()))
     }
 
-    /// The bytes of a JPEG file with `image`; grey stays grey, opacity is dropped, samples become `u8` as
-    /// [`Image::hwc_u8`] says.
+    /// Encodes `image` as a JPEG file; grey stays grey, the alpha channel is dropped, samples are converted to `u8`
+    /// by [`Image::hwc_u8`].
     ///
     /// # Errors
-    /// `InvalidParam` for a quality outside 1..=100, `InvalidInput` for a picture larger than JPEG files can be.
+    /// `InvalidParam` for a quality outside 1..=100, `InvalidInput` for an image larger than JPEG allows.
     pub fn encode_jpeg(&self, image: &Image) -> Result<Vec<u8>> {
         self.encode(image, ImageFormat::Jpeg)
     }
@@ -75,7 +75,7 @@ impl Encoder {
         if !(1..=100).contains(&self.jpeg_quality) {
             let quality = self.jpeg_quality;
             return Err(Error::invalid_param(format!(
-                "jpeg_quality is {quality}; give a number from 1 to 100"
+                "jpeg_quality is {quality}; set it to a number from 1 to 100"
             )));
         }
         let pixel = match image.format() {
@@ -95,8 +95,11 @@ impl Encoder {
             _ => encode_lossless(&samples, size, pixel, format),
         };
         encoded.map_err(|error| {
-            Error::invalid_input(format!("{size:?} pixels do not fit a {} file", finding::name(format)))
-                .with_source(error)
+            Error::invalid_input(format!(
+                "an image of {size:?} pixels is too large for a {} file",
+                finding::name(format)
+            ))
+            .with_source(error)
         })
     }
 }
@@ -142,14 +145,14 @@ fn format_of(path: &Path) -> Result<ImageFormat> {
     match ImageFormat::from_path(path) {
         Ok(format) if format == ImageFormat::Jpeg || format.writing_enabled() => Ok(format),
         _ => Err(Error::unsupported(
-            "no format that is written; end the name with .jpg, .jpeg, .png, .bmp or .webp",
+            "unsupported image format; end the file name with .jpg, .jpeg, .png, .bmp or .webp",
         )),
     }
 }
 
-/// Writes a file beside `path` and renames it; on failure nothing is left behind.
+/// Writes a temporary file beside `path` and renames it; a failure leaves no file behind.
 pub(super) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
-    let name = path.file_name().ok_or_else(|| Error::invalid_input("no file name in the path"))?;
+    let name = path.file_name().ok_or_else(|| Error::invalid_input("the path has no file name"))?;
     let mut temporary = name.to_owned();
     temporary.push(format!(".{}.partial", std::process::id()));
     let temporary = path.with_file_name(temporary);
@@ -157,7 +160,7 @@ pub(super) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
         .and_then(|mut file| file.write_all(bytes))
         .and_then(|()| fs::rename(&temporary, path));
     if written.is_err() {
-        // The first failure is the one to report.
+        // The write error is the one to report.
         let _ = fs::remove_file(&temporary);
     }
     Ok(written?)

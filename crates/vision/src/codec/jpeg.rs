@@ -1,4 +1,4 @@
-//! JPEG through `zune-jpeg`: baseline and progressive; grey, YCbCr, RGB, CMYK and YCCK.
+//! JPEG decoding through `zune-jpeg`: baseline and progressive; grey, YCbCr, RGB, CMYK and YCCK.
 
 use image::metadata::Orientation;
 use opendr_engine::data::{Image, Layout, PixelFormat};
@@ -9,12 +9,12 @@ use zune_core::options::DecoderOptions;
 use zune_jpeg::JpegDecoder;
 use zune_jpeg::errors::DecodeErrors;
 
-use crate::codec::decode::check_size;
+use crate::codec::size_limit::check_size;
 
-/// Decodes a JPEG of at most `max_samples` samples to grey or RGB, not yet turned upright.
+/// Decodes a JPEG of at most `max_samples` samples to grey or RGB, without applying its orientation.
 pub(super) fn decode(bytes: &[u8], max_samples: u64) -> Result<(Image, Orientation)> {
-    // Not strict: junk between markers is common and harmless. Truncation is what strictness would be for, and
-    // the decoder overlooks it in the last row of blocks even then, so the end marker is looked for here.
+    // Strict mode rejects common and harmless junk between markers. It does not detect truncation in the last row of
+    // blocks, so `has_end` checks for the end marker.
     let options = DecoderOptions::default()
         .set_strict_mode(false)
         .set_max_width(usize::from(u16::MAX))
@@ -26,7 +26,7 @@ pub(super) fn decode(bytes: &[u8], max_samples: u64) -> Result<(Image, Orientati
     check_size(width as u32, height as u32, if grey { 1 } else { 3 }, max_samples)?;
     if !has_end(bytes) {
         return Err(Error::invalid_input(format!(
-            "found a JPEG file of {width}x{height} pixels that is truncated after {} bytes; get it again",
+            "found a JPEG file of {width}x{height} pixels that is truncated after {} bytes; copy or download it again",
             bytes.len()
         )));
     }
@@ -39,7 +39,7 @@ pub(super) fn decode(bytes: &[u8], max_samples: u64) -> Result<(Image, Orientati
     Ok((image, orientation.unwrap_or(Orientation::NoTransforms)))
 }
 
-/// Width and height as stored, and how the picture is to be turned.
+/// Returns width and height as stored, and the EXIF orientation.
 pub(super) fn size(bytes: &[u8]) -> Result<([u32; 2], Orientation)> {
     let mut decoder = JpegDecoder::new(ZCursor::new(bytes));
     decoder.decode_headers().map_err(damaged)?;
@@ -48,7 +48,7 @@ pub(super) fn size(bytes: &[u8]) -> Result<([u32; 2], Orientation)> {
     Ok(([width as u32, height as u32], orientation.unwrap_or(Orientation::NoTransforms)))
 }
 
-/// Whether an end marker follows the start of the first scan. The segments before it are walked, because an
+/// Returns whether an end marker follows the start of the first scan. The segments before it are skipped, because an
 /// embedded preview has markers of its own.
 fn has_end(bytes: &[u8]) -> bool {
     let mut at = 2;
@@ -65,10 +65,9 @@ fn has_end(bytes: &[u8]) -> bool {
 fn damaged(error: DecodeErrors) -> Error {
     match error {
         DecodeErrors::Unsupported(scheme) => Error::unsupported(format!(
-            "found a JPEG file of a kind that is not read ({scheme:?}); save it as a baseline JPEG"
+            "found a JPEG file of an unsupported kind ({scheme:?}); save it as a baseline JPEG"
         )),
-        other => {
-            Error::invalid_input("found a JPEG file, damaged or truncated; get it again").with_source(other)
-        }
+        other => Error::invalid_input("found a JPEG file, damaged or truncated; copy or download it again")
+            .with_source(other),
     }
 }

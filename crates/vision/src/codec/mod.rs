@@ -1,7 +1,7 @@
-//! Picture files: JPEG, PNG, BMP and WebP, read and written.
+//! Image files: decoding and encoding of JPEG, PNG, BMP and WebP.
 //!
-//! Files are hostile input: the size a header claims is checked before memory is taken, and every error names
-//! the path and what was found there.
+//! Files are untrusted input: the size in the header is checked before memory is allocated, and every error states
+//! the path and the detected content.
 
 mod decode;
 mod depth;
@@ -10,8 +10,9 @@ mod finding;
 mod jpeg;
 mod orientation;
 mod size;
+mod size_limit;
 
-pub(crate) use decode::LIMIT_VARIABLE;
 pub use decode::{Decoder, decode, open};
 pub use depth::{encode_depth_png, save_depth};
 pub use encode::{Encoder, encode_png, save};
+pub(crate) use size_limit::LIMIT_VARIABLE;

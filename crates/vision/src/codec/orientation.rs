@@ -1,4 +1,4 @@
-//! Turning a picture upright.
+//! EXIF orientation.
 
 use std::sync::Arc;
 
@@ -6,17 +6,17 @@ use image::metadata::Orientation;
 use opendr_engine::data::{Image, Layout, Pixels};
 use opendr_engine::{Error, Result};
 
-/// Side of the tiles in which pixels move: the rows of a tile stay in the cache while its columns are read.
+/// Side of the tiles in which pixels are moved: the rows of a tile stay in the cache while its columns are read.
 const TILE: usize = 32;
 
-/// The `u8`, `HWC` picture as its EXIF orientation wants it seen.
+/// Applies the EXIF orientation to a `u8`, `HWC` image.
 pub(super) fn upright(image: Image, orientation: Orientation) -> Result<Image> {
     if orientation == Orientation::NoTransforms {
         return Ok(image);
     }
     let (stored, format) = ([image.width(), image.height()], image.format());
     let Pixels::U8(samples) = image.into_pixels() else {
-        return Err(Error::internal("a decoded picture is not of u8 samples"));
+        return Err(Error::internal("a decoded image does not have u8 samples"));
     };
     let samples = Arc::unwrap_or_clone(samples);
     let ([width, height], samples) = match format.channels() {
@@ -27,7 +27,7 @@ pub(super) fn upright(image: Image, orientation: Orientation) -> Result<Image> {
     Image::new(samples, width, height, format, Layout::Hwc)
 }
 
-/// The turned picture's size and samples.
+/// Returns size and samples of the turned image.
 fn turned<const CHANNELS: usize>(
     mut samples: Vec<u8>,
     [width, height]: [usize; 2],
@@ -37,7 +37,7 @@ fn turned<const CHANNELS: usize>(
         samples.as_chunks_mut::<CHANNELS>().0.reverse();
         return ([width, height], samples);
     }
-    // Where the seen picture's first pixel is stored, and how far its next pixel and its next row are, in pixels.
+    // Offset of the turned image's first pixel in the stored one, and of its next pixel and next row, in pixels.
     let (right, down) = (1, width as isize);
     let (last_column, last_row) = ((width - 1) as isize, ((height - 1) * width) as isize);
     let (origin, next_pixel, next_row) = match orientation {

@@ -1,4 +1,4 @@
-//! The size of a picture, from its header.
+//! The size of an image file, from its header.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -11,11 +11,11 @@ use crate::codec::decode::Decoder;
 use crate::codec::{finding, jpeg};
 
 impl Decoder {
-    /// Width and height in pixels of the picture at `path`, as [`Decoder::open`] would give it: turned upright. No pixel
-    /// is decoded.
+    /// Returns width and height in pixels of the image at `path`, as [`Decoder::open`] returns it: turned upright. No
+    /// pixel is decoded.
     ///
     /// # Errors
-    /// As [`Decoder::open`]; damage behind the header is not found.
+    /// Those of [`Decoder::open`]; damage after the header is not detected.
     pub fn size(&self, path: impl AsRef<Path>) -> Result<[u32; 2]> {
         let path = path.as_ref();
         let size = self.read(path).and_then(|bytes| self.size_in(&bytes));
@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn headers_tell_the_size() {
+    fn sizes_are_read_from_headers() {
         let folder = std::env::temp_dir().join(format!("opendr-size-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
         let image = Image::from_rgb8(vec![90; 31 * 17 * 3], 31, 17).unwrap();

@@ -1,4 +1,4 @@
-//! Boxes with labels.
+//! Drawing of boxes with labels.
 
 use opendr_engine::data::Image;
 use opendr_engine::target::{BoundingBox, BoundingBoxList};
@@ -10,10 +10,11 @@ use crate::draw::mask;
 use crate::draw::palette::colour_of_name;
 use crate::draw::style::Style;
 
-/// Draws boxes with their class, score, landmarks and pixels (where they have a segment) onto `image`, which becomes
-/// RGB `u8` where it is not.
+/// Draws boxes with class, score, landmarks and mask (where they have a segment) onto `image`, which is converted to
+/// RGB `u8` where needed.
 ///
-/// Later boxes of the list lie below earlier ones. Boxes are cut at the border; those without an area are left out.
+/// Earlier boxes of the list are drawn on top of later ones. Boxes are clipped at the border; those without an area
+/// are omitted.
 pub fn draw_bounding_boxes(image: &mut Image, boxes: &BoundingBoxList, style: &Style) {
     let mut canvas = Canvas::over(image);
     let (thickness, unit) = (style.thickness(&canvas), style.letter_unit(&canvas));
@@ -34,13 +35,14 @@ pub fn draw_bounding_boxes(image: &mut Image, boxes: &BoundingBoxList, style: &S
     for found in &boxes.boxes {
         let Some(corners) = whole_corners(found.corners()) else { continue };
         let name = boxes.label(found).map_or_else(|| found.name.to_string(), str::to_owned);
-        let text = if style.confidences { format!("{name} {:.2}", found.confidence) } else { name.clone() };
+        let text =
+            if style.show_confidences { format!("{name} {:.2}", found.confidence) } else { name.clone() };
         labels.draw(&mut canvas, [&text, &name], corners, [unit, thickness], colour(found));
     }
 }
 
-/// A line in `colour` with a thin dark rim, so that it shows on every ground; its edges lie on whole pixels when
-/// `corners` and `thickness` do.
+/// Draws a rectangle's outline in `colour` with a thin dark rim, for contrast on any background; its edges lie on
+/// whole pixels when `corners` and `thickness` do.
 pub(super) fn outline(canvas: &mut Canvas<'_>, corners: Corners, thickness: f32, colour: [u8; 3]) {
     let corners = corners.map(|edge| edge + (thickness / 2.0).fract());
     if thickness >= 2.0 {
@@ -49,7 +51,7 @@ pub(super) fn outline(canvas: &mut Canvas<'_>, corners: Corners, thickness: f32,
     canvas.outline(corners, thickness, colour, 1.0);
 }
 
-/// Corners on whole pixels; `None` when there is no area.
+/// Rounds corners to whole pixels; `None` when there is no area.
 pub(super) fn whole_corners([x0, y0, x1, y1]: Corners) -> Option<Corners> {
     (x0 < x1 && y0 < y1).then(|| [x0, y0, x1, y1].map(f32::round))
 }

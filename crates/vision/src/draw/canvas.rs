@@ -1,19 +1,19 @@
-//! What is drawn on: the pixels of a picture, with anti-aliased lines, discs and rectangles.
+//! The canvas: the pixels of an image, with anti-aliased lines, discs and rectangles.
 //!
 //! Coordinates are pixels from the left-top corner; pixel `(x, y)` covers `x..x + 1`, its centre is at `x + 0.5`.
-//! Everything is cut at the border; what is not finite is not drawn.
+//! Shapes are clipped at the border; shapes with values that are not finite are not drawn.
 
 use opendr_engine::data::{Image, Layout, PixelFormat, Pixels};
 
 use crate::draw::palette::Colour;
 
-/// A position in a picture, pixels.
+/// A position in an image, in pixels.
 pub type Point = [f32; 2];
 
-/// `[left, top, right, bottom]` in a picture, pixels.
+/// `[left, top, right, bottom]` in an image, in pixels.
 pub type Corners = [f32; 4];
 
-/// The RGB pixels of an [`Image`], to draw on.
+/// A drawing surface over the RGB pixels of an [`Image`].
 #[derive(Debug)]
 pub struct Canvas<'a> {
     pixels: &'a mut [u8],
@@ -22,10 +22,10 @@ pub struct Canvas<'a> {
 }
 
 impl<'a> Canvas<'a> {
-    /// A canvas over `image`.
+    /// Creates a canvas over `image`.
     ///
-    /// Drawn in place when the picture is RGB `u8` and shares its pixels with no other; otherwise `image` first
-    /// becomes an RGB `u8` copy.
+    /// An RGB `u8` image that owns its pixels alone is drawn on in place; otherwise `image` is first replaced by an
+    /// RGB `u8` copy.
     pub fn over(image: &'a mut Image) -> Self {
         let ready = image.format() == PixelFormat::Rgb
             && image.layout() == Layout::Hwc
@@ -40,17 +40,17 @@ impl<'a> Canvas<'a> {
         Self { pixels: image.bytes_mut().unwrap_or_default(), width, height }
     }
 
-    /// Pixels a row.
+    /// Returns the width in pixels.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows.
+    /// Returns the height in pixels.
     pub fn height(&self) -> usize {
         self.height
     }
 
-    /// Mixes `colour` into a pixel; opacity 0..=1. Outside the picture nothing happens.
+    /// Blends `colour` into a pixel; opacity 0..=1. Positions outside the image are ignored.
     #[inline]
     pub fn blend(&mut self, x: usize, y: usize, colour: Colour, opacity: f32) {
         if x < self.width && y < self.height {
@@ -97,7 +97,7 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Outlines a rectangle with a line of `thickness` that lies half outside, half inside of it.
+    /// Outlines a rectangle with a line of `thickness`, centred on the edge.
     pub fn outline(&mut self, corners: Corners, thickness: f32, colour: Colour, opacity: f32) {
         let [left, top, right, bottom] = corners;
         let half = thickness / 2.0;
@@ -121,7 +121,7 @@ impl<'a> Canvas<'a> {
         let (y0, y1) = (from[1].min(to[1]) - reach, from[1].max(to[1]) + reach);
         for y in y0.max(0.0) as usize..self.rows_end(y1) {
             let centre = y as f32 + 0.5;
-            // A pixel within reach of the line is within reach of that part of it which this row can reach.
+            // Only this part of the line can be within reach of a pixel of this row.
             let [a, b] = [centre - reach, centre + reach].map(|edge| {
                 let part = if along[1] == 0.0 { 0.0 } else { (edge - from[1]) / along[1] };
                 from[0] + part.clamp(0.0, 1.0) * along[0]
@@ -147,7 +147,7 @@ impl<'a> Canvas<'a> {
         self.line(centre, centre, radius * 2.0, colour, opacity);
     }
 
-    /// Mixes `colour` into part of a row; opacity 0..=1. Callers keep `x0..x1` and `y` inside the picture.
+    /// Blends `colour` into part of a row; opacity 0..=1. The caller keeps `x0..x1` and `y` inside the image.
     pub(super) fn blend_span(&mut self, y: usize, x0: usize, x1: usize, colour: Colour, opacity: f32) {
         let start = y * self.width * 3;
         let Some(span) = self.pixels.get_mut(start + x0 * 3..start + x1 * 3) else { return };
@@ -168,7 +168,7 @@ impl<'a> Canvas<'a> {
         (x.ceil().max(0.0) as usize).min(self.width)
     }
 
-    /// The part of a rectangle inside the picture; `None` when there is none, or it is not a rectangle.
+    /// Returns the part of a rectangle inside the image; `None` when it is empty or not finite.
     pub(super) fn clip_corners(&self, [x0, y0, x1, y1]: Corners) -> Option<Corners> {
         let (width, height) = (self.width as f32, self.height as f32);
         let clipped =
@@ -176,7 +176,7 @@ impl<'a> Canvas<'a> {
         (clipped[0] < clipped[2] && clipped[1] < clipped[3]).then_some(clipped)
     }
 
-    /// The part of a line within `reach` of the picture (Liang and Barsky, 1984).
+    /// Returns the part of a line within `reach` of the image (Liang and Barsky, 1984).
     fn clip_line(&self, from: Point, to: Point, reach: f32) -> Option<(Point, Point)> {
         if ![from, to].as_flattened().iter().all(|part| part.is_finite()) || !reach.is_finite() {
             return None;

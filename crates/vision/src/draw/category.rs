@@ -1,4 +1,4 @@
-//! The class of the whole picture.
+//! Drawing of the class of an image.
 
 use opendr_engine::data::Image;
 use opendr_engine::target::Category;
@@ -9,7 +9,7 @@ use crate::draw::palette::colour_of_index;
 use crate::draw::style::Style;
 use crate::draw::text::Text;
 
-/// Writes the class and its score into the left-top corner of `image`, which becomes RGB `u8` where it is not.
+/// Writes class and score into the left-top corner of `image`, which is converted to RGB `u8` where needed.
 pub fn draw_category(image: &mut Image, category: &Category, style: &Style) {
     let mut canvas = Canvas::over(image);
     let unit = style.letter_unit(&canvas);
@@ -17,7 +17,7 @@ pub fn draw_category(image: &mut Image, category: &Category, style: &Style) {
         Some(description) => description.to_string(),
         None => format!("class {}", category.class),
     };
-    if let Some(confidence) = category.confidence.filter(|_| style.confidences) {
+    if let Some(confidence) = category.confidence.filter(|_| style.show_confidences) {
         text += &format!(" {confidence:.2}");
     }
     let colour = style.colour.unwrap_or_else(|| colour_of_index(category.class));

@@ -1,8 +1,8 @@
-//! Colours for measures: dark violet is little, bright yellow is much.
+//! Colour map of scores: dark violet is low, bright yellow is high.
 
 use crate::draw::palette::{Colour, rgb_from_oklch};
 
-/// 256 colours whose lightness rises evenly (in OKLCH), so that more always looks brighter, printed in grey too.
+/// Returns 256 colours whose lightness rises evenly (in OKLCH), so that the order also holds in grey.
 pub(super) fn heat_colours() -> Vec<Colour> {
     (0..=255u8)
         .map(|step| {

@@ -1,4 +1,4 @@
-//! Many pictures on one, each with a line of text.
+//! Contact sheets: many images in one, each with a line of text.
 
 use opendr_engine::Result;
 use opendr_engine::data::{Image, PixelFormat};
@@ -8,20 +8,20 @@ use crate::draw::palette::Colour;
 use crate::draw::text::Text;
 use crate::resize;
 
-/// Pixels between pictures.
+/// Gap between images, in pixels.
 const GAP: usize = 8;
-/// Side of the font's grid unit, pixels.
+/// Side of the font's grid unit, in pixels.
 const LETTER_UNIT: f32 = 1.0;
-/// Room for the line of text under a picture, pixels.
+/// Height of the caption under an image, in pixels.
 const CAPTION: usize = 16;
 const GROUND: u8 = 250;
 const INK: Colour = [40, 40, 40];
 
-/// Pictures in rows of `columns`, each made to fit a square of `side` pixels, with its caption under it; captions are cut
-/// where the next picture begins.
+/// Arranges images in rows of `columns`, each scaled to fit a square of `side` pixels, with its caption below.
+/// Captions that are too wide lose their beginning.
 ///
 /// # Errors
-/// `InvalidInput` for an empty picture, or when there is none.
+/// `InvalidInput` for an empty image, or when there are no images.
 pub fn contact_sheet(pictures: &[(Image, String)], columns: usize, side: usize) -> Result<Image> {
     let columns = columns.clamp(1, pictures.len().max(1));
     let rows = pictures.len().div_ceil(columns);
@@ -52,7 +52,7 @@ pub fn contact_sheet(pictures: &[(Image, String)], columns: usize, side: usize) 
     Ok(sheet)
 }
 
-/// The text, its beginning left out as far as it is too wide: the end of a path tells more.
+/// Lays out the text and drops its beginning where it is too wide: the end of a path is more specific.
 fn fitting(caption: &str, width: f32) -> Text {
     let whole = Text::new(caption, LETTER_UNIT);
     if whole.width() <= width {
@@ -71,7 +71,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pictures_of_any_shape_find_their_place() {
+    fn images_of_any_shape_are_arranged() {
         let picture = |width: usize, height: usize, grey: u8| {
             Image::from_rgb8(vec![grey; width * height * 3], width, height).unwrap()
         };
@@ -85,7 +85,7 @@ mod tests {
         assert_eq!([sheet.width(), sheet.height()], [8 + 2 * 72, 8 + 2 * 88]);
         let rgb = sheet.hwc_u8(PixelFormat::Rgb);
         let grey = |x: usize, y: usize| rgb[(y * sheet.width() + x) * 3];
-        // Middles of the first row, and of the first picture of the second.
+        // Centres of the first row, and of the first image of the second.
         assert_eq!([grey(40, 40), grey(111, 40), grey(40, 128)], [0, 0, 0]);
         assert_eq!([grey(40, 10), grey(112, 128)], [GROUND, GROUND]);
     }

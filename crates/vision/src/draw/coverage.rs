@@ -1,9 +1,9 @@
-//! Which part of each pixel an area covers, and painting such an area.
+//! Coverage of pixels by an area, and the painting of such an area.
 
 use crate::draw::canvas::{Canvas, Corners};
 use crate::draw::palette::Colour;
 
-/// How much of the pixels of a part of a picture is covered, 0 to 255 each.
+/// Coverage of each pixel of a rectangle of the image, 0 to 255.
 #[derive(Debug)]
 pub(super) struct Coverage {
     pub left: usize,
@@ -14,7 +14,7 @@ pub(super) struct Coverage {
 }
 
 impl Coverage {
-    /// No pixel of the part of `corners` that lies in the picture; `None` when there is no such part.
+    /// Returns an empty coverage of the part of `corners` inside the image; `None` when that part is empty.
     pub(super) fn within(canvas: &Canvas<'_>, corners: Corners) -> Option<Self> {
         let [x0, y0, x1, y1] = canvas.clip_corners(corners)?;
         let (left, top) = (x0 as usize, y0 as usize);
@@ -22,7 +22,7 @@ impl Coverage {
         Some(Self { left, top, width, values: vec![0; width * height] })
     }
 
-    /// Covers rows `from..to` of column `x` of the picture, as far as they are part of this.
+    /// Covers rows `from..to` of column `x` of the image, clipped to the rectangle.
     pub(super) fn fill_column(&mut self, x: usize, from: usize, to: usize) {
         let Some(x) = x.checked_sub(self.left).filter(|x| *x < self.width) else { return };
         let rows = from.saturating_sub(self.top)..to.saturating_sub(self.top);
@@ -30,7 +30,7 @@ impl Coverage {
         column.take(rows.end).skip(rows.start).for_each(|value| *value = 255);
     }
 
-    /// Paints the area translucent and its border, `thickness` pixels wide (at least 1) and inside of it, solid.
+    /// Paints the area translucent, and its border opaque: `thickness` pixels wide (at least 1), inside the area.
     pub(super) fn paint(&self, canvas: &mut Canvas<'_>, colour: Colour, opacity: f32, thickness: f32) {
         let radius = (thickness.round() as isize).max(1);
         let slant = (radius * 181 + 128) >> 8;
@@ -38,7 +38,7 @@ impl Coverage {
         let least_around = |x: usize, y: usize| {
             let circle = [[radius, 0], [0, radius], [slant, slant], [slant, -slant]];
             let values = circle.into_iter().flat_map(|[dx, dy]| [[dx, dy], [-dx, -dy]]).map(|[dx, dy]| {
-                // The area goes on beyond the border of the picture.
+                // At the border of the image the area counts as continued.
                 let x = x.saturating_add_signed(dx).min(width - 1);
                 let y = y.saturating_add_signed(dy).min(height - 1);
                 self.at(x, y)
@@ -56,7 +56,7 @@ impl Coverage {
         }
     }
 
-    /// How much of a pixel of the picture is covered.
+    /// Returns the coverage of a pixel of the image.
     fn at(&self, x: usize, y: usize) -> u8 {
         match (x.checked_sub(self.left), y.checked_sub(self.top)) {
             (Some(x), Some(y)) if x < self.width => self.values.get(y * self.width + x).copied().unwrap_or(0),

@@ -1,22 +1,22 @@
-//! A font of our own: letters as strokes of a round pen, so that one table serves every size.
+//! The built-in stroke font: letters as strokes of a round pen, one table for every size.
 //!
-//! A glyph is written as strokes, separated by blanks. A stroke is a row of points of two characters each, `x` and
-//! `y` as digits of base 36, in half grid units: capitals reach from `y` 0 down to the base line at 14 (`e`), small
-//! letters begin at 4, descenders end at 18 (`i`). `~` before a point makes it a control point of a quadratic curve;
-//! between two of them lies an implied point, as in TrueType. A full stop closes the stroke.
+//! A glyph is a list of strokes, separated by spaces. A stroke is a sequence of points of two characters each, `x`
+//! and `y` as digits of base 36, in half grid units: capitals reach from `y` 0 down to the base line at 14 (`e`),
+//! small letters begin at 4, descenders end at 18 (`i`). `~` before a point marks a control point of a quadratic
+//! curve; between two of them lies an implied point, as in TrueType. A full stop closes the stroke.
 
 use crate::draw::canvas::Point;
 
-/// Height of capitals from line to line, in grid units.
+/// Height of capitals, from line centre to line centre, in grid units.
 pub(super) const CAP_HEIGHT: f32 = 7.0;
 
-/// How far descenders reach below the base line, in grid units.
+/// Depth of descenders below the base line, in grid units.
 pub(super) const DESCENT: f32 = 2.0;
 
-/// What stands for characters that the font lacks: an empty frame.
+/// Glyph of characters that the font lacks: an empty frame.
 const UNKNOWN: &str = "00808e0e.";
 
-/// The characters from `!` to `~`, in order of their code points.
+/// Characters from `!` to `~`, in order of their code points.
 #[rustfmt::skip]
 const GLYPHS: [(char, &str); 94] = [
     ('!', "0009 0e"), ('"', "0004 3034"), ('#', "302e 705e 1494 0a8a"), ('$', "83~80~00~07~87~8e~0e0b 404e"),
@@ -46,7 +46,7 @@ const GLYPHS: [(char, &str); 94] = [
     ('{', "40~20~2707 07~27~2e4e"), ('|', "000g"), ('}', "00~20~2747 47~27~2e0e"), ('~', "0a~2649~6c88"),
 ];
 
-/// The strokes of a character, as polylines in grid units, and its width.
+/// Returns the strokes of a character, as polylines in grid units, and its width.
 pub(super) fn glyph(letter: char) -> (Vec<Vec<Point>>, f32) {
     if letter.is_whitespace() {
         return (Vec::new(), 2.0);
@@ -58,7 +58,7 @@ pub(super) fn glyph(letter: char) -> (Vec<Vec<Point>>, f32) {
     (strokes, width)
 }
 
-/// Reads one stroke and lays its curves out as short lines.
+/// Parses one stroke and flattens its curves to short lines.
 fn polyline_from_text(text: &str) -> Vec<Point> {
     let (text, closed) = text.strip_suffix('.').map_or((text, false), |text| (text, true));
     let mut points: Vec<(Point, bool)> = Vec::new();
@@ -71,7 +71,7 @@ fn polyline_from_text(text: &str) -> Vec<Point> {
     let Some(&first) = points.first() else { return Vec::new() };
     if closed {
         points.push(first);
-        // A loop of control points alone begins at an implied point.
+        // A loop of control points only begins at an implied point.
         if first.1 {
             let second = points.get(1).unwrap_or(&first).0;
             points.push((middle(first.0, second), false));
@@ -81,7 +81,7 @@ fn polyline_from_text(text: &str) -> Vec<Point> {
     flatten(&points)
 }
 
-/// Lines along points and control points, as TrueType reads them.
+/// Flattens points and control points to lines, as in TrueType.
 fn flatten(points: &[(Point, bool)]) -> Vec<Point> {
     const PIECES: usize = 8;
     let mut line: Vec<Point> = Vec::with_capacity(points.len() * PIECES);

@@ -1,6 +1,6 @@
-//! A map of numbers that lies over a picture.
+//! A map of scores stretched over an image.
 
-/// Numbers `[height, width]`, seen at any place between them.
+/// Values `[height, width]` with bilinear interpolation.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Grid<'a> {
     values: &'a [f32],
@@ -9,7 +9,7 @@ pub(super) struct Grid<'a> {
 }
 
 impl<'a> Grid<'a> {
-    /// `None` when there are not exactly `width * height` values, or none.
+    /// Returns `None` when there are not exactly `width * height` values, or none.
     pub(super) fn new(values: &'a [f32], [width, height]: [usize; 2]) -> Option<Self> {
         (width.checked_mul(height) == Some(values.len()) && !values.is_empty()).then_some(Self {
             values,
@@ -26,8 +26,8 @@ impl<'a> Grid<'a> {
         self.height as f32
     }
 
-    /// The value at a place between the cells (bilinear; cell `(0, 0)` has its centre at 0.5, 0.5), and how it
-    /// changes with `x` and `y`. Beyond the border, that of the nearest place.
+    /// Returns the interpolated value at a position (bilinear; cell `(0, 0)` has its centre at 0.5, 0.5) and its
+    /// derivatives by `x` and `y`. Beyond the border the nearest position counts.
     pub(super) fn sample(&self, x: f32, y: f32) -> [f32; 3] {
         let [(left, right, dx), (top, bottom, dy)] = [between(x, self.width), between(y, self.height)];
         let at = |x: usize, y: usize| self.values.get(y * self.width + x).copied().unwrap_or(0.0);
@@ -38,7 +38,7 @@ impl<'a> Grid<'a> {
     }
 }
 
-/// The two cells that a place lies between, and how far it is from the first to the second.
+/// Returns the first of the two cells around a position, and the weight of the second.
 fn between(place: f32, count: usize) -> (usize, usize, f32) {
     let place = (place - 0.5).clamp(0.0, (count - 1) as f32);
     let first = place as usize;
@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn between_cells_lies_the_mean() {
+    fn values_between_cells_are_interpolated() {
         let grid = Grid::new(&[0.0, 1.0, 2.0, 5.0], [2, 2]).unwrap();
         assert_eq!(grid.sample(0.5, 0.5)[0], 0.0);
         assert_eq!(grid.sample(1.0, 1.0), [2.0, 2.0, 3.0]);
@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_sizes_are_no_grid() {
+    fn grids_of_wrong_size_are_none() {
         for size in [[3, 1], [0, 0], [usize::MAX, 2]] {
             assert!(Grid::new(&[0.0; 4], size).is_none(), "{size:?}");
         }

@@ -1,4 +1,4 @@
-//! Maps of classes and of scores, laid over the picture.
+//! Drawing of class maps and score maps over an image.
 
 use opendr_engine::data::Image;
 use opendr_engine::target::{Heatmap, HeatmapValues};
@@ -10,15 +10,16 @@ use crate::draw::palette::{Colour, colour_of_index};
 use crate::draw::style::Style;
 use crate::draw::text::Text;
 
-/// More classes than this get no legend.
+/// Maximum number of classes with a legend.
 const MAX_LEGEND: usize = 24;
 
-/// Lays a map over the whole of `image`, which becomes RGB `u8` where it is not.
+/// Draws a map over the whole of `image`, which is converted to RGB `u8` where needed.
 ///
-/// Class numbers (`[height, width]`) get the colours of their classes and a legend of the named ones; number 0 stays
-/// clear when it is called `background` or has no name. Scores (`[height, width]`) go from clear and violet for the
-/// lowest to yellow for the highest. Of scores of several classes (`[classes, height, width]`) the best class of each
-/// place shows, the clearer the lower its score. A map of another shape is not drawn.
+/// Class indices (`[height, width]`) are drawn in the colours of their classes, with a legend of the named ones;
+/// class 0 is transparent when it is called `background` or has no name. Scores (`[height, width]`) range from
+/// transparent violet for the lowest to yellow for the highest. Of scores of several classes
+/// (`[classes, height, width]`), the best class of each cell is drawn, more transparent the lower its score. A map of
+/// another shape is not drawn.
 pub fn draw_heatmap(image: &mut Image, map: &Heatmap, style: &Style) {
     let (planes, height, width) = match *map.shape() {
         [height, width] => (1, height, width),
@@ -41,14 +42,14 @@ pub fn draw_heatmap(image: &mut Image, map: &Heatmap, style: &Style) {
     }
 }
 
-/// A map stretched over a canvas: which of its places lie under a pixel.
+/// The mapping from the pixels of a canvas to the cells of a map.
 struct Grid {
     width: usize,
     columns: Vec<Places>,
     rows: Vec<Places>,
 }
 
-/// The places along one axis under a pixel: the nearest, and the two around with the share of the second.
+/// The cells along one axis for a pixel: the nearest, and the two around it with the weight of the second.
 #[derive(Clone, Copy)]
 struct Places {
     nearest: usize,
@@ -57,7 +58,7 @@ struct Places {
 }
 
 impl Grid {
-    /// Callers guarantee that no side is 0.
+    /// The caller guarantees that no side is 0.
     fn new(width: usize, height: usize, canvas: &Canvas<'_>) -> Self {
         let axis = |places: usize, pixels: usize| {
             let places_of = |at: usize| {
@@ -72,7 +73,7 @@ impl Grid {
         Self { width, columns: axis(width, canvas.width()), rows: axis(height, canvas.height()) }
     }
 
-    /// Every pixel with the number of the place nearest to it.
+    /// Returns every pixel with the index of the nearest cell.
     fn nearest(&self) -> impl Iterator<Item = (usize, usize, usize)> {
         self.rows.iter().enumerate().flat_map(move |(y, row)| {
             let start = row.nearest * self.width;
@@ -80,8 +81,8 @@ impl Grid {
         })
     }
 
-    /// Every pixel with the number that has most weight among the four around, so that the edges of coarse maps are
-    /// smooth. Callers guarantee a number for every place.
+    /// Returns every pixel with the label of the largest weight among the four cells around, so that the edges of
+    /// coarse maps are smooth. The caller guarantees a label for every cell.
     fn winners(&self, labels: &[u32]) -> impl Iterator<Item = (usize, usize, u32)> {
         self.rows.iter().enumerate().flat_map(move |(y, row)| {
             let [upper, lower] = row.around.map(|place| &labels[place * self.width..][..self.width]);
@@ -92,7 +93,7 @@ impl Grid {
         })
     }
 
-    /// Every pixel with its score, blended from the four around. Callers guarantee a score for every place.
+    /// Returns every pixel with its interpolated score. The caller guarantees a score for every cell.
     fn blended(&self, scores: &[f32]) -> impl Iterator<Item = (usize, usize, f32)> {
         self.rows.iter().enumerate().flat_map(move |(y, row)| {
             let [upper, lower] = row.around.map(|place| &scores[place * self.width..][..self.width]);
@@ -104,7 +105,8 @@ impl Grid {
     }
 }
 
-/// The number with most weight among four: two above, two below, with the shares of the right and the lower ones.
+/// Returns the label of the largest weight among four: two above, two below, with the weights of the right and the
+/// lower ones.
 fn winner(four: [u32; 4], right: f32, lower: f32) -> u32 {
     let [first, ..] = four;
     if four.iter().all(|label| *label == first) {
@@ -118,7 +120,7 @@ fn winner(four: [u32; 4], right: f32, lower: f32) -> u32 {
     four.into_iter().max_by(|a, b| weight(*a).total_cmp(&weight(*b))).unwrap_or(first)
 }
 
-/// Draws class numbers; the answer says which of the named classes were there.
+/// Draws class indices; returns which of the named classes occur.
 fn draw_labels(
     canvas: &mut Canvas<'_>,
     labels: &[u32],
@@ -166,7 +168,7 @@ fn draw_scores(canvas: &mut Canvas<'_>, scores: &[f32], grid: &Grid, style: &Sty
     let parts: Vec<f32> = scores.iter().map(part).collect();
     for (x, y, part) in grid.blended(&parts) {
         let Some(colour) = colours.get((part * 255.0 + 0.5) as usize) else { continue };
-        // Little is clear, so that what is below stays seen; from a third on it is as opaque as asked.
+        // Low scores are transparent; from a third of the range on, the opacity is the style's.
         canvas.blend(x, y, *colour, style.opacity * (part * 3.0).min(1.0));
     }
 }
@@ -187,7 +189,8 @@ fn draw_class_scores(canvas: &mut Canvas<'_>, scores: &[f32], places: usize, gri
     }
 }
 
-/// What is clear and what is full: 0 and 1 for scores that lie between, else the lowest and the highest.
+/// Returns the lower and upper end of the colour map: 0 and 1 for scores within them, otherwise the lowest and the
+/// highest.
 fn range(scores: &[f32]) -> [f32; 2] {
     let finite = scores.iter().copied().filter(|score| score.is_finite());
     let [low, high] =

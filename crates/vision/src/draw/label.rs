@@ -1,16 +1,16 @@
-//! Labels: text on a ground of its class's colour, placed where it hides least.
+//! Labels: text on a background of its class's colour, placed to hide little.
 
 use crate::draw::canvas::{Canvas, Corners, Point};
 use crate::draw::palette::{Colour, ink_on};
 use crate::draw::text::Text;
 
-/// Above which number of labels the older ones are no longer kept clear of.
-const REMEMBERED: usize = 128;
+/// Maximum number of labels that a new label avoids; older ones are ignored.
+const MAX_AVOIDED: usize = 128;
 
-/// Between the text and the edge of its ground, in grid units of the font.
+/// Space between the text and the edge of its background, in grid units of the font.
 const PADDING: f32 = 2.0;
 
-/// Draws `text` on a ground of `colour` with its left-top corner at `corner`; the answer is `[width, height]`.
+/// Draws `text` on a background of `colour` with its left-top corner at `corner`; returns `[width, height]`.
 pub(super) fn draw_chip(
     canvas: &mut Canvas<'_>,
     text: &Text,
@@ -24,21 +24,20 @@ pub(super) fn draw_chip(
     [width, height]
 }
 
-/// Room for the text, and for descenders below it.
+/// Returns the size of the background, with space for descenders.
 fn chip_size(text: &Text) -> [f32; 2] {
     let padding = PADDING * text.unit();
     [text.width() + 2.0 * padding, text.height() + 2.5 * padding].map(f32::ceil)
 }
 
-/// The labels of one picture; they keep off each other where they can.
+/// The labels of one image, which avoid each other where they can.
 #[derive(Debug, Default)]
 pub(super) struct Labels {
     placed: Vec<Corners>,
 }
 
 impl Labels {
-    /// Draws `text` (`short` where the picture is too narrow for it) at a box that has `corners` and lines of
-    /// `thickness`.
+    /// Draws `text` (`short` where the image is too narrow for it) at a box with `corners` and lines of `thickness`.
     pub(super) fn draw(
         &mut self,
         canvas: &mut Canvas<'_>,
@@ -56,7 +55,7 @@ impl Labels {
         self.placed.push(chip);
     }
 
-    /// Above the box, inside its upper edge, or below it: the first place that is in the picture and free.
+    /// Returns the first free position inside the image: above the box, inside its upper edge, or below it.
     fn place(
         &self,
         canvas: &Canvas<'_>,
@@ -74,7 +73,7 @@ impl Labels {
         let chips = tops.map(|top| [left, top.round(), left + width, top.round() + height]);
         let fits = |chip: &&Corners| chip[1] >= 0.0 && chip[3] <= bottom;
         let free = |chip: &&Corners| {
-            let recent = self.placed.iter().rev().take(REMEMBERED);
+            let recent = self.placed.iter().rev().take(MAX_AVOIDED);
             !recent.clone().any(|other| {
                 chip[0] < other[2] && other[0] < chip[2] && chip[1] < other[3] && other[1] < chip[3]
             })

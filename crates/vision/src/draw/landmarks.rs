@@ -1,4 +1,4 @@
-//! Points that belong to a box: eyes, nose and mouth of a face.
+//! Drawing of landmarks: eyes, nose and mouth of a face.
 
 use crate::draw::canvas::{Canvas, Point};
 use crate::draw::palette::Colour;

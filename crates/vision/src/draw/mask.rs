@@ -1,4 +1,4 @@
-//! Objects by their pixels: translucent, with a solid border.
+//! Drawing of object masks: translucent, with an opaque border.
 
 use opendr_engine::data::Image;
 use opendr_engine::target::{Rle, Segmentation};
@@ -9,10 +9,9 @@ use crate::draw::palette::Colour;
 use crate::draw::polygons::coverage_of_polygons;
 use crate::draw::style::Style;
 
-/// Colours the pixels of an object, which are given in pixels of `image`; it becomes RGB `u8` where it is not.
+/// Draws the mask of an object, given in pixels of `image`, which is converted to RGB `u8` where needed.
 ///
-/// Of outlines, what lies inside any of them is coloured; where one crosses itself, what an even number of its parts
-/// cover is outside.
+/// The union of several polygons is drawn. A polygon that crosses itself is filled by the even-odd rule.
 pub fn draw_mask(image: &mut Image, mask: &Segmentation, colour: Colour, style: &Style) {
     let mut canvas = Canvas::over(image);
     let thickness = style.thickness(&canvas);
@@ -35,7 +34,7 @@ pub(super) fn cover(
     }
 }
 
-/// The pixels of an object from its runs, which go down the columns.
+/// Returns the coverage of a run-length encoding, whose runs go down the columns.
 fn coverage_of_runs(canvas: &Canvas<'_>, rle: &Rle) -> Option<Coverage> {
     let rows = rle.size()[0] as usize;
     let corners = strokes(rle).fold([usize::MAX, usize::MAX, 0, 0], |[x0, y0, x1, y1], stroke| {
@@ -54,7 +53,7 @@ fn coverage_of_runs(canvas: &Canvas<'_>, rle: &Rle) -> Option<Coverage> {
     Some(coverage)
 }
 
-/// A run of an object's pixels: down from the first row in the first column, to before the second in the last.
+/// A run of an object's pixels: from the first row in the first column to before the second row in the last column.
 struct Stroke {
     columns: [usize; 2],
     rows: [usize; 2],

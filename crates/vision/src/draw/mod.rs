@@ -1,4 +1,4 @@
-//! Drawing what was found onto pictures: boxes with labels, skeletons, masks, heat maps, tracks.
+//! Drawing of predictions onto images: boxes with labels, skeletons, masks, heatmaps, tracks.
 
 mod bounding_boxes;
 mod canvas;
@@ -38,9 +38,9 @@ pub use tracks::{Trails, draw_tracks};
 use opendr_engine::ValueRef;
 use opendr_engine::data::Image;
 
-/// Draws a target of any type onto `image`; a type that has no place in a picture leaves it as it is.
+/// Draws a target of any type onto `image`; a type without a position in an image leaves it unchanged.
 ///
-/// Tracks are drawn without tails, which take a memory: [`draw_tracks`].
+/// Tracks are drawn without trails, which need a state: [`draw_tracks`].
 pub fn draw<'a>(image: &mut Image, target: impl Into<ValueRef<'a>>, style: &Style) {
     match target.into() {
         ValueRef::BoundingBoxList(boxes) => draw_bounding_boxes(image, boxes, style),

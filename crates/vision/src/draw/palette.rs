@@ -1,16 +1,16 @@
-//! Colours that keep apart: one for every class or track, the same in every picture.
+//! Distinguishable colours: one for every class or track, the same in every image.
 
 use opendr_engine::target::Name;
 
 /// Red, green, blue; sRGB.
 pub type Colour = [u8; 3];
 
-/// How many colours there are before they come again.
+/// Number of colours before they repeat.
 pub const COLOURS: u64 = 20;
 
-/// The colour of class or track `index`.
+/// Returns the colour of class or track `index`.
 ///
-/// Hues step by the golden angle, so that neighbours in number lie far apart in hue, and lightness takes turns.
+/// Hues step by the golden angle, so that neighbouring indices differ strongly in hue; lightness alternates.
 pub fn colour_of_index(index: i64) -> Colour {
     const GOLDEN_ANGLE_DEG: f32 = 137.507_77;
     const FIRST_HUE_DEG: f32 = 150.0;
@@ -19,11 +19,11 @@ pub fn colour_of_index(index: i64) -> Colour {
     rgb_from_oklch(lightness, 0.19, FIRST_HUE_DEG + step * GOLDEN_ANGLE_DEG)
 }
 
-/// The colour of a class by number, or by a hash of its label.
+/// Returns the colour of a class by index, or by a hash of its label.
 pub fn colour_of_name(name: &Name) -> Colour {
     match name {
         Name::Index(index) => colour_of_index(*index),
-        // FNV-1a: the same on every machine and in every run.
+        // FNV-1a gives the same hash on every machine.
         Name::Label(label) => colour_of_index(
             (label.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
                 (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
@@ -32,14 +32,14 @@ pub fn colour_of_name(name: &Name) -> Colour {
     }
 }
 
-/// Black or white, whichever reads better on `ground` (relative luminance of WCAG 2).
+/// Returns black or white, whichever has more contrast on `ground` (relative luminance of WCAG 2).
 pub(super) fn ink_on(ground: Colour) -> Colour {
     let [red, green, blue] = ground.map(|sample| (f32::from(sample) / 255.0).powf(2.2));
     if 0.2126 * red + 0.7152 * green + 0.0722 * blue > 0.2 { [16; 3] } else { [255; 3] }
 }
 
-/// sRGB of a colour in OKLCH (B. Ottosson, 2020): lightness 0..=1, chroma, hue in degrees. Chroma is lowered as
-/// far as the colour needs to be one that a screen shows.
+/// Converts OKLCH to sRGB (B. Ottosson, 2020): lightness 0..=1, chroma, hue in degrees. Chroma is reduced until the
+/// colour lies in the sRGB gamut.
 pub(super) fn rgb_from_oklch(lightness: f32, chroma: f32, hue_deg: f32) -> Colour {
     let mut chroma = chroma;
     loop {
@@ -69,7 +69,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn colours_keep_apart() {
+    fn colours_are_distinguishable() {
         let colours: Vec<Colour> = (0..COLOURS as i64).map(colour_of_index).collect();
         for (index, one) in colours.iter().enumerate() {
             for other in &colours[..index] {

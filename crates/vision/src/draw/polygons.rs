@@ -1,16 +1,16 @@
-//! Areas inside of outlines.
+//! Rasterisation of polygons.
 
 use crate::draw::canvas::{Canvas, Corners, Point};
 use crate::draw::coverage::Coverage;
 
-/// Lines at which a row of pixels is cut; across, coverage is exact.
+/// Sub-scanlines per row of pixels; horizontally, coverage is exact.
 const CUTS: usize = 4;
 
-/// Of a polygon with more corners only every second, third ... is used.
+/// Maximum number of corners; of a larger polygon every second, third ... corner is used.
 const MAX_CORNERS: usize = 4096;
 
-/// The area inside of any of `polygons` (`[x0, y0, x1, y1, ...]`, pixels; each by the even-odd rule). Corners that
-/// are not finite are left out.
+/// Returns the coverage of the union of `polygons` (`[x0, y0, x1, y1, ...]`, pixels; each by the even-odd rule).
+/// Corners that are not finite are omitted.
 pub(super) fn coverage_of_polygons<T: AsRef<[f32]>>(canvas: &Canvas<'_>, polygons: &[T]) -> Option<Coverage> {
     let polygons: Vec<Vec<Point>> = polygons.iter().map(|polygon| points(polygon.as_ref())).collect();
     let mut coverage = Coverage::within(canvas, corners_around(&polygons))?;
@@ -49,7 +49,7 @@ fn corners_around(polygons: &[Vec<Point>]) -> Corners {
         .fold(start, |[x0, y0, x1, y1], [x, y]| [x0.min(*x), y0.min(*y), x1.max(*x), y1.max(*y)])
 }
 
-/// Where the lines of a polygon cross a height, from left to right.
+/// Returns where the edges of a polygon cross a scanline, from left to right.
 fn crossings(polygon: &[Point], y: f32) -> Vec<f32> {
     let next = polygon.iter().skip(1).chain(polygon.first());
     let mut found: Vec<f32> = polygon
@@ -90,7 +90,7 @@ mod tests {
         let square = vec![3.25, 4.0, 13.25, 4.0, 13.25, 9.0, 3.25, 9.0];
         assert!((area(std::slice::from_ref(&square)) - 50.0).abs() < 0.3);
         assert!((area(&[vec![10.0, 5.0, 50.0, 5.0, 10.0, 35.0]]) - 600.0).abs() < 3.0);
-        // One within the other is covered already; a crossing of itself is outside.
+        // The union of a polygon and one inside it is the outer one; the even-odd rule holds within a polygon.
         assert!((area(&[square.clone(), square]) - 50.0).abs() < 0.3);
         assert!((area(&[vec![5.0, 5.0, 25.0, 25.0, 25.0, 5.0, 5.0, 25.0]]) - 200.0).abs() < 3.0);
         assert!((area(&[vec![-1e9, 0.0, 1e9, 0.0, 1e9, 40.0, -1e9, 40.0]]) - 2400.0).abs() < 1.0);

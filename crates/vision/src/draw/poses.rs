@@ -1,4 +1,4 @@
-//! Persons as skeletons.
+//! Drawing of skeletons.
 
 use opendr_engine::data::Image;
 use opendr_engine::target::{Keypoint, Pose, PoseList};
@@ -12,10 +12,10 @@ const LEFT: Colour = [255, 138, 48];
 const RIGHT: Colour = [48, 160, 255];
 const MIDDLE: Colour = [140, 230, 90];
 
-/// Draws the bones and joints that were found: left ones orange, right ones blue, those between green.
+/// Draws the detected bones and joints: left ones orange, right ones blue, central ones green.
 ///
-/// Persons with a track id carry it as a label. `image` becomes RGB `u8` where it is not; later persons of the list
-/// lie below earlier ones.
+/// Poses with a track id have it as a label. `image` is converted to RGB `u8` where needed; earlier poses of the list
+/// are drawn on top of later ones.
 pub fn draw_poses(image: &mut Image, poses: &PoseList, style: &Style) {
     let mut canvas = Canvas::over(image);
     let (thickness, unit) = (style.thickness(&canvas), style.letter_unit(&canvas));
@@ -35,7 +35,7 @@ pub fn draw_poses(image: &mut Image, poses: &PoseList, style: &Style) {
 
 fn draw_skeleton(canvas: &mut Canvas<'_>, pose: &Pose, thickness: f32, style: &Style) {
     let found = |index: usize| {
-        let shown = |joint: &&Keypoint| joint.is_found() && joint.confidence >= style.min_joint_confidence;
+        let shown = |joint: &&Keypoint| joint.is_detected() && joint.confidence >= style.min_joint_confidence;
         pose.keypoints.get(index).filter(shown).map(|joint| [joint.x, joint.y])
     };
     let side = |index: usize| {
@@ -55,7 +55,8 @@ fn draw_skeleton(canvas: &mut Canvas<'_>, pose: &Pose, thickness: f32, style: &S
         canvas.line(from, to, thickness + 2.0, [0; 3], 0.3);
     }
     for (from, to, a, b) in bones {
-        // Between a left and a right joint lies the trunk; a bone to the neck or nose belongs to its other end.
+        // A bone between a left and a right joint belongs to the trunk; a bone to the neck or nose has the side of
+        // its other end.
         let bone = match (a, b) {
             (Some(a), Some(b)) if a != b => None,
             (a, b) => a.or(b),

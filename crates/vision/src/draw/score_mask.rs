@@ -1,4 +1,4 @@
-//! Masks of scores: how likely each pixel belongs to something.
+//! Drawing of score masks: the probability per pixel of an object.
 
 use opendr_engine::data::Image;
 
@@ -8,12 +8,12 @@ use crate::draw::grid::Grid;
 use crate::draw::palette::Colour;
 use crate::draw::style::Style;
 
-/// Draws the area where `scores` (`[height, width]` of `size` `[width, height]`, 0..=1) are over 0.5: translucent,
-/// with a solid border.
+/// Draws the area where `scores` (`[height, width]` of `size` `[width, height]`, 0..=1) exceed 0.5: translucent, with
+/// an opaque border.
 ///
-/// The scores are stretched over `corners` of the picture, which need not lie inside it; a mask of the whole picture
-/// has `[0, 0, width, height]` there. Borders are smooth however coarse the mask is. Nothing is drawn when there are
-/// not `width * height` scores. `image` becomes RGB `u8` where it is not.
+/// The scores are stretched over `corners` of the image, which may lie partly outside it; a mask of the whole image
+/// has `[0, 0, width, height]`. Borders are smooth at any resolution of the mask. Nothing is drawn when there are not
+/// `width * height` scores. `image` is converted to RGB `u8` where needed.
 pub fn draw_score_mask(
     image: &mut Image,
     scores: &[f32],
@@ -38,7 +38,7 @@ fn cover(coverage: &mut Coverage, grid: &Grid<'_>, [x0, y0, x1, y1]: Corners) {
         for (column, value) in values.iter_mut().enumerate() {
             let x = ((left + column) as f32 + 0.5 - x0) * across;
             let [score, along_x, along_y] = grid.sample(x, y);
-            // Distance to where the score is 0.5, in pixels, as far as its slope tells.
+            // Distance to the 0.5 contour in pixels, estimated from the slope.
             let slope = (along_x * across).hypot(along_y * down).max(1e-6);
             let inside = (score - 0.5) / slope + 0.5;
             *value = (inside * 255.0).round() as u8;
@@ -59,7 +59,7 @@ mod tests {
     #[test]
     fn a_coarse_mask_has_a_solid_border_where_the_score_is_half() {
         let mut image = Image::from_rgb8(vec![0; 80 * 40 * 3], 80, 40).unwrap();
-        // From 1 to 0 across the box from 20 to 60: half of it lies at 40.
+        // The scores fall from 1 to 0 across the box from 20 to 60: 0.5 lies at 40.
         draw_score_mask(&mut image, &[1.0, 0.0], [2, 1], [20.0, 10.0, 60.0, 30.0], RED, &Style::default());
         let row = red(&image)[20 * 80..21 * 80].to_vec();
         assert_eq!((row[19], row[20], row[30], row[39], row[40]), (0, 255, 128, 255, 0), "{row:?}");

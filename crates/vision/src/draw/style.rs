@@ -1,22 +1,22 @@
-//! How things are drawn.
+//! Drawing style.
 
 use crate::draw::canvas::Canvas;
 use crate::draw::palette::Colour;
 
-/// How targets are drawn; the default suits pictures of any size.
+/// The style of drawn targets; the default suits images of any size.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Style {
-    /// Factor on the thickness of lines and the size of letters, which otherwise follow from the picture's size.
+    /// Factor on line thickness and text size, which otherwise depend on the image size.
     pub scale: f32,
-    /// One colour for everything; `None` gives every class or track its own.
+    /// One colour for everything; `None` selects a colour per class or track.
     pub colour: Option<Colour>,
-    /// Whether boxes and tracks carry a label.
+    /// Whether boxes and tracks have a label.
     pub labels: bool,
-    /// Whether labels show the score.
-    pub confidences: bool,
-    /// How much masks and heat maps hide, 0..=1.
+    /// Whether labels include the score.
+    pub show_confidences: bool,
+    /// Opacity of masks and heatmaps, 0..=1.
     pub opacity: f32,
-    /// Joints below this score are left out.
+    /// Joints below this score are not drawn.
     pub min_joint_confidence: f32,
 }
 
@@ -26,7 +26,7 @@ impl Default for Style {
             scale: 1.0,
             colour: None,
             labels: true,
-            confidences: true,
+            show_confidences: true,
             opacity: 0.5,
             min_joint_confidence: 0.0,
         }
@@ -34,17 +34,17 @@ impl Default for Style {
 }
 
 impl Style {
-    /// Thickness of lines on `canvas`, whole pixels.
+    /// Returns the line thickness on `canvas`, in whole pixels.
     pub(super) fn thickness(&self, canvas: &Canvas<'_>) -> f32 {
         (self.extent(canvas) * 0.003).round().clamp(1.0, 64.0)
     }
 
-    /// Side of the font's grid unit on `canvas`: whole or half pixels, so that strokes are crisp.
+    /// Returns the side of the font's grid unit on `canvas`: whole or half pixels, so that strokes are crisp.
     pub(super) fn letter_unit(&self, canvas: &Canvas<'_>) -> f32 {
         ((self.extent(canvas) * 0.0022 * 2.0).round() / 2.0).clamp(1.0, 32.0)
     }
 
-    /// Mean side of the picture, scaled. NaN and negative scales count as 1.
+    /// Returns the mean side of the image, scaled. NaN and negative scales count as 1.
     fn extent(&self, canvas: &Canvas<'_>) -> f32 {
         let scale = if self.scale > 0.0 { self.scale.min(100.0) } else { 1.0 };
         (canvas.width() + canvas.height()) as f32 / 2.0 * scale

@@ -15,7 +15,7 @@ fn pixel(image: &Image, x: usize, y: usize) -> Colour {
 }
 
 #[test]
-fn box_has_its_classes_colour_on_its_edge_and_nothing_within() {
+fn box_has_its_class_colour_on_the_edge_and_no_fill() {
     let mut image = grey(100, 100);
     let boxes = BoundingBoxList::from(vec![BoundingBox::new(2, 20.0, 30.0, 40.0, 50.0, 0.9)]);
     draw(&mut image, &boxes, &Style { labels: false, ..Style::default() });
@@ -26,7 +26,7 @@ fn box_has_its_classes_colour_on_its_edge_and_nothing_within() {
 }
 
 #[test]
-fn label_stands_above_the_box_or_where_there_is_room() {
+fn label_is_above_the_box_or_where_space_is_free() {
     for (top, rows) in [(50.0, 35..50), (0.0, 0..15)] {
         let mut image = grey(200, 100);
         let boxes = BoundingBoxList::from(vec![BoundingBox::new("dog", 20.0, top, 100.0, 40.0, 0.9)]);
@@ -103,7 +103,7 @@ fn masks_of_both_kinds_cover_the_same_pixels() {
         draw_mask(&mut image, mask, [255, 0, 0], &style);
         let wrong = (0..40 * 40_usize).filter(|at| {
             let (x, y) = (at % 40, at / 40);
-            // The outline's own line is one pixel wide.
+            // The polygon's border is one pixel wide.
             x.abs_diff(29usize.saturating_sub(y)) > 2 && (pixel(&image, x, y) == [255, 0, 0]) != inside(x, y)
         });
         assert_eq!(wrong.count(), 0, "{mask:?}");
@@ -206,14 +206,14 @@ fn edges_of_coarse_label_maps_are_smooth() {
     let map = Heatmap::from_labels(vec![1, 1, 1, 2], &[2, 2]).unwrap();
     let mut image = grey(80, 80);
     draw(&mut image, &map, &Style { opacity: 1.0, labels: false, ..Style::default() });
-    // The inner corner of the square of number 2 is cut.
+    // The inner corner of the square of class 2 is cut.
     let at = |x, y| pixel(&image, x, y);
     assert_eq!((at(41, 41), at(47, 47)), (colour_of_index(1), colour_of_index(1)));
     assert_eq!((at(60, 60), at(79, 79)), (colour_of_index(2), colour_of_index(2)));
 }
 
 #[test]
-fn tails_have_one_colour_all_along() {
+fn trails_have_a_single_colour() {
     let at = |left: f32| -> TrackingAnnotationList {
         let bounding_box = BoundingBox::new(0, left, 50.5, 40.0, 40.0, 1.0);
         vec![TrackingAnnotation { bounding_box, id: 4, frame: None }].into()

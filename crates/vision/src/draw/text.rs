@@ -4,16 +4,16 @@ use crate::draw::canvas::{Canvas, Point};
 use crate::draw::glyphs::{CAP_HEIGHT, DESCENT, glyph};
 use crate::draw::palette::Colour;
 
-/// Longer texts are cut here: labels come from model files.
+/// Maximum length of a text; longer ones are cut, because labels come from model files.
 const MAX_LETTERS: usize = 80;
 
-/// Between two letters, in grid units.
+/// Gap between two letters, in grid units.
 const GAP: f32 = 1.1;
 
 /// Width of the pen, in grid units.
 const PEN: f32 = 1.05;
 
-/// A line of text, laid out and ready to be drawn.
+/// A line of text with its layout.
 #[derive(Debug)]
 pub(super) struct Text {
     /// Polylines in grid units; `y` 0 is the upper end of capitals.
@@ -24,7 +24,7 @@ pub(super) struct Text {
 }
 
 impl Text {
-    /// Lays `text` out; `unit` is the side of a grid unit in pixels: capitals are 8 units high, pen included.
+    /// Lays out `text`; `unit` is the side of a grid unit in pixels: capitals are 8 units high, pen included.
     pub(super) fn new(text: &str, unit: f32) -> Self {
         let mut strokes = Vec::new();
         let mut columns = 0.0;
@@ -39,17 +39,17 @@ impl Text {
         Self { strokes, columns: (columns - GAP).max(0.0), unit }
     }
 
-    /// Side of a grid unit, pixels.
+    /// Returns the side of a grid unit, in pixels.
     pub(super) fn unit(&self) -> f32 {
         self.unit
     }
 
-    /// Pixels from the first letter's left to the last one's right edge.
+    /// Returns the pixels from the first letter's left to the last one's right edge.
     pub(super) fn width(&self) -> f32 {
         self.columns * self.unit
     }
 
-    /// Pixels from the upper edge of capitals to the base line's lower edge.
+    /// Returns the pixels from the upper edge of capitals to the base line's lower edge.
     pub(super) fn height(&self) -> f32 {
         (CAP_HEIGHT + 1.0) * self.unit
     }
@@ -70,7 +70,7 @@ impl Text {
         }
     }
 
-    /// How much of each pixel the pen covers, 0..=1. Strokes that cross do not add up.
+    /// Returns the coverage of each pixel by the pen, 0..=1. Strokes that cross do not add up.
     fn mask(&self, width: usize, height: usize) -> Vec<f32> {
         let radius = (self.unit * PEN).max(1.0) / 2.0;
         let mut mask = vec![0.0_f32; width * height];

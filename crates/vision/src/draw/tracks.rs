@@ -1,4 +1,4 @@
-//! Followed objects: a colour for each, and the way it came.
+//! Drawing of tracks, each with its own colour and a trail of past positions.
 
 use std::collections::{HashMap, VecDeque};
 
@@ -11,10 +11,10 @@ use crate::draw::label::Labels;
 use crate::draw::palette::colour_of_index;
 use crate::draw::style::Style;
 
-/// How many pictures a tail goes back, and after how many an object that is gone is forgotten.
+/// Length of a trail, and the age at which a lost track is dropped, in frames.
 const LENGTH: usize = 48;
 
-/// Where the objects of a video have been; filled picture by picture with [`Trails::update`].
+/// Past positions of the tracks of a video; updated once per frame with [`Trails::update`].
 #[derive(Debug, Clone, Default)]
 pub struct Trails {
     tails: HashMap<i64, Tail>,
@@ -28,7 +28,7 @@ struct Tail {
 }
 
 impl Trails {
-    /// Adds the places of one picture.
+    /// Adds the positions of one frame.
     pub fn update(&mut self, tracks: &TrackingAnnotationList) {
         self.pictures += 1;
         for track in tracks.annotations.iter().filter(|track| track.id >= 0) {
@@ -49,15 +49,15 @@ impl Trails {
         let count = tail.points.len().max(1) as f32;
         for (index, (from, to)) in tail.points.iter().zip(tail.points.iter().skip(1)).enumerate() {
             let newness = (index as f32 + 1.0) / count;
-            // Opaque: where translucent pieces meet, beads would show.
+            // Opaque: translucent segments would overlap visibly at their ends.
             canvas.line(*from, *to, thickness * (0.4 + 1.4 * newness), colour, 1.0);
         }
     }
 }
 
-/// Draws followed objects as boxes in the colour of their numbers, with the way they came as far as `trails` knows.
+/// Draws tracks as boxes in the colours of their ids, with the trails of `trails`.
 ///
-/// `image` becomes RGB `u8` where it is not. Objects without a number (-1) have no tail.
+/// `image` is converted to RGB `u8` where needed. Objects without an id (-1) have no trail.
 pub fn draw_tracks(image: &mut Image, tracks: &TrackingAnnotationList, trails: &Trails, style: &Style) {
     let mut canvas = Canvas::over(image);
     let (thickness, unit) = (style.thickness(&canvas), style.letter_unit(&canvas));
@@ -74,7 +74,7 @@ pub fn draw_tracks(image: &mut Image, tracks: &TrackingAnnotationList, trails: &
         let number = format!("#{}", track.id);
         let name = tracks.classes.label(&track.bounding_box.name).unwrap_or_default();
         let mut text = format!("{number} {name}");
-        if style.confidences {
+        if style.show_confidences {
             text += &format!(" {:.2}", track.bounding_box.confidence);
         }
         labels.draw(&mut canvas, [&text, &number], corners, [unit, thickness], colour(track));
@@ -87,7 +87,7 @@ mod tests {
     use opendr_engine::target::BoundingBox;
 
     #[test]
-    fn tails_are_bounded_and_forgotten() {
+    fn trails_are_bounded_and_dropped() {
         let mut trails = Trails::default();
         for step in 0..200 {
             let at = |id, left| TrackingAnnotation {
@@ -95,7 +95,7 @@ mod tests {
                 id,
                 frame: None,
             };
-            // Object 1 stays, every picture has a new one, and one is not known.
+            // Object 1 stays, every frame has a new one, and one has no id.
             trails.update(&vec![at(1, step as f32), at(100 + step, 5.0), at(-1, 7.0)].into());
         }
         assert_eq!(trails.tails[&1].points.len(), LENGTH);

@@ -1,4 +1,4 @@
-//! Rows of a network's input: what one thread writes.
+//! Bands of rows of a network's input, one per thread.
 
 use std::ops::Range;
 use std::sync::Mutex;
@@ -7,10 +7,10 @@ use opendr_engine::data::Layout;
 
 use crate::preprocess::sample::{InputSample, Written};
 
-/// Bands that an input is cut into at most; enough for threads that start late or are interrupted.
+/// Maximum number of bands; enough to balance threads that start late or are interrupted.
 pub(super) const MAX_BANDS: usize = 16;
 
-/// Columns that pass through the stack when samples need conversion.
+/// Columns that are buffered on the stack when samples need conversion.
 const TILE: usize = 128;
 
 /// Consecutive rows of a network's input.
@@ -20,18 +20,18 @@ pub(super) struct Band<'a, T> {
     all: Row<'a, T>,
 }
 
-/// Some columns of one row (or, within a band, of several rows that lie one after the other).
+/// Some columns of one row, or of several consecutive rows of a band.
 pub(super) struct Row<'a, T> {
-    /// One slice a channel; channels that lie side by side share the first.
+    /// One slice per channel; interleaved channels share the first.
     pub(super) planes: [&'a mut [T]; 3],
     /// 1 or 3.
     pub(super) channels: usize,
-    /// Whether three channels lie side by side.
+    /// Whether the three channels are interleaved.
     pub(super) interleaved: bool,
 }
 
 impl<'a, T: InputSample> Band<'a, T> {
-    /// The whole input of `width` x `height` pixels.
+    /// Returns the whole input of `width` x `height` pixels.
     pub(super) fn whole(
         out: &'a mut [T],
         [width, height]: [usize; 2],
@@ -71,7 +71,7 @@ impl<'a, T: InputSample> Band<'a, T> {
         front
     }
 
-    /// Calls `write` with the number (within the whole input) and the columns of each row.
+    /// Calls `write` with the row index (in the whole input) and the columns of each row.
     pub(super) fn for_each_row(&mut self, mut write: impl FnMut(usize, Row<'_, T>)) {
         let columns = self.all.columns() / self.rows.max(1);
         for row in 0..self.rows {
@@ -81,17 +81,17 @@ impl<'a, T: InputSample> Band<'a, T> {
 }
 
 impl<T> Row<'_, T> {
-    /// How many pixels there are.
+    /// Returns the number of pixels.
     pub(super) fn columns(&self) -> usize {
         self.planes[0].len() / self.pixel()
     }
 
-    /// Samples from one pixel to the next within a slice.
+    /// Returns the samples from one pixel to the next within a slice.
     fn pixel(&self) -> usize {
         if self.interleaved { 3 } else { 1 }
     }
 
-    /// The pixels of `columns`.
+    /// Returns the pixels of `columns`.
     pub(super) fn part(&mut self, columns: Range<usize>) -> Row<'_, T> {
         let samples = columns.start * self.pixel()..columns.end * self.pixel();
         Row {
@@ -103,11 +103,11 @@ impl<T> Row<'_, T> {
 }
 
 impl<T: InputSample> Row<'_, T> {
-    /// Sets every pixel to `values`, one a channel.
+    /// Sets every pixel to `values`, one per channel.
     pub(super) fn fill(&mut self, values: [f32; 3]) {
         let values = values.map(|value| T::from_written(T::Written::from_value(value)));
         if self.interleaved {
-            // From the second pixel on each doubling is one copy.
+            // From the second pixel on, each doubling is one copy.
             let mut done = self.planes[0].len().min(3);
             self.planes[0][..done].copy_from_slice(&values[..done]);
             while done < self.planes[0].len() {
@@ -122,7 +122,7 @@ impl<T: InputSample> Row<'_, T> {
         }
     }
 
-    /// Lets a kernel write the row, some columns after the other.
+    /// Calls `write` for successive columns of the row, with a buffer where samples need conversion.
     pub(super) fn fill_with(mut self, mut write: impl FnMut(Range<usize>, Row<'_, T::Written>)) {
         let (columns, channels, interleaved) = (self.columns(), self.channels, self.interleaved);
         if let [Some(first), Some(second), Some(third)] =

@@ -1,39 +1,39 @@
-//! Where a picture lies in a network's input, and the way back.
+//! Position of an image in a network's input, and the inverse mapping.
 
-/// Which part of the input a letterboxed picture touches; the rest is padding.
+/// Alignment of a letterboxed image in the input; the rest is padding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Anchor {
-    /// Equal padding on opposite sides; an odd pixel goes to the right and the bottom.
+pub enum LetterboxAlign {
+    /// Equal padding on opposite sides; an odd pixel is added on the right and at the bottom.
     Centre,
     /// Padding on the right and at the bottom only.
     TopLeft,
 }
 
-/// Maps positions in a network's input to the picture it was made from.
+/// Maps positions in a network's input to the image that it was made from.
 ///
 /// Positions are continuous: the left-top corner of the first pixel is (0, 0), its centre (0.5, 0.5).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InputGeometry {
-    /// Width and height of the picture, in its pixels.
+    /// Width and height of the image, in pixels.
     pub image_size: [f32; 2],
-    /// Picture pixels per input pixel, along x and y.
+    /// Image pixels per input pixel, along x and y.
     pub scale: [f32; 2],
-    /// Left-top corner of the picture in the input, in input pixels.
+    /// Left-top corner of the image in the input, in input pixels.
     pub offset: [f32; 2],
 }
 
 impl InputGeometry {
-    /// A point `[x, y]` of the input, in pixels of the picture; it may lie outside of it.
+    /// Maps a point `[x, y]` of the input to pixels of the image; the result may be outside the image.
     pub fn image_from_input(&self, [x, y]: [f32; 2]) -> [f32; 2] {
         [(x - self.offset[0]) * self.scale[0], (y - self.offset[1]) * self.scale[1]]
     }
 
-    /// A point `[x, y]` of the picture, in pixels of the input.
+    /// Maps a point `[x, y]` of the image to pixels of the input.
     pub fn input_from_image(&self, [x, y]: [f32; 2]) -> [f32; 2] {
         [x / self.scale[0] + self.offset[0], y / self.scale[1] + self.offset[1]]
     }
 
-    /// A box `[left, top, right, bottom]` of the input, in pixels of the picture and cut at its border.
+    /// Maps a box `[left, top, right, bottom]` of the input to pixels of the image and clips it to the image.
     pub fn image_box_from_input(&self, [left, top, right, bottom]: [f32; 4]) -> [f32; 4] {
         let [width, height] = self.image_size;
         let [left, top] = self.image_from_input([left, top]);
@@ -42,7 +42,7 @@ impl InputGeometry {
     }
 }
 
-/// The rectangle of the input that shows the picture, in input pixels.
+/// Rectangle of the input that the image covers, in input pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Placement {
     pub(super) x: usize,
@@ -52,24 +52,24 @@ pub(super) struct Placement {
 }
 
 impl Placement {
-    /// The picture fills the input; its aspect ratio changes.
+    /// Returns the placement that fills the input and changes the aspect ratio.
     pub(super) fn stretch([width, height]: [usize; 2]) -> Self {
         Self { x: 0, y: 0, width, height }
     }
 
-    /// The picture keeps its aspect ratio and fills the input along one axis.
-    pub(super) fn letterbox(source: [usize; 2], target: [usize; 2], anchor: Anchor) -> Self {
+    /// Returns the placement that keeps the aspect ratio and fills the input along one axis.
+    pub(super) fn letterbox(source: [usize; 2], target: [usize; 2], anchor: LetterboxAlign) -> Self {
         let scale = (target[0] as f64 / source[0] as f64).min(target[1] as f64 / source[1] as f64);
         let side = |axis: usize| ((source[axis] as f64 * scale).round() as usize).clamp(1, target[axis]);
         let (width, height) = (side(0), side(1));
         let (x, y) = match anchor {
-            Anchor::Centre => ((target[0] - width) / 2, (target[1] - height) / 2),
-            Anchor::TopLeft => (0, 0),
+            LetterboxAlign::Centre => ((target[0] - width) / 2, (target[1] - height) / 2),
+            LetterboxAlign::TopLeft => (0, 0),
         };
         Self { x, y, width, height }
     }
 
-    /// The map from the input to a picture of `source` pixels that lies here.
+    /// Returns the mapping from the input to an image of `source` pixels with this placement.
     pub(super) fn geometry(&self, source: [usize; 2]) -> InputGeometry {
         InputGeometry {
             image_size: source.map(|side| side as f32),
@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn letterbox_keeps_the_ratio_and_maps_back() {
-        let placement = Placement::letterbox([1920, 1080], [416, 416], Anchor::Centre);
+        let placement = Placement::letterbox([1920, 1080], [416, 416], LetterboxAlign::Centre);
         assert_eq!(placement, Placement { x: 0, y: 91, width: 416, height: 234 });
         let geometry = placement.geometry([1920, 1080]);
         assert_eq!(geometry.image_from_input([208.0, 208.0]), [960.0, 540.0]);
@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn slivers_keep_a_pixel() {
-        let placement = Placement::letterbox([10_000, 1], [64, 64], Anchor::TopLeft);
+        let placement = Placement::letterbox([10_000, 1], [64, 64], LetterboxAlign::TopLeft);
         assert_eq!(placement, Placement { x: 0, y: 0, width: 64, height: 1 });
     }
 }

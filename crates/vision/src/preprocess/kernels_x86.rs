@@ -1,8 +1,8 @@
 //! Packed kernels for x86-64 with AVX2 and FMA.
 //!
-//! A column's two taps lie within 8 bytes. A shuffle spreads them to 16-bit pairs, one pair a channel, and one
-//! multiply-add blends them with 14-bit weights, exactly; rows are blended, scaled and shifted as floats. Lane 0 of
-//! a register holds column `i` of a block of 8, lane 1 column `i + 4`, so that a 4x4 transpose within lanes gives
+//! A column's two taps lie within 8 bytes. A shuffle spreads them to 16-bit pairs, one pair per channel, and one
+//! multiply-add blends them with 14-bit weights, exactly; rows are blended, scaled and shifted as floats. Lane 0 of a
+//! register holds column `i` of a block of 8, lane 1 column `i + 4`, so that a 4x4 transpose within lanes yields
 //! planes in order.
 
 use std::arch::x86_64::*;
@@ -13,12 +13,12 @@ use crate::preprocess::packed::{BLOCK, Packed, PackedRow};
 use crate::preprocess::plan::{ONE, PackedColumns, TAP_BYTES};
 use crate::preprocess::sample::Written;
 
-/// Whether the kernels can run here.
+/// Returns whether the CPU supports the kernels.
 pub(super) fn supported() -> bool {
     is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")
 }
 
-/// Writes `columns` into `row`, which has as many, at least [`BLOCK`], of three channels.
+/// Writes `columns` into `row`, which has the same number of columns, at least [`BLOCK`], and three channels.
 pub(super) fn write<W: Written>(
     packed: &Packed,
     source: &PackedRow<'_>,
@@ -29,7 +29,7 @@ pub(super) fn write<W: Written>(
     assert!(supported() && source.rows.iter().all(|bytes| bytes.len() >= plan.reach()));
     let offsets = &plan.offsets()[columns.clone()];
     let weights = &plan.weights()[columns];
-    // SAFETY: the features were just asked for, the rows are long enough for every offset of the plan.
+    // SAFETY: the CPU features were checked, and the rows are long enough for every offset of the plan.
     unsafe {
         if source.weight == 0.0 {
             write_row::<1, W>(packed, source, offsets, weights, row);
@@ -39,7 +39,7 @@ pub(super) fn write<W: Written>(
     }
 }
 
-/// Blends `ROWS` of the two rows: 1 where the second has no weight.
+/// Blends `ROWS` of the two rows: 1 where the second has weight 0.
 ///
 /// # Safety
 /// Each offset plus [`TAP_BYTES`] lies within both rows.
@@ -55,9 +55,9 @@ unsafe fn write_row<const ROWS: usize, W: Written>(
     let interleaved = row.interleaved;
     let [first, second, third] = &mut row.planes;
     for start in (0..offsets.len()).step_by(BLOCK) {
-        // The last block reaches back over the one before it.
+        // The last block overlaps the one before it.
         let start = start.min(offsets.len() - BLOCK);
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller guarantees the offsets.
         let pixels = unsafe { blend.block(&offsets[start..], &weights[start..]) };
         if interleaved {
             store_interleaved(pixels, &mut first[3 * start..]);
@@ -67,7 +67,7 @@ unsafe fn write_row<const ROWS: usize, W: Written>(
     }
 }
 
-/// What the columns of a row have in common.
+/// Values that all columns of a row share.
 struct Blend<'a, const ROWS: usize> {
     rows: [&'a [u8]; 2],
     /// Scale of each channel times the row's weight times the unit of the columns' weights.
@@ -90,7 +90,7 @@ impl<'a, const ROWS: usize> Blend<'a, ROWS> {
         }
     }
 
-    /// The values of a block: columns 0 and 4, 1 and 5, 2 and 6, 3 and 7.
+    /// Returns the values of a block: columns 0 and 4, 1 and 5, 2 and 6, 3 and 7.
     ///
     /// # Safety
     /// Each offset plus [`TAP_BYTES`] lies within both rows.
@@ -98,7 +98,7 @@ impl<'a, const ROWS: usize> Blend<'a, ROWS> {
     #[target_feature(enable = "avx2,fma")]
     unsafe fn block(&self, offsets: &[u32], weights: &[u32]) -> [__m256; 4] {
         let (offsets, weights) = (&offsets[..BLOCK], &weights[..BLOCK]);
-        // SAFETY: `weights` has 8 of 4 bytes.
+        // SAFETY: `weights` has 8 values of 4 bytes.
         let weights = unsafe { _mm256_loadu_si256(weights.as_ptr().cast()) };
         let weights = [
             _mm256_shuffle_epi32::<0x00>(weights),
@@ -110,7 +110,7 @@ impl<'a, const ROWS: usize> Blend<'a, ROWS> {
         for (index, value) in values.iter_mut().enumerate() {
             let (low, high) = (offsets[index] as usize, offsets[index + 4] as usize);
             for (row, factors) in self.rows.iter().zip(self.factors).take(ROWS) {
-                // SAFETY: as the caller promises.
+                // SAFETY: the caller guarantees the offsets.
                 let taps = _mm256_shuffle_epi8(unsafe { load(row, low, high) }, self.shuffle);
                 let levels = _mm256_cvtepi32_ps(_mm256_madd_epi16(taps, weights[index]));
                 *value = _mm256_fmadd_ps(levels, factors, *value);
@@ -120,8 +120,8 @@ impl<'a, const ROWS: usize> Blend<'a, ROWS> {
     }
 }
 
-/// [`TAP_BYTES`] from `low` in lane 0 and as many from `high` in lane 1. Only the first 8 of each matter; reading 16
-/// spares a shuffle.
+/// Loads [`TAP_BYTES`] from `low` into lane 0 and as many from `high` into lane 1. Only the first 8 bytes of each
+/// matter; reading 16 saves a shuffle.
 ///
 /// # Safety
 /// Both positions plus [`TAP_BYTES`] lie within `row`.
@@ -129,7 +129,7 @@ impl<'a, const ROWS: usize> Blend<'a, ROWS> {
 #[target_feature(enable = "avx2,fma")]
 unsafe fn load(row: &[u8], low: usize, high: usize) -> __m256i {
     debug_assert!(low.max(high) + TAP_BYTES <= row.len());
-    // SAFETY: as the caller promises; the loads need no alignment.
+    // SAFETY: the caller guarantees the positions; the loads need no alignment.
     let lane = |at: usize| unsafe { _mm_loadu_si128(row.as_ptr().add(at).cast()) };
     _mm256_inserti128_si256::<1>(_mm256_castsi128_si256(lane(low)), lane(high))
 }
@@ -148,7 +148,8 @@ fn store_planar<W: Written>([a, b, c, d]: [__m256; 4], planes: [&mut [W]; 3]) {
 #[inline]
 #[target_feature(enable = "avx2,fma")]
 fn store_interleaved<W: Written>([a, b, c, d]: [__m256; 4], out: &mut [W]) {
-    // Pairs of pixels (x y z _ x y z _) move together: x y z x y z and two samples that the next store replaces.
+    // Pairs of pixels (x y z _ x y z _) are stored together: x y z x y z and two samples that the next store
+    // overwrites.
     let together = _mm256_setr_epi32(0, 1, 2, 4, 5, 6, 6, 6);
     let pair = |pixels| _mm256_permutevar8x32_ps(pixels, together);
     let third = pair(_mm256_permute2f128_ps::<0x31>(a, b));
@@ -176,6 +177,6 @@ fn store<W: Written>(out: &mut [W], values: __m256) {
         }
         None => _mm256_castps_si256(values),
     };
-    // SAFETY: `out` has 8 samples of 4 bytes, floats or integers as `bits` are.
+    // SAFETY: `out` has 8 samples of 4 bytes, floats or integers as in `bits`.
     unsafe { _mm256_storeu_si256(out.as_mut_ptr().cast(), bits) }
 }

@@ -1,12 +1,13 @@
-//! From a picture to a network's input in one pass: resize, letterbox or turned crop, order of channels,
+//! The input of a network from an image, in one pass: resize, letterbox or rotated crop, channel order,
 //! normalisation, layout.
 //!
 //! # Dispatch
-//! Pictures of `u8` pixels whose 3 or 4 channels lie together run through AVX2 kernels where the processor has AVX2
-//! and FMA (asked at run time), else, and for all other pictures, through plain Rust. No code path is specific to
-//! other processors. Turned crops are plain Rust everywhere.
+//! `u8` images with 3 or 4 interleaved channels run through AVX2 kernels where the CPU has AVX2 and FMA (detected at
+//! run time). All other images, and all images on other CPUs, run through plain Rust, as do rotated crops.
 
 mod band;
+mod border;
+mod dispatch;
 mod geometry;
 #[cfg(target_arch = "x86_64")]
 mod kernels_x86;
@@ -25,8 +26,9 @@ use opendr_engine::{Error, Result};
 use crate::similarity::Similarity;
 use crate::workers;
 use band::{Band, MAX_BANDS, Row};
+pub use border::Border;
 use geometry::Placement;
-pub use geometry::{Anchor, InputGeometry};
+pub use geometry::{InputGeometry, LetterboxAlign};
 use plan::{Plan, Plans, Sizes};
 pub use sample::InputSample;
 use source::Source;
@@ -34,10 +36,10 @@ use strided::Finish;
 pub(crate) use strided::LUMINANCE;
 use warped::Line;
 
-/// Pixels below which waking another thread costs more than it helps.
+/// Number of pixels below which waking another thread costs more than it saves.
 const PIXELS_ALONE: usize = 96 * 96;
 
-/// The channels of a network's input.
+/// Channels of a network's input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ChannelOrder {
     /// Red, green, blue.
@@ -49,7 +51,7 @@ pub enum ChannelOrder {
 }
 
 impl ChannelOrder {
-    /// How many channels there are.
+    /// Returns the number of channels.
     pub const fn channels(self) -> usize {
         match self {
             Self::Rgb | Self::Bgr => 3,
@@ -58,27 +60,18 @@ impl ChannelOrder {
     }
 }
 
-/// What a turned crop shows beside the picture.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Border {
-    /// A level, 0..=255, then normalised as the picture is (OpenCV's `BORDER_CONSTANT`).
-    Level(f32),
-    /// The picture's outermost pixels (OpenCV's `BORDER_REPLICATE`).
-    Repeat,
-}
-
-/// How pictures become the input of a network; built once a learner.
+/// Conversion of images to the input of a network; built once per learner.
 ///
-/// Scaling is bilinear with half-pixel centres and without antialiasing, as OpenCV's `INTER_LINEAR`. Pictures have
-/// levels of 0..=255: `u8` as they are, `u16` divided by 257, floats multiplied by 255; opacity is dropped. Tables
-/// for the sizes in use are kept, so that a stream of pictures allocates nothing; clones share them.
+/// Scaling is bilinear with half-pixel centres and without antialiasing, as OpenCV's `INTER_LINEAR`. Images have
+/// levels of 0..=255: `u8` unchanged, `u16` divided by 257, floats multiplied by 255; the alpha channel is dropped.
+/// Tables for recent sizes are cached, so that a stream of images allocates nothing; clones share them.
 ///
 /// ```
 /// use opendr_engine::data::{Image, Layout};
-/// use opendr_vision::{Anchor, ChannelOrder, Preprocess};
+/// use opendr_vision::{LetterboxAlign, ChannelOrder, Preprocess};
 ///
 /// let nanodet = Preprocess::new(416, 416)
-///     .letterbox(Anchor::Centre, 0.0)
+///     .letterbox(LetterboxAlign::Centre, 0.0)
 ///     .order(ChannelOrder::Bgr)
 ///     .normalise([103.53, 116.28, 123.675], [57.375, 57.12, 58.395]);
 /// let frame = Image::from_rgb8(vec![128; 640 * 480 * 3], 640, 480)?;
@@ -91,7 +84,7 @@ pub enum Border {
 pub struct Preprocess {
     size: [usize; 2],
     /// Anchor and level of the padding; `None` stretches.
-    letterbox: Option<(Anchor, f32)>,
+    letterbox: Option<(LetterboxAlign, f32)>,
     border: Border,
     order: ChannelOrder,
     scale: [f32; 3],
@@ -102,12 +95,12 @@ pub struct Preprocess {
 }
 
 impl Preprocess {
-    /// An input of `width` x `height` pixels: stretched, RGB, CHW, levels of 0..=255.
+    /// Creates the conversion to `width` x `height` pixels: stretched, RGB, CHW, levels of 0..=255.
     pub fn new(width: usize, height: usize) -> Self {
         Self {
             size: [width, height],
             letterbox: None,
-            border: Border::Level(0.0),
+            border: Border::Constant(0.0),
             order: ChannelOrder::Rgb,
             scale: [1.0; 3],
             bias: [0.0; 3],
@@ -117,61 +110,62 @@ impl Preprocess {
         }
     }
 
-    /// Keeps the picture's aspect ratio; the rest of the input has the level `pad` (0..=255, then normalised).
+    /// Keeps the image's aspect ratio; the padding has the level `pad` (0..=255, then normalised).
     #[must_use]
-    pub fn letterbox(self, anchor: Anchor, pad: f32) -> Self {
+    pub fn letterbox(self, anchor: LetterboxAlign, pad: f32) -> Self {
         Self { letterbox: Some((anchor, pad)), ..self }
     }
 
-    /// Fills the input; the picture's aspect ratio changes.
+    /// Fills the input; the image's aspect ratio changes.
     #[must_use]
     pub fn stretch(self) -> Self {
         Self { letterbox: None, ..self }
     }
 
-    /// What [`Preprocess::warp_into`] writes beside the picture; level 0 otherwise.
+    /// Sets the fill of [`Preprocess::warp_into`] outside the image; level 0 by default.
     #[must_use]
     pub fn border(self, border: Border) -> Self {
         Self { border, ..self }
     }
 
-    /// The channels of the input.
+    /// Sets the channels of the input.
     #[must_use]
     pub fn order(self, order: ChannelOrder) -> Self {
         Self { order, ..self }
     }
 
-    /// Values are `(level - mean) / std`, for each channel in the input's order (grey has the first).
+    /// Normalises to `(level - mean) / std`, per channel in the input's order (grey uses the first).
     #[must_use]
     pub fn normalise(self, mean: [f32; 3], std: [f32; 3]) -> Self {
         let scale = std.map(|std| 1.0 / std);
         Self { scale, bias: std::array::from_fn(|c| -mean[c] * scale[c]), ..self }
     }
 
-    /// The order of the input's axes.
+    /// Sets the order of the input's axes.
     #[must_use]
     pub fn layout(self, layout: Layout) -> Self {
         Self { layout, ..self }
     }
 
-    /// At most `threads` threads work on one picture; as many as the processor has cores (at most 8) otherwise.
+    /// Limits the threads per image; the default is the number of cores, at most 8.
     #[must_use]
     pub fn threads(self, threads: usize) -> Self {
         Self { threads: threads.max(1), ..self }
     }
 
-    /// The same for another size of the input, for networks that take several.
+    /// Returns the same conversion for another input size, for networks that accept several.
     #[must_use]
     pub fn with_size(&self, width: usize, height: usize) -> Self {
         Self { size: [width, height], ..self.clone() }
     }
 
-    /// Width and height of the input.
+    /// Returns width and height of the input.
     pub fn size(&self) -> [usize; 2] {
         self.size
     }
 
-    /// The input's dimensions with a batch of one: `[1, channels, height, width]`, or `[1, height, width, channels]`.
+    /// Returns the input's shape with a batch of one: `[1, channels, height, width]`, or
+    /// `[1, height, width, channels]`.
     pub fn shape(&self) -> [usize; 4] {
         let ([width, height], channels) = (self.size, self.order.channels());
         match self.layout {
@@ -180,20 +174,21 @@ impl Preprocess {
         }
     }
 
-    /// How many samples the input has.
+    /// Returns the number of samples of the input.
     pub fn len(&self) -> usize {
         self.shape().into_iter().fold(1, usize::saturating_mul)
     }
 
-    /// Whether the input has no sample: nothing can run then.
+    /// Returns whether the input has no samples; nothing can run then.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Writes the input for `image` and tells where the picture lies in it.
+    /// Writes the input for `image` and returns the position of the image in it.
     ///
     /// # Errors
-    /// `InvalidInput` when `out` has not [`Preprocess::len`] samples, `InvalidParam` when the input has no pixel.
+    /// `InvalidInput` when `out` does not have [`Preprocess::len`] samples, `InvalidParam` when the input has no
+    /// pixels.
     pub fn run_into<T: InputSample>(&self, image: ImageView<'_>, out: &mut [T]) -> Result<InputGeometry> {
         if self.is_empty() || out.len() != self.len() {
             return Err(self.misfit(out.len()));
@@ -213,8 +208,8 @@ impl Preprocess {
         Ok(placement.geometry(source_size))
     }
 
-    /// Writes the input for the part of `image` that `crop` shows: bilinear, without antialiasing, from any strides,
-    /// in one pass. Order, normalisation, layout and border are those of `self`; a letterbox plays no part.
+    /// Writes the input for the crop `crop` of `image`: bilinear, without antialiasing, from any strides, in one
+    /// pass. Order, normalisation, layout and border are those of `self`; a letterbox has no effect.
     ///
     /// ```
     /// use opendr_engine::data::Image;
@@ -230,8 +225,8 @@ impl Preprocess {
     /// ```
     ///
     /// # Errors
-    /// `InvalidInput` when `out` has not [`Preprocess::len`] samples, or when `crop` has numbers that are not finite, a
-    /// scale of 0, or lies more than 2^29 pixels away; `InvalidParam` when the input has no pixel.
+    /// `InvalidInput` when `out` does not have [`Preprocess::len`] samples, or when `crop` has numbers that are not
+    /// finite, a scale of 0, or lies more than 2^29 pixels away; `InvalidParam` when the input has no pixels.
     pub fn warp_into<T: InputSample>(
         &self,
         image: ImageView<'_>,
@@ -256,7 +251,7 @@ impl Preprocess {
         Ok(())
     }
 
-    /// Lets threads write the rows of `out`, where that is worth it for `pixels` pixels.
+    /// Calls the kernel for the rows of `out`, on several threads where `pixels` is large enough.
     fn for_each_row<T: InputSample>(
         &self,
         out: &mut [T],
@@ -304,10 +299,12 @@ impl Preprocess {
     fn misfit(&self, samples: usize) -> Error {
         let shape = self.shape();
         if self.is_empty() {
-            return Error::invalid_param(format!("a network input of shape {shape:?} has no pixel"));
+            return Error::invalid_param(format!(
+                "a network input of shape {shape:?} has no pixels; set width and height to at least 1"
+            ));
         }
         Error::invalid_input(format!(
-            "the input buffer has {samples} samples, the shape {shape:?} needs {}",
+            "the input buffer has {samples} samples, but the shape {shape:?} needs {}",
             self.len()
         ))
     }

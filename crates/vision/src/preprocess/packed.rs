@@ -1,24 +1,6 @@
-//! The fast kernels: `u8` pictures whose pixels are 3 or 4 bytes that lie together.
-//!
-//! # Dispatch
-//! At run time, by what the processor has:
-//! * x86-64 with AVX2 and FMA: `kernels_x86.rs`.
-//! * Anything else: the kernel of `strided.rs`, which the compiler vectorises as far as it can.
-//!
-//! Both blend exactly to about 0.01 of a level; sums are ordered differently, so the last bits differ.
+//! Inputs of the fast kernels: `u8` images with pixels of 3 or 4 contiguous bytes.
 
-use std::ops::Range;
-
-use opendr_engine::data::{ImageView, Samples};
-
-use crate::preprocess::band::Row;
-#[cfg(target_arch = "x86_64")]
-use crate::preprocess::kernels_x86 as kernels;
-use crate::preprocess::plan::{PackedColumns, TAP_BYTES};
-use crate::preprocess::sample::Written;
-use crate::preprocess::strided::Finish;
-
-/// Pixels that a kernel writes at once; rows are at least as long.
+/// Pixels that a kernel writes at once; rows have at least as many.
 pub(super) const BLOCK: usize = 8;
 
 /// Two source rows, beginning with the view's first column, and the weight of the second.
@@ -27,81 +9,12 @@ pub(super) struct PackedRow<'a> {
     pub(super) weight: f32,
 }
 
-/// What the packed kernels need to know of a picture; it exists only where they can run.
+/// Parameters of the packed kernels for an image; it exists only where they can run.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Packed {
-    /// For each byte of four 32-bit words, one a channel, the byte to take from the 8 at a column's offset: the low
-    /// half of a word gets the first tap, the high half the second. 0x80 gives 0.
+    /// For each byte of four 32-bit words, one per channel, the byte to take from the 8 at a column's offset: the low
+    /// half of a word is the first tap, the high half the second. 0x80 yields 0.
     pub(super) shuffle: [u8; 16],
     pub(super) scale: [f32; 3],
     pub(super) bias: [f32; 3],
-}
-
-impl Packed {
-    /// `None` where the kernels cannot read `view` or the processor cannot run them.
-    pub(super) fn for_view(view: &ImageView<'_>, finish: &Finish) -> Option<Self> {
-        let [row, step, channel] = view.strides();
-        let reads = matches!(view.samples(), Samples::U8(_))
-            && (step == 3 || step == 4)
-            && channel == 1
-            && view.width() >= TAP_BYTES
-            && row >= view.width() * step
-            && view.format().channels() >= 3
-            && view.width().max(row) < (i32::MAX / 4) as usize
-            && !finish.luminance;
-        if !reads || !supported() {
-            return None;
-        }
-        let mut shuffle = [0x80; 16];
-        for (word, &channel) in shuffle.as_chunks_mut::<4>().0.iter_mut().zip(&finish.channels) {
-            *word = [channel as u8, 0x80, (channel + step) as u8, 0x80];
-        }
-        Some(Self { shuffle, scale: finish.scale, bias: finish.bias })
-    }
-
-    /// Writes `columns` into `row`; `false` when there are too few for a kernel.
-    pub(super) fn write<W: Written>(
-        &self,
-        source: &PackedRow<'_>,
-        plan: &PackedColumns,
-        columns: Range<usize>,
-        row: &mut Row<'_, W>,
-    ) -> bool {
-        let fits = columns.len() >= BLOCK && row.channels == 3 && row.columns() == columns.len();
-        if fits {
-            kernels_write(self, source, plan, columns, row);
-        }
-        fits
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-fn supported() -> bool {
-    kernels::supported()
-}
-
-#[cfg(target_arch = "x86_64")]
-fn kernels_write<W: Written>(
-    packed: &Packed,
-    source: &PackedRow<'_>,
-    plan: &PackedColumns,
-    columns: Range<usize>,
-    row: &mut Row<'_, W>,
-) {
-    kernels::write(packed, source, plan, columns, row);
-}
-
-#[cfg(not(target_arch = "x86_64"))]
-fn supported() -> bool {
-    false
-}
-
-#[cfg(not(target_arch = "x86_64"))]
-fn kernels_write<W: Written>(
-    _: &Packed,
-    _: &PackedRow<'_>,
-    _: &PackedColumns,
-    _: Range<usize>,
-    _: &mut Row<'_, W>,
-) {
 }

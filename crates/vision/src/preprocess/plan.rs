@@ -1,14 +1,14 @@
-//! What depends on sizes only: which source samples each output row and column blends.
+//! Tables that depend on sizes only: the source samples that each output row and column blends.
 
 use std::sync::{Mutex, PoisonError};
 
-/// Plans that lie ready for their next picture: enough for a few cameras or crops at once.
-const KEPT: usize = 8;
+/// Number of cached plans: enough for a few cameras or crops at once.
+const CACHE_SIZE: usize = 8;
 
-/// One of the weights of a column in fixed point; both sum up to this.
+/// Sum of the two fixed-point weights of a column.
 pub(super) const ONE: u32 = 1 << 14;
 
-/// Bytes that a kernel reads from a column's offset on; both taps of a pixel of 3 or 4 bytes are among them.
+/// Bytes that a kernel reads from a column's offset on; they contain both taps of a pixel of 3 or 4 bytes.
 pub(super) const TAP_BYTES: usize = 16;
 
 /// The two source samples between which an output sample lies.
@@ -20,8 +20,8 @@ pub(super) struct Tap {
     pub(super) weight: f32,
 }
 
-/// The taps of `target` samples over `source` ones: half-pixel centres, edge repeated, no antialiasing, as OpenCV's
-/// `INTER_LINEAR`. The taps are neighbours whenever there are two samples.
+/// Returns the taps of `target` samples over `source` ones: half-pixel centres, replicated edge, no antialiasing, as
+/// OpenCV's `INTER_LINEAR`. The taps are adjacent whenever there are at least two samples.
 fn taps(source: usize, target: usize) -> impl Iterator<Item = Tap> {
     let scale = source as f64 / target as f64;
     let last = source.saturating_sub(2) as f64;
@@ -34,14 +34,14 @@ fn taps(source: usize, target: usize) -> impl Iterator<Item = Tap> {
     })
 }
 
-/// What a plan was made for.
+/// Sizes that a plan depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Sizes {
-    /// Width and height of the picture.
+    /// Width and height of the image.
     pub(super) source: [usize; 2],
-    /// Width and height it is shown at.
+    /// Width and height of its area in the input.
     pub(super) target: [usize; 2],
-    /// Bytes from pixel to pixel where the packed kernels read, else 0.
+    /// Bytes from pixel to pixel for the packed kernels; 0 without them.
     pub(super) step: usize,
 }
 
@@ -52,11 +52,11 @@ pub(super) struct Plan {
     pub(super) rows: Vec<Tap>,
     pub(super) columns: Vec<Tap>,
     packed: PackedColumns,
-    /// A copy of the last source row with room after it, for views that end right there.
+    /// A copy of the last source row with padding, for views that end at the end of the memory.
     pub(super) last_row: Vec<u8>,
 }
 
-/// Columns as the packed kernels read them.
+/// Columns in the form of the packed kernels.
 #[derive(Debug, Default)]
 pub(super) struct PackedColumns {
     offsets: Vec<u32>,
@@ -65,17 +65,17 @@ pub(super) struct PackedColumns {
 }
 
 impl PackedColumns {
-    /// Byte offset of each column's first tap.
+    /// Returns the byte offset of each column's first tap.
     pub(super) fn offsets(&self) -> &[u32] {
         &self.offsets
     }
 
-    /// Weights of each column's taps in units of 1 / [`ONE`]: the first in the low half.
+    /// Returns the weights of each column's taps in units of 1 / [`ONE`]: the first in the low half.
     pub(super) fn weights(&self) -> &[u32] {
         &self.weights
     }
 
-    /// How many bytes of a row are read: no offset plus [`TAP_BYTES`] is larger.
+    /// Returns the number of bytes of a row that are read: no offset plus [`TAP_BYTES`] is larger.
     pub(super) fn reach(&self) -> usize {
         self.reach
     }
@@ -93,12 +93,12 @@ impl PackedColumns {
 }
 
 impl Plan {
-    /// Columns as the packed kernels read them.
+    /// Returns the columns in the form of the packed kernels.
     pub(super) fn packed(&self) -> &PackedColumns {
         &self.packed
     }
 
-    /// Makes the tables for `sizes`; memory is used again.
+    /// Computes the tables for `sizes`; memory is reused.
     fn rebuild(&mut self, sizes: Sizes) {
         self.sizes = sizes;
         self.columns.clear();
@@ -111,14 +111,14 @@ impl Plan {
     }
 }
 
-/// Plans that are used again, so that a stream of pictures of one size allocates nothing.
+/// A cache of plans, so that a stream of images of one size allocates nothing.
 #[derive(Debug, Default)]
 pub(super) struct Plans {
     free: Mutex<Vec<Plan>>,
 }
 
 impl Plans {
-    /// Lends a plan for `sizes` to `work`; several threads may borrow at once.
+    /// Calls `work` with a plan for `sizes`; several threads may do so at once.
     pub(super) fn with<R>(&self, sizes: Sizes, work: impl FnOnce(&mut Plan) -> R) -> R {
         let mut plan = self.take(sizes);
         if plan.sizes != sizes {
@@ -129,12 +129,13 @@ impl Plans {
         result
     }
 
-    /// The plan for `sizes`; a new one as long as few are kept; else the one that was not used for the longest time.
+    /// Returns the plan for `sizes`: the cached one, a new one while the cache has space, or the least recently used
+    /// one.
     fn take(&self, sizes: Sizes) -> Plan {
         let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
         match free.iter().rposition(|plan| plan.sizes == sizes) {
             Some(index) => free.remove(index),
-            None if free.len() < KEPT => Plan::default(),
+            None if free.len() < CACHE_SIZE => Plan::default(),
             None => free.remove(0),
         }
     }
@@ -179,6 +180,6 @@ mod tests {
                 );
             });
         }
-        assert_eq!(plans.free.lock().unwrap().len(), KEPT);
+        assert_eq!(plans.free.lock().unwrap().len(), CACHE_SIZE);
     }
 }

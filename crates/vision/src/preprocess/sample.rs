@@ -1,7 +1,7 @@
 //! The sample types of network inputs.
 
-/// A sample type that networks take: `f32`, or integers into which values are rounded (ties to even) and cut
-/// (`i32` at four million).
+/// A sample type of network inputs: `f32`, or integers, to which values are rounded (ties to even) and clamped (`i32`
+/// at four million).
 pub trait InputSample: sealed::Convert {}
 
 impl InputSample for f32 {}
@@ -9,12 +9,12 @@ impl InputSample for i32 {}
 impl InputSample for i8 {}
 impl InputSample for u8 {}
 
-/// What kernels write: `f32` or `i32`.
+/// Sample types that the kernels write: `f32` or `i32`.
 pub trait Written: Copy + Default {
-    /// The largest magnitude that is rounded to an integer; `None` where values stay as they are.
+    /// The largest magnitude that is rounded to an integer; `None` for floats.
     const ROUNDED_WITHIN: Option<f32>;
 
-    /// The sample for a value.
+    /// Converts a value to a sample.
     fn from_value(value: f32) -> Self;
 }
 
@@ -30,7 +30,7 @@ impl Written for i32 {
     const ROUNDED_WITHIN: Option<f32> = Some(4e6);
 
     fn from_value(value: f32) -> Self {
-        // Below 2^22, adding 1.5 * 2^23 moves the integer into the low bits: rounding without a call.
+        // Below 2^22, adding 1.5 * 2^23 moves the integer into the low bits: rounding without a function call.
         const SHIFT: f32 = 12_582_912.0;
         let shifted = value.clamp(-4e6, 4e6) + SHIFT;
         (shifted.to_bits() as Self).wrapping_sub(SHIFT.to_bits() as Self)
@@ -40,15 +40,15 @@ impl Written for i32 {
 pub(super) mod sealed {
     use super::Written;
 
-    /// How a sample comes from what kernels write; keeps [`super::InputSample`] to the types below.
+    /// Conversion from the kernels' sample type; seals [`super::InputSample`].
     pub trait Convert: Copy + Send {
-        /// What kernels write for this sample.
+        /// The type that the kernels write for this sample.
         type Written: Written;
 
-        /// The sample for what was written.
+        /// Converts a written value to the sample.
         fn from_written(written: Self::Written) -> Self;
 
-        /// The slice itself where nothing needs conversion: kernels then write in place.
+        /// Returns the slice itself where no conversion is needed: kernels then write in place.
         fn in_place(_: &mut [Self]) -> Option<&mut [Self::Written]> {
             None
         }

@@ -1,18 +1,18 @@
-//! A picture as the kernels read it, and the choice of the kernel.
+//! An image as the kernels read it, and the choice of the kernel.
 
 use std::ops::Range;
 
 use opendr_engine::data::{ImageView, Samples};
 
-use crate::preprocess::Border;
 use crate::preprocess::band::Row;
+use crate::preprocess::border::Border;
 use crate::preprocess::packed::{Packed, PackedRow};
 use crate::preprocess::plan::{Plan, TAP_BYTES};
 use crate::preprocess::sample::Written;
 use crate::preprocess::strided::{Finish, blend_row};
 use crate::preprocess::warped::{Line, warp_row};
 
-/// A view together with what becomes of its pixels.
+/// A view with the conversion of its pixels.
 pub(super) struct Source<'a> {
     view: ImageView<'a>,
     finish: Finish,
@@ -25,18 +25,18 @@ impl<'a> Source<'a> {
         Self { view, finish, packed: Packed::for_view(&view, &finish) }
     }
 
-    /// The same through the kernel for every picture.
+    /// Returns the source with the plain kernel.
     #[cfg(test)]
     pub(super) fn plain(self) -> Self {
         Self { packed: None, ..self }
     }
 
-    /// Bytes from pixel to pixel where the packed kernel reads, else 0.
+    /// Returns the bytes from pixel to pixel for the packed kernel; 0 without it.
     pub(super) fn step(&self) -> usize {
         if self.packed.is_some() { self.view.strides()[1] } else { 0 }
     }
 
-    /// Copies what the packed kernel could not read in place: it reads some bytes beyond the last pixel.
+    /// Copies the last row for the packed kernel, which reads some bytes beyond the last pixel.
     pub(super) fn prepare(&self, plan: &mut Plan) {
         let (Some(_), Samples::U8(samples)) = (self.packed, self.view.samples()) else { return };
         let last = samples.get((self.view.height() - 1) * self.view.strides()[0]..).unwrap_or_default();
@@ -47,7 +47,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Writes `columns` of the plan's row `index`.
+    /// Writes `columns` of row `index` of the plan.
     pub(super) fn write<W: Written>(
         &self,
         plan: &Plan,

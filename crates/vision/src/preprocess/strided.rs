@@ -1,13 +1,12 @@
-//! The kernel for every picture: any sample type, any strides. Plain Rust, and what the packed kernels are tested
-//! against.
+//! The kernel for any sample type and any strides. Plain Rust; the reference of the packed kernels' tests.
 
 use crate::preprocess::band::Row;
 use crate::preprocess::plan::Tap;
 use crate::preprocess::sample::Written;
 
-/// A sample of a picture as a level, 0..=255.
+/// An image sample as a level, 0..=255.
 pub(super) trait Level: Copy + Sync {
-    /// The level: `u16` by 1/257, floats are taken as 0..=1.
+    /// Returns the level: `u16` divided by 257, floats times 255.
     fn level(self) -> f32;
 }
 
@@ -29,22 +28,22 @@ impl Level for f32 {
     }
 }
 
-/// What becomes of the levels of a pixel.
+/// Conversion of the levels of a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Finish {
-    /// Offsets in samples of the picture's channels, in the order of the input's.
+    /// Offsets in samples of the image's channels, in the order of the input's.
     pub(super) channels: [usize; 3],
-    /// Whether the three channels (red, green, blue) become one luminance.
+    /// Whether the three channels (red, green, blue) are combined to luminance.
     pub(super) luminance: bool,
-    /// The value is `level * scale + bias`, for each channel of the input.
+    /// The value is `level * scale + bias`, per channel of the input.
     pub(super) scale: [f32; 3],
     pub(super) bias: [f32; 3],
 }
 
-/// Luminance of red, green and blue by ITU-R BT.601.
+/// Weights of red, green and blue in the luminance by ITU-R BT.601.
 pub(crate) const LUMINANCE: [f32; 3] = [0.299, 0.587, 0.114];
 
-/// Blends row `tap` of a picture with `strides` (row, pixel) into `row`.
+/// Blends row `tap` of an image with `strides` (row, pixel) into `row`.
 pub(super) fn blend_row<S: Level, W: Written>(
     samples: &[S],
     strides: [usize; 2],

@@ -1,11 +1,11 @@
-//! Every path against one plain reference in double precision, written from the definition.
+//! Every path against one plain reference in double precision.
 
 use opendr_engine::data::{Image, ImageView, Layout, PixelFormat, Pixels, Samples};
 use proptest::prelude::*;
 
 use super::*;
 
-/// The level of one sample.
+/// Returns the level of one sample.
 pub(super) fn level(view: &ImageView<'_>, x: usize, y: usize, channel: usize) -> f64 {
     let [row, column, plane] = view.strides();
     let at = y * row + x * column + channel * plane;
@@ -16,7 +16,7 @@ pub(super) fn level(view: &ImageView<'_>, x: usize, y: usize, channel: usize) ->
     }
 }
 
-/// OpenCV's `INTER_LINEAR` at output pixel `(x, y)` of `width` x `height`.
+/// Returns OpenCV's `INTER_LINEAR` at output pixel `(x, y)` of `width` x `height`.
 fn blended(view: &ImageView<'_>, channel: usize, x: usize, y: usize, width: usize, height: usize) -> f64 {
     let position = |index: usize, source: usize, target: usize| {
         let at = (index as f64 + 0.5) * source as f64 / target as f64 - 0.5;
@@ -29,7 +29,7 @@ fn blended(view: &ImageView<'_>, channel: usize, x: usize, y: usize, width: usiz
     row(upper) * (1.0 - down) + row(lower) * down
 }
 
-/// What `preprocess` should write for `view`.
+/// Returns the expected output of `preprocess` for `view`.
 fn reference(preprocess: &Preprocess, view: &ImageView<'_>) -> Vec<f64> {
     let [width, height] = preprocess.size;
     let channels = preprocess.order.channels();
@@ -64,7 +64,7 @@ fn reference(preprocess: &Preprocess, view: &ImageView<'_>) -> Vec<f64> {
     out
 }
 
-/// Samples without a pattern.
+/// Pseudo-random samples.
 fn noise(count: usize, seed: u64) -> impl Iterator<Item = u32> {
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
     (0..count).map(move |_| {
@@ -124,8 +124,11 @@ fn every_combination_is_the_reference() {
                 let stretched = Preprocess::new(19, 31).order(order).layout(layout);
                 check(&stretched, image.view());
                 let normalised = stretched.normalise([103.5, 116.3, 123.7], [57.4, 57.1, 58.4]);
-                check(&normalised.clone().letterbox(Anchor::Centre, 114.0), image.view());
-                check(&normalised.letterbox(Anchor::TopLeft, 0.0), image.view().crop(5, 3, 21, 30).unwrap());
+                check(&normalised.clone().letterbox(LetterboxAlign::Centre, 114.0), image.view());
+                check(
+                    &normalised.letterbox(LetterboxAlign::TopLeft, 0.0),
+                    image.view().crop(5, 3, 21, 30).unwrap(),
+                );
             }
         }
     }
@@ -137,7 +140,7 @@ fn large_inputs_are_cut_into_bands() {
     for threads in [1, 2, 3, 16] {
         let preprocess = Preprocess::new(131, 127).threads(threads);
         check(&preprocess, image.view());
-        check(&preprocess.layout(Layout::Hwc).letterbox(Anchor::Centre, 7.0), image.view());
+        check(&preprocess.layout(Layout::Hwc).letterbox(LetterboxAlign::Centre, 7.0), image.view());
     }
 }
 
@@ -177,7 +180,9 @@ fn smallest_pictures_and_inputs() {
             for target in [[1, 1], [1, 9], [7, 2], [8, 8], [9, 1], [33, 2]] {
                 check(&Preprocess::new(target[0], target[1]), image.view());
                 check(
-                    &Preprocess::new(target[0], target[1]).letterbox(Anchor::Centre, 1.0).layout(Layout::Hwc),
+                    &Preprocess::new(target[0], target[1])
+                        .letterbox(LetterboxAlign::Centre, 1.0)
+                        .layout(Layout::Hwc),
                     image.view(),
                 );
             }
@@ -234,7 +239,7 @@ fn plain_kernel_is_the_reference_where_the_packed_one_runs() {
 }
 
 proptest! {
-    /// Sizes, strides and alignments at random: crops begin at any byte and end with the picture's memory or before.
+    /// Random sizes, strides and alignments: crops begin at any byte and end at or before the end of the memory.
     #[test]
     fn any_crop_to_any_size(
         source in [1usize..90, 1usize..40],
@@ -254,6 +259,6 @@ proptest! {
         let layout = if interleaved { Layout::Hwc } else { Layout::Chw };
         let preprocess = Preprocess::new(target[0], target[1]).order(order).layout(layout);
         let preprocess = preprocess.normalise([1.0, 2.0, 3.0], [2.0, 0.5, 1.0]);
-        check(&if letterbox { preprocess.letterbox(Anchor::Centre, 9.0) } else { preprocess }, view);
+        check(&if letterbox { preprocess.letterbox(LetterboxAlign::Centre, 9.0) } else { preprocess }, view);
     }
 }

@@ -1,4 +1,4 @@
-//! Turned crops against plain resizing, against copies, and against a reference in double precision.
+//! Rotated crops against plain resizing, copies, and a reference in double precision.
 
 use opendr_engine::data::{Image, ImageView, Layout, PixelFormat};
 use proptest::prelude::*;
@@ -12,13 +12,13 @@ fn warped(preprocess: &Preprocess, view: ImageView<'_>, crop: &Similarity) -> Ve
     out
 }
 
-/// Channel `channel` at a position: OpenCV's `warpAffine` in double precision.
+/// Returns channel `channel` at a position: OpenCV's `warpAffine` in double precision.
 fn sampled(view: &ImageView<'_>, [x, y]: [f64; 2], channel: usize, border: Border) -> f64 {
     let (x, y) = (x - 0.5, y - 0.5);
     let tap = |x: f64, y: f64| {
         let (right, bottom) = ((view.width() - 1) as f64, (view.height() - 1) as f64);
         match border {
-            Border::Level(level) if x < 0.0 || y < 0.0 || x > right || y > bottom => f64::from(level),
+            Border::Constant(level) if x < 0.0 || y < 0.0 || x > right || y > bottom => f64::from(level),
             _ => level(view, x.clamp(0.0, right) as usize, y.clamp(0.0, bottom) as usize, channel),
         }
     };
@@ -72,7 +72,7 @@ fn quarter_turns_are_turned_copies() {
 #[test]
 fn doubling_is_plain_resizing_within() {
     let image = noise_image([20, 16], PixelFormat::Bgr, Layout::Hwc, 8, 2);
-    let preprocess = Preprocess::new(40, 32).border(Border::Repeat);
+    let preprocess = Preprocess::new(40, 32).border(Border::Replicate);
     let mut plain = vec![0f32; preprocess.len()];
     preprocess.run_into(image.view(), &mut plain).unwrap();
     let crop = Similarity::new(0.5, 0.0, [0.0, 0.0]);
@@ -105,9 +105,9 @@ fn wrong_crops_and_buffers_are_refused() {
 fn far_away_is_the_border() {
     let image = Image::from_rgb8(vec![200; 12 * 9 * 3], 12, 9).unwrap();
     let far = Similarity::new(3.0, 1.0, [4e8, -5e8]);
-    let level = Preprocess::new(16, 16).border(Border::Level(7.0)).normalise([1.0; 3], [2.0; 3]);
+    let level = Preprocess::new(16, 16).border(Border::Constant(7.0)).normalise([1.0; 3], [2.0; 3]);
     assert!(warped(&level, image.view(), &far).iter().all(|value| *value == 3.0));
-    let repeat = Preprocess::new(16, 16).border(Border::Repeat);
+    let repeat = Preprocess::new(16, 16).border(Border::Replicate);
     assert!(warped(&repeat, image.view(), &far).iter().all(|value| *value == 200.0));
 }
 
@@ -126,7 +126,7 @@ proptest! {
     ) {
         let stored = if stored_chw { Layout::Chw } else { Layout::Hwc };
         let image = noise_image(source, format, stored, bits, seed);
-        let border = if repeat { Border::Repeat } else { Border::Level(114.0) };
+        let border = if repeat { Border::Replicate } else { Border::Constant(114.0) };
         let layout = if out_hwc { Layout::Hwc } else { Layout::Chw };
         let preprocess = Preprocess::new(target[0], target[1]).border(border).layout(layout);
         let crop = Similarity::new(scale, angle, origin);

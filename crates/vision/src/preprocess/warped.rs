@@ -1,20 +1,20 @@
-//! The kernel of turned crops: any sample type, any strides.
+//! The kernel of rotated crops, for any sample type and any strides.
 
 use opendr_engine::data::ImageView;
 
-use crate::preprocess::Border;
 use crate::preprocess::band::Row;
+use crate::preprocess::border::Border;
 use crate::preprocess::sample::Written;
 use crate::preprocess::strided::{Finish, LUMINANCE, Level};
 
-/// Positions of a row's pixels in the picture, in pixels times 2^32 from the centre of the picture's first pixel.
+/// Positions of a row's pixels in the image, in pixels times 2^32 from the centre of the image's first pixel.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Line {
     pub(super) start: [i64; 2],
     pub(super) step: [i64; 2],
 }
 
-/// Pixel strides and sizes of the picture.
+/// Pixel strides and size of the image.
 struct Grid {
     size: [i64; 2],
     strides: [usize; 2],
@@ -26,16 +26,16 @@ impl Grid {
         y as usize * self.strides[0] + x as usize * self.strides[1]
     }
 
-    /// Where a pixel begins that is inside, as those right of it, below it and between these are.
+    /// Returns the offset of a pixel whose right, lower and diagonal neighbours are inside the image too.
     fn inside(&self, left: i64, top: i64) -> Option<usize> {
         let is_inside = left >= 0 && top >= 0 && left + 1 < self.size[0] && top + 1 < self.size[1];
         is_inside.then(|| self.offset(left, top))
     }
 
-    /// Where a pixel begins; `None` outside of the picture.
+    /// Returns the offset of a pixel; `None` outside the image.
     fn pixel(&self, x: i64, y: i64) -> Option<usize> {
         let [nearest_x, nearest_y] = [x.clamp(0, self.size[0] - 1), y.clamp(0, self.size[1] - 1)];
-        (self.border == Border::Repeat || (nearest_x, nearest_y) == (x, y))
+        (self.border == Border::Replicate || (nearest_x, nearest_y) == (x, y))
             .then(|| self.offset(nearest_x, nearest_y))
     }
 }
@@ -58,14 +58,14 @@ pub(super) fn warp_row<S: Level, W: Written>(
 ) {
     let [down, right, _] = view.strides();
     let grid = Grid { size: [view.width() as i64, view.height() as i64], strides: [down, right], border };
-    let outside = if let Border::Level(level) = border { level } else { 0.0 };
+    let outside = if let Border::Constant(level) = border { level } else { 0.0 };
     let Finish { channels, scale, bias, luminance } = *finish;
     let level = |at: usize| samples.get(at).map_or(outside, |sample| sample.level());
     let mut position = line.start;
-    // Loops over arrays instead of their `map`, which is a call here and takes most of the time.
+    // Loops over arrays instead of their `map`, which is not inlined here and takes most of the time.
     let mut next = || {
         let [left, top] = [position[0] >> 32, position[1] >> 32];
-        // 24 bits are what a float holds.
+        // An `f32` holds 24 bits.
         let share = |position: i64| (position as u32 >> 8) as f32 * (1.0 / 16_777_216.0);
         let weights = [share(position[0]), share(position[1])];
         position = [position[0].wrapping_add(line.step[0]), position[1].wrapping_add(line.step[1])];

@@ -1,4 +1,4 @@
-//! What files lie in a folder, and in which order they are read.
+//! The files of a folder, in reading order.
 
 use std::cmp::Ordering;
 use std::fs;
@@ -8,10 +8,10 @@ use opendr_engine::{Error, Result, ResultExt};
 
 use crate::source::kind::{FileKind, kind_of_name};
 
-/// The pictures and videos of `folder` itself, by their names; hidden files and folders in it are left out.
+/// Returns the images and videos of `folder`, without subfolders, sorted by name; hidden files are omitted.
 ///
 /// # Errors
-/// `Io` when the folder cannot be read, `NotFound` when it holds no picture and no video.
+/// `Io` when the folder cannot be read, `NotFound` when it contains neither images nor videos.
 pub(super) fn files_of_folder(folder: &Path) -> Result<Vec<PathBuf>> {
     let reading = || format!("reading the folder {}", folder.display());
     let mut found = Vec::new();
@@ -28,8 +28,8 @@ pub(super) fn files_of_folder(folder: &Path) -> Result<Vec<PathBuf>> {
     }
     if found.is_empty() {
         return Err(Error::not_found(format!(
-            "no picture and no video in the folder {} ({others} other files, {folders} folders); for pictures further \
-             down give a pattern such as \"{}\"",
+            "no image or video in the folder {} ({others} other files, {folders} folders); for images in \
+             subfolders pass a pattern such as \"{}\"",
             folder.display(),
             folder.join("**").join("*.jpg").display()
         )));
@@ -37,7 +37,7 @@ pub(super) fn files_of_folder(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// Sorts paths as people do: runs of digits by their value, so that `frame_9` comes before `frame_10`.
+/// Sorts paths in natural order: runs of digits by their value, so that `frame_9` precedes `frame_10`.
 pub(super) fn sort_naturally(paths: &mut [PathBuf]) {
     paths.sort_by(|a, b| {
         let [first, second] = [a, b].map(|path| path.as_os_str().as_encoded_bytes());

@@ -1,6 +1,6 @@
 //! File name patterns: `*`, `?`, `[a-z]`, `[!a-z]`, and `**` for any number of folders.
 //!
-//! Matched on bytes, so that names which are no UTF-8 are found too.
+//! Patterns match bytes, so that names that are not UTF-8 match too.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -8,16 +8,16 @@ use std::path::{Component, Path, PathBuf};
 
 use opendr_engine::{Error, Result};
 
-/// How deep `**` goes; links to folders are not followed, so this only bounds real trees.
+/// Maximum depth of `**`; symbolic links to folders are not followed.
 const MAX_DEPTH: usize = 64;
 
-/// Whether `path` has a character that only a pattern has.
+/// Returns whether `path` has a character that is special in patterns.
 pub(super) fn is_pattern(path: &Path) -> bool {
     path.as_os_str().as_encoded_bytes().iter().any(|byte| b"*?[".contains(byte))
 }
 
-/// The files that match `pattern`, in no particular order. As in a shell, names that begin with a full stop are only
-/// matched by a pattern that does.
+/// Returns the files that match `pattern`, unsorted. As in a shell, names that begin with a full stop match only a
+/// pattern that begins with one.
 ///
 /// # Errors
 /// `NotFound` when nothing matches.
@@ -37,7 +37,7 @@ pub(super) fn files_of_pattern(pattern: &Path) -> Result<Vec<PathBuf>> {
     found.dedup();
     if found.is_empty() {
         return Err(Error::not_found(format!(
-            "no file matches \"{}\" (searched from {}); check the pattern, and quote it so that the shell leaves it alone",
+            "no file matches \"{}\" (searched in {}); check the pattern, and quote it so that the shell does not expand it",
             pattern.display(),
             if root.as_os_str().is_empty() { "the current folder".into() } else { root.to_string_lossy() },
         )));
@@ -85,7 +85,8 @@ fn walk(folder: &Path, parts: &[&OsStr], depth: usize, found: &mut Vec<PathBuf>)
     }
 }
 
-/// Whether `name` matches `pattern`. Greedy with one place to come back to: linear in practice, quadratic at worst.
+/// Returns whether `name` matches `pattern`. Greedy with one backtracking point: linear in practice, quadratic in the
+/// worst case.
 fn matches(pattern: &[u8], name: &[u8]) -> bool {
     let (mut p, mut n) = (0, 0);
     let mut retry: Option<(usize, usize)> = None;
@@ -117,16 +118,17 @@ fn matches(pattern: &[u8], name: &[u8]) -> bool {
     pattern[p..].iter().all(|byte| *byte == b'*')
 }
 
-/// Bytes of the UTF-8 character that `name` begins with; 1 where it is none.
+/// Returns the length in bytes of the first UTF-8 character of `name`; 1 for an invalid one.
 fn character_length(name: &[u8]) -> usize {
     1 + name[1..].iter().take(3).take_while(|byte| name[0] >= 0xc0 && **byte & 0xc0 == 0x80).count()
 }
 
-/// Length of the class that `pattern` begins with and whether it holds `byte`; `None` when it does not end.
+/// Returns the length of the character class at the start of `pattern` and whether it contains `byte`; `None` when it
+/// is not closed.
 fn class_matches(pattern: &[u8], byte: u8) -> Option<(usize, bool)> {
     let negated = matches!(pattern.get(1), Some(b'!' | b'^'));
     let first = if negated { 2 } else { 1 };
-    // A closing bracket that comes first is a member.
+    // A closing bracket in first position is a member.
     let end = first + 1 + pattern.get(first + 1..)?.iter().position(|byte| *byte == b']')?;
     let mut members = &pattern[first..end];
     let mut found = false;

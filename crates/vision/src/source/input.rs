@@ -1,4 +1,4 @@
-//! What a user names as input, sorted into what can be read in one go.
+//! Splitting of inputs into segments that one reader reads.
 
 use std::path::{Path, PathBuf};
 
@@ -14,19 +14,19 @@ use crate::video::{self, Ffmpeg};
 /// A part of a source that one reader reads.
 #[derive(Debug)]
 pub(super) enum Segment {
-    /// Picture files, in order.
+    /// Image files, in order.
     Pictures(Vec<PathBuf>),
-    /// A video file, and what it tells of itself or why it cannot be read.
+    /// A video file, and its properties or the error of opening it.
     Video(PathBuf, Result<VideoInfo>),
     /// A camera that streams.
     Camera(Box<Camera>),
 }
 
-/// The segments of several inputs; pictures that follow each other make one segment.
+/// Returns the segments of several inputs; consecutive images form one segment.
 ///
 /// # Errors
-/// `NotFound` when an input does not exist, or a folder or pattern holds nothing to read; `Io` when a folder cannot be
-/// read; `Unsupported` when there is a video and no program for it; what [`Camera::open`] says of cameras.
+/// `NotFound` when an input does not exist, or a folder or pattern has no images or videos; `Io` when a folder cannot
+/// be read; `Unsupported` when there is a video and `ffmpeg` is not installed; the errors of [`Camera::open`].
 pub(super) fn segments_of_inputs<P: AsRef<Path>>(
     inputs: impl IntoIterator<Item = P>,
     options: &SourceOptions,
@@ -50,7 +50,7 @@ pub(super) fn segments_of_inputs<P: AsRef<Path>>(
         }
     }
     if segments.is_empty() {
-        return Err(Error::not_found("no input; give a picture, folder, pattern, video or camera"));
+        return Err(Error::not_found("no input; pass an image, folder, pattern, video or camera"));
     }
     Ok(segments)
 }
@@ -69,7 +69,8 @@ fn files_of_input(input: &Path) -> Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// Asks a video about itself. That it cannot be read is the video's affair; that no video can be is an error.
+/// Reads the properties of a video. The outer error means that no video can be read, the inner one that this video
+/// cannot.
 fn probe_video(path: &Path, options: &SourceOptions) -> Result<Result<VideoInfo>> {
     let info = check_is_file(path)
         .context(|| format!("opening {}", path.display()))
@@ -80,7 +81,7 @@ fn probe_video(path: &Path, options: &SourceOptions) -> Result<Result<VideoInfo>
     }
 }
 
-/// The device of `camera:N`, `camera:/dev/...` or `/dev/video...`.
+/// Returns the device of `camera:N`, `camera:/dev/...` or `/dev/video...`.
 fn camera_of_text(input: &Path) -> Option<PathBuf> {
     let text = input.to_str()?;
     match text.strip_prefix("camera:") {
@@ -95,7 +96,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cameras_are_known_by_their_text() {
+    fn camera_inputs_are_recognised() {
         let device = |text: &str| camera_of_text(Path::new(text));
         assert_eq!(device("camera:0"), Some("/dev/video0".into()));
         assert_eq!(device("camera:/dev/v4l/by-id/x"), Some("/dev/v4l/by-id/x".into()));

@@ -1,4 +1,4 @@
-//! Whether a file is a picture or a video: by its name, else by its first bytes.
+//! Distinction of images and videos, by file name or first bytes.
 
 use std::fs::File;
 use std::io::Read;
@@ -6,22 +6,22 @@ use std::path::Path;
 
 use opendr_engine::{Error, Result};
 
-/// What a file is read as.
+/// The kind of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum FileKind {
-    /// One picture.
+    /// One image.
     Picture,
-    /// Frames in time.
+    /// A video.
     Video,
 }
 
-/// Names that people expect to be read; those that are not say so when they are opened.
+/// Extensions of images. Formats that cannot be decoded are included, so that opening them reports an error.
 const PICTURES: [&str; 7] = ["jpg", "jpeg", "png", "bmp", "webp", "tif", "tiff"];
 
 const VIDEOS: [&str; 13] =
     ["mp4", "m4v", "mov", "mkv", "webm", "avi", "mpg", "mpeg", "ts", "flv", "wmv", "ogv", "gif"];
 
-/// What a file is by its extension.
+/// Returns the kind of a file by its extension.
 pub(super) fn kind_of_name(path: &Path) -> Option<FileKind> {
     let extension = path.extension()?.to_str()?;
     let is_one = |known: &&str| known.eq_ignore_ascii_case(extension);
@@ -34,8 +34,8 @@ pub(super) fn kind_of_name(path: &Path) -> Option<FileKind> {
     }
 }
 
-/// What a file is by its extension, or else by its first bytes; what is neither is left to the picture decoder,
-/// which says what it found.
+/// Returns the kind of a file by its extension, or else by its first bytes; other files are left to the image
+/// decoder, which reports the detected content.
 pub(super) fn kind_of_file(path: &Path) -> FileKind {
     kind_of_name(path).unwrap_or_else(|| {
         let mut head = [0; 12];
@@ -52,19 +52,17 @@ fn is_video(head: &[u8]) -> bool {
         || head.starts_with(b"RIFF") && head.get(8..12).is_some_and(|form| form == b"AVI ")
 }
 
-/// Refuses what cannot be read to an end, such as a named pipe, before it is opened.
+/// Rejects paths that are not regular files, such as a named pipe, before they are opened.
 ///
 /// # Errors
-/// `NotFound` or `Io` when the path does not lead to anything, `InvalidInput` when it is not a file.
+/// `NotFound` or `Io` when the path cannot be accessed, `InvalidInput` when it is not a file.
 pub(super) fn check_is_file(path: &Path) -> Result<()> {
     let metadata = std::fs::metadata(path)?;
     if metadata.is_dir() {
-        return Err(Error::invalid_input("a folder where a file was expected; give the files in it"));
+        return Err(Error::invalid_input("expected a file, but the path is a folder; pass the files in it"));
     }
     if !metadata.is_file() {
-        return Err(Error::invalid_input(
-            "neither a file nor a folder (a pipe, socket or device); give a file",
-        ));
+        return Err(Error::invalid_input("the path is a pipe, socket or device; pass a file"));
     }
     Ok(())
 }
@@ -74,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_tell() {
+    fn extensions_determine_the_kind() {
         assert_eq!(kind_of_name(Path::new("a/B.JPEG")), Some(FileKind::Picture));
         assert_eq!(kind_of_name(Path::new("a.b.mp4")), Some(FileKind::Video));
         assert_eq!(kind_of_name(Path::new("jpg")), None);
@@ -82,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_tell() {
+    fn first_bytes_determine_the_kind() {
         assert!(is_video(b"\x00\x00\x00\x20ftypisom"));
         assert!(is_video(b"RIFF\x00\x00\x00\x00AVI "));
         assert!(!is_video(b"RIFF\x00\x00\x00\x00WEBP"));

@@ -1,4 +1,4 @@
-//! Pictures from anywhere behind one iterator: files, folders, patterns, videos, cameras.
+//! Frames from files, folders, patterns, videos and cameras through one iterator.
 
 mod folder;
 mod frame;
@@ -29,16 +29,16 @@ use input::{Segment, segments_of_inputs};
 use pictures::Pictures;
 use threaded::Threaded;
 
-/// Frames from picture files, folders, patterns, videos and cameras, read ahead in the background.
+/// Frames from image files, folders, patterns, videos and cameras, read ahead in the background.
 ///
-/// A file that cannot be read is an `Err` that names it, and reading goes on with the next. Of files no frame is ever
-/// left out, however slow the consumer; of a camera it gets the newest frame, and what it had no time for is
-/// dropped. Dropping the source ends its threads and child processes.
+/// A file that cannot be read yields an `Err` that states its path, and reading resumes with the next file. Frames of
+/// files are never dropped; from a camera, a slow consumer receives the newest frame and older ones are dropped.
+/// Dropping the source ends its threads and child processes.
 #[derive(Debug)]
 pub struct Source {
     waiting: VecDeque<Segment>,
     reading: Option<Reading>,
-    /// The video file that is being read.
+    /// The video file that is read at present.
     video: Option<Arc<Path>>,
     options: SourceOptions,
     live: bool,
@@ -56,16 +56,16 @@ enum Reading {
 }
 
 impl Source {
-    /// Opens what `input` names:
+    /// Opens `input`:
     ///
-    /// * a picture or video file, by its name's extension, else by its first bytes;
-    /// * a folder: the pictures and videos in it, in the order of their names (numbers by value);
+    /// * an image or video file, by its extension or else by its first bytes;
+    /// * a folder: its images and videos, in natural order of their names;
     /// * a pattern such as `"photos/**/*.jpg"` (`*`, `?`, `[a-z]`, `**`);
     /// * a camera: `camera:0` or `/dev/video0`.
     ///
     /// # Errors
-    /// `NotFound` when the input does not exist or holds nothing to read, `Io` when a folder cannot be read,
-    /// `Unsupported` when it takes a program or system that is not there, `Device` when a camera does not do.
+    /// `NotFound` when the input does not exist or contains nothing to read, `Io` when a folder cannot be read,
+    /// `Unsupported` when a required program or system is missing, `Device` when a camera fails.
     pub fn open(input: impl AsRef<Path>) -> Result<Self> {
         Self::open_all([input], SourceOptions::default())
     }
@@ -73,7 +73,7 @@ impl Source {
     /// Opens several inputs, read one after the other.
     ///
     /// # Errors
-    /// See [`Source::open`]; the first input that cannot be opened decides.
+    /// Those of [`Source::open`], for the first input that cannot be opened.
     pub fn open_all<P: AsRef<Path>>(
         inputs: impl IntoIterator<Item = P>,
         options: SourceOptions,
@@ -93,7 +93,7 @@ impl Source {
             let length = match segment {
                 Segment::Pictures(paths) => Some(paths.len() as u64),
                 Segment::Video(_, Ok(info)) => info.frames,
-                // One error in its place.
+                // One error takes the place of the video.
                 Segment::Video(_, Err(_)) => Some(1),
                 Segment::Camera(_) => None,
             };
@@ -104,34 +104,34 @@ impl Source {
         Ok(source)
     }
 
-    /// Makes a source of any other frames, such as a camera with a driver of its own, read in a thread of their own.
-    /// Frames of a `live` source that the consumer has no time for are dropped.
+    /// Creates a source from an iterator of frames, such as a camera with a driver of its own, which runs in a thread
+    /// of its own. Of a `live` source, frames that the consumer is too slow for are dropped.
     ///
-    /// The thread ends with the first frame that arrives after the source was dropped.
+    /// The thread ends with the first frame after the source was dropped.
     pub fn from_frames(frames: impl Iterator<Item = Result<Frame>> + Send + 'static, live: bool) -> Self {
         let options = SourceOptions::default();
         let length = frames.size_hint().1.filter(|_| !live).map(|length| length as u64);
-        let reading = Some(Reading::Threaded(Threaded::detached(frames, live, options.ahead)));
+        let reading = Some(Reading::Threaded(Threaded::detached(frames, live, options.prefetch)));
         Self { waiting: VecDeque::new(), reading, video: None, options, live, length, given: 0, dropped: 0 }
     }
 
-    /// How many frames there will be, as far as files tell; `None` when unknown or endless.
+    /// Returns the number of frames, where the files state it; `None` when unknown or endless.
     pub fn len_hint(&self) -> Option<u64> {
         self.length
     }
 
-    /// Whether frames are taken while they are read, so that slow consumers miss some.
+    /// Returns whether the source is live, so that slow consumers lose frames.
     pub fn is_live(&self) -> bool {
         self.live
     }
 
-    /// Whether what is left are picture files only, no videos and no cameras.
-    pub fn is_pictures(&self) -> bool {
+    /// Returns whether only image files remain, no videos and no cameras.
+    pub fn is_images(&self) -> bool {
         matches!(self.reading, None | Some(Reading::Pictures(_)))
             && self.waiting.iter().all(|segment| matches!(segment, Segment::Pictures(_)))
     }
 
-    /// How many frames a slow consumer of a live source has missed.
+    /// Returns the number of frames of live sources that were dropped.
     pub fn dropped(&self) -> u64 {
         let current = match &self.reading {
             Some(Reading::Threaded(threaded)) => threaded.dropped(),
@@ -140,9 +140,9 @@ impl Source {
         self.dropped + current
     }
 
-    /// The file that the item just given out came from, also when that was an error. `None` when there was none yet or
-    /// is none left, and for cameras and frames that a program makes.
-    pub fn last_path(&self) -> Option<&Path> {
+    /// Returns the file of the last item, also when that was an error. `None` before the first item, after the last,
+    /// and for cameras and [`Source::from_frames`].
+    pub fn current_path(&self) -> Option<&Path> {
         match &self.reading {
             Some(Reading::Pictures(pictures)) => pictures.last_path(),
             Some(Reading::Threaded(_) | Reading::Failed(_)) => self.video.as_deref(),
@@ -163,7 +163,7 @@ impl Source {
                 let reader =
                     info.and_then(|info| VideoReader::start(&Ffmpeg::default(), path, info, max_samples));
                 match reader {
-                    Ok(reader) => Reading::Threaded(Threaded::new(reader, false, self.options.ahead)),
+                    Ok(reader) => Reading::Threaded(Threaded::new(reader, false, self.options.prefetch)),
                     Err(error) => Reading::Failed(Some(error)),
                 }
             }
@@ -188,7 +188,7 @@ impl Iterator for Source {
             };
             let index = self.given;
             self.given += 1;
-            return Some(frame.map(|frame| Frame { index, ..frame }));
+            return Some(frame.map(|frame| Frame { item_index: index, ..frame }));
         }
     }
 }

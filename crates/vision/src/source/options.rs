@@ -1,26 +1,26 @@
-//! How a source reads.
+//! Options of a source.
 
 use std::thread;
 
 use crate::codec::Decoder;
 
-/// How a [`crate::Source`] reads; the defaults suit most.
+/// Options of a [`crate::Source`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct SourceOptions {
-    /// Reads picture files; its limit on samples also bounds the frames of videos and cameras.
+    /// Decoder of image files; its limit on samples also applies to the frames of videos and cameras.
     pub decoder: Decoder,
-    /// Threads that decode picture files.
+    /// Number of threads that decode image files.
     pub threads: usize,
-    /// Frames of files that may wait; of live sources only the newest one does.
-    pub ahead: usize,
-    /// `[width, height]` wished from a camera, pixels; `None` takes what it is set to.
+    /// Number of frames of files that are read ahead; live sources keep only the newest frame.
+    pub prefetch: usize,
+    /// Requested camera resolution `[width, height]` in pixels; `None` keeps the camera's setting.
     pub camera_size: Option<[u32; 2]>,
 }
 
 impl Default for SourceOptions {
-    /// A decoding thread for each core, 4 at most, and up to 4 frames ahead.
+    /// Sets one decoding thread per core, at most 4, and as many as 4 frames ahead.
     fn default() -> Self {
         let threads = thread::available_parallelism().map_or(1, usize::from).min(4);
-        Self { decoder: Decoder::default(), threads, ahead: 4, camera_size: None }
+        Self { decoder: Decoder::default(), threads, prefetch: 4, camera_size: None }
     }
 }

@@ -1,4 +1,4 @@
-//! Picture files decoded ahead by several threads, handed out in order.
+//! Image files, decoded ahead by several threads and returned in order.
 
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -13,10 +13,10 @@ use crate::codec::Decoder;
 use crate::source::kind::check_is_file;
 use crate::source::{Frame, SourceOptions};
 
-/// Decoded pictures that wait may take this many bytes together; one may always wait.
+/// Maximum memory of decoded images that wait, in bytes; one image may always wait.
 const MAX_WAITING_BYTES: usize = 96 << 20;
 
-/// A row of picture files.
+/// A sequence of image files.
 #[derive(Debug)]
 pub(super) struct Pictures {
     shared: Arc<Shared>,
@@ -34,11 +34,11 @@ struct Shared {
 
 #[derive(Debug, Default)]
 struct State {
-    /// The file that the consumer gets next; `slots[0]` is its.
+    /// Index of the consumer's next file, which is `slots[0]`.
     next_out: usize,
-    /// The file that a thread takes next.
+    /// Index of the next file to decode.
     next_in: usize,
-    /// Files taken and not yet handed out, in order; `None` while being decoded.
+    /// Files that are being decoded (`None`) or wait for the consumer, in order.
     slots: VecDeque<Option<Result<Image>>>,
     waiting_bytes: usize,
     closed: bool,
@@ -48,7 +48,7 @@ impl Pictures {
     pub(super) fn new(paths: Vec<PathBuf>, options: &SourceOptions) -> Self {
         let shared = Arc::new(Shared {
             decoder: options.decoder,
-            ahead: options.ahead.max(1),
+            ahead: options.prefetch.max(1),
             state: Mutex::default(),
             changed: Condvar::new(),
             paths: paths.into_iter().map(Arc::from).collect(),
@@ -63,13 +63,13 @@ impl Pictures {
         Self { threads: threads.collect(), shared }
     }
 
-    /// The file of the last item.
+    /// Returns the file of the last item.
     pub(super) fn last_path(&self) -> Option<&Path> {
         let last = self.shared.lock().next_out.checked_sub(1)?;
         self.shared.paths.get(last).map(|path| &**path)
     }
 
-    /// What the threads share; it goes when they have ended.
+    /// Returns a weak reference to the shared state, which is freed when the threads have ended.
     #[cfg(test)]
     pub(super) fn watch(&self) -> std::sync::Weak<impl Sized + use<>> {
         Arc::downgrade(&self.shared)
@@ -93,7 +93,13 @@ impl Iterator for Pictures {
         state.waiting_bytes -= bytes_of(&image);
         drop(state);
         self.shared.changed.notify_all();
-        Some(image.map(|image| Frame { image, path: Arc::clone(path), index: 0, number: 0, video: None }))
+        Some(image.map(|image| Frame {
+            image,
+            path: Arc::clone(path),
+            item_index: 0,
+            frame_index: 0,
+            video: None,
+        }))
     }
 }
 
@@ -102,7 +108,7 @@ impl Drop for Pictures {
         self.shared.lock().closed = true;
         self.shared.changed.notify_all();
         for thread in self.threads.drain(..) {
-            // Panics of decoders are caught within.
+            // The threads catch panics of decoders.
             let _ = thread.join();
         }
     }
@@ -118,7 +124,7 @@ impl Shared {
             }));
             let image = image.unwrap_or_else(|_| {
                 Err(Error::internal(format!(
-                    "a decoder panicked on {}; please report the file",
+                    "the decoder panicked on {}; please report this file as a bug",
                     path.display()
                 )))
             });
@@ -133,7 +139,7 @@ impl Shared {
         }
     }
 
-    /// The next file to decode, waited for until there is room; `None` when there is none left.
+    /// Returns the index of the next file to decode, after waiting for space; `None` when none is left.
     fn take(&self) -> Option<usize> {
         let mut state = self.lock();
         loop {

@@ -3,12 +3,12 @@
 use std::collections::VecDeque;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
-/// What happens when the queue is full.
+/// Behaviour of a full queue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum WhenFull {
-    /// The producer waits: nothing is lost.
+    /// The producer waits.
     Wait,
-    /// The oldest entry goes: the consumer always gets the newest.
+    /// The oldest entry is dropped.
     DropOldest,
 }
 
@@ -29,13 +29,13 @@ struct State<T> {
 }
 
 impl<T> Queue<T> {
-    /// A queue of at most `capacity` entries (at least 1).
+    /// Creates a queue of at most `capacity` entries (at least 1).
     pub(super) fn new(capacity: usize, when_full: WhenFull) -> Self {
         let state = State { entries: VecDeque::new(), closed: false, dropped: 0 };
         Self { state: Mutex::new(state), changed: Condvar::new(), capacity: capacity.max(1), when_full }
     }
 
-    /// Adds an entry; `false` when the queue is closed and the producer may stop.
+    /// Adds an entry; returns `false` when the queue is closed and the producer can stop.
     pub(super) fn push(&self, entry: T) -> bool {
         let mut state = self.lock();
         while !state.closed && state.entries.len() >= self.capacity {
@@ -55,7 +55,7 @@ impl<T> Queue<T> {
         true
     }
 
-    /// The next entry, waited for; `None` when the queue is closed and empty.
+    /// Waits for the next entry; `None` when the queue is closed and empty.
     pub(super) fn pop(&self) -> Option<T> {
         let mut state = self.lock();
         loop {
@@ -70,13 +70,13 @@ impl<T> Queue<T> {
         }
     }
 
-    /// Ends the queue: nothing more goes in, what is in it still comes out.
+    /// Closes the queue: further entries are rejected, queued ones remain available.
     pub(super) fn close(&self) {
         self.lock().closed = true;
         self.changed.notify_all();
     }
 
-    /// How many entries the consumer never saw.
+    /// Returns the number of dropped entries.
     pub(super) fn dropped(&self) -> u64 {
         self.lock().dropped
     }

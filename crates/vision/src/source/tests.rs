@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
 
-/// A folder of its own that goes when the test ends.
+/// A temporary folder that is removed on drop.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -18,7 +18,7 @@ impl Folder {
         Self(path)
     }
 
-    /// A grey-level picture that tells by its first sample which one it is.
+    /// Writes a grey image with the level `level`, which identifies it.
     fn picture(&self, name: impl AsRef<Path>, level: u8) -> PathBuf {
         let path = self.0.join(name);
         fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -43,8 +43,8 @@ fn still(level: u8) -> Frame {
     Frame {
         image: Image::from_rgb8(vec![level; 3], 1, 1).unwrap(),
         path: Arc::from(Path::new("camera")),
-        index: 0,
-        number: u64::from(level),
+        item_index: 0,
+        frame_index: u64::from(level),
         video: None,
     }
 }
@@ -68,7 +68,7 @@ fn folder_in_order_with_many_threads_and_a_slow_consumer() {
     }
     fs::write(folder.0.join("notes.txt"), "no picture").unwrap();
     folder.picture("deeper/frame_99.png", 99);
-    let options = SourceOptions { threads: 4, ahead: 3, ..SourceOptions::default() };
+    let options = SourceOptions { threads: 4, prefetch: 3, ..SourceOptions::default() };
     let source = Source::open_all([&folder.0], options).unwrap();
     assert_eq!(source.len_hint(), Some(40));
     let mut seen = 0;
@@ -77,7 +77,7 @@ fn folder_in_order_with_many_threads_and_a_slow_consumer() {
             std::thread::sleep(std::time::Duration::from_millis(5));
         }
         let frame = frame.unwrap();
-        assert_eq!((frame.index, usize::from(level(&frame))), (index as u64, index));
+        assert_eq!((frame.item_index, usize::from(level(&frame))), (index as u64, index));
         seen += 1;
     }
     assert_eq!(seen, 40);
@@ -95,14 +95,14 @@ fn broken_files_are_named_and_passed() {
     folder.picture("6.png", 6);
     for input in [folder.0.clone(), folder.0.join("*")] {
         let mut source = Source::open(&input).unwrap();
-        assert_eq!(source.last_path(), None);
+        assert_eq!(source.current_path(), None);
         let mut items = Vec::new();
         while let Some(item) = source.next() {
-            items.push((item, source.last_path().unwrap().to_owned()));
+            items.push((item, source.current_path().unwrap().to_owned()));
         }
         let found: Vec<_> = items.iter().map(|(item, _)| item.as_ref().ok().map(level)).collect();
         let wanted = [Some(1), None, None, None, None, Some(6)];
-        // A pattern is matched by files alone, as a shell's is not.
+        // A pattern matches files only, as in a shell.
         let wanted: Vec<_> =
             wanted.into_iter().enumerate().filter(|(index, _)| *index != 3 || input == folder.0).collect();
         assert_eq!(found, wanted.iter().map(|(_, level)| *level).collect::<Vec<_>>());
@@ -141,7 +141,7 @@ fn a_file_whose_name_looks_like_a_pattern_is_that_file() {
 }
 
 #[test]
-fn nothing_to_read_is_said() {
+fn inputs_without_images_are_errors() {
     let folder = Folder::new("empty");
     fs::write(folder.0.join("notes.txt"), "").unwrap();
     let kind_and_text = |input: &Path| {
@@ -166,7 +166,7 @@ fn several_inputs_follow_each_other() {
 }
 
 #[test]
-fn content_tells_where_the_name_does_not() {
+fn image_without_extension_is_detected_by_content() {
     let folder = Folder::new("content");
     let path = folder.picture("picture", 9);
     assert_eq!(level(&Source::open(path).unwrap().next().unwrap().unwrap()), 9);
@@ -200,11 +200,11 @@ fn live_frames_are_the_newest() {
         sender.send(still(number)).unwrap();
     }
     drop(sender);
-    // Wait until the thread has ended: the queue is closed and holds the newest frame alone.
+    // Wait until the thread has ended: the queue is closed and contains only the newest frame.
     let Some(Reading::Threaded(threaded)) = &mut source.reading else { panic!("a thread reads") };
     threaded.wait();
     assert_eq!(taken.load(Ordering::SeqCst), 10);
-    assert_eq!((source.dropped(), source.next().unwrap().unwrap().number), (9, 9));
+    assert_eq!((source.dropped(), source.next().unwrap().unwrap().frame_index), (9, 9));
     assert!(source.next().is_none());
 }
 

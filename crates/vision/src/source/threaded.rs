@@ -1,4 +1,4 @@
-//! Frames read ahead by a thread of their own: videos, cameras, and what a caller hands in.
+//! Frames read ahead in a thread of their own: videos, cameras, and iterators of a caller.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -9,13 +9,13 @@ use opendr_engine::{Error, Result};
 use crate::source::Frame;
 use crate::source::queue::{Queue, WhenFull};
 
-/// Where frames come from, one by one.
+/// An iterator of frames that can be interrupted.
 pub(crate) trait FrameReader: Iterator<Item = Result<Frame>> + Send + 'static {
-    /// What makes a `next` that waits come back, from another thread.
+    /// Returns a function that makes a waiting `next` return, called from another thread.
     fn interrupt(&self) -> Box<dyn FnOnce() + Send>;
 }
 
-/// A reader in its own thread.
+/// A frame reader in a thread of its own.
 pub(super) struct Threaded {
     queue: Arc<Queue<Result<Frame>>>,
     interrupt: Option<Box<dyn FnOnce() + Send>>,
@@ -23,7 +23,7 @@ pub(super) struct Threaded {
 }
 
 impl Threaded {
-    /// Reads ahead of the consumer: up to `ahead` frames that all arrive, or, for a live source, the newest one.
+    /// Reads up to `ahead` frames ahead without loss, or, for a live source, keeps the newest frame.
     pub(super) fn new(reader: impl FrameReader, live: bool, ahead: usize) -> Self {
         let interrupt = reader.interrupt();
         let mut reading = Self::detached(reader, live, ahead);
@@ -31,7 +31,7 @@ impl Threaded {
         reading
     }
 
-    /// The same for an iterator that cannot be interrupted: its thread is left to end by itself.
+    /// The same for an iterator that cannot be interrupted: its thread is not joined.
     pub(super) fn detached(
         frames: impl Iterator<Item = Result<Frame>> + Send + 'static,
         live: bool,
@@ -64,7 +64,7 @@ fn produce(mut frames: impl Iterator<Item = Result<Frame>>, queue: &Queue<Result
         let frame = catch_unwind(AssertUnwindSafe(|| frames.next()));
         let panicked = frame.is_err();
         let frame = frame.unwrap_or_else(|_| {
-            Some(Err(Error::internal("the source of the frames panicked; please report it")))
+            Some(Err(Error::internal("the iterator of frames panicked; please report this as a bug")))
         });
         let Some(frame) = frame else { break };
         if !queue.push(frame) || panicked {
@@ -87,7 +87,7 @@ impl Drop for Threaded {
         self.queue.close();
         if let (Some(interrupt), Some(thread)) = (self.interrupt.take(), self.thread.take()) {
             interrupt();
-            // Panics are caught within.
+            // `produce` catches panics.
             let _ = thread.join();
         }
     }

@@ -1,20 +1,20 @@
-//! How bright a picture is, in bytes.
+//! Luminance of an image, in bytes.
 
 use opendr_engine::data::{ImageView, Samples};
 
 use crate::preprocess::LUMINANCE;
 
-/// The brightness of squares of a picture; memory is used again.
+/// The luminance of blocks of an image; its memory is reused.
 #[derive(Debug, Default)]
 pub(super) struct Brightness {
-    /// Sums of the samples of the rows that a square has.
+    /// Sums of the samples of a row of blocks, per column.
     columns: Vec<u32>,
-    /// ITU-R BT.601's luminance, 0..=255, row by row.
+    /// ITU-R BT.601 luminance, 0..=255, row by row.
     pub levels: Vec<u8>,
 }
 
 impl Brightness {
-    /// Takes the mean of each square of `side` pixels along each side; `size` of them are whole.
+    /// Computes the mean of each block of `side` x `side` pixels; `size` is the number of complete blocks.
     pub fn fill(&mut self, view: &ImageView<'_>, size: [usize; 2], side: usize) {
         let Self { columns, levels } = self;
         let [across, down] = size;

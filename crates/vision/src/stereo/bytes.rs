@@ -1,15 +1,15 @@
-//! A register of bytes: paths are written once, over [`Bytes`].
+//! SIMD registers of bytes; the path kernels are generic over [`Bytes`].
 
 #[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::*;
 
-/// Unsigned bytes that are worked on at a time.
+/// A register of unsigned bytes.
 ///
 /// # Safety
-/// Every function needs the instruction set of its type, enabled in the function that it is inlined into; what is loaded,
-/// stored or added to must be [`Bytes::COUNT`] numbers.
+/// Every function needs the instruction set of its type, enabled in the function that it is inlined into; memory that
+/// is loaded, stored or added to must have [`Bytes::COUNT`] elements.
 pub(super) trait Bytes: Copy {
-    /// How many.
+    /// Number of bytes.
     const COUNT: usize;
 
     unsafe fn splat(value: u8) -> Self;
@@ -18,11 +18,11 @@ pub(super) trait Bytes: Copy {
     unsafe fn min(self, other: Self) -> Self;
     unsafe fn add(self, other: Self) -> Self;
     unsafe fn sub(self, other: Self) -> Self;
-    /// The sum, at most 255.
+    /// Returns the sum, at most 255.
     unsafe fn saturating_add(self, other: Self) -> Self;
-    /// The least of them.
+    /// Returns the minimum of the bytes.
     unsafe fn lowest(self) -> u8;
-    /// Writes them as words of 16 bits, or adds them to those that are there.
+    /// Widens the bytes to 16 bits and writes them, or adds them to the words in memory.
     unsafe fn widen<const IS_FIRST: bool>(self, to: *mut u16);
 }
 
@@ -77,7 +77,7 @@ macro_rules! implement_bytes {
     };
 }
 
-/// Sixteen numbers of any machine.
+/// Sixteen bytes on any machine.
 #[cfg(any(test, not(target_arch = "x86_64")))]
 #[derive(Clone, Copy)]
 pub(super) struct Portable([u8; 16]);
@@ -112,7 +112,7 @@ mod portable {
     }
 }
 
-/// Sixteen numbers in a register that every x86-64 has.
+/// Sixteen bytes in an SSE2 register, which every x86-64 CPU has.
 #[cfg(target_arch = "x86_64")]
 #[derive(Clone, Copy)]
 pub(super) struct Sse2(__m128i);
@@ -143,7 +143,7 @@ implement_bytes! {
     saturating_add(a, b) = Self(_mm_adds_epu8(a.0, b.0));
 }
 
-/// Thirty-two numbers in a register of AVX2.
+/// Thirty-two bytes in an AVX2 register.
 #[cfg(target_arch = "x86_64")]
 #[derive(Clone, Copy)]
 pub(super) struct Avx2(__m256i);
@@ -175,7 +175,7 @@ implement_bytes! {
 mod tests {
     use super::*;
 
-    /// The numbers of two registers and of the sums, whatever the width.
+    /// Test values for two registers and for the sums, for any width.
     fn numbers(count: usize) -> [Vec<u8>; 2] {
         [7_u32, 13].map(|step| (0..count as u32).map(|at| (at * at * step + 91 * at + step) as u8).collect())
     }
@@ -184,7 +184,7 @@ mod tests {
         let [a, b] = numbers(B::COUNT);
         let (mut out, mut sums) = (vec![0; B::COUNT], vec![7_u16; B::COUNT]);
         let each = |of: fn(u8, u8) -> u8| a.iter().zip(&b).map(|(a, b)| of(*a, *b)).collect::<Vec<u8>>();
-        // SAFETY: the machine has the instructions, as the caller saw; all slices have `COUNT` numbers.
+        // SAFETY: the caller has checked the CPU features; all slices have `COUNT` elements.
         unsafe {
             let (x, y) = (B::load(a.as_ptr()), B::load(b.as_ptr()));
             let results = [
@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn every_register_does_the_same() {
+    fn all_register_types_agree() {
         check::<Portable>();
         #[cfg(target_arch = "x86_64")]
         {

@@ -1,40 +1,42 @@
-//! From disparities to metres.
+//! Depth in metres from disparities.
 
 use opendr_engine::data::{Image, PointCloud};
 use opendr_engine::{Error, Result};
 
-/// A rectified stereo camera. Its frame is the left camera's: x right, y down, z ahead.
+/// A rectified stereo camera. Its coordinate frame is the left camera's: x right, y down, z forward.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StereoCamera {
-    /// Focal length, pixels.
-    pub focal: f32,
-    /// Between the two cameras, metres.
+    /// Focal length, in pixels.
+    pub focal_length: f32,
+    /// Distance between the two cameras, in metres.
     pub baseline: f32,
-    /// Principal point of the left camera, pixels.
-    pub centre: [f32; 2],
-    /// How much further right the right camera's principal point lies, pixels: added to disparities (Middlebury's `doffs`).
-    pub offset: f32,
+    /// Principal point of the left camera, in pixels.
+    pub principal_point: [f32; 2],
+    /// Offset of the right camera's principal point to the right, in pixels; added to disparities (Middlebury's
+    /// `doffs`).
+    pub principal_point_offset: f32,
 }
 
 impl StereoCamera {
-    /// Metres ahead of a pixel; 0 where its disparity is 0, what is not known, or says that it lies behind.
+    /// Returns the depth of a pixel in metres; 0 where the disparity is 0 (unknown) or the depth would be negative.
     pub fn depth(&self, disparity: f32) -> f32 {
-        let shift = disparity + self.offset;
+        let shift = disparity + self.principal_point_offset;
         let is_known = disparity > 0.0 && shift > 0.0;
-        if is_known { self.focal * self.baseline / shift } else { 0.0 }
+        if is_known { self.focal_length * self.baseline / shift } else { 0.0 }
     }
 
-    /// The place of the pixel whose middle is at `[x, y]`, `depth` metres ahead.
+    /// Returns the 3D position of the pixel with its centre at `[x, y]`, `depth` metres in front of the camera.
     pub fn point(&self, [x, y]: [f32; 2], depth: f32) -> [f32; 3] {
-        let [right, down] = [x - self.centre[0], y - self.centre[1]].map(|off| off * depth / self.focal);
+        let [right, down] = [x - self.principal_point[0], y - self.principal_point[1]]
+            .map(|off| off * depth / self.focal_length);
         [right, down, depth]
     }
 
-    /// A point for each pixel of a map of depths, metres, `[height, width]`, of which something is known and that is nearer
-    /// than `farthest`: x, y, z, with a picture of the same size also red, green and blue, 0..=255.
+    /// Returns a point for each pixel of a depth map `[height, width]` in metres with a known depth below `farthest`:
+    /// x, y, z, and with an image of the same size also red, green and blue, 0..=255.
     ///
     /// # Errors
-    /// `InvalidInput` when the picture or the map has another size than `size`, `[width, height]`.
+    /// `InvalidInput` when the image or the map does not have the size `size`, `[width, height]`.
     pub fn points(
         &self,
         depths: &[f32],
@@ -45,7 +47,7 @@ impl StereoCamera {
         let is_wrong = |image: &&Image| [image.width(), image.height()] != size;
         if width.checked_mul(height) != Some(depths.len()) || colours.as_ref().is_some_and(is_wrong) {
             return Err(Error::invalid_input(format!(
-                "a map of {} depths and its picture are not of {width}x{height} pixels; give those of one frame",
+                "a depth map of {} values and its image do not match the size {width}x{height}; pass depth and image of one frame",
                 depths.len()
             )));
         }

@@ -1,27 +1,27 @@
-//! What a pixel's surroundings look like, in bits.
+//! Census transform: a bit pattern of each pixel's neighbourhood.
 //!
-//! R. Zabih, J. Woodfill, "Non-parametric local transforms for computing visual correspondence", ECCV 1994: a bit for each
-//! neighbour tells whether it is darker. Brightness of the cameras may differ.
+//! R. Zabih, J. Woodfill, "Non-parametric local transforms for computing visual correspondence", ECCV 1994: a bit for
+//! each neighbour states whether it is darker, so the brightness of the two cameras may differ.
 
-/// How far the window reaches to each side, pixels: 9 x 7.
+/// Extent of the window to each side, in pixels: 9 x 7.
 const REACH: [usize; 2] = [4, 3];
-/// Bits of a window without its middle.
+/// Bits of a window without its centre.
 pub(super) const BITS: u8 = 62;
-/// Bytes of which these bits are.
+/// Bytes that contain these bits.
 const BYTES: usize = 8;
 
-/// The census of a picture; memory is used again.
+/// The census transform of an image; its memory is reused.
 #[derive(Debug, Default)]
 pub(super) struct Census {
-    /// The picture with its edges repeated around it.
+    /// The image with replicated edges.
     padded: Vec<u8>,
     planes: Vec<u8>,
-    /// A word a pixel, row by row.
+    /// One word per pixel, row by row.
     pub words: Vec<u64>,
 }
 
 impl Census {
-    /// Takes a picture of grey levels. With `is_mirrored`, each row of words is written backwards.
+    /// Transforms an image of grey levels. With `is_mirrored`, each row of words is written in reverse.
     pub fn fill(&mut self, grey: &[u8], [width, height]: [usize; 2], is_mirrored: bool) {
         let Self { padded, planes, words } = self;
         let [across, down] = REACH;

@@ -1,9 +1,10 @@
 //! Disparities of a stereo pair by semi-global matching.
 //!
-//! H. Hirschmüller, "Stereo processing by semiglobal matching and mutual information", IEEE PAMI 2008, over census costs (9 x 7,
-//! Zabih and Woodfill 1994). Eight paths in two passes: one goes down the picture, the other up, each on a thread. They meet in
-//! the middle, and each decides the rows that the other has already seen, so that one table of sums is enough and threads
-//! change no bit. Costs and paths are bytes, sums 16 bits, 2 bytes for each pixel and disparity.
+//! H. Hirschmüller, "Stereo processing by semiglobal matching and mutual information", IEEE PAMI 2008, over census
+//! costs (9 x 7, Zabih and Woodfill 1994). Eight paths in two passes: one goes down the image, the other up, each on
+//! a thread. They meet in the middle, and from there each decides the rows that the other has already processed, so
+//! that one table of sums is enough and the threads do not affect the result. Costs and paths are bytes, sums 16
+//! bits, 2 bytes for each pixel and disparity.
 
 mod brightness;
 mod bytes;
@@ -27,31 +28,31 @@ use brightness::Brightness;
 use bytes::Bytes;
 use census::Census;
 use paths::{MOST_PENALTY, Pass, Penalties};
-use winner::{Doubts, UNKNOWN, Winner};
+use winner::{ConfidenceChecks, UNKNOWN, Winner};
 
-/// How a pair is matched.
+/// Options of stereo matching.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StereoOptions {
-    /// The least disparity that is looked for, pixels.
+    /// Minimum disparity, in pixels.
     pub min_disparity: usize,
-    /// How many disparities are looked for; rounded up to a multiple of 16.
+    /// Number of disparities to search; rounded up to a multiple of 16.
     pub disparities: usize,
-    /// What a step of one pixel in disparity costs, in differing bits of 62.
-    pub small_penalty: u8,
-    /// What a larger step costs; at least the small one, at most 193.
-    pub large_penalty: u8,
-    /// By how many percent the second best disparity must be worse, 0..=99.
+    /// Penalty P1 for a disparity change of one pixel, in differing bits of 62.
+    pub p1: u8,
+    /// Penalty P2 for a larger change; at least P1, at most 193.
+    pub p2: u8,
+    /// Margin in percent by which the second best disparity must be worse, 0..=99.
     pub uniqueness: u8,
-    /// How far the right picture's disparity may be from the left one's, pixels; `None` does not ask.
-    pub left_right: Option<u16>,
-    /// Islands of at most as many pixels are forgotten; 0 keeps all.
+    /// Maximum difference to the right image's disparity, in pixels; `None` skips the check.
+    pub max_left_right_difference: Option<u16>,
+    /// Maximum size in pixels of speckles that are removed; 0 keeps all.
     pub speckle_size: u32,
-    /// Neighbours belong to one island where they differ by at most as many pixels.
+    /// Maximum difference between neighbours of one speckle, in pixels.
     pub speckle_range: f32,
-    /// Whether what is not known is filled from the row's background.
+    /// Whether unknown disparities are filled from the row's background.
     pub fill: bool,
-    /// Squares of as many pixels along each side are matched as one, which takes its third power less time; at least 1.
-    pub shrink: usize,
+    /// Side of the blocks of pixels that are matched as one; the time falls with its third power; at least 1.
+    pub downscale: usize,
 }
 
 impl Default for StereoOptions {
@@ -59,25 +60,25 @@ impl Default for StereoOptions {
         Self {
             min_disparity: 0,
             disparities: 64,
-            small_penalty: 8,
-            large_penalty: 40,
+            p1: 8,
+            p2: 40,
             uniqueness: 5,
-            left_right: Some(1),
+            max_left_right_difference: Some(1),
             speckle_size: 100,
             speckle_range: 1.0,
             fill: false,
-            shrink: 1,
+            downscale: 1,
         }
     }
 }
 
-/// Most sums of one pair: 1 GiB of memory.
+/// Maximum number of sums of one pair: 1 GiB of memory.
 const MOST_SUMS: usize = 1 << 29;
 
-/// Matches pairs; memory is used again. The answer depends on the pair alone.
+/// A semi-global matcher of stereo pairs; its memory is reused. The result depends on the pair and the options only.
 #[derive(Debug, Default)]
 pub struct StereoMatcher {
-    /// Disparities of a shrunken pair.
+    /// Disparities of a reduced pair.
     found: Vec<f32>,
     left: Side,
     right: Side,
@@ -88,7 +89,7 @@ pub struct StereoMatcher {
     components: Components,
 }
 
-/// What is known of one of the pictures.
+/// The luminance and the census of one of the images.
 #[derive(Debug, Default)]
 struct Side {
     brightness: Brightness,
@@ -96,12 +97,13 @@ struct Side {
 }
 
 impl StereoMatcher {
-    /// Writes the disparity of each pixel of `left`, row by row: how many pixels further left it lies in `right`, with parts of
-    /// pixels; 0 where nothing is known. The pair must be rectified: rows are the same in both.
+    /// Writes the disparity of each pixel of `left`, row by row: how far to the left its match in `right` lies, in
+    /// pixels with a fraction; 0 where it is unknown. The pair must be rectified: matching pixels are in the same
+    /// row.
     ///
     /// # Errors
-    /// `InvalidInput` when the pictures differ in size, when `disparities` has another, and when picture and disparities are
-    /// together too large.
+    /// `InvalidInput` when the images differ in size, when `disparities` has another length, and when image and
+    /// number of disparities together are too large.
     pub fn run_into(
         &mut self,
         left: &Image,
@@ -112,18 +114,18 @@ impl StereoMatcher {
         let size @ [width, height] = [left.width(), left.height()];
         if [right.width(), right.height()] != size {
             return Err(Error::invalid_input(format!(
-                "a left picture of {width}x{height} pixels and a right one of {}x{}; give a rectified pair of one size",
+                "the left image has {width}x{height} pixels and the right one {}x{}; pass a rectified pair of one size",
                 right.width(),
                 right.height()
             )));
         }
         if disparities.len() != width * height {
             return Err(Error::invalid_input(format!(
-                "a map of {} disparities for a pair of {width}x{height} pixels, which is another size",
+                "the disparity map has {} values, but the pair has {width}x{height} pixels; pass one value per pixel",
                 disparities.len()
             )));
         }
-        let shrink = options.shrink.clamp(1, width.min(height).max(1));
+        let shrink = options.downscale.clamp(1, width.min(height).max(1));
         if shrink == 1 {
             return self.match_pair([left, right], options, disparities);
         }
@@ -137,20 +139,20 @@ impl StereoMatcher {
         matched
     }
 
-    /// Matches squares of `shrink` pixels; their disparities are in squares.
+    /// Matches blocks of `shrink` x `shrink` pixels; the disparities are in blocks.
     fn match_pair(
         &mut self,
         [left, right]: [&Image; 2],
         options: &StereoOptions,
         disparities: &mut [f32],
     ) -> Result<()> {
-        let shrink = options.shrink.clamp(1, left.width().min(left.height()).max(1));
+        let shrink = options.downscale.clamp(1, left.width().min(left.height()).max(1));
         let size @ [width, height] = [left.width(), left.height()].map(|side| side / shrink);
         let count = options.disparities.clamp(1, 1 << 12).div_ceil(shrink).next_multiple_of(16);
         let total = width.checked_mul(height).and_then(|pixels| pixels.checked_mul(count));
         let Some(total) = total.filter(|total| *total <= MOST_SUMS) else {
             return Err(Error::invalid_input(format!(
-                "{count} disparities of {width}x{height} pixels are too many; scale the pair down, shrink it or look for fewer"
+                "{count} disparities of {width}x{height} pixels are too many; resize the pair, increase shrink or reduce disparities"
             )));
         };
         let sides = [(left, &mut self.left, false), (right, &mut self.right, true)].map(Mutex::new);
@@ -162,13 +164,16 @@ impl StereoMatcher {
         self.sums.resize(total, 0);
         self.down.begin(width, count);
         self.up.begin(width, count);
-        let large = options.large_penalty.min(MOST_PENALTY);
+        let large = options.p2.min(MOST_PENALTY);
         let plan = Plan {
             width,
             count,
             from: options.min_disparity / shrink,
-            penalties: Penalties { small: options.small_penalty.min(large), large },
-            doubts: Doubts { uniqueness: options.uniqueness.into(), disagreement: options.left_right },
+            penalties: Penalties { small: options.p1.min(large), large },
+            checks: ConfidenceChecks {
+                uniqueness: options.uniqueness.into(),
+                disagreement: options.max_left_right_difference,
+            },
         };
         let middle = height / 2;
         let words = [&self.left, &self.right]
@@ -223,7 +228,7 @@ impl StereoMatcher {
     }
 }
 
-/// Gives each pixel the disparity of its square, or of the last one beside it, in pixels.
+/// Assigns each pixel the disparity of its block, in pixels; pixels beyond the last block take the nearest one.
 fn enlarge(found: &[f32], [width, height]: [usize; 2], shrink: usize, disparities: &mut [f32]) {
     let [across, down] = [width, height].map(|side| side / shrink);
     for (y, row) in disparities.chunks_exact_mut(width).enumerate() {
@@ -240,15 +245,15 @@ struct Plan {
     count: usize,
     from: usize,
     penalties: Penalties,
-    doubts: Doubts,
+    checks: ConfidenceChecks,
 }
 
-/// Rows that a pass goes through, and where the disparities go when the other pass has been there.
+/// The rows of a pass, and the disparities for the rows that the other pass has already processed.
 struct Job<'a> {
     plan: Plan,
     pass: &'a mut Pass,
     is_backward: bool,
-    /// Of the left and of the right picture.
+    /// Census words of the left and of the right image.
     words: [&'a [u64]; 2],
     sums: &'a mut [u16],
     found: Option<(&'a mut Winner, &'a mut [f32])>,
@@ -260,18 +265,18 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 fn both(first: Job<'_>, second: Job<'_>) {
     let jobs = [first, second].map(Mutex::new);
-    workers::run(2, 2, &|part| go_fastest(&mut lock(&jobs[part])));
+    workers::run(2, 2, &|part| run_with_best_isa(&mut lock(&jobs[part])));
 }
 
 #[cfg(target_arch = "x86_64")]
-fn go_fastest(job: &mut Job<'_>) {
+fn run_with_best_isa(job: &mut Job<'_>) {
     #[target_feature(enable = "avx2,popcnt")]
     unsafe fn go_avx2<B: Bytes>(job: &mut Job<'_>) {
-        // SAFETY: the caller's promise.
+        // SAFETY: the caller guarantees the instruction set and the number of disparities.
         unsafe { go::<B>(job) }
     }
     let is_wide = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("popcnt");
-    // SAFETY: the machine has the instructions; the number of disparities is a multiple of 16.
+    // SAFETY: the CPU features were checked; the number of disparities is a multiple of 16.
     unsafe {
         match is_wide {
             true if job.plan.count.is_multiple_of(bytes::Avx2::COUNT) => go_avx2::<bytes::Avx2>(job),
@@ -282,16 +287,16 @@ fn go_fastest(job: &mut Job<'_>) {
 }
 
 #[cfg(not(target_arch = "x86_64"))]
-fn go_fastest(job: &mut Job<'_>) {
-    // SAFETY: every machine has the instructions; the number of disparities is a multiple of 16.
+fn run_with_best_isa(job: &mut Job<'_>) {
+    // SAFETY: every machine supports this type; the number of disparities is a multiple of 16.
     unsafe { go::<bytes::Portable>(job) }
 }
 
 /// # Safety
-/// The machine has the instructions of `B`, of which a whole number are the disparities.
+/// The CPU supports the instructions of `B`, and the number of disparities is a multiple of `B::COUNT`.
 #[inline(always)]
 unsafe fn go<B: Bytes>(job: &mut Job<'_>) {
-    let Plan { width, count, from, penalties, doubts } = job.plan;
+    let Plan { width, count, from, penalties, checks } = job.plan;
     let [left, right] = job.words;
     let height = left.len() / width;
     for step in 0..height {
@@ -300,10 +305,10 @@ unsafe fn go<B: Bytes>(job: &mut Job<'_>) {
         let sums = &mut job.sums[y * width * count..][..width * count];
         let (left, right) = (&left[row.clone()], &right[row.clone()]);
         let is_first = job.found.is_none();
-        // SAFETY: the caller's promise.
+        // SAFETY: the caller guarantees the instruction set and the number of disparities.
         unsafe { job.pass.row::<B>(left, right, sums, from, penalties, [job.is_backward, is_first]) };
         if let Some((winner, found)) = &mut job.found {
-            winner.row(sums, count, from, doubts, &mut found[row]);
+            winner.row(sums, count, from, checks, &mut found[row]);
         }
     }
 }

@@ -1,23 +1,23 @@
-//! Costs of disparities, smoothed along four of the eight paths through a picture.
+//! Costs of disparities, aggregated along four of the eight paths.
 
 use super::bytes::Bytes;
 use super::census::BITS;
 
-/// What a cost can be at most is below 255, so that bytes hold it: bits of a census and the larger penalty.
+/// Maximum penalty: a cost plus a penalty fits into a byte.
 pub(super) const MOST_PENALTY: u8 = u8::MAX - BITS;
 
-/// Four paths: along the row, and from the three pixels of the row before. One pass goes down the picture and to the right,
-/// the other up and to the left; both count pixels in the order in which they come.
+/// Four paths: along the row, and from the three pixels of the previous row. One pass goes down the image and to the
+/// right, the other up and to the left; both index pixels in their own order.
 #[derive(Debug, Default)]
 pub(super) struct Pass {
     width: usize,
     disparities: usize,
     costs: Vec<u8>,
-    /// Sums of the paths in the row before and in this one: path by path, pixel by pixel, with a byte beside both ends that is
-    /// never the least.
+    /// Path costs of the previous and the current row, by path and pixel, with a byte at both ends that is never the
+    /// minimum.
     before: Vec<u8>,
     now: Vec<u8>,
-    /// The least of each.
+    /// Minimum of each path and pixel.
     least_before: Vec<u8>,
     least_now: Vec<u8>,
     along: [Vec<u8>; 2],
@@ -25,17 +25,17 @@ pub(super) struct Pass {
     is_first_row: bool,
 }
 
-/// What a change of the disparity costs.
+/// Penalties of a change of the disparity.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Penalties {
-    /// By one pixel.
+    /// For a change by one pixel (P1).
     pub small: u8,
-    /// By more.
+    /// For a larger change (P2).
     pub large: u8,
 }
 
 impl Pass {
-    /// Begins at an edge of the picture.
+    /// Resets the pass for the edge of an image.
     pub fn begin(&mut self, width: usize, disparities: usize) {
         (self.width, self.disparities, self.is_first_row) = (width, disparities, true);
         let stride = disparities + 2;
@@ -55,12 +55,12 @@ impl Pass {
         self.nothing.resize(stride, 0);
     }
 
-    /// Adds the paths' sums of the next row to `sums`, `[width, disparities]`. `left` are the census words of the row in the
-    /// left picture, `right` those in the right one from the last to the first; `from` is the first disparity. Where this pass
-    /// is the first that comes by, what `sums` held before does not count.
+    /// Adds the path costs of the next row to `sums`, `[width, disparities]`. `left` are the census words of the row
+    /// in the left image, `right` those in the right one in reverse; `from` is the first disparity. The first pass
+    /// over a row overwrites `sums`.
     ///
     /// # Safety
-    /// The machine has the instructions of `B`, of which a whole number are the disparities.
+    /// The CPU supports the instructions of `B`, and the number of disparities is a multiple of `B::COUNT`.
     #[inline(always)]
     pub unsafe fn row<B: Bytes>(
         &mut self,
@@ -82,7 +82,7 @@ impl Pass {
             let sums = &mut sums[x * disparities..][..disparities];
             let after = &mut along_now[..stride];
             let history = if step == 0 { &nothing[..] } else { &along_before[..stride] };
-            // SAFETY: the caller's promise.
+            // SAFETY: the caller guarantees the instruction set and the number of disparities.
             least_along = unsafe {
                 match is_first {
                     true => advance::<B, true>(costs, history, least_along, penalties, after, sums),
@@ -91,7 +91,7 @@ impl Pass {
             };
             std::mem::swap(along_before, along_now);
             for path in 0..3 {
-                // From the pixel before, the same, the one after.
+                // From the previous pixel, the same one, the next one.
                 let other = (step + path).wrapping_sub(1);
                 let is_known = !self.is_first_row && other < width;
                 let (history, least) = match is_known {
@@ -103,7 +103,7 @@ impl Pass {
                 };
                 let at = path * width + step;
                 let after = &mut now[at * stride..][..stride];
-                // SAFETY: the caller's promise.
+                // SAFETY: the caller guarantees the instruction set and the number of disparities.
                 least_now[at] = unsafe { advance::<B, false>(costs, history, least, penalties, after, sums) };
             }
         }
@@ -113,7 +113,8 @@ impl Pass {
     }
 }
 
-/// How many bits of the census differ at each disparity; half of them where the other picture has no pixel.
+/// Writes the Hamming distance of the census words at each disparity; half of the bits where the right image has no
+/// pixel.
 #[inline(always)]
 fn fill_costs(costs: &mut [u8], word: u64, right: &[u64], first: usize) {
     let there = right.get(first..).unwrap_or_default();
@@ -125,10 +126,11 @@ fn fill_costs(costs: &mut [u8], word: u64, right: &[u64], first: usize) {
     outside.fill(BITS / 2);
 }
 
-/// One step of a path (Hirschmüller's equation 13): adds to `sums`, or writes them, and returns the least.
+/// Computes one step of a path (Hirschmüller's equation 13): adds to `sums`, or overwrites them, and returns the
+/// minimum.
 ///
 /// # Safety
-/// The machine has the instructions of `B`.
+/// The CPU supports the instructions of `B`.
 #[inline(always)]
 unsafe fn advance<B: Bytes, const IS_FIRST: bool>(
     costs: &[u8],
@@ -140,14 +142,14 @@ unsafe fn advance<B: Bytes, const IS_FIRST: bool>(
 ) -> u8 {
     let count = costs.len();
     let (before, after, sums) = (&before[..count + 2], &mut after[..count + 2], &mut sums[..count]);
-    // SAFETY: `B::COUNT` numbers from `at` on are costs, and so are the sums; before and after have one more on both sides.
+    // SAFETY: costs and sums have `B::COUNT` elements from `at` on; the previous path has one more on both sides.
     unsafe {
         let (small, jump) = (B::splat(penalties.small), B::splat(least.saturating_add(penalties.large)));
         let (least, mut lowest) = (B::splat(least), B::splat(u8::MAX));
         for at in (0..count - count % B::COUNT).step_by(B::COUNT) {
             let before = before.as_ptr().add(at);
             let near = B::load(before).min(B::load(before.add(2))).saturating_add(small);
-            // No overflow: the best is at most the least and the larger penalty.
+            // No overflow: the best is at most the minimum plus the larger penalty.
             let best = B::load(before.add(1)).min(near).min(jump).sub(least);
             let sum = B::load(costs.as_ptr().add(at)).add(best);
             sum.store(after.as_mut_ptr().add(at + 1));

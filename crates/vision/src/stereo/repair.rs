@@ -1,10 +1,11 @@
-//! Small islands are taken out, and holes filled.
+//! Removal of speckles, and filling of holes.
 
-use crate::components::{Components, Touching};
+use crate::components::{Components, Connectivity};
 
 use super::winner::UNKNOWN;
 
-/// Forgets disparities in islands of at most `most` pixels, neighbours being joined where they differ by at most `step`.
+/// Removes disparities in speckles of at most `most` pixels; neighbours are connected where they differ by at most
+/// `step`.
 pub(super) fn remove_speckles(
     map: &mut [f32],
     size: [usize; 2],
@@ -12,7 +13,7 @@ pub(super) fn remove_speckles(
     step: f32,
     components: &mut Components,
 ) {
-    components.label(size, Touching::Sides, |at| map[at] >= 0.0, |a, b| (map[a] - map[b]).abs() <= step);
+    components.label(size, Connectivity::Four, |at| map[at] >= 0.0, |a, b| (map[a] - map[b]).abs() <= step);
     for (disparity, label) in map.iter_mut().zip(components.labels()) {
         if components.areas()[*label as usize] <= most {
             *disparity = UNKNOWN;
@@ -20,8 +21,8 @@ pub(super) fn remove_speckles(
     }
 }
 
-/// Fills what is unknown with the farther of the nearest neighbours in its row: what one camera does not see lies behind.
-/// Rows of which nothing is known stay.
+/// Fills unknown disparities with the smaller one of the nearest known neighbours in the row, because occluded areas
+/// belong to the background. Rows without a known disparity are unchanged.
 pub(super) fn fill_holes(map: &mut [f32], width: usize) {
     for row in map.chunks_exact_mut(width) {
         let mut at = 0;
@@ -49,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn islands_vanish_and_the_background_fills() {
+    fn speckles_are_removed_and_holes_filled_from_the_background() {
         let mut map = [9.0, 9.0, -1.0, 4.0, 4.0, 4.5, 9.0, 20.0, 4.0, 4.0];
         remove_speckles(&mut map, [5, 2], 1, 1.0, &mut Components::default());
         assert_eq!(map, [9.0, 9.0, -1.0, 4.0, 4.0, -1.0, 9.0, -1.0, 4.0, 4.0]);

@@ -2,7 +2,7 @@ use opendr_engine::data::{Image, Layout, PixelFormat};
 
 use super::*;
 
-/// Levels without order.
+/// A pseudo-random grey level.
 fn texture(x: usize, y: usize) -> u8 {
     let mixed = (x as u64 * 0x9E37_79B9 + y as u64 * 0x85EB_CA6B).wrapping_mul(0xC2B2_AE35_27D4_EB4F);
     (mixed >> 40) as u8
@@ -15,7 +15,7 @@ fn grey(width: usize, height: usize, level: impl Fn(usize, usize) -> u8) -> Imag
 
 const SIZE: [usize; 2] = [160, 80];
 
-/// A wall at disparity 5 and a board before it at 20, seen by both cameras.
+/// A wall at disparity 5 and a board in front of it at 20, as stereo images.
 fn pair() -> [Image; 2] {
     let is_board = |x: usize, y: usize| (60..110).contains(&x) && (20..60).contains(&y);
     let [width, height] = SIZE;
@@ -44,13 +44,13 @@ fn share(map: &[f32], places: impl Fn(usize, usize) -> bool, is_right: impl Fn(f
 }
 
 #[test]
-fn a_board_stands_before_a_wall() {
+fn board_and_wall_have_their_disparities() {
     let map = disparities(&pair(), &StereoOptions { disparities: 32, ..StereoOptions::default() });
     let board =
         share(&map, |x, y| (64..106).contains(&x) && (24..56).contains(&y), |d| (d - 20.0).abs() < 0.5);
     let wall = share(&map, |x, y| x > 115 || (x > 10 && y > 65), |d| (d - 5.0).abs() < 0.5);
     assert!(board > 0.98 && wall > 0.98, "{board} {wall}");
-    // The right camera does not see the wall just left of the board.
+    // The wall just left of the board is occluded in the right image.
     let hidden = |x: usize, y: usize| (47..58).contains(&x) && (25..55).contains(&y);
     assert!(share(&map, hidden, |d| d == 0.0) > 0.8);
     let filled =
@@ -61,7 +61,7 @@ fn a_board_stands_before_a_wall() {
 }
 
 #[test]
-fn the_first_disparity_and_memory_used_again_change_nothing_else() {
+fn minimum_disparity_and_reused_memory_do_not_change_results() {
     let pair = pair();
     let options = StereoOptions { disparities: 32, ..StereoOptions::default() };
     let map = disparities(&pair, &options);
@@ -81,7 +81,7 @@ fn the_first_disparity_and_memory_used_again_change_nothing_else() {
 }
 
 #[test]
-fn nothing_to_see_is_not_known() {
+fn textureless_images_have_unknown_disparities() {
     let black = || grey(64, 48, |_, _| 0);
     assert!(disparities(&[black(), black()], &StereoOptions::default()).iter().all(|d| *d == 0.0));
     let nan = || Image::new(vec![f32::NAN; 64 * 48], 64, 48, PixelFormat::Grey, Layout::Hwc).unwrap();
@@ -99,11 +99,11 @@ fn extreme_options_do_no_harm() {
     for (uniqueness, penalty, range) in [(99, 255, f32::NAN), (0, 0, -1.0)] {
         let options = StereoOptions {
             uniqueness,
-            small_penalty: penalty,
-            large_penalty: penalty,
+            p1: penalty,
+            p2: penalty,
             speckle_range: range,
             min_disparity: 1000,
-            left_right: None,
+            max_left_right_difference: None,
             ..StereoOptions::default()
         };
         assert!(disparities(&pair, &options).iter().all(|d| *d == 0.0));
@@ -121,7 +121,7 @@ fn pairs_of_two_sizes_and_too_large_ones_are_refused() {
     };
     let options = StereoOptions::default();
     assert!(run(&grey(160, 79, texture), &options, &mut map).contains("one size"));
-    assert!(run(&left, &options, &mut map[1..]).contains("another size"));
+    assert!(run(&left, &options, &mut map[1..]).contains("one value per pixel"));
     let huge = grey(5000, 40, texture);
     let many = StereoOptions { disparities: 4096, ..options };
     let error = StereoMatcher::default().run_into(&huge, &huge, &many, &mut vec![0.0; 200_000]);
@@ -130,7 +130,12 @@ fn pairs_of_two_sizes_and_too_large_ones_are_refused() {
 
 #[test]
 fn metres_follow_from_disparities() {
-    let camera = StereoCamera { focal: 1000.0, baseline: 0.2, centre: [80.0, 40.0], offset: 10.0 };
+    let camera = StereoCamera {
+        focal_length: 1000.0,
+        baseline: 0.2,
+        principal_point: [80.0, 40.0],
+        principal_point_offset: 10.0,
+    };
     assert_eq!([0.0, 10.0, 30.0, f32::NAN].map(|d| camera.depth(d)), [0.0, 10.0, 5.0, 0.0]);
     let depths = [0.0, 10.0, 5.0, 400.0];
     let image = grey(2, 2, |x, y| (10 * y + x) as u8);
@@ -144,7 +149,7 @@ fn metres_follow_from_disparities() {
 }
 
 #[test]
-fn a_pair_shrunk_is_matched_as_a_small_one() {
+fn shrink_equals_matching_a_reduced_pair() {
     let small = pair();
     let [width, height] = SIZE;
     let large = small.each_ref().map(|image| {
@@ -156,12 +161,12 @@ fn a_pair_shrunk_is_matched_as_a_small_one() {
         StereoOptions { disparities: 32, speckle_size: 25, speckle_range: 0.5, ..Default::default() };
     let wanted = disparities(&small, &options);
     let shrunk =
-        StereoOptions { disparities: 64, speckle_size: 100, speckle_range: 1.0, shrink: 2, ..options };
+        StereoOptions { disparities: 64, speckle_size: 100, speckle_range: 1.0, downscale: 2, ..options };
     let map = disparities(&large, &shrunk);
     for (at, found) in map.iter().enumerate() {
         let (x, y) = (at % (2 * width + 1), at / (2 * width + 1));
         assert_eq!(*found, 2.0 * wanted[y / 2 * width + (x / 2).min(width - 1)], "{x} {y}");
     }
-    let whole = StereoOptions { shrink: 1000, ..options };
+    let whole = StereoOptions { downscale: 1000, ..options };
     assert!(disparities(&small, &whole).iter().all(|found| *found == 0.0));
 }

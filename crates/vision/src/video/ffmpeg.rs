@@ -1,4 +1,4 @@
-//! The programs that know every video format, run as child processes.
+//! The programs `ffmpeg` and `ffprobe`, run as child processes.
 
 use std::ffi::OsString;
 use std::io::{BufRead, BufReader, Read};
@@ -9,34 +9,35 @@ use std::thread::{self, JoinHandle};
 
 use opendr_engine::{Error, Result};
 
-/// Containers that are opened. Playlists are not: a file of a few lines would have other files read and hosts asked.
+/// Containers that are opened. Playlists are excluded: they would make ffmpeg read other files and contact hosts.
 const CONTAINERS: &str = "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi,mpeg,mpegts,mpegvideo,h264,hevc,flv,live_flv,asf,ogg,gif,ivf,mjpeg";
 
-/// Longer lines of a program are cut here.
+/// Maximum line length of a program's output; longer lines are cut.
 const MAX_LINE: u64 = 1 << 16;
 
-/// Where the programs are.
+/// Paths of the programs.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Ffmpeg {
-    /// `ffmpeg`.
+    /// Path of `ffmpeg`.
     pub ffmpeg: PathBuf,
-    /// `ffprobe`, which comes with it.
+    /// Path of `ffprobe`, which is installed with it.
     pub ffprobe: PathBuf,
 }
 
 impl Default for Ffmpeg {
-    /// Those that the search path leads to.
+    /// Uses the programs on the search path.
     fn default() -> Self {
         Self { ffmpeg: "ffmpeg".into(), ffprobe: "ffprobe".into() }
     }
 }
 
 impl Ffmpeg {
-    /// A child that writes to pipes.
+    /// Starts a child process with pipes.
     pub(super) fn spawn(program: &Path, arguments: &[OsString], stdin: Stdio) -> Result<Child> {
         let mut command = Command::new(program);
         command.args(arguments).stdin(stdin).stdout(Stdio::piped()).stderr(Stdio::piped());
-        // Ctrl-C in a terminal goes to the whole group: the program then decides what becomes of a half-written video.
+        // Ctrl-C in a terminal signals the whole process group; the caller decides what happens to a half-written
+        // video.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         command.spawn().map_err(|error| {
@@ -44,7 +45,7 @@ impl Ffmpeg {
                 return Error::from(error).context(format!("starting {}", program.display()));
             }
             Error::unsupported(format!(
-                "videos take the program ffmpeg, and {} was not found; install it (Debian and Ubuntu: apt install \
+                "videos need the program ffmpeg, and {} was not found; install it (Debian and Ubuntu: apt install \
                  ffmpeg, macOS: brew install ffmpeg, Windows: winget install ffmpeg)",
                 program.display()
             ))
@@ -52,10 +53,10 @@ impl Ffmpeg {
     }
 }
 
-/// What both programs are told of a file from outside: no network, no other file, no picture of more than
+/// Returns the arguments of both programs for an untrusted file: no network, no other file, no image of more than
 /// `max_samples` RGB samples.
 pub(super) fn input_arguments(path: &Path, max_samples: u64) -> Vec<OsString> {
-    // The prefix keeps a name such as `-y` or `concat:a|b` a name.
+    // The prefix prevents that a name such as `-y` or `concat:a|b` is parsed as an option or a protocol.
     let mut file = OsString::from("file:");
     file.push(path);
     let max_pixels = (max_samples / 3).to_string();
@@ -67,7 +68,7 @@ pub(super) fn input_arguments(path: &Path, max_samples: u64) -> Vec<OsString> {
     arguments
 }
 
-/// The last complaint of a program, kept by a thread that reads its error output.
+/// The last error message of a program, kept by a thread that reads its error output.
 #[derive(Debug)]
 pub(super) struct Complaints {
     last: Arc<Mutex<Option<String>>>,
@@ -75,8 +76,8 @@ pub(super) struct Complaints {
 }
 
 impl Complaints {
-    /// Reads `output` to its end. Lines that begin or are marked as information go to `on_information`, the last of
-    /// the others is kept.
+    /// Reads `output` to its end. Lines that begin with or are marked as information are passed to `on_information`;
+    /// of the others the last one is kept.
     pub(super) fn read(
         output: impl Read + Send + 'static,
         mut on_information: impl FnMut(&str) + Send + 'static,
@@ -100,17 +101,17 @@ impl Complaints {
         Self { last, thread: Some(thread) }
     }
 
-    /// The last complaint, once the program has closed its error output.
+    /// Returns the last error message, once the program has closed its error output.
     pub(super) fn finish(&mut self) -> Option<String> {
         if let Some(thread) = self.thread.take() {
-            // Without the thread's last words the error is only less clear.
+            // If the thread failed, only the message is missing.
             let _ = thread.join();
         }
         self.last.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 }
 
-/// The message of a line that `-loglevel level+info` marks as an error: without its origin and level.
+/// Returns the message of a line that `-loglevel level+info` marks as an error, without its origin and level.
 fn complaint_of_line(line: &str) -> Option<String> {
     let levels = ["[error] ", "[fatal] ", "[panic] "];
     let start = levels.iter().find_map(|level| line.find(level).map(|at| at + level.len()))?;
@@ -122,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn last_complaint_is_kept() {
+    fn last_error_message_is_kept() {
         let output = "[info] a\n[h264 @ 0x5] [error] first\n[fatal] file:x: Invalid data \nplain\n";
         let mut complaints = Complaints::read(output.as_bytes(), |_| {});
         assert_eq!(complaints.finish().as_deref(), Some("file:x: Invalid data"));

@@ -1,18 +1,18 @@
-//! What `ffmpeg` tells of each frame, beside its pixels.
+//! Time and size of each frame from the log of `ffmpeg`.
 
 /// Time and size of one frame, from a line of the filter `showinfo`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct FrameLine {
-    /// Seconds since the start of the video, where the file tells.
+    /// Seconds since the start of the video, where the file states it.
     pub time_s: Option<f64>,
-    /// Pixels a row, turned upright.
+    /// Width in pixels, turned upright.
     pub width: usize,
-    /// Rows, turned upright.
+    /// Height in pixels, turned upright.
     pub height: usize,
 }
 
 impl FrameLine {
-    /// Reads `[Parsed_showinfo_0 @ 0x5] [info] n: 0 pts: 0 pts_time:0.04 ... s:320x240 ...`.
+    /// Parses `[Parsed_showinfo_0 @ 0x5] [info] n: 0 pts: 0 pts_time:0.04 ... s:320x240 ...`.
     pub(super) fn of_text(line: &str) -> Option<Self> {
         let rest = line.strip_prefix("[Parsed_showinfo")?;
         let value = |key: &str| {

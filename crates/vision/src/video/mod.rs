@@ -1,4 +1,4 @@
-//! Video files, read and written by the installed program `ffmpeg`.
+//! Reading and writing of video files through the installed program `ffmpeg`.
 
 mod ffmpeg;
 mod frame_line;

@@ -15,10 +15,10 @@ use crate::source::{Frame, FrameReader, VideoInfo};
 use crate::video::ffmpeg::{Complaints, Ffmpeg, input_arguments};
 use crate::video::frame_line::FrameLine;
 
-/// Decodes a video in a child process; dropping the reader ends it.
+/// A decoder of a video in a child process; dropping the reader ends the process.
 ///
-/// Every frame of the file comes once, turned upright, with its own time as stamp (nanoseconds since the start), also
-/// where the rate varies.
+/// Every frame of the file is returned once, turned upright, with its own time as stamp (nanoseconds since the
+/// start), also for variable frame rates.
 #[derive(Debug)]
 pub(crate) struct VideoReader {
     process: Arc<Process>,
@@ -41,7 +41,7 @@ struct Process {
 impl Process {
     fn kill(&self) {
         let mut child = self.child.lock().unwrap_or_else(PoisonError::into_inner);
-        // Both fail only when it has ended already.
+        // Both fail only when the process has already ended.
         let _ = child.kill();
         let _ = child.wait();
     }
@@ -58,8 +58,8 @@ impl VideoReader {
         info: VideoInfo,
         max_samples: u64,
     ) -> Result<Self> {
-        // Time stamps are read from `showinfo` and then replaced by a steady count, because a raw stream has none
-        // and ffmpeg would double and drop frames to get one of constant rate.
+        // Time stamps are read from `showinfo` and then replaced by a constant rate: a raw stream has no time stamps,
+        // and ffmpeg would duplicate and drop frames to reach a constant rate.
         let filters = "showinfo=checksum=0,settb=1/25,setpts=N";
         let mut arguments: Vec<_> =
             ["-nostdin", "-nostats", "-hide_banner", "-loglevel", "level+info"].map(Into::into).into();
@@ -72,7 +72,7 @@ impl VideoReader {
         let (sender, lines) = mpsc::channel();
         let complaints = Complaints::read(errors, move |line| {
             if let Some(frame) = FrameLine::of_text(line) {
-                // Nobody listens once the reader has given up.
+                // Sending fails after the reader has been dropped.
                 let _ = sender.send(frame);
             }
         });
@@ -86,7 +86,7 @@ impl VideoReader {
         let samples = (width as u64).saturating_mul(height as u64).saturating_mul(3);
         if samples > self.max_samples {
             return Err(Error::invalid_input(format!(
-                "frames of {width}x{height} pixels, over the limit of {} samples; set {LIMIT_VARIABLE} to {samples} or more",
+                "frames of {width}x{height} pixels exceed the limit of {} samples; set {LIMIT_VARIABLE} to {samples} or more",
                 self.max_samples
             )));
         }
@@ -96,14 +96,14 @@ impl VideoReader {
             return Err(self.broken_off());
         }
         let mut image = Image::from_rgb8(data, width, height)?;
-        let time_s = time_s.unwrap_or(self.given as f64 / self.info.rate);
+        let time_s = time_s.unwrap_or(self.given as f64 / self.info.frame_rate);
         image.header.stamp_ns = Some((time_s * 1e9).round() as i64);
         let path = Arc::clone(&self.path);
         let video = Some(Arc::clone(&self.info));
-        Ok(Frame { image, path, index: 0, number: self.given, video })
+        Ok(Frame { image, path, item_index: 0, frame_index: self.given, video })
     }
 
-    /// Whether the end came as it should.
+    /// Returns an error unless the video ended normally.
     fn finish(&mut self) -> Result<()> {
         let complaint = self.complaints.finish();
         let status = self.process.child.lock().unwrap_or_else(PoisonError::into_inner).wait()?;
@@ -111,14 +111,14 @@ impl VideoReader {
         if status.success() && self.given > 0 && !(short && complaint.is_some()) {
             return Ok(());
         }
-        let reason = complaint.unwrap_or_else(|| format!("it ended with {status}"));
-        Err(self.broken_off().context(format!("ffmpeg says \"{reason}\"")))
+        let reason = complaint.unwrap_or_else(|| format!("it exited with {status}"));
+        Err(self.broken_off().context(format!("ffmpeg reports \"{reason}\"")))
     }
 
     fn broken_off(&self) -> Error {
         let of = self.info.frames.map_or_else(String::new, |frames| format!(" of {frames}"));
         Error::invalid_input(format!(
-            "damaged or truncated after {}{of} frames; get the file again",
+            "the video is damaged or truncated after {}{of} frames; copy or download it again",
             self.given
         ))
     }

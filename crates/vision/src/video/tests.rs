@@ -6,13 +6,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A folder of its own that goes when the test ends; `None` where ffmpeg is not installed.
+/// A temporary folder that is removed on drop; `None` where ffmpeg is not installed.
 struct Folder(PathBuf);
 
 impl Folder {
     fn new(name: &str) -> Option<Self> {
         if Command::new("ffmpeg").arg("-version").output().is_err() {
-            assert!(std::env::var_os("CI").is_none(), "the tests take ffmpeg; install it");
+            assert!(std::env::var_os("CI").is_none(), "the tests need ffmpeg; install it");
             println!("skipped: no ffmpeg");
             return None;
         }
@@ -22,7 +22,7 @@ impl Folder {
         Some(Self(path))
     }
 
-    /// A test picture with a running clock.
+    /// Writes a test video with a running clock.
     fn video(&self, name: &str, arguments: &[&str]) -> PathBuf {
         let path = self.0.join(name);
         let made = Command::new("ffmpeg")
@@ -51,11 +51,11 @@ fn every_frame_comes_once_with_its_time() {
     assert_eq!(frames.len(), 20);
     for (number, frame) in frames.iter().enumerate() {
         assert_eq!((frame.image.width(), frame.image.height()), (160, 120));
-        assert_eq!((frame.number, frame.index), (number as u64, number as u64));
+        assert_eq!((frame.frame_index, frame.item_index), (number as u64, number as u64));
         assert_eq!(frame.image.header.stamp_ns, Some(number as i64 * 100_000_000));
         assert_eq!(frame.name(), format!("-y clip[1]_{number:06}"));
         let info = frame.video.as_ref().unwrap();
-        assert_eq!((info.rate, info.frames, info.duration_s), (10.0, Some(20), Some(2.0)));
+        assert_eq!((info.frame_rate, info.frames, info.duration_s), (10.0, Some(20), Some(2.0)));
     }
     assert_ne!(frames[0].image, frames[19].image);
 }
@@ -86,7 +86,7 @@ fn rotated_video_is_turned_upright() {
 }
 
 #[test]
-fn content_tells_a_video_without_extension() {
+fn video_without_extension_is_detected_by_content() {
     let Some(folder) = Folder::new("content") else { return };
     let path = folder.video("clip.mkv", &[]);
     let bare = folder.0.join("clip");
@@ -95,13 +95,13 @@ fn content_tells_a_video_without_extension() {
 }
 
 #[test]
-fn damaged_videos_say_what_ffmpeg_says() {
+fn errors_of_damaged_videos_include_the_message_of_ffmpeg() {
     let Some(folder) = Folder::new("damaged") else { return };
     let whole = fs::read(folder.video("whole.mp4", &["-movflags", "+faststart"])).unwrap();
     let cases = [
         ("empty.mp4", &b""[..], "Invalid data"),
         ("text.mp4", b"just text, and more of it", "Invalid data"),
-        ("header.mp4", &whole[..whole.len() / 10], "ffprobe says"),
+        ("header.mp4", &whole[..whole.len() / 10], "ffprobe reports"),
     ];
     for (name, bytes, wanted) in cases {
         let path = folder.0.join(name);
@@ -118,11 +118,11 @@ fn damaged_videos_say_what_ffmpeg_says() {
     let (last, before) = items.split_last().unwrap();
     assert!(before.len() > 3 && before.iter().all(Result::is_ok), "{}", before.len());
     let text = last.as_ref().unwrap_err().to_string();
-    assert!(text.contains("of 20 frames") && text.contains("ffmpeg says"), "{text}");
+    assert!(text.contains("of 20 frames") && text.contains("ffmpeg reports"), "{text}");
 }
 
 #[test]
-fn sound_without_pictures_is_refused() {
+fn audio_without_video_is_rejected() {
     let Some(folder) = Folder::new("sound") else { return };
     let path = folder.0.join("sound.mkv");
     let made = Command::new("ffmpeg")
@@ -161,12 +161,12 @@ fn slow_consumers_of_files_lose_nothing() {
     let Some(folder) = Folder::new("slow") else { return };
     let path = folder.video("clip.mp4", &[]);
     let mut source =
-        Source::open_all([path], SourceOptions { ahead: 1, ..SourceOptions::default() }).unwrap();
+        Source::open_all([path], SourceOptions { prefetch: 1, ..SourceOptions::default() }).unwrap();
     let numbers: Vec<_> = source
         .by_ref()
         .map(|frame| {
             std::thread::sleep(std::time::Duration::from_millis(2));
-            frame.unwrap().number
+            frame.unwrap().frame_index
         })
         .collect();
     assert_eq!((numbers, source.dropped()), ((0..20).collect(), 0));
@@ -185,7 +185,7 @@ fn videos_and_pictures_follow_each_other() {
     let items: Vec<_> = source.collect();
     let good: Vec<_> = items.iter().map(Result::is_ok).collect();
     assert_eq!(good, (0..23).map(|index| index != 21).collect::<Vec<_>>());
-    assert_eq!(items[20].as_ref().unwrap().index, 20);
+    assert_eq!(items[20].as_ref().unwrap().item_index, 20);
 }
 
 #[cfg(target_os = "linux")]
@@ -205,7 +205,7 @@ fn dropping_early_ends_the_child() {
     let Some(folder) = Folder::new("early") else { return };
     let path = folder.video("clip.mp4", &["-t", "2"]);
     let mut source =
-        Source::open_all([&path], SourceOptions { ahead: 1, ..SourceOptions::default() }).unwrap();
+        Source::open_all([&path], SourceOptions { prefetch: 1, ..SourceOptions::default() }).unwrap();
     source.next().unwrap().unwrap();
     assert_eq!(children(&path), 1);
     drop(source);
@@ -213,9 +213,9 @@ fn dropping_early_ends_the_child() {
 }
 
 #[test]
-fn what_is_written_is_read_again() {
+fn written_videos_are_read_back() {
     let Some(folder) = Folder::new("written") else { return };
-    // Odd sides, and a picture that is not RGB.
+    // Odd sides, and an image that is not RGB.
     let path = folder.0.join("-out.mp4");
     let mut writer = VideoWriter::create(&path, 12.5).unwrap();
     for level in [0u8, 80, 160, 240] {
@@ -230,7 +230,7 @@ fn what_is_written_is_read_again() {
     for (frame, level) in frames.iter().zip([0u8, 80, 160, 240, 120]) {
         assert_eq!((frame.image.width(), frame.image.height()), (34, 22));
         assert!(frame.image.chw_u8()[100].abs_diff(level) < 6);
-        assert_eq!(frame.image.header.stamp_ns, Some(frame.number as i64 * 80_000_000));
+        assert_eq!(frame.image.header.stamp_ns, Some(frame.frame_index as i64 * 80_000_000));
     }
     assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 1);
 }
@@ -248,7 +248,7 @@ fn a_writer_that_is_dropped_leaves_nothing() {
 }
 
 #[test]
-fn writers_refuse_what_they_cannot_write() {
+fn writers_reject_invalid_input() {
     let kind = |path: &str, rate| VideoWriter::create(path, rate).unwrap_err().kind();
     assert_eq!(kind("out.gif", 25.0), ErrorKind::Unsupported);
     assert_eq!(kind("/no/such/folder/out.mp4", 25.0), ErrorKind::NotFound);
@@ -256,5 +256,5 @@ fn writers_refuse_what_they_cannot_write() {
         assert_eq!(kind("out.mp4", rate), ErrorKind::InvalidParam);
     }
     let error = VideoWriter::create("out.mp4", 25.0).unwrap().finish().unwrap_err();
-    assert!(error.to_string().contains("no picture"), "{error}");
+    assert!(error.to_string().contains("no frame"), "{error}");
 }

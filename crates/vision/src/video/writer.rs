@@ -1,4 +1,4 @@
-//! A video file made of pictures.
+//! Writing of video files.
 
 use std::ffi::OsString;
 use std::fs;
@@ -13,9 +13,9 @@ use crate::video::ffmpeg::{Complaints, Ffmpeg};
 
 const CONTAINERS: [&str; 3] = ["mp4", "mov", "mkv"];
 
-/// Writes pictures to a video file (H.264 where the installed `ffmpeg` has an encoder for it).
+/// Writes images to a video file (H.264 where the installed `ffmpeg` has an encoder for it).
 ///
-/// The file appears whole when [`VideoWriter::finish`] is called, or not at all.
+/// The file appears complete when [`VideoWriter::finish`] is called, or not at all.
 #[derive(Debug)]
 pub struct VideoWriter {
     programs: Ffmpeg,
@@ -23,7 +23,7 @@ pub struct VideoWriter {
     partial: PathBuf,
     rate: f64,
     encoder: Option<Encoder>,
-    /// Set by a failure: the reason of a child that has gone is told once, what follows cannot be written.
+    /// Set after a failure: the cause is reported once, and later writes fail.
     failed: bool,
 }
 
@@ -37,11 +37,12 @@ struct Encoder {
 }
 
 impl VideoWriter {
-    /// A writer to `path` (`.mp4`, `.mov` or `.mkv`) with `rate` frames a second. The first picture fixes the size.
+    /// Creates a writer to `path` (`.mp4`, `.mov` or `.mkv`) with `rate` frames per second. The first image fixes the
+    /// size.
     ///
     /// # Errors
-    /// `Unsupported` for another extension, `InvalidParam` for a rate that is not from 0.01 to 1000, `NotFound` when
-    /// the folder does not exist.
+    /// `Unsupported` for another extension, `InvalidParam` for a rate outside 0.01..=1000, `NotFound` when the folder
+    /// does not exist.
     pub fn create(path: impl AsRef<Path>, rate: f64) -> Result<Self> {
         Self::with_programs(path.as_ref(), rate, Ffmpeg::default())
     }
@@ -50,17 +51,19 @@ impl VideoWriter {
         let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
         if !CONTAINERS.iter().any(|known| known.eq_ignore_ascii_case(extension)) {
             return Err(Error::unsupported(format!(
-                "{} is no video that is written; end the name with .mp4, .mov or .mkv",
+                "unsupported video format of {}; end the file name with .mp4, .mov or .mkv",
                 path.display()
             )));
         }
         if !(0.01..=1000.0).contains(&rate) {
-            return Err(Error::invalid_param(format!("a rate of {rate} frames a second; give 0.01 to 1000")));
+            return Err(Error::invalid_param(format!(
+                "the rate is {rate} frames per second; set it to a value from 0.01 to 1000"
+            )));
         }
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
         if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
             return Err(Error::not_found(format!(
-                "the folder {} does not exist; make it first",
+                "the folder {} does not exist; create it first",
                 folder.display()
             )));
         }
@@ -70,24 +73,24 @@ impl VideoWriter {
         Ok(Self { programs, path: path.to_owned(), partial, rate, encoder: None, failed: false })
     }
 
-    /// Adds a picture. Waits while the encoder is behind.
+    /// Adds an image. Waits while the encoder is busy.
     ///
     /// # Errors
-    /// `InvalidInput` when the size is not the first picture's, `Unsupported` when `ffmpeg` is not installed, `Io`
-    /// when it fails.
+    /// `InvalidInput` when the size differs from the first image's, `Unsupported` when `ffmpeg` is not installed,
+    /// `Io` when it fails.
     pub fn write(&mut self, image: &Image) -> Result<()> {
         let written = self.write_frame(image);
         written.context(|| format!("writing {}", self.path.display()))
     }
 
-    /// Ends the file.
+    /// Completes the file.
     ///
     /// # Errors
-    /// `InvalidInput` when there was no picture, `Io` when `ffmpeg` fails.
+    /// `InvalidInput` when no image was written, `Io` when `ffmpeg` fails.
     pub fn finish(mut self) -> Result<()> {
         let finished = match self.encoder.take() {
-            None if self.failed => Err(Error::io("a picture before could not be written")),
-            None => Err(Error::invalid_input("no picture was given, and a video has at least one")),
+            None if self.failed => Err(Error::io("an earlier frame could not be written")),
+            None => Err(Error::invalid_input("no frame was written; a video needs at least one")),
             Some(encoder) => encoder.finish().and_then(|()| Ok(fs::rename(&self.partial, &self.path)?)),
         };
         finished.context(|| format!("writing {}", self.path.display()))
@@ -95,7 +98,7 @@ impl VideoWriter {
 
     fn write_frame(&mut self, image: &Image) -> Result<()> {
         if self.failed {
-            return Err(Error::io("a picture before could not be written"));
+            return Err(Error::io("an earlier frame could not be written"));
         }
         let (width, height) = (image.width(), image.height());
         let encoder = match &mut self.encoder {
@@ -107,7 +110,7 @@ impl VideoWriter {
         };
         if (encoder.width, encoder.height) != (width, height) {
             return Err(Error::invalid_input(format!(
-                "a picture of {width}x{height} pixels in a video of {}x{}; resize it, or write another file",
+                "the image has {width}x{height} pixels and the video {}x{}; resize the image, or write another file",
                 encoder.width, encoder.height
             )));
         }
@@ -129,11 +132,11 @@ impl VideoWriter {
 impl Drop for VideoWriter {
     fn drop(&mut self) {
         if let Some(encoder) = &mut self.encoder {
-            // Both fail only when it has ended already.
+            // Both fail only when the process has already ended.
             let _ = encoder.child.kill();
             let _ = encoder.child.wait();
         }
-        // There is none after a rename.
+        // After a rename there is no such file.
         let _ = fs::remove_file(&self.partial);
     }
 }
@@ -146,7 +149,7 @@ impl Encoder {
         let mut arguments: Vec<OsString> = ["-y", "-nostats", "-hide_banner", "-loglevel", "level+error"]
             .into_iter()
             .chain(["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", &size, "-r", &rate, "-i", "pipe:0"])
-            // Half the colour resolution, which every player shows, needs even sides.
+            // Chroma at half resolution, which every player supports, needs even sides.
             .chain(["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p"])
             .chain(["-preset", "veryfast", "-crf", "20"])
             .map(OsString::from)
@@ -166,7 +169,7 @@ impl Encoder {
         if status.success() {
             return Ok(());
         }
-        let reason = complaint.unwrap_or_else(|| format!("it ended with {status}"));
-        Err(Error::io(format!("ffmpeg could not encode the pictures: \"{reason}\"")))
+        let reason = complaint.unwrap_or_else(|| format!("it exited with {status}"));
+        Err(Error::io(format!("ffmpeg could not encode the video: \"{reason}\"")))
     }
 }

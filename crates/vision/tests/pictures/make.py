@@ -1,4 +1,4 @@
-"""Makes the pictures that `tests/codec.rs` reads: 16x12 pixels, quarters red, green, blue and yellow.
+"""Creates the images that `tests/codec.rs` reads: 16x12 pixels, quarters red, green, blue and yellow.
 
     python make.py     (needs pillow and numpy)
 

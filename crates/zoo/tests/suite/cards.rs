@@ -1,4 +1,4 @@
-//! The built-in cards, and cards that nobody should write.
+//! Built-in cards, and invalid cards.
 
 use crate::place::{Place, card};
 use opendr_engine::{ErrorKind, Model, Silent, Task};
@@ -10,7 +10,7 @@ const NPM: &str = "[[variants.sources]]\nkind = \"npm\"\npackage = \"@a/b\"\nver
                    files = { \"model.onnx\" = \"package/a\" }\n";
 
 #[test]
-fn built_in_cards_are_sound_and_named_after_their_learner() {
+fn built_in_cards_are_valid_and_named_after_their_learner() {
     let cards = embedded_cards().unwrap();
     let names: Vec<_> = cards.iter().map(|card| card.learner.as_str()).collect();
     for name in ["centernet", "movenet", "nanodet", "posenet", "sample", "ultra_light_face", "yunet"] {
@@ -47,7 +47,7 @@ fn items_are_found_by_learner_and_variant() {
     }
 }
 
-/// A rule has no weights: nothing is fetched, even where there is no network.
+/// An algorithm without weights needs no download and no network.
 #[test]
 fn a_card_without_files_needs_no_source() {
     let text = "learner = \"rule\"\ntask = \"object_tracking_2d\"\ndescription = \"x\"\n[[variants]]\nname = \"default\"\n\

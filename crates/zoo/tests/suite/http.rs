@@ -1,4 +1,4 @@
-//! Downloads from a real server that misbehaves.
+//! Downloads from a real but faulty server.
 
 use std::fs;
 use std::sync::atomic::Ordering;
@@ -116,7 +116,7 @@ fn wrong_sizes_are_refused_before_and_during_the_download() {
 }
 
 #[test]
-fn servers_errors_are_retried_and_then_told() {
+fn server_errors_are_retried_and_then_reported() {
     let (place, server, bytes, card) = served();
     server.fail([Fault::Status(500), Fault::Status(429)]);
     let path = place.zoo(&card).get("test", &Silent).unwrap();
@@ -215,7 +215,7 @@ fn unreachable_server_then_the_next_source() {
 }
 
 #[test]
-fn offline_asks_nobody_but_uses_what_is_there() {
+fn offline_uses_the_cache_only() {
     let (place, server, bytes, card) = served();
     let mut options = place.options();
     options.offline = true;

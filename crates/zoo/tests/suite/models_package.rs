@@ -1,4 +1,4 @@
-//! Weights of our own: from the folders that have them, checked, and without a network.
+//! OpenDR's own weights: read from folders, verified, without a network.
 
 use std::fs;
 
@@ -40,7 +40,7 @@ fn first_folder_with_the_file_of_the_card_is_taken() {
 #[test]
 fn absent_and_damaged_weights_are_an_error_that_says_what_to_do() {
     let cases: [(&[&[u8]], &str); 3] = [
-        (&[], "no folder of this machine has it"),
+        (&[], "no folder on this machine has it"),
         (&[b"other.."], "models-0/test/one.onnx"),
         (&[b"short"], "has 5 bytes instead of 7"),
     ];

@@ -1,4 +1,4 @@
-//! Getting ONNX Runtime, with a Python that plays its part.
+//! Installation of ONNX Runtime, with a simulated Python.
 
 use std::io::{Cursor, Write as _};
 use std::os::unix::fs::PermissionsExt as _;
@@ -49,7 +49,7 @@ fn zip(members: &[(&str, &[u8])]) -> Vec<u8> {
     writer.finish().unwrap().into_inner()
 }
 
-/// A folder with the Python, its wheel with these members, and what version the library in it tells.
+/// A folder with the Python, its wheel with these members, and the version of the library in it.
 fn python(place: &Place, members: &[(&str, &[u8])], version: &str) {
     let bin = place.0.join("bin");
     fs::create_dir_all(&bin).unwrap();
@@ -96,12 +96,12 @@ fn only_the_library_of_the_wheel_gets_to_the_cache() {
     ];
     python(&place, &members, "1.31.1");
     let text = install(&place);
-    assert!(text.contains("ONNX Runtime 1.31.1, got with pip"), "{text}");
+    assert!(text.contains("ONNX Runtime 1.31.1, downloaded with pip"), "{text}");
     let folder = place.0.join("cache/onnxruntime");
     assert_eq!(names(&folder), ["libonnxruntime.so.1.31.1"]);
     assert_eq!(fs::read(folder.join("libonnxruntime.so.1.31.1")).unwrap(), b"library");
     let text = install(&place);
-    assert!(text.contains("is there already"), "{text}");
+    assert!(text.contains("already in the cache"), "{text}");
     assert_eq!(fs::read_to_string(place.0.join("bin/calls")).unwrap(), "call\n");
 }
 
@@ -118,7 +118,7 @@ fn two_processes_at_once_call_pip_once() {
 }
 
 #[test]
-fn what_does_not_work_is_told_and_not_kept() {
+fn failed_installations_are_reported_and_not_kept() {
     let library: [(&str, &[u8]); 1] = [("onnxruntime/capi/libonnxruntime.so.1.31.1", b"library")];
     let place = Place::new();
     python(&place, &[("onnxruntime/capi/onnxruntime.txt", b"text")], "1.31.1");
@@ -126,11 +126,14 @@ fn what_does_not_work_is_told_and_not_kept() {
 
     python(&place, &library, "1.19.2");
     let text = install(&place);
-    assert!(text.contains("Unsupported: pip brought ONNX Runtime 1.19.2, which is too old"), "{text}");
+    assert!(text.contains("Unsupported: pip downloaded ONNX Runtime 1.19.2, which is too old"), "{text}");
 
     fs::write(place.0.join("bin/broken"), "").unwrap();
     let text = install(&place);
-    assert!(text.contains("Integrity: the ONNX Runtime that pip brought does not load (OSError"), "{text}");
+    assert!(
+        text.contains("Integrity: the ONNX Runtime that pip downloaded does not load (OSError"),
+        "{text}"
+    );
 
     fs::write(place.0.join("bin/error"), "NewConnectionError: no route to host").unwrap();
     let text = install(&place);

@@ -1,4 +1,4 @@
-//! Items that carry other items.
+//! Items that contain other items.
 
 use std::fs;
 
@@ -29,7 +29,7 @@ fn detector_of(path: impl AsRef<std::path::Path>) -> Vec<u8> {
 }
 
 #[test]
-fn part_is_fetched_and_carried() {
+fn part_is_downloaded_and_contained() {
     let (place, server, bytes) = (Place::new(), Server::new(), noise(1000));
     let own = zoo(place.options(), &server, &bytes);
     assert_eq!(own.cached("whole"), None);
@@ -44,7 +44,7 @@ fn part_is_fetched_and_carried() {
     own.get("whole", &Silent).unwrap();
     assert_eq!(server.requests(), []);
 
-    // Damage is found, and mended, in the part as in the whole.
+    // Damage is detected and repaired in a part too.
     fs::write(path.join("detector/model.onnx"), noise(1001)).unwrap();
     assert_eq!(own.cached("whole"), None);
     fs::write(path.join("detector/model.onnx"), vec![0; 1000]).unwrap();
@@ -106,7 +106,7 @@ fn own_detector_of_the_repository_is_taken_while_it_is_there() {
 }
 
 #[test]
-fn absent_part_and_part_of_itself_are_told() {
+fn absent_part_and_part_of_itself_are_reported() {
     let (place, server) = (Place::new(), Server::new());
     let with_part = |part: &str| {
         let mut cards = cards(&server, b"x");

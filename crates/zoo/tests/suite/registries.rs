@@ -1,5 +1,5 @@
-//! The real registries, by the installed clients. Skipped, with that said, where they cannot be reached; any other
-//! answer of theirs is a failure.
+//! The real registries, with the installed clients. Skipped, with a printed line, where they cannot be reached; any other error is
+//! a failure.
 
 use std::fs;
 
@@ -7,7 +7,7 @@ use crate::place::{self, Place};
 use opendr_engine::{Error, ErrorKind, Model, Silent};
 use opendr_zoo::Zoo;
 
-/// The answer, or `None` (said on the terminal) when there is no way to the registry.
+/// The result, or `None` with a printed line when the registry cannot be reached.
 fn reached<T>(result: Result<T, Error>) -> Option<T> {
     let unreachable = [
         "ENOTFOUND",
@@ -68,7 +68,7 @@ fn sample_picture_comes_out_of_a_wheel() {
 }
 
 #[test]
-fn absent_version_is_told_with_the_clients_words() {
+fn absent_version_is_reported_with_the_clients_output() {
     let source = "[[variants.sources]]\nkind = \"npm\"\npackage = \"@vladmandic/human\"\nversion = \"0.0.0\"\n\
                   size = 1000\nfiles = { \"model.onnx\" = \"package/a\" }\n";
     let place = Place::new();

@@ -1,4 +1,4 @@
-//! The user's own repository, as a folder and behind an address, and copies out of the cache.
+//! The user's repository, as a folder and at an address, and copies from the cache.
 
 use std::fs;
 
@@ -96,7 +96,7 @@ fn copy_is_a_repository_again() {
 }
 
 #[test]
-fn faulty_container_behind_an_address_is_told_and_the_card_serves() {
+fn invalid_container_at_an_address_is_reported_and_the_card_used() {
     let (place, bytes, server) = (Place::new(), noise(1000), Server::new());
     server.put("/a", &bytes);
     let hostile = r#"{"format_version": 1, "files": [{"name": "../../x", "size": 1, "sha256": ""}]}"#;

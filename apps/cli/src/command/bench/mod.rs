@@ -1,7 +1,7 @@
-//! `opendr bench`: how fast a learner is here, stage by stage.
+//! `opendr bench`: measures the speed of a learner, stage by stage.
 
-mod drawn;
-mod seen;
+mod synthetic;
+mod workload;
 
 use std::path::PathBuf;
 
@@ -9,13 +9,13 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::environment::{Controller as _, Environment, EnvironmentSource as _, ResetOptions};
 use opendr::inference::{SessionOptions, describe};
 use opendr::learner::{AnyLearner, Entry, Ports};
-use opendr::{ActingStream, Error, Progress, Result, Unit};
+use opendr::{Error, PolicyController, Progress, Result, Unit};
 use serde::Serialize;
 
-use self::seen::{Input, Seen};
+use self::workload::{Input, Workload};
 use crate::exit::Outcome;
 use crate::peak_memory::peak_memory_mb;
-use crate::progress_bar::Bar;
+use crate::progress_bar::ProgressBar;
 use crate::timings::Timings;
 use crate::{environment_flags, learner_flags, loading, stdout};
 
@@ -23,8 +23,8 @@ const EXAMPLES: &str = "\
 Examples:
   opendr bench LEARNER
   opendr bench LEARNER faces.jpg --threads 1 --json
-  opendr bench whisper talk.wav                     a sound; the real-time factor is time over length
-  opendr bench ppo --env CartPole-v1                a policy, in the environment that it acts in";
+  opendr bench whisper talk.wav                     audio, with the real-time factor: time over duration
+  opendr bench ppo --env CartPole-v1                a policy in its environment";
 
 pub fn grammar() -> Command {
     let count = |name: &'static str, default: &'static str| {
@@ -32,15 +32,15 @@ pub fn grammar() -> Command {
         Arg::new(name).long(name).value_parser(number).default_value(default).value_name("N")
     };
     Command::new("bench")
-        .about("Measure a learner: p50 and p99 of each stage, frames a second, peak memory")
+        .about("Measure a learner: p50 and p99 of each stage, frames per second, peak memory")
         .arg(loading::learner())
         .arg(
             Arg::new("input").value_parser(value_parser!(PathBuf)).value_name("FILE").help(
-                "What to run on; a sample of the zoo otherwise, pictures at 1920x1080, or something drawn",
+                "File to run on [default: a sample of the zoo, images at 1920x1080, or synthetic data]",
             ),
         )
-        .arg(count("frames", "100").help("Frames, or steps of a policy, to measure"))
-        .arg(count("warmup", "10").help("Frames, or steps, before that"))
+        .arg(count("frames", "100").help("Number of frames, or steps of a policy, to measure"))
+        .arg(count("warmup", "10").help("Number of frames, or steps, before the measurement"))
         .arg(
             Arg::new("json")
                 .long("json")
@@ -58,7 +58,7 @@ struct Measurement {
     device: String,
     threads: usize,
     #[serde(flatten)]
-    seen: Seen,
+    workload: Workload,
     frames: usize,
     frames_per_second: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -72,13 +72,13 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
     let entry = loading::entry(spec)?;
     let options = SessionOptions::from(loading::device(matches)?);
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let mut learner = loading::load(spec, &learner_flags::params(entry, matches)?, matches, &bar)?;
-    let (seen, timings) = match environment_flags::is_policy(entry) {
-        true => acting(learner.as_ref(), entry, matches, &bar)?,
-        false => seeing(learner.as_mut(), spec, entry, matches, &bar)?,
+    let (workload, timings) = match environment_flags::is_policy(entry) {
+        true => measure_policy(learner.as_ref(), entry, matches, &bar)?,
+        false => measure_inference(learner.as_mut(), spec, entry, matches, &bar)?,
     };
-    // What is done before the clock moves on took a nanosecond at most.
+    // The clock may not advance during a very fast call; 1 ns avoids a division by zero.
     let mean_s = (1e-3 * timings.iter().map(|one| one.total).sum::<f64>() / timings.len() as f64).max(1e-9);
     let measurement = Measurement {
         learner: spec.to_owned(),
@@ -88,11 +88,11 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         },
         device: learner.device().to_string(),
         threads: options.thread_count()?,
-        real_time_factor: match seen {
-            Seen::Sound { piece_s, .. } => Some(mean_s / piece_s),
+        real_time_factor: match workload {
+            Workload::Sound { piece_s, .. } => Some(mean_s / piece_s),
             _ => None,
         },
-        seen,
+        workload,
         frames: timings.len(),
         frames_per_second: mean_s.recip(),
         p50_ms: percentile(&timings, 0.50),
@@ -103,66 +103,66 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// Measures a learner of what is seen, heard or measured.
-fn seeing(
+/// Measures inference on images, audio or other values.
+fn measure_inference(
     learner: &mut dyn AnyLearner,
     spec: &str,
     entry: &'static Entry,
     matches: &ArgMatches,
-    bar: &Bar,
-) -> Result<(Seen, Vec<Timings>)> {
-    let (seen, inputs) = seen::inputs(spec, entry, matches, bar)?;
-    let in_pieces = matches!(seen, Seen::Sound { .. }) && entry.capabilities.streaming;
+    bar: &ProgressBar,
+) -> Result<(Workload, Vec<Timings>)> {
+    let (workload, inputs) = workload::inputs(spec, entry, matches, bar)?;
+    let in_chunks = matches!(workload, Workload::Sound { .. }) && entry.capabilities.streaming;
     let mut frame = 0;
     let timings = measure(matches, bar, || {
         let mut ports = Ports::default();
         for Input { port, values } in inputs.iter().filter(|input| frame == 0 || !input.port.init) {
             let value = values.get(frame % values.len().max(1)).ok_or_else(|| {
-                Error::invalid_input("the sound is too short for a piece of it; name a longer one")
+                Error::invalid_input("the audio is shorter than one chunk of 0.1 s; name a longer file")
             })?;
             ports = ports.with(port.name, value);
         }
         frame += 1;
-        let ((), timings) = Timings::of(|| match in_pieces {
+        let ((), timings) = Timings::of(|| match in_chunks {
             true => learner.push(Some(&ports), &mut |_| ()),
             false => learner.infer(&ports).map(drop),
         })?;
         Ok(timings)
     })?;
-    Ok((seen, timings))
+    Ok((workload, timings))
 }
 
-/// Measures a policy in the course of episodes; the environment's own time does not count.
-fn acting(
+/// Measures a policy during episodes, without the time of the environment.
+fn measure_policy(
     learner: &dyn AnyLearner,
     entry: &'static Entry,
     matches: &ArgMatches,
-    bar: &Bar,
-) -> Result<(Seen, Vec<Timings>)> {
+    bar: &ProgressBar,
+) -> Result<(Workload, Vec<Timings>)> {
     let source = environment_flags::source(matches, Some(learner))?;
     let mut environment = source.make()?;
-    let mut stream = ActingStream::new(learner.stream()?, entry, environment.spec())?;
-    let mut shown = vec![0.0; environment.spec().observation.len()];
+    let mut stream = PolicyController::new(learner.stream()?, entry, environment.spec())?;
+    let mut observation = vec![0.0; environment.spec().observation.len()];
     let mut action = vec![0.0; environment.spec().action.len()];
-    let begin = |environment: &mut dyn Environment, seed, shown: &mut [f32]| {
-        environment.reset(seed, &ResetOptions::new(), shown).map(drop)
+    let begin = |environment: &mut dyn Environment, seed, observation: &mut [f32]| {
+        environment.reset(seed, &ResetOptions::new(), observation).map(drop)
     };
-    begin(environment.as_mut(), Some(0), &mut shown)?;
+    begin(environment.as_mut(), Some(0), &mut observation)?;
     let timings = measure(matches, bar, || {
-        let ((), timings) = Timings::of(|| stream.act(&shown, &mut action))?;
-        if environment.step(&action, &mut shown)?.is_over() {
-            begin(environment.as_mut(), None, &mut shown)?;
+        let ((), timings) = Timings::of(|| stream.act(&observation, &mut action))?;
+        if environment.step(&action, &mut observation)?.is_over() {
+            begin(environment.as_mut(), None, &mut observation)?;
             stream.reset();
         }
         Ok(timings)
     })?;
-    Ok((Seen::Environment(source.id().to_owned()), timings))
+    Ok((Workload::Environment(source.id().to_owned()), timings))
 }
 
-/// The timings of as many calls as the user wants.
+/// Returns the timings of `--frames` calls after `--warmup` calls.
 fn measure(
     matches: &ArgMatches,
-    bar: &Bar,
+    bar: &ProgressBar,
     mut call: impl FnMut() -> Result<Timings>,
 ) -> Result<Vec<Timings>> {
     let [frames, warmup] =
@@ -183,7 +183,7 @@ fn measure(
     Ok(timings)
 }
 
-/// Each stage's own percentile (nearest rank).
+/// Returns the percentile of each stage by itself (nearest rank).
 fn percentile(timings: &[Timings], part: f64) -> Timings {
     let of = |stage: fn(&Timings) -> f64| {
         let mut values: Vec<f64> = timings.iter().map(stage).collect();
@@ -198,14 +198,15 @@ fn print(measurement: &Measurement, json: bool) -> Result<()> {
     if json {
         return stdout::print_pretty_json(measurement);
     }
-    let Measurement { learner, runtime, seen, frames, frames_per_second, p50_ms, p99_ms, .. } = measurement;
-    let seen = match seen {
-        Seen::Picture { source, width, height } => format!("frames of {width}x{height} ({source})"),
-        Seen::Sound { source, sample_rate, piece_s } => {
-            format!("pieces of {piece_s:.1} s at {sample_rate} Hz ({source})")
+    let Measurement { learner, runtime, workload, frames, frames_per_second, p50_ms, p99_ms, .. } =
+        measurement;
+    let workload = match workload {
+        Workload::Picture { source, width, height } => format!("frames of {width}x{height} ({source})"),
+        Workload::Sound { source, sample_rate, piece_s } => {
+            format!("chunks of {piece_s:.1} s at {sample_rate} Hz ({source})")
         }
-        Seen::Values { source, of, .. } => format!("inputs {of} ({source})"),
-        Seen::Environment(id) => format!("steps in {id}"),
+        Workload::Values { source, of, .. } => format!("inputs {of} ({source})"),
+        Workload::Environment(id) => format!("steps in {id}"),
     };
     let real_time = measurement
         .real_time_factor
@@ -214,7 +215,7 @@ fn print(measurement: &Measurement, json: bool) -> Result<()> {
         measurement.peak_memory_mb.map_or_else(String::new, |peak| format!("\npeak memory: {peak:.0} MB"));
     stdout::print(format_args!(
         "{learner} on {runtime}\n\
-         {frames} {seen}: {frames_per_second:.1} a second{real_time}\n\
+         {frames} {workload}: {frames_per_second:.1} per second{real_time}\n\
          p50: {p50_ms}\np99: {p99_ms}{memory}"
     ))
 }
@@ -224,7 +225,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn percentiles_are_those_of_each_stage() {
+    fn percentiles_are_per_stage() {
         let timings: Vec<_> = (1..=100)
             .map(|n| Timings { pre: f64::from(n), session: f64::from(101 - n), ..Timings::default() })
             .collect();

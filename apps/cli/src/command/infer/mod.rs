@@ -1,37 +1,40 @@
-//! `opendr infer`: a learner over pictures, folders, videos, cameras, files of what else learners take, and recordings.
+//! `opendr infer`: runs a learner on images, folders, videos, cameras, files of other input types, and recordings.
 
 mod chain;
+mod job;
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::path::PathBuf;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use opendr::learner::{AnyLearner, Entry, Outputs, Ports};
+use opendr::learner::{AnyLearner, Outputs};
 use opendr::target::Classes;
 use opendr::{Error, ErrorKind, Pipeline, Progress, Result, Unit, ValueType, map_in_order};
 
+use crate::dump::Dump;
 use crate::exit::Outcome;
-use crate::inputs::{Datum, Inputs, Item, Next};
-use crate::port_file::PortFile;
-use crate::progress_bar::{Bar, interrupted};
+use crate::inputs::Inputs;
+use crate::item::{Datum, Item, Next};
+use crate::progress_bar::{ProgressBar, interrupted};
 use crate::recordings::RecordingSink;
 use crate::report::{Json, Report};
 use crate::timings::Timings;
 use crate::writer::{Failures, Writer};
 use crate::{learner_flags, loading, recordings, then_flag};
+use job::{InferenceResult, Job, Stream, of_item};
 
 const EXAMPLES: &str = "\
 Examples:
-  opendr infer LEARNER street.jpg                        print what is found
-  opendr infer LEARNER street.jpg --out seen.png         ... and draw it
-  opendr infer LEARNER pictures/ --out seen/ --json      one line of JSON a picture
+  opendr infer LEARNER street.jpg                        print the predictions
+  opendr infer LEARNER street.jpg --out boxes.png        ... and draw them
+  opendr infer LEARNER images/ --out drawn/ --json       one line of JSON per image
   opendr infer LEARNER 'photos/**/*.jpg' --threshold 0.8
-  opendr infer LEARNER/VARIANT dance.mp4 --out dance-seen.mp4
+  opendr infer LEARNER/VARIANT dance.mp4 --out dance-poses.mp4
   opendr infer LEARNER camera:0 --limit 100
-  opendr infer matchboxnet yes.wav no.wav                sounds, series (.csv), point clouds
-  opendr infer LEARNER drive.bag --topic /camera/image_raw --out answers.mcap
-  opendr infer nanodet walk.mp4 --then 'posenet threshold=0.3' --out seen.mp4   one behind the other, in parallel
-  opendr infer yunet crowd.mp4 --then 'each facial_emotion input=face'          ... which looks at each box found
+  opendr infer matchboxnet yes.wav no.wav                audio, time series (.csv), point clouds
+  opendr infer LEARNER drive.bag --topic /camera/image_raw --out boxes.mcap
+  opendr infer nanodet walk.mp4 --then 'posenet threshold=0.3' --out poses.mp4  a pipeline, in parallel
+  opendr infer yunet crowd.mp4 --then 'each facial_emotion input_kind=face'          ... one call per detected box
+  opendr infer LEARNER wrong.jpg --dump tensors/         debug a wrong prediction: all tensors as .npy
 
 \"opendr infer LEARNER --help\" lists the learner's parameters; \"opendr models\" lists the learners.";
 
@@ -39,7 +42,7 @@ pub fn grammar() -> Command {
     let switch = |name: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue);
     let path = |name: &'static str| Arg::new(name).long(name).value_parser(value_parser!(PathBuf));
     Command::new("infer")
-        .about("Run a learner on pictures, videos, a camera, files of what else it takes, or recordings")
+        .about("Run a learner on images, videos, a camera, files of other input types, or recordings")
         .arg(loading::learner())
         .arg(
             Arg::new("input")
@@ -47,18 +50,21 @@ pub fn grammar() -> Command {
                 .num_args(1..)
                 .value_parser(value_parser!(PathBuf))
                 .value_name("INPUT")
-                .help("Pictures, folders, quoted patterns, video files, camera:N; files of the type that the learner takes; or recordings (.bag, .mcap, folders of rosbag2)"),
+                .help("Images, folders, quoted patterns, video files, camera:N; files of the learner's input type; or recordings (.bag, .mcap, rosbag 2 folders)"),
         )
         .args([
             path("out")
                 .short('o')
                 .value_name("DIR|FILE")
-                .help("Write annotated pictures: into a folder, or to one picture or video file; or record the answers (.bag, .mcap)"),
+                .help("Write annotated images into a folder, an image file or a video file; or record the predictions (.bag, .mcap)"),
             path("json").num_args(0..=1).require_equals(true).value_name("FILE").help(
-                "Print a line of JSON a frame instead of text, or write it to FILE besides (docs/command-line.md)",
+                "Print one line of JSON per frame instead of text, or write the lines to FILE besides the text (docs/command-line.md)",
             ),
-            switch("show-timings").help("Tell how long each stage took"),
-            switch("sequence").help("The pictures follow each other in time, as frames of one video do"),
+            switch("show-timings").help("Print the duration of each stage"),
+            path("dump").value_name("DIR").help(
+                "Write the tensors before and after each stage as .npy into a new folder, with an index dump.json (about 10 MB per image)",
+            ),
+            switch("sequence").help("Treat the images as frames of one video"),
             then_flag::flag(),
             Arg::new("limit")
                 .long("limit")
@@ -74,7 +80,7 @@ pub fn grammar() -> Command {
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
     let entry = loading::entry(spec)?;
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let json = match matches.get_one::<PathBuf>("json") {
         Some(path) => Json::file(path)?,
         None if matches.contains_id("json") => Json::Stdout,
@@ -82,7 +88,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     };
     let mut report = Report::new(&bar, json, matches.get_flag("show-timings"));
     let inputs: Vec<&PathBuf> = matches.get_many("input").into_iter().flatten().collect();
-    let port = entry.ports.first().ok_or_else(|| Error::internal("the learner takes nothing"))?;
+    let port = entry.ports.first().ok_or_else(|| Error::internal("the learner has no input port"))?;
     let out = matches.get_one::<PathBuf>("out");
     let sink = RecordingSink::new(entry, matches, &inputs)?;
     if then_flag::is_given(matches) {
@@ -91,7 +97,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     if out.is_some() && sink.is_none() && port.value_type != ValueType::Image {
         let (class, given) = (entry.spec.class, port.value_type.name());
         return Err(Error::invalid_param(format!(
-            "--out draws on pictures, and {class} takes {given}; record the answers (--out answers.mcap), or write them by --json=FILE"
+            "--out draws on images, but the input of {class} is {given}; record the predictions (--out predictions.mcap), or write them with --json=FILE"
         )));
     }
     let items = Inputs::open(entry, &inputs, matches, &mut report)?;
@@ -111,16 +117,22 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         further: learner_flags::port_files(entry, matches)?,
         sequence: matches.get_flag("sequence"),
     };
-    let alone = chained || job.sequence || !items.are_separate();
-    let count = if alone { 1 } else { loading::how_many(matches, frames)? };
-    let mut learners = loading::side_by_side(count, load)?;
-    let mut team = match learners.pop() {
+    let dump = matches.get_one::<PathBuf>("dump").map(|folder| Dump::create(folder)).transpose()?;
+    let alone = chained || job.sequence || dump.is_some() || !items.are_independent();
+    let count = if alone { 1 } else { loading::copies(matches, frames)? };
+    let mut learners = loading::load_copies(count, load)?;
+    let mut processors = match learners.pop() {
         Some(first) if chained => {
-            Team::Chain(then_flag::pipeline(entry, first.as_ref(), matches, &bar)?, Stream::default())
+            Learners::Chain(then_flag::pipeline(entry, first.as_ref(), matches, &bar)?, Stream::default())
         }
         first => {
             let learners = learners.into_iter().chain(first);
-            Team::SideBySide(learners.map(|learner| Worker { learner, stream: Stream::default() }).collect())
+            Learners::Parallel(
+                learners
+                    .zip(std::iter::once(dump).chain(std::iter::repeat_with(|| None)))
+                    .map(|(learner, dump)| Worker { learner, stream: Stream::default(), dump })
+                    .collect(),
+            )
         }
     };
     if let Out::Recorded(sink) = &mut out {
@@ -129,42 +141,32 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     if frames != Some(1) {
         bar.begin("frames", frames, Unit::Items);
     }
-    let told = job.run(&mut team, items, limit, &mut report, &mut out, &bar);
+    let result = job.run(&mut processors, items, limit, &mut report, &mut out, &bar);
     bar.end();
-    // Even when the report cannot go on, what was handed over is finished.
+    // Frames that were handed to the writer are finished even after an error.
     for (input, error) in out.finish() {
         report.failure(input.as_deref(), &error)?;
     }
-    told?;
+    result?;
     Ok(if report.finish()? == 0 { Outcome::Done } else { Outcome::SomeFailed })
 }
 
-/// What is to be done with each item.
-struct Job {
-    entry: &'static Entry,
-    port: &'static str,
-    further: Vec<PortFile>,
-    sequence: bool,
-}
-
-/// The video whose frames a learner has seen; for pictures in a sequence, their folder.
-type Stream = Option<Arc<Path>>;
-
-/// A learner at work.
+/// A learner with its stream.
 struct Worker {
     learner: Box<dyn AnyLearner>,
     stream: Stream,
+    dump: Option<Dump>,
 }
 
-/// Who answers.
-enum Team {
-    /// The same learner several times, each with items of its own.
-    SideBySide(Vec<Worker>),
-    /// Learners that each see all items, one behind the other.
+/// Learners that process the items.
+enum Learners {
+    /// Copies of one learner, each of which processes a part of the items.
+    Parallel(Vec<Worker>),
+    /// Learners in sequence, each of which processes all items.
     Chain(Pipeline, Stream),
 }
 
-/// Where answers go besides the report.
+/// Destination of predictions besides the report.
 enum Out {
     Nowhere,
     Drawn(Writer),
@@ -172,7 +174,7 @@ enum Out {
 }
 
 impl Out {
-    /// Hands over what was found in an item.
+    /// Passes the predictions of an item on.
     fn put(&mut self, item: Item, outputs: Vec<Outputs>, classes: &Classes) -> Result<()> {
         match self {
             Self::Nowhere => Ok(()),
@@ -195,19 +197,10 @@ impl Out {
     }
 }
 
-/// An item with what was found in it, several times where it is a piece of a stream; or what failed and for which input.
-type Answer = std::result::Result<(Item, Vec<Outputs>, Timings), (Option<PathBuf>, Error)>;
-
-/// An error with the file that it belongs to.
-fn of_item(item: &Item, error: Error) -> (Option<PathBuf>, Error) {
-    let path = item.path();
-    (Some(path.to_path_buf()), error.context(path.display().to_string()))
-}
-
-impl Team {
+impl Learners {
     fn classes(&self) -> Classes {
         match self {
-            Self::SideBySide(workers) => {
+            Self::Parallel(workers) => {
                 workers.first().map(|worker| worker.learner.classes()).unwrap_or_default()
             }
             Self::Chain(..) => Classes::default(),
@@ -218,28 +211,28 @@ impl Team {
 impl Job {
     fn run(
         &self,
-        team: &mut Team,
+        learners: &mut Learners,
         mut inputs: Inputs,
         limit: u64,
         report: &mut Report<'_>,
         out: &mut Out,
-        bar: &Bar,
+        bar: &ProgressBar,
     ) -> Result<()> {
-        let classes = team.classes();
+        let classes = learners.classes();
         let mut left = limit;
         let items = std::iter::from_fn(|| {
             left = left.checked_sub(1).filter(|_| !interrupted())?;
             Some(inputs.next()?.and_then(|item| self.with_files(item)))
         });
-        let tell = |answer: Answer| {
-            match answer {
+        let report_result = |result: InferenceResult| {
+            match result {
                 Ok((item, outputs, timings)) => {
                     for outputs in &outputs {
                         report.item(&item, outputs, timings)?;
                     }
                     let path = item.path().clone();
                     match out.put(item, outputs, &classes) {
-                        // The next may have a place where this one has none.
+                        // Another item may still be writable.
                         Err(error) if error.kind() == ErrorKind::InvalidInput => {
                             report.failure(Some(&path), &error)?;
                         }
@@ -251,44 +244,44 @@ impl Job {
             bar.advance(1);
             Ok(())
         };
-        match team {
-            Team::SideBySide(workers) => {
-                map_in_order(workers, items, |worker, item: Next| self.answer(worker, item?), tell)
+        match learners {
+            Learners::Parallel(workers) => {
+                map_in_order(workers, items, |worker, item: Next| self.process(worker, item?), report_result)
             }
-            Team::Chain(pipeline, stream) => chain::run(self, pipeline, stream, items, tell),
+            Learners::Chain(pipeline, stream) => chain::run(self, pipeline, stream, items, report_result),
         }
     }
 
-    fn answer(&self, worker: &mut Worker, item: Item) -> Answer {
+    fn process(&self, worker: &mut Worker, item: Item) -> InferenceResult {
         let begins = self.follow(&mut worker.stream, &item);
         if begins {
             worker.learner.reset();
         }
-        match self.infer(worker, &item, begins) {
+        match self.infer_and_dump(worker, &item, begins) {
             Ok((outputs, timings)) => Ok((item, outputs, timings)),
             Err(error) => Err(of_item(&item, error)),
         }
     }
 
-    /// What goes into the ports.
-    fn ports<'a>(&'a self, item: &'a Item, begins: bool) -> Result<Ports<'a>> {
-        let mut ports = Ports::default().with(self.port, item.value());
-        for (name, value) in &item.from_files {
-            if begins || !self.is_init(name) {
-                ports = ports.with(name, value);
-            }
-        }
-        for (name, value) in item.further() {
-            ports = ports.with(name, value);
-        }
-        Ok(ports)
+    /// Infers an item and writes its tensors if requested, after an error too.
+    fn infer_and_dump(
+        &self,
+        worker: &mut Worker,
+        item: &Item,
+        begins: bool,
+    ) -> Result<(Vec<Outputs>, Timings)> {
+        let Some(mut dump) = worker.dump.take() else { return self.infer(worker, item, begins) };
+        let (result, runs) = Dump::record(|| self.infer(worker, item, begins));
+        let written = dump.write(item, &runs, result.as_ref().ok().map(|(outputs, _)| &outputs[..]));
+        worker.dump = Some(dump);
+        result.and_then(|result| written.map(|()| result))
     }
 
     fn infer(&self, worker: &mut Worker, item: &Item, begins: bool) -> Result<(Vec<Outputs>, Timings)> {
         let ports = self.ports(item, begins)?;
-        let is_piece = self.entry.capabilities.streaming && item.recorded.is_some();
+        let is_chunk = self.entry.capabilities.streaming && item.recorded.is_some();
         Timings::of(|| {
-            if !is_piece {
+            if !is_chunk {
                 return worker.learner.infer(&ports).map(|outputs| vec![outputs]);
             }
             let mut outputs = Vec::new();
@@ -298,36 +291,5 @@ impl Job {
             }
             Ok(outputs)
         })
-    }
-
-    /// Every video and recording is a stream of its own, and so is every other file unless they are a sequence; what
-    /// begins one may also come in the middle of a recording. Whether one begins.
-    fn follow(&self, last: &mut Stream, item: &Item) -> bool {
-        let stream = match (item.is_of_stream(), self.sequence) {
-            (true, _) => Some(item.path().clone()),
-            (false, true) => item.path().parent().map(Arc::from),
-            (false, false) => None,
-        };
-        let is_begun = item.further().iter().any(|(name, _)| self.is_init(name));
-        let begins = is_begun || stream.is_none() || stream != *last;
-        *last = stream;
-        begins
-    }
-
-    /// The item with what the files of further ports have for it.
-    fn with_files(&self, mut item: Item) -> Next {
-        for file in &self.further {
-            match file.value(item.index()) {
-                Ok(value) => item.from_files.push((file.name(), value)),
-                // Nobody asks for it but where a stream begins.
-                Err(_) if self.is_init(file.name()) => {}
-                Err(error) => return Err((Some(item.path().to_path_buf()), error)),
-            }
-        }
-        Ok(item)
-    }
-
-    fn is_init(&self, name: &str) -> bool {
-        self.entry.ports.iter().any(|port| port.name == name && port.init)
     }
 }

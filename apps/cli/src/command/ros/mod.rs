@@ -1,22 +1,26 @@
-//! `opendr ros2` and `opendr ros1`: learners as nodes.
+//! `opendr ros2` and `opendr ros1`: run learners and environments as nodes.
 
 mod environment;
 mod node;
 mod participant;
 mod run;
+mod version;
 
 use clap::{ArgMatches, Command};
 use opendr::Result;
 
 use crate::exit::Outcome;
-use run::Ros;
+use version::Ros;
 
 pub fn ros2() -> Command {
-    grammar(Ros::Two, "Learners as nodes of ROS 2; no ROS is needed where they run")
+    grammar(Ros::Two, "Run learners as ROS 2 nodes, without a ROS installation")
 }
 
 pub fn ros1() -> Command {
-    grammar(Ros::One, "Learners as nodes of ROS 1; no ROS is needed where they run, a roscore somewhere")
+    grammar(
+        Ros::One,
+        "Run learners as ROS 1 nodes, without a ROS installation; needs a roscore on the network",
+    )
 }
 
 fn grammar(ros: Ros, about: &'static str) -> Command {

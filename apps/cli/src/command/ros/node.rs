@@ -1,4 +1,4 @@
-//! One node's words: topics and parameters as flags, from the learner's tables.
+//! Command line of one node: topics and parameters as flags, from the learner's ports, outputs and parameters.
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::learner::Entry;
@@ -7,55 +7,58 @@ use opendr::ros::{NodeOptions, NodeParams, default_topics};
 use opendr::{Error, Result, ResultExt};
 
 use super::participant;
-use super::run::Ros;
+use super::version::Ros;
 use crate::{learner_flags, loading};
 
-/// The grammar of one node; with a learner its topics and parameters are flags.
+/// Builds the grammar of one node; with `entry`, the learner's topics and parameters are flags.
 pub fn node_grammar(ros: Ros, entry: Option<&'static Entry>) -> Command {
     let command = Command::new(format!("opendr {} run", ros.name()))
         .about("Run a learner as a node")
         .arg(loading::learner())
         .args(loading::flags())
         .arg(
-            Arg::new("name").long("name").value_name("NAME").help("The node's name; the learner's otherwise"),
+            Arg::new("name")
+                .long("name")
+                .value_name("NAME")
+                .help("Name of the node [default: that of the learner]"),
         )
         .arg(
             Arg::new("namespace")
                 .long("namespace")
                 .default_value("/")
                 .value_name("NAMESPACE")
-                .help("Where its relative names lie"),
+                .help("Namespace of the node"),
         )
         .arg(
             Arg::new("reliable")
                 .long("reliable")
                 .action(ArgAction::SetTrue)
-                .help("Ask publishers of pictures and clouds to send what was lost again"),
+                .help("Use reliable QoS for images and point clouds: lost messages are sent again"),
         )
         .arg(
             Arg::new("qos-depth")
                 .long("qos-depth")
                 .value_parser(value_parser!(u16).range(1..))
                 .value_name("N")
-                .help("Messages that are kept for a slow peer"),
+                .help("QoS history depth: messages kept for a slow peer"),
         )
         .after_help(ros.examples());
     let lifecycle = || {
         Arg::new("lifecycle")
             .long("lifecycle")
             .action(ArgAction::SetTrue)
-            .help("Wait to be configured and activated, as a managed node")
+            .help("Run as a lifecycle node, which waits to be configured and activated")
     };
     let command = if ros == Ros::Two { participant::add_flags(command).arg(lifecycle()) } else { command };
     let Some(entry) = entry else { return command };
     let mut command = learner_flags::with_params(command, entry);
-    let usual = default_topics(entry);
-    for topic in &usual.inputs {
+    let defaults = default_topics(entry);
+    for topic in &defaults.inputs {
         let doc = entry.ports.iter().find(|port| port.name == topic.name).map_or("", |port| port.doc);
         command =
             with_topic(command, "Inputs", &topic.name, "", doc, &topic.topic, topic.message_type.ros2_name());
     }
-    for topic in &usual.outputs {
+    for topic in &defaults.outputs {
         let doc =
             entry.outputs.iter().find(|output| output.name == topic.name).map_or("", |output| output.doc);
         let message = topic.message_type.ros2_name();
@@ -90,14 +93,14 @@ fn with_topic(
                 .long(format!("{flag}-message"))
                 .value_name("TYPE")
                 .help_heading(heading)
-                .help(format!("Its message [default: {message}]")),
+                .help(format!("Message type [default: {message}]")),
         )
 }
 
-/// The parameters after `--ros-args`, each for the learner or for the node.
+/// Sorts the parameters after `--ros-args` into those of the learner and those of the node.
 ///
 /// # Errors
-/// `InvalidParam` for one that neither has, or a text that is no value of it.
+/// `InvalidParam` for an unknown parameter or a wrong value.
 pub fn set_parameters(
     entry: &Entry,
     parameters: &[(String, String)],
@@ -105,7 +108,7 @@ pub fn set_parameters(
     of_node: &mut ParamMap,
 ) -> Result<()> {
     for (name, text) in parameters {
-        let find = |fields: &'static [Field]| fields.iter().find(|field| field.name == name);
+        let find = |fields: &'static [Field]| fields.iter().find(|field| field.is_called(name));
         let (field, map) = match (find(entry.params), find(NodeParams::FIELDS)) {
             (Some(field), _) => (field, &mut *of_learner),
             (None, Some(field)) => (field, &mut *of_node),
@@ -118,10 +121,10 @@ pub fn set_parameters(
     Ok(())
 }
 
-/// The topics as the words have them.
+/// Returns the node's options as the flags set them.
 ///
 /// # Errors
-/// `NotFound` for a message that there is none of.
+/// `NotFound` for an unknown message type.
 pub fn options(entry: &Entry, matches: &ArgMatches, params: NodeParams) -> Result<NodeOptions> {
     let mut options = NodeOptions { params, ..default_topics(entry) };
     let NodeOptions { inputs, outputs, .. } = &mut options;
@@ -147,7 +150,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_learner_has_a_sound_grammar() {
+    fn every_learner_has_a_valid_grammar() {
         for entry in opendr::registry().entries() {
             node_grammar(Ros::One, Some(entry)).debug_assert();
             node_grammar(Ros::Two, Some(entry)).debug_assert();
@@ -158,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn topics_and_parameters_come_from_the_words() {
+    fn topics_and_parameters_come_from_flags() {
         let entry = opendr::registry().find("nanodet").unwrap();
         let words = [
             "run",

@@ -1,4 +1,4 @@
-//! The flags of ROS 2's network.
+//! Flags of the ROS 2 middleware.
 
 use std::net::IpAddr;
 
@@ -13,14 +13,14 @@ pub fn add_flags(command: Command) -> Command {
                 .long("rmw")
                 .value_parser(str::parse::<Middleware>)
                 .value_name("dds|zenoh")
-                .help("What carries the messages of ROS 2 [env: RMW_IMPLEMENTATION] [default: dds]"),
+                .help("Middleware of ROS 2 [env: RMW_IMPLEMENTATION] [default: dds]"),
         )
         .arg(
             Arg::new("domain-id")
                 .long("domain-id")
                 .value_parser(value_parser!(u16))
                 .value_name("N")
-                .help("The domain of ROS 2 [env: ROS_DOMAIN_ID]"),
+                .help("Domain id of ROS 2 [env: ROS_DOMAIN_ID]"),
         )
         .arg(
             Arg::new("network")
@@ -28,11 +28,11 @@ pub fn add_flags(command: Command) -> Command {
                 .action(ArgAction::Append)
                 .value_parser(value_parser!(IpAddr))
                 .value_name("ADDRESS")
-                .help("An address of this machine whose network is used by DDS; all of them otherwise"),
+                .help("Address of a network interface that DDS uses; may be repeated [default: all]"),
         )
 }
 
-/// Joins ROS 2 as the flags have it.
+/// Joins ROS 2 with the options of the flags.
 ///
 /// # Errors
 /// As [`Ros2::new`].

@@ -1,4 +1,4 @@
-//! `opendr ros2 run` and `opendr ros1 run`: one node a learner, several in one process.
+//! `opendr ros2 run` and `opendr ros1 run`: run learners as nodes, one or several per process.
 
 use std::ffi::OsString;
 
@@ -7,59 +7,21 @@ use opendr::Result;
 use opendr::learner::AnyLearner;
 use opendr::params::Params as _;
 use opendr::ros::{
-    Feeds, Graph, LearnerNode, Names, NodeParams, Ros1Node, Ros2, RosArgs, Severity, words_from_ros1,
+    Graph, LearnerNode, Names, NodeParams, Ros1Node, Ros2, RosArgs, Severity, SharedSubscriptions,
+    ros_args_from_ros1,
 };
 
 use super::node::{node_grammar, options, set_parameters};
 use super::participant;
+use super::version::{ROS_ARGS, Ros};
 use crate::exit::Outcome;
-use crate::progress_bar::{Bar, interrupted};
+use crate::progress_bar::{ProgressBar, interrupted};
 use crate::{learner_flags, loading};
 
-/// Which ROS.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Ros {
-    One,
-    Two,
-}
-
-impl Ros {
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::One => "ros1",
-            Self::Two => "ros2",
-        }
-    }
-
-    pub const fn examples(self) -> &'static str {
-        match self {
-            Self::One => {
-                "\
-Examples:
-  opendr ros1 run nanodet --image /camera/image_raw
-  opendr ros1 run nanodet --threshold 0.5 + yunet       two nodes; the picture is decoded once
-  opendr ros1 run nanodet --ros-args -r __ns:=/robot -r image_raw:=/camera/image_raw
-  opendr ros1 run LEARNER --help                        its topics and parameters"
-            }
-            Self::Two => {
-                "\
-Examples:
-  opendr ros2 run nanodet --image /camera/image_raw
-  opendr ros2 run nanodet --image /cam/compressed --image-message sensor_msgs/msg/CompressedImage
-  opendr ros2 run nanodet --threshold 0.5 + yunet       two nodes; the picture is decoded once
-  opendr ros2 run nanodet --ros-args -r __ns:=/robot -r image_raw:=/camera/image_raw -p threshold:=0.5
-  opendr ros2 run LEARNER --help                        its topics and parameters"
-            }
-        }
-    }
-}
-
-/// The id of the argument that holds everything after `run`.
+/// Id of the argument that holds everything after `run`.
 const WORDS: &str = "words";
-/// What stands between the nodes of one process.
+/// Separator between the nodes of one process.
 const NEXT: &str = "+";
-/// What begins the words that ROS's own tools write.
-pub const ROS_ARGS: &str = "--ros-args";
 
 pub fn grammar(ros: Ros) -> Command {
     Command::new("run")
@@ -83,7 +45,7 @@ pub fn run(ros: Ros, matches: &ArgMatches) -> Result<Outcome> {
     let mut ros_words: Vec<String> = rest.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     let mut own_words = Vec::new();
     for word in words {
-        match words_from_ros1(&word.to_string_lossy())? {
+        match ros_args_from_ros1(&word.to_string_lossy())? {
             Some(of_ros) => ros_words.extend(of_ros),
             None => own_words.push(word.clone()),
         }
@@ -96,9 +58,9 @@ pub fn run(ros: Ros, matches: &ArgMatches) -> Result<Outcome> {
         }
     }
     let Some(first) = nodes.first() else { return Ok(Outcome::Done) };
-    let mut feeds = Feeds::default();
+    let mut feeds = SharedSubscriptions::default();
     let mut running = Vec::new();
-    // The participant stays until its nodes are gone.
+    // The participant outlives its nodes.
     let mut joined = None;
     for matches in &nodes {
         running.push(match ros {
@@ -118,7 +80,7 @@ pub fn run(ros: Ros, matches: &ArgMatches) -> Result<Outcome> {
 
 type Running = (Box<dyn Graph>, LearnerNode);
 
-/// Runs all nodes until Ctrl-C or until they are over; none goes before all do, since they share what they listen to.
+/// Runs all nodes until Ctrl-C or until they end; all are dropped together, since they share subscriptions.
 fn serve(running: Vec<Running>) {
     std::thread::scope(|scope| {
         let work = |(graph, node): Running| {
@@ -130,18 +92,23 @@ fn serve(running: Vec<Running>) {
     });
 }
 
-/// One node's words as flags; what was printed instead of that ends the command.
+/// Parses the words of one node; the inner error is the outcome after help or a usage error was printed.
 fn parse(ros: Ros, words: &[OsString]) -> Result<Result<ArgMatches, Outcome>> {
     let entry = super::super::named_learner(&node_grammar(ros, None), words)?;
     let words = std::iter::once(OsString::from("run")).chain(words.iter().cloned());
     Ok(node_grammar(ros, entry).try_get_matches_from(words).map_err(|error| {
-        // Printing fails only when nobody reads.
+        // Printing fails only when the output is closed.
         error.print().ok();
         if error.use_stderr() { Outcome::WrongUsage } else { Outcome::Done }
     }))
 }
 
-fn start_ros2(ros2: &Ros2, matches: &ArgMatches, ros_words: &[String], feeds: &mut Feeds) -> Result<Running> {
+fn start_ros2(
+    ros2: &Ros2,
+    matches: &ArgMatches,
+    ros_words: &[String],
+    feeds: &mut SharedSubscriptions,
+) -> Result<Running> {
     let (names, args) = names(matches, ros_words)?;
     let mut graph = ros2.node(names)?;
     let node = learner_node(&mut *graph, matches, &args.parameters, feeds)?;
@@ -152,17 +119,21 @@ fn start_ros2(ros2: &Ros2, matches: &ArgMatches, ros_words: &[String], feeds: &m
     Ok((graph, node))
 }
 
-fn start_ros1(matches: &ArgMatches, ros_words: &[String], feeds: &mut Feeds) -> Result<Running> {
+fn start_ros1(
+    matches: &ArgMatches,
+    ros_words: &[String],
+    feeds: &mut SharedSubscriptions,
+) -> Result<Running> {
     let (names, args) = names(matches, ros_words)?;
     let mut graph = Ros1Node::new(names)?;
-    // What a launch file has set; the words are closer.
+    // Parameters of the command line override those of a launch file.
     let mut parameters = graph.private_parameters()?;
     parameters.extend(args.parameters);
     let node = learner_node(&mut graph, matches, &parameters, feeds)?;
     Ok((Box::new(graph), node))
 }
 
-/// The node's names and what the words after `--ros-args` say.
+/// Returns the node's names and the parsed words after `--ros-args`.
 fn names(matches: &ArgMatches, ros_words: &[String]) -> Result<(Names, RosArgs)> {
     let text = |id: &str| matches.get_one::<String>(id).map(String::as_str);
     let entry = loading::entry(text(loading::LEARNER).unwrap_or_default())?;
@@ -176,7 +147,7 @@ fn learner_node(
     graph: &mut dyn Graph,
     matches: &ArgMatches,
     parameters: &[(String, String)],
-    feeds: &mut Feeds,
+    feeds: &mut SharedSubscriptions,
 ) -> Result<LearnerNode> {
     let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
     let entry = loading::entry(spec)?;
@@ -184,7 +155,7 @@ fn learner_node(
         (learner_flags::params(entry, matches)?, learner_flags::values(NodeParams::FIELDS, matches)?);
     set_parameters(entry, parameters, &mut of_learner, &mut of_node)?;
     let options = options(entry, matches, NodeParams::from_map(&of_node)?)?;
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let learner: Box<dyn AnyLearner> = loading::load(spec, &of_learner, matches, &bar)?;
     let node = LearnerNode::new(graph, entry, learner, options, feeds)?;
     graph.log()(Severity::Info, &format!("{} is ready as {}", entry.spec.class, graph.name()));

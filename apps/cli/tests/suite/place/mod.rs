@@ -19,13 +19,13 @@ impl Drop for Place {
     }
 }
 
-/// What a run came to.
+/// Result of a command.
 #[derive(Debug)]
 pub struct Done {
     pub code: i32,
     pub stdout: String,
     pub stderr: String,
-    /// Peak resident memory, 10^6 bytes; 0 where the system does not tell.
+    /// Peak resident memory in 10^6 bytes; 0 where it is unknown.
     pub peak_mb: f64,
 }
 
@@ -38,7 +38,7 @@ impl Done {
     /// Fails the test unless the run ended with `code` and without a panic.
     #[track_caller]
     pub fn ends_with(self, code: i32) -> Self {
-        assert!(self.code == code && !self.stderr.contains("panicked"), "wanted {code}: {self:#?}");
+        assert!(self.code == code && !self.stderr.contains("panicked"), "expected {code}: {self:#?}");
         self
     }
 }
@@ -56,7 +56,7 @@ impl Place {
         Self(path)
     }
 
-    /// A place and the folder with real models and data; `None`, said, where there is none.
+    /// A place and the folder with real models and data; prints a line and returns `None` without `OPENDR_TEST_DATA`.
     pub fn with_data() -> Option<(Self, PathBuf)> {
         let data = test_data();
         if data.is_none() {
@@ -65,7 +65,7 @@ impl Place {
         Some((Self::new(), data?))
     }
 
-    /// The command with this place's cache, in this place, off the network; models come from the test data.
+    /// The command in this place, with its cache and without network; models come from the test data.
     pub fn command(&self, arguments: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_opendr"));
         command
@@ -105,19 +105,19 @@ impl Place {
     }
 }
 
-/// A run that goes on.
+/// A running command.
 pub struct Running {
     pub child: Child,
     outputs: [PathBuf; 2],
 }
 
 impl Running {
-    /// What it has printed so far.
+    /// Standard output so far.
     pub fn stdout(&self) -> String {
         String::from_utf8_lossy(&fs::read(&self.outputs[0]).unwrap()).into_owned()
     }
 
-    /// Waits for its end, looking at its memory meanwhile.
+    /// Waits for the end and measures the memory meanwhile.
     pub fn finish(mut self) -> Done {
         let mut peak_mb = 0.0;
         let status = loop {

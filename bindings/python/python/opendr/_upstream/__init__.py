@@ -1,8 +1,8 @@
-"""OpenDR 3.0's module paths, names and arguments, and where each of them is here.
+"""Compatibility with OpenDR 3.0: its module paths, names and arguments.
 
-``tasks`` has the table, a module for each of OpenDR's packages; everything else follows from it: module paths that are
-no files (``opendr.perception.object_detection_2d.ssd.ssd_learner``), classes that stand in for those that are not here,
-arguments in OpenDR's order, and the tables of docs/python.md.
+``tasks`` is the table, with a module for each of OpenDR's packages. The rest is derived from it: module paths without
+files (``opendr.perception.object_detection_2d.ssd.ssd_learner``), placeholders of missing classes, arguments in OpenDR's
+order, and the tables of docs/python.md.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 
 
 class Finder:
-    """Finds OpenDR's module paths that are no files here."""
+    """Import finder for OpenDR's module paths without files."""
 
     @staticmethod
     def find_spec(fullname: str, path: Any = None, target: Any = None) -> Optional[ModuleSpec]:
-        """Returns the spec of a module of the table."""
+        """Returns the spec of a module in the table."""
         if not fullname.startswith("opendr.") or fullname.startswith("opendr._"):
             return None
         from opendr._upstream.modules import spec_of

@@ -1,4 +1,4 @@
-"""What stands for names of OpenDR that are not here."""
+"""Placeholders for names of OpenDR that are not available."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from opendr._errors import Unsupported
 
 
 class _Missing(Unsupported, AttributeError):
-    """An attribute of something that is not here."""
+    """An attribute of a name that is not available."""
 
 
 class _Absent(type):
-    """The type of classes that only say what to use instead of them."""
+    """The metaclass of placeholders, which raise an error that names the replacement."""
 
     _text: str
 
@@ -33,6 +33,6 @@ class _Absent(type):
 
 
 def absent(name: str, module: str, why: str) -> Any:
-    """A class that stands for ``name`` of ``module``: it can be imported, and raises ``opendr.Unsupported`` with the
-    sentence ``why`` when it is used."""
+    """Returns a placeholder for ``name`` of ``module``: a class that can be imported and raises ``opendr.Unsupported`` with
+    the message ``why`` when it is used."""
     return _Absent(name, (), {"__module__": module, "__doc__": why, "_text": why})

@@ -1,4 +1,4 @@
-"""Arguments in OpenDR's order, under OpenDR's names and with OpenDR's values, as those of the classes here."""
+"""Conversion of arguments in OpenDR's order, with OpenDR's names and values, to those of this package."""
 
 from __future__ import annotations
 
@@ -12,30 +12,30 @@ from typing import Any, Callable, NoReturn
 from opendr._errors import Unsupported
 from opendr._upstream.rows import Argument, Learner, arguments
 
-#: The methods whose arguments are put in order.
+#: The methods whose arguments are converted.
 METHODS = ("infer", "fit", "eval", "optimize", "load", "save")
 
 
 def by_name(
-    owner: str, wanted: Sequence[Argument], given: Iterable[Any], named: Mapping[str, Any], stacklevel: int
+    owner: str, expected: Sequence[Argument], given: Iterable[Any], named: Mapping[str, Any], stacklevel: int
 ) -> dict[str, Any]:
-    """Returns arguments by their names here; those without effect are left out, with a warning.
+    """Returns the arguments under their names in this package; those without effect are dropped with a warning.
 
     Args:
-        owner: What takes them, for messages.
-        wanted: Those of OpenDR, in order.
-        given: The arguments by place.
-        named: The arguments by name, of OpenDR or of ours.
+        owner: Name of the class or method, for messages.
+        expected: OpenDR's arguments, in order.
+        given: The positional arguments.
+        named: The keyword arguments, under OpenDR's names or ours.
         stacklevel: Frames from here to the caller that a warning names.
 
     Raises:
-        TypeError: There are more by place than OpenDR has, or one is given twice.
+        TypeError: There are more positional arguments than OpenDR has, or an argument is given twice.
     """
     values = list(given)
-    if len(values) > len(wanted):
-        raise TypeError(f"{owner} takes {len(wanted)} arguments by place, not {len(values)}")
+    if len(values) > len(expected):
+        raise TypeError(f"{owner} takes {len(expected)} positional arguments, not {len(values)}")
     found: dict[str, Any] = {}
-    known = {argument.name: argument for argument in wanted}
+    known = {argument.name: argument for argument in expected}
     for name, value in [*zip(known, values), *named.items()]:
         argument = known.get(name, Argument(name, name))
         if argument.ours is None:
@@ -48,14 +48,14 @@ def by_name(
 
 
 def value_here(owner: str, row: Learner, name: str, value: Any, choices: Sequence[str], stacklevel: int) -> Any:
-    """Returns the value here of an argument that has one of OpenDR's values; None for the default, with a warning.
+    """Converts a value that only OpenDR has to this package's; returns None for the default, with a warning.
 
     Raises:
-        opendr.Unsupported: What it stands for is not here.
+        opendr.Unsupported: The value has no equivalent.
     """
     if str(value) in row.instead.get(name, "").split() and value not in choices:
         warnings.warn(
-            f"{owner}: {name}={value!r} is not here; the default takes its place", UserWarning, stacklevel=stacklevel
+            f"{owner}: {name}={value!r} is not available; the default is used", UserWarning, stacklevel=stacklevel
         )
         return None
     if not isinstance(value, str) or value in choices:
@@ -66,62 +66,62 @@ def value_here(owner: str, row: Learner, name: str, value: Any, choices: Sequenc
     same = row.same.get(name, {})
     if value in same:
         return same[value]
-    # Without a schedule, the learning rate is what it is.
+    # OpenDR's empty schedule is a constant learning rate.
     if name == "lr_schedule" and value == "" and "constant" in choices:
         return "constant"
     return value
 
 
-def placed(name: str, method: Callable[..., Any], wanted: Sequence[Argument]) -> Callable[..., Any]:
+def positional(name: str, method: Callable[..., Any], expected: Sequence[Argument]) -> Callable[..., Any]:
     """Returns ``method`` with its arguments in OpenDR's order."""
 
     @functools.wraps(method)
     def call(self: Any, *given: Any, **named: Any) -> Any:
         owner = f"{type(self).__name__}.{name}"
-        return method(self, **by_name(owner, wanted, given, named, stacklevel=3))
+        return method(self, **by_name(owner, expected, given, named, stacklevel=3))
 
     return call
 
 
-def placed_eval(method: Callable[..., Any], wanted: Sequence[Argument]) -> Callable[..., Any]:
-    """Returns ``eval`` with its arguments in OpenDR's order; live parameters hold for the call."""
+def positional_eval(method: Callable[..., Any], expected: Sequence[Argument]) -> Callable[..., Any]:
+    """Returns ``eval`` with its arguments in OpenDR's order; live parameters apply to the call only."""
 
     @functools.wraps(method)
     def call(self: Any, *given: Any, **named: Any) -> Any:
         owner = f"{type(self).__name__}.eval"
-        found = by_name(owner, wanted, given, named, stacklevel=3)
+        found = by_name(owner, expected, given, named, stacklevel=3)
         if found.pop("silent", False):
             found["verbose"] = False
         subset, size = found.pop("use_subset", False), found.pop("subset_size", None)
         if subset:
             if size is None:
-                raise TypeError(f"{owner}: use_subset wants the number of samples; give subset_size")
+                raise TypeError(f"{owner}: use_subset needs the number of samples; give subset_size")
             found["limit"] = size
         live = {key: found.pop(key) for key in list(found) if self._live_name(key) is not None}
-        with self._for_now({self._live_name(key): value for key, value in live.items() if value is not None}):
+        with self._temporarily({self._live_name(key): value for key, value in live.items() if value is not None}):
             return method(self, **{key: value for key, value in found.items() if value is not None or key == "dataset"})
 
     return call
 
 
-def placed_infer(method: Callable[..., Any], wanted: Sequence[Argument]) -> Callable[..., Any]:
-    """Returns ``infer`` with its arguments in OpenDR's order; None leaves a parameter as it is."""
+def positional_infer(method: Callable[..., Any], expected: Sequence[Argument]) -> Callable[..., Any]:
+    """Returns ``infer`` with its arguments in OpenDR's order; None leaves a parameter unchanged."""
 
     @functools.wraps(method)
     def call(self: Any, *given: Any, **named: Any) -> Any:
-        found = by_name(f"{type(self).__name__}.infer", wanted, given, named, stacklevel=3)
+        found = by_name(f"{type(self).__name__}.infer", expected, given, named, stacklevel=3)
         ports = {port["name"] for port in self._entry["ports"]}
         return method(self, **{name: value for name, value in found.items() if value is not None or name in ports})
 
     return call
 
 
-def placed_load(method: Callable[..., Any], wanted: Sequence[Argument]) -> Callable[..., Any]:
+def positional_load(method: Callable[..., Any], expected: Sequence[Argument]) -> Callable[..., Any]:
     """Returns ``load`` with its arguments in OpenDR's order; ``model_name`` is a folder in ``path``."""
 
     @functools.wraps(method)
     def call(self: Any, *given: Any, **named: Any) -> Any:
-        found = by_name(f"{type(self).__name__}.load", wanted, given, named, stacklevel=3)
+        found = by_name(f"{type(self).__name__}.load", expected, given, named, stacklevel=3)
         name, path = found.pop("model_name", None), found.get("path")
         if name is not None and path is not None and os.path.isdir(os.path.join(path, name)):
             found["path"] = os.path.join(path, name)
@@ -131,52 +131,52 @@ def placed_load(method: Callable[..., Any], wanted: Sequence[Argument]) -> Calla
 
 
 _SPECIAL: dict[str, Callable[..., Callable[..., Any]]] = {
-    "infer": placed_infer,
-    "eval": placed_eval,
-    "load": placed_load,
+    "infer": positional_infer,
+    "eval": positional_eval,
+    "load": positional_load,
 }
 
 
 def refused(name: str, instead: str) -> Callable[..., NoReturn]:
-    """Returns a method of OpenDR that says what to use instead of it."""
+    """Returns a placeholder for a method of OpenDR, which raises an error that names the replacement."""
 
     def call(self: Any, *given: Any, **named: Any) -> NoReturn:
         raise Unsupported(f"{type(self).__name__} has no {name} yet; {instead}")
 
-    call.__name__, call.__doc__ = name, f"Not here yet: {instead}."
+    call.__name__, call.__doc__ = name, f"Not available yet: {instead}."
     return call
 
 
-def _signature(method: Callable[..., Any], wanted: Sequence[Argument]) -> inspect.Signature:
-    """The signature of ``method`` with OpenDR's arguments by place, and all others by name."""
+def _signature(method: Callable[..., Any], expected: Sequence[Argument]) -> inspect.Signature:
+    """Returns the signature of ``method`` with OpenDR's arguments as positional and all others as keyword arguments."""
     this, *others = inspect.signature(method).parameters.values()
     ours = {parameter.name: parameter for parameter in others}
-    shown = [this]
-    for argument in wanted:
+    ordered = [this]
+    for argument in expected:
         known = ours.pop(argument.ours or "", None)
-        required = known is not None and known.default is known.empty and shown[-1].default is known.empty
+        required = known is not None and known.default is known.empty and ordered[-1].default is known.empty
         default = inspect.Parameter.empty if required else None if known is None else known.default
         kind, hint = inspect.Parameter.POSITIONAL_OR_KEYWORD, Any if known is None else known.annotation
-        shown.append(inspect.Parameter(argument.name, kind, default=default, annotation=hint))
+        ordered.append(inspect.Parameter(argument.name, kind, default=default, annotation=hint))
     left = [parameter for parameter in ours.values() if parameter.kind != parameter.VAR_POSITIONAL]
     named = [
         parameter if parameter.kind == parameter.VAR_KEYWORD else parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY)
         for parameter in left
     ]
-    return inspect.Signature([*shown, *named])
+    return inspect.Signature([*ordered, *named])
 
 
 def methods(row: Learner, parent: type) -> dict[str, Any]:
-    """The methods of a learner's class that differ from those of ``parent``."""
+    """Returns the methods of a learner's class that differ from those of ``parent``."""
     from opendr._upstream.downloads import Download
 
     found: dict[str, Any] = {}
     for name in METHODS:
-        wanted = arguments(getattr(row, name))
-        if wanted:
+        expected = arguments(getattr(row, name))
+        if expected:
             method, special = getattr(parent, name), _SPECIAL.get(name)
-            call: Any = placed(name, method, wanted) if special is None else special(method, wanted)
-            call.__signature__ = _signature(method, wanted)
+            call: Any = positional(name, method, expected) if special is None else special(method, expected)
+            call.__signature__ = _signature(method, expected)
             found[name] = call
     if row.download or row.folder is not None or row.picture or row.modes:
         found["download"] = Download(row, parent)

@@ -1,4 +1,4 @@
-"""OpenDR's data sets of boxes in pictures."""
+"""OpenDR's data sets of boxes in images."""
 
 from __future__ import annotations
 
@@ -16,26 +16,26 @@ from opendr.engine.target import BoundingBox, BoundingBoxList, CocoBoundingBox
 PathLike = Union[str, "os.PathLike[str]"]
 Transform = Optional[Callable[..., Any]]
 _PICTURES = (".png", ".jpg", ".jpeg", ".bmp", ".webp")
-#: Larger annotations are none.
-_MOST_BYTES = 16 << 20
+#: Maximum size of an annotation file in bytes.
+_MAX_BYTES = 16 << 20
 
 
 class DetectionDataset(DatasetIterator):
-    """Pictures with boxes, whose samples pass through functions when they are read.
+    """Images with boxes, with transforms that are applied when samples are read.
 
     Args:
-        classes: What class indices mean.
-        dataset_type: The format, as ``ExternalDataset`` takes it.
-        root: Its folder.
-        image_paths: The files of the pictures, where a subclass reads them.
-        splits: The parts, a name or several; empty: the format's own first.
-        image_transform: From a picture to whatever.
-        target_transform: From the boxes to whatever.
-        transform: From both to a sample.
+        classes: Names of the class indices.
+        dataset_type: The format, as for ``ExternalDataset``.
+        root: Folder of the data set.
+        image_paths: Image files, where a subclass reads them.
+        splits: Name or names of the splits; empty: the first split of the format.
+        image_transform: Function of an image.
+        target_transform: Function of the boxes.
+        transform: Function from both to a sample.
 
     Raises:
-        FileNotFoundError: It is not there.
-        ValueError: It is of another format, or something is broken.
+        FileNotFoundError: The data set does not exist.
+        ValueError: The format is another, or a sample is broken.
     """
 
     def __init__(
@@ -60,32 +60,32 @@ class DetectionDataset(DatasetIterator):
 
     @property
     def num_classes(self) -> int:
-        """How many classes there are."""
+        """Number of classes."""
         return len(self.classes)
 
     def set_transform(self, transform: Transform) -> None:
-        """Sets what picture and boxes pass through together."""
+        """Sets the function of image and boxes."""
         self._transform = transform
 
     def set_image_transform(self, transform: Transform) -> None:
-        """Sets what pictures pass through."""
+        """Sets the function of images."""
         self._image_transform = transform
 
     def set_target_transform(self, transform: Transform) -> None:
-        """Sets what boxes pass through."""
+        """Sets the function of boxes."""
         self._target_transform = transform
 
     def transform(self, transform: Callable[..., Any]) -> MappedDetectionDataset:
-        """Returns this data set with all samples passed through a function of picture and boxes."""
+        """Returns this data set with a function of image and boxes that is applied to all samples."""
         return MappedDetectionDataset(self, transform)
 
     def get_image(self, item: int) -> Any:
-        """Picture number ``item``."""
+        """Returns image ``item``."""
         image = self._image(item)
         return image if self._image_transform is None else self._image_transform(image)
 
     def get_bboxes(self, item: int) -> Any:
-        """The boxes of picture number ``item``."""
+        """Returns the boxes of image ``item``."""
         boxes = self._boxes(item)
         return boxes if self._target_transform is None else self._target_transform(boxes)
 
@@ -109,18 +109,18 @@ class DetectionDataset(DatasetIterator):
 
     def _boxes(self, item: int) -> BoundingBoxList:
         if self._parts is None:
-            raise NotImplementedError(f"{type(self).__name__} reads no boxes; write _boxes, or leave image_paths out")
+            raise NotImplementedError(f"{type(self).__name__} does not read boxes; implement _boxes, or omit image_paths")
         part, index = self._parts.place(item)
         found: BoundingBoxList = part.target(index)
         return found
 
 
 class MappedDetectionDataset(DatasetIterator):
-    """A data set whose samples pass through a function of picture and boxes when they are read.
+    """A data set with a function of image and boxes that is applied when samples are read.
 
     Args:
         data: The data set.
-        map_function: From a picture and its boxes to a sample.
+        map_function: Function from an image and its boxes to a sample.
     """
 
     def __init__(self, data: DatasetIterator, map_function: Callable[..., Any]) -> None:
@@ -137,10 +137,10 @@ class MappedDetectionDataset(DatasetIterator):
 
 
 class ConcatDataset(Parts):
-    """Data sets one after the other.
+    """The concatenation of data sets.
 
     Args:
-        datasets: The data sets; those that name their classes name the same.
+        datasets: The data sets; those with class names have the same ones.
 
     Raises:
         ValueError: Their classes differ.
@@ -148,18 +148,18 @@ class ConcatDataset(Parts):
 
 
 class WiderFaceDataset(DetectionDataset):
-    """WIDER FACE: the folders ``wider_face_split`` and ``WIDER_train``, ... as they are unpacked.
+    """WIDER FACE: the folders ``wider_face_split`` and ``WIDER_train``, ... of the published archives.
 
     Args:
-        root: The folder that has them.
-        splits: The parts: ``"train"``, ``"val"``.
-        ignore_tiny: Whether faces of less than 10 pixels are left out.
-        image_transform: From a picture to whatever.
-        target_transform: From the boxes to whatever.
-        transform: From both to a sample.
+        root: The folder that contains them.
+        splits: The splits: ``"train"``, ``"val"``.
+        ignore_tiny: Whether faces smaller than 10 pixels are dropped.
+        image_transform: Function of an image.
+        target_transform: Function of the boxes.
+        transform: Function from both to a sample.
 
     Raises:
-        FileNotFoundError: It is not there.
+        FileNotFoundError: The data set does not exist.
     """
 
     def __init__(
@@ -184,20 +184,20 @@ class WiderFaceDataset(DetectionDataset):
 
 
 class WiderPersonDataset(DetectionDataset):
-    """WiderPerson: ``train.txt``, ``val.txt``, and the folders ``Images`` and ``Annotations`` as they are unpacked.
+    """WiderPerson: ``train.txt``, ``val.txt``, and the folders ``Images`` and ``Annotations`` of the published archive.
 
-    Pedestrians, riders and persons that are partly seen are of the class ``person``; regions to ignore and crowds are
-    marked as crowds, which no metric counts.
+    Pedestrians, riders and partly visible persons have the class ``person``; ignore regions and crowds are marked as
+    crowds, which metrics ignore.
 
     Args:
-        root: The folder that has them.
-        splits: The parts: ``"train"``, ``"val"``.
-        image_transform: From a picture to whatever.
-        target_transform: From the boxes to whatever.
-        transform: From both to a sample.
+        root: The folder that contains them.
+        splits: The splits: ``"train"``, ``"val"``.
+        image_transform: Function of an image.
+        target_transform: Function of the boxes.
+        transform: Function from both to a sample.
 
     Raises:
-        FileNotFoundError: A file is not there.
+        FileNotFoundError: A file does not exist.
         ValueError: A line is broken.
     """
 
@@ -233,22 +233,22 @@ class WiderPersonDataset(DetectionDataset):
 
 
 class XMLBasedDataset(DetectionDataset):
-    """Pictures, and boxes in Pascal VOC's XML files, in folders of any names.
+    """Images, and boxes in Pascal VOC's XML files, in folders of any names.
 
     Args:
-        dataset_type: What it is called.
-        root: The folder that has both.
-        classes: The classes; by default those that the annotations name, by the alphabet.
-        image_transform: From a picture to whatever.
-        target_transform: From the boxes to whatever.
-        transform: From both to a sample.
-        splits: Kept as it is: the folder is one part.
-        images_dir: The folder of the pictures.
-        annotations_dir: The folder of the annotations, called as the pictures are.
-        preload_anno: Whether annotations are read now, else when they are asked for.
+        dataset_type: Name of the data set.
+        root: The folder that contains both.
+        classes: Class names; by default those of the annotations, in alphabetical order.
+        image_transform: Function of an image.
+        target_transform: Function of the boxes.
+        transform: Function from both to a sample.
+        splits: No effect: the folder is one split.
+        images_dir: Folder of the images.
+        annotations_dir: Folder of the annotations, whose names are those of the images.
+        preload_anno: Whether annotations are read at once, otherwise on access.
 
     Raises:
-        FileNotFoundError: A folder is not there.
+        FileNotFoundError: A folder does not exist.
         ValueError: An annotation is broken.
     """
 
@@ -285,7 +285,7 @@ class XMLBasedDataset(DetectionDataset):
         boxes, file = [], self._files[item]
         for name, (x0, y0, x1, y1) in _objects(file):
             if name not in self.classes:
-                raise FormatError(f"{file}: the class {name!r:.100} is none of {', '.join(self.classes)}")
+                raise FormatError(f"{file}: unknown class {name!r:.100}; the classes are {', '.join(self.classes)}")
             # VOC counts pixels from 1, the last one included.
             place = (x0 - 1, y0 - 1, x1 - x0 + 1, y1 - y0 + 1)
             boxes.append(BoundingBox(self.classes.index(name), *place, class_name=name))
@@ -297,12 +297,12 @@ def _names(splits: Union[str, Sequence[str]]) -> list[str]:
 
 
 def _objects(file: str) -> list[tuple[str, list[float]]]:
-    """The objects of an annotation: class and corners."""
+    """Returns the objects of an annotation: class and corners."""
     with open(file, "rb") as stream:
-        text = stream.read(_MOST_BYTES + 1)
-    # Entities of one's own make a document of a few bytes endless.
-    if len(text) > _MOST_BYTES or b"<!DOCTYPE" in text or b"<!ENTITY" in text:
-        raise FormatError(f"{file} is no annotation: it is too large, or has a document type")
+        text = stream.read(_MAX_BYTES + 1)
+    # Documents that define entities are rejected: they may expand without bound.
+    if len(text) > _MAX_BYTES or b"<!DOCTYPE" in text or b"<!ENTITY" in text:
+        raise FormatError(f"{file} is not an annotation: it is too large, or has a document type")
     try:
         objects = list(ElementTree.fromstring(text).iter("object"))
         corners = [

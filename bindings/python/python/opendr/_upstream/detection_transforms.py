@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class BoundingBoxListToNumpyArray:
-    """Makes an array of boxes, ``[boxes, 6]``: left, top, right, bottom, score, class index."""
+    """Converts boxes to an array ``[boxes, 6]``: left, top, right, bottom, score, class index."""
 
     def __call__(self, bbox_list: BoundingBoxList) -> NDArray[Any]:
         import numpy as np
@@ -25,14 +25,14 @@ class BoundingBoxListToNumpyArray:
 
 
 class ImageToNumpyArrayTransform:
-    """Makes an array of a picture, ``[channels, height, width]``."""
+    """Converts an image to an array ``[channels, height, width]``."""
 
     def __call__(self, img: Image) -> NDArray[Any]:
         return img.data
 
 
 class ResizeImageAndBoxesTransform:
-    """Resizes a picture ``[height, width, channels]`` and its boxes, rows of left, top, right, bottom and more.
+    """Resizes an image ``[height, width, channels]`` and its boxes, rows of left, top, right, bottom and more.
 
     Args:
         w: The new width, pixels.
@@ -44,7 +44,7 @@ class ResizeImageAndBoxesTransform:
 
     def __init__(self, w: int, h: int) -> None:
         if w < 1 or h < 1:
-            raise ValueError(f"a picture of {w} x {h} pixels is none")
+            raise ValueError(f"the size {w} x {h} is invalid; give 1 or more")
         self.w, self.h = w, h
 
     def __call__(self, img: NDArray[Any], labels: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
@@ -59,7 +59,7 @@ class ResizeImageAndBoxesTransform:
 
 
 def _resized(pixels: NDArray[Any], size: int, axis: int) -> NDArray[Any]:
-    """Linear interpolation along an axis, pixels counted by their middles as OpenCV does."""
+    """Interpolates linearly along an axis, with pixel centres at half-integers as in OpenCV."""
     import numpy as np
 
     old = pixels.shape[axis]

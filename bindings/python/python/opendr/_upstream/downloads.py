@@ -1,4 +1,4 @@
-"""``download`` as OpenDR's programs call it: on the class or an object, into the folder that they load from."""
+"""``download`` with OpenDR's interface: a method of the class or an object, with OpenDR's folder names."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _MODELS = ("model_name", "model_names", "name", "file_name", "method_name", "tra
 
 
 class Download:
-    """The method ``download`` of a class; it can be called on the class too."""
+    """Descriptor of the method ``download``, which can be called on the class or an object."""
 
     def __init__(self, row: Learner, parent: Any) -> None:
         self._row, self._parent = row, parent
@@ -37,10 +37,10 @@ class Download:
         self._check(owner, names)
         path, mode = found.pop("path", None), found.pop("mode", "pretrained")
         mode = row.modes.get(mode, mode)
-        wanted = "pretrained" if path is not None and found.get("variant") is None else None
+        copied = "pretrained" if path is not None and found.get("variant") is None else None
         if mode == "images" and path is not None and row.picture:
             return self._picture(learner, os.fspath(path), found)
-        if path is None or mode != wanted or row.folder is None:
+        if path is None or mode != copied or row.folder is None:
             return str(self._parent.download(learner, path, mode, **found))
         model: str = self._parent.download(learner, None, mode, **found)
         place = os.path.join(os.fspath(path), _filled(row.folder, {**getattr(learner, "_idle", {}), **names}))
@@ -52,15 +52,15 @@ class Download:
     def _check(self, owner: str, names: dict[str, Any]) -> None:
         known = self._row.models.split()
         for name, value in names.items():
-            asked = (
+            requested = (
                 {value} if isinstance(value, str) else set(value) if isinstance(value, (set, list, tuple)) else set()
             )
-            unknown = sorted(map(str, asked - set(known))) if name != "method_name" and known else []
+            unknown = sorted(map(str, requested - set(known))) if name != "method_name" and known else []
             if unknown:
-                raise NotFound(f"{owner}: there is no model {unknown[0]!r}; there are {', '.join(known)}")
-            if asked or value is not None:
+                raise NotFound(f"{owner}: unknown model {unknown[0]!r}; the models are {', '.join(known)}")
+            if requested or value is not None:
                 warnings.warn(
-                    f"{owner}: {name}={value!r}: one model of this package stands for all of OpenDR's",
+                    f"{owner}: {name}={value!r}: one model of this package replaces all of OpenDR's",
                     UserWarning,
                     stacklevel=5,
                 )
@@ -76,7 +76,7 @@ class Download:
 
 
 def _filled(folder: str, names: dict[str, Any]) -> str:
-    """The folder of a model, with the names that the call or the constructor was given."""
+    """Returns the folder of a model, with the arguments of the call or the constructor inserted."""
 
     def name(match: re.Match[str]) -> str:
         value = names.get(match[1])
@@ -84,14 +84,14 @@ def _filled(folder: str, names: dict[str, Any]) -> str:
             value = next(iter(sorted(value)), None)
         text = str(value) if value else match[2]
         if not re.fullmatch(r"[\w.+-]+", text) or text.strip(".") == "":
-            raise InvalidInput(f"{match[1]} = {text!r:.100} is no name of a model")
+            raise InvalidInput(f"{match[1]} = {text!r:.100} is not a model name")
         return text
 
     return re.sub(r"\{(\w+)=([^}]*)\}", name, folder)
 
 
 def _copy(model: str, place: str) -> None:
-    """Copies a model to a folder, unless another learner's model lies there."""
+    """Copies a model to a folder, unless the folder contains another learner's model."""
     there = os.path.join(place, "model.json")
     if os.path.exists(there) and _learner(there) != _learner(os.path.join(model, "model.json")):
         raise InvalidInput(f"{there} is the model of another learner; give another folder")

@@ -1,4 +1,4 @@
-"""Detectors of some classes alone."""
+"""Detectors limited to some classes."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from opendr.engine.target import BoundingBoxList
 
 
 class FilteredLearnerWrapper:
-    """A detector whose boxes of other classes are dropped; everything else is the detector's.
+    """A detector without the boxes of other classes; all other attributes are the detector's.
 
     Args:
         learner: The detector, loaded.
-        allowed_classes: The classes that are kept, by name; all of them when there are none.
+        allowed_classes: Names of the classes to keep; by default all.
 
     Raises:
-        TypeError: It is no learner.
-        ValueError: The detector does not know a class.
+        TypeError: The argument is not a learner.
+        ValueError: The detector does not have a class.
     """
 
     def __init__(self, learner: BaseLearner, allowed_classes: Optional[Sequence[str]] = None) -> None:
@@ -26,16 +26,16 @@ class FilteredLearnerWrapper:
             raise TypeError(f"learner should be a detector, not {learner!r:.100}")
         self.learner = learner
         self.allowed_classes = list(allowed_classes or ())
-        #: What the detector's class numbers mean.
+        #: Names of the detector's class indices.
         self.classes: list[str] = list(getattr(learner, "classes", []))
         unknown = [name for name in self.allowed_classes if name not in self.classes]
         if unknown:
             raise ValueError(
-                f"{type(learner).__name__} does not find {', '.join(unknown)}; load it, and see its classes"
+                f"{type(learner).__name__} does not have the classes {', '.join(unknown)}; load it and check its attribute classes"
             )
 
     def infer(self, *inputs: Any, **arguments: Any) -> Any:
-        """Predicts as the detector does, of the allowed classes."""
+        """Returns the detector's predictions of the allowed classes."""
         found = self.learner.infer(*inputs, **arguments)
         if isinstance(found, Iterator):
             return map(self._allowed, found)

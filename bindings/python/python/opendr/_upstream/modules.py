@@ -1,4 +1,4 @@
-"""Module paths and names out of the table."""
+"""Modules and names of OpenDR, created from the table."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any, Optional
 from opendr._upstream.absent import absent
 from opendr._upstream.rows import HERE, Absent, Home, Learner
 
-#: OpenDR's packages that the table has, and its modules that are no learners'.
+#: OpenDR's packages and further modules in the table.
 TASKS = (
     "control.mobile_manipulation",
     "control.multi_object_search",
@@ -46,12 +46,12 @@ TASKS = (
 
 
 def rows(task: str) -> types.ModuleType:
-    """The rows of a package, e.g. ``"perception.pose_estimation"``."""
+    """Returns the module of the table for a package, e.g. ``"perception.pose_estimation"``."""
     return import_module(f"opendr._upstream.tasks.{task.rpartition('.')[2]}")
 
 
 def learner(task: str, name: str) -> Optional[Learner]:
-    """The row of a learner that is here."""
+    """Returns the row of a learner, or None."""
     if task not in TASKS:
         return None
     row: Optional[Learner] = getattr(rows(task), "LEARNERS", {}).get(name)
@@ -60,8 +60,8 @@ def learner(task: str, name: str) -> Optional[Learner]:
 
 @functools.lru_cache(maxsize=None)
 def paths(task: str) -> Mapping[str, Mapping[str, Home]]:
-    """The module paths of a package, the package itself among them: names and their homes. The classes of a module are
-    in the packages above it too."""
+    """Returns the module paths of a package, including the package itself, with the names of each and their homes. The
+    classes of a module are also in the packages above it."""
     found: dict[str, dict[str, Home]] = {}
     for path, names in rows(task).MODULES.items():
         parts = [f"opendr.{task}", *filter(None, path.split("."))]
@@ -74,19 +74,19 @@ def paths(task: str) -> Mapping[str, Mapping[str, Home]]:
 
 
 def names_of(module: str) -> Mapping[str, Home]:
-    """OpenDR's names in a module; none where it is no module of OpenDR."""
+    """Returns OpenDR's names in a module; empty for modules that OpenDR does not have."""
     task = _task(module)
     return {} if task is None else paths(task).get(module, {})
 
 
 def _task(module: str) -> Optional[str]:
-    """The package of the table that a module path is in."""
+    """Returns the package of a module path, or None."""
     inner = module.partition(".")[2]
     return next((task for task in TASKS if inner == task or inner.startswith(f"{task}.")), None)
 
 
 def spec_of(module: str) -> Optional[ModuleSpec]:
-    """The spec of a module of the table that is no file."""
+    """Returns the spec of a module of the table without a file, or None."""
     task = _task(module)
     if task is None or module not in paths(task):
         return None
@@ -104,7 +104,7 @@ class _Loader:
 
 
 def add_names(module: types.ModuleType) -> None:
-    """Gives a module OpenDR's names, each made when it is first asked for; those that it has stay."""
+    """Adds OpenDR's names to a module, each created on first access; existing names are kept."""
     names = names_of(module.__name__)
 
     def __getattr__(name: str) -> Any:
@@ -119,8 +119,8 @@ def add_names(module: types.ModuleType) -> None:
 
 def _value(module: str, name: str, home: Home) -> Any:
     if isinstance(home, Absent):
-        return absent(name, module, f"{name} is not here yet; {home.use}")
+        return absent(name, module, f"{name} is not available yet; {home.use}")
     if home != HERE:
         return getattr(import_module(home), name)
     found = vars(import_module(f"opendr.{_task(module)}")).get(name)
-    return found or absent(name, module, f"{name} is not in this build of opendr; install one with all its learners")
+    return found or absent(name, module, f"{name} is not in this build of opendr; install a build with all learners")

@@ -1,4 +1,4 @@
-"""Data sets of several parts, and paths in them that are not to be trusted."""
+"""Concatenated data sets, and checks of untrusted paths and numbers in their files."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from opendr.engine.datasets import DatasetIterator
 
 
 class Parts(DatasetIterator):
-    """Data sets one after the other.
+    """The concatenation of data sets.
 
     Args:
-        datasets: The data sets; those that name their classes name the same.
+        datasets: The data sets; those with class names have the same ones.
 
     Raises:
         ValueError: Their classes differ.
@@ -27,20 +27,20 @@ class Parts(DatasetIterator):
         self.datasets = list(datasets)
         named = [list(classes) for classes in (getattr(part, "classes", []) for part in self.datasets) if classes]
         if any(classes != named[0] for classes in named):
-            raise ValueError(f"data sets of different classes cannot be one: {named}")
+            raise ValueError(f"data sets with different classes cannot be concatenated: {named}")
         self.classes: list[str] = named[0] if named else []
         self._ends = list(accumulate(len(part) for part in self.datasets))
 
     def place(self, idx: int) -> tuple[Any, int]:
-        """The data set that a sample is in, and its number there.
+        """Returns the data set of a sample, and its index there.
 
         Raises:
-            IndexError: There is none.
+            IndexError: The index is out of range.
         """
-        index = whole(idx, "the number of a sample")
+        index = whole(idx, "the index of a sample")
         index += len(self) if index < 0 else 0
         if not 0 <= index < len(self):
-            raise IndexError(f"there is no sample {idx} among {len(self)}")
+            raise IndexError(f"sample index {idx} is out of range; the data set has {len(self)} samples")
         part = bisect_right(self._ends, index)
         return self.datasets[part], index - (self._ends[part - 1] if part else 0)
 
@@ -53,27 +53,27 @@ class Parts(DatasetIterator):
 
 
 def inside(folder: str, name: str) -> str:
-    """The path of a file that a list or an annotation names.
+    """Returns the path of a file named in a list or an annotation.
 
     Raises:
-        opendr.FormatError: It leads out of the folder.
+        opendr.FormatError: The path is outside the folder.
     """
     parts = name.replace("\\", "/").split("/")
     if not name or os.path.isabs(name) or ".." in parts or ":" in parts[0] or "\0" in name:
-        raise FormatError(f"{name!r:.200} leads out of {folder}")
+        raise FormatError(f"{name!r:.200} is outside {folder}")
     return os.path.join(folder, *parts)
 
 
 def numbers(line: str, count: int, place: str) -> list[float]:
-    """The first ``count`` numbers of a line.
+    """Returns the first ``count`` numbers of a line.
 
     Raises:
-        opendr.FormatError: There are fewer, or one is none.
+        opendr.FormatError: There are fewer, or one is not a finite number.
     """
     try:
         found = [float(word) for word in line.replace(",", " ").split()[:count]]
     except ValueError:
         found = []
     if len(found) < count or any(number - number != 0.0 for number in found):
-        raise FormatError(f"{place}: {count} numbers are wanted, not {line.strip()!r:.200}")
+        raise FormatError(f"{place}: expected {count} numbers, not {line.strip()!r:.200}")
     return found

@@ -18,23 +18,23 @@ PathLike = Union[str, "os.PathLike[str]"]
 
 
 class CocoValDataset(DatasetIterator):
-    """COCO's pictures with the poses in them.
+    """COCO's images and poses.
 
     Args:
         labels: ``ROOT/annotations/person_keypoints_PART.json``.
         images_folder: ``ROOT/PART``.
 
     Raises:
-        FileNotFoundError: It is not there.
-        ValueError: Annotations and pictures do not lie as in COCO.
+        FileNotFoundError: The data set does not exist.
+        ValueError: The folders of annotations and images are not those of COCO.
     """
 
     def __init__(self, labels: PathLike, images_folder: PathLike) -> None:
         folder = os.path.abspath(os.fspath(images_folder))
         root, part = os.path.split(folder)
-        wanted = os.path.join(root, "annotations", f"person_keypoints_{part}.json")
-        if os.path.abspath(os.fspath(labels)) != wanted:
-            raise ValueError(f"{os.fspath(labels)} does not lie as in COCO; give {wanted}")
+        expected = os.path.join(root, "annotations", f"person_keypoints_{part}.json")
+        if os.path.abspath(os.fspath(labels)) != expected:
+            raise ValueError(f"{os.fspath(labels)} is not in COCO's folder; give {expected}")
         self._samples = ExternalDataset(root, "coco").open(split=part, target=PoseList)
 
     def __getitem__(self, idx: int) -> tuple[Image, PoseList]:
@@ -46,7 +46,7 @@ class CocoValDataset(DatasetIterator):
 
 
 class CocoTrainDataset(CocoValDataset):
-    """As :class:`CocoValDataset`: maps of joints are made by the training itself.
+    """The same as :class:`CocoValDataset`: the training computes the maps of joints itself.
 
     Args:
         labels: ``ROOT/annotations/person_keypoints_PART.json``.
@@ -57,25 +57,25 @@ class CocoTrainDataset(CocoValDataset):
     def __init__(self, labels: PathLike, images_folder: PathLike, *given: Any, **options: Any) -> None:
         if given or options:
             names = ", ".join(options) or "the further arguments"
-            text = f"CocoTrainDataset: {names} has no effect: maps of joints are made by the training itself"
+            text = f"CocoTrainDataset: {names} has no effect: the training computes the maps of joints itself"
             warnings.warn(text, UserWarning, stacklevel=2)
         super().__init__(labels, images_folder)
 
 
 class URFallDatasetIterator(DatasetIterator):
-    """Pictures of persons, and whether they have fallen.
+    """Images of persons, with categories fallen and standing.
 
     Args:
-        data: Pictures, or their files.
+        data: Images, or their files.
         labels: Categories: 1 fallen, -1 standing, 0 in between.
 
     Raises:
-        ValueError: There are not as many of both.
+        ValueError: The lengths differ.
     """
 
     def __init__(self, data: Sequence[Any], labels: Sequence[Category]) -> None:
         if len(data) != len(labels):
-            raise ValueError(f"{len(data)} pictures have {len(labels)} labels; give as many of both")
+            raise ValueError(f"{len(data)} images have {len(labels)} labels; give the same number of both")
         self.data, self.labels = list(data), list(labels)
 
     def __getitem__(self, idx: int) -> tuple[Any, Category]:
@@ -89,8 +89,8 @@ def falls_of(dataset: ExternalDataset) -> URFallDatasetIterator:
     """Opens UR Fall (``ur_fall_dataset``), or a folder with ``annotations.csv`` (``test``).
 
     Raises:
-        FileNotFoundError: A table is not there.
-        ValueError: It is of another type, or a row is broken.
+        FileNotFoundError: A table does not exist.
+        ValueError: The type is another, or a row is broken.
     """
     kind, files, labels = dataset.dataset_type.lower(), list[str](), list[Category]()
     if kind == "ur_fall_dataset":
@@ -104,7 +104,7 @@ def falls_of(dataset: ExternalDataset) -> URFallDatasetIterator:
             files.append(inside(dataset.path, f"{row[1]}.png"))
             labels.append(Category(_whole(row[2], path)))
     else:
-        raise ValueError(f"a data set of falls is of the type 'ur_fall_dataset' or 'test', not {kind!r}")
+        raise ValueError(f"a data set of falls has the type 'ur_fall_dataset' or 'test', not {kind!r}")
     return URFallDatasetIterator(files, labels)
 
 
@@ -122,4 +122,4 @@ def _whole(text: str, path: str) -> int:
     try:
         return int(text)
     except ValueError:
-        raise FormatError(f"{path}: {text!r:.100} is no whole number") from None
+        raise FormatError(f"{path}: {text!r:.100} is not an integer") from None

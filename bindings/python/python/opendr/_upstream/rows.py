@@ -1,4 +1,4 @@
-"""The rows of the table."""
+"""Types of the rows of the table."""
 
 from __future__ import annotations
 
@@ -9,32 +9,32 @@ from opendr._upstream.reasons import REASONS
 
 
 class Absent(NamedTuple):
-    """A name of OpenDR that is not here yet."""
+    """A name of OpenDR that is not available yet."""
 
-    #: What to use instead, as the rest of a sentence.
+    #: The replacement, as the end of a sentence.
     use: str
 
 
-#: Where a name is: the module that has it, nothing for a learner of the registry, or what to use instead.
+#: Home of a name: a module, an empty str for a learner of the registry, or the replacement of a missing name.
 Home = Union[str, Absent]
 HERE = ""
 
 
 class Argument(NamedTuple):
-    """An argument of OpenDR's."""
+    """An argument of OpenDR."""
 
     name: str
-    #: Its name here; None without effect.
+    #: Its name in this package; None if it has no effect.
     ours: Optional[str]
     #: Why it has no effect.
     reason: str = ""
 
 
 class Learner(NamedTuple):
-    """A learner of OpenDR's that is here: the arguments of its methods in OpenDR's order.
+    """An available learner of OpenDR: the arguments of its methods in OpenDR's order.
 
-    An argument is ``name``, ``name>ours`` for another name here, or ``name!reason`` without effect; an empty text
-    leaves the method's own arguments.
+    An argument is ``name``, ``name>ours`` with another name in this package, or ``name!reason`` without effect; with an
+    empty str the method keeps its own arguments.
     """
 
     init: str = ""
@@ -45,36 +45,36 @@ class Learner(NamedTuple):
     download: str = ""
     load: str = ""
     save: str = ""
-    #: OpenDR's further methods, and what to use instead of them, or nothing where they are here.
+    #: OpenDR's further methods and their replacements; an empty str where the method is available.
     methods: Mapping[str, str] = {}
-    #: The class that adds what only this learner has, ``module:class``.
+    #: The base class with further methods of this learner, ``module:class``.
     mixin: str = ""
-    #: Values of arguments that only OpenDR has: the value here that means the same.
+    #: Values of arguments that only OpenDR has, and their equivalents in this package.
     same: Mapping[str, Mapping[str, str]] = {}
-    #: Values of arguments that only OpenDR has, separated by blanks; the default here takes their place.
+    #: Values of arguments that only OpenDR has, separated by blanks, and are replaced by the default.
     instead: Mapping[str, str] = {}
-    #: Values of arguments that are not here, and what to use instead.
+    #: Values of arguments that are not available, and their replacements.
     without: Mapping[str, Mapping[str, str]] = {}
-    #: The folder below ``path`` that ``download`` makes; ``{argument=default}`` stands for an argument.
+    #: The folder below ``path`` that ``download`` creates; ``{argument=default}`` is replaced by an argument.
     folder: Optional[str] = None
-    #: Names of OpenDR's models in whose place the default model here comes, separated by blanks.
+    #: Names of OpenDR's models that the default model of this package replaces, separated by blanks.
     models: str = ""
-    #: Modes of ``download`` that have another name here.
+    #: Modes of ``download`` that have another name in this package.
     modes: Mapping[str, str] = {}
-    #: The file that ``download(mode="images")`` makes.
+    #: The file that ``download(mode="images")`` writes.
     picture: str = ""
     #: Whether ``download`` also loads the model.
     loads: bool = False
-    #: Whether it needs no model: it is loaded when it is first used.
+    #: Whether the learner needs no model and is loaded on first use.
     ready: bool = False
-    #: OpenDR's demos that were followed line by line.
+    #: OpenDR's demos that were checked line by line.
     demos: str = ""
-    #: What remained different, a sentence each.
+    #: Remaining differences, a sentence each.
     differs: tuple[str, ...] = ()
 
 
 def arguments(text: str) -> tuple[Argument, ...]:
-    """The arguments that a text of the table stands for."""
+    """Parses the arguments of a row."""
     return tuple(_argument(word) for word in text.split())
 
 

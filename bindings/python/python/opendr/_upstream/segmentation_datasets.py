@@ -1,4 +1,4 @@
-"""OpenDR's data sets of classes of pixels and points."""
+"""OpenDR's data sets for segmentation of images and point clouds."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ _SEQUENCES = {
 
 
 class CamVidDataset(DatasetIterator):
-    """CamVid: pictures of roads with the classes of their pixels.
+    """CamVid: images of roads with class maps.
 
     Args:
-        path: The folder with ``train``, ``train_labels`` (or ``trainannot``), ... and maybe ``class_dict.csv``.
-        scale: Kept as it is: pictures are read in their size, and cropped by the training itself.
-        mode: The part.
+        path: The folder with ``train``, ``train_labels`` (or ``trainannot``), ... and optionally ``class_dict.csv``.
+        scale: No effect: images are read in their own size, and the training crops them.
+        mode: The split.
 
     Raises:
-        FileNotFoundError: It is not there.
+        FileNotFoundError: The data set does not exist.
     """
 
     dataset_type = "camvid"
@@ -38,14 +38,14 @@ class CamVidDataset(DatasetIterator):
         self.image_size = tuple(scale)
         self.mode = mode
         self._samples = ExternalDataset(self.path, self.dataset_type).open(split=mode)
-        #: What class numbers mean.
+        #: Names of the class indices.
         self.classes: list[str] = self._samples.classes
 
     @staticmethod
     def download_data(path: PathLike) -> NoReturn:
-        """Raises ``opendr.Unsupported``: the data have to be had from whoever publishes them."""
+        """Raises ``opendr.Unsupported``: the data are available from their publisher only."""
         raise Unsupported(
-            "CamVid cannot be downloaded from here; get it from whoever publishes it, and give its folder"
+            "CamVid cannot be downloaded here; get it from its publisher and give its folder"
         )
 
     def __getitem__(self, idx: int) -> Any:
@@ -56,68 +56,67 @@ class CamVidDataset(DatasetIterator):
 
 
 class _StreetDataset(DatasetIterator):
-    """Pictures with classes, as published (Cityscapes' folders), or as OpenDR prepared them (``images``,
-    ``stuffthingmaps``)."""
+    """Images with class maps, in Cityscapes' folders or in those of OpenDR's preparation (``images``, ``stuffthingmaps``)."""
 
     dataset_type = ""
 
     def __init__(self, path: PathLike) -> None:
         self.path: str = os.fspath(path)
-        #: Kept as it is: pictures are prepared by the learner.
+        #: No effect: the learner prepares the images.
         self.pipeline: Any = None
         folders = [os.path.join(self.path, name) for name in ("images", "stuffthingmaps")]
         self._files = [sorted(_pictures(folder)) for folder in folders] if os.path.isdir(folders[0]) else None
         self._samples = None if self._files else ExternalDataset(self.path, self.dataset_type).open()
-        #: What class numbers mean; empty where OpenDR's folders do not tell.
+        #: Names of the class indices; empty for OpenDR's folders, which have none.
         self.classes: list[str] = [] if self._samples is None else self._samples.classes
         if self._files and self._files[1] and len(self._files[0]) != len(self._files[1]):
-            raise FormatError(f"{self.path}: {len(self._files[0])} pictures have {len(self._files[1])} maps")
+            raise FormatError(f"{self.path}: {len(self._files[0])} images have {len(self._files[1])} maps")
 
     def evaluate(self, *given: Any, **named: Any) -> NoReturn:
-        """Raises ``opendr.Unsupported``: ``eval`` of a learner, or ``opendr score``, measures."""
-        raise Unsupported("evaluate is not here; use eval of a learner, or `opendr score` of files")
+        """Raises ``opendr.Unsupported``: ``eval`` of a learner and ``opendr score`` replace it."""
+        raise Unsupported("evaluate is not available; use eval of a learner, or `opendr score` for files")
 
     @staticmethod
     def prepare_data(*given: Any, **named: Any) -> NoReturn:
-        """Raises ``opendr.Unsupported``: data are read as they are published."""
-        raise Unsupported("nothing has to be prepared: give the folder of the data set as it is published")
+        """Raises ``opendr.Unsupported``: published data need no preparation."""
+        raise Unsupported("no preparation is needed; give the folder of the published data set")
 
     def __getitem__(self, idx: int) -> tuple[Image, Optional[Heatmap]]:
         if self._samples is not None:
             image, target = self._samples[idx]
             return image, target
-        pictures, maps = self._files or ([], [])
+        images, maps = self._files or ([], [])
         target = None
         if maps:
             labels = Image.open(maps[idx]).data[0]
             target = Heatmap(labels)
-        return Image.open(pictures[idx]), target
+        return Image.open(images[idx]), target
 
     def __len__(self) -> int:
         return len(self._samples) if self._samples is not None else len((self._files or [[]])[0])
 
 
 class CityscapesDataset(_StreetDataset):
-    """Cityscapes: pictures of streets with classes.
+    """Cityscapes: images of streets with class maps.
 
     Args:
-        path: Its folder, as it is published, or as OpenDR prepared it.
+        path: Its folder, as published or as prepared by OpenDR.
 
     Raises:
-        FileNotFoundError: It is not there.
+        FileNotFoundError: The data set does not exist.
     """
 
     dataset_type = "cityscapes"
 
 
 class KittiDataset(_StreetDataset):
-    """KITTI's panoptic pictures, in Cityscapes' folders or as OpenDR prepared them.
+    """KITTI's panoptic images, in Cityscapes' folders or as prepared by OpenDR.
 
     Args:
         path: Its folder.
 
     Raises:
-        FileNotFoundError: It is not there.
+        FileNotFoundError: The data set does not exist.
     """
 
     dataset_type = "cityscapes"
@@ -127,19 +126,19 @@ class SemanticKittiDataset(DatasetIterator):
     """SemanticKITTI: scans with the class of each point.
 
     Args:
-        path: The folder that has ``sequences``.
-        split: ``"train"``, ``"valid"`` or ``"test"``; train when there is none.
+        path: The folder that contains ``sequences``.
+        split: ``"train"`` (the default), ``"valid"`` or ``"test"``.
 
     Raises:
-        FileNotFoundError: There is no sequence of the part.
-        ValueError: There is no such part.
+        FileNotFoundError: There is no sequence of the split.
+        ValueError: The split is unknown.
     """
 
     dataset_type = "SemanticKITTIDataset"
 
     def __init__(self, path: PathLike, split: Optional[str] = None) -> None:
         self.path: str = os.fspath(path)
-        #: Kept as it is: scans are prepared by the learner.
+        #: No effect: the learner prepares the scans.
         self.pipeline: Any = None
         self.split = (split or "train").lower()
         if self.split not in _SEQUENCES:
@@ -151,29 +150,29 @@ class SemanticKittiDataset(DatasetIterator):
             if os.path.isdir(os.path.join(folder, "velodyne"))
         ]
         if not self._parts:
-            raise FileNotFoundError(f"no scans of the part {self.split} in {os.path.join(self.path, 'sequences')}")
-        self._places = [(clouds, labels, index) for clouds, labels in self._parts for index in range(len(clouds))]
+            raise FileNotFoundError(f"no scans of the split {self.split} in {os.path.join(self.path, 'sequences')}")
+        self._samples = [(clouds, labels, index) for clouds, labels in self._parts for index in range(len(clouds))]
 
     @staticmethod
     def load_point_cloud(path: PathLike) -> PointCloud:
-        """Reads a scan, four little-endian float32 numbers a point."""
+        """Reads a scan of four little-endian float32 numbers per point."""
         import numpy as np
 
         return PointCloud(np.fromfile(path, dtype="<f4").reshape(-1, 4))
 
     def evaluate(self, *given: Any, **named: Any) -> NoReturn:
-        """Raises ``opendr.Unsupported``: metrics of ``opendr.metrics`` measure."""
-        raise Unsupported("evaluate is not here; use opendr.metrics")
+        """Raises ``opendr.Unsupported``: ``opendr.metrics`` replaces it."""
+        raise Unsupported("evaluate is not available; use opendr.metrics")
 
     @staticmethod
     def prepare_data(*given: Any, **named: Any) -> NoReturn:
-        """Raises ``opendr.Unsupported``: data are read as they are published."""
-        raise Unsupported("nothing has to be prepared: give the folder of the data set as it is published")
+        """Raises ``opendr.Unsupported``: published data need no preparation."""
+        raise Unsupported("no preparation is needed; give the folder of the published data set")
 
     def __getitem__(self, idx: int) -> tuple[PointCloud, Optional[Heatmap]]:
         import numpy as np
 
-        clouds, folder, index = self._places[idx]
+        clouds, folder, index = self._samples[idx]
         cloud = clouds[index]
         path = os.path.join(folder, f"{os.path.splitext(clouds.files[index])[0]}.label")
         if not os.path.exists(path):
@@ -181,25 +180,25 @@ class SemanticKittiDataset(DatasetIterator):
         labels = np.fromfile(path, dtype="<u4")
         if len(labels) != len(cloud):
             raise FormatError(f"{path} has labels of {len(labels)} points, the scan has {len(cloud)}")
-        # The upper half numbers the object.
+        # The upper half is the instance id.
         return cloud, Heatmap(labels & 0xFFFF)
 
     def __len__(self) -> int:
-        return len(self._places)
+        return len(self._samples)
 
 
 class HighResolutionDataset(DatasetIterator):
-    """Squares of pictures with boxes: class 1 in a box, class 0 outside of all.
+    """Square patches of images with boxes: class 1 inside a box, class 0 outside of all.
 
     Args:
-        dataset_folder: Pictures, with Pascal VOC's XML files beside them.
-        patch_size: Side of the squares, pixels.
-        non_zero_threshold: Squares that lie in boxes with a larger share than this, and in one of them with a smaller,
-            are left out.
-        transform: From a square to whatever.
+        dataset_folder: Folder of images and Pascal VOC's XML files.
+        patch_size: Side of the patches, pixels.
+        non_zero_threshold: Fraction of a patch covered by boxes above which its class is 1. Patches that are covered less,
+            but not uncovered, are dropped.
+        transform: Function of a patch.
 
     Raises:
-        FileNotFoundError: There is nothing.
+        FileNotFoundError: The folder has no data set.
         ValueError: An annotation is broken.
     """
 
@@ -214,21 +213,21 @@ class HighResolutionDataset(DatasetIterator):
     ) -> None:
         if patch_size < 1:
             raise ValueError(f"patch_size = {patch_size} is out of range; give 1 or more")
-        self._pictures = ExternalDataset(dataset_folder, "voc").open(target=BoundingBoxList)
+        self._images = ExternalDataset(dataset_folder, "voc").open(target=BoundingBoxList)
         self.patch_size, self.transform = patch_size, transform
         self._patches = [
             (index, patch, label)
-            for index in range(len(self._pictures))
+            for index in range(len(self._images))
             for patch, label in self._labelled(index, non_zero_threshold)
         ]
 
     def get_labels(self) -> list[int]:
-        """The classes of all squares."""
+        """Returns the classes of all patches."""
         return [label for _, _, label in self._patches]
 
     def __getitem__(self, idx: int) -> tuple[Any, Category]:
         index, (left, top), label = self._patches[idx]
-        pixels = self._pictures[index][0].data[:, top : top + self.patch_size, left : left + self.patch_size]
+        pixels = self._images[index][0].data[:, top : top + self.patch_size, left : left + self.patch_size]
         patch = Image(pixels.copy(), guess_format=False)
         category = Category(label, self.classes[label])
         return (patch if self.transform is None else self.transform(patch)), category
@@ -239,7 +238,7 @@ class HighResolutionDataset(DatasetIterator):
     def _labelled(self, index: int, threshold: float) -> Iterator[tuple[tuple[int, int], int]]:
         import numpy as np
 
-        image, boxes = self._pictures[index]
+        image, boxes = self._images[index]
         covered = np.zeros((image.height, image.width), dtype=bool)
         for box in boxes.data:
             left, top = max(0, round(box.left)), max(0, round(box.top))

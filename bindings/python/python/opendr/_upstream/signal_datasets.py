@@ -11,25 +11,25 @@ from opendr.engine.target import Category
 
 
 class Dataset(DatasetIterator):
-    """Series and their classes.
+    """Time series with classes.
 
     Args:
         x: Arrays, ``[channels, steps]`` each.
-        y: Class numbers.
+        y: Class indices.
 
     Raises:
-        ValueError: There are not as many of both.
+        ValueError: The lengths differ.
     """
 
     def __init__(self, x: Sequence[Any], y: Sequence[int]) -> None:
         if len(x) != len(y):
-            raise ValueError(f"{len(x)} series have {len(y)} classes; give as many of both")
+            raise ValueError(f"{len(x)} series have {len(y)} classes; give the same number of both")
         self.x, self.y = x, y
 
     def __getitem__(self, idx: int) -> tuple[Timeseries, Category]:
         import numpy as np
 
-        # OpenDR's learners of hearts had channels first.
+        # OpenDR's heart anomaly learners have channels first.
         return Timeseries(np.asarray(self.x[idx]).T), Category(self.y[idx])
 
     def __len__(self) -> int:

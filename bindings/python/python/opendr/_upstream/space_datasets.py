@@ -1,4 +1,4 @@
-"""OpenDR's data sets of scans: KITTI's boxes and tracks in space."""
+"""OpenDR's data sets of point clouds: KITTI's 3D boxes and tracks."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 PathLike = Union[str, "os.PathLike[str]"]
-#: Rows and columns of KITTI's matrices, by the numbers that they have.
+#: Rows and columns of KITTI's matrices, by their number of elements.
 _SHAPES = {12: (3, 4), 9: (3, 3)}
 
 
 class KittiDataset(ExternalDataset):
-    """KITTI's benchmark of detections; ``ExternalDataset(path, "kitti")``.
+    """KITTI's detection benchmark; ``ExternalDataset(path, "kitti")``.
 
     Args:
         path: Its folder.
-        kitti_subsets_path: Kept as it is: the parts lie in ``ImageSets`` of the data set.
+        kitti_subsets_path: No effect: the splits are in ``ImageSets`` of the data set.
     """
 
     def __init__(self, path: PathLike, kitti_subsets_path: PathLike = "") -> None:
@@ -38,32 +38,32 @@ class KittiDataset(ExternalDataset):
 
     @staticmethod
     def download(*given: Any, **named: Any) -> NoReturn:
-        """Raises ``opendr.Unsupported``: the data have to be had from whoever publishes them."""
-        _had()
+        """Raises ``opendr.Unsupported``: the data are available from their publisher only."""
+        _not_downloadable()
 
     @staticmethod
     def download_mini_kitti(download_path: PathLike, *given: Any, **named: Any) -> NoReturn:
-        """Raises ``opendr.Unsupported``: the data have to be had from whoever publishes them."""
-        _had()
+        """Raises ``opendr.Unsupported``: the data are available from their publisher only."""
+        _not_downloadable()
 
     @staticmethod
     def download_nano_kitti(download_path: PathLike, *given: Any, **named: Any) -> NoReturn:
-        """Raises ``opendr.Unsupported``: the data have to be had from whoever publishes them."""
-        _had()
+        """Raises ``opendr.Unsupported``: the data are available from their publisher only."""
+        _not_downloadable()
 
 
 class LabeledPointCloudsDatasetIterator(DatasetIterator):
-    """Scans with the boxes in them, file by file in the order of their names.
+    """Scans with 3D boxes, in the order of the file names.
 
     Args:
         lidar_path: The folder of the scans, little-endian float32 numbers.
         label_path: The folder of KITTI's labels.
         calib_path: The folder of KITTI's calibrations.
-        image_path: The folder of the pictures, for their size.
-        num_point_features: Numbers a point.
+        image_path: The folder of the images, for their size.
+        num_point_features: Numbers per point.
 
     Raises:
-        FileNotFoundError: A folder is not there.
+        FileNotFoundError: A folder does not exist.
         ValueError: The folders have different numbers of files.
     """
 
@@ -80,7 +80,7 @@ class LabeledPointCloudsDatasetIterator(DatasetIterator):
         self._images = None if image_path is None else _files(image_path)
         counts = [len(self._clouds), len(self._labels), len(self._calibrations), len(self._images or self._labels)]
         if len(set(counts)) > 1:
-            raise ValueError(f"scans, labels, calibrations and pictures differ in number: {counts}")
+            raise ValueError(f"the numbers of scans, labels, calibrations and images differ: {counts}")
 
     def __getitem__(self, idx: int) -> tuple[PointCloudWithCalibration, BoundingBox3DList]:
         boxes = [_box(words, place) for _, words, place in _rows(self._labels[idx], 0)]
@@ -93,16 +93,16 @@ class LabeledPointCloudsDatasetIterator(DatasetIterator):
 
 
 class KittiTrackingDatasetIterator(DatasetIterator):
-    """Sequences of boxes and of annotated tracks, file by file in the order of their names.
+    """Sequences of detected 3D boxes and annotated tracks, in the order of the file names.
 
     Args:
         inputs_path: The folder of the boxes.
         ground_truths_path: The folder of KITTI's tracking labels.
-        inputs_format: How boxes are written: ``"detection"`` (frame, then a label) or ``"tracking"``.
+        inputs_format: Format of the boxes: ``"detection"`` (frame, then a label) or ``"tracking"``.
 
     Raises:
-        FileNotFoundError: A folder is not there.
-        ValueError: The folders have different numbers of files, or there is no such format.
+        FileNotFoundError: A folder does not exist.
+        ValueError: The folders have different numbers of files, or the format is unknown.
     """
 
     def __init__(self, inputs_path: PathLike, ground_truths_path: PathLike, inputs_format: str = "detection") -> None:
@@ -112,17 +112,17 @@ class KittiTrackingDatasetIterator(DatasetIterator):
         self.inputs_files, self.ground_truths_files = _files(inputs_path), _files(ground_truths_path)
         counts = [len(self.inputs_files), len(self.ground_truths_files)]
         if counts[0] != counts[1]:
-            raise ValueError(f"inputs and truths differ in number: {counts}")
+            raise ValueError(f"the numbers of inputs and ground truths differ: {counts}")
 
     @staticmethod
     def download(*given: Any, **named: Any) -> NoReturn:
-        """Raises ``opendr.Unsupported``: the data have to be had from whoever publishes them."""
-        _had()
+        """Raises ``opendr.Unsupported``: the data are available from their publisher only."""
+        _not_downloadable()
 
     @staticmethod
     def download_labels(download_path: PathLike, create_dir: bool = False) -> NoReturn:
-        """Raises ``opendr.Unsupported``: the data have to be had from whoever publishes them."""
-        _had()
+        """Raises ``opendr.Unsupported``: the data are available from their publisher only."""
+        _not_downloadable()
 
     def __getitem__(self, idx: int) -> tuple[list[BoundingBox3DList], list[TrackingAnnotation3DList]]:
         before = 2 if self.inputs_format == "tracking" else 1
@@ -138,19 +138,19 @@ class KittiTrackingDatasetIterator(DatasetIterator):
 
 
 class LabeledTrackingPointCloudsDatasetIterator(DatasetIterator):
-    """The scans of one recording with the tracks in them.
+    """The scans of one recording with annotated tracks.
 
     Args:
         lidar_path: The folder of the scans, little-endian float32 numbers.
         label_path: The file of KITTI's tracking labels.
         calib_path: The file of KITTI's calibration.
-        image_path: The folder of the pictures, for their size.
-        labels_format: ``"tracking"`` for annotations with numbers, ``"detection"`` for boxes.
-        num_point_features: Numbers a point.
+        image_path: The folder of the images, for their size.
+        labels_format: ``"tracking"`` for annotations with identities, ``"detection"`` for boxes.
+        num_point_features: Numbers per point.
 
     Raises:
-        FileNotFoundError: Something is not there.
-        ValueError: A line is broken, or there is no such format.
+        FileNotFoundError: A file or folder does not exist.
+        ValueError: A line is broken, or the format is unknown.
     """
 
     def __init__(
@@ -173,13 +173,13 @@ class LabeledTrackingPointCloudsDatasetIterator(DatasetIterator):
 
     @staticmethod
     def download(*given: Any, **named: Any) -> NoReturn:
-        """Raises ``opendr.Unsupported``: the data have to be had from whoever publishes them."""
-        _had()
+        """Raises ``opendr.Unsupported``: the data are available from their publisher only."""
+        _not_downloadable()
 
     @staticmethod
     def download_pico_kitti(download_path: PathLike, create_dir: bool = False) -> NoReturn:
-        """Raises ``opendr.Unsupported``: the data have to be had from whoever publishes them."""
-        _had()
+        """Raises ``opendr.Unsupported``: the data are available from their publisher only."""
+        _not_downloadable()
 
     def __getitem__(
         self, idx: int
@@ -194,7 +194,7 @@ class LabeledTrackingPointCloudsDatasetIterator(DatasetIterator):
 
 
 def parse_calib(calib_path: PathLike) -> dict[str, NDArray[Any]]:
-    """Reads KITTI's calibration: its matrices by name.
+    """Reads the matrices of KITTI's calibration by name.
 
     Raises:
         opendr.FormatError: A line has neither 9 nor 12 numbers.
@@ -219,7 +219,7 @@ Row = tuple[list[float], list[str], str]
 
 
 def _rows(path: str, before: int) -> list[Row]:
-    """The lines of a file of labels: the numbers before a label (frame, number of the object), the label, the place."""
+    """Reads a label file: for each line the numbers before the label (frame, track id), the label, and its position."""
     rows = []
     with open(path, encoding="utf-8") as file:
         lines = [line.split() for line in file]
@@ -255,7 +255,7 @@ def _by_frame(items: list[tuple[int, Any]], frames: int) -> list[list[Any]]:
     found: list[list[Any]] = [[] for _ in range(frames)]
     for frame, item in items:
         if not 0 <= frame < frames:
-            raise FormatError(f"there is no frame {frame} among {frames}")
+            raise FormatError(f"frame {frame} is out of range; there are {frames} frames")
         found[frame].append(item)
     return found
 
@@ -265,10 +265,10 @@ def _files(folder: PathLike) -> list[str]:
     return [os.path.join(path, name) for name in sorted(os.listdir(path))]
 
 
-def _shape(picture: str) -> tuple[int, int]:
-    image = Image.open(picture)
+def _shape(path: str) -> tuple[int, int]:
+    image = Image.open(path)
     return image.height, image.width
 
 
-def _had() -> NoReturn:
-    raise Unsupported("KITTI cannot be downloaded from here; get it from whoever publishes it, and give its folder")
+def _not_downloadable() -> NoReturn:
+    raise Unsupported("KITTI cannot be downloaded here; get it from its publisher and give its folder")

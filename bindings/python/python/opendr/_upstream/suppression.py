@@ -1,4 +1,4 @@
-"""Suppressions of overlapping boxes, by their papers: Fast NMS (YOLACT), Cluster-NMS, Soft-NMS."""
+"""Non-maximum suppression, as in the papers: Fast NMS (YOLACT), Cluster-NMS, Soft-NMS."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 Found = tuple[BoundingBoxList, "list[NDArray[Any]]"]
-#: How fast scores fall with the overlap, in Cluster-NMS.
+#: Width of the penalty of scores over the IoU, in Cluster-NMS.
 _SIGMA = 0.2
 
 
 class NMSCustom(ABC):
-    """What thins out overlapping boxes: ``infer(..., custom_nms=...)`` of SingleShotDetectorLearner takes one.
+    """Base class of non-maximum suppression, for ``infer(..., custom_nms=...)`` of SingleShotDetectorLearner.
 
     Args:
-        device: NumPy computes, whatever it is.
+        device: No effect: NumPy computes on the CPU.
     """
 
     def __init__(self, device: str = "cpu") -> None:
@@ -37,16 +37,16 @@ class NMSCustom(ABC):
         threshold: float = 0.2,
         img: Any = None,
     ) -> Found:
-        """Chooses among boxes.
+        """Suppresses overlapping boxes.
 
         Args:
             boxes: Corners, ``[boxes, 4]``: left, top, right, bottom, in pixels.
             scores: Scores, ``[boxes, classes]``, or ``[boxes]`` of one class.
-            threshold: Boxes below this score are dropped.
-            img: The picture, for those that look at it.
+            threshold: Score below which boxes are dropped.
+            img: The image, for suppressions that use it.
 
         Returns:
-            The boxes that are left, by falling score, and their corners ``[boxes, 4]``, classes and scores.
+            The remaining boxes in descending order of score, and their corners ``[boxes, 4]``, classes and scores.
 
         Raises:
             ValueError: Boxes and scores do not fit together, or a number is not finite.
@@ -54,7 +54,7 @@ class NMSCustom(ABC):
 
 
 class _Limited(NMSCustom):
-    """A suppression with OpenDR's three numbers."""
+    """A suppression with OpenDR's parameters: IoU threshold, ``top_k`` and ``post_k``."""
 
     def __init__(self, device: str, nms_thres: float, top_k: int, post_k: int) -> None:
         super().__init__(device)
@@ -63,15 +63,15 @@ class _Limited(NMSCustom):
         self.set_post_k(post_k)
 
     def set_nms_thres(self, nms_thres: float = 0.45) -> None:
-        """Sets the overlap (intersection over union) above which boxes are one object."""
+        """Sets the IoU above which boxes are one object."""
         self.nms_thres: float = real(nms_thres, "nms_thres")
 
     def set_top_k(self, top_k: int = 400) -> None:
-        """Sets how many boxes are compared."""
+        """Sets the maximum number of boxes that are compared."""
         self.top_k: int = whole(top_k, "top_k")
 
     def set_post_k(self, post_k: int = 100) -> None:
-        """Sets how many boxes are left at most."""
+        """Sets the maximum number of boxes that are returned."""
         self.post_k: int = whole(post_k, "post_k")
 
     def _found(self, parts: list[tuple[NDArray[Any], NDArray[Any], NDArray[Any]]], threshold: float) -> Found:
@@ -84,15 +84,27 @@ class _Limited(NMSCustom):
         return BoundingBoxList(boxes), [corners, classes, scores]
 
 
-class FastNMS(_Limited):
-    """Fast NMS: a box goes when any better one overlaps it, also one that goes itself.
+class _ByClass(_Limited):
+    """A suppression that compares boxes of the same class, or of all classes."""
+
+    def __init__(self, device: str, nms_thres: float, top_k: int, post_k: int, cross_class: bool) -> None:
+        super().__init__(device, nms_thres, top_k, post_k)
+        self.set_cross_class(cross_class)
+
+    def set_cross_class(self, cross_class: bool = True) -> None:
+        """Sets whether boxes of different classes suppress each other."""
+        self.cross_class = bool(cross_class)
+
+
+class FastNMS(_ByClass):
+    """Fast NMS: a box is dropped when any box of a higher score overlaps it, even one that is dropped itself.
 
     Args:
         cross_class: Whether boxes of different classes suppress each other.
-        device: NumPy computes, whatever it is.
-        nms_thres: Boxes that overlap more than this (intersection over union) are one object.
-        top_k: So many boxes are compared.
-        post_k: At most so many are left.
+        device: No effect: NumPy computes on the CPU.
+        nms_thres: IoU above which boxes are one object.
+        top_k: Maximum number of boxes that are compared.
+        post_k: Maximum number of boxes that are returned.
     """
 
     def __init__(
@@ -103,12 +115,7 @@ class FastNMS(_Limited):
         top_k: int = 400,
         post_k: int = 100,
     ) -> None:
-        super().__init__(device, nms_thres, top_k, post_k)
-        self.set_cross_class(cross_class)
-
-    def set_cross_class(self, cross_class: bool = True) -> None:
-        """Sets whether boxes of different classes suppress each other."""
-        self.cross_class = bool(cross_class)
+        super().__init__(device, nms_thres, top_k, post_k, cross_class)
 
     def run_nms(
         self,
@@ -117,7 +124,7 @@ class FastNMS(_Limited):
         threshold: float = 0.2,
         img: Any = None,
     ) -> Found:
-        """Chooses among boxes, see :class:`NMSCustom`."""
+        """Suppresses overlapping boxes, see :class:`NMSCustom`."""
         parts = []
         for corners, classes, values in ranked(boxes, scores, self.top_k, self.cross_class):
             kept = best_above(overlaps(corners)) <= self.nms_thres
@@ -125,21 +132,21 @@ class FastNMS(_Limited):
         return self._found(parts, threshold)
 
 
-class ClusterNMS(_Limited):
-    """Cluster-NMS: Fast NMS again and again, with the boxes that are left, until nothing changes.
+class ClusterNMS(_ByClass):
+    """Cluster-NMS: Fast NMS of the remaining boxes, repeated until nothing changes.
 
     Args:
-        nms_type: ``"default"``; ``"diou"`` counts the distance of the centres as well; ``"spm"`` lowers the scores of
-            overlapped boxes instead of dropping them; ``"spm_dist"`` lowers them less the farther the centres are;
+        nms_type: ``"default"``; ``"diou"`` includes the distance of the centres; ``"spm"`` lowers the scores of
+            overlapped boxes instead of dropping them; ``"spm_dist"`` lowers them less for distant centres;
             ``"spm_dist_weighted"`` also moves boxes to the mean of those that overlap them.
         cross_class: Whether boxes of different classes suppress each other.
-        device: NumPy computes, whatever it is.
-        nms_thres: Boxes that overlap more than this (intersection over union) are one object.
-        top_k: So many boxes are compared.
-        post_k: At most so many are left.
+        device: No effect: NumPy computes on the CPU.
+        nms_thres: IoU above which boxes are one object.
+        top_k: Maximum number of boxes that are compared.
+        post_k: Maximum number of boxes that are returned.
 
     Raises:
-        ValueError: There is no such type.
+        ValueError: The type is unknown.
     """
 
     nms_types = ("default", "diou", "spm", "spm_dist", "spm_dist_weighted")
@@ -153,19 +160,14 @@ class ClusterNMS(_Limited):
         top_k: int = 400,
         post_k: int = 100,
     ) -> None:
-        super().__init__(device, nms_thres, top_k, post_k)
+        super().__init__(device, nms_thres, top_k, post_k, cross_class)
         self.set_nms_type(nms_type)
-        self.set_cross_class(cross_class)
 
     def set_nms_type(self, nms_type: str = "default") -> None:
         """Sets the type."""
         self.nms_type = _one_of(nms_type, self.nms_types)
 
-    def set_cross_class(self, cross_class: bool = True) -> None:
-        """Sets whether boxes of different classes suppress each other."""
-        self.cross_class = bool(cross_class)
-
-    # OpenDR's order: the picture comes before the threshold.
+    # OpenDR's order: the image comes before the threshold.
     def run_nms(  # type: ignore[override]
         self,
         boxes: Optional[ArrayLike] = None,
@@ -173,7 +175,7 @@ class ClusterNMS(_Limited):
         img: Any = None,
         threshold: float = 0.2,
     ) -> Found:
-        """Chooses among boxes, see :class:`NMSCustom`."""
+        """Suppresses overlapping boxes, see :class:`NMSCustom`."""
         groups = ranked(boxes, scores, self.top_k, self.cross_class)
         return self._found([self._group(*group) for group in groups], threshold)
 
@@ -205,17 +207,17 @@ class ClusterNMS(_Limited):
 
 
 class SoftNMS(_Limited):
-    """Soft-NMS: the better boxes lower the scores of those of their class that they overlap.
+    """Soft-NMS: boxes of higher scores lower the scores of overlapping boxes of the same class.
 
     Args:
-        nms_type: ``"linear"`` by the overlap above the threshold, ``"gaussian"`` by a bell curve over the overlap.
-        device: NumPy computes, whatever it is.
-        nms_thres: The threshold (0.3 when left out) or the width of the curve (0.5).
-        top_k: So many boxes are compared.
-        post_k: At most so many are left.
+        nms_type: ``"linear"`` in the IoU above the threshold, or ``"gaussian"`` in the IoU.
+        device: No effect: NumPy computes on the CPU.
+        nms_thres: The IoU threshold (0.3 by default) or the width of the Gaussian (0.5 by default).
+        top_k: Maximum number of boxes that are compared.
+        post_k: Maximum number of boxes that are returned.
 
     Raises:
-        ValueError: There is no such type.
+        ValueError: The type is unknown.
     """
 
     nms_types = ("linear", "gaussian")
@@ -229,8 +231,8 @@ class SoftNMS(_Limited):
         post_k: int = 100,
     ) -> None:
         self.set_nms_type(nms_type)
-        usual = 0.3 if nms_type == "linear" else 0.5
-        super().__init__(device, usual if nms_thres is None else nms_thres, top_k, post_k)
+        default = 0.3 if nms_type == "linear" else 0.5
+        super().__init__(device, default if nms_thres is None else nms_thres, top_k, post_k)
 
     def set_nms_type(self, nms_type: str = "linear") -> None:
         """Sets the type."""
@@ -243,15 +245,15 @@ class SoftNMS(_Limited):
         threshold: float = 0.2,
         img: Any = None,
     ) -> Found:
-        """Chooses among boxes, see :class:`NMSCustom`."""
+        """Suppresses overlapping boxes, see :class:`NMSCustom`."""
         parts = []
         for corners, classes, values in ranked(boxes, scores, self.top_k, cross_class=True):
             overlap = overlaps(corners) * (classes[:, None] == classes[None, :])
-            values, left = values.copy(), np.ones(len(values), dtype=bool)
-            while left.any():
-                best = int(np.argmax(np.where(left, values, -np.inf)))
-                left[best] = False
-                values[left] *= self._factors(overlap[best][left])
+            values, remaining = values.copy(), np.ones(len(values), dtype=bool)
+            while remaining.any():
+                best = int(np.argmax(np.where(remaining, values, -np.inf)))
+                remaining[best] = False
+                values[remaining] *= self._factors(overlap[best][remaining])
             parts.append((corners, classes, values))
         return self._found(parts, threshold)
 
@@ -271,9 +273,9 @@ def _one_of(value: str, choices: tuple[str, ...]) -> str:
 def _numbers(
     boxes: Optional[ArrayLike], scores: Optional[ArrayLike]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Corners ``[boxes, 4]`` and scores ``[boxes, classes]``."""
+    """Returns corners ``[boxes, 4]`` and scores ``[boxes, classes]``."""
     if boxes is None or scores is None:
-        raise TypeError("run_nms wants boxes and scores; give both")
+        raise TypeError("run_nms needs boxes and scores; give both")
     corners, values = np.asarray(boxes, dtype=float), np.asarray(scores, dtype=float)
     corners = corners.reshape(0, 4) if corners.size == 0 else corners
     values = values.reshape(len(corners), -1) if values.ndim == 1 or values.size == 0 else values
@@ -287,7 +289,7 @@ def _numbers(
 def candidates(
     boxes: Optional[ArrayLike], scores: Optional[ArrayLike]
 ) -> tuple[NDArray[np.float64], NDArray[Any], NDArray[np.float64]]:
-    """Corners, and the best class of each box with its score.
+    """Returns corners, and the best class of each box with its score.
 
     Raises:
         ValueError: Boxes and scores do not fit together, or a number is not finite.
@@ -301,7 +303,8 @@ def candidates(
 def ranked(
     boxes: Optional[ArrayLike], scores: Optional[ArrayLike], top_k: int, cross_class: bool
 ) -> Iterator[tuple[NDArray[np.float64], NDArray[Any], NDArray[np.float64]]]:
-    """Corners, classes and scores by falling score, at most ``top_k``: of all classes together, or class by class."""
+    """Yields at most ``top_k`` corners, classes and scores in descending order of score, of all classes together or class by
+    class."""
     corners, values = _numbers(boxes, scores)
     groups = [candidates(corners, values)]
     if not cross_class and values.shape[1] > 1:
@@ -312,7 +315,7 @@ def ranked(
 
 
 def overlaps(corners: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Intersection over union of every two boxes."""
+    """Returns the IoU of every two boxes."""
     low = np.maximum(corners[:, None, :2], corners[None, :, :2])
     high = np.minimum(corners[:, None, 2:], corners[None, :, 2:])
     shared = np.clip(high - low, 0, None).prod(axis=2)
@@ -323,7 +326,7 @@ def overlaps(corners: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def centre_distances(corners: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Squared distance of the centres of every two boxes over the squared diagonal of the box around both."""
+    """Returns the squared distance of the centres of every two boxes over the squared diagonal of their enclosing box."""
     centres = (corners[:, :2] + corners[:, 2:]) / 2
     apart = ((centres[:, None] - centres[None, :]) ** 2).sum(axis=2)
     low = np.minimum(corners[:, None, :2], corners[None, :, :2])
@@ -334,7 +337,7 @@ def centre_distances(corners: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def best_above(overlap: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The largest overlap of each box with a better one."""
+    """Returns the largest IoU of each box with a box of a higher score."""
     above = np.triu(overlap, 1)
     largest: NDArray[np.float64] = above.max(axis=0, initial=0.0)
     return largest

@@ -1,4 +1,4 @@
-"""OpenDR's data sets of tracks in videos, and of persons seen by several cameras."""
+"""OpenDR's data sets for tracking and person re-identification."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ class MotDataset(ExternalDataset):
 
     @staticmethod
     def download(*given: Any, **named: Any) -> NoReturn:
-        """Raises ``opendr.Unsupported``: the data have to be had from whoever publishes them."""
-        _had("MOT20")
+        """Raises ``opendr.Unsupported``: the data are available from their publisher only."""
+        _not_downloadable("MOT20")
 
     @staticmethod
     def download_nano_mot20(download_path: PathLike, create_dir: bool = False) -> NoReturn:
-        """Raises ``opendr.Unsupported``: the data have to be had from whoever publishes them."""
-        _had("MOT20")
+        """Raises ``opendr.Unsupported``: the data are available from their publisher only."""
+        _not_downloadable("MOT20")
 
 
 class Market1501Dataset(ExternalDataset):
@@ -49,23 +49,23 @@ class Market1501Dataset(ExternalDataset):
 
     @staticmethod
     def download(*given: Any, **named: Any) -> NoReturn:
-        """Raises ``opendr.Unsupported``: the data have to be had from whoever publishes them."""
-        _had("Market-1501")
+        """Raises ``opendr.Unsupported``: the data are available from their publisher only."""
+        _not_downloadable("Market-1501")
 
     @staticmethod
     def download_nano_market1501(download_path: PathLike, create_dir: bool = False) -> NoReturn:
-        """Raises ``opendr.Unsupported``: the data have to be had from whoever publishes them."""
-        _had("Market-1501")
+        """Raises ``opendr.Unsupported``: the data are available from their publisher only."""
+        _not_downloadable("Market-1501")
 
 
 class Market1501DatasetIterator(DatasetIterator):
-    """The persons of a folder of Market-1501, by their numbers.
+    """The persons of a folder of Market-1501, with their ids.
 
     Args:
         path: The folder, e.g. ``bounding_box_train``.
 
     Raises:
-        FileNotFoundError: It is not there.
+        FileNotFoundError: The folder does not exist.
     """
 
     def __init__(self, path: PathLike) -> None:
@@ -74,7 +74,7 @@ class Market1501DatasetIterator(DatasetIterator):
 
     def __getitem__(self, idx: int) -> tuple[Image, Category]:
         name = self.files[idx]
-        # Distractors are called -1.
+        # Distractors have the id -1.
         (person,) = numbers(name.replace("_", " "), 1, os.path.join(self.path, name))
         return Image.open(os.path.join(self.path, name)), Category(int(person), name.split("_")[0])
 
@@ -83,22 +83,22 @@ class Market1501DatasetIterator(DatasetIterator):
 
 
 class RawMotDatasetIterator(DatasetIterator):
-    """The frames of the MOT Challenge as FairMOT lists them, with the tracks in them.
+    """The frames of the MOT Challenge with their tracks, in FairMOT's lists.
 
-    A list has a picture a line, relative to ``root``; its annotations lie in the same place below ``labels_with_ids``
-    instead of ``images``: class, number, centre and size as shares of the picture.
+    A list has one image per line, relative to ``root``; its annotations have the same path below ``labels_with_ids``
+    instead of ``images``: class, id, centre and size as fractions of the image size.
 
     Args:
-        root: The folder that the lists are relative to.
+        root: The folder to which the lists are relative.
         paths: Lists by the names of their data sets.
-        options: OpenDR's further arguments, which have no effect: pictures are read as they are.
+        options: OpenDR's further arguments, which have no effect: images are not transformed.
 
     Raises:
-        FileNotFoundError: A list is not there.
-        ValueError: A line leads out of ``root``.
+        FileNotFoundError: A list does not exist.
+        ValueError: A path is outside ``root``.
     """
 
-    #: OpenDR's size of the network's input.
+    #: OpenDR's input size of the network.
     default_resolution = [1088, 608]
     #: Persons.
     num_classes = 1
@@ -107,10 +107,10 @@ class RawMotDatasetIterator(DatasetIterator):
     def __init__(self, root: PathLike, paths: Mapping[str, PathLike], *given: Any, **options: Any) -> None:
         if given or options:
             names = ", ".join(options) or "the further arguments"
-            text = f"{type(self).__name__}: {names} has no effect: pictures and boxes are read as they are"
+            text = f"{type(self).__name__}: {names} has no effect: images and boxes are not transformed"
             warnings.warn(text, UserWarning, stacklevel=2)
         self.root: str = os.fspath(root)
-        #: The pictures of each data set.
+        #: The images of each data set.
         self.img_files: dict[str, list[str]] = {}
         for name, path in paths.items():
             with open(path, encoding="utf-8") as file:
@@ -141,7 +141,7 @@ class RawMotDatasetIterator(DatasetIterator):
                 _, person, x, y, width, height = numbers(line, 6, f"{path}:{number}")
                 size = (width * image.width, height * image.height)
                 corner = (x * image.width - size[0] / 2, y * image.height - size[1] / 2)
-                # Persons of different data sets are different ones.
+                # Ids are unique across data sets.
                 known = (part << 32) + int(person)
                 tracks.append(
                     TrackingAnnotation(0, *corner, *size, id=known, score=1, frame=frame, class_name="person")
@@ -150,16 +150,16 @@ class RawMotDatasetIterator(DatasetIterator):
 
 
 class MotDatasetIterator(RawMotDatasetIterator):
-    """As :class:`RawMotDatasetIterator`: pictures are augmented by the training itself."""
+    """The same as :class:`RawMotDatasetIterator`: the training augments the images itself."""
 
 
 class RawMotWithDetectionsDatasetIterator(RawMotDatasetIterator):
-    """As :class:`RawMotDatasetIterator`, of pictures with the boxes of their tracks: what DeepSORT takes."""
+    """As :class:`RawMotDatasetIterator`, with the boxes of the tracks as detections: the input of DeepSORT."""
 
     def __getitem__(self, idx: int) -> tuple[Any, TrackingAnnotationList]:
         image, tracks = super().__getitem__(idx)
         return ImageWithDetections(image, tracks.bounding_box_list()), tracks
 
 
-def _had(name: str) -> NoReturn:
-    raise Unsupported(f"{name} cannot be downloaded from here; get it from whoever publishes it, and give its folder")
+def _not_downloadable(name: str) -> NoReturn:
+    raise Unsupported(f"{name} cannot be downloaded here; get it from its publisher and give its folder")

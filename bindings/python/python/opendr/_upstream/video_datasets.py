@@ -1,4 +1,4 @@
-"""OpenDR's data sets of clips and made-up series."""
+"""OpenDR's data sets of video clips and synthetic time series."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ PathLike = Union[str, "os.PathLike[str]"]
 
 
 class KineticsDataset(DatasetIterator):
-    """Clips with what persons do in them: the frames in the middle of each video.
+    """Video clips with activity classes: the middle frames of each video.
 
     Args:
         path: The folder with a folder of videos for each class, in ``train``, ``val``, ...
-        frames_per_clip: Frames of a clip; of a shorter video all.
-        step_between_clips: No effect: a video gives one clip.
-        temporal_downsampling: Every so manieth frame is taken.
-        split: The part.
-        video_transform: From a clip to whatever.
-        use_caching: No effect: videos are read when they are asked for.
-        decoder_backend: No effect: an installed ffmpeg reads them.
+        frames_per_clip: Number of frames per clip; a shorter video is used as a whole.
+        step_between_clips: No effect: there is one clip per video.
+        temporal_downsampling: Step between the frames of a clip.
+        split: The split.
+        video_transform: Function of a clip.
+        use_caching: No effect: videos are read on access.
+        decoder_backend: No effect: an installed ffmpeg decodes them.
         spatial_pixels: No effect: the learner scales frames itself.
 
     Raises:
-        FileNotFoundError: It is not there.
+        FileNotFoundError: The data set does not exist.
         ValueError: A number is below 1.
     """
 
@@ -46,30 +46,30 @@ class KineticsDataset(DatasetIterator):
         spatial_pixels: int = 224,
     ) -> None:
         idle = {"step_between_clips": (step_between_clips, 1), "use_caching": (use_caching, False)}
-        for name, (value, usual) in {**idle, "spatial_pixels": (spatial_pixels, 224)}.items():
-            if value != usual:
+        for name, (value, default) in {**idle, "spatial_pixels": (spatial_pixels, 224)}.items():
+            if value != default:
                 warnings.warn(f"KineticsDataset: {name} has no effect", UserWarning, stacklevel=2)
         self.frames_per_clip = whole(frames_per_clip, "frames_per_clip")
         self.temporal_downsampling = whole(temporal_downsampling or 1, "temporal_downsampling")
         if min(self.frames_per_clip, self.temporal_downsampling) < 1:
-            raise ValueError("frames_per_clip and temporal_downsampling are 1 or more")
+            raise ValueError("frames_per_clip and temporal_downsampling must be 1 or more")
         self.video_transform = video_transform
         self._samples = ExternalDataset(path, "kinetics").open(split=split)
-        #: What class numbers mean.
+        #: Names of the class indices.
         self.classes: list[str] = self._samples.classes
 
     @staticmethod
     def download_mini(path: PathLike) -> Any:
-        """Raises ``opendr.Unsupported``: the data have to be had from whoever publishes them."""
+        """Raises ``opendr.Unsupported``: the data are available from their publisher only."""
         return KineticsDataset.download_micro(path)
 
     @staticmethod
     def download_micro(path: PathLike) -> Any:
-        """Raises ``opendr.Unsupported``: the data have to be had from whoever publishes them."""
+        """Raises ``opendr.Unsupported``: the data are available from their publisher only."""
         from opendr._errors import Unsupported
 
         raise Unsupported(
-            "Kinetics cannot be downloaded from here; get it from whoever publishes it, and give its folder"
+            "Kinetics cannot be downloaded here; get it from its publisher and give its folder"
         )
 
     def __getitem__(self, idx: int) -> tuple[Any, Category]:
@@ -85,14 +85,14 @@ class KineticsDataset(DatasetIterator):
 
 
 class DummyTimeseriesDataset(DatasetIterator):
-    """Sines of several wavelengths; the class says whether the sum of the cosines is positive at the end (1), and
-    rises (2).
+    """Sines of several wavelengths; the class is the sum of 1 if the sum of the cosines is positive at the end, and 2 if it
+    rises there.
 
     Args:
-        num_sines: How many sines.
-        num_datapoints: How many samples.
-        base_offset: Where the first one begins.
-        sequence_len: Steps of a sample.
+        num_sines: Number of sines.
+        num_datapoints: Number of samples.
+        base_offset: Offset of the first sample.
+        sequence_len: Number of steps of a sample.
 
     Raises:
         ValueError: A number is out of range.
@@ -104,7 +104,7 @@ class DummyTimeseriesDataset(DatasetIterator):
         self, num_sines: int = 4, num_datapoints: int = 64, base_offset: float = 0, sequence_len: int = 64
     ) -> None:
         if min(num_sines, num_datapoints, sequence_len - 1) < 1:
-            raise ValueError("a series has a sine and two steps at least")
+            raise ValueError("num_sines and num_datapoints must be 1 or more, sequence_len 2 or more")
         self.num_sines, self.num_datapoints = num_sines, num_datapoints
         self.base_offset, self.sequence_len = base_offset, sequence_len
 

@@ -1,4 +1,4 @@
-"""Control: a module a task, made from the registry of learners."""
+"""Control: one module per task, created from the registry of learners."""
 
 from __future__ import annotations
 

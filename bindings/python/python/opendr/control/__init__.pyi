@@ -1,3 +1,3 @@
-"""Control: a module a task."""
+"""Control: one module per task."""
 
 from opendr.control import reinforcement_learning as reinforcement_learning

@@ -1,1 +1,1 @@
-"""What every algorithm speaks: data, targets, data sets, learners."""
+"""Data, targets, data sets and learners: the types that all algorithms share."""

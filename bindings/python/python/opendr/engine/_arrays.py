@@ -1,4 +1,4 @@
-"""Arrays on their way into our objects, and how they show themselves to NumPy and DLPack."""
+"""Conversion of values to arrays, and the interfaces of NumPy and DLPack."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ if TYPE_CHECKING:
 
 
 def array_of(data: ArrayLike, dtype: Optional[DTypeLike], what: str) -> NDArray[Any]:
-    """``data`` as an array of ``dtype`` (of its own type when None), not copied where it is one.
+    """Returns ``data`` as an array of ``dtype`` (of its own type when None), without a copy where possible.
 
     Raises:
-        TypeError: They are no numbers.
+        TypeError: They are not numbers.
         ValueError: They are lists of different lengths.
     """
     import numpy as np
@@ -28,7 +28,7 @@ def array_of(data: ArrayLike, dtype: Optional[DTypeLike], what: str) -> NDArray[
 
 
 def as_array(array: NDArray[Any], dtype: Any, copy: Optional[bool]) -> NDArray[Any]:
-    """What ``__array__`` gives: the array itself where type and ``copy`` allow."""
+    """Returns the result of ``__array__``: the array itself where type and ``copy`` allow it."""
     import numpy as np
 
     if copy is None:
@@ -37,8 +37,8 @@ def as_array(array: NDArray[Any], dtype: Any, copy: Optional[bool]) -> NDArray[A
 
 
 def dlpack(array: NDArray[Any], **options: Any) -> Any:
-    """What ``__dlpack__`` gives. Consumers know no negative strides, and NumPy lends no memory that may not be
-    written: such arrays are copied."""
+    """Returns the result of ``__dlpack__``. Arrays with negative strides, which consumers do not support, and read-only
+    arrays, which NumPy does not export, are copied."""
     import numpy as np
 
     if any(stride < 0 for stride in array.strides) or not array.flags.writeable:

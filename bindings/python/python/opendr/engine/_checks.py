@@ -1,4 +1,4 @@
-"""Checks of plain values that users hand in. NumPy's numbers count as Python's."""
+"""Checks of arguments. NumPy's numbers are accepted like Python's."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from typing import Any, SupportsFloat, SupportsIndex, Union
 
 #: A number of Python's or NumPy's.
 Real = Union[float, SupportsFloat, SupportsIndex]
-#: Class numbers that names can be listed for.
+#: Maximum number of class names in a list.
 _MAX_CLASSES = 1 << 16
 
 
 def whole(value: SupportsIndex, what: str) -> int:
-    """``value`` as an ``int``.
+    """Returns ``value`` as an ``int``.
 
     Raises:
-        TypeError: It is no whole number.
+        TypeError: The value is not an integer.
     """
     try:
         return operator.index(value)
@@ -25,11 +25,11 @@ def whole(value: SupportsIndex, what: str) -> int:
 
 
 def real(value: Real, what: str) -> float:
-    """``value`` as a finite ``float``.
+    """Returns ``value`` as a finite ``float``.
 
     Raises:
-        TypeError: It is no number.
-        ValueError: It is NaN or infinite.
+        TypeError: The value is not a number.
+        ValueError: The value is NaN or infinite.
     """
     if type(value) is not float:
         if isinstance(value, (str, bytes, bytearray)):
@@ -44,11 +44,11 @@ def real(value: Real, what: str) -> float:
 
 
 def reals(values: Sequence[Real], count: int, what: str) -> tuple[float, ...]:
-    """``values`` as ``count`` finite floats.
+    """Returns ``values`` as ``count`` finite floats.
 
     Raises:
-        TypeError: It is no sequence of numbers.
-        ValueError: There are more or fewer, or one is not finite.
+        TypeError: The value is not a sequence of numbers.
+        ValueError: The length is another, or a number is not finite.
     """
     try:
         numbers = tuple(real(value, what) for value in values)
@@ -60,10 +60,10 @@ def reals(values: Sequence[Real], count: int, what: str) -> tuple[float, ...]:
 
 
 def class_name_or_index(name: Union[int, str, SupportsIndex]) -> Union[int, str]:
-    """The class of a box: an ``int``, or a ``str``.
+    """Returns the class of a box: an ``int``, or a ``str``.
 
     Raises:
-        TypeError: It is neither.
+        TypeError: The value is neither.
     """
     if type(name) is int or type(name) is str:
         return name
@@ -76,25 +76,25 @@ def class_name_or_index(name: Union[int, str, SupportsIndex]) -> Union[int, str]
 
 
 def text(value: str, what: str) -> str:
-    """``value`` when it is a ``str``.
+    """Returns ``value`` if it is a ``str``.
 
     Raises:
-        TypeError: It is none.
+        TypeError: The value is not a ``str``.
     """
     if not isinstance(value, str):
         raise TypeError(f"{what} should be a str, not {value!r}")
     return value
 
 
-def names_by_number(names: Mapping[Any, str]) -> list[str]:
-    """The names of classes in the order of their numbers, empty where one has none; keys that are no class numbers are
-    left out.
+def names_by_index(names: Mapping[Any, str]) -> list[str]:
+    """Returns the list of class names by index, with an empty name for missing indices; keys that are not class indices
+    are ignored.
 
     Raises:
-        ValueError: A number is too high for a list.
+        ValueError: An index is too high.
     """
-    numbers = [key for key in names if isinstance(key, int) and key >= 0]
-    count = max(numbers, default=-1) + 1
+    indices = [key for key in names if isinstance(key, int) and key >= 0]
+    count = max(indices, default=-1) + 1
     if count > _MAX_CLASSES:
-        raise ValueError(f"class number {count - 1} is too high to name; give numbers below {_MAX_CLASSES}")
-    return [str(names.get(number, "")) for number in range(count)]
+        raise ValueError(f"class index {count - 1} is too high to have a name; give indices below {_MAX_CLASSES}")
+    return [str(names.get(index, "")) for index in range(count)]

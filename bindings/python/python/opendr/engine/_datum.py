@@ -1,4 +1,4 @@
-"""What data and targets have in common: a time stamp, a frame, equality by value."""
+"""The base class of data and targets: time stamp, frame id, equality by value."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from opendr.engine._equality import equal, is_array
 
 
 class Datum:
-    """Anything that was measured or found, with the time and the coordinate frame it belongs to.
+    """A value of a data or target type, with its time stamp and coordinate frame.
 
-    Two of them are equal when they are of one class and all their fields are equal. They can be changed, so they
-    cannot be hashed. They can be pickled and copied.
+    Two of them are equal when they are of one class and all their fields are equal. They are mutable and not hashable.
+    They can be pickled and copied.
     """
 
     #: Nanoseconds since the Unix epoch, or since the start of a recording; None when unknown.
@@ -32,15 +32,15 @@ class Datum:
 
     def __repr__(self) -> str:
         header = [field for field in self._header if self._field(field) not in (None, "")]
-        shown = (f"{field}={_shown(self._field(field))}" for field in (*self._fields, *header))
-        return f"{type(self).__name__}({', '.join(shown)})"
+        fields = (f"{field}={_repr(self._field(field))}" for field in (*self._fields, *header))
+        return f"{type(self).__name__}({', '.join(fields)})"
 
     def _field(self, name: str) -> Any:
-        """A field as it is compared and shown."""
+        """Returns a field for comparison and ``repr``."""
         return getattr(self, name, None)
 
 
-def _shown(value: Any) -> str:
+def _repr(value: Any) -> str:
     if not is_array(value):
         return repr(value)
     if value.size <= 16:

@@ -11,7 +11,7 @@ from opendr.engine.learners import BaseLearner
 
 
 def tables_from_class(cls: type) -> dict[str, Any]:
-    """What the registry must know of ``cls``.
+    """Returns the tables of ``cls`` for the registry.
 
     Returns:
         ``name``, ``class_name``, ``task``, ``about`` (the first paragraph of the docstring), ``params`` (each with
@@ -22,27 +22,27 @@ def tables_from_class(cls: type) -> dict[str, Any]:
 
     Raises:
         TypeError: ``cls`` is no subclass of ``Learner``, ``LearnerRL`` or ``LearnerActive``, or something is missing;
-            the message names all of it.
+            the message lists everything.
     """
     if not (isinstance(cls, type) and issubclass(cls, BaseLearner)):
-        raise TypeError(f"{cls!r} is no learner; derive it from opendr.engine.learners.Learner")
+        raise TypeError(f"{cls!r} is not a learner; derive it from opendr.engine.learners.Learner")
     problems: list[str] = []
     words = {field: _word(cls, field, problems) for field in ("name", "task")}
     if inspect.isabstract(cls):
-        problems.append(f"{', '.join(sorted(cls.__abstractmethods__))} is not written")
+        problems.append(f"{', '.join(sorted(cls.__abstractmethods__))} is not implemented")
     about = (inspect.cleandoc(cls.__dict__.get("__doc__") or "").split("\n\n")[0]).replace("\n", " ")
     if not about:
-        problems.append("there is no docstring; say in a sentence what it does")
+        problems.append("the docstring is missing; write a sentence about the learner")
     known = parameters(cls)
     params = [parameter.table() for name, parameter in known.items() if parameter is not vars(BaseLearner).get(name)]
     undocumented = [param["name"] for param in params if not param["doc"]]
     if undocumented:
-        problems.append(f"{', '.join(undocumented)} has no text; write it behind the type in Annotated[...]")
+        problems.append(f"{', '.join(undocumented)} has no description; write it after the type in Annotated[...]")
     ports = outputs = []
     if not inspect.isabstract(cls):
         ports, outputs = ports_of(cls.infer, problems), outputs_of(cls.infer, problems)
     if not ports and not problems:
-        problems.append("infer takes nothing; give it an input, e.g. `image: Image`")
+        problems.append("infer has no input; add one, e.g. `image: Image`")
     if problems:
         raise TypeError(f"{cls.__name__} cannot be registered: {'; '.join(problems)}")
     return {

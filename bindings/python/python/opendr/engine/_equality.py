@@ -1,4 +1,4 @@
-"""Equality of values that may hold NumPy arrays."""
+"""Equality of values that may contain NumPy arrays."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from typing import Any
 
 
 def is_array(value: object) -> bool:
-    """Whether ``value`` is a NumPy array; imports nothing, since there is none before NumPy is imported."""
+    """Returns whether ``value`` is a NumPy array, without importing NumPy: no array exists before it is imported."""
     numpy = sys.modules.get("numpy")
     return numpy is not None and isinstance(value, numpy.ndarray)
 
 
 def equal(one: Any, other: Any) -> bool:
-    """``one == other``, arrays compared by ``numpy.array_equal``, also inside lists, tuples and dictionaries."""
+    """Returns ``one == other``, with arrays compared by ``numpy.array_equal``, also in lists, tuples and dictionaries."""
     if one is other:
         return True
     if is_array(one) or is_array(other):

@@ -14,7 +14,7 @@ from opendr.engine._checks import whole
 
 @dataclass(frozen=True)
 class Range:
-    """What numbers a parameter takes, both ends included."""
+    """The range of a numeric parameter, both ends included."""
 
     low: float
     high: float
@@ -37,7 +37,7 @@ _ARTICLES = {"float": "a float", "int": "an int", "bool": "a bool", "text": "a s
 
 
 class Parameter:
-    """One parameter of a class: a descriptor that checks what is assigned. On the class it is the default."""
+    """One parameter of a class: a descriptor that checks assigned values. On the class itself it is the default."""
 
     def __init__(self, owner: type, name: str, hint: Any, default: Any) -> None:
         value_type, *extras = get_args(hint)
@@ -57,7 +57,7 @@ class Parameter:
         self.__doc__ = self.doc
         where = f"{owner.__name__}.{name}"
         if not self.kind:
-            raise TypeError(f"{where} has the type {value_type}; give float, int, bool, str, list or Literal['...']")
+            raise TypeError(f"{where} has the unsupported type {value_type}; use float, int, bool, str, list or Literal['...']")
         if default is inspect.Parameter.empty:
             raise TypeError(f"{where} has no default; write `{name}: Annotated[...] = value`")
         self.default = self.checked(default)
@@ -72,11 +72,11 @@ class Parameter:
         instance.__dict__[self.name] = self.checked(value)
 
     def checked(self, value: Any) -> Any:
-        """``value`` in the parameter's type.
+        """Returns ``value`` in the parameter's type.
 
         Raises:
-            TypeError: It is of another type.
-            ValueError: It is out of range, or none of the choices.
+            TypeError: The value is of another type.
+            ValueError: The value is out of range, or not one of the choices.
         """
         if value is None and self.optional:
             return None
@@ -92,11 +92,11 @@ class Parameter:
                 value = whole(value, self.name) if kind == "int" else _number(value)
             except TypeError:
                 raise self._wrong_type(value) from None
-            # NaN is in no range.
+            # NaN fails every comparison.
             low, high = (self.range.low, self.range.high) if self.range else (-sys.float_info.max, sys.float_info.max)
             if not low <= value <= high:
-                wanted = f"is out of range {low} to {high}" if self.range else "is not finite; give a finite number"
-                raise ValueError(f"{self.name} = {value} {wanted}")
+                problem = f"is out of range {low} to {high}" if self.range else "is not finite; give a finite number"
+                raise ValueError(f"{self.name} = {value} {problem}")
         elif kind and not isinstance(value, {"bool": bool, "text": str}.get(kind, ())):
             raise self._wrong_type(value)
         if self.choices and value not in self.choices:
@@ -107,7 +107,7 @@ class Parameter:
         return TypeError(f"{self.name} should be {_ARTICLES[self.kind]}, not {value!r:.100}")
 
     def table(self) -> dict[str, Any]:
-        """The parameter for the registry."""
+        """Returns the table of the parameter for the registry."""
         return {
             "name": self.name,
             "doc": self.doc,
@@ -128,7 +128,7 @@ def _number(value: Any) -> float:
 
 
 def without_none(hint: Any) -> tuple[Any, bool]:
-    """The type without ``None``, and whether there was one."""
+    """Returns the type without ``None``, and whether it was optional."""
     union_types = (Union, getattr(types, "UnionType", Union))
     if get_origin(hint) not in union_types:
         return hint, False
@@ -137,12 +137,12 @@ def without_none(hint: Any) -> tuple[Any, bool]:
 
 
 def declare(cls: type) -> None:
-    """Turns the ``Annotated`` attributes of ``cls`` itself into parameters, and plain values that it gives to
-    parameters of its bases into their defaults.
+    """Converts the ``Annotated`` attributes of ``cls`` itself to parameters; plain values that it assigns to parameters of
+    its bases become their defaults.
 
     Raises:
-        TypeError: One has no default, or a type that no parameter has.
-        ValueError: A default is out of its range.
+        TypeError: A parameter has no default, or an unsupported type.
+        ValueError: A default is out of range.
     """
     inherited = parameters(cls)
     hints = {
@@ -154,7 +154,7 @@ def declare(cls: type) -> None:
 
 
 def parameters(cls: type) -> dict[str, Parameter]:
-    """The parameters of ``cls``, those of its bases first."""
+    """Returns the parameters of ``cls``, those of its bases first."""
     found: dict[str, Parameter] = {}
     for base in reversed(cls.__mro__):
         found.update((name, value) for name, value in vars(base).items() if isinstance(value, Parameter))
@@ -162,7 +162,7 @@ def parameters(cls: type) -> dict[str, Parameter]:
 
 
 def own_annotations(cls: type) -> dict[str, Any]:
-    """The annotations that ``cls`` itself writes; those written as text are evaluated when they say ``Annotated``."""
+    """Returns the annotations of ``cls`` itself; those that are strings are evaluated if they contain ``Annotated``."""
     if sys.version_info >= (3, 10):
         annotations = inspect.get_annotations(cls)
     else:
@@ -174,11 +174,11 @@ def own_annotations(cls: type) -> dict[str, Any]:
     }
 
 
-def signature(cls: type, by_place: Container[str]) -> inspect.Signature:
-    """The constructor's signature: the parameters named in ``by_place`` by place or name, all others by name."""
-    shown = []
+def signature(cls: type, positional: Container[str]) -> inspect.Signature:
+    """Returns the constructor's signature: parameters in ``positional`` by position or name, all others by name only."""
+    arguments = []
     for name, parameter in parameters(cls).items():
-        kind = inspect.Parameter.POSITIONAL_OR_KEYWORD if name in by_place else inspect.Parameter.KEYWORD_ONLY
+        kind = inspect.Parameter.POSITIONAL_OR_KEYWORD if name in positional else inspect.Parameter.KEYWORD_ONLY
         hint, default = get_args(parameter.hint)[0], parameter.default
-        shown.append(inspect.Parameter(name, kind, default=default, annotation=hint))
-    return inspect.Signature(shown)
+        arguments.append(inspect.Parameter(name, kind, default=default, annotation=hint))
+    return inspect.Signature(arguments)

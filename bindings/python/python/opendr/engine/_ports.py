@@ -1,4 +1,4 @@
-"""What a learner written in Python takes and answers: the annotations of its ``infer``."""
+"""Inputs and outputs of a learner written in Python, from the annotations of its ``infer``."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Annotated, Any, get_args, get_origin
 from opendr.engine import data, target
 from opendr.engine._parameters import without_none
 
-#: The usual name of an input or output of each type.
+#: The default name of an input or output of each type.
 _NAMES: dict[type, str] = {
     data.Image: "image",
     data.ImageWithDetections: "image_with_detections",
@@ -40,11 +40,11 @@ _NAMES: dict[type, str] = {
 
 @dataclass(frozen=True)
 class Init:
-    """The input is given once, with the first call of a stream: ``first_box: Annotated[BoundingBoxList, Init()]``."""
+    """Marks an input of the first call of a stream: ``first_box: Annotated[BoundingBoxList, Init()]``."""
 
 
 def ports_of(infer: Any, problems: list[str]) -> list[dict[str, Any]]:
-    """The inputs of ``infer``: ``name``, ``type``, ``init``, ``optional``. What is wrong is added to ``problems``."""
+    """Returns the inputs of ``infer``: ``name``, ``type``, ``init``, ``optional``. Errors are added to ``problems``."""
     hints, ports = _hints(infer, problems), []
     for name, parameter in list(inspect.signature(infer).parameters.items())[1:]:
         # Python 3.9 and 3.10 put Optional around the annotation of a parameter whose default is None.
@@ -65,14 +65,14 @@ def ports_of(infer: Any, problems: list[str]) -> list[dict[str, Any]]:
 
 
 def outputs_of(infer: Any, problems: list[str]) -> list[dict[str, Any]]:
-    """The outputs of ``infer``: ``name`` and ``type``. Several are a ``NamedTuple`` of targets, which names them; a
-    single one has the usual name of its type. What is wrong is added to ``problems``."""
-    answer = _hints(infer, []).get("return")
-    if answer in _NAMES:
-        return [{"name": _NAMES[answer], "type": answer.__name__}]
-    fields = _hints(answer, []) if isinstance(answer, type) and issubclass(answer, tuple) else {}
+    """Returns the outputs of ``infer``: ``name`` and ``type``. Several outputs are the fields of a ``NamedTuple`` of
+    targets; a single one has the default name of its type. Errors are added to ``problems``."""
+    returned = _hints(infer, []).get("return")
+    if returned in _NAMES:
+        return [{"name": _NAMES[returned], "type": returned.__name__}]
+    fields = _hints(returned, []) if isinstance(returned, type) and issubclass(returned, tuple) else {}
     if not fields or not all(hint in _NAMES for hint in fields.values()):
-        problems.append("infer does not say what it answers: write `-> BoundingBoxList`, or a NamedTuple of targets")
+        problems.append("infer has no return annotation: write `-> BoundingBoxList`, or a NamedTuple of targets")
         return []
     return [{"name": name, "type": hint.__name__} for name, hint in fields.items()]
 

@@ -1,4 +1,4 @@
-"""What learners train on and are measured by."""
+"""Data sets for training and evaluation."""
 
 from __future__ import annotations
 
@@ -13,37 +13,37 @@ from opendr.engine.target import BaseTarget
 
 
 class Dataset(ABC):
-    """Any data set."""
+    """Base class of data sets."""
 
 
 class DatasetIterator(Dataset):
-    """A data set whose samples can be had one by one: ``dataset[3]``, ``len(dataset)``, ``for sample in dataset``."""
+    """A data set with random access: ``dataset[3]``, ``len(dataset)``, ``for sample in dataset``."""
 
     @abstractmethod
     def __getitem__(self, idx: int) -> Any:
-        """Sample number ``idx``: a datum and its target.
+        """Returns sample ``idx``: a datum and its target.
 
         Raises:
-            IndexError: There is none.
+            IndexError: The index is out of range.
         """
 
     @abstractmethod
     def __len__(self) -> int:
-        """How many samples there are."""
+        """Returns the number of samples."""
 
     def __iter__(self) -> Iterator[Any]:
         return (self[idx] for idx in range(len(self)))
 
 
 class MappedDatasetIterator(DatasetIterator):
-    """A data set whose samples pass through a function when they are read.
+    """A data set with a function that is applied to every sample when it is read.
 
     Args:
         original: The data set.
-        map_function: From a sample to a sample.
+        map_function: Function from a sample to a sample.
 
     Raises:
-        TypeError: ``map_function`` cannot be called.
+        TypeError: ``map_function`` is not callable.
     """
 
     def __init__(self, original: DatasetIterator, map_function: Callable[[Any], tuple[Data, BaseTarget]]) -> None:
@@ -60,22 +60,22 @@ class MappedDatasetIterator(DatasetIterator):
 
 
 class Subset(DatasetIterator):
-    """Some samples of a data set, in an order of their own.
+    """Some samples of a data set, in a given order.
 
     Args:
         original: The data set.
-        indices: The numbers of the samples.
+        indices: Indices of the samples.
 
     Raises:
-        IndexError: There is no such sample.
+        IndexError: An index is out of range.
     """
 
     def __init__(self, original: DatasetIterator, indices: Iterable[int]) -> None:
         self.original = original
-        self.indices: list[int] = [whole(index, "the number of a sample") for index in indices]
+        self.indices: list[int] = [whole(index, "the index of a sample") for index in indices]
         for index in self.indices:
             if not 0 <= index < len(original):
-                raise IndexError(f"there is no sample {index} among {len(original)}")
+                raise IndexError(f"sample index {index} is out of range; the data set has {len(original)} samples")
 
     def __getitem__(self, idx: int) -> Any:
         return self.original[self.indices[idx]]
@@ -85,20 +85,20 @@ class Subset(DatasetIterator):
 
     @property
     def classes(self) -> list[str]:
-        """What class numbers in the targets mean; empty where the data set does not tell."""
+        """Names of the class indices in the targets; empty where the data set has none."""
         return list(getattr(self.original, "classes", []))
 
 
 def shuffled(dataset: DatasetIterator, seed: int) -> Subset:
-    """All samples in a random order that follows from ``seed``."""
+    """Returns all samples in a random order determined by ``seed``."""
     from opendr import _opendr
 
     return Subset(dataset, _opendr.shuffled(len(dataset), seed))
 
 
 def split(dataset: DatasetIterator, share: float, seed: int) -> tuple[Subset, Subset]:
-    """Two parts without a sample in common, the first with ``share`` of the samples, drawn by ``seed``; the same parts as in
-    Rust. Frames of one sequence stay together.
+    """Returns a random split determined by ``seed``, the same as in Rust: the first part has the fraction ``share`` of the
+    samples, the second the rest. Frames of one sequence stay together.
 
     Raises:
         ValueError: ``share`` is not in [0, 1].
@@ -115,12 +115,12 @@ class ExternalDataset(Dataset):
     """A data set on disk in a known format.
 
     Args:
-        path: Its folder or file.
-        dataset_type: Its format: ``"coco"``, ``"voc"``, ``"imagenet"``, ``"kitti"``, ``"mot"``, ... (``formats()``
-            lists them); upper and lower case are the same; ``"auto"`` recognises it.
+        path: Folder or file of the data set.
+        dataset_type: Format: ``"coco"``, ``"voc"``, ``"imagenet"``, ``"kitti"``, ``"mot"``, ... (``formats()`` lists
+            them); case is ignored; ``"auto"`` detects the format.
 
     Raises:
-        ValueError: One of them is no text.
+        ValueError: An argument is not a str.
     """
 
     def __init__(self, path: Union[str, os.PathLike[str]], dataset_type: str) -> None:
@@ -129,7 +129,7 @@ class ExternalDataset(Dataset):
 
     @property
     def path(self) -> str:
-        """Its folder or file."""
+        """Folder or file of the data set."""
         return self._path
 
     @path.setter
@@ -140,7 +140,7 @@ class ExternalDataset(Dataset):
 
     @property
     def dataset_type(self) -> str:
-        """Its format."""
+        """Format of the data set."""
         return self._dataset_type
 
     @dataset_type.setter
@@ -152,17 +152,16 @@ class ExternalDataset(Dataset):
     def open(
         self, split: Optional[str] = None, target: Union[None, str, type[BaseTarget]] = None, skip_broken: bool = False
     ) -> OpenDataset:
-        """Opens it, to read its samples one by one; pictures are read when they are asked for.
+        """Opens the data set for random access; images are read on access.
 
         Args:
-            split: The part, as the data set calls it: ``"val2017"``, ``"train"``, ...
-            target: The class of the targets that are wanted, or its name, where annotations can be read as several, e.g.
-                ``PoseList`` of COCO.
-            skip_broken: Whether what is broken is left out, and listed in ``problems``.
+            split: Name of the split in the data set: ``"val2017"``, ``"train"``, ...
+            target: Target class, or its name, where annotations can be read as several types, e.g. ``PoseList`` of COCO.
+            skip_broken: Whether broken samples are skipped and listed in ``problems``.
 
         Raises:
-            FileNotFoundError: It is not there, or files are missing.
-            ValueError: It is of another format, or something is broken.
+            FileNotFoundError: The data set does not exist, or files are missing.
+            ValueError: The format is another, or a sample is broken.
         """
         return OpenDataset(self, split, target, skip_broken)
 
@@ -171,7 +170,7 @@ class ExternalDataset(Dataset):
 
 
 class OpenDataset(DatasetIterator):
-    """The samples of an :class:`ExternalDataset`; its method ``open`` makes it.
+    """The samples of an :class:`ExternalDataset`, returned by its method ``open``.
 
     ``dataset[3]`` is a pair of datum and target; a tuple of data and the target where samples have several data.
     """
@@ -196,54 +195,54 @@ class OpenDataset(DatasetIterator):
         return len(self._native)
 
     def target(self, idx: int) -> Optional[BaseTarget]:
-        """The target of sample number ``idx``; no picture is read where that can be spared."""
+        """Returns the target of sample ``idx``, without reading images where the format allows it."""
         target: Optional[BaseTarget] = self._native.target(self._index(idx))
         return target
 
     def name(self, idx: int) -> str:
-        """What reports call sample number ``idx``: the path of its file within the data set, or its number."""
+        """Returns the name of sample ``idx`` in reports: the path of its file within the data set, or its index."""
         return self._native.name(self._index(idx))
 
     def sequence(self, idx: int) -> Optional[int]:
-        """The number of the video or drive that the sample is a frame of; None when samples are no frames."""
+        """Returns the index of the sequence (video or drive) of the sample; None where there are no sequences."""
         return self._native.sequence(self._index(idx))
 
     @property
     def classes(self) -> list[str]:
-        """What class numbers in the targets mean."""
+        """Names of the class indices in the targets."""
         return self._native.classes
 
     @property
     def problems(self) -> list[str]:
-        """What was left out as broken, each with its file and line or key."""
+        """Samples that were skipped as broken, each with its file and line or key."""
         return self._native.problems
 
     def _index(self, idx: int) -> int:
-        index = whole(idx, "the number of a sample")
+        index = whole(idx, "the index of a sample")
         index += len(self) if index < 0 else 0
         if not 0 <= index < len(self):
-            raise IndexError(f"there is no sample {idx} among {len(self)}")
+            raise IndexError(f"sample index {idx} is out of range; the data set has {len(self)} samples")
         return index
 
 
 def formats() -> list[dict[str, Any]]:
-    """The formats of data sets that there are: ``name``, ``aliases``, ``about``, ``layout``, ``targets``."""
+    """Returns a table of each data set format: ``name``, ``aliases``, ``about``, ``layout``, ``targets``."""
     from opendr import _opendr
 
     return _opendr.formats()
 
 
 class PointCloudsDatasetIterator(DatasetIterator):
-    """The point clouds of a folder, in the order of their names, without targets.
+    """The point clouds of a folder, in the order of their file names, without targets.
 
-    Each file holds little-endian float32 numbers, point by point, as KITTI's ``.bin`` files.
+    Each file contains little-endian float32 numbers, point by point, as KITTI's ``.bin`` files.
 
     Args:
         path: The folder.
-        num_point_features: Numbers a point: x, y, z in metres, then whatever else.
+        num_point_features: Numbers per point: x, y, z in metres, then others.
 
     Raises:
-        FileNotFoundError: There is no such folder.
+        FileNotFoundError: The folder does not exist.
         ValueError: A point has fewer than 3 numbers.
     """
 
@@ -256,10 +255,10 @@ class PointCloudsDatasetIterator(DatasetIterator):
             self.files: list[str] = sorted(entry.name for entry in entries if entry.is_file())
 
     def __getitem__(self, idx: int) -> PointCloud:
-        """Cloud number ``idx``.
+        """Returns cloud ``idx``.
 
         Raises:
-            IndexError: There is none.
+            IndexError: The index is out of range.
             ValueError: The file ends within a point.
         """
         import numpy as np

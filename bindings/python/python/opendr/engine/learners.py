@@ -1,9 +1,9 @@
-"""The classes that all learners come from.
+"""Base classes of learners.
 
-A learner of one's own is a subclass of :class:`Learner` whose annotated attributes are its parameters::
+A learner of your own is a subclass of :class:`Learner` whose annotated attributes are its parameters::
 
     class BrightSpots(Learner):
-        \"""Finds what is brighter than its surroundings.\"""
+        \"""Detects spots that are brighter than their surroundings.\"""
 
         name = "bright_spots"
         task = "object_detection_2d"
@@ -12,10 +12,10 @@ A learner of one's own is a subclass of :class:`Learner` whose annotated attribu
         def infer(self, image: Image) -> BoundingBoxList:
             ...
 
-Parameters are keyword arguments of the constructor and attributes that check what is assigned. Their types are
+Parameters are keyword arguments of the constructor and attributes that check assigned values. Their types are
 ``float``, ``int``, ``bool``, ``str``, ``Literal["a", "b"]``, ``list[...]`` or ``Optional`` of these; ``Range``, ``Unit``,
-``Live`` and a text that explains them follow the type. A learner whose answers have class numbers names them in
-``classes``. Named in the entry-point group ``opendr.learners``, the class appears beside OpenDR's own learners.
+``Live`` and a description follow the type. A learner whose predictions have class indices lists their names in
+``classes``. A class in the entry-point group ``opendr.learners`` is listed with OpenDR's own learners.
 """
 
 from __future__ import annotations
@@ -34,28 +34,28 @@ __all__ = ["BaseLearner", "Init", "Learner", "LearnerActive", "LearnerRL", "Live
 
 
 class BaseLearner(ABC):
-    """What all learners have in common: OpenDR's arguments, and what can be done with any of them.
+    """Base class of all learners, with OpenDR's arguments and methods.
 
-    Only ``infer`` must be written. What a learner does not write besides raises ``opendr.Unsupported``.
+    Only ``infer`` must be implemented; other methods raise ``opendr.Unsupported`` unless a learner implements them.
 
     Raises:
         TypeError: An argument is of another type, or unknown.
-        ValueError: An argument is out of its range.
+        ValueError: An argument is out of range.
     """
 
     lr: Annotated[float, "Learning rate."] = 0.001
     iters: Annotated[int, "Iterations (for most learners: epochs) of training."] = 10
-    batch_size: Annotated[int, "Samples a step of training."] = 64
-    optimizer: Annotated[str, "How weights are changed: 'sgd', 'adam', ..."] = "sgd"
-    lr_schedule: Annotated[str, "How the learning rate changes; empty: not at all."] = ""
-    backbone: Annotated[str, "The network's body."] = "default"
-    network_head: Annotated[str, "The network's head."] = ""
-    checkpoint_after_iter: Annotated[int, "A checkpoint is written after as many iterations; 0: none."] = 0
-    checkpoint_load_iter: Annotated[int, "The iteration whose checkpoint is resumed; 0: none."] = 0
-    temp_path: Annotated[str, "Folder of checkpoints."] = ""
-    device: Annotated[str, "Where it runs: 'cpu', 'cuda', 'cuda:0', ...; 'auto' takes the best."] = "auto"
-    threshold: Annotated[float, "Answers below this score are dropped; 0: the learner's own threshold."] = 0.0
-    scale: Annotated[float, "Factor on the size of the input: below 1 is faster, above 1 finer."] = 1.0
+    batch_size: Annotated[int, "Samples per training step."] = 64
+    optimizer: Annotated[str, "Optimizer: 'sgd', 'adam', ..."] = "sgd"
+    lr_schedule: Annotated[str, "Learning rate schedule; empty: constant."] = ""
+    backbone: Annotated[str, "Backbone of the network."] = "default"
+    network_head: Annotated[str, "Head of the network."] = ""
+    checkpoint_after_iter: Annotated[int, "Iterations between checkpoints; 0: no checkpoints."] = 0
+    checkpoint_load_iter: Annotated[int, "Iteration of the checkpoint to resume from; 0: none."] = 0
+    temp_path: Annotated[str, "Folder for checkpoints."] = ""
+    device: Annotated[str, "Device: 'cpu', 'cuda', 'cuda:0', ...; 'auto' selects the best."] = "auto"
+    threshold: Annotated[float, "Score below which predictions are dropped; 0: the learner's own threshold."] = 0.0
+    scale: Annotated[float, "Scale factor of the input: below 1 is faster, above 1 finer."] = 1.0
 
     __signature__: ClassVar[inspect.Signature]
 
@@ -85,14 +85,14 @@ class BaseLearner(ABC):
             known = parameters(type(self))
             names = [name for name in known if isinstance(vars(BaseLearner).get(name), Parameter)]
             if len(args) > len(names):
-                raise TypeError(f"{type(self).__name__} takes {len(names)} arguments by place, not {len(args)}")
+                raise TypeError(f"{type(self).__name__} takes {len(names)} positional arguments, not {len(args)}")
             for name, value in zip(names, args):
                 if name in kwargs:
                     raise TypeError(f"{type(self).__name__} got {name} twice; give it once")
                 kwargs[name] = value
             for name, value in kwargs.items():
                 if name not in known:
-                    raise TypeError(f"{type(self).__name__} has no argument {name!r}; there are {', '.join(known)}")
+                    raise TypeError(f"{type(self).__name__} has no argument {name!r}; its arguments are {', '.join(known)}")
                 setattr(self, name, value)
             self._model: Any = None
 
@@ -102,7 +102,7 @@ class BaseLearner(ABC):
 
     @property
     def model(self) -> Any:
-        """The model; None before one was loaded or trained."""
+        """The model; None until one is loaded or trained."""
         return self._model
 
     @model.setter
@@ -111,13 +111,13 @@ class BaseLearner(ABC):
 
     @abstractmethod
     def infer(self, *args: Any, **kwargs: Any) -> Any:
-        """Answers one input; a learner names its inputs in the parameters of this method."""
+        """Returns the prediction for one input; the arguments of this method are the learner's inputs."""
 
     def save(self, path: str) -> bool:
         """Writes the model into the folder ``path``.
 
         Raises:
-            opendr.Unsupported: This learner cannot.
+            opendr.Unsupported: The learner does not support it.
         """
         self._cannot("save")
 
@@ -125,7 +125,7 @@ class BaseLearner(ABC):
         """Reads a model from the folder ``path``.
 
         Raises:
-            opendr.Unsupported: This learner cannot.
+            opendr.Unsupported: The learner does not support it.
         """
         self._cannot("load")
 
@@ -133,17 +133,17 @@ class BaseLearner(ABC):
         """Makes the model faster on ``target_device``.
 
         Raises:
-            opendr.Unsupported: This learner cannot.
+            opendr.Unsupported: The learner does not support it.
         """
         self._cannot("optimize")
 
     def reset(self) -> None:
-        """Forgets what was seen; a learner without a memory has nothing to forget."""
+        """Resets the state; does nothing for a learner without one."""
 
     def stream(self) -> Any:
-        """A memory of its own over the same model, for another camera or thread: a shallow copy, reset.
+        """Returns an object with its own state over the same model, for another camera or thread: a shallow copy, reset.
 
-        A learner whose memory is not replaced but changed in place (a list that grows) writes its own.
+        A learner that changes its state in place (such as a list that grows) must implement this method.
         """
         other = copy.copy(self)
         other.reset()
@@ -151,33 +151,33 @@ class BaseLearner(ABC):
 
     @staticmethod
     def get_hyperparameters() -> Optional[list[dict[str, Any]]]:
-        """What the tuner may change; None when the learner does not tell."""
+        """Returns the search space of the tuner; None if the learner defines none."""
         return None
 
     @staticmethod
     def get_objective_function() -> Optional[Callable[..., Any]]:
-        """What the tuner minimises; None when the learner does not tell."""
+        """Returns the objective function of the tuner; None if the learner defines none."""
         return None
 
     def _cannot(self, what: str) -> NoReturn:
-        raise Unsupported(f"{type(self).__name__} cannot {what}; use a learner that can")
+        raise Unsupported(f"{type(self).__name__} does not support {what}; use a learner that does")
 
 
 def _declare(cls: Any) -> None:
     declare(cls)
     if cls.__init__ is BaseLearner.__init__:
-        cls.__signature__ = signature(cls, by_place=vars(BaseLearner))
+        cls.__signature__ = signature(cls, positional=vars(BaseLearner))
     else:
-        written = inspect.signature(cls.__init__)
-        cls.__signature__ = written.replace(parameters=list(written.parameters.values())[1:])
+        own = inspect.signature(cls.__init__)
+        cls.__signature__ = own.replace(parameters=list(own.parameters.values())[1:])
 
 
-# A class is no subclass of its own.
+# `__init_subclass__` is not called for the base class itself.
 _declare(BaseLearner)
 
 
 class Learner(BaseLearner):
-    """A learner from data sets: perception."""
+    """A learner that trains on data sets: perception."""
 
     def fit(
         self,
@@ -187,12 +187,12 @@ class Learner(BaseLearner):
         silent: bool = True,
         verbose: bool = True,
     ) -> dict[str, Any]:
-        """Trains.
+        """Trains the learner.
 
         Args:
-            dataset: What to train on.
-            val_dataset: What to measure on.
-            logging_path: Folder of TensorBoard's files; empty: none.
+            dataset: Data set for training.
+            val_dataset: Data set for evaluation.
+            logging_path: Folder for TensorBoard's event files; empty: none.
             silent: Whether to print nothing.
             verbose: Whether to print all details.
 
@@ -200,15 +200,16 @@ class Learner(BaseLearner):
             Statistics of the training.
 
         Raises:
-            opendr.Unsupported: This learner cannot.
+            opendr.Unsupported: The learner does not support it.
         """
         self._cannot("fit")
 
     def eval(self, dataset: Dataset) -> dict[str, Any]:
-        """Measures on ``dataset``, a ``DatasetIterator`` of pairs of datum and target, by the metric of the learner's task.
+        """Evaluates on ``dataset``, a ``DatasetIterator`` of pairs of datum and target, with the metric of the learner's
+        task.
 
         Returns:
-            The numbers by name, and under ``"report"`` all there is.
+            The scalars by name, and under ``"report"`` the whole report.
 
         Raises:
             opendr.Unsupported: The learner has no task, or its task no metric.
@@ -233,7 +234,7 @@ class Learner(BaseLearner):
 
 
 class LearnerRL(BaseLearner):
-    """A learner from environments: control and planning."""
+    """A learner that trains in environments: control and planning."""
 
     def fit(
         self,
@@ -243,24 +244,24 @@ class LearnerRL(BaseLearner):
         silent: bool = True,
         verbose: bool = True,
     ) -> dict[str, Any]:
-        """Trains in ``env``, measures in ``val_env``; the other arguments as those of :meth:`Learner.fit`.
+        """Trains in ``env`` and evaluates in ``val_env``; the other arguments are those of :meth:`Learner.fit`.
 
         Raises:
-            opendr.Unsupported: This learner cannot.
+            opendr.Unsupported: The learner does not support it.
         """
         self._cannot("fit")
 
     def eval(self, env: Any) -> dict[str, Any]:
-        """Measures in ``env``.
+        """Evaluates in ``env``.
 
         Raises:
-            opendr.Unsupported: This learner cannot.
+            opendr.Unsupported: The learner does not support it.
         """
         self._cannot("eval")
 
 
 class LearnerActive(BaseLearner):
-    """A learner from data sets and environments: active perception."""
+    """A learner that trains on data sets and in environments: active perception."""
 
     def fit(
         self,
@@ -272,17 +273,17 @@ class LearnerActive(BaseLearner):
         silent: bool = True,
         verbose: bool = True,
     ) -> dict[str, Any]:
-        """Trains on ``dataset`` and in ``env``; the other arguments as those of :meth:`Learner.fit`.
+        """Trains on ``dataset`` and in ``env``; the other arguments are those of :meth:`Learner.fit`.
 
         Raises:
-            opendr.Unsupported: This learner cannot.
+            opendr.Unsupported: The learner does not support it.
         """
         self._cannot("fit")
 
     def eval(self, dataset: Dataset, env: Any) -> dict[str, Any]:
-        """Measures on ``dataset`` and in ``env``.
+        """Evaluates on ``dataset`` and in ``env``.
 
         Raises:
-            opendr.Unsupported: This learner cannot.
+            opendr.Unsupported: The learner does not support it.
         """
         self._cannot("eval")

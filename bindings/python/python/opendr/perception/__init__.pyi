@@ -1,4 +1,4 @@
-"""Perception: a module a task."""
+"""Perception: one module per task."""
 
 from opendr.perception import activity_recognition as activity_recognition
 from opendr.perception import ambiguity_measure as ambiguity_measure

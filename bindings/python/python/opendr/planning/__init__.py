@@ -1,4 +1,4 @@
-"""Planning: a module a task, made from the registry of learners."""
+"""Planning: one module per task, created from the registry of learners."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Simulation: embedded worlds with Gymnasium's semantics.
+"""Simulation: built-in environments with Gymnasium's semantics.
 
     import gymnasium
     import opendr.simulation                      # registers the environments
@@ -6,8 +6,8 @@
     env = gymnasium.make("opendr/UavDepthCorridor-v1")
     envs = gymnasium.make_vec("opendr/CartPole-v1", num_envs=64)
 
-``gymnasium.make("opendr.simulation:opendr/UavDepthCorridor-v1")`` needs no import. Gymnasium is optional: without it,
-``environments`` lists what there is.
+``gymnasium.make("opendr.simulation:opendr/UavDepthCorridor-v1")`` needs no import. Gymnasium is optional;
+``environments`` works without it.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _HOMES = {
 }
 
 
-# Type checkers see the imports above: to them, no other name is there.
+# Type checkers use the imports above and report other names as missing.
 if not TYPE_CHECKING:
 
     def __getattr__(name):

@@ -1,4 +1,4 @@
-"""Any environment of Gymnasium, for the learners of the toolkit."""
+"""Environments of Gymnasium for the learners of the toolkit."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from opendr.simulation._spaces import Array, parts_of, shared, table_from_space,
 
 
 class Bridge:
-    """Puts observations into arrays of the native half, and takes actions from there.
+    """Connects an environment to the native module: writes observations into its arrays and reads actions from them.
 
     Args:
         env: An environment with Gymnasium's interface.
 
     Raises:
-        Unsupported: No learner takes one of its spaces.
+        Unsupported: A space is of an unsupported type.
     """
 
     def __init__(self, env: gymnasium.Env[Any, Any]) -> None:
@@ -36,38 +36,40 @@ class Bridge:
         }
 
     def share(self, observation: list[Any], action: list[Any]) -> None:
-        """Takes the arrays; called once."""
+        """Sets the shared arrays; called once."""
         self._write = writer(self.env.observation_space, shared(observation), "the observation")
         self._action = shared(action)
 
     def reset(self, seed: Optional[int], options: Optional[dict[str, Any]]) -> dict[str, float]:
         """Begins an episode."""
         observation, info = self.env.reset(seed=seed, options=options)
-        self._see(observation)
+        self._write_observation(observation)
         return _numbers(info)
 
     def step(self) -> tuple[float, bool, bool, dict[str, float]]:
         """Takes a step."""
-        answer = self.env.step(_element(self.env.action_space, iter(self._action)))
-        if len(answer) != 5:
-            raise InvalidInput(f"step() gave {len(answer)} values; Gymnasium 1.x gives 5, with terminated and truncated")
-        observation, reward, terminated, truncated, info = answer
-        self._see(observation)
+        step = self.env.step(_element(self.env.action_space, iter(self._action)))
+        if len(step) != 5:
+            raise InvalidInput(
+                f"step() returned {len(step)} values; Gymnasium 1.x returns 5, with terminated and truncated"
+            )
+        observation, reward, terminated, truncated, info = step
+        self._write_observation(observation)
         return float(reward), bool(terminated), bool(truncated), _numbers(info)
 
     def render(self) -> Optional[NDArray[np.uint8]]:
-        """A picture, where it was made to draw some."""
+        """Returns an image if the render mode is ``"rgb_array"``, else None."""
         if self.env.render_mode != "rgb_array":
             return None
-        picture = self.env.render()
-        return np.ascontiguousarray(picture, np.uint8) if isinstance(picture, np.ndarray) else None
+        image = self.env.render()
+        return np.ascontiguousarray(image, np.uint8) if isinstance(image, np.ndarray) else None
 
-    def _see(self, observation: Any) -> None:
+    def _write_observation(self, observation: Any) -> None:
         self._write(_from_zero(self.env.observation_space, observation))
 
 
 def _from_zero(space: spaces.Space[Any], value: Any) -> Any:
-    """An element whose choices lie in a row and count from 0."""
+    """Returns an element with ``MultiDiscrete`` values flattened and counted from 0."""
     parts = parts_of(space)
     if parts is not None:
         return {key: _from_zero(part, value[key]) for key, part in parts}
@@ -77,15 +79,15 @@ def _from_zero(space: spaces.Space[Any], value: Any) -> Any:
 
 
 def _element(space: spaces.Space[Any], arrays: Iterator[Array]) -> Any:
-    """The element whose numbers lie in the arrays, in the space's own types."""
+    """Returns the element that the arrays contain, in the space's own types."""
     parts = parts_of(space)
     if parts is not None:
-        found = {key: _element(part, arrays) for key, part in parts}
-        return found if isinstance(space, spaces.Dict) else tuple(found[key] for key, _ in parts)
+        elements = {key: _element(part, arrays) for key, part in parts}
+        return elements if isinstance(space, spaces.Dict) else tuple(elements[key] for key, _ in parts)
     array = next(arrays)
     if isinstance(space, spaces.Box):
         value = array.astype(space.dtype)
-        # A bound of more digits than the arrays have may lie beside the number that stands for it.
+        # A float64 bound may be exceeded by its rounded float32 value.
         return value if space.dtype == np.float32 else np.clip(value, space.low, space.high)
     if isinstance(space, spaces.MultiDiscrete):
         return array.reshape(space.shape).astype(space.dtype) + space.start
@@ -94,7 +96,7 @@ def _element(space: spaces.Space[Any], arrays: Iterator[Array]) -> Any:
 
 
 def _numbers(info: dict[str, Any]) -> dict[str, float]:
-    """The numbers among what else is known; success under our name for it, too."""
+    """Returns the numeric values of ``info``, with ``is_success`` also as ``success``."""
     numbers = {key: float(value) for key, value in info.items() if isinstance(value, _NUMBERS) and isinstance(key, str)}
     if "is_success" in numbers:
         numbers.setdefault("success", numbers["is_success"])

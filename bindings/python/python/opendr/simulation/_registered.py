@@ -1,4 +1,4 @@
-"""The environments of the registry, in Gymnasium's."""
+"""Registration of the environments with Gymnasium."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ NAMESPACE = "opendr"
 
 
 def environments() -> dict[str, dict[str, Any]]:
-    """What there is to know of every environment, by its name.
+    """Returns the table of every environment by its name.
 
-    An entry has ``observation`` and ``action`` (spaces in plain words), ``max_episode_steps``, ``reward_range``,
-    ``reward_threshold`` and ``params``: name, text, default and range of what :class:`Environment` takes.
+    A table has ``observation`` and ``action`` (spaces as plain dictionaries), ``max_episode_steps``, ``reward_range``,
+    ``reward_threshold`` and ``params``: name, description, default and range of the parameters of :class:`Environment`.
     """
     return {table["id"]: table for table in _opendr.environments()}
 
 
 def register() -> None:
-    """Puts all environments into Gymnasium's registry, as ``opendr/CartPole-v1``."""
+    """Adds all environments to Gymnasium's registry, under names such as ``opendr/CartPole-v1``."""
     from gymnasium.envs import registration
 
     for name, table in environments().items():

@@ -1,4 +1,4 @@
-"""Spaces in plain words, as the native half has them, and Gymnasium's; elements in arrays shared with the native half."""
+"""Conversion of spaces between the tables of the native module and Gymnasium, and of their elements to shared arrays."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Array = NDArray[Any]
 
 
 def space_from_table(table: dict[str, Any]) -> spaces.Space[Any]:
-    """Gymnasium's space of a table of the native half."""
+    """Returns Gymnasium's space of a table of the native module."""
     kind = table["type"]
     if kind == "Box":
         shape, dtype = table["shape"], np.dtype(table["dtype"])
@@ -36,10 +36,10 @@ def space_from_table(table: dict[str, Any]) -> spaces.Space[Any]:
 
 
 def table_from_space(space: spaces.Space[Any]) -> dict[str, Any]:
-    """The table of one of Gymnasium's spaces.
+    """Returns the table of a space of Gymnasium.
 
     Raises:
-        Unsupported: No learner takes such a space.
+        Unsupported: The space is of an unsupported type.
     """
     if isinstance(space, spaces.Box):
         low, high = (np.ravel(bound).tolist() for bound in (space.low, space.high))
@@ -54,7 +54,7 @@ def table_from_space(space: spaces.Space[Any]) -> dict[str, Any]:
         return {"type": "Dict", "spaces": {name: table_from_space(part) for name, part in space.spaces.items()}}
     if isinstance(space, spaces.Tuple):
         return {"type": "Tuple", "spaces": [table_from_space(part) for part in space.spaces]}
-    raise Unsupported(f"no learner takes {space}; there are Box, Discrete, MultiDiscrete, MultiBinary, Dict and Tuple")
+    raise Unsupported(f"the space {space} is not supported; supported are Box, Discrete, MultiDiscrete, MultiBinary, Dict and Tuple")
 
 
 def _dtype(dtype: np.dtype[Any]) -> str:
@@ -64,7 +64,7 @@ def _dtype(dtype: np.dtype[Any]) -> str:
 
 
 def parts_of(space: spaces.Space[Any]) -> Optional[list[tuple[Any, spaces.Space[Any]]]]:
-    """Keys and parts of a dictionary or tuple, in the order of the native half; None for what has no parts."""
+    """Returns keys and parts of a dictionary or tuple, in the order of the native module; None for other spaces."""
     if isinstance(space, spaces.Dict):
         return [(name, space.spaces[name]) for name in sorted(space.spaces)]
     if isinstance(space, spaces.Tuple):
@@ -73,12 +73,12 @@ def parts_of(space: spaces.Space[Any]) -> Optional[list[tuple[Any, spaces.Space[
 
 
 def shared(arrays: list[Any]) -> list[Array]:
-    """Arrays of the native half, seen without a copy."""
+    """Returns views of arrays of the native module."""
     return [np.asarray(array) for array in arrays]
 
 
 def reader(space: spaces.Space[Any], arrays: list[Array], copy: bool = True) -> Callable[[], Any]:
-    """A function that gives the elements which the arrays hold now, by default as copies."""
+    """Returns a function that reads the current element of the arrays, by default as a copy."""
     return _reader(space, iter(arrays), copy)
 
 
@@ -96,12 +96,12 @@ def _reader(space: spaces.Space[Any], arrays: Iterator[Array], copy: bool) -> Ca
 
 
 def element(space: spaces.Space[Any], arrays: list[Array], index: int) -> Any:
-    """A copy of element number ``index`` of arrays that hold many."""
+    """Returns a copy of element ``index`` of arrays of several elements."""
     return reader(space, [array[index] for array in arrays])()
 
 
 def writer(space: spaces.Space[Any], arrays: list[Array], what: str) -> Callable[[Any], None]:
-    """A function that puts an element into the arrays; it refuses what has another shape or is no number."""
+    """Returns a function that writes an element into the arrays and raises for another shape or non-numeric values."""
     return _writer(space, iter(arrays), what)
 
 

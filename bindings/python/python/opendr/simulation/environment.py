@@ -1,4 +1,4 @@
-"""An environment of the toolkit as Gymnasium has them."""
+"""Gymnasium's interface to an environment of the toolkit."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from opendr.simulation._spaces import reader, shared, space_from_table, writer
 class Environment(gymnasium.Env[Any, Any]):
     """An environment of the toolkit.
 
-    It ends episodes by its own time limit, which a wrapper can make shorter, not longer, and refuses wrong use: an action
-    outside its space, a step after the end.
+    It truncates episodes at its own time limit, which a wrapper can shorten but not extend, and raises for an action
+    outside its space and for a step after the end of the episode.
 
     Args:
-        id: Name and version, as in ``"CartPole-v1"``; ``opendr.simulation.environments()`` has them.
-        render_mode: ``"rgb_array"``, or None for no pictures.
-        params: What can be set of this environment.
+        id: Name and version, as in ``"CartPole-v1"``; ``opendr.simulation.environments()`` lists them.
+        render_mode: ``"rgb_array"``, or None for no images.
+        params: Parameters of the environment.
 
     Raises:
-        FileNotFoundError: There is no such environment.
+        FileNotFoundError: The environment does not exist.
         ValueError: A parameter is unknown or out of range.
     """
 
@@ -44,36 +44,36 @@ class Environment(gymnasium.Env[Any, Any]):
     def reset(
         self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Begins an episode; the options are those of the environment's parameters that a reset can choose."""
+        """Begins an episode; the options are those parameters of the environment that can change at a reset."""
         super().reset(seed=seed)
         info = self._native.reset(seed, options)
         return self._read(), info
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
-        """Takes a step: observation, reward, terminated, truncated, info.
+        """Takes a step. Returns observation, reward, terminated, truncated, info.
 
         Raises:
-            ValueError: The action is none of its space, or the episode is over.
+            ValueError: The action is not in its space, or the episode is over.
         """
         self._write(action)
         reward, terminated, truncated, info = self._native.step()
         return self._read(), reward, terminated, truncated, info
 
     def render(self) -> Optional[NDArray[np.uint8]]:
-        """A picture, ``[height, width, 3]``, where the render mode asks for one."""
+        """Returns an image, ``[height, width, 3]``, or None without a render mode."""
         pixels = None if self.render_mode is None else self._native.render()
         return None if pixels is None else np.ascontiguousarray(np.transpose(np.asarray(pixels), (1, 2, 0)))
 
     def snapshot(self) -> str:
-        """The state of now as a text to keep: for planning, exact replay, checkpoints."""
+        """Returns the current state as text, for planning, exact replay and checkpoints."""
         return self._native.snapshot()
 
     def restore(self, snapshot: str) -> None:
-        """Goes back to a state: the same actions then have the same outcome, bit for bit."""
+        """Restores a state: the same actions then have the same results, bit for bit."""
         self._native.restore(snapshot)
 
 
 def check_render_mode(mode: Optional[str], metadata: dict[str, Any]) -> None:
-    """Refuses a render mode that is not there."""
+    """Raises for a render mode that does not exist."""
     if mode is not None and mode not in metadata["render_modes"]:
-        raise InvalidParam(f"render_mode is {mode!r}; there are {metadata['render_modes']} and None")
+        raise InvalidParam(f"render_mode is {mode!r}; the modes are {metadata['render_modes']} and None")

@@ -1,4 +1,4 @@
-"""Many environments of the toolkit as Gymnasium has them."""
+"""Gymnasium's vector interface to environments of the toolkit."""
 
 from __future__ import annotations
 
@@ -18,22 +18,21 @@ Flags = NDArray[np.bool_]
 
 
 class VectorEnvironment(VectorEnv[Any, Any, NDArray[Any]]):
-    """Environments of one kind that are stepped together, by threads, with nothing done in Python for each.
+    """Environments of one kind that are stepped together by native threads, without Python code per environment.
 
     Args:
         id: Name and version, as in ``"CartPole-v1"``.
-        num_envs: How many.
-        threads: How many threads step them; they change no answer. Those so light that threads would slow them down
-            take one.
+        num_envs: Number of environments.
+        threads: Number of threads, which does not change any result. Environments too small to gain from threads use one.
         autoreset_mode: When an environment whose episode ended begins the next one.
         copy: Whether observations, rewards, terminations and truncations are copies. If not, they are the same read-only
             arrays from step to step.
-        max_episode_steps: The environment's own limit; no other can be chosen.
-        render_mode: None.
-        params: What can be set of these environments.
+        max_episode_steps: The environment's own limit; other values raise.
+        render_mode: Only None is supported.
+        params: Parameters of the environments.
 
     Raises:
-        FileNotFoundError: There is no such environment.
+        FileNotFoundError: The environment does not exist.
         ValueError: An argument is unknown or out of range.
     """
 
@@ -50,17 +49,17 @@ class VectorEnvironment(VectorEnv[Any, Any, NDArray[Any]]):
         **params: Any,
     ) -> None:
         if render_mode is not None:
-            raise Unsupported("environments side by side draw no pictures; render one of opendr.simulation.Environment")
+            raise Unsupported("a VectorEnvironment cannot render; use opendr.simulation.Environment")
         try:
             mode = AutoresetMode(autoreset_mode)
         except ValueError:
             modes = [mode.value for mode in AutoresetMode]
-            raise InvalidParam(f"autoreset_mode is {autoreset_mode!r}; there are {modes}") from None
+            raise InvalidParam(f"autoreset_mode is {autoreset_mode!r}; the modes are {modes}") from None
         native = self._native = _opendr.VectorEnvironment(id, params, num_envs, threads, mode.value)
         table = native.spec
         if max_episode_steps not in (None, table["max_episode_steps"]):
             own = table["max_episode_steps"]
-            raise InvalidParam(f"max_episode_steps is {max_episode_steps}; side by side {id} ends at {own}")
+            raise InvalidParam(f"max_episode_steps is {max_episode_steps}; a VectorEnvironment of {id} supports only its own limit, {own}")
         self.num_envs = num_envs
         self.metadata = {"render_modes": [], "autoreset_mode": mode}
         self.single_observation_space = space_from_table(table["observation"])
@@ -80,7 +79,7 @@ class VectorEnvironment(VectorEnv[Any, Any, NDArray[Any]]):
         seed: Union[int, Sequence[Optional[int]], None] = None,
         options: Optional[dict[str, Any]] = None,
     ) -> tuple[Any, dict[str, Any]]:
-        """Begins an episode everywhere, or where ``options["reset_mask"]`` is true."""
+        """Begins an episode in every environment, or in those where ``options["reset_mask"]`` is true."""
         options = dict(options or {})
         mask = options.pop("reset_mask", None)
         if mask is not None and (not isinstance(mask, np.ndarray) or mask.dtype != np.bool_ or mask.ndim != 1):
@@ -92,10 +91,10 @@ class VectorEnvironment(VectorEnv[Any, Any, NDArray[Any]]):
         return self._read(), self._infos(infos)
 
     def step(self, actions: Any) -> tuple[Any, NDArray[np.float64], Flags, Flags, dict[str, Any]]:
-        """Takes a step everywhere: observations, rewards, terminations, truncations, infos.
+        """Takes a step in every environment. Returns observations, rewards, terminations, truncations, infos.
 
         Raises:
-            ValueError: An action is none of its space, or an episode is over that does not begin anew by itself.
+            ValueError: An action is not in its space, or an episode is over and the autoreset mode is ``DISABLED``.
         """
         self._write(actions)
         native_infos, native_ends = self._native.step()
@@ -108,15 +107,15 @@ class VectorEnvironment(VectorEnv[Any, Any, NDArray[Any]]):
         return self._read(), self._rewards.copy(), self._terminations.copy(), self._truncations.copy(), infos
 
     def snapshot(self) -> str:
-        """The state of all as a text to keep; the last observations are the caller's to keep."""
+        """Returns the state of all environments as text, without the last observations."""
         return self._native.snapshot()
 
     def restore(self, snapshot: str) -> None:
-        """Goes back to a state: the same actions then have the same outcome, bit for bit."""
+        """Restores a state: the same actions then have the same results, bit for bit."""
         self._native.restore(snapshot)
 
     def _infos(self, infos: dict[str, tuple[Any, Any]]) -> dict[str, Any]:
-        """As Gymnasium writes them: a number for each under the name, who has one under the name with a line before."""
+        """Converts infos to Gymnasium's form: the values under the name, their mask under the name with an underscore."""
         written: dict[str, Any] = {}
         for key, (numbers, has) in infos.items():
             written[key], written[f"_{key}"] = shared([numbers, has])

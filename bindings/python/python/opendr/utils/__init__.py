@@ -1,1 +1,1 @@
-"""OpenDR's tools around learners."""
+"""Utilities of OpenDR: the hyperparameter tuner, the ambiguity measure, file names."""

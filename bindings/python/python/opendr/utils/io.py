@@ -1,4 +1,4 @@
-"""Names of files; OpenDR's other place of them."""
+"""File names, under OpenDR's second module path."""
 
 from __future__ import annotations
 

@@ -1,13 +1,13 @@
-//! Louder or softer.
+//! Random gain.
 
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
-use crate::augment::audio::sound::each_sound;
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::audio::sound::for_each_audio;
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
-/// Makes sound louder or softer; what gets too loud is cut.
+/// Changes the volume of audio by a random gain; samples beyond -1 and 1 are clipped.
 #[derive(Debug, Clone, Params)]
 pub struct AudioGain {
     /// Smallest gain.
@@ -20,12 +20,12 @@ pub struct AudioGain {
 
 impl Augmentation for AudioGain {
     const NAME: &'static str = "audio_gain";
-    const ABOUT: &'static str = "makes sound louder or softer";
+    const ABOUT: &'static str = "changes the volume of audio";
 }
 
 impl Augment for AudioGain {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         let gain = 10f32.powf(random.uniform(self.min_gain, self.max_gain) / 20.0);
-        each_sound(sample, |samples, _| samples.iter_mut().for_each(|sample| *sample *= gain))
+        for_each_audio(sample, |samples, _| samples.iter_mut().for_each(|sample| *sample *= gain))
     }
 }

@@ -1,4 +1,4 @@
-//! Sound.
+//! Augmentations of audio.
 
 mod gain;
 mod noise;

@@ -1,11 +1,11 @@
-//! The sound of a sample, to change it.
+//! Access to the audio of a sample.
 
 use opendr_engine::data::Audio;
 use opendr_engine::dataset::Sample;
 use opendr_engine::{Error, Result, Value};
 
-/// Lends the samples of every [`Audio`], instant by instant, to `change`; they are cut at -1 and 1 afterwards.
-pub(super) fn each_sound(sample: &mut Sample, mut change: impl FnMut(&mut [f32], &Audio)) -> Result<()> {
+/// Calls `change` with the interleaved samples of every [`Audio`], and clips them to -1 and 1 afterwards.
+pub(super) fn for_each_audio(sample: &mut Sample, mut change: impl FnMut(&mut [f32], &Audio)) -> Result<()> {
     let mut changed = false;
     for datum in &mut sample.data {
         let Value::Audio(audio) = datum else { continue };
@@ -18,6 +18,6 @@ pub(super) fn each_sound(sample: &mut Sample, mut change: impl FnMut(&mut [f32],
     }
     match changed {
         true => Ok(()),
-        false => Err(Error::invalid_input("the sample has no sound; use an augmentation for what it has")),
+        false => Err(Error::invalid_input("the sample has no audio; use an augmentation for its type")),
     }
 }

@@ -3,12 +3,12 @@ use opendr_engine::dataset::Sample;
 use opendr_engine::{Header, Random, Value};
 
 use super::*;
-use crate::augment::{Augment, Others};
+use crate::augment::{Augment, OtherSamples};
 
 fn changed(augment: &dyn Augment, samples: Vec<f32>, channels: usize, seed: u64) -> Vec<f32> {
     let audio = Audio::new(samples, channels, 1000).unwrap().with_header(Header::new(5, "ear"));
     let mut sample = Sample { data: vec![audio.into()], target: None };
-    augment.apply(&mut sample, &mut Random::new(seed), &Others::none()).unwrap();
+    augment.apply(&mut sample, &mut Random::new(seed), &OtherSamples::none()).unwrap();
     let Value::Audio(audio) = &sample.data[0] else { panic!() };
     assert_eq!((audio.header.stamp_ns, audio.channels(), audio.sample_rate()), (Some(5), channels, 1000));
     audio.as_slice().to_vec()
@@ -31,7 +31,7 @@ fn shifted_sound_keeps_its_length_and_its_channels() {
 }
 
 #[test]
-fn noise_has_the_ratio_asked_for() {
+fn noise_has_the_requested_ratio() {
     let before: Vec<f32> = (0..50_000).map(|index| 0.3 * (index as f32 * 0.1).sin()).collect();
     for ratio in [0.0, 20.0] {
         let after = changed(&AudioNoise { min_snr: ratio, max_snr: ratio }, before.clone(), 1, 3);
@@ -45,7 +45,7 @@ fn noise_has_the_ratio_asked_for() {
 }
 
 #[test]
-fn gain_is_cut_at_full_scale() {
+fn gain_is_clipped_at_full_scale() {
     let gain = AudioGain { min_gain: 20.0, max_gain: 20.0 };
     let after = changed(&gain, vec![0.05, -0.01, 0.5, -0.5], 1, 0);
     let wanted = [0.5, -0.1, 1.0, -1.0];

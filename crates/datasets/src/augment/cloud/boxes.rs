@@ -1,21 +1,21 @@
-//! Boxes in space: which points are inside, which boxes touch.
+//! Geometry of 3D boxes: points inside, overlap.
 
 use opendr_engine::target::BoundingBox3D;
 
-/// Whether a place of the camera's frame lies in a box.
-pub(super) fn contains(found: &BoundingBox3D, place: [f64; 3]) -> bool {
-    let [x, y, z] = [0, 1, 2].map(|axis| place[axis] - f64::from(found.location[axis]));
-    let (sine, cosine) = f64::from(found.rotation_y).sin_cos();
-    let [length, height, width] = found.dimensions.map(f64::from);
+/// Returns whether a point of the camera frame lies in a box.
+pub(super) fn contains(object: &BoundingBox3D, place: [f64; 3]) -> bool {
+    let [x, y, z] = [0, 1, 2].map(|axis| place[axis] - f64::from(object.location[axis]));
+    let (sine, cosine) = f64::from(object.rotation_y).sin_cos();
+    let [length, height, width] = object.dimensions.map(f64::from);
     let (along, across) = (cosine * x - sine * z, sine * x + cosine * z);
     along.abs() <= length / 2.0 && across.abs() <= width / 2.0 && (-height..=0.0).contains(&y)
 }
 
-/// The corners, floor first, in the camera's frame.
-pub(crate) fn corners(found: &BoundingBox3D) -> [[f64; 3]; 8] {
-    let (sine, cosine) = f64::from(found.rotation_y).sin_cos();
-    let [length, height, width] = found.dimensions.map(f64::from);
-    let [x, y, z] = found.location.map(f64::from);
+/// Returns the corners in the camera frame, the lower four first.
+pub(crate) fn corners(object: &BoundingBox3D) -> [[f64; 3]; 8] {
+    let (sine, cosine) = f64::from(object.rotation_y).sin_cos();
+    let [length, height, width] = object.dimensions.map(f64::from);
+    let [x, y, z] = object.location.map(f64::from);
     std::array::from_fn(|corner| {
         let side =
             |bit: usize, extent: f64| if corner >> bit & 1 == 0 { extent / 2.0 } else { -extent / 2.0 };
@@ -25,9 +25,9 @@ pub(crate) fn corners(found: &BoundingBox3D) -> [[f64; 3]; 8] {
     })
 }
 
-/// Whether two boxes overlap, seen from above: there is no line between them along any of their sides.
+/// Returns whether two boxes overlap in bird's eye view: no side of either separates them.
 pub(super) fn touch(one: &BoundingBox3D, other: &BoundingBox3D) -> bool {
-    let axes = [one, other].map(|found| f64::from(found.rotation_y).sin_cos());
+    let axes = [one, other].map(|object| f64::from(object.rotation_y).sin_cos());
     let floors = [one, other].map(corners);
     axes.iter().flat_map(|(sine, cosine)| [[*cosine, -sine], [*sine, *cosine]]).all(|[x, z]| {
         let [[low, high], [other_low, other_high]] = floors.map(|floor| {

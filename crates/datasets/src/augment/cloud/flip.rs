@@ -1,13 +1,13 @@
-//! The scene in a mirror.
+//! Mirroring of a scene.
 
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
 use crate::augment::cloud::scene::SceneChange;
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
-/// Mirrors points and boxes: left and right of the lidar change places.
+/// Mirrors points and boxes: left and right of the lidar are swapped.
 #[derive(Debug, Clone, Params)]
 pub struct CloudFlip {}
 
@@ -17,7 +17,7 @@ impl Augmentation for CloudFlip {
 }
 
 impl Augment for CloudFlip {
-    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         SceneChange { mirrored: true, ..SceneChange::NONE }.apply(sample)
     }
 }

@@ -1,9 +1,10 @@
-//! Between the frame of the points (lidar: x ahead, y left, z up) and that of the boxes (camera: x right, y down, z ahead).
+//! Transform between the frame of the points (lidar: x ahead, y left, z up) and that of the boxes (camera: x right,
+//! y down, z ahead).
 
 use opendr_engine::data::Calibration;
 use opendr_engine::{Error, Result, Value};
 
-/// Places in the camera's frame from those in the lidar's: `turn * place + shift`.
+/// Transform from the lidar frame to the camera frame: `turn * point + shift`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Frame {
     turn: [[f64; 3]; 3],
@@ -12,17 +13,17 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    /// Both in one place, axes named anew: for clouds without a calibration.
+    /// Transform without a calibration: both frames have one origin, only the axes differ.
     pub(super) const NOMINAL: Self = Self {
         turn: [[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]],
         back: [[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]],
         shift: [0.0; 3],
     };
 
-    /// The frame of a cloud.
+    /// Returns the transform of a point cloud.
     ///
     /// # Errors
-    /// `InvalidInput` for a calibration that cannot be inverted.
+    /// `InvalidInput` for a calibration that is not invertible.
     pub(crate) fn of(datum: &Value) -> Result<Self> {
         match datum {
             Value::PointCloudWithCalibration(both) => Self::calibrated(&both.calibration),
@@ -37,9 +38,8 @@ impl Frame {
             [0, 1, 2].map(|row| place[row] - shift[row])
         });
         let turn = [0, 1, 2].map(|row| columns.map(|column| column[row]));
-        let back = inverse(&turn).ok_or_else(|| {
-            Error::invalid_input("the calibration maps the lidar's frame onto a plane; mend its matrices")
-        })?;
+        let back = inverse(&turn)
+            .ok_or_else(|| Error::invalid_input("the calibration is not invertible; fix its matrices"))?;
         Ok(Self { turn, back, shift })
     }
 
@@ -52,7 +52,7 @@ impl Frame {
         times(&self.back, [0, 1, 2].map(|axis| place[axis] - self.shift[axis]))
     }
 
-    /// Where the lidar is, in the camera's frame.
+    /// Returns the position of the lidar in the camera frame.
     pub(super) fn lidar(&self) -> [f64; 3] {
         self.shift
     }

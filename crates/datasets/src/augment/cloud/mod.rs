@@ -1,4 +1,4 @@
-//! Point clouds, with the boxes in them.
+//! Augmentations of point clouds and their boxes.
 
 mod boxes;
 mod drop_points;

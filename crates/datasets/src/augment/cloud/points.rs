@@ -1,10 +1,10 @@
-//! The points of a sample, to change them.
+//! Access to the points of a sample.
 
 use opendr_engine::data::PointCloud;
 use opendr_engine::dataset::Sample;
 use opendr_engine::{Error, Result, Value};
 
-/// The cloud that a datum is or has.
+/// Returns the cloud of a datum.
 pub(super) fn cloud(datum: &Value) -> Option<&PointCloud> {
     match datum {
         Value::PointCloud(cloud) => Some(cloud),
@@ -13,7 +13,7 @@ pub(super) fn cloud(datum: &Value) -> Option<&PointCloud> {
     }
 }
 
-/// The cloud that a datum is or has, to change it.
+/// Returns the cloud of a datum, mutable.
 pub(super) fn cloud_mut(datum: &mut Value) -> Option<&mut PointCloud> {
     match datum {
         Value::PointCloud(cloud) => Some(cloud),
@@ -22,7 +22,7 @@ pub(super) fn cloud_mut(datum: &mut Value) -> Option<&mut PointCloud> {
     }
 }
 
-/// Lends the numbers of a cloud, point by point, to `change`, which may add and remove whole points.
+/// Passes the values of a cloud, point by point, to `change`, which may add and remove whole points.
 pub(super) fn change_points(cloud: &mut PointCloud, change: impl FnOnce(&mut Vec<f32>)) -> Result<()> {
     let channels = cloud.channels();
     let header = cloud.header.clone();
@@ -34,8 +34,11 @@ pub(super) fn change_points(cloud: &mut PointCloud, change: impl FnOnce(&mut Vec
     Ok(())
 }
 
-/// Refuses samples without a cloud, for `change` on each of their clouds.
-pub(super) fn each_cloud(sample: &mut Sample, mut change: impl FnMut(&mut Vec<f32>, usize)) -> Result<()> {
+/// Calls `change` with the values and the channels of each cloud; a sample without a cloud is an error.
+pub(super) fn for_each_cloud(
+    sample: &mut Sample,
+    mut change: impl FnMut(&mut Vec<f32>, usize),
+) -> Result<()> {
     let mut changed = false;
     for cloud in sample.data.iter_mut().filter_map(cloud_mut) {
         let channels = cloud.channels();
@@ -49,6 +52,6 @@ pub(super) fn each_cloud(sample: &mut Sample, mut change: impl FnMut(&mut Vec<f3
 pub(super) fn no_cloud(sample: &Sample) -> Error {
     let types: Vec<_> = sample.data.iter().map(|datum| datum.as_value_ref().value_type().name()).collect();
     Error::invalid_input(format!(
-        "the sample has no point cloud but {types:?}; use an augmentation for these"
+        "the sample has {types:?} instead of a point cloud; use an augmentation for these types"
     ))
 }

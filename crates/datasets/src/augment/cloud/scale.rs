@@ -1,11 +1,11 @@
-//! The scene larger or smaller.
+//! Scaling of a scene.
 
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
 use crate::augment::cloud::scene::SceneChange;
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Scales points and boxes about the lidar.
 #[derive(Debug, Clone, Params)]
@@ -20,11 +20,11 @@ pub struct CloudScale {
 
 impl Augmentation for CloudScale {
     const NAME: &'static str = "cloud_scale";
-    const ABOUT: &'static str = "makes a point cloud larger or smaller";
+    const ABOUT: &'static str = "scales a point cloud";
 }
 
 impl Augment for CloudScale {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         let scale = f64::from(random.uniform(self.min_scale, self.max_scale));
         SceneChange { scale, ..SceneChange::NONE }.apply(sample)
     }

@@ -1,4 +1,4 @@
-//! The whole scene turned, scaled or mirrored about the lidar.
+//! Transformation of a whole scene about the lidar.
 
 use std::f32::consts::{PI, TAU};
 
@@ -11,15 +11,15 @@ use crate::augment::cloud::boxes::corners;
 use crate::augment::cloud::frame::Frame;
 use crate::augment::cloud::points::{change_points, cloud, cloud_mut, no_cloud};
 
-/// A change of the whole scene about the lidar, in the camera's frame: first mirrored, then turned, then scaled.
+/// A transformation of the scene about the lidar, in the camera frame: first mirrored, then rotated, then scaled.
 ///
-/// Boxes are described in the camera's frame, whose vertical axis is not quite the lidar's; changing the points in that
-/// frame too keeps every point in its box exactly.
+/// Boxes are defined in the camera frame, whose vertical axis differs slightly from the lidar's. The points are
+/// therefore changed in that frame too, which keeps every point exactly in its box.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SceneChange {
-    /// Whether left and right change places.
+    /// Whether left and right are swapped.
     pub(super) mirrored: bool,
-    /// About the vertical axis, radians; positive as `rotation_y`.
+    /// Angle about the vertical axis in radians, with the sign of `rotation_y`.
     pub(super) angle: f64,
     pub(super) scale: f64,
 }
@@ -27,7 +27,7 @@ pub(super) struct SceneChange {
 impl SceneChange {
     pub(super) const NONE: Self = Self { mirrored: false, angle: 0.0, scale: 1.0 };
 
-    /// Changes the clouds of `sample` and the boxes in its target.
+    /// Transforms the clouds of `sample` and the boxes of its target.
     pub(super) fn apply(&self, sample: &mut Sample) -> Result<()> {
         let Some(first) = sample.data.iter().find(|datum| cloud(datum).is_some()) else {
             return Err(no_cloud(sample));
@@ -41,7 +41,7 @@ impl SceneChange {
             let frame = Frame::of(datum)?;
             let Some(cloud) = cloud_mut(datum) else {
                 return Err(Error::unsupported(format!(
-                    "a {} beside the cloud cannot follow when the scene is moved; leave the augmentation out",
+                    "a {} cannot be transformed together with the point cloud; remove the augmentation",
                     datum.as_value_ref().value_type().name()
                 )));
             };
@@ -54,7 +54,7 @@ impl SceneChange {
                 }
             })?;
         }
-        let change = |found: &mut BoundingBox3D| self.move_box(found, &frame, calibrated.as_ref());
+        let change = |object: &mut BoundingBox3D| self.move_box(object, &frame, calibrated.as_ref());
         match &mut sample.target {
             None | Some(Value::Category(_)) => Ok(()),
             Some(Value::BoundingBox3DList(list)) => {
@@ -66,13 +66,13 @@ impl SceneChange {
                 Ok(())
             }
             Some(other) => Err(Error::unsupported(format!(
-                "a {} cannot follow when the scene is moved; leave the augmentation out",
+                "a {} cannot be transformed together with the point cloud; remove the augmentation",
                 other.as_value_ref().value_type().name()
             ))),
         }
     }
 
-    /// Where a place of the camera's frame goes.
+    /// Returns the new location of a point of the camera frame.
     fn moved(&self, frame: &Frame, place: [f64; 3]) -> [f64; 3] {
         let lidar = frame.lidar();
         let [x, y, z] = [0, 1, 2].map(|axis| place[axis] - lidar[axis]);
@@ -82,13 +82,13 @@ impl SceneChange {
         [0, 1, 2].map(|axis| self.scale * turned[axis] + lidar[axis])
     }
 
-    fn move_box(&self, found: &mut BoundingBox3D, frame: &Frame, seen: Option<&PointCloudWithCalibration>) {
-        found.location = self.moved(frame, found.location.map(f64::from)).map(|part| part as f32);
-        found.dimensions = found.dimensions.map(|side| (f64::from(side) * self.scale) as f32);
-        let turn = if self.mirrored { PI - found.rotation_y } else { found.rotation_y };
-        found.rotation_y = within_pi(turn + self.angle as f32);
-        found.alpha = within_pi(found.rotation_y - found.location[0].atan2(found.location[2]));
-        found.bbox2d = seen.and_then(|seen| box_in_image(found, seen)).unwrap_or_default();
+    fn move_box(&self, object: &mut BoundingBox3D, frame: &Frame, scan: Option<&PointCloudWithCalibration>) {
+        object.location = self.moved(frame, object.location.map(f64::from)).map(|part| part as f32);
+        object.dimensions = object.dimensions.map(|side| (f64::from(side) * self.scale) as f32);
+        let turn = if self.mirrored { PI - object.rotation_y } else { object.rotation_y };
+        object.rotation_y = within_pi(turn + self.angle as f32);
+        object.alpha = within_pi(object.rotation_y - object.location[0].atan2(object.location[2]));
+        object.bbox2d = scan.and_then(|scan| box_in_image(object, scan)).unwrap_or_default();
     }
 }
 
@@ -96,13 +96,13 @@ fn within_pi(angle: f32) -> f32 {
     (angle + PI).rem_euclid(TAU) - PI
 }
 
-/// The rectangle around a box as the camera would see it, `[x0, y0, x1, y1]` in pixels, cut at the picture's border;
-/// `None` when a corner is behind the camera.
-fn box_in_image(found: &BoundingBox3D, seen: &PointCloudWithCalibration) -> Option<[f32; 4]> {
-    let [height, width] = seen.image_shape.map_or([f32::MAX; 2], |shape| shape.map(|side| side as f32));
+/// Returns the box in the image of the camera, `[x0, y0, x1, y1]` in pixels, clipped at its border; `None` if a
+/// corner is behind the camera.
+fn box_in_image(object: &BoundingBox3D, scan: &PointCloudWithCalibration) -> Option<[f32; 4]> {
+    let [height, width] = scan.image_shape.map_or([f32::MAX; 2], |shape| shape.map(|side| side as f32));
     let mut around = [f32::MAX, f32::MAX, f32::MIN, f32::MIN];
-    for corner in corners(found) {
-        let [x, y] = seen.calibration.image_from_camera(corner)?.map(|part| part as f32);
+    for corner in corners(object) {
+        let [x, y] = scan.calibration.image_from_camera(corner)?.map(|part| part as f32);
         around = [around[0].min(x), around[1].min(y), around[2].max(x), around[3].max(y)];
     }
     let [x0, y0, x1, y1] = around;

@@ -7,16 +7,16 @@ use super::boxes::{contains, touch};
 use super::frame::Frame;
 use super::points::cloud;
 use super::*;
-use crate::augment::{Augment, Others};
+use crate::augment::{Augment, OtherSamples};
 
-/// A car whose cloud and box are described through a calibration with a tilt and an offset.
+/// Returns a scene with a car, whose calibration has a tilt and an offset.
 fn scene(place: [f32; 3], rotation_y: f32, calibrated: bool) -> Sample {
     let calibration = Calibration::from_kitti_text(
         "P2: 700 0 600 40 0 700 170 0 0 0 1 0\nR0_rect: 0.9999 0.0098 -0.0074 -0.0099 0.9999 -0.0043 0.0074 0.0044 1\n\
          Tr_velo_to_cam: 0.0075 -0.9999 -0.0006 -0.004 0.0148 0.0007 -0.9999 -0.0763 0.9998 0.0075 0.0148 -0.2718\n",
     )
     .unwrap();
-    let found = BoundingBox3D {
+    let object = BoundingBox3D {
         name: "Car".into(),
         dimensions: [4.0, 1.5, 1.8],
         location: place,
@@ -33,7 +33,7 @@ fn scene(place: [f32; 3], rotation_y: f32, calibrated: bool) -> Sample {
     let (sine, cosine) = f64::from(rotation_y).sin_cos();
     let mut points = Vec::new();
     for index in 0..400 {
-        // Half of the points in the car, just within its sides, and half anywhere.
+        // Half of the points lie inside the car, near its sides, the others anywhere.
         let inside = index % 2 == 0;
         let mut side = |extent: f32| f64::from(random.uniform(-0.49, 0.49) * extent);
         let (along, up, across) = (side(4.0), side(1.5) + 0.75, side(1.8));
@@ -44,7 +44,7 @@ fn scene(place: [f32; 3], rotation_y: f32, calibrated: bool) -> Sample {
         points.push(0.25);
     }
     let cloud = PointCloud::new(points, [400, 4]).unwrap();
-    Sample { data: vec![datum(cloud)], target: Some(BoundingBox3DList::from(vec![found]).into()) }
+    Sample { data: vec![datum(cloud)], target: Some(BoundingBox3DList::from(vec![object]).into()) }
 }
 
 fn boxes(sample: &Sample) -> &[BoundingBox3D] {
@@ -52,7 +52,7 @@ fn boxes(sample: &Sample) -> &[BoundingBox3D] {
     &list.boxes
 }
 
-/// For each point, whether it lies in the first box.
+/// Returns for each point whether it lies in the first box.
 fn inside(sample: &Sample) -> Vec<bool> {
     let frame = Frame::of(&sample.data[0]).unwrap();
     let points = cloud(&sample.data[0]).unwrap().points();
@@ -61,7 +61,7 @@ fn inside(sample: &Sample) -> Vec<bool> {
 }
 
 fn apply(augment: &dyn Augment, sample: &mut Sample, seed: u64) {
-    augment.apply(sample, &mut Random::new(seed), &Others::none()).unwrap();
+    augment.apply(sample, &mut Random::new(seed), &OtherSamples::none()).unwrap();
 }
 
 #[test]
@@ -95,13 +95,13 @@ fn mirrored_twice_is_as_before() {
 }
 
 #[test]
-fn seen_boxes_are_projected_anew() {
+fn boxes_in_the_image_are_projected_again() {
     let mut sample = scene([3.0, 1.2, 15.0], 0.0, true);
     apply(&CloudScale { min_scale: 1.0, max_scale: 1.0 }, &mut sample, 0);
-    let found = &boxes(&sample)[0];
+    let object = &boxes(&sample)[0];
     // The near lower edge: 700 * 1.2 / 14.1 + 170.
-    assert!((found.bbox2d[3] - (700.0 * 1.2 / 14.1 + 170.0)).abs() < 0.5, "{:?}", found.bbox2d);
-    assert!((found.alpha + (3.0f32).atan2(15.0)).abs() < 1e-3);
+    assert!((object.bbox2d[3] - (700.0 * 1.2 / 14.1 + 170.0)).abs() < 0.5, "{:?}", object.bbox2d);
+    assert!((object.alpha + (3.0f32).atan2(15.0)).abs() < 1e-3);
 }
 
 #[test]
@@ -112,7 +112,7 @@ fn dropped_points_are_gone_and_jitter_is_small() {
     let [kept, all] = [&sample, &before].map(|sample| cloud(&sample.data[0]).unwrap());
     assert!(kept.len() < all.len() && kept.points().all(|point| all.points().any(|other| other == point)));
     let mut sample = before.clone();
-    apply(&JitterPoints { deviation: 0.1, most: 0.15 }, &mut sample, 5);
+    apply(&JitterPoints { deviation: 0.1, max_offset: 0.15 }, &mut sample, 5);
     let moved: Vec<f32> = cloud(&sample.data[0])
         .unwrap()
         .as_slice()
@@ -144,39 +144,41 @@ fn pasted_objects_bring_their_points_and_do_not_touch() {
     for seed in 0..20 {
         let mut sample = Street.get(0).unwrap();
         let paste = PasteObjects { scenes: 4, ..PasteObjects::default() };
-        paste.apply(&mut sample, &mut Random::new(seed), &Others::of(&Street)).unwrap();
-        let found = boxes(&sample);
-        for (index, one) in found.iter().enumerate() {
-            assert!(found[..index].iter().all(|other| !touch(one, other)));
+        paste.apply(&mut sample, &mut Random::new(seed), &OtherSamples::of(&Street)).unwrap();
+        let object = boxes(&sample);
+        for (index, one) in object.iter().enumerate() {
+            assert!(object[..index].iter().all(|other| !touch(one, other)));
             let mut only = sample.clone();
             only.target = Some(BoundingBox3DList::from(vec![one.clone()]).into());
             let points = inside(&only).iter().filter(|inside| **inside).count();
             assert!(points >= 195, "{points}");
         }
-        pasted += found.len() - 1;
+        pasted += object.len() - 1;
     }
     assert!(pasted >= 20, "{pasted}");
 }
 
 #[test]
-fn turned_floors_touch_or_not() {
-    let found = |x: f32, rotation_y: f32| BoundingBox3D {
+fn overlap_of_rotated_boxes() {
+    let object = |x: f32, rotation_y: f32| BoundingBox3D {
         dimensions: [4.0, 1.5, 2.0],
         location: [x, 0.0, 10.0],
         rotation_y,
         ..BoundingBox3D::default()
     };
-    assert!(touch(&found(0.0, 0.0), &found(3.9, 0.0)) && !touch(&found(0.0, 0.0), &found(4.1, 0.0)));
+    assert!(touch(&object(0.0, 0.0), &object(3.9, 0.0)) && !touch(&object(0.0, 0.0), &object(4.1, 0.0)));
     let quarter = std::f32::consts::FRAC_PI_2;
-    assert!(touch(&found(0.0, 0.0), &found(2.9, quarter)) && !touch(&found(0.0, 0.0), &found(3.1, quarter)));
-    // A corner of a square turned by an eighth reaches farther than its side.
-    assert!(touch(&found(0.0, 0.0), &found(4.0, quarter / 2.0)));
+    assert!(
+        touch(&object(0.0, 0.0), &object(2.9, quarter)) && !touch(&object(0.0, 0.0), &object(3.1, quarter))
+    );
+    // A corner of a square rotated by 45 degrees reaches farther than its side.
+    assert!(touch(&object(0.0, 0.0), &object(4.0, quarter / 2.0)));
 }
 
 #[test]
-fn pictures_beside_clouds_are_refused() {
+fn images_beside_clouds_are_errors() {
     let mut sample = scene([3.0, 1.2, 15.0], 0.7, true);
     sample.data.push(Image::from_rgb8(vec![0; 3], 1, 1).unwrap().into());
-    let refused = CloudFlip {}.apply(&mut sample, &mut Random::new(0), &Others::none());
+    let refused = CloudFlip {}.apply(&mut sample, &mut Random::new(0), &OtherSamples::none());
     assert_eq!(refused.unwrap_err().kind(), ErrorKind::Unsupported);
 }

@@ -1,39 +1,39 @@
-//! Out of focus.
+//! Blur.
 
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
-use crate::augment::picture::pixels::{Bytes, each_u8_picture};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::picture::pixels::{Bytes, for_each_u8_image};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
-/// Blurs a picture with a Gaussian of random width; the border is repeated outwards.
+/// Blurs an image with a Gaussian of random width; pixels at the border are repeated.
 #[derive(Debug, Clone, Params)]
 pub struct Blur {
-    /// Smallest deviation of the Gaussian.
+    /// Smallest standard deviation of the Gaussian.
     #[param(default = 0.1, range = 0.0..=20.0, unit = "px")]
     pub min_deviation: f32,
-    /// Largest deviation of the Gaussian.
+    /// Largest standard deviation of the Gaussian.
     #[param(default = 2.0, range = 0.0..=20.0, unit = "px")]
     pub max_deviation: f32,
 }
 
 impl Augmentation for Blur {
     const NAME: &'static str = "blur";
-    const ABOUT: &'static str = "blurs as a lens out of focus";
+    const ABOUT: &'static str = "blurs with a Gaussian";
 }
 
 impl Augment for Blur {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         let weights = weights(random.uniform(self.min_deviation, self.max_deviation));
-        each_u8_picture(sample, |picture| blur(picture, &weights))
+        for_each_u8_image(sample, |picture| blur(picture, &weights))
     }
 }
 
-/// The bits after the point of weights.
+/// Fractional bits of the weights.
 const BITS: u32 = 16;
 
-/// The weights of a pixel and of its neighbours at distance 1, 2, ..., which sum up to one.
+/// Returns the weights of a pixel and of its neighbours at distance 1, 2, ..., with a sum of one over the kernel.
 fn weights(deviation: f32) -> Vec<u32> {
     let reach = (3.0 * deviation).ceil() as usize;
     let bell = |distance: usize| (-0.5 * (distance as f64 / f64::from(deviation).max(1e-3)).powi(2)).exp();
@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_point_becomes_a_bell_and_flat_stays_flat() {
+    fn a_point_becomes_a_gaussian_and_flat_stays_flat() {
         let mut samples = vec![0u8; 31 * 31];
         samples[15 * 31 + 15] = 255;
         blur(Bytes { samples: &mut samples, width: 31, channels: 1 }, &weights(1.5));

@@ -1,28 +1,29 @@
-//! What becomes of what lies beyond the border of a picture.
+//! Border of a transformed image.
 
-/// How pictures are filled up, and how much of an object must stay inside.
+/// Padding of images, and treatment of objects at the border.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Border {
-    /// Level of `u8` samples where nothing of the picture lies.
+    /// Level of padded `u8` samples.
     pub level: u8,
-    /// Class number of a label map there: one that training ignores.
+    /// Class index of padded label maps, which training ignores.
     pub label: u32,
-    /// Boxes are cut at the border; those with less than this share of their area inside are dropped, 0..=1.
+    /// Smallest share of a box inside the image, 0 to 1. Boxes are clipped at the border; those with less are
+    /// dropped.
     pub min_visible: f32,
 }
 
 impl Border {
-    /// The label that training ignores (Pascal VOC's, Cityscapes').
+    /// Class index that training ignores (of Pascal VOC and Cityscapes).
     pub const IGNORED: u32 = 255;
 
-    /// Grey that means nothing to a network, ignored labels, and this share of a box.
-    pub fn keeping(min_visible: f32) -> Self {
+    /// Returns grey padding (level 114) and ignored labels, with a smallest share of boxes.
+    pub fn with_min_visible(min_visible: f32) -> Self {
         Self { level: 114, label: Self::IGNORED, min_visible }
     }
 }
 
 impl Default for Border {
     fn default() -> Self {
-        Self::keeping(0.0)
+        Self::with_min_visible(0.0)
     }
 }

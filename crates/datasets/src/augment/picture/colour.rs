@@ -1,28 +1,28 @@
-//! Another light, another camera: brightness, contrast, saturation and hue.
+//! Random brightness, contrast, saturation and hue.
 
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
-use crate::augment::picture::pixels::{Bytes, each_u8_picture};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::picture::pixels::{Bytes, for_each_u8_image};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Changes brightness, contrast, saturation and hue at random, in this order, in one pass over the pixels.
 ///
-/// Levels are cut at 0 and 255 once, at the end. Contrast is about the picture's mean luminance; hue turns the colours
-/// about the grey axis at constant luminance (BT.601).
+/// Levels are clipped to 0 and 255 once, at the end. Contrast is relative to the image's mean luminance. Hue is
+/// rotated about the grey axis at constant luminance (BT.601).
 #[derive(Debug, Clone, Params)]
 pub struct Colour {
-    /// Brightness is multiplied by 1 +- this at most.
+    /// Largest relative change of brightness: the factor is within 1 +- this.
     #[param(default = 0.2, range = 0.0..=1.0)]
     pub brightness: f32,
-    /// Contrast is multiplied by 1 +- this at most.
+    /// Largest relative change of contrast: the factor is within 1 +- this.
     #[param(default = 0.2, range = 0.0..=1.0)]
     pub contrast: f32,
-    /// Saturation is multiplied by 1 +- this at most.
+    /// Largest relative change of saturation: the factor is within 1 +- this.
     #[param(default = 0.2, range = 0.0..=1.0)]
     pub saturation: f32,
-    /// Hue is turned by at most this, either way.
+    /// Largest rotation of the hue in either direction.
     #[param(default = 0.1, range = 0.0..=3.15, unit = "rad")]
     pub hue: f32,
 }
@@ -33,12 +33,12 @@ impl Augmentation for Colour {
 }
 
 impl Augment for Colour {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         let mut factor = |most: f32| 1.0 + random.uniform(-most, most);
         let [brightness, contrast, saturation] =
             [self.brightness, self.contrast, self.saturation].map(&mut factor);
         let hue = random.uniform(-self.hue, self.hue);
-        each_u8_picture(sample, |picture| {
+        for_each_u8_image(sample, |picture| {
             let pivot = if contrast == 1.0 { 0.0 } else { brightness * mean_luminance(&picture) };
             let (gain, bias) = (brightness * contrast, (1.0 - contrast) * pivot);
             if picture.channels == 1 || (saturation == 1.0 && hue == 0.0) {
@@ -50,7 +50,7 @@ impl Augment for Colour {
     }
 }
 
-/// Red, green and blue in luminance (ITU-R BT.601).
+/// Weights of red, green and blue in the luminance (ITU-R BT.601).
 const LUMINANCE: [f32; 3] = [0.299, 0.587, 0.114];
 
 fn mean_luminance(picture: &Bytes<'_>) -> f32 {
@@ -59,7 +59,7 @@ fn mean_luminance(picture: &Bytes<'_>) -> f32 {
         return mean(picture.samples.iter().map(|sample| u64::from(*sample)).sum());
     }
     let mut sums = [0u64; 3];
-    // Sums of so few pixels fit into 32 bits.
+    // The sums of this many pixels fit into 32 bits.
     for part in picture.samples.as_chunks::<3>().0.chunks(1 << 20) {
         let mut few = [0u32; 3];
         for pixel in part {
@@ -70,15 +70,15 @@ fn mean_luminance(picture: &Bytes<'_>) -> f32 {
     sums.into_iter().zip(LUMINANCE).map(|(sum, weight)| weight * mean(sum)).sum()
 }
 
-/// Every level times `gain` plus `bias`.
+/// Maps each level to its product with `gain`, plus `bias`.
 fn scale_levels(samples: &mut [u8], gain: f32, bias: f32) {
     let table: [u8; 256] = std::array::from_fn(|level| (level as f32 * gain + bias + 0.5) as u8);
     samples.iter_mut().for_each(|sample| *sample = table[usize::from(*sample)]);
 }
 
-/// The matrix that changes saturation and hue; it leaves greys as they are.
+/// Returns the matrix that changes saturation and hue; it keeps grey.
 fn colour_matrix(saturation: f32, hue: f32) -> [[f32; 3]; 3] {
-    // The scales of U and V, so that a turn keeps the eye's measure of colourfulness.
+    // Scales of U and V, so that a rotation keeps the saturation.
     const BLUE: f32 = 0.492;
     const RED: f32 = 0.877;
     let (sine, cosine) = hue.sin_cos();
@@ -93,7 +93,7 @@ fn colour_matrix(saturation: f32, hue: f32) -> [[f32; 3]; 3] {
     [0, 1, 2].map(|row| columns.map(|column| column[row]))
 }
 
-/// Every pixel times `matrix` plus `bias`.
+/// Multiplies each pixel by `matrix` and adds `bias`.
 fn recolour(samples: &mut [u8], matrix: [[f32; 3]; 3], bias: f32) {
     const BITS: u32 = 12;
     let fixed = |part: f32| (part * (1 << BITS) as f32).round() as i32;
@@ -110,7 +110,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_asked_for_changes_nothing() {
+    fn zero_parameters_change_nothing() {
         let samples: Vec<u8> = (0..=255u8).flat_map(|level| [level, 255 - level, level / 2]).collect();
         let mut changed = samples.clone();
         recolour(&mut changed, colour_matrix(1.0, 0.0), 0.0);
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn luminance_stays_when_colours_turn() {
+    fn luminance_is_kept_when_the_hue_rotates() {
         for hue in [0.3, -1.0, 3.0] {
             for (row, [r, g, b]) in colour_matrix(1.3, hue).into_iter().enumerate() {
                 assert!((r + g + b - 1.0).abs() < 1e-5, "row {row}");

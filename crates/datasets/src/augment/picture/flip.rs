@@ -1,40 +1,40 @@
-//! Mirror images.
+//! Mirroring.
 
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
-use crate::augment::picture::{Border, PictureMap, picture_size, transform};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::picture::{AffineMap, Border, image_size, transform};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 opendr_engine::choices! {
-    /// What changes places.
+    /// Direction of mirroring.
     pub enum FlipDirection {
-        /// Left and right.
+        /// Swaps left and right.
         Horizontal = "horizontal",
-        /// Top and bottom.
+        /// Swaps top and bottom.
         Vertical = "vertical",
     }
 }
 
-/// Turns a picture into its mirror image; what was a left hand is a right one then.
+/// Mirrors an image. Left and right keypoints are swapped: a left hand becomes a right one.
 #[derive(Debug, Clone, Params)]
 pub struct Flip {
-    /// What changes places.
+    /// Direction of mirroring.
     pub direction: FlipDirection,
 }
 
 impl Augmentation for Flip {
     const NAME: &'static str = "flip";
-    const ABOUT: &'static str = "mirrors a picture; left and right joints change their names";
+    const ABOUT: &'static str = "mirrors an image; left and right keypoints are swapped";
 }
 
 impl Augment for Flip {
-    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &Others<'_>) -> Result<()> {
-        let size = picture_size(sample)?;
+    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
+        let size = image_size(sample)?;
         let map = match self.direction {
-            FlipDirection::Horizontal => PictureMap::flip_horizontal(size),
-            FlipDirection::Vertical => PictureMap::flip_vertical(size),
+            FlipDirection::Horizontal => AffineMap::flip_horizontal(size),
+            FlipDirection::Vertical => AffineMap::flip_vertical(size),
         };
         transform(sample, &map, &Border::default())
     }

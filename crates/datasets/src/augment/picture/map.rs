@@ -1,40 +1,42 @@
-//! Where the places of a picture go.
+//! Affine maps of images.
 
-/// An affine map from a picture to a picture of another size; what falls outside is cut off.
+/// Affine map from an image to one of another size; pixels outside of the output are dropped.
 ///
 /// Positions are continuous: the left-top corner of the first pixel is (0, 0), its centre (0.5, 0.5).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PictureMap {
+pub struct AffineMap {
     matrix: [[f64; 3]; 2],
     input_size: [usize; 2],
     output_size: [usize; 2],
 }
 
-impl PictureMap {
-    /// The map by `matrix` (x' = m00 x + m01 y + m02, y' = m10 x + m11 y + m12) from a picture of `input_size` (width and
-    /// height) to one of `output_size`.
+impl AffineMap {
+    /// Creates the map by `matrix` (x' = m00 x + m01 y + m02, y' = m10 x + m11 y + m12) from an image of
+    /// `input_size` (width and height) to one of `output_size`.
     pub fn new(matrix: [[f64; 3]; 2], input_size: [usize; 2], output_size: [usize; 2]) -> Self {
         Self { matrix, input_size, output_size }
     }
 
-    /// Left and right change places.
+    /// Returns the map that swaps left and right.
     pub fn flip_horizontal(size: [usize; 2]) -> Self {
         Self::new([[-1.0, 0.0, size[0] as f64], [0.0, 1.0, 0.0]], size, size)
     }
 
-    /// Top and bottom change places.
+    /// Returns the map that swaps top and bottom.
     pub fn flip_vertical(size: [usize; 2]) -> Self {
         Self::new([[1.0, 0.0, 0.0], [0.0, -1.0, size[1] as f64]], size, size)
     }
 
-    /// The window of `output_size` whose left-top corner is at `corner`, which may lie outside of the picture.
+    /// Returns the map to the window of `output_size` with the left-top corner `corner`, which may lie outside of
+    /// the image.
     pub fn crop(input_size: [usize; 2], corner: [i64; 2], output_size: [usize; 2]) -> Self {
         let [left, top] = corner.map(|edge| edge as f64);
         Self::new([[1.0, 0.0, -left], [0.0, 1.0, -top]], input_size, output_size)
     }
 
-    /// The window `[left, top, width, height]` of the picture, stretched to the rectangle `[left, top, width, height]` of
-    /// the output; what lies beside the one shows beside the other.
+    /// Returns the map from the window `[left, top, width, height]` of the image to the rectangle
+    /// `[left, top, width, height]` of the output. The surroundings of the window are mapped to those of the
+    /// rectangle.
     pub fn window(
         input_size: [usize; 2],
         window: [usize; 4],
@@ -46,52 +48,52 @@ impl PictureMap {
         Self::new([[scale(0), 0.0, shift(0)], [0.0, scale(1), shift(1)]], input_size, output_size)
     }
 
-    /// The whole picture, stretched.
+    /// Returns the map that resizes the whole image, without keeping its aspect ratio.
     pub fn stretch(input_size: [usize; 2], output_size: [usize; 2]) -> Self {
         let [[width, height], [columns, rows]] = [input_size, output_size];
         Self::window(input_size, [0, 0, width, height], [0, 0, columns, rows], output_size)
     }
 
-    /// The linear part `[[a, b], [c, d]]` about the middle of the picture, then a shift in pixels.
-    pub fn about_middle(size: [usize; 2], [[a, b], [c, d]]: [[f64; 2]; 2], shift: [f64; 2]) -> Self {
+    /// Returns the map by the linear part `[[a, b], [c, d]]` about the centre of the image, then a shift in pixels.
+    pub fn about_centre(size: [usize; 2], [[a, b], [c, d]]: [[f64; 2]; 2], shift: [f64; 2]) -> Self {
         let [x, y] = size.map(|side| side as f64 / 2.0);
         let matrix = [[a, b, x - a * x - b * y + shift[0]], [c, d, y - c * x - d * y + shift[1]]];
         Self::new(matrix, size, size)
     }
 
-    /// Width and height of the picture that is mapped.
+    /// Returns the width and height of the input image.
     pub fn input_size(&self) -> [usize; 2] {
         self.input_size
     }
 
-    /// Width and height of what it becomes.
+    /// Returns the width and height of the output image.
     pub fn output_size(&self) -> [usize; 2] {
         self.output_size
     }
 
-    /// Where a place of the picture goes; it may lie outside of the output.
+    /// Maps a point of the image; the result may lie outside of the output.
     pub fn output_from_input(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         self.matrix.map(|[a, b, c]| a * x + b * y + c)
     }
 
-    /// The map's determinant: output pixels per input pixel; negative for a mirror image.
+    /// Returns the determinant: output pixels per input pixel, negative for a mirror image.
     pub fn determinant(&self) -> f64 {
         let [[a, b, _], [c, d, _]] = self.matrix;
         a * d - b * c
     }
 
-    /// Whether left and right hands change places.
+    /// Returns whether the map mirrors, which swaps left and right hands.
     pub fn mirrors(&self) -> bool {
         self.determinant() < 0.0
     }
 
-    /// Scale and shift along x and along y, where the map turns and shears nothing.
+    /// Returns scale and shift along x and along y; `None` if the map rotates or shears.
     pub(super) fn along_axes(&self) -> Option<[[f64; 2]; 2]> {
         let [[a, b, x], [c, d, y]] = self.matrix;
         (b == 0.0 && c == 0.0 && a != 0.0 && d != 0.0).then_some([[a, x], [d, y]])
     }
 
-    /// The way back, as a matrix; `None` for a map onto a line or a point.
+    /// Returns the inverse as a matrix; `None` for a map onto a line or a point.
     pub(super) fn input_from_output(&self) -> Option<[[f64; 3]; 2]> {
         let [[a, b, x], [c, d, y]] = self.matrix;
         let determinant = self.determinant();
@@ -101,7 +103,7 @@ impl PictureMap {
         })
     }
 
-    /// The same map for a picture of the same scene at another resolution, such as a coarser label map.
+    /// Returns the map for another resolution of the same scene, such as a coarser label map.
     pub(super) fn for_size(&self, input_size: [usize; 2]) -> Self {
         if input_size == self.input_size {
             return *self;

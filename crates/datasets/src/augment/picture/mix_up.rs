@@ -1,4 +1,4 @@
-//! Two samples at once (Zhang et al., mixup: beyond empirical risk minimization, 2018).
+//! Mixup (Zhang et al., mixup: beyond empirical risk minimization, 2018).
 
 use opendr_engine::data::{Image, PixelFormat};
 use opendr_engine::dataset::Sample;
@@ -7,35 +7,36 @@ use opendr_engine::target::Category;
 use opendr_engine::{Error, Random, Result, Value};
 
 use crate::augment::picture::pixels::make_interleaved;
-use crate::augment::picture::{Border, PictureMap, picture_size, transform};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::picture::{AffineMap, Border, image_size, transform};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
-/// Blends a picture with another, which is brought to its size. Boxes and poses are those of both; classes get the shares
-/// of the pictures as probabilities.
+/// Blends an image with another, which is resized to its size. Boxes and poses of both are kept; classes become the
+/// shares of the images as probabilities.
 #[derive(Debug, Clone, Params)]
 pub struct MixUp {
-    /// Both parameters of the Beta distribution of the share: large ones blend half and half, small ones hardly.
+    /// Both parameters of the Beta distribution of the share: large values blend half and half, small ones hardly
+    /// at all.
     #[param(default = 8.0, range = 0.01..=1000.0, log)]
     pub alpha: f32,
-    /// How many classes there are, for targets that are one class.
+    /// Number of classes, for targets of one class.
     #[param(default = 0, range = 0..=1_000_000)]
     pub classes: usize,
 }
 
 impl Augmentation for MixUp {
     const NAME: &'static str = "mix_up";
-    const ABOUT: &'static str = "blends two pictures";
+    const ABOUT: &'static str = "blends two images";
 }
 
 impl Augment for MixUp {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, others: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, others: &OtherSamples<'_>) -> Result<()> {
         let mut other = others.pick(random)?;
         let share = beta(self.alpha, random).clamp(0.0, 1.0);
-        let map = PictureMap::stretch(picture_size(&other)?, picture_size(sample)?);
+        let map = AffineMap::stretch(image_size(&other)?, image_size(sample)?);
         transform(&mut other, &map, &Border::default())?;
         let ([Value::Image(image)], [Value::Image(over)]) = (&mut sample.data[..], &mut other.data[..])
         else {
-            return Err(Error::unsupported("only samples of one picture can be mixed; leave it out here"));
+            return Err(Error::unsupported("mix_up needs samples of one image; remove the augmentation"));
         };
         blend(image, over, share)?;
         sample.target = match (sample.target.take(), other.target) {
@@ -54,7 +55,7 @@ impl Augment for MixUp {
             (target, _) => {
                 let name = target.map_or("no target", |target| target.as_value_ref().value_type().name());
                 return Err(Error::unsupported(format!(
-                    "boxes, poses or classes can be mixed, all of one kind, not {name}; leave it out here"
+                    "mix_up needs boxes, poses or classes, all of one type, not {name}; remove the augmentation"
                 )));
             }
         };
@@ -73,7 +74,7 @@ impl MixUp {
             let place = usize::try_from(part.class).ok().and_then(|class| mixed.get_mut(class));
             *place.ok_or_else(|| {
                 Error::invalid_param(format!(
-                    "class {} of {}: set \"classes\" to their number",
+                    "class {} of {} is out of range; set \"classes\" to the number of classes",
                     part.class, self.classes
                 ))
             })? += share;
@@ -87,7 +88,7 @@ impl MixUp {
     }
 }
 
-/// `share` of a picture and the rest of another.
+/// Blends `share` of an image with the rest of another.
 fn blend(image: &mut Image, over: &Image, share: f32) -> Result<()> {
     make_interleaved(image)?;
     let format = if image.channels() == 1 { PixelFormat::Grey } else { PixelFormat::Rgb };
@@ -98,13 +99,13 @@ fn blend(image: &mut Image, over: &Image, share: f32) -> Result<()> {
     Ok(())
 }
 
-/// A number of the distribution Beta(alpha, alpha).
+/// Draws from the distribution Beta(alpha, alpha).
 fn beta(alpha: f32, random: &mut Random) -> f32 {
     let (one, other) = (gamma(alpha.into(), random), gamma(alpha.into(), random));
     if one + other > 0.0 { (one / (one + other)) as f32 } else { 0.5 }
 }
 
-/// A number of the Gamma distribution (Marsaglia and Tsang, 2000).
+/// Draws from the Gamma distribution (Marsaglia and Tsang, 2000).
 fn gamma(shape: f64, random: &mut Random) -> f64 {
     if shape < 1.0 {
         let lift = (1.0 - random.unit()).powf(1.0 / shape);

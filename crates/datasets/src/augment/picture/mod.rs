@@ -1,4 +1,4 @@
-//! Pictures, with the boxes, outlines, joints and label maps in them.
+//! Augmentations of images, with their boxes, masks, keypoints and label maps.
 
 mod affine;
 mod blur;
@@ -40,7 +40,7 @@ pub use flip::{Flip, FlipDirection};
 pub use grey::Grey;
 pub use iou_crop::IouCrop;
 pub use letterbox::Letterbox;
-pub use map::PictureMap;
+pub use map::AffineMap;
 pub use mix_up::MixUp;
 pub use mosaic::Mosaic;
 pub use pixel_noise::PixelNoise;
@@ -49,4 +49,4 @@ pub use random_resized_crop::RandomResizedCrop;
 pub use random_scale::RandomScale;
 pub use resize::Resize;
 pub use rotate::Rotate;
-pub use transform::{picture_size, transform};
+pub use transform::{image_size, transform};

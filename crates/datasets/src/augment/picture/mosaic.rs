@@ -1,4 +1,4 @@
-//! Four pictures in one (Bochkovskiy et al., YOLOv4, 2020).
+//! Mosaic of four images (Bochkovskiy et al., YOLOv4, 2020).
 
 use opendr_engine::data::{Image, PixelFormat};
 use opendr_engine::dataset::Sample;
@@ -9,10 +9,10 @@ use opendr_engine::{Error, Random, Result, Value};
 use crate::augment::picture::border::Border;
 use crate::augment::picture::targets::follow;
 use crate::augment::picture::warp::check_size;
-use crate::augment::picture::{PictureMap, picture_size, transform};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::picture::{AffineMap, image_size, transform};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
-/// Puts a picture and three others around a point, each covering its quarter and cut at its border.
+/// Combines an image with three others around a random point; each is cropped to its quadrant.
 #[derive(Debug, Clone, Params)]
 pub struct Mosaic {
     /// Width of the result.
@@ -21,24 +21,24 @@ pub struct Mosaic {
     /// Height of the result.
     #[param(default = 640, range = 4..=65535, unit = "px")]
     pub height: usize,
-    /// How far the point may lie from the border at least, as a share of the side.
+    /// Smallest distance of the point from the border, as a share of the side.
     #[param(default = 0.25, range = 0.05..=0.5)]
     pub margin: f32,
-    /// Pictures are at most so much larger than what just covers their quarter.
+    /// Largest zoom of an image relative to the size that covers its quadrant.
     #[param(default = 1.5, range = 1.0..=10.0)]
     pub max_zoom: f32,
-    /// Boxes with less than this share of their area inside are dropped.
+    /// Smallest share of a box inside its quadrant; boxes with less are dropped.
     #[param(default = 0.1, range = 0.0..=1.0)]
     pub min_visible: f32,
 }
 
 impl Augmentation for Mosaic {
     const NAME: &'static str = "mosaic";
-    const ABOUT: &'static str = "puts four pictures into one";
+    const ABOUT: &'static str = "combines four images into one";
 }
 
 impl Augment for Mosaic {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, others: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, others: &OtherSamples<'_>) -> Result<()> {
         let size = [self.width, self.height];
         check_size(size, 3)?;
         let point = size.map(|side| {
@@ -47,7 +47,7 @@ impl Augment for Mosaic {
         });
         let mut canvas = vec![0u8; self.width * self.height * 3];
         let mut whole: Option<Sample> = None;
-        // The quarter that the sample itself takes is as random as the others.
+        // The quadrant of the sample itself is random, too.
         let own = random.below(4);
         for quarter in 0..4 {
             let mut part = if quarter == own { sample.clone() } else { others.pick(random)? };
@@ -57,7 +57,7 @@ impl Augment for Mosaic {
                 .map(|axis| if right_below[axis] == 0 { point[axis] } else { size[axis] - point[axis] });
             self.fit(&mut part, sides, right_below, random)?;
             paste_picture(&mut canvas, self.width, &part, corner)?;
-            let shift = PictureMap::crop(sides, corner.map(|edge| -(edge as i64)), size);
+            let shift = AffineMap::crop(sides, corner.map(|edge| -(edge as i64)), size);
             if let Some(target) = &mut part.target {
                 follow(target, &shift, &Border::default())?;
             }
@@ -75,7 +75,7 @@ impl Augment for Mosaic {
 }
 
 impl Mosaic {
-    /// Scales a part so that it covers `sides`, and cuts it there; its inner corner stays at the point.
+    /// Scales a part to cover `sides` and crops it; its inner corner stays at the point.
     fn fit(
         &self,
         part: &mut Sample,
@@ -84,23 +84,23 @@ impl Mosaic {
         random: &mut Random,
     ) -> Result<()> {
         if !matches!(part.data[..], [Value::Image(_)]) {
-            return Err(Error::unsupported("a mosaic is made of samples of one picture; leave it out here"));
+            return Err(Error::unsupported("a mosaic needs samples of one image; remove the augmentation"));
         }
-        let size = picture_size(part)?;
+        let size = image_size(part)?;
         let cover = (0..2).map(|axis| sides[axis] as f32 / size[axis] as f32).fold(0.0, f32::max);
         let scale = cover * random.uniform(1.0, self.max_zoom);
-        // The window of the picture that the quarter shows, in whole pixels.
+        // The window of the image that fills the quadrant, in whole pixels.
         let window = [0, 1].map(|axis| ((sides[axis] as f32 / scale).round() as usize).clamp(1, size[axis]));
         let corner = [0, 1].map(|axis| if outer_end[axis] == 0 { size[axis] - window[axis] } else { 0 });
         let window = [corner[0], corner[1], window[0], window[1]];
-        let map = PictureMap::window(size, window, [0, 0, sides[0], sides[1]], sides);
-        transform(part, &map, &Border::keeping(self.min_visible))
+        let map = AffineMap::window(size, window, [0, 0, sides[0], sides[1]], sides);
+        transform(part, &map, &Border::with_min_visible(self.min_visible))
     }
 }
 
 fn paste_picture(canvas: &mut [u8], width: usize, part: &Sample, [left, top]: [usize; 2]) -> Result<()> {
     let [Value::Image(image)] = &part.data[..] else {
-        return Err(Error::internal("a mosaic's part lost its picture"));
+        return Err(Error::internal("a part of the mosaic has no image"));
     };
     let pixels = image.hwc_u8(PixelFormat::Rgb);
     let row = image.width() * 3;
@@ -110,7 +110,7 @@ fn paste_picture(canvas: &mut [u8], width: usize, part: &Sample, [left, top]: [u
     Ok(())
 }
 
-/// The targets of both, which lie in the same picture; of label maps, `rectangle` is taken from the second.
+/// Joins the targets of two samples of one image; of label maps, `rectangle` is taken from the second.
 fn joined(mut before: Sample, part: Sample, rectangle: [usize; 4]) -> Result<Sample> {
     before.target = match (before.target, part.target) {
         (None, None) => None,
@@ -128,23 +128,23 @@ fn joined(mut before: Sample, part: Sample, rectangle: [usize; 4]) -> Result<Sam
         (before, _) => {
             let name = before.map_or("no target", |target| target.as_value_ref().value_type().name());
             return Err(Error::unsupported(format!(
-                "a mosaic joins boxes, poses or label maps, all of one kind, not {name}; leave it out here"
+                "a mosaic needs boxes, poses or label maps, all of one type, not {name}; remove the augmentation"
             )));
         }
     };
     Ok(before)
 }
 
-/// A label map with a rectangle from another.
+/// Returns a label map with a rectangle replaced from another.
 fn overlaid(mut map: Heatmap, part: &Heatmap, [left, top, width, height]: [usize; 4]) -> Result<Heatmap> {
     use opendr_engine::target::HeatmapValues::Labels;
     let shape = map.shape().to_vec();
     let (&[_, columns], Labels(labels)) = (&shape[..], part.values()) else {
-        return Err(Error::unsupported("a mosaic joins label maps, not scores; leave it out here"));
+        return Err(Error::unsupported("a mosaic needs label maps, not scores; remove the augmentation"));
     };
     if part.shape() != shape || !matches!(map.values(), Labels(_)) {
         return Err(Error::unsupported(format!(
-            "label maps of shape {shape:?} and {:?} do not join to a mosaic; give them the size of their pictures",
+            "label maps of shape {shape:?} and {:?} cannot form a mosaic; give them the size of their images",
             part.shape()
         )));
     }

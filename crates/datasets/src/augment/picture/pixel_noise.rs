@@ -1,34 +1,34 @@
-//! The noise of a sensor.
+//! Sensor noise.
 
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
-use crate::augment::picture::pixels::each_u8_picture;
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::picture::pixels::for_each_u8_image;
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
-/// Adds noise to every sample of a picture, of random strength.
+/// Adds noise of random strength to every sample of an image.
 #[derive(Debug, Clone, Params)]
 pub struct PixelNoise {
-    /// Smallest deviation of the noise, levels of 0..=255.
+    /// Smallest standard deviation of the noise, in levels of 0 to 255.
     #[param(default = 0.0, range = 0.0..=100.0)]
     pub min_deviation: f32,
-    /// Largest deviation of the noise, levels of 0..=255.
+    /// Largest standard deviation of the noise, in levels of 0 to 255.
     #[param(default = 10.0, range = 0.0..=100.0)]
     pub max_deviation: f32,
 }
 
 impl Augmentation for PixelNoise {
     const NAME: &'static str = "pixel_noise";
-    const ABOUT: &'static str = "adds the noise of a sensor";
+    const ABOUT: &'static str = "adds sensor noise";
 }
 
 impl Augment for PixelNoise {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         let deviation = random.uniform(self.min_deviation, self.max_deviation);
-        // The noise is a sum of bytes, below, with this deviation; 16 bits are the fraction.
+        // The noise is a sum of bytes with this deviation, as fixed point with 16 fractional bits.
         let factor = (deviation / BYTE_SUM_DEVIATION * 65536.0).round() as i64;
-        each_u8_picture(sample, |picture| {
+        for_each_u8_image(sample, |picture| {
             for level in picture.samples {
                 let noise = (sum_of_bytes(random.bits()) - BYTE_SUM_MEAN) * factor;
                 *level = (i64::from(*level) + ((noise + (1 << 15)) >> 16)).clamp(0, 255) as u8;
@@ -39,10 +39,10 @@ impl Augment for PixelNoise {
 
 /// Mean of the sum of eight random bytes.
 const BYTE_SUM_MEAN: i64 = 8 * 255 / 2;
-/// Its deviation: the root of 8 (256^2 - 1) / 12.
+/// Standard deviation of the sum: the root of 8 (256^2 - 1) / 12.
 const BYTE_SUM_DEVIATION: f32 = 209.022;
 
-/// The sum of the eight bytes: as good as normal (its fourth moment is 5 % lower), in a few operations.
+/// Returns the sum of eight bytes, an approximation of a normal distribution (its fourth moment is 5 % lower).
 fn sum_of_bytes(bits: u64) -> i64 {
     const EVEN: u64 = 0x00ff_00ff_00ff_00ff;
     let pairs = (bits & EVEN) + ((bits >> 8) & EVEN);
@@ -56,13 +56,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn noise_has_the_deviation_asked_for() {
+    fn noise_has_the_requested_deviation() {
         assert_eq!(sum_of_bytes(u64::MAX), 8 * 255);
         assert_eq!(sum_of_bytes(0x0102_0304_0506_0708), 36);
         let image = Image::from_rgb8(vec![128; 200 * 100 * 3], 200, 100).unwrap();
         let mut sample = Sample { data: vec![image.into()], target: None };
         let noise = PixelNoise { min_deviation: 12.0, max_deviation: 12.0 };
-        noise.apply(&mut sample, &mut Random::new(1), &Others::none()).unwrap();
+        noise.apply(&mut sample, &mut Random::new(1), &OtherSamples::none()).unwrap();
         let opendr_engine::Value::Image(image) = &sample.data[0] else { panic!() };
         let away: Vec<f64> = image.chw_u8().iter().map(|level| f64::from(*level) - 128.0).collect();
         let mean = away.iter().sum::<f64>() / away.len() as f64;

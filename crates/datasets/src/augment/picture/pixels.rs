@@ -1,4 +1,4 @@
-//! The `u8` pixels of a sample, to change them.
+//! Access to the `u8` pixels of a sample.
 
 use opendr_engine::data::{Image, Layout, PixelFormat, Pixels};
 use opendr_engine::dataset::Sample;
@@ -10,13 +10,13 @@ use crate::augment::picture::transform::picture_mut;
 pub(super) struct Bytes<'a> {
     pub(super) samples: &'a mut [u8],
     pub(super) width: usize,
-    /// 1 or 3.
+    /// Number of channels, 1 or 3.
     pub(super) channels: usize,
 }
 
-/// Lends every picture of `u8` samples to `change`, as grey or RGB; what other pictures hold (depth, heat) measures, and
-/// stays as it is.
-pub(super) fn each_u8_picture(sample: &mut Sample, mut change: impl FnMut(Bytes<'_>)) -> Result<()> {
+/// Calls `change` with each image of `u8` samples, as grey or RGB. Other images hold measurements (depth,
+/// temperature) and are not changed.
+pub(super) fn for_each_u8_image(sample: &mut Sample, mut change: impl FnMut(Bytes<'_>)) -> Result<()> {
     let mut changed = false;
     for image in sample.data.iter_mut().filter_map(picture_mut) {
         if matches!(image.pixels(), Pixels::U8(_)) {
@@ -29,12 +29,12 @@ pub(super) fn each_u8_picture(sample: &mut Sample, mut change: impl FnMut(Bytes<
     match changed {
         true => Ok(()),
         false => Err(Error::invalid_input(
-            "the sample has no picture of u8 samples; leave the augmentation out, or convert pictures first",
+            "the sample has no image of u8 samples; remove the augmentation, or convert the images first",
         )),
     }
 }
 
-/// Makes a `u8` picture grey or RGB, `HWC`.
+/// Converts an image to grey or RGB `u8`, `HWC`.
 pub(super) fn make_interleaved(image: &mut Image) -> Result<()> {
     let format = match image.format() {
         PixelFormat::Grey => PixelFormat::Grey,

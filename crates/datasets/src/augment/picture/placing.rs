@@ -1,28 +1,28 @@
-//! Maps without turns: which window of a picture is shown in which rectangle of another.
+//! Maps without rotation, as pairs of a window of the input and a rectangle of the output.
 
 use std::ops::Range;
 
-use crate::augment::picture::map::PictureMap;
+use crate::augment::picture::map::AffineMap;
 
-/// How far edges may be from whole pixels to count as there: what rounding leaves.
+/// Largest distance from whole pixels that counts as rounding error.
 const SLACK: f64 = 1e-6;
 
-/// One axis: whole pixels `from` of the picture are shown at whole pixels `to` of the output.
+/// One axis: whole pixels `from` of the input are mapped to whole pixels `to` of the output.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Span {
     pub(super) from: Range<usize>,
     pub(super) to: Range<usize>,
-    /// Last pixel first.
+    /// Whether the pixels are in reverse order.
     pub(super) mirrored: bool,
 }
 
 impl Span {
-    /// Whether pixels stay as large as they are.
+    /// Returns whether the size of pixels is unchanged.
     pub(super) fn keeps_size(&self) -> bool {
         self.from.len() == self.to.len()
     }
 
-    /// The span of an axis of the map; `None` when its edges do not lie on whole pixels.
+    /// Returns the span of an axis of the map; `None` if its edges are not on whole pixels.
     fn new([scale, shift]: [f64; 2], input: usize, output: usize) -> Option<Self> {
         let place = |at: f64| scale * at + shift;
         let (first, last) = (place(0.0), place(input as f64));
@@ -43,8 +43,8 @@ fn whole(edge: f64) -> Option<usize> {
     ((edge - rounded).abs() <= SLACK * (1.0 + edge.abs()) && rounded >= 0.0).then_some(rounded as usize)
 }
 
-/// The spans along x and y of a map that turns nothing and whose edges lie on whole pixels.
-pub(super) fn spans(map: &PictureMap) -> Option<[Span; 2]> {
+/// Returns the spans along x and y; `None` if the map rotates or its edges are not on whole pixels.
+pub(super) fn spans(map: &AffineMap) -> Option<[Span; 2]> {
     let [x, y] = map.along_axes()?;
     let ([width, height], [columns, rows]) = (map.input_size(), map.output_size());
     Some([Span::new(x, width, columns)?, Span::new(y, height, rows)?])
@@ -56,16 +56,16 @@ mod tests {
 
     #[test]
     fn windows_and_mirrors() {
-        let map = PictureMap::crop([10, 8], [-2, 3], [6, 9]);
+        let map = AffineMap::crop([10, 8], [-2, 3], [6, 9]);
         let [x, y] = spans(&map).unwrap();
         assert_eq!((x.from, x.to), (0..4, 2..6));
         assert_eq!((y.from, y.to), (3..8, 0..5));
-        let [x, y] = spans(&PictureMap::flip_horizontal([10, 8])).unwrap();
+        let [x, y] = spans(&AffineMap::flip_horizontal([10, 8])).unwrap();
         assert!(x.mirrored && !y.mirrored && x.from == (0..10) && x.to == (0..10));
-        let [x, y] = spans(&PictureMap::crop([10, 8], [20, 0], [5, 5])).unwrap();
+        let [x, y] = spans(&AffineMap::crop([10, 8], [20, 0], [5, 5])).unwrap();
         assert!(x.from.is_empty() && x.to.is_empty() && y.from == (0..5));
         for width in 1..300 {
-            let map = PictureMap::window([641, 480], [13, 7, width, 100], [0, 0, 416, 416], [416, 416]);
+            let map = AffineMap::window([641, 480], [13, 7, width, 100], [0, 0, 416, 416], [416, 416]);
             let [x, y] = spans(&map).unwrap();
             assert_eq!((x.from, x.to), (13..13 + width, 0..416));
             assert_eq!((y.from, y.to), (7..107, 0..416));
@@ -75,8 +75,8 @@ mod tests {
     #[test]
     fn edges_between_pixels_have_no_span() {
         let half = [[1.0, 0.0, 0.5], [0.0, 1.0, 0.0]];
-        assert_eq!(spans(&PictureMap::new(half, [10, 8], [10, 8])), None);
+        assert_eq!(spans(&AffineMap::new(half, [10, 8], [10, 8])), None);
         let turn = [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]];
-        assert_eq!(spans(&PictureMap::new(turn, [10, 8], [8, 10])), None);
+        assert_eq!(spans(&AffineMap::new(turn, [10, 8], [8, 10])), None);
     }
 }

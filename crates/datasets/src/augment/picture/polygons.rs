@@ -1,14 +1,14 @@
-//! Outlines under a map.
+//! Transformation of polygons.
 
-use crate::augment::picture::map::PictureMap;
+use crate::augment::picture::map::AffineMap;
 
-/// The outline `[x0, y0, x1, y1, ...]` under `map`, not cut; corners that are no numbers are left out.
-pub(super) fn mapped(polygon: &[f32], map: &PictureMap) -> Vec<[f64; 2]> {
+/// Maps the polygon `[x0, y0, x1, y1, ...]` without clipping; points that are not finite are skipped.
+pub(super) fn mapped(polygon: &[f32], map: &AffineMap) -> Vec<[f64; 2]> {
     let corners = polygon.chunks_exact(2).filter(|corner| corner.iter().all(|part| part.is_finite()));
     corners.map(|corner| map.output_from_input([corner[0].into(), corner[1].into()])).collect()
 }
 
-/// The part of an outline within a picture (Sutherland and Hodgman, 1974); empty when there is none.
+/// Clips a polygon to an image (Sutherland and Hodgman, 1974); the result may be empty.
 pub(super) fn clipped(mut polygon: Vec<[f64; 2]>, size: [usize; 2]) -> Vec<[f64; 2]> {
     for axis in 0..2 {
         for (edge, sign) in [(0.0, 1.0), (size[axis] as f64, -1.0)] {
@@ -18,7 +18,7 @@ pub(super) fn clipped(mut polygon: Vec<[f64; 2]>, size: [usize; 2]) -> Vec<[f64;
     polygon
 }
 
-/// The part of an outline where `inside` is not negative.
+/// Returns the part of a polygon where `inside` is not negative.
 fn half(polygon: &[[f64; 2]], inside: impl Fn(&[f64; 2]) -> f64) -> Vec<[f64; 2]> {
     let mut kept = Vec::with_capacity(polygon.len() + 4);
     let before = polygon.iter().cycle().skip(polygon.len().saturating_sub(1));
@@ -35,14 +35,14 @@ fn half(polygon: &[[f64; 2]], inside: impl Fn(&[f64; 2]) -> f64) -> Vec<[f64; 2]
     kept
 }
 
-/// Square pixels within an outline that does not cross itself.
+/// Returns the area of a simple polygon in square pixels.
 pub(super) fn area(polygon: &[[f64; 2]]) -> f64 {
     let next = polygon.iter().cycle().skip(1);
     let doubled: f64 = polygon.iter().zip(next).map(|(from, to)| from[0] * to[1] - to[0] * from[1]).sum();
     doubled.abs() / 2.0
 }
 
-/// `[left, top, right, bottom]` around points; `None` when there is none.
+/// Returns `[left, top, right, bottom]` around points; `None` without points.
 pub(super) fn bounds<'a>(points: impl IntoIterator<Item = &'a [f64; 2]>) -> Option<[f64; 4]> {
     points
         .into_iter()
@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn outlines_are_cut_at_the_border() {
+    fn polygons_are_clipped_at_the_border() {
         let triangle = vec![[-10.0, 5.0], [10.0, -15.0], [30.0, 5.0]];
         let inside = clipped(triangle.clone(), [20, 20]);
         assert_eq!(bounds(&inside), Some([0.0, 0.0, 20.0, 5.0]));

@@ -1,13 +1,13 @@
-//! A part of a picture.
+//! Random crop.
 
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
-use crate::augment::picture::{Border, PictureMap, picture_size, transform};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::picture::{AffineMap, Border, image_size, transform};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
-/// Cuts a window of fixed size out of a picture, anywhere; a smaller picture is put anywhere on grey.
+/// Crops a window of fixed size at a random place; a smaller image is placed at random on grey.
 #[derive(Debug, Clone, Params)]
 pub struct RandomCrop {
     /// Width of the result.
@@ -16,23 +16,27 @@ pub struct RandomCrop {
     /// Height of the result.
     #[param(default = 416, range = 1..=65535, unit = "px")]
     pub height: usize,
-    /// Boxes with less than this share of their area inside are dropped.
+    /// Smallest share of a box inside the crop; boxes with less are dropped.
     #[param(default = 0.1, range = 0.0..=1.0)]
     pub min_visible: f32,
 }
 
 impl Augmentation for RandomCrop {
     const NAME: &'static str = "random_crop";
-    const ABOUT: &'static str = "cuts out a window of fixed size";
+    const ABOUT: &'static str = "crops a window of fixed size";
 }
 
 impl Augment for RandomCrop {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
-        let (size, wanted) = (picture_size(sample)?, [self.width, self.height]);
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
+        let (size, output_size) = (image_size(sample)?, [self.width, self.height]);
         let corner = [0, 1].map(|axis| {
-            let place = random.below(size[axis].abs_diff(wanted[axis]) + 1) as i64;
-            if size[axis] < wanted[axis] { -place } else { place }
+            let place = random.below(size[axis].abs_diff(output_size[axis]) + 1) as i64;
+            if size[axis] < output_size[axis] { -place } else { place }
         });
-        transform(sample, &PictureMap::crop(size, corner, wanted), &Border::keeping(self.min_visible))
+        transform(
+            sample,
+            &AffineMap::crop(size, corner, output_size),
+            &Border::with_min_visible(self.min_visible),
+        )
     }
 }

@@ -1,16 +1,16 @@
-//! A part of a picture at a fixed size (Szegedy et al., Going deeper with convolutions, 2015).
+//! Random crop, resized (Szegedy et al., Going deeper with convolutions, 2015).
 
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
-use crate::augment::picture::{Border, PictureMap, picture_size, transform};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::picture::{AffineMap, Border, image_size, transform};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
-/// How often a window that does not fit is drawn again.
+/// Number of windows that are drawn before the central one is used.
 const TRIES: usize = 10;
 
-/// Cuts a window of random area and aspect ratio out of a picture and brings it to a fixed size.
+/// Crops a window of random area and aspect ratio and resizes it to a fixed size.
 #[derive(Debug, Clone, Params)]
 pub struct RandomResizedCrop {
     /// Width of the result.
@@ -19,10 +19,10 @@ pub struct RandomResizedCrop {
     /// Height of the result.
     #[param(default = 416, range = 1..=65535, unit = "px")]
     pub height: usize,
-    /// Smallest area of the window, as a share of the picture's.
+    /// Smallest area of the window, as a share of the image's.
     #[param(default = 0.08, range = 0.0001..=1.0)]
     pub min_area: f32,
-    /// Largest area of the window, as a share of the picture's.
+    /// Largest area of the window, as a share of the image's.
     #[param(default = 1.0, range = 0.0001..=1.0)]
     pub max_area: f32,
     /// Smallest aspect ratio (width over height) of the window.
@@ -31,19 +31,19 @@ pub struct RandomResizedCrop {
     /// Largest aspect ratio of the window.
     #[param(default = 1.333, range = 0.01..=100.0, log)]
     pub max_ratio: f32,
-    /// Boxes with less than this share of their area inside are dropped.
+    /// Smallest share of a box inside the window; boxes with less are dropped.
     #[param(default = 0.1, range = 0.0..=1.0)]
     pub min_visible: f32,
 }
 
 impl RandomResizedCrop {
-    /// `[left, top, width, height]`; the largest in the middle when none of those drawn fits.
+    /// Draws the window `[left, top, width, height]`; the largest central one if no drawn window fits.
     fn window(&self, size: [usize; 2], random: &mut Random) -> [usize; 4] {
         let [width, height] = size.map(|side| side as f32);
         for _ in 0..TRIES {
             let area = width * height * random.uniform(self.min_area, self.max_area);
-            // Uniform between the logarithms would treat r and 1/r alike; drawing the inverse half of the time does
-            // so, too, and rounds the same everywhere.
+            // A uniform logarithm would treat r and 1/r alike. Drawing the inverse half of the time does so, too,
+            // and rounds the same on every platform.
             let ratio = match random.chance(0.5) {
                 true => random.uniform(self.min_ratio, self.max_ratio),
                 false => 1.0 / random.uniform(1.0 / self.max_ratio, 1.0 / self.min_ratio),
@@ -64,15 +64,15 @@ impl RandomResizedCrop {
 
 impl Augmentation for RandomResizedCrop {
     const NAME: &'static str = "random_resized_crop";
-    const ABOUT: &'static str = "cuts out a window of random size and shape, at a fixed size";
+    const ABOUT: &'static str = "crops a window of random area and aspect ratio, and resizes it";
 }
 
 impl Augment for RandomResizedCrop {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
-        let (size, wanted) = (picture_size(sample)?, [self.width, self.height]);
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
+        let (size, output_size) = (image_size(sample)?, [self.width, self.height]);
         let window = self.window(size, random);
-        let map = PictureMap::window(size, window, [0, 0, self.width, self.height], wanted);
-        transform(sample, &map, &Border::keeping(self.min_visible))
+        let map = AffineMap::window(size, window, [0, 0, self.width, self.height], output_size);
+        transform(sample, &map, &Border::with_min_visible(self.min_visible))
     }
 }
 
@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn windows_fit_and_have_the_shape_asked_for() {
+    fn windows_fit_and_have_the_requested_aspect_ratio() {
         let crop = RandomResizedCrop { min_area: 0.25, max_area: 0.5, ..Default::default() };
         let mut random = Random::new(0);
         for size in [[640, 480], [100, 90], [480, 640]] {
@@ -93,7 +93,7 @@ mod tests {
                 assert!((0.23..0.52).contains(&share) && (0.73..1.37).contains(&ratio), "{share} {ratio}");
             }
         }
-        // Nothing of that shape fits into a strip: the largest part of it, in the middle.
+        // No window of that aspect ratio fits into a strip, so the largest central one is used.
         assert_eq!(crop.window([1000, 1], &mut random), [499, 0, 1, 1]);
     }
 }

@@ -1,13 +1,13 @@
-//! Another size, the same shape.
+//! Random size with the aspect ratio kept.
 
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
-use crate::augment::picture::{Border, PictureMap, picture_size, transform};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::picture::{AffineMap, Border, image_size, transform};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
-/// Makes a picture larger or smaller by a random factor; a crop usually follows.
+/// Scales an image by a random factor; a crop usually follows.
 #[derive(Debug, Clone, Params)]
 pub struct RandomScale {
     /// Smallest factor.
@@ -20,13 +20,13 @@ pub struct RandomScale {
 
 impl Augmentation for RandomScale {
     const NAME: &'static str = "random_scale";
-    const ABOUT: &'static str = "makes larger or smaller";
+    const ABOUT: &'static str = "scales by a random factor";
 }
 
 impl Augment for RandomScale {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
-        let (size, scale) = (picture_size(sample)?, random.uniform(self.min_scale, self.max_scale));
-        let wanted = size.map(|side| (side as f32 * scale).round().max(1.0) as usize);
-        transform(sample, &PictureMap::stretch(size, wanted), &Border::default())
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
+        let (size, scale) = (image_size(sample)?, random.uniform(self.min_scale, self.max_scale));
+        let output_size = size.map(|side| (side as f32 * scale).round().max(1.0) as usize);
+        transform(sample, &AffineMap::stretch(size, output_size), &Border::default())
     }
 }

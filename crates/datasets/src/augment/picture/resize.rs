@@ -1,13 +1,13 @@
-//! Another size.
+//! Resizing.
 
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
-use crate::augment::picture::{Border, PictureMap, picture_size, transform};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::picture::{AffineMap, Border, image_size, transform};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
-/// Stretches a picture to a fixed size; its aspect ratio changes.
+/// Resizes an image to a fixed size without keeping its aspect ratio.
 #[derive(Debug, Clone, Params)]
 pub struct Resize {
     /// Width of the result.
@@ -20,12 +20,12 @@ pub struct Resize {
 
 impl Augmentation for Resize {
     const NAME: &'static str = "resize";
-    const ABOUT: &'static str = "stretches to a fixed size";
+    const ABOUT: &'static str = "resizes to a fixed size";
 }
 
 impl Augment for Resize {
-    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &Others<'_>) -> Result<()> {
-        let map = PictureMap::stretch(picture_size(sample)?, [self.width, self.height]);
+    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
+        let map = AffineMap::stretch(image_size(sample)?, [self.width, self.height]);
         transform(sample, &map, &Border::default())
     }
 }

@@ -1,35 +1,35 @@
-//! Targets under a map.
+//! Transformation of targets.
 
 use opendr_engine::target::{Heatmap, HeatmapValues, Keypoint, Pose, PoseList};
 use opendr_engine::{Error, Result, Value};
 
 use crate::augment::picture::border::Border;
-use crate::augment::picture::boxes::follow_box;
-use crate::augment::picture::map::PictureMap;
+use crate::augment::picture::boxes::map_box;
+use crate::augment::picture::map::AffineMap;
 use crate::augment::picture::warp::{check_size, nearest_plane};
 
-/// Maps whatever stands in a picture; what says something of the whole (a class, a text) stays.
-pub(super) fn follow(target: &mut Value, map: &PictureMap, border: &Border) -> Result<()> {
+/// Transforms the parts of a target with image coordinates; a target of the whole image (a class, a text) is kept.
+pub(super) fn follow(target: &mut Value, map: &AffineMap, border: &Border) -> Result<()> {
     match target {
-        Value::BoundingBoxList(list) => retain(&mut list.boxes, |found| follow_box(found, map, border)),
+        Value::BoundingBoxList(list) => retain(&mut list.boxes, |object| map_box(object, map, border)),
         Value::TrackingAnnotationList(list) => {
-            retain(&mut list.annotations, |track| follow_box(&mut track.bounding_box, map, border))
+            retain(&mut list.annotations, |track| map_box(&mut track.bounding_box, map, border))
         }
-        Value::PoseList(list) => follow_poses(list, map, border),
-        Value::Heatmap(heatmap) => follow_heatmap(heatmap, map, border),
+        Value::PoseList(list) => map_poses(list, map, border),
+        Value::Heatmap(heatmap) => map_heatmap(heatmap, map, border),
         Value::Category(_)
         | Value::SpeechCommand(_)
         | Value::BaseTranscription(_)
         | Value::WhisperTranscription(_)
         | Value::VoskTranscription(_) => Ok(()),
         other => Err(Error::unsupported(format!(
-            "a {} cannot follow when its picture is moved; leave the augmentation out",
+            "a {} cannot be transformed together with its image; remove the augmentation",
             other.as_value_ref().value_type().name()
         ))),
     }
 }
 
-/// Keeps what `keep` says; the first error ends it.
+/// Keeps the items for which `keep` returns true; returns the last error of `keep`.
 pub(super) fn retain<T>(items: &mut Vec<T>, mut keep: impl FnMut(&mut T) -> Result<bool>) -> Result<()> {
     let mut outcome = Ok(());
     items.retain_mut(|item| {
@@ -41,16 +41,16 @@ pub(super) fn retain<T>(items: &mut Vec<T>, mut keep: impl FnMut(&mut T) -> Resu
     outcome
 }
 
-fn follow_poses(list: &mut PoseList, map: &PictureMap, border: &Border) -> Result<()> {
+fn map_poses(list: &mut PoseList, map: &AffineMap, border: &Border) -> Result<()> {
     retain(&mut list.poses, |pose| {
-        let joints = |pose: &Pose| pose.keypoints.iter().filter(|joint| joint.is_found()).count();
+        let joints = |pose: &Pose| pose.keypoints.iter().filter(|joint| joint.is_detected()).count();
         let nothing_before = joints(pose) == 0 && pose.region.is_none();
-        pose.keypoints.iter_mut().for_each(|joint| follow_joint(joint, map));
+        pose.keypoints.iter_mut().for_each(|joint| map_keypoint(joint, map));
         if map.mirrors() {
             swap_sides(pose);
         }
         if let Some(region) = &mut pose.region
-            && !follow_box(region, map, border)?
+            && !map_box(region, map, border)?
         {
             pose.region = None;
         }
@@ -58,18 +58,18 @@ fn follow_poses(list: &mut PoseList, map: &PictureMap, border: &Border) -> Resul
     })
 }
 
-fn follow_joint(joint: &mut Keypoint, map: &PictureMap) {
-    if !joint.is_found() {
+fn map_keypoint(joint: &mut Keypoint, map: &AffineMap) {
+    if !joint.is_detected() {
         return;
     }
     let [x, y] = map.output_from_input([joint.x.into(), joint.y.into()]);
     let [width, height] = map.output_size().map(|side| side as f64);
-    // One on the very edge is still inside: a flip takes 0 to the picture's width.
+    // A point on the edge is inside: a flip maps 0 to the width.
     let inside = (0.0..=width).contains(&x) && (0.0..=height).contains(&y);
     *joint = if inside { Keypoint { x: x as f32, y: y as f32, ..*joint } } else { Keypoint::MISSING };
 }
 
-/// What was a left hand is a right one in the mirror.
+/// Swaps left and right keypoints, as needed in a mirror image.
 fn swap_sides(pose: &mut Pose) {
     for joint in 0..pose.skeleton.joints().len() {
         if let Some(partner) = pose.skeleton.partner(joint)
@@ -82,12 +82,12 @@ fn swap_sides(pose: &mut Pose) {
     pose.skeleton = pose.skeleton.mirrored();
 }
 
-fn follow_heatmap(heatmap: &mut Heatmap, map: &PictureMap, border: &Border) -> Result<()> {
+fn map_heatmap(heatmap: &mut Heatmap, map: &AffineMap, border: &Border) -> Result<()> {
     let shape: Vec<usize> = heatmap.shape().to_vec();
     let (&[height, width] | &[_, height, width]) = &shape[..] else {
         return Err(Error::unsupported(format!(
-            "a heat map of shape {shape:?} cannot follow when its picture is moved; give [height, width] or \
-             [classes, height, width]"
+            "a heatmap of shape {shape:?} cannot be transformed together with its image; its shape must be \
+            [height, width] or [classes, height, width]"
         )));
     };
     let map = map.for_size([width, height]);
@@ -106,7 +106,7 @@ fn follow_heatmap(heatmap: &mut Heatmap, map: &PictureMap, border: &Border) -> R
     Ok(())
 }
 
-fn each_plane<T: Copy>(values: &[T], map: &PictureMap, fill: T) -> Result<Vec<T>> {
+fn each_plane<T: Copy>(values: &[T], map: &AffineMap, fill: T) -> Result<Vec<T>> {
     let [width, height] = map.input_size();
     let mut moved = Vec::new();
     for plane in values.chunks_exact((width * height).max(1)) {

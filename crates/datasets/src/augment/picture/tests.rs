@@ -11,13 +11,13 @@ use opendr_engine::{ErrorKind, Random, Result, Value};
 use proptest::prelude::*;
 
 use super::*;
-use crate::augment::{Augment, Others, Pipeline, augmentations};
+use crate::augment::{Augment, OtherSamples, Pipeline, augmentations};
 
-/// What stands in the picture is brighter than this; ground and filling are darker.
+/// Brightness above which a pixel belongs to the object; background and padding are darker.
 const BRIGHT: u8 = 180;
 const OBJECT: u32 = 7;
 
-/// Everything that moves pixels, by a seed.
+/// Returns all augmentations that move pixels, with parameters drawn by a seed.
 fn geometric() -> Vec<Box<dyn Augment>> {
     vec![
         Box::new(Flip::default()),
@@ -34,7 +34,7 @@ fn geometric() -> Vec<Box<dyn Augment>> {
     ]
 }
 
-/// A bright rectangle on dark ground; two boxes around it, outlined by runs and by a polygon.
+/// Returns a bright rectangle on dark ground with two boxes around it, with masks as runs and as a polygon.
 fn painted(size: [usize; 2], [left, top, right, bottom]: [usize; 4]) -> Sample {
     let [width, height] = size;
     let inside = |at: usize| (left..right).contains(&(at % width)) && (top..bottom).contains(&(at / width));
@@ -62,7 +62,7 @@ fn boxes(sample: &Sample) -> &[BoundingBox] {
     &list.boxes
 }
 
-/// Which pixels are bright.
+/// Returns which pixels are bright.
 fn bright(image: &Image) -> Vec<bool> {
     image.hwc_u8(PixelFormat::Grey).iter().map(|level| *level > BRIGHT).collect()
 }
@@ -71,24 +71,24 @@ fn count(mask: &[bool]) -> usize {
     mask.iter().filter(|inside| **inside).count()
 }
 
-/// What may be wrong at the edges of something with these sides: a pixel all around.
-fn rim(found: &BoundingBox) -> usize {
-    (2.0 * (found.width + found.height)) as usize + 8
+/// Returns the tolerated number of wrong pixels for a box: a rim of one pixel.
+fn rim(object: &BoundingBox) -> usize {
+    (2.0 * (object.width + object.height)) as usize + 8
 }
 
 fn check_painted(sample: &Sample, whole_area: f32) {
     let image = image(sample);
     let (width, height) = (image.width() as f32, image.height() as f32);
     let shown = bright(image);
-    for found in boxes(sample) {
-        let [x0, y0, x1, y1] = found.corners();
-        assert!(x0 >= 0.0 && y0 >= 0.0 && x1 <= width + 1e-3 && y1 <= height + 1e-3, "{found:?}");
+    for object in boxes(sample) {
+        let [x0, y0, x1, y1] = object.corners();
+        assert!(x0 >= 0.0 && y0 >= 0.0 && x1 <= width + 1e-3 && y1 <= height + 1e-3, "{object:?}");
         for at in (0..shown.len()).filter(|at| shown[*at]) {
             let (x, y) = ((at % image.width()) as f32 + 0.5, (at / image.width()) as f32 + 0.5);
             let around = x0 - 1.0 <= x && x <= x1 + 1.0 && y0 - 1.0 <= y && y <= y1 + 1.0;
-            assert!(around, "bright at {x} {y}, box {:?}", found.corners());
+            assert!(around, "bright at {x} {y}, box {:?}", object.corners());
         }
-        let segment = found.segment.as_ref().unwrap();
+        let segment = object.segment.as_ref().unwrap();
         let wrong = match &segment.segmentation {
             Segmentation::Rle(runs) => {
                 assert_eq!(runs.size().map(|side| side as usize), [image.height(), image.width()]);
@@ -101,10 +101,10 @@ fn check_painted(sample: &Sample, whole_area: f32) {
                 count(&shown).abs_diff(segment.area as usize)
             }
         };
-        assert!(wrong <= rim(found), "{wrong} pixels of {:?}", found);
+        assert!(wrong <= rim(object), "{wrong} pixels of {:?}", object);
     }
     if boxes(sample).is_empty() {
-        // Less than a tenth of the box is seen: of a bar across it, with a corner seen, less than a third.
+        // Less than a tenth of the box is inside; of a diagonal bar with a corner inside, less than a third.
         let share = count(&shown) as f32 / whole_area;
         assert!(share < 0.4, "no box, but {share} of the object is there");
     }
@@ -114,7 +114,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 
     #[test]
-    fn boxes_and_outlines_follow_painted_pixels(
+    fn boxes_and_masks_match_painted_pixels(
         seed in 0u64..1 << 40,
         (left, top) in (0usize..100, 0usize..60),
         (width, height) in (12usize..60, 12usize..60),
@@ -122,26 +122,26 @@ proptest! {
         let rectangle = [left, top, (left + width).min(160), (top + height).min(120)];
         for augment in geometric() {
             let mut sample = painted([160, 120], rectangle);
-            augment.apply(&mut sample, &mut Random::new(seed), &Others::none()).unwrap();
+            augment.apply(&mut sample, &mut Random::new(seed), &OtherSamples::none()).unwrap();
             let scale = (image(&sample).width() * image(&sample).height()) as f32 / (160.0 * 120.0);
             let area = ((rectangle[2] - rectangle[0]) * (rectangle[3] - rectangle[1])) as f32;
-            // Affine enlarges up to one and a half times, whatever the size of the picture.
+            // Affine enlarges up to one and a half times, for any size of the image.
             check_painted(&sample, area * scale.max(1.5 * 1.5));
         }
-        // A window may leave the object's middle out, and then drops the box; what is kept must be right.
+        // A window may exclude the object's centre and then drops the box; kept boxes must be right.
         let mut sample = painted([160, 120], rectangle);
-        IouCrop::default().apply(&mut sample, &mut Random::new(seed), &Others::none()).unwrap();
+        IouCrop::default().apply(&mut sample, &mut Random::new(seed), &OtherSamples::none()).unwrap();
         prop_assert!(!boxes(&sample).is_empty());
         check_painted(&sample, 1.0);
     }
 
     #[test]
-    fn label_maps_follow_pixels(seed in 0u64..1 << 40) {
+    fn label_maps_match_pixels(seed in 0u64..1 << 40) {
         for augment in geometric() {
             let mut sample = painted([160, 120], [40, 30, 100, 80]);
             let labels = bright(image(&sample)).iter().map(|inside| if *inside { OBJECT } else { 1 }).collect();
             sample.target = Some(Heatmap::from_labels(labels, &[120, 160]).unwrap().into());
-            augment.apply(&mut sample, &mut Random::new(seed), &Others::none()).unwrap();
+            augment.apply(&mut sample, &mut Random::new(seed), &OtherSamples::none()).unwrap();
             let Some(Value::Heatmap(map)) = &sample.target else { panic!() };
             let HeatmapValues::Labels(labels) = map.values() else { panic!() };
             prop_assert_eq!(map.shape(), &[image(&sample).height(), image(&sample).width()][..]);
@@ -153,17 +153,17 @@ proptest! {
     }
 
     #[test]
-    fn joints_follow_painted_dots(seed in 0u64..1 << 40) {
+    fn keypoints_match_painted_dots(seed in 0u64..1 << 40) {
         for (index, augment) in geometric().into_iter().enumerate() {
             let mut sample = person();
-            augment.apply(&mut sample, &mut Random::new(seed), &Others::none()).unwrap();
+            augment.apply(&mut sample, &mut Random::new(seed), &OtherSamples::none()).unwrap();
             let Some(Value::PoseList(list)) = &sample.target else { panic!() };
-            // The first two are mirror images: the left wrist is the dot that was the right one.
+            // The first two are mirror images: the left wrist is the dot of the former right one.
             let colours = if index < 2 { [1, 2, 0] } else { [1, 0, 2] };
             for pose in &list.poses {
                 for (name, colour) in ["nose", "l_wri", "r_wri"].into_iter().zip(colours) {
                     let joint = pose.keypoint(name).unwrap();
-                    if joint.is_found() {
+                    if joint.is_detected() {
                         check_dot(image(&sample), joint, colour);
                     }
                 }
@@ -172,7 +172,7 @@ proptest! {
     }
 }
 
-/// Dots of 9 pixels' side, red under the left wrist, green under the nose, blue under the right wrist.
+/// Returns an image with dots of 9 pixels: red at the left wrist, green at the nose, blue at the right wrist.
 fn person() -> Sample {
     let dots = [(40, 60, "l_wri"), (80, 30, "nose"), (110, 80, "r_wri")];
     let mut pixels = vec![[20u8; 3]; 160 * 120];
@@ -206,19 +206,19 @@ fn flipped_twice_is_as_before() {
         for before in [painted([161, 119], [3, 5, 77, 60]), person()] {
             let mut sample = before.clone();
             let flip = Flip { direction };
-            flip.apply(&mut sample, &mut Random::new(0), &Others::none()).unwrap();
+            flip.apply(&mut sample, &mut Random::new(0), &OtherSamples::none()).unwrap();
             assert_ne!(sample.data, before.data);
-            flip.apply(&mut sample, &mut Random::new(0), &Others::none()).unwrap();
+            flip.apply(&mut sample, &mut Random::new(0), &OtherSamples::none()).unwrap();
             assert_eq!(sample, before);
         }
     }
 }
 
 #[test]
-fn every_kind_of_picture_is_mirrored() {
+fn every_pixel_format_is_mirrored() {
     let flip = |image: Image| {
         let mut sample = Sample { data: vec![image.into()], target: None };
-        Flip::default().apply(&mut sample, &mut Random::new(0), &Others::none()).unwrap();
+        Flip::default().apply(&mut sample, &mut Random::new(0), &OtherSamples::none()).unwrap();
         self::image(&sample).clone()
     };
     let depth = Image::new(vec![1u16, 2, 3, 4, 5, 6], 3, 2, PixelFormat::Grey, Layout::Hwc).unwrap();
@@ -235,24 +235,24 @@ fn every_kind_of_picture_is_mirrored() {
     let depth = Image::new(vec![1.0f32; 64 * 48], 64, 48, PixelFormat::Grey, Layout::Hwc).unwrap();
     let mut sample = Sample { data: vec![depth.into()], target: None };
     Rotate { max_angle: 1.0, ..Default::default() }
-        .apply(&mut sample, &mut Random::new(4), &Others::none())
+        .apply(&mut sample, &mut Random::new(4), &OtherSamples::none())
         .unwrap();
     let opendr_engine::data::Pixels::F32(values) = image(&sample).pixels() else { panic!() };
     assert!(values.contains(&0.0) && values.iter().all(|value| *value == 0.0 || *value == 1.0));
 }
 
 #[test]
-fn faces_change_eyes_in_the_mirror() {
+fn mirrored_faces_have_swapped_landmarks() {
     let mut sample = painted([100, 50], [10, 10, 40, 40]);
     let Some(Value::BoundingBoxList(list)) = &mut sample.target else { panic!() };
     list.boxes[0].landmarks =
         [[12.0, 20.0], [30.0, 20.0], [20.0, 25.0], [-1.0, -1.0], [29.0, 33.0]].into_iter().collect();
-    Flip::default().apply(&mut sample, &mut Random::new(0), &Others::none()).unwrap();
+    Flip::default().apply(&mut sample, &mut Random::new(0), &OtherSamples::none()).unwrap();
     let wanted = [[70.0, 20.0], [88.0, 20.0], [80.0, 25.0], [71.0, 33.0], [-1.0, -1.0]];
     assert_eq!(boxes(&sample)[0].landmarks[..], wanted);
 }
 
-/// Pictures with one object each.
+/// Images with one object each.
 struct Shelf(usize);
 
 impl Dataset for Shelf {}
@@ -275,15 +275,15 @@ fn mosaics_keep_boxes_around_objects() {
         (Shelf(5), Mosaic { width: 200, height: 160, min_visible: 0.0, ..Default::default() });
     for seed in 0..40 {
         let mut sample = shelf.get(0).unwrap();
-        mosaic.apply(&mut sample, &mut Random::new(seed), &Others::of(&shelf)).unwrap();
+        mosaic.apply(&mut sample, &mut Random::new(seed), &OtherSamples::of(&shelf)).unwrap();
         let image = image(&sample);
         assert_eq!((image.width(), image.height()), (200, 160));
         let shown = bright(image);
         let mut covered = vec![false; shown.len()];
-        for found in boxes(&sample) {
-            let [x0, y0, x1, y1] = found.corners();
+        for object in boxes(&sample) {
+            let [x0, y0, x1, y1] = object.corners();
             assert!(x0 >= 0.0 && y0 >= 0.0 && x1 <= 200.0 && y1 <= 160.0);
-            let Segmentation::Rle(runs) = &found.segment.as_ref().unwrap().segmentation else { continue };
+            let Segmentation::Rle(runs) = &object.segment.as_ref().unwrap().segmentation else { continue };
             let mask = runs.mask().unwrap();
             covered.iter_mut().zip(mask).for_each(|(covered, inside)| *covered |= inside);
         }
@@ -291,30 +291,31 @@ fn mosaics_keep_boxes_around_objects() {
         assert!(wrong <= 2 * (200 + 160), "{wrong}");
         kept += boxes(&sample).len();
     }
-    // Of eight boxes in four pictures, more than half are there still.
+    // Of eight boxes in four images, more than half remain.
     assert!(kept > 40 * 4, "{kept}");
 }
 
 #[test]
 fn mixed_pictures_have_the_boxes_of_both() {
     let (shelf, mut sample) = (Shelf(3), Shelf(3).get(2).unwrap());
-    MixUp::default().apply(&mut sample, &mut Random::new(3), &Others::of(&shelf)).unwrap();
+    MixUp::default().apply(&mut sample, &mut Random::new(3), &OtherSamples::of(&shelf)).unwrap();
     assert_eq!(boxes(&sample).len(), 4);
     let size = [image(&sample).width(), image(&sample).height()];
     assert_eq!(size, [152, 106]);
-    let alone = MixUp::default().apply(&mut shelf.get(0).unwrap(), &mut Random::new(3), &Others::none());
+    let alone =
+        MixUp::default().apply(&mut shelf.get(0).unwrap(), &mut Random::new(3), &OtherSamples::none());
     assert_eq!(alone.unwrap_err().kind(), ErrorKind::InvalidInput);
 }
 
 #[test]
-fn holes_hide_boxes() {
+fn cut_out_drops_covered_boxes() {
     let cut = CutOut { min_side: 1.0, max_side: 1.0, ..Default::default() };
     let mut sample = painted([50, 40], [5, 5, 20, 20]);
-    cut.apply(&mut sample, &mut Random::new(0), &Others::none()).unwrap();
+    cut.apply(&mut sample, &mut Random::new(0), &OtherSamples::none()).unwrap();
     assert!(boxes(&sample).is_empty() && image(&sample).chw_u8().iter().all(|level| *level == 114));
     let mut sample = painted([50, 40], [5, 5, 20, 20]);
     CutOut { min_side: 0.1, max_side: 0.1, ..cut }
-        .apply(&mut sample, &mut Random::new(0), &Others::none())
+        .apply(&mut sample, &mut Random::new(0), &OtherSamples::none())
         .unwrap();
     assert_eq!(boxes(&sample).len(), 2);
     let grey = image(&sample).hwc_u8(PixelFormat::Rgb).chunks(3).filter(|pixel| *pixel == [114; 3]).count();
@@ -322,13 +323,13 @@ fn holes_hide_boxes() {
 }
 
 #[test]
-fn shared_pixels_are_left_alone() {
+fn shared_pixels_are_not_changed() {
     let before = painted([40, 30], [5, 5, 20, 20]);
     for entry in augmentations() {
         let mut sample = before.clone();
         let kept = image(&before).chw_u8();
         let augment = (entry.make)(&ParamMap::new()).unwrap();
-        let _ = augment.apply(&mut sample, &mut Random::new(1), &Others::of(&Shelf(4)));
+        let _ = augment.apply(&mut sample, &mut Random::new(1), &OtherSamples::of(&Shelf(4)));
         assert_eq!(image(&before).chw_u8(), kept, "{}", entry.name);
     }
 }
@@ -339,14 +340,17 @@ fn one_seed_gives_one_sample() {
         let augment = (entry.make)(&ParamMap::new()).unwrap();
         let [first, second] = [(), ()].map(|()| {
             let mut sample = painted([64, 48], [10, 12, 40, 30]);
-            augment.apply(&mut sample, &mut Random::at([1, 2]), &Others::of(&Shelf(4))).map(|()| sample).ok()
+            augment
+                .apply(&mut sample, &mut Random::from_key([1, 2]), &OtherSamples::of(&Shelf(4)))
+                .map(|()| sample)
+                .ok()
         });
         assert_eq!(first, second, "{}", entry.name);
     }
 }
 
 #[test]
-fn names_are_told_once_and_explained() {
+fn names_are_unique_and_fields_documented() {
     let mut names = HashSet::new();
     for entry in augmentations() {
         assert!(names.insert(entry.name) && !entry.about.is_empty());
@@ -356,7 +360,7 @@ fn names_are_told_once_and_explained() {
 }
 
 #[test]
-fn hostile_targets_do_no_harm() {
+fn invalid_targets_cause_no_panic() {
     let wild = [f32::NAN, f32::INFINITY, f32::MAX, -f32::MAX, -5.0, 0.0, 3.5];
     for entry in augmentations() {
         let augment = (entry.make)(&ParamMap::new()).unwrap();
@@ -372,13 +376,13 @@ fn hostile_targets_do_no_harm() {
             {
                 let image = Image::from_rgb8(vec![9; 3], 1, 1).unwrap();
                 let mut sample = Sample { data: vec![image.into()], target: Some(target) };
-                // Refused or done, but no panic; what is left is finite.
-                let done = augment.apply(&mut sample, &mut Random::new(7), &Others::none());
+                // The result is an error or finite, but there is no panic.
+                let done = augment.apply(&mut sample, &mut Random::new(7), &OtherSamples::none());
                 if let (Ok(()), Some(Value::BoundingBoxList(list)), "flip" | "affine") =
                     (done, &sample.target, entry.name)
                 {
                     assert!(
-                        list.boxes.iter().all(|found| found.corners().iter().all(|edge| edge.is_finite()))
+                        list.boxes.iter().all(|object| object.corners().iter().all(|edge| edge.is_finite()))
                     );
                 }
             }
@@ -387,13 +391,13 @@ fn hostile_targets_do_no_harm() {
 }
 
 #[test]
-fn what_cannot_follow_is_refused() {
+fn targets_that_cannot_be_transformed_are_errors() {
     let mut sample = painted([40, 30], [5, 5, 20, 20]);
     sample.target = Some(opendr_engine::target::BoundingBox3DList::default().into());
-    let refused = Flip::default().apply(&mut sample, &mut Random::new(0), &Others::none());
+    let refused = Flip::default().apply(&mut sample, &mut Random::new(0), &OtherSamples::none());
     assert_eq!(refused.unwrap_err().kind(), ErrorKind::Unsupported);
     let mut empty = Sample { data: vec![], target: None };
-    let refused = Flip::default().apply(&mut empty, &mut Random::new(0), &Others::none());
+    let refused = Flip::default().apply(&mut empty, &mut Random::new(0), &OtherSamples::none());
     assert_eq!(refused.unwrap_err().kind(), ErrorKind::InvalidInput);
     let mut sample = painted([40, 30], [5, 5, 20, 20]);
     let huge: [&dyn Augment; 2] = [
@@ -401,14 +405,14 @@ fn what_cannot_follow_is_refused() {
         &Mosaic { width: 65535, height: 65535, ..Default::default() },
     ];
     for augment in huge {
-        let refused = augment.apply(&mut sample, &mut Random::new(0), &Others::of(&Shelf(2)));
+        let refused = augment.apply(&mut sample, &mut Random::new(0), &OtherSamples::of(&Shelf(2)));
         assert_eq!(refused.unwrap_err().kind(), ErrorKind::InvalidParam);
     }
-    // A label map of another resolution grows with the picture, here far too much.
+    // A label map of another resolution is scaled with the image, here to a size far too large.
     let mut sample = painted([1, 1], [0, 0, 1, 1]);
     sample.target = Some(Heatmap::from_labels(vec![0; 1 << 16], &[1 << 8, 1 << 8]).unwrap().into());
     let refused =
-        Resize { width: 2048, height: 2048 }.apply(&mut sample, &mut Random::new(0), &Others::none());
+        Resize { width: 2048, height: 2048 }.apply(&mut sample, &mut Random::new(0), &OtherSamples::none());
     assert_eq!(refused.unwrap_err().kind(), ErrorKind::InvalidParam);
 }
 
@@ -416,7 +420,7 @@ fn what_cannot_follow_is_refused() {
 fn parameters_are_checked() {
     let turned = Blur { min_deviation: 2.0, max_deviation: 1.0 };
     let error = Pipeline::default().then(turned).err().unwrap();
-    assert_eq!(error.to_string(), "blur: min_deviation = 2 is over its largest value, 1; give less");
+    assert_eq!(error.to_string(), "blur: min_deviation = 2 exceeds 1, the upper limit; set it lower");
     assert!(Pipeline::default().sometimes(1.5, Flip::default()).is_err());
     let params = ParamMap::from([("width".to_owned(), 0i64.into())]);
     let error = Pipeline::default().by_name("resize", 1.0, &params).err().unwrap();

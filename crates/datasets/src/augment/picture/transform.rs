@@ -1,25 +1,25 @@
-//! Whole samples under a map.
+//! Transformation of whole samples.
 
 use opendr_engine::data::Image;
 use opendr_engine::dataset::Sample;
 use opendr_engine::{Error, Result, Value};
 
 use crate::augment::picture::border::Border;
-use crate::augment::picture::boxes::follow_box;
-use crate::augment::picture::map::PictureMap;
+use crate::augment::picture::boxes::map_box;
+use crate::augment::picture::map::AffineMap;
 use crate::augment::picture::targets::{follow, retain};
 use crate::augment::picture::warp::warp;
 
-/// Shows the pictures of `sample` as `map` says; boxes, outlines, joints and label maps follow.
+/// Transforms the images of `sample` by `map`, with boxes, masks, keypoints and label maps.
 ///
 /// # Errors
-/// `InvalidInput` when there is no picture of the map's size, or one of another; `Unsupported` when a target cannot
-/// follow; `InvalidParam` when the result would not fit into memory.
-pub fn transform(sample: &mut Sample, map: &PictureMap, border: &Border) -> Result<()> {
-    let size = picture_size(sample)?;
+/// `InvalidInput` if the sample has no image, or one of another size than the map's; `Unsupported` if a target
+/// cannot be transformed; `InvalidParam` if the result would be too large.
+pub fn transform(sample: &mut Sample, map: &AffineMap, border: &Border) -> Result<()> {
+    let size = image_size(sample)?;
     if size != map.input_size() {
         return Err(Error::invalid_input(format!(
-            "a map for pictures of {:?} pixels (width, height) cannot show one of {size:?}",
+            "a map for images of {:?} pixels (width, height) cannot transform one of {size:?}",
             map.input_size()
         )));
     }
@@ -28,12 +28,12 @@ pub fn transform(sample: &mut Sample, map: &PictureMap, border: &Border) -> Resu
             Value::Image(image) => *image = warp(image, map, border.level)?,
             Value::ImageWithDetections(both) => {
                 both.image = warp(&both.image, map, border.level)?;
-                retain(&mut both.boxes.boxes, |found| follow_box(found, map, border))?;
+                retain(&mut both.boxes.boxes, |object| map_box(object, map, border))?;
             }
             Value::BoundingBoxList(_) => follow(datum, map, border)?,
             other => {
                 return Err(Error::unsupported(format!(
-                    "a {} beside the picture cannot follow when that is moved; leave the augmentation out",
+                    "a {} cannot be transformed together with the image; remove the augmentation",
                     other.as_value_ref().value_type().name()
                 )));
             }
@@ -42,28 +42,28 @@ pub fn transform(sample: &mut Sample, map: &PictureMap, border: &Border) -> Resu
     sample.target.as_mut().map_or(Ok(()), |target| follow(target, map, border))
 }
 
-/// Width and height of the pictures of `sample`.
+/// Returns the width and height of the images of `sample`.
 ///
 /// # Errors
-/// `InvalidInput` when there is no picture, or there are several sizes.
-pub fn picture_size(sample: &Sample) -> Result<[usize; 2]> {
+/// `InvalidInput` if there is no image, or there are several sizes.
+pub fn image_size(sample: &Sample) -> Result<[usize; 2]> {
     let mut sizes = sample.data.iter().filter_map(picture).map(|image| [image.width(), image.height()]);
     let Some(first) = sizes.next() else {
         let types: Vec<_> =
             sample.data.iter().map(|datum| datum.as_value_ref().value_type().name()).collect();
         return Err(Error::invalid_input(format!(
-            "the sample has no picture but {types:?}; use an augmentation for these"
+            "the sample has {types:?} instead of an image; use an augmentation for these types"
         )));
     };
     match sizes.find(|size| *size != first) {
         Some(other) => Err(Error::invalid_input(format!(
-            "the pictures of a sample are of {first:?} and of {other:?} pixels; bring them to one size first"
+            "the images of the sample have {first:?} and {other:?} pixels; resize them to one size first"
         ))),
         None => Ok(first),
     }
 }
 
-/// The picture that a datum is or has.
+/// Returns the image of a datum.
 pub(super) fn picture(datum: &Value) -> Option<&Image> {
     match datum {
         Value::Image(image) => Some(image),
@@ -72,7 +72,7 @@ pub(super) fn picture(datum: &Value) -> Option<&Image> {
     }
 }
 
-/// The picture that a datum is or has, to change it.
+/// Returns the image of a datum, mutable.
 pub(super) fn picture_mut(datum: &mut Value) -> Option<&mut Image> {
     match datum {
         Value::Image(image) => Some(image),

@@ -1,20 +1,20 @@
-//! Pixels under a map.
+//! Transformation of pixels.
 
 use opendr_engine::data::{Image, Layout, PixelFormat, Pixels};
 use opendr_engine::{Error, Result};
 use opendr_vision::{ChannelOrder, Preprocess};
 
-use crate::augment::picture::map::PictureMap;
+use crate::augment::picture::map::AffineMap;
 use crate::augment::picture::placing::{Span, spans};
 
-/// Samples that a changed picture has at most: as many as the decoder reads.
+/// Largest number of samples of an image; the limit of the decoder.
 const MAX_SAMPLES: usize = 1 << 28;
 
-/// The picture as `map` shows it; where nothing of it lies, `u8` samples are `level`, others 0.
+/// Transforms an image by `map`. Pixels outside of the input are `level` for `u8` samples, otherwise 0.
 ///
-/// Moves and mirror images are exact for every kind of picture. Otherwise `u8` pixels are blended from the four around
-/// (and become RGB or grey, `HWC`), and other samples, which measure, are taken from the nearest.
-pub(super) fn warp(image: &Image, map: &PictureMap, level: u8) -> Result<Image> {
+/// Shifts and mirroring are exact for every kind of image. Otherwise `u8` pixels are interpolated bilinearly (and
+/// become RGB or grey, `HWC`), and other samples, which are measurements, are taken from the nearest pixel.
+pub(super) fn warp(image: &Image, map: &AffineMap, level: u8) -> Result<Image> {
     let [width, height] = map.output_size();
     check_size([width, height], image.channels())?;
     let placing = spans(map);
@@ -42,19 +42,19 @@ pub(super) fn warp(image: &Image, map: &PictureMap, level: u8) -> Result<Image> 
     Ok(warped.with_header(image.header.clone()))
 }
 
-/// Refuses pictures without a pixel and those that are too large.
+/// Checks that an image has at least one pixel and at most [`MAX_SAMPLES`] samples.
 pub(super) fn check_size([width, height]: [usize; 2], channels: usize) -> Result<()> {
     match width.saturating_mul(height).saturating_mul(channels) {
         1..=MAX_SAMPLES => Ok(()),
         _ => Err(Error::invalid_param(format!(
-            "a picture or label map would become {width}x{height} of {channels} channels; ask for at least one pixel \
-             and at most {MAX_SAMPLES} samples"
+            "an image or label map would become {width}x{height} of {channels} channels; choose a size of at least one \
+            pixel and at most {MAX_SAMPLES} samples"
         ))),
     }
 }
 
-/// A plane of single samples under `map`, each place as the nearest; `fill` where there is none.
-pub(super) fn nearest_plane<T: Copy>(plane: &[T], map: &PictureMap, fill: T) -> Result<Vec<T>> {
+/// Transforms a plane of single samples with the nearest neighbour; `fill` outside of the input.
+pub(super) fn nearest_plane<T: Copy>(plane: &[T], map: &AffineMap, fill: T) -> Result<Vec<T>> {
     let [width, height] = map.output_size();
     check_size([width, height], 1)?;
     let mut out = vec![fill; width * height];
@@ -67,14 +67,20 @@ pub(super) fn nearest_plane<T: Copy>(plane: &[T], map: &PictureMap, fill: T) -> 
     Ok(out)
 }
 
-/// How the pixels of a plane come into another.
-trait Show {
-    /// Writes the pixels, `pixel` samples each, of `plane`, which is `width` wide, into `out`.
+/// Sampling of one plane into another.
+trait Resample {
+    /// Writes `plane`, of `width` pixels per row and `pixel` samples per pixel, into `out`.
     fn write<T: Copy>(&self, plane: &[T], width: usize, pixel: usize, out: &mut [T]);
 }
 
-/// Every plane of a picture: one of whole pixels, or one a channel, as it is stored.
-fn each_plane<T: Copy>(image: &Image, samples: &[T], map: &PictureMap, fill: T, show: &impl Show) -> Vec<T> {
+/// Transforms the planes of an image: one of whole pixels, or one for each channel, as stored.
+fn each_plane<T: Copy>(
+    image: &Image,
+    samples: &[T],
+    map: &AffineMap,
+    fill: T,
+    show: &impl Resample,
+) -> Vec<T> {
     let pixel = if image.layout() == Layout::Hwc { image.channels() } else { 1 };
     let [columns, rows] = map.output_size();
     let mut out = vec![fill; columns * rows * image.channels()];
@@ -85,14 +91,14 @@ fn each_plane<T: Copy>(image: &Image, samples: &[T], map: &PictureMap, fill: T, 
     out
 }
 
-/// Pixels that stay as they are, elsewhere.
+/// Copy of unchanged pixels to another place.
 struct Moved {
     spans: [Span; 2],
-    /// Of the output.
+    /// Width of the output.
     width: usize,
 }
 
-impl Show for Moved {
+impl Resample for Moved {
     fn write<T: Copy>(&self, plane: &[T], width: usize, pixel: usize, out: &mut [T]) {
         let [x, y] = &self.spans;
         for (index, row) in y.to.clone().enumerate() {
@@ -114,7 +120,7 @@ fn reverse<T: Copy, const PIXEL: usize>(source: &[T], target: &mut [T]) {
     target.as_chunks_mut::<PIXEL>().0.iter_mut().zip(pixels).for_each(|(target, source)| *target = *source);
 }
 
-/// Each pixel as the nearest.
+/// Nearest neighbour.
 struct Nearest {
     back: Option<[[f64; 3]; 2]>,
     input_size: [usize; 2],
@@ -122,13 +128,13 @@ struct Nearest {
 }
 
 impl Nearest {
-    fn new(map: &PictureMap) -> Self {
+    fn new(map: &AffineMap) -> Self {
         let (input_size, [width, _]) = (map.input_size(), map.output_size());
         Self { back: map.input_from_output(), input_size, width }
     }
 }
 
-impl Show for Nearest {
+impl Resample for Nearest {
     fn write<T: Copy>(&self, plane: &[T], width: usize, pixel: usize, out: &mut [T]) {
         let Some([[a, b, c], [d, e, f]]) = self.back else { return };
         let [columns, rows] = self.input_size.map(|side| side as f64);
@@ -143,7 +149,7 @@ impl Show for Nearest {
     }
 }
 
-/// A picture that is only stretched, moved and mirrored, through the kernels that networks' inputs go through.
+/// Transforms an image by scaling, shifting and mirroring, with the kernels of network inputs.
 fn stretched(image: &Image, [x, y]: &[Span; 2], [width, height]: [usize; 2], level: u8) -> Result<Image> {
     let (order, format) = match image.format() {
         PixelFormat::Grey => (ChannelOrder::Grey, PixelFormat::Grey),
@@ -155,7 +161,7 @@ fn stretched(image: &Image, [x, y]: &[Span; 2], [width, height]: [usize; 2], lev
         return Image::new(vec![level; width * height * channels], width, height, format, Layout::Hwc);
     };
     let [columns, rows] = [x.to.len(), y.to.len()];
-    // The loader has a thread for each core already.
+    // The loader already uses a thread for each core.
     let scaling = Preprocess::new(columns, rows).order(order).layout(Layout::Hwc).threads(1);
     let mut scaled = vec![0u8; scaling.len()];
     scaling.run_into(window, &mut scaled)?;
@@ -168,8 +174,8 @@ fn stretched(image: &Image, [x, y]: &[Span; 2], [width, height]: [usize; 2], lev
     Image::new(canvas, width, height, format, Layout::Hwc)
 }
 
-/// A picture under any map, blended from the four pixels around.
-fn blended(image: &Image, map: &PictureMap, level: u8) -> Result<Image> {
+/// Transforms an image by any map with bilinear interpolation.
+fn blended(image: &Image, map: &AffineMap, level: u8) -> Result<Image> {
     let format = match image.format() {
         PixelFormat::Grey => PixelFormat::Grey,
         _ => PixelFormat::Rgb,
@@ -190,7 +196,7 @@ fn blended(image: &Image, map: &PictureMap, level: u8) -> Result<Image> {
     Image::new(samples, width, height, format, Layout::Hwc)
 }
 
-fn blended_pixels<const CHANNELS: usize>(bytes: &[u8], map: &PictureMap, level: u8) -> Vec<u8> {
+fn blended_pixels<const CHANNELS: usize>(bytes: &[u8], map: &AffineMap, level: u8) -> Vec<u8> {
     let [columns, rows] = map.output_size();
     let mut out = vec![[level; CHANNELS]; columns * rows];
     let Some([[a, b, c], [d, e, f]]) = map.input_from_output() else { return out.into_flattened() };

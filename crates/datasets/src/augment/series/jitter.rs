@@ -1,16 +1,16 @@
-//! The noise of measuring.
+//! Measurement noise.
 
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
-use crate::augment::series::rows::each_series;
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::series::rows::for_each_series;
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
-/// Adds noise to every measurement, in proportion to how much its feature varies.
+/// Adds noise to every value, in proportion to the standard deviation of its feature.
 #[derive(Debug, Clone, Params)]
 pub struct SeriesJitter {
-    /// Deviation of the noise, as a share of the feature's own deviation through time.
+    /// Standard deviation of the noise, relative to the feature's standard deviation over time.
     #[param(default = 0.03, range = 0.0..=10.0)]
     pub deviation: f32,
 }
@@ -21,8 +21,8 @@ impl Augmentation for SeriesJitter {
 }
 
 impl Augment for SeriesJitter {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
-        each_series(sample, |numbers, features| {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
+        for_each_series(sample, |numbers, features| {
             for feature in 0..features {
                 let noise =
                     f64::from(self.deviation) * deviation(numbers.iter().skip(feature).step_by(features));

@@ -1,4 +1,4 @@
-//! Time series, and spectra through time.
+//! Augmentations of time series and spectrograms.
 
 mod jitter;
 mod rows;

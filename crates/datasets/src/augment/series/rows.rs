@@ -1,11 +1,11 @@
-//! The measurements of a sample, to change them.
+//! Access to the time series of a sample.
 
 use opendr_engine::data::Timeseries;
 use opendr_engine::dataset::Sample;
 use opendr_engine::{Error, Result, Value};
 
-/// Lends the numbers of every [`Timeseries`] `[time, features]` to `change`, with the number of features.
-pub(super) fn each_series(sample: &mut Sample, mut change: impl FnMut(&mut [f32], usize)) -> Result<()> {
+/// Calls `change` with the values of every [`Timeseries`] `[time, features]` and the number of features.
+pub(super) fn for_each_series(sample: &mut Sample, mut change: impl FnMut(&mut [f32], usize)) -> Result<()> {
     let mut changed = false;
     for datum in &mut sample.data {
         let Value::Timeseries(series) = datum else { continue };
@@ -17,8 +17,6 @@ pub(super) fn each_series(sample: &mut Sample, mut change: impl FnMut(&mut [f32]
     }
     match changed {
         true => Ok(()),
-        false => {
-            Err(Error::invalid_input("the sample has no time series; use an augmentation for what it has"))
-        }
+        false => Err(Error::invalid_input("the sample has no time series; use an augmentation for its type")),
     }
 }

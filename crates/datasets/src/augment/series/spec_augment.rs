@@ -1,44 +1,44 @@
-//! Gaps in time and frequency (Park et al., SpecAugment, 2019).
+//! SpecAugment (Park et al., SpecAugment, 2019).
 
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
-use crate::augment::series::rows::each_series;
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::series::rows::for_each_series;
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
-/// Covers spans of time and bands of frequency of a spectrogram, a [`Timeseries`](opendr_engine::data::Timeseries)
-/// `[time, bands]`.
+/// Masks random spans of time and bands of frequency of a spectrogram, a
+/// [`Timeseries`](opendr_engine::data::Timeseries) `[time, bands]`.
 #[derive(Debug, Clone, Params)]
 pub struct SpecAugment {
-    /// How many spans of time.
+    /// Number of time masks.
     #[param(default = 2, range = 0..=100)]
     pub time_masks: usize,
-    /// Longest span, instants.
+    /// Longest time mask, in time steps.
     #[param(default = 40, range = 0..=100_000)]
     pub max_time: usize,
-    /// Longest span, as a share of the whole.
+    /// Longest time mask, as a share of the length.
     #[param(default = 0.2, range = 0.0..=1.0)]
     pub max_time_share: f32,
-    /// How many bands of frequency.
+    /// Number of frequency masks.
     #[param(default = 2, range = 0..=100)]
     pub frequency_masks: usize,
-    /// Widest band, in bands of the spectrogram.
+    /// Widest frequency mask, in bands of the spectrogram.
     #[param(default = 15, range = 0..=100_000)]
     pub max_frequency: usize,
-    /// What covers: the mean, where spectra are normalised.
+    /// Value of masked cells; 0 is the mean of normalised spectrograms.
     #[param(default = 0.0)]
     pub level: f32,
 }
 
 impl Augmentation for SpecAugment {
     const NAME: &'static str = "spec_augment";
-    const ABOUT: &'static str = "covers spans of time and bands of frequency of a spectrogram";
+    const ABOUT: &'static str = "masks spans of time and bands of frequency of a spectrogram";
 }
 
 impl Augment for SpecAugment {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
-        each_series(sample, |numbers, bands| {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
+        for_each_series(sample, |numbers, bands| {
             let instants = numbers.len() / bands;
             let longest = self.max_time.min((instants as f32 * self.max_time_share) as usize);
             for _ in 0..self.time_masks {
@@ -53,7 +53,7 @@ impl Augment for SpecAugment {
     }
 }
 
-/// A span of at most `longest` of `count` places.
+/// Draws a span of at most `longest` of `count` places.
 fn span(count: usize, longest: usize, random: &mut Random) -> [usize; 2] {
     let length = random.below(longest.min(count) + 1);
     let start = random.below(count - length + 1);

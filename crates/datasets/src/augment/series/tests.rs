@@ -3,19 +3,19 @@ use opendr_engine::dataset::Sample;
 use opendr_engine::{ErrorKind, Random, Value};
 
 use super::*;
-use crate::augment::{Augment, Others};
+use crate::augment::{Augment, OtherSamples};
 
 fn changed(augment: &dyn Augment, numbers: Vec<f32>, shape: [usize; 2], seed: u64) -> Vec<f32> {
     let series = Timeseries::new(numbers, shape).unwrap();
     let mut sample = Sample { data: vec![series.into()], target: None };
-    augment.apply(&mut sample, &mut Random::new(seed), &Others::none()).unwrap();
+    augment.apply(&mut sample, &mut Random::new(seed), &OtherSamples::none()).unwrap();
     let Value::Timeseries(series) = &sample.data[0] else { panic!() };
     assert_eq!(series.shape(), shape);
     series.as_slice().to_vec()
 }
 
 #[test]
-fn jitter_is_in_proportion_to_the_feature() {
+fn jitter_is_proportional_to_the_deviation() {
     // The first feature varies a hundred times as much as the second; the third does not.
     let numbers = (0..3000).flat_map(|time| {
         let wave = (time as f32 * 0.1).sin();
@@ -63,6 +63,6 @@ fn masks_are_whole_spans_and_bands() {
     }
     assert!(covered > 200, "{covered}");
     let mut sample = Sample { data: vec![], target: None };
-    let refused = augment.apply(&mut sample, &mut Random::new(0), &Others::none());
+    let refused = augment.apply(&mut sample, &mut Random::new(0), &OtherSamples::none());
     assert_eq!(refused.unwrap_err().kind(), ErrorKind::InvalidInput);
 }

@@ -1,7 +1,7 @@
-//! What the numbers of a box are elsewhere.
+//! Element types of box spaces.
 
-/// The type of a box's numbers, in NumPy's words. Elements are passed as `f32` in any case, which holds a byte and a
-/// position exactly; other programs are told this one.
+/// Element type of a box space, as in NumPy. Elements are passed as `f32` in any case, which represents bytes and
+/// positions exactly; the type is for other programs.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Dtype {
@@ -10,17 +10,17 @@ pub enum Dtype {
     Float32,
     /// Double precision.
     Float64,
-    /// Whole numbers from 0 to 255: pictures.
+    /// Integers from 0 to 255, for images.
     Uint8,
-    /// Whole numbers.
+    /// Integers.
     Int64,
 }
 
 impl Dtype {
-    /// All of them.
+    /// All types.
     pub const ALL: [Self; 4] = [Self::Float32, Self::Float64, Self::Uint8, Self::Int64];
 
-    /// NumPy's name.
+    /// Returns the name of the type in NumPy.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Float32 => "float32",
@@ -30,12 +30,12 @@ impl Dtype {
         }
     }
 
-    /// The type of a name, if there is one.
+    /// Returns the type with this name, if there is one.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|dtype| dtype.name() == name)
     }
 
-    /// Whether numbers have to be whole.
+    /// Returns whether the type is an integer type.
     pub const fn is_whole(self) -> bool {
         matches!(self, Self::Uint8 | Self::Int64)
     }

@@ -1,10 +1,10 @@
-//! Elements as a network takes them: choices become one 1 among zeros.
+//! Elements as inputs of a network: discrete choices are one-hot.
 
 use super::Space;
 use crate::{Error, Result};
 
 impl Space {
-    /// How many numbers a flattened element has (Gymnasium's `flatdim`).
+    /// Returns the length of a flattened element (Gymnasium's `flatdim`).
     pub fn flat_len(&self) -> usize {
         match self {
             Self::Box { .. } | Self::MultiBinary(_) => self.len(),
@@ -15,10 +15,10 @@ impl Space {
         }
     }
 
-    /// Writes an element flattened (Gymnasium's `flatten`).
+    /// Writes `element` in flattened form (Gymnasium's `flatten`).
     ///
     /// # Errors
-    /// `InvalidInput` when `element` is none of this space, or `flat` has not [`Self::flat_len`] numbers.
+    /// Returns `InvalidInput` if `element` is not in this space or `flat` does not have the length [`Self::flat_len`].
     pub fn flatten_into(&self, element: &[f32], flat: &mut [f32]) -> Result<()> {
         self.check(element)?;
         self.check_flat(flat.len())?;
@@ -26,16 +26,16 @@ impl Space {
         Ok(())
     }
 
-    /// Writes the element that `flat` stands for (Gymnasium's `unflatten`): the largest number of a choice decides.
+    /// Writes the element of the flattened form `flat` (Gymnasium's `unflatten`); the largest number determines a choice.
     ///
     /// # Errors
-    /// `InvalidInput` when a length does not fit.
+    /// Returns `InvalidInput` if a length does not fit.
     pub fn unflatten_into(&self, flat: &[f32], element: &mut [f32]) -> Result<()> {
         self.check_flat(flat.len())?;
         if element.len() != self.len() {
-            let (wanted, count) = (self.len(), element.len());
+            let (expected, count) = (self.len(), element.len());
             return Err(Error::invalid_input(format!(
-                "an element of {self} has {wanted} numbers, not {count}"
+                "an element of {self} has {expected} numbers, not {count}"
             )));
         }
         self.unflatten_checked(flat, element);
@@ -46,8 +46,10 @@ impl Space {
         if count == self.flat_len() {
             return Ok(());
         }
-        let wanted = self.flat_len();
-        Err(Error::invalid_input(format!("a flattened element of {self} has {wanted} numbers, not {count}")))
+        let expected = self.flat_len();
+        Err(Error::invalid_input(format!(
+            "a flattened element of {self} has {expected} numbers, not {count}"
+        )))
     }
 
     fn flatten_checked(&self, element: &[f32], flat: &mut [f32]) {
@@ -88,7 +90,7 @@ impl Space {
     }
 }
 
-/// The place of the largest number, the first of equals.
+/// Returns the index of the largest number, the first of equal ones.
 fn largest(numbers: &[f32]) -> usize {
     numbers.iter().enumerate().fold(0, |best, (at, number)| if *number > numbers[best] { at } else { best })
 }

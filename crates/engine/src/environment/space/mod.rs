@@ -1,4 +1,4 @@
-//! What observations and actions look like.
+//! Spaces of observations and actions.
 
 mod dtype;
 mod flatten;
@@ -15,8 +15,8 @@ pub use dtype::Dtype;
 
 /// A set of observations or actions.
 ///
-/// An element is numbers in a row: those of a box or of binary digits last axis fastest, the number of a discrete
-/// choice itself, the parts of a dictionary in the order of their names, of a tuple in its own order.
+/// An element is a flat slice of numbers: those of a box or of binary digits in row-major order, the value of a discrete
+/// choice, the parts of a dictionary in the order of their names, the parts of a tuple in order.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Space {
@@ -28,34 +28,34 @@ pub enum Space {
         high: Vec<f32>,
         /// Size of each axis.
         shape: Vec<usize>,
-        /// What the numbers are.
+        /// Type of the numbers.
         dtype: Dtype,
     },
-    /// One of `n` whole numbers beginning with `start`.
+    /// One of `n` integers from `start`.
     Discrete {
-        /// How many.
+        /// Number of choices.
         n: u32,
-        /// The first.
+        /// First choice.
         start: i32,
     },
-    /// Several choices at once, each from 0.
+    /// Several discrete choices, each from 0.
     MultiDiscrete(Vec<u32>),
-    /// Zeros and ones of a shape.
+    /// An array of zeros and ones of this shape.
     MultiBinary(Vec<usize>),
-    /// Parts with names.
+    /// Named parts.
     Dict(BTreeMap<String, Space>),
-    /// Parts in a row.
+    /// Parts in order.
     Tuple(Vec<Space>),
 }
 
 impl Space {
-    /// A box with a bound on each element.
+    /// Creates a box with bounds for each element.
     ///
     /// # Errors
-    /// `InvalidInput` when the lengths differ from the shape's, a bound is NaN, or a low is above its high.
+    /// Returns `InvalidInput` if the lengths do not fit the shape, a bound is NaN, or a lower bound exceeds the upper one.
     pub fn bounded(low: Vec<f32>, high: Vec<f32>, shape: Vec<usize>) -> Result<Self> {
-        let wanted = shape.iter().try_fold(1usize, |count, side| count.checked_mul(*side));
-        if wanted != Some(low.len()) || low.len() != high.len() {
+        let expected = shape.iter().try_fold(1usize, |count, side| count.checked_mul(*side));
+        if expected != Some(low.len()) || low.len() != high.len() {
             return Err(Error::invalid_input(format!(
                 "a box of shape {shape:?} has {} low and {} high bounds; give one of each per element",
                 low.len(),
@@ -72,7 +72,7 @@ impl Space {
         Ok(Self::Box { low, high, shape, dtype: Dtype::Float32 })
     }
 
-    /// A box with the same bounds on all elements.
+    /// Creates a box with the same bounds for all elements.
     ///
     /// # Errors
     /// As [`Self::bounded`].
@@ -86,41 +86,46 @@ impl Space {
         Self::bounded(vec![low; count], vec![high; count], shape.to_vec())
     }
 
-    /// A row of elements, each within plus and minus its limit.
+    /// Creates a one-dimensional box, each element within plus and minus its limit.
     pub fn symmetric(limits: &[f32]) -> Self {
         let high: Vec<_> = limits.iter().map(|limit| limit.abs()).collect();
         let low = high.iter().map(|limit| -limit).collect();
         Self::Box { low, shape: vec![high.len()], high, dtype: Dtype::Float32 }
     }
 
-    /// The same box of numbers of another type.
+    /// Returns the same box with another element type.
     ///
     /// # Errors
-    /// `InvalidInput` for what is no box, and for bounds that the type has not.
-    pub fn with_dtype(mut self, wanted: Dtype) -> Result<Self> {
+    /// Returns `InvalidInput` for other spaces, and for bounds that the type does not represent.
+    pub fn with_dtype(mut self, new_dtype: Dtype) -> Result<Self> {
         let Self::Box { low, high, dtype, .. } = &mut self else {
-            return Err(Error::invalid_input(format!("{self} has no numbers of type {}", wanted.name())));
+            return Err(Error::invalid_input(format!(
+                "{self} is not a box and cannot have the element type {}",
+                new_dtype.name()
+            )));
         };
         let mut bounds = low.iter().chain(high.iter());
-        let fits = |bound: &f32| match wanted {
+        let fits = |bound: &f32| match new_dtype {
             Dtype::Uint8 => is_choice(f64::from(*bound), 256),
             Dtype::Int64 => bound.fract() == 0.0,
             Dtype::Float32 | Dtype::Float64 => true,
         };
         if let Some(bound) = bounds.find(|bound| !fits(bound)) {
-            let name = wanted.name();
-            return Err(Error::invalid_input(format!("a bound of {bound} is no {name}; give one that is")));
+            let name = new_dtype.name();
+            return Err(Error::invalid_input(format!(
+                "{name} cannot represent the bound {bound}; give one that it can"
+            )));
         }
-        *dtype = wanted;
+        *dtype = new_dtype;
         Ok(self)
     }
 
-    /// One of `n` numbers from 0.
+    /// Creates a space of `n` choices from 0.
     pub fn discrete(n: u32) -> Self {
         Self::Discrete { n, start: 0 }
     }
 
-    /// How many numbers one element has.
+    /// Returns the length of an element.
     pub fn len(&self) -> usize {
         match self {
             Self::Box { low, .. } => low.len(),
@@ -132,20 +137,20 @@ impl Space {
         }
     }
 
-    /// Whether an element has no number.
+    /// Returns whether elements are empty.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Whether the numbers are an element.
+    /// Returns whether `element` is in the space.
     pub fn contains(&self, element: &[f32]) -> bool {
         self.check(element).is_ok()
     }
 
-    /// As [`Self::contains`], with a word on what does not fit.
+    /// Checks that `element` is in the space.
     ///
     /// # Errors
-    /// `InvalidInput` for a wrong count, NaN, a number out of range, a choice that is no whole number.
+    /// Returns `InvalidInput` for a wrong length, NaN, a number out of range, or a choice that is not an integer.
     pub fn check(&self, element: &[f32]) -> Result<()> {
         if element.len() != self.len() {
             return Err(Error::invalid_input(format!(
@@ -157,11 +162,11 @@ impl Space {
         self.check_numbers(element, 0)
     }
 
-    /// Checks numbers of the right count; `at` is the place of the first among those of the whole element.
+    /// Checks numbers of the right count; `at` is the index of the first one in the whole element.
     fn check_numbers(&self, element: &[f32], at: usize) -> Result<()> {
         let outside = |index: usize| {
             Error::invalid_input(format!(
-                "number {} is {}, which lies outside {self}; clip or scale it",
+                "number {} is {}, which is outside {self}; clip or scale it",
                 at + index,
                 element[index]
             ))
@@ -189,7 +194,7 @@ impl Space {
     }
 }
 
-/// Whether a number is one of 0 to `count` - 1.
+/// Returns whether `value` is an integer from 0 to `count` - 1.
 fn is_choice(value: f64, count: u32) -> bool {
     value >= 0.0 && value < f64::from(count) && value.fract() == 0.0
 }
@@ -203,7 +208,7 @@ fn check_parts<'a>(parts: impl Iterator<Item = &'a Space>, mut element: &[f32], 
     Ok(())
 }
 
-/// As Gymnasium prints it: `Box(-2.0, 2.0, (1,))`, `Discrete(3)`.
+/// Writes a text like that of Gymnasium: `Box(-2.0, 2.0, [1])`, `Discrete(3)`.
 impl fmt::Display for Space {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -1,16 +1,16 @@
-//! Elements by chance.
+//! Random elements of a space.
 
 use super::Space;
 use crate::Random;
 
 impl Space {
-    /// Writes an element by chance into `element`, which has the space's length: uniform between two bounds,
-    /// exponential beyond one, normal without any (as Gymnasium does); choices are all as likely.
+    /// Writes a random element into `element`, which has the length of the space. As in Gymnasium, numbers are uniform
+    /// between two bounds, exponential with one bound, and normal without bounds; choices are uniform.
     pub fn sample_into(&self, random: &mut Random, element: &mut [f32]) {
         match self {
             Self::Box { low, high, dtype, .. } if dtype.is_whole() => {
                 for (value, (low, high)) in element.iter_mut().zip(low.iter().zip(high)) {
-                    // One more, since the upper bound is one of the numbers; infinite bounds leave none out.
+                    // The upper bound is included; infinite bounds stay infinite.
                     *value = number_between(random, *low, *high + 1.0).floor().clamp(*low, *high);
                 }
             }
@@ -39,7 +39,7 @@ impl Space {
         }
     }
 
-    /// An element by chance.
+    /// Returns a random element.
     pub fn sample(&self, random: &mut Random) -> Vec<f32> {
         let mut element = vec![0.0; self.len()];
         self.sample_into(random, &mut element);

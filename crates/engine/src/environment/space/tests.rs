@@ -19,7 +19,7 @@ fn everything() -> Space {
 }
 
 #[test]
-fn samples_are_elements_and_survive_flattening() {
+fn samples_are_elements_and_flattening_is_reversible() {
     let (space, mut random) = (everything(), Random::new(3));
     assert_eq!((space.len(), space.flat_len()), (6 + 1 + 2 + 2 + 2 + 1, 6 + 3 + 2 + 6 + 2 + 1));
     let (mut flat, mut back) = (vec![0.0; space.flat_len()], vec![0.0; space.len()]);
@@ -37,7 +37,7 @@ fn samples_are_elements_and_survive_flattening() {
 }
 
 #[test]
-fn what_is_no_element_is_named() {
+fn invalid_elements_are_rejected() {
     let box_ = Space::symmetric(&[2.0, 1.0]);
     assert!(box_.contains(&[2.0, -1.0]));
     for wrong in [&[2.1, 0.0][..], &[0.0, f32::NAN], &[f32::INFINITY, 0.0], &[0.0], &[0.0; 3]] {
@@ -52,7 +52,7 @@ fn what_is_no_element_is_named() {
     let mut element = everything().sample(&mut Random::new(1));
     element[10] = 4.0;
     let error = everything().check(&element).unwrap_err().to_string();
-    assert!(error.starts_with("number 10 is 4, which lies outside MultiDiscrete([2, 4])"), "{error}");
+    assert!(error.starts_with("number 10 is 4, which is outside MultiDiscrete([2, 4])"), "{error}");
 }
 
 #[test]
@@ -72,7 +72,7 @@ fn printed_as_gymnasium_does() {
 }
 
 #[test]
-fn boxes_have_types_of_numbers() {
+fn boxes_have_element_types() {
     let bytes = Space::uniform(0.0, 255.0, &[4]).unwrap().with_dtype(Dtype::Uint8).unwrap();
     assert_eq!(bytes.to_string(), "Box(0.0, 255.0, [4], uint8)");
     assert!(bytes.contains(&[0.0, 255.0, 7.0, 1.0]) && !bytes.contains(&[0.5, 0.0, 0.0, 0.0]));

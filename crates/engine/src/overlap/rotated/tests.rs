@@ -8,28 +8,28 @@ fn rectangle(center: [f64; 2], size: [f64; 2], angle: f64) -> RotatedRectangle {
     RotatedRectangle { center, size, angle }
 }
 
-fn near(value: f64, wanted: f64) {
-    assert!((value - wanted).abs() < 1e-12, "{value} is not {wanted}");
+fn near(value: f64, expected: f64) {
+    assert!((value - expected).abs() < 1e-12, "{value} is not {expected}");
 }
 
-/// A square and itself turned by 45 degrees share a regular octagon: the square of side 2 without four corners, each a
+/// A square and itself rotated by 45 degrees share a regular octagon: the square of side 2 without four corners, each a
 /// right triangle whose height is half the diagonal less half the side, sqrt(2) - 1, hence of area (sqrt(2) - 1)².
 #[test]
-fn turned_squares_share_an_octagon() {
-    let [upright, turned] = [0.0, FRAC_PI_4].map(|angle| rectangle([3.0, -7.0], [2.0, 2.0], angle));
+fn rotated_squares_share_an_octagon() {
+    let [upright, rotated] = [0.0, FRAC_PI_4].map(|angle| rectangle([3.0, -7.0], [2.0, 2.0], angle));
     let octagon = 4.0 - 4.0 * (SQRT_2 - 1.0).powi(2);
-    near(upright.shared_area(&turned), octagon);
-    near(upright.overlap(&turned), octagon / (8.0 - octagon));
+    near(upright.intersection_area(&rotated), octagon);
+    near(upright.iou(&rotated), octagon / (8.0 - octagon));
 }
 
 /// A 4 x 2 rectangle and itself at a right angle share the 2 x 2 square in the middle: 4 of 8 + 8 - 4.
 #[test]
 fn crossed_rectangles() {
     let along = rectangle([0.0, 0.0], [4.0, 2.0], 0.0);
-    near(along.overlap(&rectangle([0.0, 0.0], [4.0, 2.0], FRAC_PI_2)), 4.0 / 12.0);
-    near(along.overlap(&rectangle([0.0, 0.0], [4.0, 2.0], PI)), 1.0);
-    near(along.overlap(&rectangle([3.0, 1.0], [4.0, 2.0], 0.0)), 1.0 / 15.0);
-    assert_eq!(along.overlap(&along), 1.0);
+    near(along.iou(&rectangle([0.0, 0.0], [4.0, 2.0], FRAC_PI_2)), 4.0 / 12.0);
+    near(along.iou(&rectangle([0.0, 0.0], [4.0, 2.0], PI)), 1.0);
+    near(along.iou(&rectangle([3.0, 1.0], [4.0, 2.0], 0.0)), 1.0 / 15.0);
+    assert_eq!(along.iou(&along), 1.0);
 }
 
 /// The tip of a diamond reaches 0.5 into a square: a triangle 0.5 high and 1 wide.
@@ -37,30 +37,30 @@ fn crossed_rectangles() {
 fn tip_of_a_diamond() {
     let square = rectangle([0.0, 0.0], [2.0, 2.0], 0.0);
     let diamond = rectangle([0.5 + SQRT_2, 0.0], [2.0, 2.0], FRAC_PI_4);
-    near(square.shared_area(&diamond), 0.25);
+    near(square.intersection_area(&diamond), 0.25);
 }
 
 #[test]
 fn apart_touching_and_flat() {
     let square = rectangle([0.0, 0.0], [2.0, 2.0], 0.0);
-    assert_eq!(square.overlap(&rectangle([2.0, 0.0], [2.0, 2.0], 0.0)), 0.0);
-    assert_eq!(square.overlap(&rectangle([1e9, 0.0], [2.0, 2.0], 1.0)), 0.0);
+    assert_eq!(square.iou(&rectangle([2.0, 0.0], [2.0, 2.0], 0.0)), 0.0);
+    assert_eq!(square.iou(&rectangle([1e9, 0.0], [2.0, 2.0], 1.0)), 0.0);
     for size in [[0.0, 2.0], [-2.0, -2.0], [f64::NAN, 1.0]] {
-        assert_eq!(square.overlap(&rectangle([0.0, 0.0], size, 0.3)), 0.0);
+        assert_eq!(square.iou(&rectangle([0.0, 0.0], size, 0.3)), 0.0);
     }
     let inside = rectangle([0.1, 0.2], [0.5, 0.25], 0.7);
-    near(square.shared_area(&inside), 0.125);
-    near(inside.shared_area(&square), 0.125);
+    near(square.intersection_area(&inside), 0.125);
+    near(inside.intersection_area(&square), 0.125);
 }
 
-/// Octagon floor as above, heights 2 and 3 that share 1.
+/// Octagon base as above, heights 2 and 3 that share 1.
 #[test]
 fn standing_boxes() {
     let [low, high] = [([0.0, 2.0], 0.0), ([1.0, 4.0], FRAC_PI_4)]
-        .map(|(vertical, angle)| StandingBox { floor: rectangle([1.0, 2.0], [2.0, 2.0], angle), vertical });
+        .map(|(vertical, angle)| UprightBox3D { base: rectangle([1.0, 2.0], [2.0, 2.0], angle), vertical });
     let octagon = 4.0 - 4.0 * (SQRT_2 - 1.0).powi(2);
-    near(low.overlap(&high), octagon / (8.0 + 12.0 - octagon));
-    assert_eq!(low.overlap(&StandingBox { vertical: [2.0, 3.0], ..low }), 0.0);
+    near(low.iou(&high), octagon / (8.0 + 12.0 - octagon));
+    assert_eq!(low.iou(&UprightBox3D { vertical: [2.0, 3.0], ..low }), 0.0);
 }
 
 fn any_rectangle() -> impl Strategy<Value = RotatedRectangle> {
@@ -83,9 +83,9 @@ proptest! {
         let points = (0..steps * steps).map(|index| [at(index / steps), at(index % steps)]);
         let inside = points.filter(|point| contains(&a, *point) && contains(&b, *point)).count();
         let counted = inside as f64 * (12.0 / steps as f64).powi(2);
-        let shared = a.shared_area(&b);
+        let shared = a.intersection_area(&b);
         prop_assert!((shared - counted).abs() < 0.1, "{shared} is not {counted}");
-        prop_assert!((shared - b.shared_area(&a)).abs() < 1e-12);
+        prop_assert!((shared - b.intersection_area(&a)).abs() < 1e-12);
         prop_assert!(shared <= a.area().min(b.area()) + 1e-12);
     }
 }

@@ -1,4 +1,4 @@
-//! Boxes to and from the entries of COCO files.
+//! Conversion of boxes to and from the entries of COCO files.
 
 use std::fmt;
 
@@ -10,38 +10,38 @@ use crate::target::{BoundingBox, BoundingBoxList, Name, Segment, Segmentation};
 
 /// An entry of COCO's `annotations`, or of a COCO results file.
 ///
-/// Printed, it is the Python dictionary that OpenDR's `coco()` returns; JSON is COCO's own (`score`, where OpenDR
-/// writes `confidence`; both are read).
+/// `{}` writes the Python dictionary of OpenDR's `coco()`. The JSON form is that of COCO, with `score` where OpenDR has
+/// `confidence`; both are read.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct CocoAnnotation {
-    /// Number of the annotation.
+    /// Id of the annotation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub id: Option<i64>,
-    /// Number of the picture.
+    /// Id of the image.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub image_id: Option<i64>,
     /// Class.
     pub category_id: Name,
     /// `[left, top, width, height]` in pixels.
     pub bbox: [f32; 4],
-    /// Square pixels of the object.
+    /// Area of the object in square pixels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub area: Option<f32>,
-    /// Outline of the object.
+    /// Mask of the object.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub segmentation: Option<Segmentation>,
     /// 1 for a crowd.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub iscrowd: Option<u8>,
-    /// Score, of results.
+    /// Score of a result.
     #[serde(default, skip_serializing_if = "Option::is_none", alias = "confidence")]
     pub score: Option<f32>,
 }
 
 impl BoundingBox {
-    /// The box as a COCO entry, with or without its score (OpenDR ignores the switch for plain boxes).
+    /// Converts to a COCO entry, with or without the score (OpenDR ignores the switch for plain boxes).
     ///
-    /// As with OpenDR, an outline's own area is written with the outline; other boxes get `width * height`.
+    /// As in OpenDR, a box with a mask has the area of the mask, other boxes `width * height`.
     pub fn coco(&self, with_confidence: bool) -> CocoAnnotation {
         let segment = self.segment.as_deref();
         let outline = segment.filter(|segment| !segment.segmentation.is_empty());
@@ -58,7 +58,8 @@ impl BoundingBox {
     }
 }
 
-/// Score 0 when the entry has none; the box has a [`Segment`] when the entry has an outline or is a crowd.
+/// Converts from a COCO entry. The score is 0 if the entry has none; the box has a [`Segment`] if the entry has a mask or
+/// is a crowd.
 impl From<CocoAnnotation> for BoundingBox {
     fn from(entry: CocoAnnotation) -> Self {
         let [left, top, width, height] = entry.bbox;
@@ -73,14 +74,14 @@ impl From<CocoAnnotation> for BoundingBox {
 }
 
 impl BoundingBoxList {
-    /// An entry per box, with the list's picture number.
+    /// Returns an entry per box, with the image id of the list.
     pub fn coco(&self, with_confidence: bool) -> Vec<CocoAnnotation> {
         let entry =
             |found: &BoundingBox| CocoAnnotation { image_id: self.image_id, ..found.coco(with_confidence) };
         self.boxes.iter().map(entry).collect()
     }
 
-    /// The boxes of one picture. OpenDR drops the scores of results; here they are kept.
+    /// Creates a list of the boxes of one image. OpenDR drops the scores of results; this method keeps them.
     pub fn from_coco(entries: impl IntoIterator<Item = CocoAnnotation>, image_id: Option<i64>) -> Self {
         Self { image_id, ..Self::from(entries.into_iter().map(BoundingBox::from).collect::<Vec<_>>()) }
     }

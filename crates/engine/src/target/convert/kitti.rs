@@ -1,4 +1,4 @@
-//! Boxes in space to and from OpenDR's dictionary of arrays.
+//! Conversion of 3D boxes to and from OpenDR's dictionary of arrays.
 
 use std::fmt;
 
@@ -8,10 +8,10 @@ use crate::target::convert::kitti_text::{floats, integers, integers32, names};
 use crate::target::{BoundingBox3D, BoundingBox3DList, Name, TrackingAnnotation3D, TrackingAnnotation3DList};
 use crate::{Error, Result};
 
-/// Boxes in space, one array per field: OpenDR's `kitti()`. Printed, it is that Python dictionary.
+/// 3D boxes with one array per field: OpenDR's `kitti()`. `{}` writes that Python dictionary.
 ///
-/// OpenDR's boxes have `index` and `group_ids`, its tracks `id` and `frame`; here that also holds for lists of
-/// none or one, where OpenDR leaves arrays out, gives lists instead, or forgets `with_tracking_info`.
+/// Boxes have `index` and `group_ids`, tracks have `id` and `frame`, as in OpenDR. Here this also holds for empty lists
+/// and single items, where OpenDR omits arrays, returns lists instead, or ignores `with_tracking_info`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct KittiColumns {
     /// Classes.
@@ -41,7 +41,7 @@ pub struct KittiColumns {
     /// Identities.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub id: Option<Vec<i64>>,
-    /// Numbers of the clouds, -1 for none.
+    /// Indices of the frames, -1 for none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame: Option<Vec<i64>>,
 }
@@ -72,7 +72,7 @@ impl KittiColumns {
         self
     }
 
-    /// The boxes, when all arrays have one length.
+    /// Returns the boxes, if all arrays have one length.
     fn boxes(&self) -> Result<Vec<BoundingBox3D>> {
         let count = self.name.len();
         let lengths = [
@@ -110,44 +110,44 @@ fn same_length(column: &str, length: usize, count: usize) -> Result<()> {
 }
 
 impl BoundingBox3D {
-    /// The box as arrays of one element.
+    /// Returns the box as arrays of one element.
     pub fn kitti(&self) -> KittiColumns {
         KittiColumns::from_boxes(std::iter::once(self)).with_index()
     }
 }
 
 impl BoundingBox3DList {
-    /// The boxes, one array per field.
+    /// Returns the boxes as one array per field.
     pub fn kitti(&self) -> KittiColumns {
         KittiColumns::from_boxes(self.boxes.iter()).with_index()
     }
 
-    /// The boxes of arrays.
+    /// Creates a list from arrays.
     ///
     /// # Errors
-    /// `InvalidInput` when the arrays differ in length.
+    /// Returns `InvalidInput` if the arrays differ in length.
     pub fn from_kitti(columns: &KittiColumns) -> Result<Self> {
         columns.boxes().map(Self::from)
     }
 }
 
 impl TrackingAnnotation3D {
-    /// The object as arrays of one element, with or without `id` and `frame`.
+    /// Returns the object as arrays of one element, with or without `id` and `frame`.
     pub fn kitti(&self, with_tracking_info: bool) -> KittiColumns {
         columns_from_tracks(std::slice::from_ref(self), with_tracking_info)
     }
 }
 
 impl TrackingAnnotation3DList {
-    /// The objects, one array per field, with or without `id` and `frame`.
+    /// Returns the objects as one array per field, with or without `id` and `frame`.
     pub fn kitti(&self, with_tracking_info: bool) -> KittiColumns {
         columns_from_tracks(&self.annotations, with_tracking_info)
     }
 
-    /// The objects of arrays; a frame below 0 means none, and so does no array `frame`.
+    /// Creates a list from arrays. A frame below 0, or no array `frame`, means no frame.
     ///
     /// # Errors
-    /// `InvalidInput` when the arrays differ in length or there is no array `id`.
+    /// Returns `InvalidInput` if the arrays differ in length or there is no array `id`.
     pub fn from_kitti(columns: &KittiColumns) -> Result<Self> {
         let boxes = columns.boxes()?;
         let ids = columns.id.as_deref().ok_or_else(|| {

@@ -1,8 +1,8 @@
-//! Boxes in space to and from KITTI's label files.
+//! Conversion of 3D boxes to and from KITTI's label files.
 //!
-//! A line of the detection benchmark: type, truncated, occluded, alpha, left, top, right, bottom, **height, width,
-//! length**, x, y, z, rotation_y and, in results, a score. The tracking benchmark writes frame and identity before
-//! it. [`BoundingBox3D::dimensions`] is OpenDR's length, height, width; these functions reorder.
+//! A line of the detection benchmark has type, truncated, occluded, alpha, left, top, right, bottom, **height, width,
+//! length**, x, y, z, rotation_y and, in results, a score. The tracking benchmark writes frame and identity before it.
+//! [`BoundingBox3D::dimensions`] has OpenDR's order length, height, width; these functions reorder.
 
 use std::fmt::Write as _;
 
@@ -25,7 +25,7 @@ fn box_from_row(row: &Row<'_>, first: usize) -> Result<BoundingBox3D> {
     })
 }
 
-/// The fields of a line; blanks within a label become `_`, as KITTI writes them.
+/// Writes the fields of a line; spaces within a label become `_`, as in KITTI.
 fn write_box(found: &BoundingBox3D, text: &mut String) {
     let BoundingBox3D { truncated, occluded, alpha, rotation_y, confidence, .. } = found;
     let name: Vec<_> = found.name.to_string().split_whitespace().map(str::to_owned).collect();
@@ -42,10 +42,10 @@ fn write_box(found: &BoundingBox3D, text: &mut String) {
 }
 
 impl BoundingBox3DList {
-    /// Reads a label or results file of the detection benchmark; the score of a label is 1.
+    /// Parses a label or results file of the detection benchmark; the score of a label is 1.
     ///
     /// # Errors
-    /// `Format` with the number of the line.
+    /// Returns `Format` with the line number.
     pub fn from_kitti_text(text: &str) -> Result<Self> {
         let boxes = Row::all(text, None).map(|row| {
             row.expect(15..=16)?;
@@ -54,7 +54,7 @@ impl BoundingBox3DList {
         boxes.collect::<Result<Vec<_>>>().map(Self::from)
     }
 
-    /// Writes a results file of the detection benchmark.
+    /// Returns the text of a results file of the detection benchmark.
     pub fn kitti_text(&self) -> String {
         let mut text = String::new();
         self.boxes.iter().for_each(|found| write_box(found, &mut text));
@@ -63,10 +63,10 @@ impl BoundingBox3DList {
 }
 
 impl TrackingAnnotation3DList {
-    /// Reads a label or results file of the tracking benchmark; the score of a label is 1.
+    /// Parses a label or results file of the tracking benchmark; the score of a label is 1.
     ///
     /// # Errors
-    /// `Format` with the number of the line.
+    /// Returns `Format` with the line number.
     pub fn from_kitti_text(text: &str) -> Result<Self> {
         let tracks = Row::all(text, None).map(|row| {
             row.expect(17..=18)?;
@@ -76,7 +76,7 @@ impl TrackingAnnotation3DList {
         tracks.collect::<Result<Vec<_>>>().map(Self::from)
     }
 
-    /// Writes a results file of the tracking benchmark.
+    /// Returns the text of a results file of the tracking benchmark.
     pub fn kitti_text(&self) -> String {
         let mut text = String::new();
         for TrackingAnnotation3D { bounding_box_3d, id, frame } in &self.annotations {
@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_name_the_line() {
+    fn errors_state_the_line() {
         let error = BoundingBox3DList::from_kitti_text(&format!("{LABELS}Car 1 2")).unwrap_err();
         assert!(error.to_string().starts_with("line 3 has 3 fields instead of 15 to 16"), "{error}");
         let error = BoundingBox3DList::from_kitti_text(&LABELS.replace("58.5", "NaN")).unwrap_err();

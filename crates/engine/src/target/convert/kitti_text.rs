@@ -1,17 +1,17 @@
-//! Python's texts of a dictionary of arrays, for `str(kitti())`.
+//! Texts of arrays in a dictionary as Python prints them, for `str(kitti())`.
 
 use std::fmt::Write as _;
 
 use crate::numpy_text::{Number, array_repr};
 use crate::target::Name;
 
-/// Characters a line, elements before a summary, elements at each end of one: NumPy's defaults.
+/// Characters per line, elements before a summary, elements at each end of one: NumPy's defaults.
 const LINE: usize = 75;
 const SUMMARY: usize = 1000;
 const EDGE: usize = 3;
 const PREFIX: &str = "array(";
 
-/// `repr(text)`.
+/// Returns `repr(text)`.
 pub(super) fn python_str(text: &str) -> String {
     let quote = if text.contains('\'') && !text.contains('"') { '"' } else { '\'' };
     let mut out = String::from(quote);
@@ -33,23 +33,23 @@ pub(super) fn python_str(text: &str) -> String {
     out
 }
 
-/// `repr` of an array of numbers that Python holds as floats, `[count]` or `[count, N]`.
+/// Returns `repr` of an array of Python floats, `[count]` or `[count, N]`.
 pub(super) fn floats<const N: usize>(rows: &[[f32; N]]) -> String {
     let shape = if N == 1 || rows.is_empty() { &[rows.len()][..] } else { &[rows.len(), N] };
     array_repr(shape, &|at| Number::F64(as_python(rows[at / N][at % N])))
 }
 
-/// The `float64` of the shortest digits, as if the number had been typed in Python.
+/// Returns the `float64` of the shortest digits, as if the number had been typed in Python.
 fn as_python(number: f32) -> f64 {
     number.to_string().parse().unwrap_or(f64::NAN)
 }
 
-/// `repr` of an array of `int64`.
+/// Returns `repr` of an array of `int64`.
 pub(super) fn integers(numbers: &[i64]) -> String {
     array_repr(&[numbers.len()], &|at| Number::Int(numbers[at]))
 }
 
-/// `repr` of an array of `int32`.
+/// Returns `repr` of an array of `int32`.
 pub(super) fn integers32(numbers: &[i32]) -> String {
     if numbers.is_empty() {
         return "array([], dtype=int32)".to_owned();
@@ -58,7 +58,7 @@ pub(super) fn integers32(numbers: &[i32]) -> String {
     with_dtype(text.strip_suffix(')').unwrap_or(&text), "int32")
 }
 
-/// `repr` of an array of class numbers, or of labels as soon as there is one.
+/// Returns `repr` of an array of class indices, or of labels if there is at least one label.
 pub(super) fn names(names: &[Name]) -> String {
     let index = |name: &Name| match name {
         Name::Index(index) => Some(*index),
@@ -82,18 +82,18 @@ pub(super) fn names(names: &[Name]) -> String {
         *line += separator;
     };
     for (index, label) in labels.iter().enumerate() {
-        let shown = !cut || index < EDGE || index >= labels.len() - EDGE;
+        let is_printed = !cut || index < EDGE || index >= labels.len() - EDGE;
         if cut && index == EDGE {
             extend("...", ", ", &mut line);
         }
-        if shown {
+        if is_printed {
             extend(&python_str(label), if index + 1 == labels.len() { "" } else { ", " }, &mut line);
         }
     }
     with_dtype(&(text + &line + "]"), &format!("'<U{width}'"))
 }
 
-/// Ends the text of an array with its type, on a line of its own where it does not fit.
+/// Appends the type to the text of an array, on a line of its own if it does not fit.
 fn with_dtype(array: &str, dtype: &str) -> String {
     let (array, dtype) = (format!("{array},"), format!("dtype={dtype})"));
     let last = array.rsplit('\n').next().unwrap_or_default().chars().count();

@@ -1,4 +1,4 @@
-//! Targets to and from the forms of data sets. One file per form.
+//! Conversion of targets to and from the formats of data sets. One file per format.
 
 mod coco;
 mod kitti;

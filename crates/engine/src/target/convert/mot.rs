@@ -1,8 +1,8 @@
-//! Boxes to and from the rows of the MOT Challenge.
+//! Conversion of boxes to and from the rows of the MOT Challenge.
 //!
 //! A row is `frame, left, top, width, height, confidence` for boxes and `frame, id, left, top, width, height,
-//! confidence` for tracks; a picture without a number is frame -1. OpenDR's switch `with_confidence=False` is the
-//! row without its last element.
+//! confidence` for tracks; an image without a frame number is frame -1. OpenDR's `with_confidence=False` is the row
+//! without its last element.
 
 use std::fmt::Write as _;
 
@@ -14,33 +14,33 @@ fn frame_number(frame: Option<i64>) -> f32 {
     frame.unwrap_or(-1) as f32
 }
 
-/// Frame numbers below 0 mean that there is none.
+/// Converts a frame number; numbers below 0 mean none.
 fn frame(number: i64) -> Option<i64> {
     (number >= 0).then_some(number)
 }
 
-/// Finite numbers, or which one is not.
+/// Checks the length of a row and that its numbers are finite.
 fn finite(row: &[f32], counts: std::ops::RangeInclusive<usize>) -> Result<()> {
     if counts.contains(&row.len()) && row.iter().all(|number| number.is_finite()) {
         return Ok(());
     }
     Err(Error::invalid_input(format!(
-        "{row:?} is no MOT row: {} to {} finite numbers are wanted",
+        "{row:?} is not a MOT row; give {} to {} finite numbers",
         counts.start(),
         counts.end()
     )))
 }
 
 impl BoundingBox {
-    /// `[frame, left, top, width, height, confidence]`.
+    /// Returns the row `[frame, left, top, width, height, confidence]`.
     pub fn mot(&self, frame: Option<i64>) -> [f32; 6] {
         [frame_number(frame), self.left, self.top, self.width, self.height, self.confidence]
     }
 
-    /// Frame and box of a row `[frame, left, top, width, height]`, with or without a confidence (default 1).
+    /// Returns frame and box of a row `[frame, left, top, width, height]`, optionally with a confidence (default 1).
     ///
     /// # Errors
-    /// `InvalidInput` for another number of elements, or one that is not finite.
+    /// Returns `InvalidInput` for another number of elements, or one that is not finite.
     pub fn from_mot(row: &[f32]) -> Result<(Option<i64>, Self)> {
         finite(row, 5..=6)?;
         let confidence = row.get(5).copied().unwrap_or(1.0);
@@ -49,24 +49,24 @@ impl BoundingBox {
 }
 
 impl BoundingBoxList {
-    /// A row per box, see [`BoundingBox::mot`].
+    /// Returns a row per box, see [`BoundingBox::mot`].
     pub fn mot(&self, frame: Option<i64>) -> Vec<[f32; 6]> {
         self.boxes.iter().map(|found| found.mot(frame)).collect()
     }
 }
 
 impl TrackingAnnotation {
-    /// `[frame, id, left, top, width, height, confidence]`.
+    /// Returns the row `[frame, id, left, top, width, height, confidence]`.
     pub fn mot(&self) -> [f32; 7] {
         let [frame, left, top, width, height, confidence] = self.bounding_box.mot(self.frame);
         [frame, self.id as f32, left, top, width, height, confidence]
     }
 
-    /// A row `[frame, id, left, top, width, height]`, with or without a confidence (default 1); what follows it
-    /// is ignored. The class is 0.
+    /// Creates an annotation of class 0 from a row `[frame, id, left, top, width, height]`, optionally with a confidence
+    /// (default 1). Further elements are ignored.
     ///
     /// # Errors
-    /// `InvalidInput` for fewer than 6 elements, more than 10, or one that is not finite.
+    /// Returns `InvalidInput` for fewer than 6 elements, more than 10, or one that is not finite.
     pub fn from_mot(row: &[f32]) -> Result<Self> {
         finite(row, 6..=10)?;
         let confidence = row.get(6).copied().unwrap_or(1.0);
@@ -76,26 +76,26 @@ impl TrackingAnnotation {
 }
 
 impl TrackingAnnotationList {
-    /// A row per object, see [`TrackingAnnotation::mot`].
+    /// Returns a row per object, see [`TrackingAnnotation::mot`].
     pub fn mot(&self) -> Vec<[f32; 7]> {
         self.annotations.iter().map(TrackingAnnotation::mot).collect()
     }
 
-    /// Reads rows, see [`TrackingAnnotation::from_mot`].
+    /// Creates a list from rows, see [`TrackingAnnotation::from_mot`].
     ///
     /// # Errors
-    /// `InvalidInput` for a row that is none.
+    /// Returns `InvalidInput` for an invalid row.
     pub fn from_mot<'a>(rows: impl IntoIterator<Item = &'a [f32]>) -> Result<Self> {
         rows.into_iter().map(TrackingAnnotation::from_mot).collect::<Result<Vec<_>>>().map(Self::from)
     }
 
-    /// Reads a file of the MOT Challenge: 6 to 10 fields a line between commas or blanks.
+    /// Parses a file of the MOT Challenge: 6 to 10 fields per line, separated by commas or spaces.
     ///
-    /// The eighth of 8 or 9 fields (ground truth) is the class; of 10 fields (detections, results) the last three
-    /// are ignored. Coordinates are taken as they stand, although the challenge counts pixels from 1.
+    /// In lines of 8 or 9 fields (ground truth) the eighth is the class; in lines of 10 fields (detections, results) the last
+    /// three are ignored. Coordinates are not changed, although the challenge counts pixels from 1.
     ///
     /// # Errors
-    /// `Format` with the number of the line.
+    /// Returns `Format` with the line number.
     pub fn from_mot_text(text: &str) -> Result<Self> {
         let tracks = Row::all(text, Some(',')).map(|row| {
             row.expect(6..=10)?;
@@ -111,7 +111,7 @@ impl TrackingAnnotationList {
         tracks.collect::<Result<Vec<_>>>().map(Self::from)
     }
 
-    /// Writes a results file of the MOT Challenge: 10 fields a line, of which the last three are -1.
+    /// Returns the text of a results file of the MOT Challenge: 10 fields per line, of which the last three are -1.
     pub fn mot_text(&self) -> String {
         let mut text = String::new();
         for TrackingAnnotation { bounding_box: found, id, frame } in &self.annotations {
@@ -155,15 +155,15 @@ mod tests {
     }
 
     #[test]
-    fn errors_name_the_line() {
-        for (text, wanted) in [
+    fn errors_state_the_line() {
+        for (text, expected) in [
             ("1,2,3,4,5,6\n1,2,3", "line 2 has 3 fields"),
             ("1,2,3,4,5,inf", "line 1 has \"inf\" in field 6"),
             ("\n1,x,3,4,5,6", "line 2 has \"x\" in field 2"),
             ("1.5,2,3,4,5,6", "line 1 has \"1.5\" in field 1"),
         ] {
             let error = TrackingAnnotationList::from_mot_text(text).unwrap_err();
-            assert!(error.to_string().starts_with(wanted), "{error}");
+            assert!(error.to_string().starts_with(expected), "{error}");
         }
     }
 }

@@ -1,15 +1,15 @@
-//! Lines of numbers between separators, as MOT and KITTI write them.
+//! Lines of separated numbers, as in MOT and KITTI files.
 
 use crate::{Error, Result};
 
-/// The fields of one line; every error names the line.
+/// The fields of a line; every error states the line.
 pub(super) struct Row<'a> {
     fields: Vec<&'a str>,
     line: usize,
 }
 
 impl<'a> Row<'a> {
-    /// The lines of `text` that are not empty, cut at `separator` or blanks.
+    /// Returns the lines of `text` that are not empty, split at `separator` or white space.
     pub(super) fn all(text: &'a str, separator: Option<char>) -> impl Iterator<Item = Self> {
         text.lines().enumerate().filter_map(move |(index, line)| {
             let cut = |c: char| c.is_whitespace() || Some(c) == separator;
@@ -35,7 +35,7 @@ impl<'a> Row<'a> {
         self.fields.get(index).copied().ok_or_else(|| self.wrong(&format!("has no field {}", index + 1)))
     }
 
-    /// A finite number.
+    /// Returns a finite number.
     pub(super) fn number(&self, index: usize) -> Result<f32> {
         let text = self.text(index)?;
         text.parse().ok().filter(|number: &f32| number.is_finite()).ok_or_else(|| {
@@ -43,7 +43,7 @@ impl<'a> Row<'a> {
         })
     }
 
-    /// Finite numbers from field `index` on.
+    /// Returns finite numbers from field `index` on.
     pub(super) fn numbers<const N: usize>(&self, index: usize) -> Result<[f32; N]> {
         let mut numbers = [0.0; N];
         for (offset, number) in numbers.iter_mut().enumerate() {
@@ -52,17 +52,17 @@ impl<'a> Row<'a> {
         Ok(numbers)
     }
 
-    /// A whole number, which may be written as `3.0`.
+    /// Returns an integer, which may be written as `3.0`.
     pub(super) fn whole(&self, index: usize) -> Result<i64> {
         let text = self.text(index)?;
         let digits = text.split_once('.').filter(|(_, rest)| rest.bytes().all(|byte| byte == b'0'));
         let digits = digits.map_or(text, |(whole, _)| whole);
-        digits.parse().map_err(|_| {
-            self.wrong(&format!("has {text:.40?} in field {} instead of a whole number", index + 1))
-        })
+        digits
+            .parse()
+            .map_err(|_| self.wrong(&format!("has {text:.40?} in field {} instead of an integer", index + 1)))
     }
 
     pub(super) fn wrong(&self, what: &str) -> Error {
-        Error::format(format!("line {} {what}; mend the file", self.line))
+        Error::format(format!("line {} {what}; fix the file", self.line))
     }
 }

@@ -1,21 +1,21 @@
-//! Masks from outlines, pixel for pixel as COCO's tools fill them.
+//! Masks from polygons, equal to those of COCO's tools pixel for pixel.
 
 use super::overlap::pixels;
 use crate::target::Rle;
 use crate::{Error, Result};
 
-/// Steps to a pixel on the way along an outline.
+/// Steps per pixel along an outline.
 const SCALE: f64 = 5.0;
-/// The longest way, in steps: far more than any outline of a picture needs.
+/// Maximum length of an outline in steps, far above that of any outline in an image.
 const MAX_STEPS: i64 = 1 << 26;
 
 impl Rle {
-    /// The mask inside polygons `[x0, y0, x1, y1, ...]` (pixels), their union where there are several.
+    /// Creates the mask inside polygons `[x0, y0, x1, y1, ...]` in pixels; of several, their union.
     ///
-    /// Equal to `rleFrPoly` and `rleMerge` of pycocotools; fewer than three points enclose nothing.
+    /// It equals `rleFrPoly` and `rleMerge` of pycocotools; fewer than three points enclose nothing.
     ///
     /// # Errors
-    /// `InvalidInput` for coordinates that are not finite or lead far away, and a picture of 2^32 pixels or more.
+    /// Returns `InvalidInput` for coordinates that are not finite or far outside, and for an image of 2^32 pixels or more.
     pub fn from_polygons<P: AsRef<[f64]>>(height: u32, width: u32, polygons: &[P]) -> Result<Self> {
         let mut masks = polygons.iter().map(|polygon| Self::from_polygon(height, width, polygon.as_ref()));
         let Some(first) = masks.next() else { return Self::from_polygon(height, width, &[]) };
@@ -38,7 +38,7 @@ impl Rle {
     }
 }
 
-/// The points in steps.
+/// Converts points from pixels to steps.
 fn scaled(polygon: &[f64]) -> Result<Vec<[i32; 2]>> {
     if let Some(wrong) = polygon.iter().find(|pixel| !pixel.is_finite()) {
         return Err(Error::invalid_input(format!(
@@ -49,9 +49,10 @@ fn scaled(polygon: &[f64]) -> Result<Vec<[i32; 2]>> {
     let step = |pixel: f64| (SCALE * pixel + 0.5).clamp(-far, far) as i32;
     let points: Vec<[i32; 2]> =
         polygon.as_chunks::<2>().0.iter().map(|[x, y]| [step(*x), step(*y)]).collect();
-    let way: i64 = points.iter().zip(points.iter().cycle().skip(1)).map(|(from, to)| steps(*from, *to)).sum();
-    if way > MAX_STEPS {
-        let pixels = way as f64 / SCALE;
+    let length: i64 =
+        points.iter().zip(points.iter().cycle().skip(1)).map(|(from, to)| steps(*from, *to)).sum();
+    if length > MAX_STEPS {
+        let pixels = length as f64 / SCALE;
         return Err(Error::invalid_input(format!(
             "an outline is {pixels:.0} pixels long; check its coordinates"
         )));
@@ -59,12 +60,12 @@ fn scaled(polygon: &[f64]) -> Result<Vec<[i32; 2]>> {
     Ok(points)
 }
 
-/// The longer of the two extents of an edge.
+/// Returns the longer of the two extents of an edge.
 fn steps(from: [i32; 2], to: [i32; 2]) -> i64 {
     i64::from((from[0] - to[0]).abs().max((from[1] - to[1]).abs()))
 }
 
-/// Where an outline crosses the middle of a column: from there on, down the columns, the mask turns over.
+/// Positions where an outline crosses the middle of a column; the mask toggles there, in column order.
 struct Crossings {
     height: u32,
     width: u32,
@@ -73,7 +74,7 @@ struct Crossings {
 }
 
 impl Crossings {
-    /// Goes along an edge. Its points are computed from the end with the smaller coordinate, whichever way it leads.
+    /// Adds an edge. Its points are computed from the end with the smaller coordinate, in either direction.
     fn edge(&mut self, from: [i32; 2], to: [i32; 2]) {
         let [dx, dy] = [(to[0] - from[0]).abs(), (to[1] - from[1]).abs()];
         let flat = dx >= dy;
@@ -103,7 +104,7 @@ impl Crossings {
     }
 }
 
-/// Lengths between sorted places; two crossings at one place cancel out.
+/// Returns the lengths between sorted positions; two crossings at one position cancel out.
 fn runs_from_ends(ends: &[u32]) -> Vec<u32> {
     let mut runs: Vec<u32> = Vec::with_capacity(ends.len());
     let mut lengths = ends.iter().scan(0, |last, end| {
@@ -128,7 +129,7 @@ mod tests {
 
     /// The texts are those of pycocotools 2.0.11 (`encode` of `merge(frPyObjects(..))`).
     #[test]
-    fn filled_as_pycocotools_fills() {
+    fn polygons_are_filled_as_by_pycocotools() {
         let packed = |polygons: &[Vec<f64>]| Rle::from_polygons(12, 14, polygons).unwrap().packed();
         assert_eq!(
             packed(&[vec![2.3, 1.7, 10.1, 2.9, 11.5, 9.3, 3.7, 10.5, 3.7, 10.5]]),
@@ -148,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn outlines_that_lead_far_are_refused() {
+    fn outlines_far_outside_are_rejected() {
         for polygon in [[0.0, 0.0, f64::NAN, 1.0, 2.0, 2.0], [0.0, 0.0, 1e300, 0.0, 0.0, -1e300]] {
             assert!(Rle::from_polygons(9, 9, &[polygon]).is_err());
         }

@@ -1,10 +1,10 @@
-//! Masks taken together: union, intersection, extent.
+//! Union, intersection and extent of masks.
 
 use crate::target::Rle;
 use crate::{Error, Result};
 
 impl Rle {
-    /// `[left, top, width, height]` in pixels around the object; zeros when there is none.
+    /// Returns the box `[left, top, width, height]` around the object, in pixels; zeros if there is none.
     pub fn bounding_box(&self) -> [u32; 4] {
         let (height, mut at) = (u64::from(self.height), 0u64);
         let mut corners: Option<[u64; 4]> = None;
@@ -23,20 +23,20 @@ impl Rle {
         [left, top, right - left, bottom - top].map(|pixels| pixels as u32)
     }
 
-    /// Pixels of both objects.
+    /// Returns the number of pixels in both masks.
     ///
     /// # Errors
-    /// `InvalidInput` for masks of different sizes.
+    /// Returns `InvalidInput` for masks of different sizes.
     pub fn intersection(&self, other: &Self) -> Result<u64> {
         let mut pixels = 0;
         self.walk(other, |run, [this, that]| pixels += if this && that { u64::from(run) } else { 0 })?;
         Ok(pixels)
     }
 
-    /// The mask of what belongs to either object.
+    /// Returns the mask of the pixels in either mask.
     ///
     /// # Errors
-    /// `InvalidInput` for masks of different sizes, and of 2^32 pixels or more.
+    /// Returns `InvalidInput` for masks of different sizes, or of 2^32 pixels or more.
     pub fn union(&self, other: &Self) -> Result<Self> {
         pixels(self.height, self.width)?;
         let (mut counts, mut inside) = (vec![0], false);
@@ -52,13 +52,13 @@ impl Rle {
         Self::new(self.height, self.width, counts)
     }
 
-    /// Goes through the pixels of two masks at once, in pieces that are uniform in both.
+    /// Visits the pixels of two masks together, in runs that are uniform in both.
     fn walk(&self, other: &Self, mut piece: impl FnMut(u32, [bool; 2])) -> Result<()> {
         if self.size() != other.size() {
             let ([height, width], [rows, columns]) = (self.size(), other.size());
             return Err(Error::invalid_input(format!(
-                "masks of {height}x{width} and {rows}x{columns} pixels cannot be laid over each other; \
-                 both must be of the picture's size"
+                "masks of {height}x{width} and {rows}x{columns} pixels cannot be combined; \
+                 both must have the size of the image"
             )));
         }
         let (mut these, mut those) = (self.counts.iter().copied(), other.counts.iter().copied());
@@ -82,13 +82,13 @@ impl Rle {
     }
 }
 
-/// Pixels of a picture.
+/// Returns the number of pixels of an image.
 ///
 /// # Errors
-/// `InvalidInput` when a run could be longer than a number of 32 bits tells.
+/// Returns `InvalidInput` if the number does not fit into 32 bits.
 pub(super) fn pixels(height: u32, width: u32) -> Result<u32> {
     height.checked_mul(width).ok_or_else(|| {
-        Error::invalid_input(format!("a mask of {height}x{width} pixels is too big; scale the picture down"))
+        Error::invalid_input(format!("a mask of {height}x{width} pixels is too large; scale the image down"))
     })
 }
 
@@ -105,7 +105,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn as_on_pixels((this, that) in masks(), band in 0usize..35) {
+        fn equals_operations_on_pixels((this, that) in masks(), band in 0usize..35) {
             let this: Vec<bool> = this.iter().enumerate().map(|(at, inside)| *inside && at >= band).collect();
             let [left, right] = [&this, &that].map(|mask| Rle::from_mask(mask, 5, 7).unwrap());
             let pairs = || this.iter().zip(&that);
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn masks_of_different_sizes_are_refused() {
+    fn masks_of_different_sizes_are_rejected() {
         let (wide, high) = (Rle::new(2, 3, vec![6]).unwrap(), Rle::new(3, 2, vec![0, 6]).unwrap());
         assert!(wide.union(&high).is_err() && wide.intersection(&high).is_err());
     }

@@ -1,6 +1,6 @@
 //! MediaPipe's points of a face: the mesh of 468, then five of each iris (its centre, and four on its border).
 
-/// The points by number: the mesh has no words for them.
+/// Names of the points; those of the mesh are numbered.
 #[rustfmt::skip] // A table.
 pub(super) const JOINTS: &[&str] = &[
     "mesh_0", "mesh_1", "mesh_2", "mesh_3", "mesh_4", "mesh_5", "mesh_6", "mesh_7", "mesh_8", "mesh_9",

@@ -8,25 +8,29 @@ use crate::tensorflow::call::Call;
 use crate::tensorflow::layout::Order;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Dim, Kind, Operator, Wire};
+use opendr_onnx::{Dim, ElementType, GraphTensor, Operator};
 
-/// The filter's dimensions, which have to be known.
+/// Returns the filter's dimensions, which must be known.
 fn filter_dims(call: &Call) -> Result<[usize; 4]> {
-    let dims = call.input(1)?.known_dims().ok_or_else(|| Error::unsupported("filter of open size"))?;
-    dims.try_into().map_err(|dims: Vec<usize>| Error::format(format!("filter of rank {}, not 4", dims.len())))
+    let dims = call
+        .input(1)?
+        .known_dims()
+        .ok_or_else(|| Error::unsupported("a filter of open size is not supported"))?;
+    dims.try_into()
+        .map_err(|dims: Vec<usize>| Error::format(format!("the filter has rank {} instead of 4", dims.len())))
 }
 
-/// The filter stored in the order given.
-fn filter(ctx: &mut Lowering, call: &Call, order: [usize; 4]) -> Result<Wire> {
+/// Returns the filter stored in the given order.
+fn filter(ctx: &mut Lowering, call: &Call, order: [usize; 4]) -> Result<GraphTensor> {
     ctx.ordered(call.input(1)?, &Order::new(order.to_vec()))
 }
 
-/// The number of channels that the image must have.
+/// Checks the number of channels of the image.
 fn check_channels(image: Dim, filter: usize) -> Result<()> {
     match image {
-        Some(channels) if channels != filter => {
-            Err(Error::format(format!("filter for {filter} channels on an image of {channels}")))
-        }
+        Some(channels) if channels != filter => Err(Error::format(format!(
+            "a filter for {filter} channels does not match an image of {channels}"
+        ))),
         _ => Ok(()),
     }
 }
@@ -50,23 +54,30 @@ pub fn depthwise(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let image = call.input(0)?.dims();
     axes.spatial(&image)?;
     check_channels(image[axes.channels], channels)?;
-    let filters = channels.checked_mul(multiplier).ok_or_else(|| Error::format("too many filters"))?;
+    let filters = channels
+        .checked_mul(multiplier)
+        .ok_or_else(|| Error::format("the number of filters is too large"))?;
     let weights = filter(ctx, call, [2, 3, 0, 1])?;
     let shape = [filters, 1, height, width];
     let dims = shape.map(Some).to_vec();
-    let target = Wire::ints(shape.map(|dim| dim as i64));
-    let weights =
-        ctx.graph.add(&weights.hint(), Operator::new("Reshape"), &[&weights, &target], Kind::Float, dims)?;
+    let target = GraphTensor::ints(shape.map(|dim| dim as i64));
+    let weights = ctx.graph.add(
+        &weights.hint(),
+        Operator::new("Reshape"),
+        &[&weights, &target],
+        ElementType::Float,
+        dims,
+    )?;
     convolve(ctx, call, axes, [height, width], weights, channels, filters)
 }
 
-/// Writes the convolution and what is fused into it.
+/// Writes the convolution and the operations fused into it.
 fn convolve(
     ctx: &mut Lowering,
     call: &Call,
     axes: Axes,
     kernel: Pair<usize>,
-    weights: Wire,
+    weights: GraphTensor,
     groups: usize,
     filters: usize,
 ) -> Result<Vec<Value>> {
@@ -84,31 +95,31 @@ fn convolve(
     if let Some(bias) = &epilogue.bias {
         inputs.push(channel_vector(ctx, bias, filters)?);
     }
-    let inputs: Vec<&Wire> = inputs.iter().collect();
-    let output = ctx.emit(call, operator, &inputs, Kind::Float, &dims, axes.order())?;
+    let inputs: Vec<&GraphTensor> = inputs.iter().collect();
+    let output = ctx.emit(call, operator, &inputs, ElementType::Float, &dims, axes.order())?;
     Ok(vec![epilogue.activate(ctx, call, output)?])
 }
 
-/// A bias of one element per filter.
-fn channel_vector(ctx: &mut Lowering, bias: &Value, filters: usize) -> Result<Wire> {
+/// Returns a bias of one element per filter.
+fn channel_vector(ctx: &mut Lowering, bias: &Value, filters: usize) -> Result<GraphTensor> {
     match bias.known_dims().as_deref() {
         Some([length]) if *length == filters => Ok(bias.wire.clone()),
         Some([1]) | Some([]) => {
-            let shape = Wire::ints([filters as i64]);
+            let shape = GraphTensor::ints([filters as i64]);
             let dims = vec![Some(filters)];
             ctx.graph.add(
                 &bias.wire.hint(),
                 Operator::new("Expand"),
                 &[&bias.wire, &shape],
-                Kind::Float,
+                ElementType::Float,
                 dims,
             )
         }
-        other => Err(Error::format(format!("bias of shape {other:?} for {filters} filters"))),
+        other => Err(Error::format(format!("a bias of shape {other:?} does not match {filters} filters"))),
     }
 }
 
-/// `Conv2DBackpropInput`: the output's shape, the filter, the image.
+/// Converts `Conv2DBackpropInput`: the output's shape, the filter, the image.
 pub fn transposed(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let [height, width, filters, channels] = filter_dims(call)?;
     let axes = Axes::of(call);
@@ -134,7 +145,7 @@ pub fn transposed(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let weights = filter(ctx, call, [3, 2, 0, 1])?;
     let dims = axes.dims(image.dims()[0], Some(filters), [height.output, width.output]);
     let image = ctx.ordered(image, &axes.order())?;
-    Ok(vec![ctx.emit(call, operator, &[&image, &weights], Kind::Float, &dims, axes.order())?])
+    Ok(vec![ctx.emit(call, operator, &[&image, &weights], ElementType::Float, &dims, axes.order())?])
 }
 
 /// How one axis of a transposed convolution is cropped (`before`, `after`) or extended (`extra`).
@@ -145,8 +156,8 @@ struct Fit {
     output: Dim,
 }
 
-/// The convolution whose gradient this is would have padded the output so; that much is cropped here. Where the
-/// output's size is open it is taken to be the input's times the stride, as TensorFlow's layers make it.
+/// The output is cropped by the padding of the convolution whose gradient this is. An open output size is taken as
+/// the input's size times the stride, as in TensorFlow's layers.
 fn fit(window: &Window, axis: usize, input: Dim, wanted: Dim) -> Result<Fit> {
     let stride = window.strides[axis];
     let reach = (window.kernel[axis] - 1) * window.dilations[axis] + 1;
@@ -175,17 +186,21 @@ fn fit(window: &Window, axis: usize, input: Dim, wanted: Dim) -> Result<Fit> {
             extra: output.saturating_sub(cropped),
             output: Some(output),
         }),
-        false => Err(Error::format(format!("transposed convolution of {full} pixels to {output}"))),
+        false => {
+            Err(Error::format(format!("a transposed convolution cannot reduce {full} pixels to {output}")))
+        }
     }
 }
 
-/// Batch normalisation with known statistics, as the multiplication and addition that it is.
+/// Converts batch normalisation with known statistics to a multiplication and an addition.
 pub fn batch_norm(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let x = call.input(0)?;
     let axes = Axes::of(call);
     axes.spatial(&x.dims())?;
     if call.attr().flag("is_training") {
-        return Err(Error::unsupported("batch normalisation in training mode"));
+        return Err(Error::unsupported(
+            "batch normalisation in training mode is not supported; export the model for inference",
+        ));
     }
     let epsilon = call.attr().float("epsilon").unwrap_or(1e-3);
     let x_wire = ctx.ordered(x, &axes.order())?;
@@ -193,7 +208,7 @@ pub fn batch_norm(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     for index in 1..5 {
         inputs.push(call.input(index)?.wire.clone());
     }
-    let inputs: Vec<&Wire> = inputs.iter().collect();
+    let inputs: Vec<&GraphTensor> = inputs.iter().collect();
     let operator = Operator::new("BatchNormalization").float("epsilon", epsilon);
-    Ok(vec![ctx.emit(call, operator, &inputs, Kind::Float, &x.dims(), axes.order())?])
+    Ok(vec![ctx.emit(call, operator, &inputs, ElementType::Float, &x.dims(), axes.order())?])
 }

@@ -1,4 +1,4 @@
-//! Operators that work element by element, with numpy's broadcasting.
+//! Element-wise operators with NumPy's broadcasting.
 
 use opendr_engine::{Error, Result};
 
@@ -6,24 +6,24 @@ use crate::tensorflow::call::Call;
 use crate::tensorflow::layout::Order;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Dim, Kind, Operator, Wire};
+use opendr_onnx::{Dim, ElementType, GraphTensor, Operator};
 
-/// Operands brought to one element type and one order, ready to broadcast.
+/// Operands with a common element type and order, ready to broadcast.
 struct Aligned {
-    wires: Vec<Wire>,
+    wires: Vec<GraphTensor>,
     order: Order,
     /// TensorFlow's dimensions of the result.
     dims: Vec<Dim>,
 }
 
-/// Adopts the order of the largest operand, so that the fewest elements move.
+/// Uses the order of the largest operand, so that the fewest elements move.
 fn align(ctx: &mut Lowering, values: &[&Value]) -> Result<Aligned> {
     let rank = values.iter().map(|value| value.rank()).max().unwrap_or(0);
     let computed = values.iter().filter(|value| value.rank() == rank && value.array().is_none());
     let largest = computed
         .max_by_key(|value| (value.wire.element_count().unwrap_or(usize::MAX), !value.order.is_plain()));
     let order = largest.map_or_else(|| Order::plain(rank), |value| value.order.clone());
-    let float = values.iter().any(|value| value.kind() == Kind::Float);
+    let float = values.iter().any(|value| value.kind() == ElementType::Float);
     let mut wires = Vec::with_capacity(values.len());
     let mut dims: Vec<Dim> = Vec::new();
     for value in values {
@@ -31,13 +31,17 @@ fn align(ctx: &mut Lowering, values: &[&Value]) -> Result<Aligned> {
             Some(_) => ctx.broadcastable(value, &order)?,
             None => ctx.plain(value)?,
         };
-        wires.push(if float && value.kind() == Kind::Int { ctx.cast(&wire, Kind::Float)? } else { wire });
+        wires.push(if float && value.kind() == ElementType::Int {
+            ctx.cast(&wire, ElementType::Float)?
+        } else {
+            wire
+        });
         dims = broadcast(&dims, &value.dims())?;
     }
     Ok(Aligned { wires, order, dims })
 }
 
-/// Dimensions after broadcasting; two open dimensions are taken to be equal.
+/// Returns the dimensions after broadcasting; two open dimensions are assumed equal.
 fn broadcast(a: &[Dim], b: &[Dim]) -> Result<Vec<Dim>> {
     let rank = a.len().max(b.len());
     let dim = |dims: &[Dim], axis: usize| (axis + dims.len()).checked_sub(rank).map_or(Some(1), |i| dims[i]);
@@ -48,19 +52,21 @@ fn broadcast(a: &[Dim], b: &[Dim]) -> Result<Vec<Dim>> {
             (x, Some(1)) => Ok(x),
             (None, y) => Ok(y),
             (x, None) => Ok(x),
-            (Some(x), Some(y)) => Err(Error::format(format!("operands of {x} and {y} elements on one axis"))),
+            (Some(x), Some(y)) => {
+                Err(Error::format(format!("operands of {x} and {y} elements cannot be broadcast")))
+            }
         })
         .collect()
 }
 
-/// Applies a binary ONNX operator to any two values.
+/// Applies a binary ONNX operator to two values.
 pub fn apply(ctx: &mut Lowering, call: &Call, name: &'static str, x: &Value, y: &Value) -> Result<Value> {
     let Aligned { wires, order, dims } = align(ctx, &[x, y])?;
     let comparison =
         matches!(name, "Equal" | "Less" | "LessOrEqual" | "Greater" | "GreaterOrEqual" | "And" | "Or");
-    let kind = if comparison { Kind::Bool } else { wires[0].kind() };
-    // rten 0.27 gives the quotient the rank of the dividend where the divisor has one element.
-    if name == "Div" && kind == Kind::Float && wires[0].rank() < wires[1].rank() {
+    let kind = if comparison { ElementType::Bool } else { wires[0].kind() };
+    // rten 0.27 returns a quotient of the dividend's rank where the divisor has one element.
+    if name == "Div" && kind == ElementType::Float && wires[0].rank() < wires[1].rank() {
         let divisor = Value::new(wires[1].clone(), order);
         let inverse = apply_unary(ctx, call, Operator::new("Reciprocal"), &divisor)?;
         return apply(ctx, call, "Mul", x, &inverse);
@@ -98,10 +104,10 @@ pub fn not_equal(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     Ok(vec![apply_unary(ctx, call, Operator::new("Not"), &equal)?])
 }
 
-/// Rounds towards minus infinity, where ONNX's integer division rounds towards zero.
+/// Divides and rounds towards minus infinity; ONNX's integer division rounds towards zero.
 pub fn floor_div(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let (x, y) = (call.input(0)?, call.input(1)?);
-    if x.kind() == Kind::Float || y.kind() == Kind::Float {
+    if x.kind() == ElementType::Float || y.kind() == ElementType::Float {
         let quotient = apply(ctx, call, "Div", x, y)?;
         return Ok(vec![apply_unary(ctx, call, Operator::new("Floor"), &quotient)?]);
     }
@@ -112,7 +118,7 @@ pub fn floor_div(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
 
 pub fn floor_mod(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let (x, y) = (call.input(0)?, call.input(1)?);
-    if x.kind() != Kind::Float && y.kind() != Kind::Float {
+    if x.kind() != ElementType::Float && y.kind() != ElementType::Float {
         return Ok(vec![apply(ctx, call, "Mod", x, y)?]);
     }
     let quotient = apply(ctx, call, "Div", x, y)?;
@@ -126,11 +132,11 @@ pub fn squared_difference(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>>
     Ok(vec![apply(ctx, call, "Mul", &difference, &difference)?])
 }
 
-/// The angle of (x, y), which ONNX lacks, from `Atan` and the quadrant.
+/// Computes the angle of (x, y), which ONNX lacks, from `Atan` and the quadrant.
 pub fn atan2(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     use std::f32::consts::{FRAC_PI_2, PI};
     let (y, x) = (call.input(0)?, call.input(1)?);
-    let constant = |value: f32| Value::plain(Wire::scalar(value));
+    let constant = |value: f32| Value::plain(GraphTensor::scalar(value));
     let zero = constant(0.0);
     let quotient = apply(ctx, call, "Div", y, x)?;
     let angle = apply_unary(ctx, call, Operator::new("Atan"), &quotient)?;
@@ -155,7 +161,7 @@ pub fn add_n(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
 
 pub fn bias_add(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     if call.attr().text("data_format") == Some("NCHW") {
-        return Err(Error::unsupported("bias on channels-first data"));
+        return Err(Error::unsupported("a bias on channels-first data is not supported"));
     }
     Ok(vec![apply(ctx, call, "Add", call.input(0)?, call.input(1)?)?])
 }
@@ -193,7 +199,9 @@ pub fn rsqrt(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
 pub fn cast(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let x = call.input(0)?;
     let kind = call.attr().kind("DstT");
-    let kind = kind.ok_or_else(|| Error::unsupported("cast to a type that is neither number nor bool"))?;
+    let kind = kind.ok_or_else(|| {
+        Error::unsupported("a cast to a type other than numbers and booleans is not supported")
+    })?;
     Ok(vec![Value::new(ctx.cast(&x.wire, kind)?, x.order.clone())])
 }
 
@@ -202,7 +210,7 @@ pub fn clip(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     Ok(vec![apply(ctx, call, "Min", &low, call.input(2)?)?])
 }
 
-/// `condition ? x : y`.
+/// Selects `condition ? x : y`.
 fn choose(ctx: &mut Lowering, call: &Call, condition: &Value, x: &Value, y: &Value) -> Result<Value> {
     let Aligned { wires, order, dims } = align(ctx, &[condition, x, y])?;
     ctx.emit(call, Operator::new("Where"), &[&wires[0], &wires[1], &wires[2]], wires[1].kind(), &dims, order)
@@ -211,7 +219,7 @@ fn choose(ctx: &mut Lowering, call: &Call, condition: &Value, x: &Value, y: &Val
 pub fn select(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let (condition, x, y) = (call.input(0)?, call.input(1)?, call.input(2)?);
     if call.op() == "Select" && condition.rank() == 1 && x.rank() > 1 {
-        return Err(Error::unsupported("selection of whole rows"));
+        return Err(Error::unsupported("the selection of whole rows is not supported"));
     }
     Ok(vec![choose(ctx, call, condition, x, y)?])
 }

@@ -1,4 +1,4 @@
-//! Tensors side by side.
+//! Concatenation, stacking and tiling.
 
 use opendr_engine::{Error, Result};
 
@@ -7,12 +7,12 @@ use crate::tensorflow::call::{Call, axis_in};
 use crate::tensorflow::layout::Order;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Dim, Kind, Operator, Wire};
+use opendr_onnx::{Dim, ElementType, GraphTensor, Operator};
 
 pub fn concat(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
-    let last = call.inputs().len().checked_sub(1).ok_or_else(|| Error::format("no inputs"))?;
+    let last = call.inputs().len().checked_sub(1).ok_or_else(|| Error::format("it has no inputs"))?;
     let parts = &call.inputs()[..last];
-    let rank = parts.first().ok_or_else(|| Error::format("nothing to join"))?.rank();
+    let rank = parts.first().ok_or_else(|| Error::format("it has no tensors to concatenate"))?.rank();
     let axis = axis_in(call.int(last)?, rank)?;
     Ok(vec![joined(ctx, call, parts, axis)?])
 }
@@ -28,14 +28,18 @@ pub fn pack(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     Ok(vec![joined(ctx, call, &parts, axis)?])
 }
 
-/// Joins along TensorFlow's axis `axis`, in the order of the largest part.
+/// Concatenates along TensorFlow's axis `axis`, in the order of the largest part.
 fn joined(ctx: &mut Lowering, call: &Call, parts: &[Value], axis: usize) -> Result<Value> {
-    let first = parts.first().ok_or_else(|| Error::format("nothing to join"))?;
+    let first = parts.first().ok_or_else(|| Error::format("it has no tensors to concatenate"))?;
     let mut dims = first.dims();
     let mut total: Dim = Some(0);
     for part in parts {
         if part.rank() != dims.len() {
-            return Err(Error::format(format!("ranks {} and {} side by side", dims.len(), part.rank())));
+            return Err(Error::format(format!(
+                "tensors of ranks {} and {} cannot be concatenated",
+                dims.len(),
+                part.rank()
+            )));
         }
         total = total.zip(part.dims()[axis]).and_then(|(total, dim)| total.checked_add(dim));
         for (own, other) in dims.iter_mut().zip(part.dims()) {
@@ -46,7 +50,11 @@ fn joined(ctx: &mut Lowering, call: &Call, parts: &[Value], axis: usize) -> Resu
     let computed = parts.iter().filter(|part| part.array().is_none());
     let largest = computed.max_by_key(|part| part.wire.element_count().unwrap_or(usize::MAX));
     let order = largest.map_or_else(|| Order::plain(dims.len()), |part| part.order.clone());
-    let kind = if parts.iter().any(|part| part.kind() == Kind::Float) { Kind::Float } else { first.kind() };
+    let kind = if parts.iter().any(|part| part.kind() == ElementType::Float) {
+        ElementType::Float
+    } else {
+        first.kind()
+    };
     let mut wires = Vec::with_capacity(parts.len());
     for part in parts.iter().filter(|part| parts.len() == 1 || part.dims()[axis] != Some(0)) {
         let wire = ctx.ordered(part, &order)?;
@@ -56,7 +64,7 @@ fn joined(ctx: &mut Lowering, call: &Call, parts: &[Value], axis: usize) -> Resu
         return Ok(Value::new(single.clone(), order));
     }
     let operator = Operator::new("Concat").int("axis", order.stored(axis) as i64);
-    let wires: Vec<&Wire> = wires.iter().collect();
+    let wires: Vec<&GraphTensor> = wires.iter().collect();
     ctx.emit(call, operator, &wires, kind, &dims, order)
 }
 

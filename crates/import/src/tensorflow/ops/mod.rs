@@ -1,4 +1,4 @@
-//! One file per family of TensorFlow operators; each function writes one operator into the ONNX graph.
+//! Lowering of TensorFlow operators, one file per family; each function writes one operator into the ONNX graph.
 
 mod activation;
 mod conv;
@@ -22,10 +22,10 @@ use super::call::Call;
 use super::lowering::Lowering;
 use super::value::Value;
 
-/// Writes one operator; returns the values of its outputs.
+/// A function that writes one operator and returns the values of its outputs.
 pub type Lower = fn(&mut Lowering, &Call) -> Result<Vec<Value>>;
 
-/// How the TensorFlow operator of that name is written; `None` for one the importer does not know.
+/// Returns the lowering of a TensorFlow operator; `None` for an unknown one.
 pub fn lowering(op: &str) -> Option<Lower> {
     Some(match op {
         "Identity" | "StopGradient" | "Snapshot" | "PreventGradient" => {

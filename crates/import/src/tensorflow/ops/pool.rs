@@ -1,4 +1,4 @@
-//! Maximum and average over sliding windows.
+//! Maximum and average pooling.
 
 use opendr_engine::Result;
 
@@ -6,9 +6,9 @@ use super::window::{Axes, Window};
 use crate::tensorflow::call::Call;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Kind, Operator};
+use opendr_onnx::{ElementType, Operator};
 
-/// ONNX leaves the padding out of averages by default, as TensorFlow does.
+/// By default ONNX, like TensorFlow, excludes the padding from averages.
 pub fn pool(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let x = call.input(0)?;
     let axes = Axes::of(call);
@@ -18,5 +18,5 @@ pub fn pool(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let operator = window.onto(Operator::new(name), spatial)?;
     let dims = axes.dims(x.dims()[0], x.dims()[axes.channels], window.output(spatial)?);
     let x = ctx.ordered(x, &axes.order())?;
-    Ok(vec![ctx.emit(call, operator, &[&x], Kind::Float, &dims, axes.order())?])
+    Ok(vec![ctx.emit(call, operator, &[&x], ElementType::Float, &dims, axes.order())?])
 }

@@ -1,4 +1,4 @@
-//! Sums, means and extremes over whole axes.
+//! Reductions over axes: sum, mean, extremes.
 
 use opendr_engine::Result;
 
@@ -7,7 +7,7 @@ use crate::tensorflow::call::Call;
 use crate::tensorflow::layout::Order;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Kind, Operator, Wire};
+use opendr_onnx::{ElementType, GraphTensor, Operator};
 
 pub fn reduce(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let x = call.input(0)?;
@@ -41,18 +41,18 @@ pub fn reduce(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     };
     let operator = Operator::new(name).int("keepdims", keep.into());
     let value = if name == "ReduceSum" {
-        ctx.emit(call, operator, &[&x.wire, &Wire::ints(stored)], x.kind(), &dims, order)
+        ctx.emit(call, operator, &[&x.wire, &GraphTensor::ints(stored)], x.kind(), &dims, order)
     } else {
         ctx.emit(call, operator.ints("axes", stored), &[&x.wire], x.kind(), &dims, order)
     };
     Ok(vec![value?])
 }
 
-/// The mean over an image, for which runtimes have a faster operator.
+/// Writes the mean over an image with a faster operator.
 fn global_mean(ctx: &mut Lowering, call: &Call, x: &Value, keep: bool) -> Result<Value> {
     let mut dims = x.dims();
     dims[1..3].fill(Some(1));
     let operator = Operator::new("GlobalAveragePool");
-    let mean = ctx.emit(call, operator, &[&x.wire], Kind::Float, &dims, x.order.clone())?;
+    let mean = ctx.emit(call, operator, &[&x.wire], ElementType::Float, &dims, x.order.clone())?;
     if keep { Ok(mean) } else { squeezed(ctx, call, &mean, &[1, 2]) }
 }

@@ -1,19 +1,19 @@
-//! New shapes for the same elements.
+//! Reshaping, squeezing, expansion and transposition.
 
 use opendr_engine::{Error, Result};
 
 use crate::tensorflow::call::{Call, axis_in};
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Dim, Kind, Operator, Wire};
+use opendr_onnx::{Dim, ElementType, GraphTensor, Operator};
 
 pub fn reshape(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let x = call.input(0)?;
     let shape = call.input(1)?;
     let Some(wanted) = shape.array() else { return reshape_to_computed(ctx, call, x, shape) };
-    let wanted = wanted.as_ints().ok_or_else(|| Error::format("shape that is no integers"))?;
+    let wanted = wanted.as_ints().ok_or_else(|| Error::format("the shape must be integers"))?;
     let dims = resolved(wanted, x)?;
-    let target = |dims: &[Dim]| Wire::ints(dims.iter().map(|dim| dim.map_or(-1, |dim| dim as i64)));
+    let target = |dims: &[Dim]| GraphTensor::ints(dims.iter().map(|dim| dim.map_or(-1, |dim| dim as i64)));
     let known: Option<Vec<usize>> = dims.iter().copied().collect();
     if let (Some(from), Some(to)) = (x.known_dims(), known)
         && let Some(order) = x.order.reshaped(&from, &to)
@@ -29,15 +29,15 @@ pub fn reshape(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     Ok(vec![value])
 }
 
-/// TensorFlow's zero means no element, ONNX's by default "as in the input".
+/// In TensorFlow a zero means no elements, in ONNX by default "as in the input".
 fn operator(dims: &[Dim]) -> Operator {
     let operator = Operator::new("Reshape");
     if dims.contains(&Some(0)) { operator.int("allowzero", 1) } else { operator }
 }
 
-/// The shape with -1 replaced where the number of elements is known; `None` is what only the runtime knows.
+/// Returns the shape with -1 replaced where the number of elements is known; `None` is known at run time only.
 fn resolved(wanted: &[i64], x: &Value) -> Result<Vec<Dim>> {
-    let nonsense = || Error::format(format!("reshape of {:?} to {wanted:?}", x.dims()));
+    let nonsense = || Error::format(format!("cannot reshape {:?} to {wanted:?}", x.dims()));
     let mut dims = Vec::with_capacity(wanted.len());
     let mut product = 1usize;
     for &dim in wanted {
@@ -60,12 +60,16 @@ fn resolved(wanted: &[i64], x: &Value) -> Result<Vec<Dim>> {
     Ok(dims)
 }
 
-/// Reshape to a shape that the model computes.
+/// Writes a reshape to a shape that the model computes.
 fn reshape_to_computed(ctx: &mut Lowering, call: &Call, x: &Value, shape: &Value) -> Result<Vec<Value>> {
     let elements = match (shape.wire.elements(), shape.dims().as_slice()) {
         (Some(elements), _) => elements,
         (None, [Some(rank @ 0..=8)]) => vec![None; *rank],
-        (None, dims) => return Err(Error::unsupported(format!("reshape to a shape of shape {dims:?}"))),
+        (None, dims) => {
+            return Err(Error::unsupported(format!(
+                "a reshape to a shape of shape {dims:?} is not supported"
+            )));
+        }
     };
     let dims: Vec<Dim> = elements.iter().map(|dim| dim.and_then(|dim| usize::try_from(dim).ok())).collect();
     let plain = ctx.plain(x)?;
@@ -82,20 +86,20 @@ pub fn squeeze(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     Ok(vec![squeezed(ctx, call, x, &axes)?])
 }
 
-/// Without TensorFlow's axes `axes`, which have one element.
+/// Removes TensorFlow's axes `axes`, which have size one.
 pub fn squeezed(ctx: &mut Lowering, call: &Call, x: &Value, axes: &[usize]) -> Result<Value> {
     if axes.is_empty() {
         return Ok(x.clone());
     }
     let dims = x.dims();
     if let Some(axis) = axes.iter().find(|&&axis| dims[axis].is_some_and(|dim| dim != 1)) {
-        return Err(Error::format(format!("squeeze of axis {axis} of {dims:?}")));
+        return Err(Error::format(format!("axis {axis} of {dims:?} cannot be squeezed")));
     }
     let mut stored: Vec<i64> = axes.iter().map(|&axis| x.order.stored(axis) as i64).collect();
     stored.sort_unstable();
     stored.dedup();
     let kept: Vec<Dim> = (0..x.rank()).filter(|axis| !axes.contains(axis)).map(|axis| dims[axis]).collect();
-    let inputs = [&x.wire, &Wire::ints(stored)];
+    let inputs = [&x.wire, &GraphTensor::ints(stored)];
     ctx.emit(call, Operator::new("Squeeze"), &inputs, x.kind(), &kept, x.order.without(axes))
 }
 
@@ -105,16 +109,16 @@ pub fn expand_dims(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     Ok(vec![expanded(ctx, call, x, axis)?])
 }
 
-/// With a new axis of one element.
+/// Inserts an axis of size one.
 pub fn expanded(ctx: &mut Lowering, call: &Call, x: &Value, axis: usize) -> Result<Value> {
     let (order, position) = x.order.with(axis);
     let mut dims = x.dims();
     dims.insert(axis, Some(1));
-    let inputs = [&x.wire, &Wire::ints([position as i64])];
+    let inputs = [&x.wire, &GraphTensor::ints([position as i64])];
     ctx.emit(call, Operator::new("Unsqueeze"), &inputs, x.kind(), &dims, order)
 }
 
-/// Renames the axes; only constants are moved, because those are always stored plain.
+/// Renames the axes; only constants are transposed, because they are always stored in TensorFlow's order.
 pub fn transpose(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let x = call.input(0)?;
     let perm: Vec<usize> =
@@ -122,7 +126,10 @@ pub fn transpose(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let mut sorted = perm.clone();
     sorted.sort_unstable();
     if !sorted.iter().copied().eq(0..x.rank()) {
-        return Err(Error::format(format!("transposition {perm:?} of a tensor of rank {}", x.rank())));
+        return Err(Error::format(format!(
+            "the permutation {perm:?} does not match a tensor of rank {}",
+            x.rank()
+        )));
     }
     let value = Value::new(x.wire.clone(), x.order.transposed(&perm));
     match x.array() {
@@ -131,8 +138,14 @@ pub fn transpose(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     }
 }
 
-/// Integers of any shape as a list, for operators that want one where TensorFlow has a scalar.
-pub fn as_list(ctx: &mut Lowering, wire: &Wire) -> Result<Wire> {
+/// Returns integers of any shape as a list, for operators that need a list where TensorFlow has a scalar.
+pub fn as_list(ctx: &mut Lowering, wire: &GraphTensor) -> Result<GraphTensor> {
     let dims = vec![wire.element_count()];
-    ctx.graph.add(&wire.hint(), Operator::new("Reshape"), &[wire, &Wire::ints([-1])], Kind::Int, dims)
+    ctx.graph.add(
+        &wire.hint(),
+        Operator::new("Reshape"),
+        &[wire, &GraphTensor::ints([-1])],
+        ElementType::Int,
+        dims,
+    )
 }

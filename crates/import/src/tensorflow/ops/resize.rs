@@ -1,4 +1,4 @@
-//! Changing the size of images.
+//! Resizing of images.
 
 use opendr_engine::{Error, Result};
 
@@ -6,14 +6,14 @@ use super::window::Axes;
 use crate::tensorflow::call::Call;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Kind, Operator, Wire};
+use opendr_onnx::{ElementType, GraphTensor, Operator};
 
 pub fn resize(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let (x, size) = (call.input(0)?, call.input(1)?);
     let axes = Axes { height: 1, width: 2, channels: 3 };
     axes.spatial(&x.dims())?;
     if size.dims() != [Some(2)] {
-        return Err(Error::format(format!("resize to a size of shape {:?}", size.dims())));
+        return Err(Error::format(format!("a size of shape {:?} is not valid for a resize", size.dims())));
     }
     let coordinates = match (call.attr().flag("align_corners"), call.attr().flag("half_pixel_centers")) {
         (true, _) => "align_corners",
@@ -23,7 +23,8 @@ pub fn resize(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let operator = Operator::new("Resize").text("coordinate_transformation_mode", coordinates);
     let operator = match call.op() {
         "ResizeBilinear" => operator.text("mode", "linear"),
-        // TensorFlow rounds half up; without centres it rounds down. floor((i + 0.5) * s) is half_pixel rounded half up.
+        // TensorFlow rounds half up; without centres it rounds down. floor((i + 0.5) * s) is half_pixel rounded half
+        // up.
         _ => {
             let rounding = if coordinates == "asymmetric" { "floor" } else { "round_prefer_ceil" };
             operator.text("mode", "nearest").text("nearest_mode", rounding)
@@ -33,15 +34,22 @@ pub fn resize(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let open = |axis: usize| elements.get(axis).copied().flatten().and_then(|dim| usize::try_from(dim).ok());
     let dims = axes.dims(x.dims()[0], x.dims()[3], [open(0), open(1)]);
     let image = ctx.ordered(x, &axes.order())?;
-    let shape = ctx.graph.add(&image.hint(), Operator::new("Shape"), &[&image], Kind::Int, vec![Some(4)])?;
-    let (zero, two, one) = (Wire::ints([0]), Wire::ints([2]), Wire::ints([1]));
+    let shape =
+        ctx.graph.add(&image.hint(), Operator::new("Shape"), &[&image], ElementType::Int, vec![Some(4)])?;
+    let (zero, two, one) = (GraphTensor::ints([0]), GraphTensor::ints([2]), GraphTensor::ints([1]));
     let slice = Operator::new("Slice");
-    let outer =
-        ctx.graph.add(&image.hint(), slice, &[&shape, &zero, &two, &zero, &one], Kind::Int, vec![Some(2)])?;
+    let outer = ctx.graph.add(
+        &image.hint(),
+        slice,
+        &[&shape, &zero, &two, &zero, &one],
+        ElementType::Int,
+        vec![Some(2)],
+    )?;
     let concat = Operator::new("Concat").int("axis", 0);
-    let sizes = ctx.graph.add(&image.hint(), concat, &[&outer, &size.wire], Kind::Int, vec![Some(4)])?;
-    let inputs = [&image, &Wire::absent(), &Wire::absent(), &sizes];
-    Ok(vec![ctx.emit(call, operator, &inputs, Kind::Float, &dims, axes.order())?])
+    let sizes =
+        ctx.graph.add(&image.hint(), concat, &[&outer, &size.wire], ElementType::Int, vec![Some(4)])?;
+    let inputs = [&image, &GraphTensor::absent(), &GraphTensor::absent(), &sizes];
+    Ok(vec![ctx.emit(call, operator, &inputs, ElementType::Float, &dims, axes.order())?])
 }
 
 pub fn depth_to_space(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
@@ -49,11 +57,13 @@ pub fn depth_to_space(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let axes = Axes::of(call);
     let spatial = axes.spatial(&x.dims())?;
     let block = call.attr().int("block_size").filter(|block| (1..=1 << 10).contains(block));
-    let block = block.ok_or_else(|| Error::format("block size"))?;
+    let block = block.ok_or_else(|| Error::format("the block size is out of range"))?;
     let size = block as usize;
     let channels = x.dims()[axes.channels];
     if channels.is_some_and(|channels| channels % (size * size) != 0) {
-        return Err(Error::format(format!("{channels:?} channels in blocks of {size} by {size}")));
+        return Err(Error::format(format!(
+            "{channels:?} channels are not divisible into blocks of {size} by {size}"
+        )));
     }
     let grown = spatial.map(|dim| dim.and_then(|dim| dim.checked_mul(size)));
     let dims = axes.dims(x.dims()[0], channels.map(|channels| channels / (size * size)), grown);

@@ -1,4 +1,4 @@
-//! Parts of tensors.
+//! Slicing, splitting and unpacking.
 
 use opendr_engine::{Error, Result};
 
@@ -6,9 +6,9 @@ use super::reshape::expanded;
 use crate::tensorflow::call::{Call, axis_in};
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Array, Dim, Kind, Operator, Wire, slice_range};
+use opendr_onnx::{Array, Dim, ElementType, GraphTensor, Operator, slice_range};
 
-/// More parts than this are no real model.
+/// Maximum number of parts, above that of real models.
 const MAX_PARTS: usize = 4096;
 
 /// A range of one axis: `start..end` by `step`, negative positions counted from the end.
@@ -20,7 +20,7 @@ struct Range {
     step: i64,
 }
 
-/// Cuts ranges out of TensorFlow's axes.
+/// Slices ranges of TensorFlow's axes.
 fn cut(ctx: &mut Lowering, call: &Call, x: &Value, ranges: &[Range]) -> Result<Value> {
     let mut dims = x.dims();
     let mut kept = Vec::new();
@@ -30,7 +30,7 @@ fn cut(ctx: &mut Lowering, call: &Call, x: &Value, ranges: &[Range]) -> Result<V
         let dim = &mut dims[axis];
         if let Some(size) = *dim {
             let (_, count) = slice_range(size, start, end, step)
-                .ok_or_else(|| Error::format(format!("slice {range:?}")))?;
+                .ok_or_else(|| Error::format(format!("the slice {range:?} is not valid")))?;
             if count == size && step == 1 {
                 continue;
             }
@@ -45,14 +45,14 @@ fn cut(ctx: &mut Lowering, call: &Call, x: &Value, ranges: &[Range]) -> Result<V
     if kept.is_empty() {
         return Ok(x.clone());
     }
-    let list = |f: fn(&Range) -> i64| Wire::ints(kept.iter().map(f));
-    let axes = Wire::ints(kept.iter().map(|range| x.order.stored(range.axis) as i64));
+    let list = |f: fn(&Range) -> i64| GraphTensor::ints(kept.iter().map(f));
+    let axes = GraphTensor::ints(kept.iter().map(|range| x.order.stored(range.axis) as i64));
     let inputs =
         [&x.wire, &list(|range| range.start), &list(|range| range.end), &axes, &list(|range| range.step)];
     ctx.emit(call, Operator::new("Slice"), &inputs, x.kind(), &dims, x.order.clone())
 }
 
-/// One position of TensorFlow's axis `axis`; the axis is gone afterwards.
+/// Selects one position of TensorFlow's axis `axis`, which is removed.
 fn pick(ctx: &mut Lowering, call: &Call, x: &Value, axis: usize, index: i64) -> Result<Value> {
     let mut dims = x.dims();
     let size = dims.remove(axis);
@@ -62,24 +62,24 @@ fn pick(ctx: &mut Lowering, call: &Call, x: &Value, axis: usize, index: i64) -> 
     let order = x.order.without(&[axis]);
     let stored = x.order.stored(axis) as i64;
     if size == Some(1) {
-        let inputs = [&x.wire, &Wire::ints([stored])];
+        let inputs = [&x.wire, &GraphTensor::ints([stored])];
         return ctx.emit(call, Operator::new("Squeeze"), &inputs, x.kind(), &dims, order);
     }
-    let index = Wire::constant(Array::int(index));
+    let index = GraphTensor::constant(Array::int(index));
     ctx.emit(call, Operator::new("Gather").int("axis", stored), &[&x.wire, &index], x.kind(), &dims, order)
 }
 
-/// What a `StridedSlice` does, axis by axis.
+/// The operations of a `StridedSlice`, axis by axis.
 #[derive(Debug, Default, PartialEq)]
 struct Plan {
     ranges: Vec<Range>,
-    /// Axes of the input of which one position is taken, with that position.
+    /// Input axes of which one position is selected, with that position.
     picks: Vec<(usize, i64)>,
-    /// Axes of the output that are new.
+    /// New axes of the output.
     new_axes: Vec<usize>,
 }
 
-/// The masks of `StridedSlice`, bit `i` for the `i`th entry of `begin`, `end` and `strides`.
+/// The masks of `StridedSlice`, bit `i` for entry `i` of `begin`, `end` and `strides`.
 struct Masks {
     begin: i64,
     end: i64,
@@ -89,8 +89,11 @@ struct Masks {
 }
 
 fn plan(masks: &Masks, begin: &[i64], end: &[i64], strides: &[i64], rank: usize) -> Result<Plan> {
-    let nonsense =
-        || Error::format(format!("slice {begin:?}..{end:?} by {strides:?} of a tensor of rank {rank}"));
+    let nonsense = || {
+        Error::format(format!(
+            "the slice {begin:?}..{end:?} by {strides:?} is not valid for a tensor of rank {rank}"
+        ))
+    };
     if begin.len() != end.len() || begin.len() != strides.len() || begin.len() > 32 {
         return Err(nonsense());
     }
@@ -151,7 +154,7 @@ pub fn slice(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let (begin, size) = (call.ints(1)?, call.ints(2)?);
     if begin.len() != x.rank() || size.len() != x.rank() {
         return Err(Error::format(format!(
-            "slice at {begin:?} of size {size:?} of a tensor of rank {}",
+            "the slice at {begin:?} of size {size:?} is not valid for a tensor of rank {}",
             x.rank()
         )));
     }
@@ -169,11 +172,11 @@ pub fn split(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let count = call.attr().int("num_split").and_then(|count| usize::try_from(count).ok());
     let count = count
         .filter(|count| (1..=MAX_PARTS).contains(count))
-        .ok_or_else(|| Error::format("number of parts"))?;
+        .ok_or_else(|| Error::format("the number of parts is out of range"))?;
     let dim = x.dims()[axis];
     match dim.filter(|dim| dim % count == 0) {
         Some(dim) => parts(ctx, call, x, axis, &vec![dim / count; count]),
-        None => Err(Error::unsupported(format!("split of {dim:?} elements into {count}"))),
+        None => Err(Error::unsupported(format!("cannot split {dim:?} elements into {count} parts"))),
     }
 }
 
@@ -181,7 +184,7 @@ pub fn split_v(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let x = call.input(0)?;
     let axis = axis_in(call.int(2)?, x.rank())?;
     let sizes = call.ints(1)?;
-    let nonsense = || Error::format(format!("split of {:?} into {sizes:?}", x.dims()[axis]));
+    let nonsense = || Error::format(format!("cannot split {:?} elements into {sizes:?}", x.dims()[axis]));
     let known: usize = sizes
         .iter()
         .filter(|&&size| size >= 0)
@@ -194,16 +197,16 @@ pub fn split_v(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     parts(ctx, call, x, axis, &sizes)
 }
 
-/// Splits TensorFlow's axis `axis` into parts of the sizes given.
+/// Splits TensorFlow's axis `axis` into parts of the given sizes.
 fn parts(ctx: &mut Lowering, call: &Call, x: &Value, axis: usize, sizes: &[usize]) -> Result<Vec<Value>> {
     let outputs = sizes.iter().map(|&size| {
         let mut dims = x.dims();
         dims[axis] = Some(size);
         (x.kind(), x.order.stored_dims(&dims))
     });
-    let outputs: Vec<(Kind, Vec<Dim>)> = outputs.collect();
+    let outputs: Vec<(ElementType, Vec<Dim>)> = outputs.collect();
     let operator = Operator::new("Split").int("axis", x.order.stored(axis) as i64);
-    let lengths = Wire::ints(sizes.iter().map(|&size| size as i64));
+    let lengths = GraphTensor::ints(sizes.iter().map(|&size| size as i64));
     let wires = ctx.graph.add_many(call.name(), operator, &[&x.wire, &lengths], outputs)?;
     Ok(wires.into_iter().map(|wire| Value::new(wire, x.order.clone())).collect())
 }

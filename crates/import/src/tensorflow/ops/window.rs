@@ -1,4 +1,4 @@
-//! Windows that slide over height and width: kernel, stride, dilation and padding of convolutions and pools.
+//! Sliding windows: kernel, stride, dilation and padding of convolutions and pooling.
 
 use opendr_engine::{Error, Result};
 
@@ -6,13 +6,13 @@ use crate::tensorflow::call::Call;
 use crate::tensorflow::layout::Order;
 use opendr_onnx::{Dim, Operator};
 
-/// Larger strides, dilations and kernels do not occur; the bound keeps the arithmetic from overflowing.
+/// Maximum stride, dilation and kernel size; the bound prevents overflow.
 const MAX_EXTENT: i64 = 1 << 16;
 
 /// Height and width.
 pub type Pair<T> = [T; 2];
 
-/// Which of TensorFlow's axes are height, width and channels.
+/// Indices of height, width and channels among TensorFlow's axes.
 #[derive(Clone, Copy)]
 pub struct Axes {
     pub height: usize,
@@ -21,7 +21,7 @@ pub struct Axes {
 }
 
 impl Axes {
-    /// From `data_format`, channels-last unless it says otherwise.
+    /// Reads `data_format`; the default is channels-last.
     pub fn of(call: &Call) -> Self {
         match call.attr().text("data_format") {
             Some("NCHW") => Self { height: 2, width: 3, channels: 1 },
@@ -29,28 +29,28 @@ impl Axes {
         }
     }
 
-    /// The order that ONNX wants: batch, channels, height, width.
+    /// Returns the order of ONNX: batch, channels, height, width.
     pub fn order(self) -> Order {
         Order::new(vec![0, self.channels, self.height, self.width])
     }
 
-    /// Height and width of TensorFlow's dimensions.
+    /// Returns height and width of TensorFlow's dimensions.
     ///
     /// # Errors
-    /// `Format` when there are not four.
+    /// `Format` when there are not four dimensions.
     pub fn spatial(self, dims: &[Dim]) -> Result<Pair<Dim>> {
         match dims.len() {
             4 => Ok([dims[self.height], dims[self.width]]),
-            rank => Err(Error::format(format!("image of rank {rank}, not 4"))),
+            rank => Err(Error::format(format!("the image has rank {rank} instead of 4"))),
         }
     }
 
-    /// TensorFlow's dimensions.
+    /// Returns TensorFlow's dimensions.
     pub fn dims(self, batch: Dim, channels: Dim, spatial: Pair<Dim>) -> Vec<Dim> {
         self.order().logical(&[batch, channels, spatial[0], spatial[1]])
     }
 
-    /// Height and width of a list that has one number per axis; ones when it is missing.
+    /// Returns height and width of a list with one number per axis; ones when it is missing.
     fn pair(self, values: &[i64]) -> Result<Pair<usize>> {
         let extent = |axis: usize| {
             let value = if values.is_empty() { 1 } else { *values.get(axis).unwrap_or(&0) };
@@ -58,21 +58,21 @@ impl Axes {
         };
         match (extent(self.height), extent(self.width)) {
             (Some(height), Some(width)) => Ok([height, width]),
-            _ => Err(Error::format(format!("window parameter {values:?}"))),
+            _ => Err(Error::format(format!("the window parameter {values:?} is out of range"))),
         }
     }
 }
 
-/// What TensorFlow pads.
+/// Padding mode of TensorFlow.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Padding {
-    /// As much as makes the output the input's size divided by the stride, rounded up.
+    /// Padding for an output of the input's size divided by the stride, rounded up.
     Same,
-    /// Before and after height and width.
+    /// Explicit padding before and after height and width.
     Fixed(Pair<Pair<usize>>),
 }
 
-/// A window that slides over height and width.
+/// A sliding window over height and width.
 #[derive(Clone, Debug)]
 pub struct Window {
     pub kernel: Pair<usize>,
@@ -82,13 +82,13 @@ pub struct Window {
 }
 
 impl Window {
-    /// Reads the parameters of a node whose kernel has that height and width.
+    /// Reads the parameters of a node with a kernel of the given height and width.
     ///
     /// # Errors
-    /// `Format` for parameters out of range, `Unsupported` for a padding that is not known.
+    /// `Format` for parameters out of range, `Unsupported` for an unknown padding mode.
     pub fn of(call: &Call, axes: Axes, kernel: Pair<usize>) -> Result<Self> {
         if kernel.iter().any(|&extent| extent == 0 || extent as i64 > MAX_EXTENT) {
-            return Err(Error::format(format!("kernel of {} by {}", kernel[0], kernel[1])));
+            return Err(Error::format(format!("a kernel of {} by {} is out of range", kernel[0], kernel[1])));
         }
         let padding = match call.attr().text("padding") {
             Some("SAME") => Padding::Same,
@@ -98,34 +98,36 @@ impl Window {
                 let at = |index: usize| {
                     let pad = list.get(index).and_then(|&pad| usize::try_from(pad).ok());
                     let pad = pad.filter(|&pad| pad as i64 <= MAX_EXTENT);
-                    pad.ok_or_else(|| Error::format(format!("explicit paddings {list:?}")))
+                    pad.ok_or_else(|| {
+                        Error::format(format!("the explicit paddings {list:?} are out of range"))
+                    })
                 };
                 let around = |axis: usize| Ok::<_, Error>([at(2 * axis)?, at(2 * axis + 1)?]);
                 Padding::Fixed([around(axes.height)?, around(axes.width)?])
             }
-            other => return Err(Error::unsupported(format!("padding {other:?}"))),
+            other => return Err(Error::unsupported(format!("unsupported padding {other:?}"))),
         };
         let strides = axes.pair(call.attr().ints("strides"))?;
         let dilations = axes.pair(call.attr().ints("dilations"))?;
         Ok(Self { kernel, strides, dilations, padding })
     }
 
-    /// As [`Window::of`] with the kernel in the parameter `ksize`.
+    /// Reads the parameters of a node with the kernel in the parameter `ksize`, like [`Window::of`].
     ///
     /// # Errors
-    /// As [`Window::of`].
+    /// Those of [`Window::of`].
     pub fn of_pool(call: &Call, axes: Axes) -> Result<Self> {
         let kernel = axes.pair(call.attr().ints("ksize"))?;
         let window = Self::of(call, axes, kernel)?;
         Ok(Self { dilations: [1, 1], ..window })
     }
 
-    /// Extent of the dilated kernel.
+    /// Returns the extent of the dilated kernel.
     fn reach(&self, axis: usize) -> usize {
         (self.kernel[axis] - 1) * self.dilations[axis] + 1
     }
 
-    /// Height and width after the window has slid over an image.
+    /// Returns the output height and width for an image.
     ///
     /// # Errors
     /// `Format` when the image is smaller than the window.
@@ -139,20 +141,23 @@ impl Window {
             };
             match padded.checked_sub(self.reach(axis)) {
                 Some(room) => Ok(Some(room / stride + 1)),
-                None => Err(Error::format(format!("window of {} over {padded} pixels", self.reach(axis)))),
+                None => Err(Error::format(format!(
+                    "a window of {} does not fit into {padded} pixels",
+                    self.reach(axis)
+                ))),
             }
         };
         Ok([output(0)?, output(1)?])
     }
 
-    /// What to pad before and after one axis; `None` when that depends on an open dimension.
+    /// Returns the padding before and after one axis; `None` when it depends on an open dimension.
     fn pads(&self, axis: usize, input: Dim) -> Option<Pair<usize>> {
         if let Padding::Fixed(pads) = &self.padding {
             return Some(pads[axis]);
         }
         let (reach, stride) = (self.reach(axis), self.strides[axis]);
         let total = match input {
-            // With stride 1 the size does not matter.
+            // With stride 1 the padding does not depend on the size.
             _ if stride == 1 => reach - 1,
             Some(dim) => ((dim.div_ceil(stride).max(1) - 1) * stride + reach).saturating_sub(dim),
             None => return None,
@@ -160,10 +165,10 @@ impl Window {
         Some([total / 2, total - total / 2])
     }
 
-    /// Adds kernel, strides, dilations and padding to a convolution or pool over an image of that size.
+    /// Adds kernel, strides, dilations and padding to a convolution or pooling over an image of size `input`.
     ///
     /// # Errors
-    /// `Unsupported` for dilation with strides on open dimensions, which ONNX Runtime cannot pad.
+    /// `Unsupported` for dilation with strides on open dimensions, for which ONNX Runtime has no padding mode.
     pub fn onto(&self, operator: Operator, input: Pair<Dim>) -> Result<Operator> {
         let list = |pair: Pair<usize>| pair.map(|value| value as i64);
         let mut operator =
@@ -177,7 +182,7 @@ impl Window {
                 Ok(operator.ints("pads", [top, left, bottom, right].map(|pad| pad as i64)))
             }
             _ if self.dilations != [1, 1] => Err(Error::unsupported(
-                "dilation and stride on an image of open size; fix its size in the options",
+                "dilation with stride on an image of open size is not supported; set image_size in the options",
             )),
             _ => Ok(operator.text("auto_pad", "SAME_UPPER")),
         }

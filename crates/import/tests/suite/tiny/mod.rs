@@ -1,4 +1,4 @@
-//! TensorFlow.js models of a few nodes, written by the tests themselves, and the runtime that judges the import.
+//! Small TensorFlow.js models that the tests write, and the runtime that runs the imported ones.
 
 use opendr_engine::Result;
 use opendr_import::{ImportOptions, onnx_from_tfjs};
@@ -18,7 +18,7 @@ pub struct Tiny {
 }
 
 impl Tiny {
-    /// A model with one float input; -1 is an open dimension.
+    /// Creates a model with one float input; -1 is an open dimension.
     pub fn with_input(dims: &[i64]) -> Self {
         let dims: Vec<Json> = dims.iter().map(|dim| json!({"size": dim.to_string()})).collect();
         let mut model = Self::default();
@@ -56,7 +56,7 @@ impl Tiny {
         self
     }
 
-    /// `model.json`.
+    /// Returns `model.json`.
     pub fn json(&self) -> Vec<u8> {
         let outputs: serde_json::Map<String, Json> =
             self.outputs.iter().map(|name| (name.clone(), json!({"name": format!("{name}:0")}))).collect();
@@ -69,28 +69,29 @@ impl Tiny {
         .unwrap()
     }
 
-    /// Imports it.
+    /// Imports the model.
     pub fn import(&self) -> Result<Vec<u8>> {
         onnx_from_tfjs(&self.json(), &[&self.bytes], &ImportOptions::default())
     }
 
-    /// Operators of the imported graph, in order.
+    /// Returns the operators of the imported graph, in order.
     pub fn operators(&self) -> Vec<String> {
         self.imported_nodes().into_iter().map(|node| node.op_type).collect()
     }
 
-    /// Nodes of the imported graph, in order.
+    /// Returns the nodes of the imported graph, in order.
     pub fn imported_nodes(&self) -> Vec<NodeProto> {
         model_from_bytes(&self.import().unwrap()).unwrap().graph.unwrap().node
     }
 
-    /// Imports and runs it on an image given channels-last (other inputs as they are); outputs in order of their names.
+    /// Imports the model and runs it on a channels-last image (or another input, unchanged); outputs are sorted by
+    /// name.
     pub fn run(&self, dims: &[usize], values: &[f32]) -> Vec<Array> {
         run(self.import().unwrap(), dims, values)
     }
 }
 
-/// Runs an imported model on an image given channels-last (other inputs as they are).
+/// Runs an imported model on a channels-last image (or another input, unchanged).
 pub fn run(onnx: Vec<u8>, dims: &[usize], values: &[f32]) -> Vec<Array> {
     let model = Model::load(onnx).unwrap();
     let x = Tensor::from_data(dims, values.to_vec());
@@ -132,7 +133,7 @@ impl Array {
     }
 }
 
-/// Numbers without pattern, the same every time, in -1..1.
+/// Returns pseudo-random numbers, the same every time, in -1..1.
 pub fn noise(count: usize) -> Vec<f32> {
     let mut state = 0x2545_f491_4f6c_dd1d_u64;
     (0..count)
@@ -145,7 +146,7 @@ pub fn noise(count: usize) -> Vec<f32> {
         .collect()
 }
 
-/// TensorFlow's convolution, straight from its definition: image `[height, width, channels]`, filter
+/// Computes TensorFlow's convolution by its definition: image `[height, width, channels]`, filter
 /// `[kernel, kernel, channels, filters]`, padding `SAME`; the result is channels-first.
 pub fn convolved_same(
     x: &[f32],
@@ -175,7 +176,7 @@ pub fn convolved_same(
     (vec![1, filters, out[0], out[1]], y)
 }
 
-/// Parameters of a convolution.
+/// Returns the parameters of a convolution.
 pub fn conv(stride: usize, padding: &str) -> Json {
     let stride = stride.to_string();
     json!({
@@ -185,7 +186,7 @@ pub fn conv(stride: usize, padding: &str) -> Json {
     })
 }
 
-/// Parameters of a convolution with operators fused into it.
+/// Returns the parameters of a convolution with fused operators.
 pub fn fused(stride: usize, padding: &str, operators: &[&str]) -> Json {
     let mut attr = conv(stride, padding);
     let operators: Vec<String> = operators.iter().map(|operator| base64(operator)).collect();
@@ -194,7 +195,7 @@ pub fn fused(stride: usize, padding: &str, operators: &[&str]) -> Json {
     attr
 }
 
-/// Strings in `model.json` are in base64.
+/// Encodes in base64, as strings in `model.json` are.
 pub fn base64(text: &str) -> String {
     const SYMBOLS: &[u8] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut encoded = String::new();

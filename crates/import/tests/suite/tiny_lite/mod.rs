@@ -1,4 +1,4 @@
-//! TensorFlow Lite models of a few operators, written by the tests themselves.
+//! Small TensorFlow Lite models that the tests write.
 
 use opendr_import::{ImportOptions, onnx_from_tflite};
 use opendr_onnx::model_from_bytes;
@@ -21,7 +21,7 @@ pub enum Field {
 /// Fields by their number.
 pub type Table = Vec<(usize, Field)>;
 
-/// A file with this root.
+/// Returns a file with this root.
 pub fn file(root: &Table) -> Vec<u8> {
     let mut bytes = b"\0\0\0\0TFL3".to_vec();
     let start = table(&mut bytes, root);
@@ -33,7 +33,7 @@ fn point(bytes: &mut [u8], from: usize, to: usize) {
     bytes[from..from + 4].copy_from_slice(&((to - from) as u32).to_le_bytes());
 }
 
-/// Writes a table, its list of fields in front and what it refers to behind; every field takes four bytes.
+/// Writes a table, with its vtable in front and its referenced values after it; every field takes four bytes.
 fn table(bytes: &mut Vec<u8>, fields: &Table) -> usize {
     let list = bytes.len();
     let count = fields.iter().map(|(index, _)| index + 1).max().unwrap_or(0);
@@ -83,7 +83,7 @@ fn vector(bytes: &mut Vec<u8>, count: usize, elements: &[u8]) -> usize {
     start
 }
 
-/// Little-endian bytes of numbers.
+/// Returns the little-endian bytes of numbers.
 pub fn raw<T: Copy, const N: usize>(values: &[T], bytes: fn(T) -> [u8; N]) -> Vec<u8> {
     values.iter().flat_map(|&value| bytes(value)).collect()
 }
@@ -107,7 +107,7 @@ pub struct TinyLite {
 }
 
 impl TinyLite {
-    /// Adds a tensor that is computed.
+    /// Adds a computed tensor.
     pub fn tensor(&mut self, name: &str, dims: &[i32], element: u8) -> i32 {
         self.constant(name, dims, element, Vec::new())
     }
@@ -144,7 +144,7 @@ impl TinyLite {
         self.constant(name, dims, INT32, raw(values, i32::to_le_bytes))
     }
 
-    /// Makes the integers of a tensor stand for `(integer - zero) * scale`, with one scale per position of `axis`.
+    /// Quantises a tensor with `(integer - zero) * scale`, with one scale per position of `axis`.
     pub fn quantise(&mut self, tensor: i32, scales: &[f32], zeros: &[i64], axis: i32) -> i32 {
         let (scales, zeros) = (Field::Floats(scales.to_vec()), Field::Longs(zeros.to_vec()));
         let parameters = vec![(2, scales), (3, zeros), (6, Field::Int(axis))];
@@ -165,7 +165,7 @@ impl TinyLite {
         self
     }
 
-    /// The file.
+    /// Returns the file.
     pub fn bytes(&self) -> Vec<u8> {
         let code = |&code: &i32| vec![(0, Field::Byte(code.min(127) as u8)), (3, Field::Int(code))];
         let graph = vec![
@@ -183,12 +183,12 @@ impl TinyLite {
         ])
     }
 
-    /// Imports it.
+    /// Imports the model.
     pub fn import(&self) -> Vec<u8> {
         onnx_from_tflite(&self.bytes(), &ImportOptions::default()).unwrap()
     }
 
-    /// The imported graph.
+    /// Returns the imported graph.
     pub fn graph(&self) -> GraphProto {
         model_from_bytes(&self.import()).unwrap().graph.unwrap()
     }

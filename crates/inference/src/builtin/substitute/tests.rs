@@ -14,7 +14,7 @@ fn weight(name: &[u8], dims: &[u8], data_type: u8) -> Vec<u8> {
 }
 
 #[test]
-fn only_scalar_floats_are_divided_anew() {
+fn only_divisions_of_scalar_floats_are_rewritten() {
     let division = message(&[(1, b"four"), (1, b"x"), (2, b"y"), (4, b"Div")]);
     for (dims, data_type, replaced) in [(&[][..], 1, true), (&[1], 1, false), (&[], 6, false)] {
         let graph = message(&[(5, &weight(b"four", dims, data_type))]);
@@ -47,7 +47,7 @@ fn bytes_are_joined_as_integers_and_floats_as_they_are() {
 }
 
 #[test]
-fn what_a_model_leaves_out_is_filled_in() {
+fn omitted_attributes_are_inferred() {
     let graph = message(&[(5, &weight(b"w", &[8, 3, 5, 7], 1))]);
     let weights = Weights::read(&graph).unwrap();
     let strides = list_attribute(b"strides", &[2, 2]);

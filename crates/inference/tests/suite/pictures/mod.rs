@@ -7,7 +7,7 @@ use image::imageops::{FilterType, resize};
 use opendr_engine::data::PixelFormat;
 use opendr_inference::{ElementType, TensorInfo, TensorView};
 
-/// The values that a model wants for a pixel of 0 to 255.
+/// Range to which a model's input scales pixels of 0 to 255.
 #[derive(Clone, Copy)]
 pub enum Scale {
     /// 0 to 255.
@@ -18,7 +18,7 @@ pub enum Scale {
     Signed,
     /// -0.5 to 0.5.
     Centred,
-    /// ImageNet's mean and deviation.
+    /// Normalised by ImageNet's mean and standard deviation.
     ImageNet,
 }
 
@@ -55,22 +55,22 @@ impl Tensor {
     }
 }
 
-/// Decodes a picture.
+/// Decodes an image.
 pub fn read(path: &Path) -> RgbImage {
     let picture = opendr_vision::open(path).unwrap();
     let [width, height] = [picture.width(), picture.height()].map(|size| size as u32);
     RgbImage::from_raw(width, height, picture.hwc_u8(PixelFormat::Rgb)).unwrap()
 }
 
-/// The picture, squeezed to the size of `input`; free sizes become 256, further channels repeat the first ones.
+/// Resizes the image to the size of `input`; open sizes become 256, further channels repeat the first ones.
 pub fn tensor_from_picture(picture: &RgbImage, input: &TensorInfo, scale: Scale) -> Tensor {
     let dims: Vec<usize> = match input.dims[..] {
         [batch, a, b, c] => {
-            // Only channels are this few.
+            // A dimension this small is the channels.
             let free = |dim: Option<usize>| dim.unwrap_or(256);
             vec![batch.unwrap_or(1), free(a), free(b), free(c)]
         }
-        _ => panic!("{input} is no picture"),
+        _ => panic!("{input} is not an image"),
     };
     let planar = dims[1] <= 4;
     let (height, width, channels) =
@@ -90,6 +90,6 @@ pub fn tensor_from_picture(picture: &RgbImage, input: &TensorInfo, scale: Scale)
         ElementType::I32 => Tensor::I32(dims, pixels.map(i32::from).collect()),
         ElementType::U8 => Tensor::U8(dims, pixels.collect()),
         ElementType::I8 => Tensor::I8(dims, pixels.map(|pixel| (i16::from(pixel) - 128) as i8).collect()),
-        other => panic!("no picture of {other}"),
+        other => panic!("no image of type {other}"),
     }
 }

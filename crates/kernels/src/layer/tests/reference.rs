@@ -1,4 +1,4 @@
-//! The layers in double precision, written for reading.
+//! Reference implementations of the layers in double precision.
 
 use crate::Activation;
 

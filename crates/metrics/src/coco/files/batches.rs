@@ -1,13 +1,13 @@
-//! The records of an array, some at a time, for several threads.
+//! Batches of the records of an array, for several threads.
 
 use std::io::Read;
 
 use opendr_engine::{JsonPiece, JsonStream, Result};
 
-/// Bytes of records that one thread reads at once.
+/// Bytes of records per batch.
 const BATCH: usize = 1 << 18;
 
-/// Records with their places in the file.
+/// Records with their positions in the file.
 #[derive(Default)]
 pub(super) struct Batch {
     bytes: Vec<u8>,
@@ -16,7 +16,7 @@ pub(super) struct Batch {
 }
 
 impl Batch {
-    /// The records in order.
+    /// Returns the records, in order.
     pub(super) fn pieces(&self) -> impl Iterator<Item = JsonPiece<'_>> {
         let mut start = 0;
         self.places.iter().map(move |(end, offset, line)| {
@@ -27,15 +27,15 @@ impl Batch {
     }
 }
 
-/// Cuts the next array into batches.
+/// Divides the next array into batches.
 pub(super) struct Batches<'a, R> {
     json: &'a mut JsonStream<R>,
-    /// Whether the array has been left.
+    /// Whether the array ended.
     done: bool,
 }
 
 impl<'a, R: Read> Batches<'a, R> {
-    /// Enters the array that comes next.
+    /// Enters the next value, an array.
     pub(super) fn new(json: &'a mut JsonStream<R>) -> Result<Self> {
         json.begin_array()?;
         Ok(Self { json, done: false })

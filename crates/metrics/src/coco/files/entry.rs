@@ -1,4 +1,4 @@
-//! One annotation or result.
+//! Annotations and results in COCO files.
 
 use opendr_engine::target::Rle;
 use opendr_engine::{Error, JsonPiece, Result};
@@ -6,17 +6,17 @@ use opendr_engine::{Error, JsonPiece, Result};
 use super::text::{Fault, Parsed, Text};
 use crate::coco::overlap::JOINTS;
 
-/// Which of the large fields are read.
+/// The large fields to read.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Fields {
     pub segmentation: bool,
     pub keypoints: bool,
 }
 
-/// What an annotation or a result says; absent and null are the same.
+/// An annotation or result; absent and null fields are the same.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Entry {
-    pub picture: Option<i64>,
+    pub image: Option<i64>,
     pub class: Option<i64>,
     pub bounds: Option<[f64; 4]>,
     pub area: Option<f64>,
@@ -27,7 +27,7 @@ pub(super) struct Entry {
     pub region: Option<Region>,
 }
 
-/// Pixels of an object as a file names them.
+/// The mask of an object in a file.
 #[derive(Debug, PartialEq)]
 pub(super) enum Region {
     Polygons(Vec<Vec<f64>>),
@@ -38,7 +38,7 @@ pub(super) enum Region {
 }
 
 impl Region {
-    /// The mask in a picture of `[height, width]` pixels.
+    /// Returns the mask in an image of `[height, width]` pixels.
     pub(super) fn mask(&self, [height, width]: [u32; 2]) -> Result<Rle> {
         match self {
             Self::Polygons(polygons) => Rle::from_polygons(height, width, polygons),
@@ -49,10 +49,10 @@ impl Region {
 }
 
 impl Entry {
-    /// Reads a record.
+    /// Parses a record.
     ///
     /// # Errors
-    /// `Format`, with line, byte and key.
+    /// Returns `Format` with line, byte and key.
     pub(super) fn read(piece: &JsonPiece<'_>, fields: Fields) -> Result<Self> {
         Self::parse(piece.bytes, fields).map_err(|Fault { at, what }| piece.error_at(at, &what))
     }
@@ -76,7 +76,7 @@ impl Entry {
             return Ok(());
         }
         match key {
-            b"image_id" => self.picture = Some(text.whole()?),
+            b"image_id" => self.image = Some(text.whole()?),
             b"category_id" => self.class = Some(text.whole()?),
             b"bbox" => self.bounds = text.numbers()?,
             b"area" => self.area = Some(text.number()?),
@@ -135,7 +135,7 @@ fn runs(text: &mut Text<'_>) -> Parsed<Region> {
     match (size, packed, plain) {
         (Some(size), Some(packed), _) => Ok(Region::Packed(size, packed)),
         (Some(size), None, Some(counts)) => Ok(Region::Plain(size, counts)),
-        _ => text.fault("a mask by runs needs \"size\": [height, width] and \"counts\""),
+        _ => text.fault("a run-length encoded mask needs \"size\": [height, width] and \"counts\""),
     }
 }
 
@@ -143,13 +143,13 @@ fn length(text: &mut Text<'_>) -> Parsed<u32> {
     let number = text.whole()?;
     match u32::try_from(number) {
         Ok(number) => Ok(number),
-        Err(_) => text.fault(format!("{number} is no number of pixels")),
+        Err(_) => text.fault(format!("{number} is not a number of pixels")),
     }
 }
 
-/// A field that must be there.
+/// Returns a required field.
 pub(super) fn needed<T>(field: Option<T>, key: &str) -> Result<T> {
-    field.ok_or_else(|| Error::format(format!("no {key:?}; this kind of evaluation needs it")))
+    field.ok_or_else(|| Error::format(format!("no {key:?}, which this kind of evaluation needs; add it")))
 }
 
 #[cfg(test)]
@@ -161,11 +161,11 @@ mod tests {
     }
 
     #[test]
-    fn only_what_is_asked_for() {
+    fn only_requested_fields_are_read() {
         let text = r#"{"id": 9, "image_id": 5, "category_id": 2, "bbox": [1, 2.5, 3, 4], "area": 12.7, "iscrowd": 1,
             "segmentation": {"size": [2, 2], "counts": "\u003013"}, "keypoints": [0], "score": null}"#;
         let plain = read(text, Fields::default()).unwrap();
-        assert_eq!((plain.picture, plain.class, plain.crowd), (Some(5), Some(2), true));
+        assert_eq!((plain.image, plain.class, plain.crowd), (Some(5), Some(2), true));
         assert_eq!((plain.bounds, plain.area), (Some([1.0, 2.5, 3.0, 4.0]), Some(12.7)));
         assert_eq!((&plain.region, plain.score), (&None, None));
         let whole = read(text, Fields { segmentation: true, keypoints: false }).unwrap();
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_name_line_byte_and_key() {
+    fn errors_state_line_byte_and_key() {
         let message =
             |text: &str| read(text, Fields { segmentation: true, keypoints: true }).unwrap_err().to_string();
         assert_eq!(

@@ -1,36 +1,36 @@
-//! What is compared: boxes, masks or persons.
+//! Kinds of evaluation: boxes, masks or persons.
 
 use opendr_engine::target::Rle;
 use opendr_engine::{Error, Result};
 
 use super::entry::{Entry, Fields, Region, needed};
 use crate::coco::keypoints::area_around;
-use crate::coco::overlap::{JOINTS, Mask, Person, box_overlap, check_box, keypoint_similarity};
+use crate::coco::overlap::{JOINTS, Mask, Person, box_iou, check_box, keypoint_similarity};
 
-/// What is compared, and what is kept for it.
+/// A kind of evaluation.
 pub(super) trait Kind: 'static {
-    /// Fields of records that are read.
+    /// Fields of records to read.
     const FIELDS: Fields;
-    /// An annotated object as it is kept.
-    type There: Send + Sync;
-    /// An annotated object as it is compared.
+    /// An annotated object as stored.
+    type Annotated: Send + Sync;
+    /// An annotated object as compared.
     type Object;
     /// A detection.
-    type Found: Send + Sync;
+    type Detected: Send + Sync;
 
-    /// Reads an object.
-    fn there(entry: &mut Entry) -> Result<Self::There>;
+    /// Creates an object from an entry.
+    fn annotated(entry: &mut Entry) -> Result<Self::Annotated>;
 
-    /// Makes an object ready, in a picture of `[height, width]` pixels, and tells its area unless the file states it.
-    fn object(there: &Self::There, size: Option<[u32; 2]>) -> Result<(Self::Object, f64)>;
+    /// Prepares an object in an image of `[height, width]` pixels, and returns it with its area, which the file may override.
+    fn object(annotated: &Self::Annotated, size: Option<[u32; 2]>) -> Result<(Self::Object, f64)>;
 
-    /// Reads a detection, and tells its area.
-    fn found(entry: &mut Entry, size: Option<[u32; 2]>) -> Result<(Self::Found, f64)>;
+    /// Creates a detection from an entry, and returns it with its area.
+    fn detected(entry: &mut Entry, size: Option<[u32; 2]>) -> Result<(Self::Detected, f64)>;
 
-    /// How much they overlap.
-    fn overlap(found: &Self::Found, object: &Self::Object, crowd: bool) -> Result<f64>;
+    /// Returns the overlap of a detection with an object.
+    fn overlap(detected: &Self::Detected, object: &Self::Object, crowd: bool) -> Result<f64>;
 
-    /// Whether an object counts neither way though it is no crowd.
+    /// Returns whether an object is ignored although it is not a crowd.
     fn is_ignored(_: &Entry) -> bool {
         false
     }
@@ -40,25 +40,25 @@ pub(super) struct Boxes;
 
 impl Kind for Boxes {
     const FIELDS: Fields = Fields { segmentation: false, keypoints: false };
-    type There = [f64; 4];
+    type Annotated = [f64; 4];
     type Object = [f64; 4];
-    type Found = [f64; 4];
+    type Detected = [f64; 4];
 
-    fn there(entry: &mut Entry) -> Result<[f64; 4]> {
+    fn annotated(entry: &mut Entry) -> Result<[f64; 4]> {
         bounds(entry)
     }
 
-    fn object(there: &[f64; 4], _: Option<[u32; 2]>) -> Result<([f64; 4], f64)> {
-        Ok((*there, there[2] * there[3]))
+    fn object(annotated: &[f64; 4], _: Option<[u32; 2]>) -> Result<([f64; 4], f64)> {
+        Ok((*annotated, annotated[2] * annotated[3]))
     }
 
-    fn found(entry: &mut Entry, _: Option<[u32; 2]>) -> Result<([f64; 4], f64)> {
+    fn detected(entry: &mut Entry, _: Option<[u32; 2]>) -> Result<([f64; 4], f64)> {
         let bounds = bounds(entry)?;
         Ok((bounds, bounds[2] * bounds[3]))
     }
 
-    fn overlap(found: &[f64; 4], object: &[f64; 4], crowd: bool) -> Result<f64> {
-        Ok(box_overlap(*found, *object, crowd))
+    fn overlap(detected: &[f64; 4], object: &[f64; 4], crowd: bool) -> Result<f64> {
+        Ok(box_iou(*detected, *object, crowd))
     }
 }
 
@@ -72,22 +72,22 @@ pub(super) struct Masks;
 
 impl Kind for Masks {
     const FIELDS: Fields = Fields { segmentation: true, keypoints: false };
-    type There = Region;
+    type Annotated = Region;
     type Object = Mask;
-    type Found = Mask;
+    type Detected = Mask;
 
-    fn there(entry: &mut Entry) -> Result<Region> {
+    fn annotated(entry: &mut Entry) -> Result<Region> {
         needed(entry.region.take(), "segmentation")
     }
 
-    fn object(there: &Region, size: Option<[u32; 2]>) -> Result<(Mask, f64)> {
-        let mask = mask(there, size)?;
+    fn object(annotated: &Region, size: Option<[u32; 2]>) -> Result<(Mask, f64)> {
+        let mask = mask(annotated, size)?;
         let area = mask.area() as f64;
         Ok((mask, area))
     }
 
-    /// A detection without a mask is its box, as in pycocotools.
-    fn found(entry: &mut Entry, size: Option<[u32; 2]>) -> Result<(Mask, f64)> {
+    /// Uses the box of a detection without a mask, as pycocotools does.
+    fn detected(entry: &mut Entry, size: Option<[u32; 2]>) -> Result<(Mask, f64)> {
         let region = match (entry.region.take(), entry.bounds) {
             (None, Some([left, top, width, height])) => {
                 let [right, bottom] = [left + width, top + height];
@@ -98,17 +98,15 @@ impl Kind for Masks {
         Self::object(&region, size)
     }
 
-    fn overlap(found: &Mask, object: &Mask, crowd: bool) -> Result<f64> {
-        found.overlap(object, crowd)
+    fn overlap(detected: &Mask, object: &Mask, crowd: bool) -> Result<f64> {
+        detected.iou(object, crowd)
     }
 }
 
 fn mask(region: &Region, size: Option<[u32; 2]>) -> Result<Mask> {
     let rle: Rle = match (region, size) {
         (Region::Polygons(_), None) => {
-            return Err(Error::format(
-                "an outline in a picture without \"height\" and \"width\"; state them",
-            ));
+            return Err(Error::format("a polygon in an image without \"height\" and \"width\"; add them"));
         }
         (_, size) => region.mask(size.unwrap_or_default())?,
     };
@@ -119,11 +117,11 @@ pub(super) struct Persons;
 
 impl Kind for Persons {
     const FIELDS: Fields = Fields { segmentation: false, keypoints: true };
-    type There = Box<Person>;
+    type Annotated = Box<Person>;
     type Object = Box<Person>;
-    type Found = Box<[[f64; 2]; JOINTS]>;
+    type Detected = Box<[[f64; 2]; JOINTS]>;
 
-    fn there(entry: &mut Entry) -> Result<Box<Person>> {
+    fn annotated(entry: &mut Entry) -> Result<Box<Person>> {
         let numbers = needed(entry.keypoints.take(), "keypoints")?;
         let bounding_box = bounds(entry)?;
         let area = entry.area.unwrap_or(bounding_box[2] * bounding_box[3]);
@@ -131,19 +129,19 @@ impl Kind for Persons {
         Ok(Box::new(Person { joints, bounding_box, area }))
     }
 
-    fn object(there: &Box<Person>, _: Option<[u32; 2]>) -> Result<(Box<Person>, f64)> {
-        Ok((there.clone(), there.area))
+    fn object(annotated: &Box<Person>, _: Option<[u32; 2]>) -> Result<(Box<Person>, f64)> {
+        Ok((annotated.clone(), annotated.area))
     }
 
-    fn found(entry: &mut Entry, _: Option<[u32; 2]>) -> Result<(Self::Found, f64)> {
+    fn detected(entry: &mut Entry, _: Option<[u32; 2]>) -> Result<(Self::Detected, f64)> {
         let numbers = needed(entry.keypoints.take(), "keypoints")?;
         let joints = Box::new(std::array::from_fn(|at| [numbers[3 * at], numbers[3 * at + 1]]));
         let area = area_around(&joints);
         Ok((joints, area))
     }
 
-    fn overlap(found: &Self::Found, object: &Box<Person>, _: bool) -> Result<f64> {
-        Ok(keypoint_similarity(found, object))
+    fn overlap(detected: &Self::Detected, object: &Box<Person>, _: bool) -> Result<f64> {
+        Ok(keypoint_similarity(detected, object))
     }
 
     fn is_ignored(entry: &Entry) -> bool {

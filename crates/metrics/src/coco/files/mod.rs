@@ -1,7 +1,7 @@
-//! From two of COCO's JSON files to its numbers: annotations, and results of a detector.
+//! Evaluation of two COCO JSON files: annotations, and the results of a detector.
 //!
-//! Both files are read a block at a time; what is kept of a box is 64 bytes, whatever the file says besides. Numbers keep
-//! all their digits.
+//! Both files are read in blocks, and 64 bytes per box are kept, whatever else the files contain. Numbers keep all their
+//! digits.
 
 mod batches;
 mod entry;
@@ -27,48 +27,49 @@ use kind::{Boxes, Kind, Masks, Persons};
 use results::Results;
 use truth::Truths;
 
-/// A file, and what is said when it cannot be read.
+/// A file, and the context of its errors.
 type Named<R> = (R, String);
 
-/// Pictures that one thread matches at once.
-const PICTURES: u32 = 64;
+/// Images per job of a thread.
+const IMAGES_PER_JOB: u32 = 64;
 
-/// What is compared.
+/// Kind of a COCO evaluation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CocoKind {
     /// Boxes (`bbox`).
     Boxes,
     /// Masks (`segm`).
     Masks,
-    /// Persons by their key points (`keypoints`).
+    /// Keypoints of persons (`keypoints`).
     Keypoints,
 }
 
-/// How two files are compared.
+/// Options of the evaluation of COCO files.
 #[derive(Debug, Clone)]
 pub struct CocoFiles {
-    /// What is compared.
+    /// Kind of the evaluation.
     pub kind: CocoKind,
-    /// Whether a detection must name the class of the object; key points always must.
+    /// Whether detections match only objects of their class; with keypoints always.
     pub use_classes: bool,
-    /// At most this many detections a picture and class are counted.
+    /// Maximum number of detections per image and class.
     pub max_detections: u32,
-    /// Threads that work at once.
+    /// Number of threads.
     pub threads: usize,
 }
 
 impl CocoFiles {
-    /// As pycocotools compares: with classes, at most 100 detections a picture and class (20 persons); on all cores.
+    /// Creates the options of pycocotools: with classes, at most 100 detections per image and class (20 persons). Uses all
+    /// cores.
     pub fn new(kind: CocoKind) -> Self {
         let max_detections = if kind == CocoKind::Keypoints { 20 } else { 100 };
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         Self { kind, use_classes: true, max_detections, threads }
     }
 
-    /// Compares the results with the annotations.
+    /// Evaluates results against annotations.
     ///
     /// # Errors
-    /// `NotFound`, `Io`, or `Format` with file, line, byte and key.
+    /// Returns `NotFound`, `Io`, or `Format` with file, line, byte and key.
     pub fn compare(&self, annotations: &Path, results: &Path) -> Result<CocoComparison> {
         let open = |path: &Path| -> Result<_> {
             let name = format!("reading {}", path.display());
@@ -77,11 +78,11 @@ impl CocoFiles {
         self.dispatch(open(annotations)?, open(results)?)
     }
 
-    /// As [`CocoFiles::compare`], from open files or from memory.
+    /// Like [`CocoFiles::compare`], from readers.
     ///
     /// # Errors
     /// As [`CocoFiles::compare`].
-    pub fn compare_texts(&self, annotations: impl Read, results: impl Read) -> Result<CocoComparison> {
+    pub fn compare_readers(&self, annotations: impl Read, results: impl Read) -> Result<CocoComparison> {
         self.dispatch((annotations, "reading annotations".into()), (results, "reading results".into()))
     }
 
@@ -109,13 +110,13 @@ impl CocoFiles {
         };
         let by_class = self.use_classes || self.kind == CocoKind::Keypoints;
         let mut parts: Vec<_> = (0..threads).map(|_| fresh()).collect();
-        let count = truths.pictures() as u32;
-        let starts = (0..count).step_by(PICTURES as usize);
+        let count = truths.images() as u32;
+        let starts = (0..count).step_by(IMAGES_PER_JOB as usize);
         map_in_order(
             &mut parts,
             starts,
             |part, start| {
-                (start..count.min(start + PICTURES))
+                (start..count.min(start + IMAGES_PER_JOB))
                     .try_for_each(|at| add(part, at, &truths, &results, by_class))
             },
             |done| done,
@@ -123,18 +124,18 @@ impl CocoFiles {
         let mut whole = fresh();
         parts.into_iter().for_each(|part| whole.merge(part));
         Ok(CocoComparison {
-            pictures: truths.pictures() as u64,
+            images: truths.images() as u64,
             objects: truths.objects() as u64,
             detections: results.detections() as u64,
-            objects_of_nothing: truths.of_nothing,
-            detections_of_other_classes: results.of_other_classes,
+            unlisted_objects: truths.unlisted,
+            unlisted_detections: results.unlisted,
             classes: truths.classes,
             outcome: whole.finish(threads),
         })
     }
 }
 
-/// The class of all, where classes are one.
+/// Class of all objects if classes count as one.
 const ANY: i64 = 0;
 
 fn add<K: Kind>(
@@ -144,58 +145,60 @@ fn add<K: Kind>(
     results: &Results<K>,
     by_class: bool,
 ) -> Result<()> {
-    let mut there: Vec<_> = truths.of_picture(at).iter().collect();
-    let mut found: Vec<_> = results.of_picture(at).collect();
-    // With classes as one, too, pycocotools takes class after class.
-    there.sort_by_key(|annotation| annotation.class);
-    found.sort_by_key(|detection| detection.class);
-    let (mut there, mut found) = (&there[..], &found[..]);
+    let mut annotated: Vec<_> = truths.of_image(at).iter().collect();
+    let mut detected: Vec<_> = results.of_image(at).collect();
+    // pycocotools goes through the classes one after the other, even if they count as one.
+    annotated.sort_by_key(|annotation| annotation.class);
+    detected.sort_by_key(|detection| detection.class);
+    let (mut annotated, mut detected) = (&annotated[..], &detected[..]);
     while let Some(first) =
-        there.first().map(|one| one.class).into_iter().chain(found.first().map(|one| one.class)).min()
+        annotated.first().map(|one| one.class).into_iter().chain(detected.first().map(|one| one.class)).min()
     {
         let class = if by_class { first } else { ANY };
         let of_class = |other: i64| !by_class || other == first;
-        let (these, others) = there.split_at(there.partition_point(|one| of_class(one.class)));
-        let (those, rest) = found.split_at(found.partition_point(|one| of_class(one.class)));
-        (there, found) = (others, rest);
-        let mut objects = Vec::with_capacity(these.len());
-        let mut matched = Vec::with_capacity(these.len());
-        for annotation in these {
-            let (object, area) = K::object(&annotation.there, truths.size(at))
+        let (of_class_annotated, later_annotated) =
+            annotated.split_at(annotated.partition_point(|one| of_class(one.class)));
+        let (of_class_detected, later_detected) =
+            detected.split_at(detected.partition_point(|one| of_class(one.class)));
+        (annotated, detected) = (later_annotated, later_detected);
+        let mut objects = Vec::with_capacity(of_class_annotated.len());
+        let mut matched = Vec::with_capacity(of_class_annotated.len());
+        for annotation in of_class_annotated {
+            let (object, area) = K::object(&annotation.annotated, truths.size(at))
                 .context(|| format!("an annotation of image {}", truths.id(at)))?;
             objects.push(object);
             matched.push(annotation.truth(area));
         }
-        let detections: Vec<_> = those.iter().map(|one| one.detection).collect();
+        let detections: Vec<_> = of_class_detected.iter().map(|one| one.detection).collect();
         part.count(&class, at, &matched, &detections, |detection, truth| {
-            K::overlap(&those[detection].found, &objects[truth], matched[truth].crowd)
+            K::overlap(&of_class_detected[detection].detected, &objects[truth], matched[truth].crowd)
         })
         .context(|| format!("image {}", truths.id(at)))?;
     }
     Ok(())
 }
 
-/// What came out of a comparison of two files.
+/// Result of the evaluation of two files.
 #[derive(Debug, Clone)]
 pub struct CocoComparison {
-    /// The numbers.
+    /// Metrics.
     pub outcome: Outcome<i64>,
-    /// Names of the classes by number.
+    /// Class names by category id.
     pub classes: BTreeMap<i64, String>,
-    /// Pictures of the annotations.
-    pub pictures: u64,
-    /// Annotated objects, crowds among them.
+    /// Number of annotated images.
+    pub images: u64,
+    /// Number of annotated objects, including crowds.
     pub objects: u64,
-    /// Detections that were read.
+    /// Number of detections.
     pub detections: u64,
-    /// Annotations that were left out, since their picture or class is not listed.
-    pub objects_of_nothing: u64,
-    /// Detections that were left out, since the annotations do not list their class.
-    pub detections_of_other_classes: u64,
+    /// Number of annotations that are ignored because their image or category is not listed.
+    pub unlisted_objects: u64,
+    /// Number of detections that are ignored because their category is not listed.
+    pub unlisted_detections: u64,
 }
 
 impl CocoComparison {
-    /// The numbers, a table by class, precision-recall curves.
+    /// Returns the metrics, a table by class, and precision-recall curves.
     pub fn report(&self) -> Report {
         self.outcome.report(|class| self.classes.get(class).cloned().unwrap_or_else(|| class.to_string()))
     }

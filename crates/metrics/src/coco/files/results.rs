@@ -1,4 +1,4 @@
-//! A file of results: a list of detections.
+//! Result files: lists of detections.
 
 use std::io::Read;
 
@@ -11,104 +11,108 @@ use super::truth::Truths;
 use crate::coco::matching::Detection;
 
 /// A detection.
-pub(super) struct Found<S> {
-    /// Place of the picture in the order.
-    picture: u32,
-    /// Category number.
+pub(super) struct ScoredDetection<S> {
+    /// Index of the image.
+    image: u32,
+    /// Category id.
     pub class: i64,
     pub detection: Detection,
-    pub found: S,
+    pub detected: S,
 }
 
-/// What a file of results says.
+/// Contents of a result file.
 pub(super) struct Results<K: Kind> {
-    found: Vec<Found<K::Found>>,
-    /// Places in `found` by picture.
+    detections: Vec<ScoredDetection<K::Detected>>,
+    /// Indices into `detections` by image.
     order: Vec<u32>,
-    /// First place in `order` of each picture, and the end.
+    /// Start of each image in `order`, and the end.
     starts: Vec<u32>,
-    /// Detections of classes that the annotations do not list.
-    pub of_other_classes: u64,
+    /// Number of detections whose category the annotations do not list.
+    pub unlisted: u64,
 }
 
 impl<K: Kind> Results<K> {
     /// Reads the file.
     ///
     /// # Errors
-    /// `Io`, or `Format` with line, byte and key.
+    /// Returns `Io`, or `Format` with line, byte and key.
     pub(super) fn read(file: impl Read, truths: &Truths<K>, threads: usize) -> Result<Self> {
         let mut json = JsonStream::new(file);
         let mut batches = Batches::new(&mut json)?;
         let first = batches.next().transpose()?;
-        // As in pycocotools, the first detection tells whether areas are those of boxes.
+        // As in pycocotools, the first detection determines whether areas are those of boxes.
         let boxed = match first.as_ref().and_then(|batch| batch.pieces().next()) {
             Some(piece) => Entry::read(&piece, Default::default())?.bounds.is_some(),
             None => false,
         };
-        let (mut found, mut of_other_classes) = (Vec::new(), 0);
+        let (mut detections, mut unlisted) = (Vec::new(), 0);
         let work = |(): &mut (), batch: Result<Batch>| -> Result<(Vec<_>, u64)> {
-            let (mut found, mut of_other_classes) = (Vec::new(), 0);
+            let (mut detections, mut unlisted) = (Vec::new(), 0);
             for piece in batch?.pieces() {
-                match one(&piece, truths, boxed)? {
-                    Some(one) => found.push(one),
-                    None => of_other_classes += 1,
+                match detection(&piece, truths, boxed)? {
+                    Some(detection) => detections.push(detection),
+                    None => unlisted += 1,
                 }
             }
-            Ok((found, of_other_classes))
+            Ok((detections, unlisted))
         };
         let batches = first.into_iter().map(Ok).chain(batches);
         map_in_order(&mut vec![(); threads], batches, work, |batch| -> Result<()> {
             let (some, others) = batch?;
-            found.extend(some);
-            of_other_classes += others;
-            match u32::try_from(found.len()) {
+            detections.extend(some);
+            unlisted += others;
+            match u32::try_from(detections.len()) {
                 Ok(_) => Ok(()),
-                Err(_) => Err(Error::unsupported("more than 2^32 detections; split the file up")),
+                Err(_) => Err(Error::unsupported("more than 2^32 detections; split the file")),
             }
         })?;
         json.end()?;
-        Ok(Self::sorted(found, truths.pictures(), of_other_classes))
+        Ok(Self::sorted(detections, truths.images(), unlisted))
     }
 
-    fn sorted(found: Vec<Found<K::Found>>, pictures: usize, of_other_classes: u64) -> Self {
-        let mut starts = vec![0u32; pictures + 1];
-        for one in &found {
-            starts[one.picture as usize + 1] += 1;
+    fn sorted(detections: Vec<ScoredDetection<K::Detected>>, images: usize, unlisted: u64) -> Self {
+        let mut starts = vec![0u32; images + 1];
+        for detection in &detections {
+            starts[detection.image as usize + 1] += 1;
         }
-        for at in 0..pictures {
+        for at in 0..images {
             starts[at + 1] += starts[at];
         }
-        let (mut next, mut order) = (starts.clone(), vec![0; found.len()]);
-        for (at, one) in (0..).zip(&found) {
-            let place = &mut next[one.picture as usize];
-            order[*place as usize] = at;
-            *place += 1;
+        let (mut next, mut order) = (starts.clone(), vec![0; detections.len()]);
+        for (at, detection) in (0..).zip(&detections) {
+            let index = &mut next[detection.image as usize];
+            order[*index as usize] = at;
+            *index += 1;
         }
-        Self { found, order, starts, of_other_classes }
+        Self { detections, order, starts, unlisted }
     }
 
-    /// How many detections there are.
+    /// Returns the number of detections.
     pub(super) fn detections(&self) -> usize {
-        self.found.len()
+        self.detections.len()
     }
 
-    /// The detections in the picture at `place`, in the order of the file.
-    pub(super) fn of_picture(&self, place: u32) -> impl Iterator<Item = &Found<K::Found>> {
-        let place = place as usize;
-        self.order[self.starts[place] as usize..self.starts[place + 1] as usize]
+    /// Returns the detections in image `index`, in the order of the file.
+    pub(super) fn of_image(&self, index: u32) -> impl Iterator<Item = &ScoredDetection<K::Detected>> {
+        let index = index as usize;
+        self.order[self.starts[index] as usize..self.starts[index + 1] as usize]
             .iter()
-            .map(|at| &self.found[*at as usize])
+            .map(|at| &self.detections[*at as usize])
     }
 }
 
-/// Reads a detection; `None` when the annotations do not list its class.
-fn one<K: Kind>(piece: &JsonPiece<'_>, truths: &Truths<K>, boxed: bool) -> Result<Option<Found<K::Found>>> {
+/// Parses a detection; `None` if the annotations do not list its category.
+fn detection<K: Kind>(
+    piece: &JsonPiece<'_>,
+    truths: &Truths<K>,
+    boxed: bool,
+) -> Result<Option<ScoredDetection<K::Detected>>> {
     let mut entry = Entry::read(piece, K::FIELDS)?;
     let mut read = || {
-        let id = needed(entry.picture, "image_id")?;
-        let picture = truths.place(id).ok_or_else(|| {
+        let id = needed(entry.image, "image_id")?;
+        let image = truths.index(id).ok_or_else(|| {
             Error::format(format!(
-                "image_id {id} is not among the images of the annotations; give their results"
+                "image_id {id} is not among the images of the annotations; give results of these images"
             ))
         })?;
         let class = needed(entry.class, "category_id")?;
@@ -116,12 +120,12 @@ fn one<K: Kind>(piece: &JsonPiece<'_>, truths: &Truths<K>, boxed: bool) -> Resul
         if !truths.classes.contains_key(&class) {
             return Ok(None);
         }
-        let (found, own) = K::found(&mut entry, truths.size(picture))?;
+        let (detected, own) = K::detected(&mut entry, truths.size(image))?;
         let area = match entry.bounds.filter(|_| boxed) {
             Some([_, _, width, height]) => width * height,
             None => own,
         };
-        Ok(Some(Found { picture, class, detection: Detection { score, area }, found }))
+        Ok(Some(ScoredDetection { image, class, detection: Detection { score, area }, detected }))
     };
     read().map_err(|error: Error| piece.error_at(0, error.message()))
 }

@@ -24,7 +24,7 @@ fn filled(text: &str) -> String {
     text.replace("KEYPOINTS", &format!("[{}]", numbers.join(",")))
 }
 
-/// Two files that are gone after the test.
+/// Two files that are removed after the test.
 struct Files(PathBuf);
 
 impl Files {
@@ -56,8 +56,8 @@ const KINDS: [CocoKind; 3] = [CocoKind::Boxes, CocoKind::Masks, CocoKind::Keypoi
 fn one_object_is_found() {
     let files = Files::new(filled(ANNOTATIONS).as_bytes(), filled(RESULTS).as_bytes());
     let done = files.compare(CocoKind::Boxes, 2).unwrap();
-    assert_eq!((done.pictures, done.objects, done.detections), (2, 2, 1));
-    assert_eq!((done.objects_of_nothing, done.detections_of_other_classes), (0, 1));
+    assert_eq!((done.images, done.objects, done.detections), (2, 2, 1));
+    assert_eq!((done.unlisted_objects, done.unlisted_detections), (0, 1));
     let stats = done.outcome.stats();
     assert_eq!((stats.len(), stats[3], stats[5]), (12, -1.0, -1.0));
     assert!((stats[0] - 1.0).abs() < 1e-12, "{stats:?}");
@@ -66,12 +66,12 @@ fn one_object_is_found() {
     assert!(report.statistics.get("map_small").is_none());
     let masks = files.compare(CocoKind::Masks, 1).unwrap().outcome.stats();
     assert_eq!(masks[0], 0.0);
-    // The only person without crowd has no key points that count.
+    // The only person that is not a crowd has no keypoints that count.
     assert_eq!(files.compare(CocoKind::Keypoints, 1).unwrap().outcome.stats(), [-1.0; 10]);
 }
 
 #[test]
-fn errors_name_file_and_place() {
+fn errors_state_file_and_position() {
     let message = |annotations: &str, results: &str| {
         let files = Files::new(filled(annotations).as_bytes(), filled(results).as_bytes());
         files.compare(CocoKind::Boxes, 2).unwrap_err().to_string()
@@ -97,7 +97,7 @@ fn errors_name_file_and_place() {
 }
 
 #[test]
-fn nothing_is_found_in_an_empty_list() {
+fn empty_results_have_no_precision() {
     let files = Files::new(filled(ANNOTATIONS).as_bytes(), b"[]");
     assert_eq!(files.compare(CocoKind::Boxes, 2).unwrap().outcome.stats()[..3], [0.0; 3]);
 }
@@ -105,9 +105,9 @@ fn nothing_is_found_in_an_empty_list() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
-    /// A byte is exchanged, or a piece cut out or doubled: an error or numbers, never a panic.
+    /// A byte is replaced, or a piece removed or doubled: the result is an error or numbers, never a panic.
     #[test]
-    fn mutated_files_are_refused_or_read(
+    fn mutated_files_are_rejected_or_read(
         which in any::<bool>(),
         kind in 0usize..3,
         at in any::<prop::sample::Index>(),
@@ -128,6 +128,6 @@ proptest! {
             }
         }
         let files = CocoFiles { threads: 1, ..CocoFiles::new(KINDS[kind]) };
-        let _ = files.compare_texts(&texts[0][..], &texts[1][..]).map(|done| done.report());
+        let _ = files.compare_readers(&texts[0][..], &texts[1][..]).map(|done| done.report());
     }
 }

@@ -1,8 +1,8 @@
-//! The JSON of one record, read field by field.
+//! Parsing of the JSON of one record.
 
 use std::borrow::Cow;
 
-/// What is wrong, and at which byte of the record.
+/// An error, and the byte of the record at which it occurred.
 #[derive(Debug, PartialEq)]
 pub(super) struct Fault {
     pub at: usize,
@@ -17,7 +17,7 @@ pub(super) struct Text<'a> {
     at: usize,
 }
 
-/// Powers of ten that are exact.
+/// Powers of ten that an `f64` represents exactly.
 const TENS: [f64; 23] = [
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18,
     1e19, 1e20, 1e21, 1e22,
@@ -28,12 +28,12 @@ impl<'a> Text<'a> {
         Self { bytes, at: 0 }
     }
 
-    /// An error at the next byte.
+    /// Returns an error at the next byte.
     pub(super) fn fault<T>(&self, what: impl Into<String>) -> Parsed<T> {
         Err(Fault { at: self.at, what: what.into() })
     }
 
-    /// Reads an object; `each` reads the value of every key.
+    /// Parses an object; `each` parses the value of each key.
     pub(super) fn object(&mut self, mut each: impl FnMut(&mut Self, &'a [u8]) -> Parsed<()>) -> Parsed<()> {
         self.list(b'{', b'}', "an object", |text| {
             let key = text.quoted("a key")?;
@@ -45,12 +45,12 @@ impl<'a> Text<'a> {
         })
     }
 
-    /// Reads an array; `each` reads every element.
+    /// Parses an array; `each` parses each element.
     pub(super) fn array(&mut self, each: impl FnMut(&mut Self) -> Parsed<()>) -> Parsed<()> {
         self.list(b'[', b']', "an array", each)
     }
 
-    /// Reads exactly `N` numbers; `None` for an empty array.
+    /// Parses exactly `N` numbers; `None` for an empty array.
     pub(super) fn numbers<const N: usize>(&mut self) -> Parsed<Option<[f64; N]>> {
         let (mut numbers, mut count) = ([0.0; N], 0);
         self.array(|text| {
@@ -69,7 +69,7 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// Whether null comes next, which is passed over.
+    /// Returns whether the next value is null, and skips it.
     pub(super) fn null(&mut self) -> bool {
         self.peek();
         let found = self.bytes[self.at..].starts_with(b"null");
@@ -77,17 +77,17 @@ impl<'a> Text<'a> {
         found
     }
 
-    /// Whether an object comes next.
+    /// Returns whether the next value is an object.
     pub(super) fn is_object(&mut self) -> bool {
         self.peek() == Some(b'{')
     }
 
-    /// Whether text comes next.
+    /// Returns whether the next value is a string.
     pub(super) fn is_string(&mut self) -> bool {
         self.peek() == Some(b'"')
     }
 
-    /// Reads a finite number to the last bit.
+    /// Parses a finite number, exact to the last bit.
     pub(super) fn number(&mut self) -> Parsed<f64> {
         self.peek();
         let start = self.at;
@@ -134,11 +134,11 @@ impl<'a> Text<'a> {
                 self.at = start + at;
                 Ok(number)
             }
-            _ => self.fault(format!("{text:.40} is no number that can be counted with")),
+            _ => self.fault(format!("{text:.40} is not a finite number")),
         }
     }
 
-    /// Reads a whole number.
+    /// Parses an integer.
     pub(super) fn whole(&mut self) -> Parsed<i64> {
         self.peek();
         let start = self.at;
@@ -152,11 +152,11 @@ impl<'a> Text<'a> {
         match text.parse() {
             Ok(whole) => Ok(whole),
             Err(_) if number.fract() == 0.0 && number.abs() < 9e15 => Ok(number as i64),
-            Err(_) => Err(Fault { at: start, what: format!("expected a whole number, found {text:.40}") }),
+            Err(_) => Err(Fault { at: start, what: format!("expected an integer, found {text:.40}") }),
         }
     }
 
-    /// Reads true, false or a number that is not 0.
+    /// Parses true, false, or a number, which is true unless it is 0.
     pub(super) fn flag(&mut self) -> Parsed<bool> {
         self.peek();
         for (word, value) in [("true", true), ("false", false)] {
@@ -168,13 +168,13 @@ impl<'a> Text<'a> {
         Ok(self.number()? != 0.0)
     }
 
-    /// Reads text.
+    /// Parses a string.
     pub(super) fn string(&mut self) -> Parsed<Cow<'a, str>> {
         self.peek();
         let start = self.at;
         let inner = self.quoted("text")?;
         let invalid =
-            |_| Fault { at: start, what: "text that is not UTF-8 or has a wrong escape".to_owned() };
+            |_| Fault { at: start, what: "text that is not UTF-8 or has an invalid escape".to_owned() };
         if inner.contains(&b'\\') {
             return serde_json::from_slice(&self.bytes[start..self.at])
                 .map(Cow::Owned)
@@ -183,7 +183,7 @@ impl<'a> Text<'a> {
         std::str::from_utf8(inner).map(Cow::Borrowed).map_err(|_| invalid(()))
     }
 
-    /// Passes over a value, of which only the brackets are looked at.
+    /// Skips a value; only its brackets are checked.
     pub(super) fn skip(&mut self) -> Parsed<()> {
         let mut depth = 0usize;
         loop {
@@ -213,7 +213,7 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// Makes sure that nothing follows.
+    /// Checks that the text ends here.
     pub(super) fn end(&mut self) -> Parsed<()> {
         match self.peek() {
             None => Ok(()),
@@ -249,7 +249,7 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// Reads what stands between quotation marks, as it stands.
+    /// Returns the raw bytes between quotation marks.
     fn quoted(&mut self, what: &str) -> Parsed<&'a [u8]> {
         if self.peek() != Some(b'"') {
             return self.fault(format!("expected {what} in quotation marks"));
@@ -269,7 +269,7 @@ impl<'a> Text<'a> {
         Ok(&bytes[start..end])
     }
 
-    /// The next byte that is no white space.
+    /// Returns the next byte that is not white space.
     fn peek(&mut self) -> Option<u8> {
         loop {
             let byte = *self.bytes.get(self.at)?;
@@ -288,7 +288,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_to_the_last_bit() {
+    fn numbers_are_exact() {
         for text in
             ["0", "-1.5", "12.7", "0.1", "123456789.123456789", "9007199254740993", "1e3", "2.5E-3", "1e+2"]
         {
@@ -318,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn values_are_passed_over() {
+    fn values_are_skipped() {
         let text = br#"{"a": {"b": ["]", 1, {}], "c": "\"}"}, "x": 7, "y": null}"#;
         let mut found = None;
         let mut json = Text::new(text);
@@ -336,7 +336,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_bytes_are_refused_or_read(bytes in proptest::collection::vec(any::<u8>(), 0..40)) {
+        fn any_bytes_are_rejected_or_read(bytes in proptest::collection::vec(any::<u8>(), 0..40)) {
             let _ = (Text::new(&bytes).number(), Text::new(&bytes).whole(), Text::new(&bytes).skip());
             let _ = (Text::new(&bytes).string(), Text::new(&bytes).numbers::<2>(), Text::new(&bytes).flag());
             let _ = Text::new(&bytes).object(|text, _| text.skip());

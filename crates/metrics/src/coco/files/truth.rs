@@ -1,4 +1,4 @@
-//! A file of annotations: `instances_*.json`, `person_keypoints_*.json`.
+//! Annotation files: `instances_*.json`, `person_keypoints_*.json`.
 
 use std::collections::{BTreeMap, HashMap};
 use std::io::Read;
@@ -13,26 +13,26 @@ use crate::coco::matching::Truth;
 
 /// An annotated object.
 pub(super) struct Annotation<S> {
-    picture: i64,
-    /// Category number.
+    image: i64,
+    /// Category id.
     pub class: i64,
-    /// Square pixels, where the file states them.
+    /// Area in square pixels, if the file has it.
     pub area: Option<f64>,
     pub crowd: bool,
     pub ignored: bool,
-    pub there: S,
+    pub annotated: S,
 }
 
 impl<S> Annotation<S> {
-    /// What it is matched as, with `own` square pixels unless the file states them.
+    /// Returns the object for matching; its area is `own` square pixels unless the file has it.
     pub(super) fn truth(&self, own: f64) -> Truth {
         Truth { area: self.area.unwrap_or(own), crowd: self.crowd, ignored: self.ignored }
     }
 }
 
-/// A picture of the data set.
+/// An image of the data set.
 #[derive(Deserialize)]
-struct Picture {
+struct ImageRecord {
     id: i64,
     height: Option<u32>,
     width: Option<u32>,
@@ -44,30 +44,30 @@ struct Category {
     name: Option<String>,
 }
 
-/// What a file of annotations says.
+/// Contents of an annotation file.
 pub(super) struct Truths<K: Kind> {
-    /// Numbers of the pictures in rising order: their order in every tie.
-    pictures: HashMap<i64, u32>,
-    /// Number and `[height, width]` by the order of pictures.
+    /// Indices of the images by id, in ascending order of ids, which is their order in ties.
+    images: HashMap<i64, u32>,
+    /// Id and `[height, width]` by index of the image.
     listed: Vec<(i64, Option<[u32; 2]>)>,
-    /// Names by number.
+    /// Class names by category id.
     pub classes: BTreeMap<i64, String>,
-    /// By picture, in the order of the file.
-    annotations: Vec<Annotation<K::There>>,
-    /// First annotation of each picture, and the end.
+    /// Annotations by image, in the order of the file.
+    annotations: Vec<Annotation<K::Annotated>>,
+    /// First annotation of each image, and the end.
     starts: Vec<usize>,
-    /// Annotations of pictures or classes that the file does not list.
-    pub of_nothing: u64,
+    /// Number of annotations whose image or category the file does not list.
+    pub unlisted: u64,
 }
 
 impl<K: Kind> Truths<K> {
     /// Reads the file.
     ///
     /// # Errors
-    /// `Io`, or `Format` with line, byte and key.
+    /// Returns `Io`, or `Format` with line, byte and key.
     pub(super) fn read(file: impl Read, threads: usize) -> Result<Self> {
         let mut json = JsonStream::new(file);
-        let (mut pictures, mut classes) = (BTreeMap::new(), BTreeMap::new());
+        let (mut images, mut classes) = (BTreeMap::new(), BTreeMap::new());
         let mut annotations = None;
         let mut listed = [false; 2];
         json.begin_object()?;
@@ -75,8 +75,8 @@ impl<K: Kind> Truths<K> {
             match key.as_str() {
                 "images" => {
                     listed[0] = true;
-                    each(&mut json, |picture: Picture| {
-                        pictures.insert(picture.id, picture.height.zip(picture.width).map(|(h, w)| [h, w]));
+                    each(&mut json, |image: ImageRecord| {
+                        images.insert(image.id, image.height.zip(image.width).map(|(h, w)| [h, w]));
                     })?;
                 }
                 "categories" => {
@@ -94,64 +94,63 @@ impl<K: Kind> Truths<K> {
         for (key, listed) in ["images", "categories"].into_iter().zip(listed) {
             needed(listed.then_some(()), key)?;
         }
-        Ok(Self::sorted(pictures, classes, needed(annotations, "annotations")?))
+        Ok(Self::sorted(images, classes, needed(annotations, "annotations")?))
     }
 
     fn sorted(
-        pictures: BTreeMap<i64, Option<[u32; 2]>>,
+        images: BTreeMap<i64, Option<[u32; 2]>>,
         classes: BTreeMap<i64, String>,
-        mut annotations: Vec<Annotation<K::There>>,
+        mut annotations: Vec<Annotation<K::Annotated>>,
     ) -> Self {
         let all = annotations.len();
-        let listed: Vec<_> = pictures.into_iter().collect();
-        let pictures: HashMap<i64, u32> = listed.iter().map(|(id, _)| *id).zip(0..).collect();
-        annotations
-            .retain(|entry| pictures.contains_key(&entry.picture) && classes.contains_key(&entry.class));
-        annotations.sort_by_key(|entry| entry.picture);
-        let of_nothing = (all - annotations.len()) as u64;
+        let listed: Vec<_> = images.into_iter().collect();
+        let images: HashMap<i64, u32> = listed.iter().map(|(id, _)| *id).zip(0..).collect();
+        annotations.retain(|entry| images.contains_key(&entry.image) && classes.contains_key(&entry.class));
+        annotations.sort_by_key(|entry| entry.image);
+        let unlisted = (all - annotations.len()) as u64;
         let mut starts = vec![0; listed.len() + 1];
         for entry in &annotations {
-            starts[pictures[&entry.picture] as usize + 1] += 1;
+            starts[images[&entry.image] as usize + 1] += 1;
         }
         for at in 0..listed.len() {
             starts[at + 1] += starts[at];
         }
-        Self { pictures, listed, classes, annotations, starts, of_nothing }
+        Self { images, listed, classes, annotations, starts, unlisted }
     }
 
-    /// How many pictures there are.
-    pub(super) fn pictures(&self) -> usize {
+    /// Returns the number of images.
+    pub(super) fn images(&self) -> usize {
         self.listed.len()
     }
 
-    /// How many objects there are.
+    /// Returns the number of objects.
     pub(super) fn objects(&self) -> usize {
         self.annotations.len()
     }
 
-    /// The place of picture `id` in the order.
-    pub(super) fn place(&self, id: i64) -> Option<u32> {
-        self.pictures.get(&id).copied()
+    /// Returns the index of the image `id`.
+    pub(super) fn index(&self, id: i64) -> Option<u32> {
+        self.images.get(&id).copied()
     }
 
-    /// `[height, width]` of the picture at `place`, where the file states them.
-    pub(super) fn size(&self, place: u32) -> Option<[u32; 2]> {
-        self.listed.get(place as usize).and_then(|(_, size)| *size)
+    /// Returns `[height, width]` of image `index`, if the file has it.
+    pub(super) fn size(&self, index: u32) -> Option<[u32; 2]> {
+        self.listed.get(index as usize).and_then(|(_, size)| *size)
     }
 
-    /// The number of the picture at `place`.
-    pub(super) fn id(&self, place: u32) -> i64 {
-        self.listed.get(place as usize).map_or(-1, |(id, _)| *id)
+    /// Returns the id of image `index`.
+    pub(super) fn id(&self, index: u32) -> i64 {
+        self.listed.get(index as usize).map_or(-1, |(id, _)| *id)
     }
 
-    /// The objects of the picture at `place`.
-    pub(super) fn of_picture(&self, place: u32) -> &[Annotation<K::There>] {
-        let place = place as usize;
-        &self.annotations[self.starts[place]..self.starts[place + 1]]
+    /// Returns the objects of image `index`.
+    pub(super) fn of_image(&self, index: u32) -> &[Annotation<K::Annotated>] {
+        let index = index as usize;
+        &self.annotations[self.starts[index]..self.starts[index + 1]]
     }
 }
 
-/// Reads every record of the array that comes next.
+/// Parses every record of the next array.
 fn each<T: for<'a> Deserialize<'a>>(json: &mut JsonStream<impl Read>, mut take: impl FnMut(T)) -> Result<()> {
     json.begin_array()?;
     while json.more()? {
@@ -163,7 +162,7 @@ fn each<T: for<'a> Deserialize<'a>>(json: &mut JsonStream<impl Read>, mut take: 
 fn read_annotations<K: Kind>(
     json: &mut JsonStream<impl Read>,
     threads: usize,
-) -> Result<Vec<Annotation<K::There>>> {
+) -> Result<Vec<Annotation<K::Annotated>>> {
     let mut annotations = Vec::new();
     let batches = Batches::new(json)?;
     let work = |(): &mut (), batch: Result<Batch>| -> Result<Vec<_>> {
@@ -182,14 +181,14 @@ fn read_annotations<K: Kind>(
     Ok(annotations)
 }
 
-fn annotation<K: Kind>(entry: &mut Entry) -> Result<Annotation<K::There>> {
+fn annotation<K: Kind>(entry: &mut Entry) -> Result<Annotation<K::Annotated>> {
     let ignored = entry.crowd || K::is_ignored(entry);
     Ok(Annotation {
-        picture: needed(entry.picture, "image_id")?,
+        image: needed(entry.image, "image_id")?,
         class: needed(entry.class, "category_id")?,
         area: entry.area,
         crowd: entry.crowd,
         ignored,
-        there: K::there(entry)?,
+        annotated: K::annotated(entry)?,
     })
 }

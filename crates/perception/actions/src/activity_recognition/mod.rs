@@ -1,8 +1,10 @@
-//! What persons do in a video.
+//! Activity recognition in videos.
 //!
-//! [`X3d`] looks at clips, [`CoX3d`] at one picture after the other, with the same weights and the same answers.
+//! [`X3d`] classifies clips; [`CoX3d`] classifies a stream frame by frame with the same weights and equal predictions.
 
 mod co_x3d;
+#[cfg(feature = "training")]
+mod fit;
 #[cfg(feature = "training")]
 mod network;
 #[cfg(feature = "training")]
@@ -15,10 +17,10 @@ mod x3d;
 pub use co_x3d::{CoX3d, CoX3dParams, CoX3dState};
 #[cfg(feature = "training")]
 pub use co_x3d::{CoX3dFitParams, co_x3d_from};
+#[cfg(feature = "training")]
+pub use fit::X3dFitParams;
 pub use sizes::Backbone;
 use sizes::Sizes;
-#[cfg(feature = "training")]
-pub use x3d::X3dFitParams;
 pub use x3d::{X3d, X3dParams};
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The network as it is trained, for clips and for one frame after the other.
+//! The trained network, for clips and for single frames of a stream.
 
 use burn::module::Module;
 use burn::nn::conv::{Conv2d, Conv2dConfig};
@@ -12,10 +12,10 @@ use super::Sizes;
 use super::time::Time;
 
 /// X3D (Feichtenhofer, X3D: Expanding Architectures for Efficient Video Recognition, CVPR 2020): frames
-/// `[batch * time, 3, side, side]`, clip after clip, to logits `[batch, classes]`.
+/// `[batch * time, 3, side, side]`, the frames of each clip in sequence, to logits `[batch, classes]`.
 ///
-/// Different from the paper, convolutions through time look back only, and squeeze and excitation is over each frame alone;
-/// before its first frame, a clip stands still. So the network runs over one frame after the other with the same result.
+/// Two differences from the paper: convolutions through time are causal, and squeeze and excitation covers one frame. The first
+/// frame of a clip is repeated for the time before it. The network therefore runs frame by frame with the same result.
 #[derive(Module, Debug)]
 pub(super) struct ActivityNetwork {
     stem: Conv2d,
@@ -29,7 +29,7 @@ pub(super) struct ActivityNetwork {
     classifier: Linear,
 }
 
-/// A bottleneck with a convolution over space and time, channel by channel, and a way past it.
+/// A bottleneck with a depthwise convolution over space and time and a residual connection.
 #[derive(Module, Debug)]
 struct Block {
     expand: Conv2d,
@@ -39,35 +39,35 @@ struct Block {
     excitation: Option<Excitation>,
     project: Conv2d,
     project_norm: BatchNorm,
-    /// Where sizes change.
+    /// Projection of the residual connection, where stride or channels change.
     past: Option<Conv2d>,
     past_norm: Option<BatchNorm>,
 }
 
-/// A convolution over space and time, channel by channel: one over space for each instant, added up. That is the
-/// convolution with a kernel of three axes; it runs where there are only those with two.
+/// A depthwise convolution over space and time, computed as one 2D convolution per time step whose results are added. It equals
+/// a 3D convolution and runs on runtimes that only have 2D convolutions.
 #[derive(Module, Debug)]
 struct CausalDepthwise {
     now: Conv2d,
-    /// Of the frame before, of the one before that, and so on.
+    /// Convolutions of the previous frame, of the one before it, and so on.
     earlier: Vec<Conv2d>,
 }
 
-/// Weighs channels by what a frame holds as a whole (Hu et al., Squeeze-and-Excitation Networks, CVPR 2018).
+/// Channel weights from the mean over a frame (Hu et al., Squeeze-and-Excitation Networks, CVPR 2018).
 #[derive(Module, Debug)]
 struct Excitation {
     squeeze: Linear,
     excite: Linear,
 }
 
-/// Channels of a block's middle, as a multiple of those between blocks.
+/// Channels inside a block, as a multiple of its output channels.
 const BOTTLENECK: f64 = 2.25;
-/// Instants that the first layer and the blocks see.
+/// Kernel size in time of the stem and of the blocks.
 const STEM_TAPS: usize = 5;
 const TAPS: usize = 3;
 
 impl ActivityNetwork {
-    /// A network with weights as training begins with.
+    /// Returns a network with initial weights.
     pub fn new(sizes: &Sizes, classes: usize, dropout: f64, device: &Device) -> Self {
         let stem = sizes.channels(24);
         let mut inputs = stem;
@@ -94,7 +94,7 @@ impl ActivityNetwork {
         }
     }
 
-    /// Logits `[batch, classes]`.
+    /// Returns logits `[batch, classes]`.
     pub fn forward(&self, frames: Tensor<4>, time: &mut Time) -> Tensor<2> {
         let signal = self.stem_time.forward(self.stem.forward(frames), time);
         let signal = relu(self.stem_norm.forward(signal));
@@ -168,7 +168,7 @@ impl Excitation {
     }
 }
 
-/// `[frames, channels]`, each the mean over a frame.
+/// Returns the mean over each frame, `[frames, channels]`.
 fn mean_of_frames(signal: Tensor<4>) -> Tensor<2> {
     let [frames, channels, height, width] = signal.dims();
     signal.reshape([frames, channels, height * width]).mean_dim(2).reshape([frames, channels])

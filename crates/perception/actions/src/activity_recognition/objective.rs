@@ -1,7 +1,7 @@
 //! Batches, loss and container of both learners.
 
 use burn::tensor::{Device, Tensor};
-use opendr_datasets::augment::{Augment, Others, Pipeline};
+use opendr_datasets::augment::{Augment, OtherSamples, Pipeline};
 use opendr_datasets::loader::Collate;
 use opendr_engine::data::Video;
 use opendr_engine::dataset::Sample;
@@ -19,7 +19,7 @@ use super::Sizes;
 use super::network::ActivityNetwork;
 use super::time::{Kept, Time};
 
-/// What the training minimises: the cross-entropy.
+/// Training objective: cross-entropy.
 pub(super) struct ActivityObjective {
     pub sizes: Sizes,
     pub form: Form,
@@ -29,7 +29,7 @@ pub(super) struct ActivityObjective {
     pub augment: bool,
 }
 
-/// Which network goes into the container.
+/// Form of the network in the container.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Form {
     /// `clip` to `logits`.
@@ -38,7 +38,7 @@ pub(super) enum Form {
     Step,
 }
 
-/// The network in every container.
+/// File of the network in every container.
 const FILE: &str = "model.onnx";
 
 impl Objective for ActivityObjective {
@@ -103,7 +103,7 @@ impl Objective for ActivityObjective {
 }
 
 impl ActivityObjective {
-    /// Numbers that a stream keeps.
+    /// Returns the length of a stream's state vector.
     fn state(&self, network: &ActivityNetwork) -> usize {
         let Sizes { frames, side, .. } = self.sizes;
         let mut time = Time::Count { frames, numbers: 0 };
@@ -117,11 +117,11 @@ impl ActivityObjective {
     }
 }
 
-/// Mirrors a clip.
+/// Mirrors a clip horizontally.
 struct Mirror;
 
 impl Augment for Mirror {
-    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         let video = video_of(sample)?;
         let shape = video.shape();
         let mut levels = video.as_slice().to_vec();
@@ -134,11 +134,11 @@ impl Augment for Mirror {
 fn video_of(sample: &Sample) -> Result<&Video> {
     match sample.data.first() {
         Some(Value::Video(video)) => Ok(video),
-        _ => Err(Error::invalid_input("the sample has no clip; give a Video")),
+        _ => Err(Error::invalid_input("the sample has no video; the first input must be a Video")),
     }
 }
 
-/// Clips as the network takes them.
+/// Batches of clips in the network's input layout.
 pub(super) struct VideoBatches {
     frames: ClipFrames,
     size: usize,

@@ -1,10 +1,10 @@
-//! How large the networks are.
+//! Sizes of the networks.
 
 use opendr_engine::Error;
 use opendr_engine::Result;
 
 opendr_engine::choices! {
-    /// Which X3D: frames of a clip, side of a frame, depth.
+    /// Size of X3D: frames of a clip, side of a frame, depth.
     pub enum Backbone {
         /// 13 frames of 160 pixels.
         S = "s",
@@ -20,21 +20,21 @@ opendr_engine::choices! {
 /// Sizes of a network.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Sizes {
-    /// Frames of a clip.
+    /// Number of frames of a clip.
     pub frames: usize,
-    /// Pixels of a side of a frame.
+    /// Side of a frame in pixels.
     pub side: usize,
-    /// Factor on the channels.
+    /// Factor on the number of channels.
     pub width: f64,
-    /// Factor on the blocks of a stage, one, two, five and three.
+    /// Factor on the number of blocks per stage, which is 1, 2, 5 and 3.
     pub depth: f64,
 }
 
 impl Sizes {
-    /// Those of `backbone`, where nothing else is given.
+    /// Returns the sizes of `backbone` with the given values in place of its own.
     ///
     /// # Errors
-    /// `InvalidParam` for frames that are too small for five strides, or a network that is too large.
+    /// `InvalidParam` for frames below 32 pixels, clips without a frame, or a network that is too large.
     pub fn new(
         backbone: Backbone,
         frames: Option<usize>,
@@ -56,20 +56,20 @@ impl Sizes {
         };
         if sizes.side < 32 || sizes.frames == 0 {
             return Err(Error::invalid_param(format!(
-                "clips of {} frames of {} pixels; give at least one frame of 32",
+                "clips of {} frames of {} pixels are too small; at least 1 frame of 32 pixels is required",
                 sizes.frames, sizes.side
             )));
         }
         Ok(sizes)
     }
 
-    /// Channels where X3D has `channels`: a multiple of eight.
+    /// Returns the scaled number of channels, a multiple of eight.
     #[cfg(feature = "training")]
     pub fn channels(&self, channels: usize) -> usize {
         ((channels as f64 * self.width / 8.0).round() as usize).max(1) * 8
     }
 
-    /// Blocks of a stage, of four.
+    /// Returns the number of blocks of a stage, 0 to 3.
     #[cfg(feature = "training")]
     pub fn blocks(&self, stage: usize) -> usize {
         let usual = [1.0, 2.0, 5.0, 3.0].get(stage).copied().unwrap_or(1.0);

@@ -8,8 +8,8 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, ErrorKind, Random, Result, Value};
+use opendr_perception_testing::learner_checks::check_trained_learner;
 use opendr_perception_testing::overfit::losses_on_one_batch;
-use opendr_perception_testing::promises::check;
 use opendr_training::Objective;
 
 use super::network::ActivityNetwork;
@@ -39,7 +39,7 @@ fn objective() -> ActivityObjective {
     }
 }
 
-/// Pictures of `u8` levels at random.
+/// Images of random `u8` levels.
 fn pictures(seed: u64, frames: usize) -> Vec<Vec<u8>> {
     let mut random = Random::new(seed);
     (0..frames).map(|_| (0..SIDE * SIDE * 3).map(|_| random.below(256) as u8).collect()).collect()
@@ -58,7 +58,7 @@ fn image(picture: &[u8]) -> Image {
     Image::from_rgb8(picture.to_vec(), SIDE, SIDE).unwrap()
 }
 
-/// Noise with classes that have nothing to do with it.
+/// Noise with unrelated classes.
 struct Clips;
 
 impl Dataset for Clips {}
@@ -113,18 +113,18 @@ fn both(folder: &Folder) -> (Handle<X3d>, Handle<CoX3d>) {
 }
 
 #[test]
-fn promises_are_kept() {
+fn learners_meet_the_contract() {
     let folder = Folder::new("promises");
     both(&folder);
     let scratch = folder.0.join("scratch");
     let clips = (0..3).map(|seed| vec![Value::Video(video(&pictures(seed, FRAMES)))]).collect();
-    check::<X3d>(&folder.0.join("clip"), &scratch, clips);
+    check_trained_learner::<X3d>(&folder.0.join("clip"), &scratch, clips);
     let pictures = (0..3).map(|seed| vec![Value::Image(image(&pictures(seed, 1)[0]))]).collect();
-    check::<CoX3d>(&folder.0.join("step"), &scratch, pictures);
+    check_trained_learner::<CoX3d>(&folder.0.join("step"), &scratch, pictures);
 }
 
 #[test]
-fn learns_one_batch_by_heart() {
+fn overfits_one_batch() {
     let samples = (0..Clips.len()).map(|index| Clips.get(index).unwrap()).collect();
     let objective = objective();
     let network = |device: &Trainer| ActivityNetwork::new(&objective.sizes, 2, 0.0, device);
@@ -133,7 +133,7 @@ fn learns_one_batch_by_heart() {
 }
 
 #[test]
-fn picture_by_picture_is_clip_by_clip() {
+fn stream_predictions_equal_clip_predictions() {
     let folder = Folder::new("agree");
     let (mut clip_wise, mut continual) = both(&folder);
     let [one, other] = [pictures(1, FRAMES), pictures(2, FRAMES)];
@@ -157,7 +157,7 @@ fn picture_by_picture_is_clip_by_clip() {
 }
 
 #[test]
-fn one_picture_is_a_clip_that_stands_still() {
+fn one_frame_equals_a_clip_of_repeated_frames() {
     let folder = Folder::new("still");
     let (mut clip_wise, mut continual) = both(&folder);
     let picture = pictures(3, 1);
@@ -167,7 +167,7 @@ fn one_picture_is_a_clip_that_stands_still() {
 }
 
 #[test]
-fn fit_makes_what_infer_loads() {
+fn infer_loads_the_model_of_fit() {
     let folder = Folder::new("fit");
     let dataset: &dyn DatasetIterator = &Clips;
     let mut fit_params = X3dFitParams::default();

@@ -1,33 +1,33 @@
-//! What lies before a frame: the frames of its clip, or what a stream keeps.
+//! Time context of a frame: the frames of its clip, or the state of a stream.
 
 use burn::tensor::Tensor;
 
-/// How a network sees time.
+/// Layout of time in a forward pass.
 pub(super) enum Time {
-    /// Clips of as many frames, one after the other.
+    /// Clips of this number of frames, in sequence.
     Clips(usize),
-    /// One frame after the other.
+    /// One frame of a stream.
     Stream(Box<Kept>),
-    /// Counts the numbers that a stream of clips of so many frames keeps.
+    /// Counts the length of the state of a stream with clips of `frames` frames.
     Count { frames: usize, numbers: usize },
 }
 
-/// What a stream keeps.
+/// State of a stream during a forward pass.
 pub(super) struct Kept {
-    /// Frames that are averaged.
+    /// Number of frames over which features are averaged.
     pub frames: usize,
-    /// What the frame before left, `[1, numbers]`.
+    /// State after the previous frame, `[1, numbers]`.
     pub state: Tensor<2>,
-    /// One, where there was no frame before, else zero: `[1, 1]`.
+    /// One for the first frame of a stream, else zero: `[1, 1]`.
     pub is_first: Tensor<2>,
-    /// Numbers that were taken from `state`.
+    /// Number of values already taken from `state`.
     pub at: usize,
-    /// What the next frame is left.
+    /// Parts of the next state.
     pub next: Vec<Tensor<2>>,
 }
 
 impl Kept {
-    /// What is left over from before, each `size` numbers; before the first frame, the frame itself.
+    /// Takes the next `size` values of the state; for the first frame of a stream, `now` itself.
     fn take(&mut self, now: &Tensor<2>, size: usize) -> Tensor<2> {
         let start = self.at;
         self.at += size;
@@ -37,8 +37,8 @@ impl Kept {
 }
 
 impl Time {
-    /// The sum of `now` and of `earlier`, all `[frames, channels, height, width]`: the first of them one frame late, the
-    /// second two, and so on. Before its first frame, a clip stands still.
+    /// Returns the sum of `now` and `earlier`, all `[frames, channels, height, width]`; the first of `earlier` is delayed by
+    /// one frame, the second by two, and so on. The first frame of a clip is repeated for the time before it.
     pub fn sum(&mut self, now: Tensor<4>, earlier: Vec<Tensor<4>>) -> Tensor<4> {
         let shape = now.dims();
         let size = shape[1..].iter().product::<usize>();
@@ -72,7 +72,7 @@ impl Time {
         sum
     }
 
-    /// The mean over a clip, of frames `[frames, channels]`.
+    /// Returns the mean over each clip of frames `[frames, channels]`.
     pub fn mean(&mut self, now: Tensor<2>) -> Tensor<2> {
         let [count, channels] = now.dims();
         match self {

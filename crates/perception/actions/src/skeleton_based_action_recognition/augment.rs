@@ -1,36 +1,38 @@
-//! Skeletons changed at random, as training sees them.
+//! Random augmentation of skeleton sequences.
 
-use opendr_datasets::augment::{Augment, Others};
+use opendr_datasets::augment::{Augment, OtherSamples};
 use opendr_engine::data::SkeletonSequence;
 use opendr_engine::dataset::Sample;
 use opendr_engine::target::Skeleton;
 use opendr_engine::{Error, Random, Result, Value};
 use opendr_perception_common::frame_features::FrameFeatures;
 
-/// Mirrors a person, leans and stretches it, cuts the recording and plays it slower or faster.
+/// Mirrors, rotates and distorts the persons, cuts the recording and changes its speed.
 pub(super) struct SkeletonChanges {
     pub skeleton: Skeleton,
-    /// Coordinates of a joint; what else there is, such as scores, stays.
+    /// Number of coordinates of a joint; further channels, such as scores, are kept.
     pub coordinates: usize,
-    /// What is taken.
+    /// Features of the network.
     pub features: FrameFeatures,
 }
 
-/// Radians that a person leans at most.
+/// Maximum rotation in radians.
 const LEAN: f32 = 0.35;
-/// How much each axis is stretched, and sheared along the other, at most.
+/// Maximum scaling of each axis, and shear along the other.
 const STRETCH: f32 = 0.2;
-/// Least share of a recording that is left.
+/// Minimum share of a recording that remains.
 const SHORTEST: f32 = 0.6;
-/// How much slower or faster it is played.
+/// Maximum factor on the speed.
 const SPEED: f32 = 1.3;
-/// Deviation of a joint from its place, as a share of the person's height.
+/// Noise on each joint, as a share of the person's height.
 const NOISE: f32 = 0.01;
 
 impl Augment for SkeletonChanges {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         let Some(Value::SkeletonSequence(sequence)) = sample.data.first_mut() else {
-            return Err(Error::invalid_input("the sample has no skeletons; give a SkeletonSequence"));
+            return Err(Error::invalid_input(
+                "the sample has no skeletons; the first input must be a SkeletonSequence",
+            ));
         };
         self.features.check(sequence)?;
         let mirror = random.chance(0.5);

@@ -1,9 +1,9 @@
-//! The graph that joints and bones are, as the networks see it.
+//! Skeleton graphs: joints as nodes, bones as edges.
 
 use opendr_engine::target::Skeleton;
 
 opendr_engine::choices! {
-    /// Which joints a skeleton has and which of them are joined.
+    /// Skeleton: its joints and the bones between them.
     pub enum GraphType {
         /// The 25 joints of NTU RGB+D (Kinect v2).
         Ntu = "ntu",
@@ -17,7 +17,7 @@ opendr_engine::choices! {
 }
 
 impl GraphType {
-    /// The joints and bones.
+    /// Returns the skeleton.
     pub const fn skeleton(self) -> Skeleton {
         match self {
             Self::Ntu => Skeleton::Ntu25,
@@ -27,19 +27,19 @@ impl GraphType {
         }
     }
 
-    /// What is joined: the skeleton's bones. COCO's do not join the face to the body; here its nose is joined to both
-    /// shoulders.
+    /// Returns the edges: the skeleton's bones. COCO's skeleton does not connect face and body; here its nose is connected to
+    /// both shoulders.
     fn bones(self) -> impl Iterator<Item = [usize; 2]> {
         let neck: &[[usize; 2]] = if self == Self::Coco { &[[0, 5], [0, 6]] } else { &[] };
         self.skeleton().bones().iter().chain(neck).copied()
     }
 
-    /// How many joints there are.
+    /// Returns the number of joints.
     pub const fn joints(self) -> usize {
         self.skeleton().joints().len()
     }
 
-    /// The joint that stands for the middle of the body.
+    /// Returns the joint at the centre of the graph.
     const fn centre(self) -> usize {
         match self {
             Self::Ntu => 20,
@@ -48,7 +48,7 @@ impl GraphType {
         }
     }
 
-    /// For each joint the one next to it on the way to the middle; the middle's is itself.
+    /// Returns the parent of each joint, its neighbour towards the centre; the centre is its own parent.
     pub fn parents(self) -> Vec<usize> {
         let distances = self.distances();
         let parent = |joint: usize| {
@@ -62,7 +62,7 @@ impl GraphType {
         (0..self.joints()).map(parent).collect()
     }
 
-    /// Bones between each joint and the middle.
+    /// Returns the number of bones between each joint and the centre.
     fn distances(self) -> Vec<usize> {
         let mut distances = vec![usize::MAX; self.joints()];
         distances[self.centre()] = 0;
@@ -76,8 +76,9 @@ impl GraphType {
         distances
     }
 
-    /// Three matrices `[3, joints, joints]`, last axis fastest: how much a joint (column) takes from itself and from those
-    /// as far from the middle, from those nearer, and from those farther. A column sums to one over all three.
+    /// Returns three adjacency matrices `[3, joints, joints]`, row-major: the weight with which a joint (column) receives the
+    /// features of joints (rows) at its own distance from the centre, nearer and farther. A column sums to one over the three
+    /// matrices.
     ///
     /// The spatial configuration of Yan et al., Spatial Temporal Graph Convolutional Networks for Skeleton-Based Action
     /// Recognition, AAAI 2018, with distances counted in bones.
@@ -114,7 +115,7 @@ mod tests {
     const ALL: [GraphType; 4] = [GraphType::Ntu, GraphType::Kinetics, GraphType::Coco, GraphType::Jhmdb];
 
     #[test]
-    fn every_joint_leads_to_the_middle() {
+    fn parents_lead_to_the_centre() {
         for graph in ALL {
             let parents = graph.parents();
             for start in 0..graph.joints() {
@@ -128,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_joint_takes_sums_to_one() {
+    fn adjacency_columns_sum_to_one() {
         for graph in ALL {
             let (joints, parts) = (graph.joints(), graph.adjacency());
             for to in 0..joints {

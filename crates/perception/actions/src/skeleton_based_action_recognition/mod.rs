@@ -1,7 +1,7 @@
-//! What persons do, told by their moving skeletons.
+//! Action recognition from skeletons.
 //!
-//! [`SpatioTemporalGcn`] looks at clips, [`CoStGcn`] at one frame after the other with the same weights and the same
-//! answers; [`SkeletonBuffer`] makes of the poses of a video what both take.
+//! [`SpatioTemporalGcn`] classifies clips; [`CoStGcn`] classifies a stream frame by frame with the same weights and equal
+//! predictions. [`SkeletonBuffer`] collects the poses of a video as input of both.
 
 #[cfg(feature = "training")]
 mod augment;

@@ -1,4 +1,4 @@
-//! The network as it is trained, for clips and for one frame after the other.
+//! The trained network, for clips and for single frames of a stream.
 
 use burn::module::{Module, Param};
 use burn::nn::conv::{Conv2d, Conv2dConfig};
@@ -9,12 +9,12 @@ use opendr_engine::Result;
 
 use super::sizes::NetworkSizes;
 
-/// Spatial-temporal graph convolutions (Yan et al., AAAI 2018): features `[batch, features, frames, joints]` to logits
+/// Spatio-temporal graph convolutions (Yan et al., AAAI 2018): features `[batch, features, frames, joints]` to logits
 /// `[batch, classes]`.
 ///
-/// Different from the paper, no block pads or strides in time: so [`ActionNetwork::step`] gives, frame by frame, exactly what
-/// [`ActionNetwork::forward`] gives for the clip that ends there (Hedegaard et al., Continual Spatio-Temporal Graph Convolutional
-/// Networks, 2022, where padding is left out for the same reason).
+/// Different from the paper, no block pads or strides in time, so [`ActionNetwork::step`] computes frame by frame what
+/// [`ActionNetwork::forward`] computes for the clip that ends with the frame (Hedegaard et al., Continual Spatio-Temporal Graph
+/// Convolutional Networks, 2022, omit padding for the same reason).
 #[derive(Module, Debug)]
 pub(super) struct ActionNetwork {
     scale: BatchNorm,
@@ -23,10 +23,10 @@ pub(super) struct ActionNetwork {
     classifier: Linear,
 }
 
-/// A graph convolution in each frame, a convolution through time at each joint, and a way past both.
+/// A graph convolution in each frame, a convolution through time at each joint, and a residual connection.
 #[derive(Module, Debug)]
 struct Block {
-    /// How much each connection counts.
+    /// Learnt weight of each edge.
     importance: Param<Tensor<3>>,
     mixing: Conv2d,
     mixing_norm: BatchNorm,
@@ -38,19 +38,19 @@ struct Block {
     adjacency: Vec<f32>,
 }
 
-/// The way past a block.
+/// Residual connection of a block.
 #[derive(Module, Debug)]
 struct Past {
-    /// Where channels change.
+    /// Projection, where the number of channels changes.
     convolution: Option<Conv2d>,
     norm: Option<BatchNorm>,
-    /// The first block has no way past it.
+    /// Whether the block has a residual connection; the first has none.
     #[module(skip)]
     is_there: bool,
 }
 
 impl ActionNetwork {
-    /// A network with weights as training begins with.
+    /// Returns a network with initial weights.
     ///
     /// # Errors
     /// As [`NetworkSizes::pooled_frames`].
@@ -71,7 +71,7 @@ impl ActionNetwork {
         })
     }
 
-    /// Logits `[batch, classes]` of clips `[batch, features, frames, joints]`.
+    /// Returns logits `[batch, classes]` of clips `[batch, features, frames, joints]`.
     pub fn forward(&self, clips: Tensor<4>) -> Tensor<2> {
         let signal = self.scale.forward(clips);
         let signal = self.blocks.iter().fold(signal, |signal, block| block.forward(signal));
@@ -81,8 +81,8 @@ impl ActionNetwork {
         self.classifier.forward(self.dropout.forward(pooled))
     }
 
-    /// Logits `[1, classes]` of the clip that ends with a frame `[1, features, 1, joints]`, and the state after it, given the
-    /// state before it, `[1, NetworkSizes::state]`.
+    /// Returns logits `[1, classes]` of the clip that ends with `frame` `[1, features, 1, joints]`, and the next state. `state`
+    /// is `[1, NetworkSizes::state]`.
     pub fn step(&self, frame: Tensor<4>, state: Tensor<2>) -> (Tensor<2>, Tensor<2>) {
         let [_, numbers] = state.dims();
         let mut rest = Rest { state, at: 0 };
@@ -107,7 +107,7 @@ impl ActionNetwork {
     }
 }
 
-/// What is left of a state.
+/// Part of a state that is not yet consumed.
 struct Rest {
     state: Tensor<2>,
     at: usize,
@@ -153,17 +153,17 @@ impl Block {
         }
     }
 
-    /// `[batch, channels, frames, joints]`, `kernel - 1` frames fewer.
+    /// Returns `[batch, channels, frames, joints]` with `kernel - 1` frames fewer.
     fn forward(&self, signal: Tensor<4>) -> Tensor<4> {
         let reach = self.reach();
         let [batch, channels, frames, joints] = signal.dims();
         let mixed = self.mix(signal.clone());
-        // A block that is not padded looks from its middle.
+        // Without padding, the output belongs to the frame in the middle of the kernel.
         let past = signal.slice([0..batch, 0..channels, reach..frames - reach, 0..joints]);
         self.join(mixed, past)
     }
 
-    /// One frame `[1, channels, 1, joints]`: that of `reach` frames ago, now that what follows it is known.
+    /// Returns the output `[1, channels, 1, joints]` for the frame `reach` frames ago.
     fn step(&self, signal: Tensor<4>, rest: &mut Rest, kept: &mut Vec<Tensor<2>>) -> Tensor<4> {
         let mixed = window(self.mix(signal.clone()), 2 * self.reach(), rest, kept);
         let past = match self.past.is_there {
@@ -176,12 +176,12 @@ impl Block {
         self.join(mixed, past)
     }
 
-    /// Frames before and after the one that is looked at.
+    /// Number of frames before and after the centre of the kernel.
     fn reach(&self) -> usize {
         self.temporal.weight.dims()[2] / 2
     }
 
-    /// The graph convolution: what comes from the joint itself, from nearer and from farther ones, mixed.
+    /// The graph convolution: features of the joint itself, of nearer and of farther joints, mixed by a 1x1 convolution.
     fn mix(&self, signal: Tensor<4>) -> Tensor<4> {
         let [batch, channels, frames, joints] = signal.dims();
         let data = TensorData::new(self.adjacency.clone(), [3, joints, joints]);
@@ -206,7 +206,7 @@ impl Block {
     }
 }
 
-/// The last `before` frames and this one; those that the next needs are kept.
+/// Returns the last `before` frames and `frame`; pushes the frames that the next step needs into `kept`.
 fn window(frame: Tensor<4>, before: usize, rest: &mut Rest, kept: &mut Vec<Tensor<2>>) -> Tensor<4> {
     if before == 0 {
         return frame;

@@ -8,7 +8,7 @@ use opendr_engine::model::Manifest;
 use opendr_engine::params::ParamMap;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, Task, Value};
-use opendr_perception_common::frame_features::{ClipWork, FrameFeatures};
+use opendr_perception_common::frame_features::{ClipScratch, FrameFeatures};
 use opendr_perception_common::labelled::{LabelledBatch, class_of};
 use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{self, Input};
@@ -18,19 +18,19 @@ use super::augment::SkeletonChanges;
 use super::network::ActionNetwork;
 use super::sizes::NetworkSizes;
 
-/// What the training minimises: the cross-entropy.
+/// Training objective: cross-entropy with label smoothing.
 pub(super) struct ActionObjective {
     pub sizes: NetworkSizes,
     pub form: Form,
     pub params: ParamMap,
     pub classes: Classes,
-    /// Share of the other classes in what the network is to say.
+    /// Weight of the uniform distribution in the target.
     pub smoothing: f32,
-    /// Whether skeletons are changed at random.
+    /// Whether skeletons are augmented at random.
     pub augment: bool,
 }
 
-/// Which network goes into the container.
+/// Form of the network in the container.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Form {
     /// `clip` to `logits`.
@@ -39,7 +39,7 @@ pub(super) enum Form {
     Step,
 }
 
-/// The network in every container.
+/// File of the network in every container.
 pub(super) const FILE: &str = "model.onnx";
 
 impl Objective for ActionObjective {
@@ -71,7 +71,7 @@ impl Objective for ActionObjective {
         let [count, ..] = clips.dims();
         let logits = network.forward(clips.reshape([count, features, frames, joints]));
         let loss = batch.cross_entropy(logits.clone(), &[], device);
-        // The other classes, all alike: the mean cross-entropy with the uniform distribution.
+        // Label smoothing: the mean cross-entropy with the uniform distribution.
         let uniform = burn::tensor::activation::log_softmax(logits, 1).mean().neg();
         Ok((loss * (1.0 - self.smoothing) + uniform * self.smoothing).into())
     }
@@ -107,7 +107,7 @@ impl Objective for ActionObjective {
 }
 
 impl ActionObjective {
-    /// Which skeletons the learner looks at, for whoever makes them of poses.
+    /// Describes the skeletons of the input, for programs that build them from poses.
     fn inputs(&self) -> serde_json::Map<String, serde_json::Value> {
         let NetworkSizes { graph, coordinates, frames, .. } = self.sizes;
         let frames = if self.form == Form::Clip { frames } else { 1 };
@@ -122,7 +122,7 @@ impl ActionObjective {
     }
 }
 
-/// Features of clips of one length; of a recording of several persons the first that is there.
+/// Batches of clip features of one length, from the first person present in a recording.
 pub(super) struct ClipBatches {
     features: FrameFeatures,
     frames: usize,
@@ -138,13 +138,15 @@ impl Collate for ClipBatches {
 
     fn add(&self, batch: &mut LabelledBatch, sample: Sample) -> Result<()> {
         let Some(Value::SkeletonSequence(sequence)) = sample.data.first() else {
-            return Err(Error::invalid_input("the sample has no skeletons; give a SkeletonSequence"));
+            return Err(Error::invalid_input(
+                "the sample has no skeletons; the first input must be a SkeletonSequence",
+            ));
         };
         self.features.check(sequence)?;
-        let mut work = ClipWork::default();
+        let mut work = ClipScratch::default();
         let persons = sequence.shape()[4];
         if !(0..persons).any(|person| self.features.clip_into(sequence, person, self.frames, &mut work)) {
-            return Err(Error::invalid_input("nobody is in the recording; leave it out"));
+            return Err(Error::invalid_input("the recording has no person; remove it from the data set"));
         }
         batch.push(&work.clip, class_of(&sample, self.classes)?);
         Ok(())

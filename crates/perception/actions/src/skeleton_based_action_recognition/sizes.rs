@@ -1,7 +1,7 @@
-//! How large the network is.
+//! Sizes of the network.
 
 use opendr_engine::{Error, Result};
-use opendr_perception_common::frame_features::KINDS;
+use opendr_perception_common::frame_features::FEATURES_PER_COORDINATE;
 
 use super::GraphType;
 
@@ -9,44 +9,44 @@ use super::GraphType;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct NetworkSizes {
     pub graph: GraphType,
-    /// Coordinates of a joint.
+    /// Number of coordinates of a joint.
     pub coordinates: usize,
-    /// Frames of a clip.
+    /// Number of frames of a clip.
     pub frames: usize,
-    /// Channels of the blocks.
+    /// Output channels of the blocks.
     pub channels: Vec<usize>,
-    /// Frames that a block sees; odd.
+    /// Kernel size in time; odd.
     pub kernel: usize,
 }
 
 impl NetworkSizes {
-    /// Features of a joint.
+    /// Returns the number of features of a joint.
     pub fn features(&self) -> usize {
-        KINDS * self.coordinates
+        FEATURES_PER_COORDINATE * self.coordinates
     }
 
-    /// Frames that are left after the blocks, none of which is padded.
+    /// Returns the number of frames that remain after the unpadded blocks.
     ///
     /// # Errors
-    /// `InvalidParam` when none is, there is no block, or the kernel is even.
+    /// `InvalidParam` when no frame remains, there is no block, or the kernel is even.
     pub fn pooled_frames(&self) -> Result<usize> {
         let NetworkSizes { frames, kernel, .. } = *self;
         let blocks = self.channels.len();
         if kernel.is_multiple_of(2) || blocks == 0 {
             return Err(Error::invalid_param(format!(
-                "{blocks} blocks over {kernel} frames; give at least one channels, and an odd temporal_kernel"
+                "{blocks} blocks with temporal_kernel = {kernel}; channels needs at least one entry, and temporal_kernel must be odd"
             )));
         }
         frames.checked_sub(blocks * (kernel - 1)).filter(|left| *left > 0).ok_or_else(|| {
             Error::invalid_param(format!(
-                "{blocks} blocks over {kernel} frames each need clips of {} frames, not {frames}; give more frames, fewer \
+                "{blocks} blocks with temporal_kernel = {kernel} need clips of {} frames, not {frames}; use more frames, fewer \
                  blocks or a smaller temporal_kernel",
                 blocks * (kernel - 1) + 1
             ))
         })
     }
 
-    /// Numbers that are kept from one frame to the next.
+    /// Returns the length of the state vector of one person.
     ///
     /// # Errors
     /// As [`NetworkSizes::pooled_frames`].

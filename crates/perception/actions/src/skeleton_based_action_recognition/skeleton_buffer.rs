@@ -1,4 +1,4 @@
-//! Poses of one picture after the other, kept as moving skeletons.
+//! A buffer of the poses of a video, per person.
 
 use std::collections::VecDeque;
 
@@ -7,34 +7,34 @@ use opendr_engine::target::{Keypoint, Pose, PoseList, Skeleton};
 use opendr_engine::{Error, Result};
 use opendr_perception_common::joints::joint_of;
 
-/// How a [`SkeletonBuffer`] keeps poses.
+/// Options of a [`SkeletonBuffer`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct SkeletonBufferOptions {
-    /// The joints that sequences have; those of other skeletons are found by their names, or lie between them.
+    /// Skeleton of the sequences; joints of other skeletons are matched by name or interpolated.
     pub skeleton: Skeleton,
-    /// Frames that are kept of each person, at most.
+    /// Maximum number of frames per person.
     pub frames: usize,
-    /// Persons that are kept at a time, at most; beyond, those seen longest ago are forgotten.
+    /// Maximum number of persons; beyond, the persons absent for longest are removed.
     pub persons: usize,
-    /// Frames that a person may be out of sight before it is forgotten.
+    /// Number of frames that a person may be absent before it is removed.
     pub patience: usize,
-    /// Joints of a lower score are missing.
+    /// Minimum score of a joint; joints below it count as missing.
     pub threshold: f32,
 }
 
 impl Default for SkeletonBufferOptions {
-    /// OpenDR's joints, 300 frames of two persons, a person forgotten after 15 frames out of sight, every joint taken.
+    /// OpenDR's joints, 300 frames of two persons, removal after 15 absent frames, threshold 0.
     fn default() -> Self {
         Self { skeleton: Skeleton::Opendr18, frames: 300, persons: 2, patience: 15, threshold: 0.0 }
     }
 }
 
-/// Collects the poses of a video, frame after frame, and gives the moving skeleton of each person for a learner of this task.
+/// Collects the poses of a video, frame by frame, and returns the skeleton sequence of each person for the learners of this
+/// task.
 ///
-/// A person is known by the track that its pose carries ([`Pose::id`]); poses without one are taken for the person whose
-/// last pose is nearest, if it is nearer than the person is tall. A frame in which a person is out of sight is a frame
-/// with all its joints missing, and so are joints that were not found: score and coordinates are 0 there, as the learners
-/// understand it.
+/// A person is identified by the track of its pose ([`Pose::id`]). A pose without a track is assigned to the person whose last
+/// pose is nearest, if the distance is below the person's height. Missing joints, and all joints of a frame in which the person
+/// is absent, have score and coordinates 0, as the learners expect.
 ///
 /// ```
 /// use opendr_engine::target::{Keypoint, Pose, PoseList, Skeleton};
@@ -52,65 +52,65 @@ impl Default for SkeletonBufferOptions {
 pub struct SkeletonBuffer {
     options: SkeletonBufferOptions,
     persons: Vec<Person>,
-    /// Poses of nobody who is known, in the picture in hand.
+    /// Poses of the current image that match no known person.
     newcomers: Vec<usize>,
-    /// What the next person without a track is called: -1, -2, ...
+    /// Identifier of the next person without a track: -1, -2, ...
     next: i64,
 }
 
-/// One person's frames.
+/// Frames of one person.
 #[derive(Debug, Clone)]
 struct Person {
     id: i64,
-    /// Whether `id` is of a track, not of our own.
+    /// Whether `id` is that of a track.
     tracked: bool,
-    /// `[x, y, score]` a joint, one frame after the other.
+    /// `[x, y, score]` of each joint, frame by frame.
     joints: VecDeque<[f32; 3]>,
-    /// Frames since it was seen.
+    /// Number of frames since the person was last detected.
     unseen: usize,
-    /// Whether it is in the frame in hand.
+    /// Whether the person is in the current frame.
     is_here: bool,
-    /// Middle and height where it was seen last.
+    /// Centre and height at the last detection: `[x, y, height]`.
     place: [f32; 3],
 }
 
-/// Numbers that are kept, at most: frames, joints and persons together.
+/// Maximum number of values in the buffer: frames, joints and persons together.
 const MOST: usize = 1 << 26;
 
 impl SkeletonBuffer {
-    /// An empty buffer.
+    /// Creates an empty buffer.
     ///
     /// # Errors
-    /// `InvalidParam` when no frame or no person would be kept, or too much.
+    /// `InvalidParam` when the number of frames or persons is zero or their product is too large.
     pub fn new(options: SkeletonBufferOptions) -> Result<Self> {
         let SkeletonBufferOptions { frames, persons, .. } = options;
         let numbers = frames.checked_mul(persons).and_then(|count| count.checked_mul(3 * 64));
         if frames == 0 || persons == 0 || numbers.is_none_or(|numbers| numbers > MOST) {
             return Err(Error::invalid_param(format!(
-                "{frames} frames of {persons} persons; give at least one of each, and at most {} together",
+                "{frames} frames of {persons} persons; both must be at least 1, and their product at most {}",
                 MOST / (3 * 64)
             )));
         }
         Ok(Self { options, persons: Vec::new(), newcomers: Vec::new(), next: -1 })
     }
 
-    /// Takes the poses of the next picture in; one without persons is a frame too. Allocates nothing once all persons
-    /// have all their frames.
+    /// Adds the poses of the next image; an image without persons counts as a frame. Does not allocate once all persons have
+    /// their maximum number of frames.
     ///
     /// # Errors
-    /// `InvalidInput` when a pose has another number of joints than its skeleton.
+    /// `InvalidInput` when the number of joints of a pose differs from that of its skeleton.
     pub fn push(&mut self, poses: &PoseList) -> Result<()> {
         for pose in &poses.poses {
             let (given, wanted) = (pose.keypoints.len(), pose.skeleton.joints().len());
             if given != wanted {
                 return Err(Error::invalid_input(format!(
-                    "a pose of {given} joints; the skeleton {} has {wanted}",
+                    "a pose has {given} joints, but the skeleton {} has {wanted}",
                     pose.skeleton.name()
                 )));
             }
         }
         self.persons.iter_mut().for_each(|person| person.is_here = false);
-        // Newcomers come last: until then nobody knows who is gone.
+        // New persons are added last, when the absent persons are known.
         self.newcomers.clear();
         for (index, pose) in poses.poses.iter().enumerate() {
             let Some(place) = place_of(pose) else { continue };
@@ -139,18 +139,18 @@ impl SkeletonBuffer {
         Ok(())
     }
 
-    /// Forgets everybody.
+    /// Removes all persons.
     pub fn clear(&mut self) {
         self.persons.clear();
         self.next = -1;
     }
 
-    /// The persons that are known, by track, the one known longest first. Those without a track count down from -1.
+    /// Returns the identifiers of the known persons, oldest first. Persons without a track count down from -1.
     pub fn persons(&self) -> impl Iterator<Item = i64> {
         self.persons.iter().map(|person| person.id)
     }
 
-    /// Each person's frames `[1, 3, frames, joints, 1]` (x, y and score, pixels), oldest first.
+    /// Returns the frames of each person, `[1, 3, frames, joints, 1]` (x and y in pixels, score), oldest first.
     pub fn sequences(&self) -> impl Iterator<Item = Result<(i64, SkeletonSequence)>> {
         self.persons.iter().map(|person| {
             let numbers = self.numbers(std::slice::from_ref(person), usize::MAX);
@@ -160,7 +160,7 @@ impl SkeletonBuffer {
         })
     }
 
-    /// The newest frame of each person `[1, 3, 1, joints, 1]`, for a learner that takes one frame after the other.
+    /// Returns the newest frame of each person, `[1, 3, 1, joints, 1]`, for a learner that processes single frames.
     pub fn newest(&self) -> impl Iterator<Item = Result<(i64, SkeletonSequence)>> {
         self.persons.iter().map(|person| {
             let numbers = self.numbers(std::slice::from_ref(person), 1);
@@ -169,11 +169,11 @@ impl SkeletonBuffer {
         })
     }
 
-    /// All persons in one sequence `[1, 3, frames, joints, persons]`, as long as the one known longest; frames before a
-    /// person came have its joints missing. `None` when nobody is known.
+    /// Returns all persons in one sequence `[1, 3, frames, joints, persons]`, as long as that of the oldest person; joints are
+    /// missing in frames before a person appeared. `None` when the buffer has no person.
     ///
     /// # Errors
-    /// None of its own; those of [`SkeletonSequence::new`].
+    /// Those of [`SkeletonSequence::new`].
     pub fn together(&self) -> Result<Option<SkeletonSequence>> {
         let joints = self.options.skeleton.joints().len();
         let Some(frames) = self.persons.iter().map(|person| person.joints.len() / joints).max() else {
@@ -183,7 +183,7 @@ impl SkeletonBuffer {
         SkeletonSequence::new(numbers, [1, 3, frames, joints, self.persons.len()]).map(Some)
     }
 
-    /// The last `frames` frames of persons, or as many as the longest known has, `[channels, frames, joints, persons]`.
+    /// Returns up to `frames` last frames of `persons`, `[channels, frames, joints, persons]`.
     fn numbers(&self, persons: &[Person], frames: usize) -> Vec<f32> {
         let joints = self.options.skeleton.joints().len();
         let longest = persons.iter().map(|person| person.joints.len()).max().unwrap_or(0);
@@ -201,7 +201,7 @@ impl SkeletonBuffer {
         numbers
     }
 
-    /// Whose pose it is.
+    /// Returns the index of the person of a pose.
     fn known(&self, pose: &Pose, [x, y, height]: [f32; 3]) -> Option<usize> {
         let persons = self.persons.iter().enumerate();
         if let Some(id) = pose.id {
@@ -216,7 +216,7 @@ impl SkeletonBuffer {
         near.min_by(|one, other| one.1.total_cmp(&other.1)).map(|(at, ..)| at)
     }
 
-    /// Makes room for one more person; `None` where everybody known is in this picture.
+    /// Adds a person, in place of an absent one where the buffer is full; `None` where all known persons are in this image.
     fn newcomer(&mut self, pose: &Pose, place: [f32; 3]) -> Option<usize> {
         if pose.id.is_some_and(|id| self.persons.iter().any(|person| person.tracked && person.id == id)) {
             return None;
@@ -250,11 +250,11 @@ impl SkeletonBuffer {
     }
 }
 
-/// Scores are above 0 where a joint was found, as the learners understand it.
+/// Minimum score of a detected joint; a score of 0 marks a missing joint.
 const LEAST: f32 = 1e-6;
 
 impl Person {
-    /// Forgets the oldest frame where all are taken.
+    /// Removes the oldest frame when the person has the maximum number of frames.
     fn make_room(&mut self, joints: usize, frames: usize) {
         if self.joints.len() >= joints * frames {
             self.joints.drain(..joints);
@@ -263,10 +263,10 @@ impl Person {
 }
 
 fn is_there(point: &Keypoint) -> bool {
-    point.is_found() && point.x.is_finite() && point.y.is_finite() && !point.confidence.is_nan()
+    point.is_detected() && point.x.is_finite() && point.y.is_finite() && !point.confidence.is_nan()
 }
 
-/// Middle and height of the joints that were found; `None` where none was.
+/// Returns centre and height of the detected joints; `None` where no joint is detected.
 fn place_of(pose: &Pose) -> Option<[f32; 3]> {
     let mut count = 0.0;
     let (mut middle, mut low, mut high) = ([0.0; 2], f32::MAX, f32::MIN);
@@ -318,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn who_is_out_of_sight_is_missing_and_then_forgotten() {
+    fn absent_persons_are_missing_and_then_removed() {
         let mut buffer = buffer(10, 2, 1);
         buffer.push(&list([pose(Some(1), 50.0), pose(Some(2), 250.0)])).unwrap();
         buffer.push(&list([pose(Some(2), 251.0)])).unwrap();
@@ -333,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn poses_without_a_track_are_those_nearby() {
+    fn poses_without_a_track_match_the_nearest_person() {
         let mut buffer = buffer(10, 2, 3);
         for frame in 0..3 {
             let moved = 5.0 * frame as f32;
@@ -360,7 +360,7 @@ mod tests {
     }
 
     #[test]
-    fn the_one_gone_longest_makes_room() {
+    fn the_person_absent_longest_is_replaced() {
         let mut buffer = buffer(10, 2, 30);
         buffer.push(&list([pose(Some(1), 10.0), pose(Some(2), 300.0)])).unwrap();
         buffer.push(&list([pose(Some(2), 300.0)])).unwrap();
@@ -369,7 +369,7 @@ mod tests {
     }
 
     #[test]
-    fn other_skeletons_are_told_by_names_and_broken_joints_are_missing() {
+    fn other_skeletons_match_by_name_and_invalid_joints_are_missing() {
         let coco = |at: usize| Keypoint { x: at as f32, y: 7.0, confidence: 0.5 };
         let mut pose = Pose {
             keypoints: (0..17).map(coco).collect(),
@@ -389,7 +389,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_and_too_much_are_refused() {
+    fn empty_and_too_large_buffers_are_refused() {
         for (frames, persons) in [(0, 1), (1, 0), (usize::MAX, 2), (1 << 30, 1)] {
             let options = SkeletonBufferOptions { frames, persons, ..Default::default() };
             assert!(SkeletonBuffer::new(options).is_err());

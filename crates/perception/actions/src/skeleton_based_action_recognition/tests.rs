@@ -53,7 +53,7 @@ fn objective(form: Form) -> ActionObjective {
     ActionObjective { sizes: sizes(), form, params, classes: Walks.classes(), smoothing: 0.0, augment: false }
 }
 
-/// Persons whose joints go about at random, some missing now and then.
+/// Persons whose joints move at random; some joints are missing.
 fn walk(seed: u64, frames: usize, persons: usize) -> SkeletonSequence {
     let mut random = Random::new(seed);
     let mut numbers = vec![0.0; 2 * frames * JOINTS * persons];
@@ -62,7 +62,7 @@ fn walk(seed: u64, frames: usize, persons: usize) -> SkeletonSequence {
             let mut place = [random.uniform(50.0, 250.0), random.uniform(50.0, 250.0)];
             for frame in 0..frames {
                 place = place.map(|number| number + random.uniform(-5.0, 5.0));
-                // The second person comes later.
+                // The second person appears later.
                 if random.chance(0.05) || frame < 7 * person {
                     continue;
                 }
@@ -87,7 +87,7 @@ fn part(sequence: &SkeletonSequence, from: usize, to: usize) -> SkeletonSequence
     SkeletonSequence::new(numbers, [1, channels, to - from, joints, persons]).unwrap()
 }
 
-/// Random walks with classes that have nothing to do with them.
+/// Random walks with unrelated classes.
 struct Walks;
 
 impl Dataset for Walks {}
@@ -152,7 +152,7 @@ fn close(one: &Category, other: &Category, what: &str) {
     }
 }
 
-/// Every answer of the stream is the clip-wise answer to all frames so far.
+/// Checks that every prediction of the stream equals the clip-wise prediction for all frames so far.
 fn agree(clip_wise: &mut Handle<SpatioTemporalGcn>, stream: &mut Stream<CoStGcn>, whole: &SkeletonSequence) {
     for end in 1..=whole.shape()[2] {
         let step = stream.infer(&part(whole, end - 1, end)).unwrap();
@@ -161,7 +161,7 @@ fn agree(clip_wise: &mut Handle<SpatioTemporalGcn>, stream: &mut Stream<CoStGcn>
     }
 }
 
-/// As the registry's learners are checked, with weights at random.
+/// Runs the registry's checks on a model with random weights.
 fn check<L: Learner>(model: &Path, scratch: &Path, values: Vec<Value>) {
     let entry = Box::leak(Box::new(Entry::of::<L>(Probe::<L>::abilities(None, None, None))));
     let port = entry.ports[0].name;
@@ -174,7 +174,7 @@ fn check<L: Learner>(model: &Path, scratch: &Path, values: Vec<Value>) {
 }
 
 #[test]
-fn promises_are_kept() {
+fn learners_meet_the_contract() {
     let folder = Folder::new("promises");
     both(&folder);
     let scratch = folder.0.join("scratch");
@@ -184,7 +184,7 @@ fn promises_are_kept() {
 }
 
 #[test]
-fn learns_one_batch_by_heart() {
+fn overfits_one_batch() {
     let samples = (0..Walks.len()).map(|index| Walks.get(index).unwrap()).collect();
     let network = |device: &Trainer| ActionNetwork::new(&sizes(), 3, 0.0, device).unwrap();
     let [before, after] = losses_on_one_batch(&objective(Form::Clip), network, samples, 0.005);
@@ -192,14 +192,14 @@ fn learns_one_batch_by_heart() {
 }
 
 #[test]
-fn frame_by_frame_is_clip_by_clip() {
+fn stream_predictions_equal_clip_predictions() {
     let folder = Folder::new("agree");
     let (mut clip_wise, mut continual) = both(&folder);
     for persons in [1, 2] {
         let whole = walk(5, 33, persons);
         let mut stream = continual.stream().unwrap();
         agree(&mut clip_wise, &mut stream, &whole);
-        // Pieces of any length are the same stream.
+        // A stream may be passed in pieces of any length.
         continual.reset();
         continual.infer(&part(&whole, 0, 9)).unwrap();
         let pieces = continual.infer(&part(&whole, 9, 33)).unwrap();
@@ -207,7 +207,7 @@ fn frame_by_frame_is_clip_by_clip() {
     }
 }
 
-/// The weights that `examples/train_actions.rs` made.
+/// Models with the weights of `examples/train_actions.rs`.
 fn trained(folder: &Folder) -> Option<(Handle<SpatioTemporalGcn>, Handle<CoStGcn>)> {
     let weights = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../models/weights");
     if !weights.join("co_st_gcn").is_dir() {
@@ -242,7 +242,7 @@ fn trained_weights_agree_too() {
 }
 
 #[test]
-fn trained_weights_tell_actions_of_people_they_never_saw() {
+fn trained_weights_classify_held_out_recordings() {
     let Some(shared) = std::env::var_os("OPENDR_TEST_DATA") else {
         return println!("skipped: no OPENDR_TEST_DATA");
     };
@@ -266,7 +266,7 @@ fn trained_weights_tell_actions_of_people_they_never_saw() {
         right[0] += usize::from(clip.class == action.class);
         right[1] += usize::from(step.class == action.class);
     }
-    println!("of {} {right:?} are right, clip-wise and frame by frame", test.len());
+    println!("correct of {}, clip-wise and frame by frame: {right:?}", test.len());
     assert!(right.iter().all(|right| right * 100 >= 60 * test.len()), "{right:?} of {}", test.len());
 }
 
@@ -284,7 +284,7 @@ fn streams_do_not_mix() {
 }
 
 #[test]
-fn fit_makes_what_infer_loads_and_goes_on_from_it() {
+fn infer_loads_the_model_of_fit_and_training_resumes_from_it() {
     let folder = Folder::new("fit");
     let dataset: &dyn DatasetIterator = &Walks;
     let mut fit_params = SpatioTemporalGcnFitParams::default();
@@ -307,7 +307,7 @@ fn fit_makes_what_infer_loads_and_goes_on_from_it() {
 }
 
 #[test]
-fn what_does_not_fit_is_refused() {
+fn invalid_models_and_inputs_are_refused() {
     let folder = Folder::new("refused");
     let (mut clip_wise, mut continual) = both(&folder);
     let nobody = SkeletonSequence::new(vec![0.0; 2 * 4 * JOINTS], [1, 2, 4, JOINTS, 1]).unwrap();
@@ -317,7 +317,7 @@ fn what_does_not_fit_is_refused() {
         assert_eq!(clip_wise.infer(wrong).unwrap_err().kind(), ErrorKind::InvalidInput);
         assert_eq!(continual.infer(wrong).unwrap_err().kind(), ErrorKind::InvalidInput);
     }
-    // Nothing of them is remembered.
+    // The failed inputs leave the state unchanged.
     let fresh = continual.stream().unwrap().infer(&walk(1, 3, 1)).unwrap();
     assert_eq!(continual.infer(&walk(1, 3, 1)).unwrap(), fresh);
     let dataset: &dyn DatasetIterator = &Walks;

@@ -1,4 +1,4 @@
-//! The class of what was measured with few numbers.
+//! Classification of compressive measurements.
 
 mod multilinear_compressive;
 

@@ -1,4 +1,4 @@
-//! The class that a whole picture belongs to.
+//! Image classification.
 
 mod image_classifier;
 

@@ -1,4 +1,4 @@
-//! Boxes in space.
+//! 3D object detection in point clouds.
 
 pub mod voxel_object_detection;
 

@@ -1,8 +1,8 @@
-//! Pillars back on the ground: the picture that a network takes.
+//! Scatters features of pillars to the grid.
 
-/// Writes the features of pillars, `channels` each, into a picture `[channels, cells]` that is 0 elsewhere.
+/// Writes the features of pillars, `channels` each, into a canvas `[channels, cells]` that is 0 elsewhere.
 ///
-/// `cells` has the cell of every pillar. Features beyond the last pillar, and pillars beyond the picture, are left out.
+/// `cells` contains the cell of every pillar. Features beyond the last pillar, and pillars beyond the canvas, are skipped.
 pub fn scatter(features: &[f32], channels: usize, cells: &[u32], canvas: &mut [f32]) {
     canvas.fill(0.0);
     let plane = canvas.len() / channels.max(1);
@@ -23,7 +23,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pillars_stand_on_their_cells() {
+    fn pillars_are_scattered_to_their_cells() {
         let mut canvas = [9.0; 8];
         scatter(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0], 2, &[3, 0, 77], &mut canvas);
         assert_eq!(canvas, [3.0, 0.0, 0.0, 1.0, 4.0, 0.0, 0.0, 2.0]);

@@ -1,41 +1,41 @@
-//! The grid on the ground.
+//! Grid on the ground.
 
 use opendr_engine::{Error, Result};
 use serde::{Deserialize, Serialize};
 
-/// Square cells on the ground; a pillar stands on each, from `z[0]` to `z[1]`. Metres, in the lidar's frame.
+/// A grid of square cells on the ground; each cell has a pillar from `z[0]` to `z[1]`. Metres, in the lidar's frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PillarGrid {
-    /// From where to where ahead.
+    /// Range ahead.
     pub x: [f32; 2],
-    /// From where to where to the left.
+    /// Range to the left.
     pub y: [f32; 2],
-    /// From where to where up.
+    /// Range upwards.
     pub z: [f32; 2],
     /// Side of a cell.
     pub side: f32,
 }
 
-/// Cells of a grid: more are a mistake, and would fill the memory.
+/// Maximum number of cells.
 const MOST_CELLS: f32 = (1 << 22) as f32;
 
 impl PillarGrid {
-    /// Cells ahead.
+    /// Returns the number of cells ahead.
     pub fn columns(&self) -> usize {
         ((self.x[1] - self.x[0]) / self.side).round() as usize
     }
 
-    /// Cells from right to left.
+    /// Returns the number of cells from right to left.
     pub fn rows(&self) -> usize {
         ((self.y[1] - self.y[0]) / self.side).round() as usize
     }
 
-    /// All of them.
+    /// Returns the number of cells.
     pub fn cells(&self) -> usize {
         self.columns() * self.rows()
     }
 
-    /// Column and row of a point; `None` outside of the grid, and where a number is not finite.
+    /// Returns column and row of a point; `None` outside of the grid, and where a value is not finite.
     #[inline]
     pub fn cell(&self, [x, y, z]: [f32; 3]) -> Option<[u32; 2]> {
         // Comparisons with NaN are false.
@@ -48,16 +48,16 @@ impl PillarGrid {
         Some([at(self.x[0], x, last(self.columns())), at(self.y[0], y, last(self.rows()))])
     }
 
-    /// The middle of a cell, x and y.
+    /// Returns the centre of a cell, x and y.
     #[inline]
     pub fn middle(&self, [column, row]: [u32; 2]) -> [f32; 2] {
         [self.x[0] + (column as f32 + 0.5) * self.side, self.y[0] + (row as f32 + 0.5) * self.side]
     }
 
-    /// Checks what a container says.
+    /// Checks the grid of a container.
     ///
     /// # Errors
-    /// `Format` for ranges that are empty or not finite, and for no cell or more than four million.
+    /// `Format` for empty or infinite ranges, and for no cell or more than four million.
     pub fn check(&self) -> Result<()> {
         let ranges = [self.x, self.y, self.z];
         let sane = ranges.iter().all(|[from, to]| from.is_finite() && to.is_finite() && from < to);
@@ -66,7 +66,7 @@ impl PillarGrid {
             return Ok(());
         }
         Err(Error::format(format!(
-            "a grid of pillars has ranges that begin before they end and 1 to {MOST_CELLS} cells; this one is {self:?}"
+            "a grid of pillars needs increasing ranges and 1 to {MOST_CELLS} cells; this one is {self:?}"
         )))
     }
 }
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn grids_that_make_no_sense_are_refused() {
+    fn invalid_grids_are_refused() {
         GRID.check().unwrap();
         let wrong = [
             PillarGrid { side: 0.0, ..GRID },

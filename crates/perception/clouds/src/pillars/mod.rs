@@ -1,7 +1,7 @@
-//! Pillars: what a lidar sees, sorted into a grid on the ground, and the picture that a network takes of it.
+//! Pillars: points sorted into a grid on the ground, and the canvas that a network takes.
 //!
 //! A. H. Lang et al., "PointPillars: Fast encoders for object detection from point clouds", CVPR 2019. One pass over the
-//! points, in their order; what a frame needs of memory is kept for the next.
+//! points, in their order; buffers are reused for the next frame.
 
 mod canvas;
 mod grid;

@@ -1,38 +1,38 @@
-//! Points into pillars.
+//! Assignment of points to pillars.
 
 use super::PillarGrid;
 
-/// A point in its pillar.
+/// A point with its pillar.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PillarPoint {
-    /// The number of its pillar, from 0 in the order in which pillars were met.
+    /// Index of its pillar, in the order in which pillars first occur.
     pub pillar: u32,
-    /// What a network is told of it, about -1 to 1: where it is in the cell (x, y), its height, its distance.
+    /// Features for a network, about -1 to 1: offset in the cell (x, y), height, distance.
     pub features: [f32; Self::FEATURES],
 }
 
 impl PillarPoint {
-    /// Numbers of a point.
+    /// Number of features of a point.
     pub const FEATURES: usize = 4;
 }
 
 /// Sorts points into the pillars of a grid.
 ///
-/// Costs one step a point, and between frames one a pillar that was met. What pillars keep are sums, so a pillar has as many
-/// points as there are.
+/// Costs one step per point, and between frames one per occupied pillar. Pillars keep sums, so the number of points of a pillar
+/// is not limited.
 #[derive(Debug, Default)]
 pub struct Voxeliser {
-    /// The pillar on every cell, and one more; 0 for none.
+    /// Pillar of every cell, plus one; 0 for none.
     numbers: Vec<u32>,
     cells: Vec<u32>,
     sums: Vec<[f32; 4]>,
 }
 
 impl Voxeliser {
-    /// What a network is told of a pillar beside its points: how many they are, and where their middle is (x, y, z).
+    /// Number of statistics of a pillar: the number of its points, and their mean (x, y, z).
     pub const STATISTICS: usize = 4;
 
-    /// Forgets the points before.
+    /// Starts a new frame.
     pub fn begin(&mut self, grid: &PillarGrid) {
         if self.numbers.len() == grid.cells() {
             for cell in &self.cells {
@@ -46,7 +46,7 @@ impl Voxeliser {
         self.sums.clear();
     }
 
-    /// Takes a point (x, y, z, anything); `None` for one outside of the grid or not finite.
+    /// Adds a point (x, y, z, ...); `None` for one outside of the grid or not finite.
     #[inline]
     pub fn add(&mut self, grid: &PillarGrid, point: &[f32]) -> Option<PillarPoint> {
         let [x, y, z, ..] = *point else { return None };
@@ -70,12 +70,12 @@ impl Voxeliser {
         Some(PillarPoint { pillar, features: [dx, dy, height, 2.0 * (x * x + y * y).sqrt() / far - 1.0] })
     }
 
-    /// The cell (row after row, column by column) of every pillar.
+    /// Returns the cell (row-major) of every pillar.
     pub fn cells(&self) -> &[u32] {
         &self.cells
     }
 
-    /// What is told of every pillar: the logarithm of the number of its points, and their mean place.
+    /// Returns the statistics of every pillar: the logarithm of the number of its points, and their mean.
     pub fn statistics(&self) -> impl ExactSizeIterator<Item = [f32; Self::STATISTICS]> + '_ {
         self.sums.iter().map(|[count, x, y, z]| [0.25 * count.ln(), x / count, y / count, z / count])
     }
@@ -93,7 +93,7 @@ mod tests {
     fn points_by_hand() {
         let mut voxeliser = Voxeliser::default();
         voxeliser.begin(&GRID);
-        // Column 2, row 8; its middle is 1.25, 0.25.
+        // Column 2, row 8; the centre is 1.25, 0.25.
         let first = voxeliser.add(&GRID, &[1.25, 0.25, -1.0, 0.9]).unwrap();
         assert_eq!((first.pillar, &first.features[..3]), (0, &[0.0, 0.0, 0.0][..]));
         assert!((first.features[3] - (2.0 * 1.25f32.hypot(0.25) / 8.0 - 1.0)).abs() < 1e-6);
@@ -109,7 +109,7 @@ mod tests {
         assert_eq!(voxeliser.cells(), [8 * 16 + 10]);
     }
 
-    /// 0, 1 and 5 million points, some of them nowhere.
+    /// Clouds of 0, 1 and 5 million points, some of them not finite.
     #[test]
     fn any_number_of_any_points() {
         let mut voxeliser = Voxeliser::default();

@@ -1,75 +1,75 @@
-//! Range images: the scan of a spinning lidar as a picture, a ring a row.
+//! Range images: the scan of a spinning lidar as an image with a row per ring.
 //!
 //! A. Milioto, I. Vizzo, J. Behley, C. Stachniss, "RangeNet++: Fast and accurate LiDAR semantic segmentation", IROS 2019:
-//! points are sorted into pixels by their angles, the nearest is seen, and those behind it ask their neighbours who is as far
-//! away as they are. What a scan needs of memory is kept for the next.
+//! points are sorted into pixels by their angles; a pixel shows its nearest point. Points behind it take the pixel of a
+//! neighbour at the same range. Buffers are reused for the next scan.
 
 mod view;
 
 pub use view::RangeView;
 
-/// No pixel, no point.
-pub const NOWHERE: u32 = u32::MAX;
-/// Pixels to each side that a hidden point asks.
+/// Value of a missing pixel or point.
+pub const NONE: u32 = u32::MAX;
+/// Radius in pixels in which a hidden point looks up a neighbour.
 const REACH: usize = 2;
-/// A pixel speaks for a point if both are so far away, metres.
+/// Maximum difference of ranges in metres between a point and its pixel.
 const SAME: f32 = 1.0;
 
-/// Who is where in a range image.
+/// Projection of the points of a scan to pixels.
 #[derive(Debug, Clone, Default)]
 pub struct RangeImage {
     size: [usize; 2],
-    /// Of each pixel.
+    /// Point of each pixel, and its range.
     points: Vec<u32>,
     ranges: Vec<f32>,
-    /// Of each point.
+    /// Pixel of each point, and its distance.
     pixels: Vec<u32>,
     distances: Vec<f32>,
 }
 
 impl RangeImage {
-    /// Takes a scan: x, y, z of each point in metres, in the lidar's frame (x ahead, y left, z up). Points that are not finite
-    /// or outside of the view have no pixel.
+    /// Projects a scan: x, y, z of each point in metres, in the lidar's frame (x ahead, y left, z up). Points that are not
+    /// finite or outside of the view have no pixel.
     pub fn project(&mut self, view: &RangeView, points: impl Iterator<Item = [f32; 3]>) {
         self.size = [view.columns, view.rows];
         self.points.clear();
-        self.points.resize(view.columns * view.rows, NOWHERE);
+        self.points.resize(view.columns * view.rows, NONE);
         self.ranges.clear();
         self.ranges.resize(view.columns * view.rows, 0.0);
         self.pixels.clear();
         self.distances.clear();
-        for (point, place @ [x, y, z]) in (0..NOWHERE).zip(points) {
+        for (point, place @ [x, y, z]) in (0..NONE).zip(points) {
             let distance = (x * x + y * y + z * z).sqrt();
             let pixel = view.pixel(place, distance);
-            self.pixels.push(pixel.map_or(NOWHERE, |pixel| pixel as u32));
+            self.pixels.push(pixel.map_or(NONE, |pixel| pixel as u32));
             self.distances.push(distance);
             let Some(pixel) = pixel else { continue };
-            if self.points[pixel] == NOWHERE || distance < self.ranges[pixel] {
+            if self.points[pixel] == NONE || distance < self.ranges[pixel] {
                 (self.points[pixel], self.ranges[pixel]) = (point, distance);
             }
         }
     }
 
-    /// The point that each pixel sees, row by row from the upper left; [`NOWHERE`] where there is none.
+    /// Returns the point of each pixel, row-major from the upper left; [`NONE`] where there is none.
     pub fn points(&self) -> &[u32] {
         &self.points
     }
 
-    /// How far away what each pixel sees is, metres; 0 where there is nothing.
+    /// Returns the range of each pixel in metres; 0 where there is no point.
     pub fn ranges(&self) -> &[f32] {
         &self.ranges
     }
 
-    /// The pixel of each point; [`NOWHERE`] outside of the view.
+    /// Returns the pixel of each point; [`NONE`] outside of the view.
     pub fn pixels(&self) -> &[u32] {
         &self.pixels
     }
 
-    /// The pixel that speaks for a point: its own, or, where that sees something nearer, the one around it which is as far
-    /// away. `None` outside of the view.
-    pub fn speaker(&self, point: usize) -> Option<usize> {
+    /// Returns the pixel whose prediction applies to a point: its own, or, where that shows a nearer point, the neighbour at
+    /// the same range. `None` outside of the view.
+    pub fn pixel_for(&self, point: usize) -> Option<usize> {
         let (own, distance) = (*self.pixels.get(point)?, *self.distances.get(point)?);
-        let own = Some(own as usize).filter(|_| own != NOWHERE)?;
+        let own = Some(own as usize).filter(|_| own != NONE)?;
         let off = |pixel: usize| (self.ranges[pixel] - distance).abs();
         if off(own) <= SAME {
             return Some(own);
@@ -94,10 +94,10 @@ mod tests {
     const VIEW: RangeView = RangeView { rows: 4, columns: 8, top: 0.2, bottom: -0.2, half_view: FRAC_PI_2 };
 
     #[test]
-    fn the_nearest_is_seen_and_the_hidden_ask_around() {
+    fn pixels_show_the_nearest_point_and_hidden_points_take_a_neighbour() {
         let points = [
             [10.0, 0.1, 0.1],
-            // Behind the first, and beside one that is as far away.
+            // Behind the first, and beside one at the same range.
             [20.0, 0.2, 0.2],
             [20.0, 9.0, 0.2],
             [f32::NAN, 0.0, 0.0],
@@ -109,17 +109,17 @@ mod tests {
             image.project(&VIEW, points.into_iter());
             let pixels = image.pixels();
             assert_eq!((pixels[0], pixels[1], pixels[2]), (11, 11, 10));
-            assert_eq!(pixels[3..], [NOWHERE; 3]);
+            assert_eq!(pixels[3..], [NONE; 3]);
             assert_eq!((image.points()[11], image.points()[10]), (0, 2));
             assert!((image.ranges()[11] - 10.001).abs() < 1e-3 && image.ranges()[0] == 0.0);
-            let speakers: Vec<_> = (0..7).map(|point| image.speaker(point)).collect();
+            let speakers: Vec<_> = (0..7).map(|point| image.pixel_for(point)).collect();
             assert_eq!(speakers[..2], [Some(11), Some(11)]);
             assert_eq!(speakers[2..], [Some(10), None, None, None, None]);
         }
-        // As far as its neighbour to within a metre.
+        // At the range of its neighbour to within a metre.
         image.project(&VIEW, [[10.0, 0.1, 0.1], [20.9, 0.2, 0.2], [19.0, 9.0, 0.2]].into_iter());
-        assert_eq!(image.speaker(1), Some(10));
+        assert_eq!(image.pixel_for(1), Some(10));
         image.project(&VIEW, std::iter::empty());
-        assert!(image.pixels().is_empty() && image.points().iter().all(|point| *point == NOWHERE));
+        assert!(image.pixels().is_empty() && image.points().iter().all(|point| *point == NONE));
     }
 }

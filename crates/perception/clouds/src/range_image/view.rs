@@ -1,31 +1,31 @@
-//! Which way a range image looks.
+//! Field of view of a range image.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
 use opendr_engine::{Error, Result};
 use serde::{Deserialize, Serialize};
 
-/// Size and angles of a range image; rows are equal angles up and down, columns to the sides.
+/// Size and field of view of a range image; rows and columns are equal angles.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RangeView {
-    /// From the top to the bottom.
+    /// Number of rows, from top to bottom.
     pub rows: usize,
-    /// From left to right.
+    /// Number of columns, from left to right.
     pub columns: usize,
-    /// The upper edge above the horizon, radians.
+    /// Angle of the upper edge above the horizon in radians.
     pub top: f32,
-    /// The lower edge, radians; below the horizon it is negative.
+    /// Angle of the lower edge in radians, negative below the horizon.
     pub bottom: f32,
-    /// From ahead to either edge, radians; pi is a full turn.
+    /// Angle from ahead to either edge in radians; pi is a full turn.
     pub half_view: f32,
 }
 
-/// More pixels are a mistake.
+/// Maximum number of pixels.
 const MOST_PIXELS: usize = 1 << 22;
 
 impl RangeView {
-    /// The pixel of a place `distance` metres away, `row * columns + column`; `None` outside of the view, at the lidar itself,
-    /// and where a number is not finite.
+    /// Returns the pixel of a point `distance` metres away, `row * columns + column`; `None` outside of the view, at the lidar
+    /// itself, and where a value is not finite.
     #[inline]
     pub fn pixel(&self, [x, y, z]: [f32; 3], distance: f32) -> Option<usize> {
         if !(distance > 0.0 && distance < f32::INFINITY) {
@@ -42,10 +42,10 @@ impl RangeView {
         Some(row * self.columns + column)
     }
 
-    /// Checks what a container or a user says.
+    /// Checks the view of a container or a user.
     ///
     /// # Errors
-    /// `Format` for angles that are none, and for no pixel or more than four million.
+    /// `Format` for invalid angles, and for no pixel or more than four million.
     pub fn check(&self) -> Result<()> {
         let Self { rows, columns, top, bottom, half_view } = *self;
         let angles = -FRAC_PI_2 <= bottom && bottom < top && top <= FRAC_PI_2;
@@ -54,7 +54,7 @@ impl RangeView {
             return Ok(());
         }
         Err(Error::format(format!(
-            "a range image looks from an angle up to a higher one, at most pi to either side, and has 1 to {MOST_PIXELS} \
+            "a range image needs an upper edge above its lower edge, at most pi to either side, and 1 to {MOST_PIXELS} \
              pixels; this one is {self:?}"
         )))
     }
@@ -83,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn views_that_make_no_sense_are_refused() {
+    fn invalid_views_are_refused() {
         let wrong = [
             RangeView { rows: 0, ..VIEW },
             RangeView { columns: usize::MAX, ..VIEW },

@@ -1,6 +1,6 @@
 use super::Region;
 
-/// Cells of a picture that a first pass marks; its memory is used again.
+/// A grid of cells over an image, marked by a first pass; its memory is reused.
 #[derive(Debug, Clone, Default)]
 pub struct CellGrid {
     columns: usize,
@@ -10,21 +10,21 @@ pub struct CellGrid {
 }
 
 impl CellGrid {
-    /// No cell is marked.
+    /// Resizes the grid and unmarks all cells.
     pub fn reset(&mut self, columns: usize, rows: usize) {
         (self.columns, self.rows) = (columns, rows);
         self.marked.clear();
         self.marked.resize(columns * rows, false);
     }
 
-    /// Marks the cells of which `is_marked`, given column and row, says so.
+    /// Marks the cells for which `is_marked`, given column and row, is true.
     pub fn mark(&mut self, mut is_marked: impl FnMut(usize, usize) -> bool) {
         for (cell, marked) in self.marked.iter_mut().enumerate() {
             *marked |= is_marked(cell % self.columns, cell / self.columns);
         }
     }
 
-    /// Unmarks the cells that lie, as a grid over a picture of `size`, in a region.
+    /// Unmarks the cells, of a grid over an image of `size`, that overlap a region.
     pub fn unmark(&mut self, region: &Region, size: [usize; 2]) {
         for cell in 0..self.marked.len() {
             self.marked[cell] &=
@@ -32,8 +32,8 @@ impl CellGrid {
         }
     }
 
-    /// Adds a region to `regions` for each group of marked cells that touch, corners too, as a grid over a picture of
-    /// `size`; at most `most`, in the order of their first cells. Unmarks them.
+    /// Adds a region to `regions` for each 8-connected group of marked cells, of a grid over an image of `size`, up to
+    /// `most` regions in all, in the order of their first cells. Unmarks the cells of these groups.
     pub fn take_regions(&mut self, size: [usize; 2], most: usize, regions: &mut Vec<Region>) {
         for first in 0..self.marked.len() {
             if regions.len() >= most || !std::mem::take(&mut self.marked[first]) {
@@ -43,7 +43,7 @@ impl CellGrid {
             self.stack.push(first);
             while let Some(cell) = self.stack.pop() {
                 let (column, row) = (cell % self.columns, cell / self.columns);
-                region = region.joined(&self.region([column, row], size));
+                region = region.union(&self.region([column, row], size));
                 for row in row.saturating_sub(1)..(row + 2).min(self.rows) {
                     for column in column.saturating_sub(1)..(column + 2).min(self.columns) {
                         let neighbour = row * self.columns + column;

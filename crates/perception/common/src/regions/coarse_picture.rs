@@ -2,9 +2,9 @@ use opendr_engine::Result;
 use opendr_engine::data::ImageView;
 use opendr_vision::{ChannelOrder, Preprocess};
 
-/// The brightness of a picture in cells: how bright each is, and how much brightness differs in it. Its memory is used again.
+/// Mean and range of brightness of an image per cell; its memory is reused.
 #[derive(Debug, Clone)]
-pub struct CoarsePicture {
+pub struct CellBrightness {
     preprocess: Preprocess,
     columns: usize,
     rows: usize,
@@ -13,19 +13,19 @@ pub struct CoarsePicture {
     ranges: Vec<u8>,
 }
 
-impl Default for CoarsePicture {
+impl Default for CellBrightness {
     fn default() -> Self {
         let preprocess = Preprocess::new(1, 1).order(ChannelOrder::Grey);
         Self { preprocess, columns: 0, rows: 0, grey: Vec::new(), means: Vec::new(), ranges: Vec::new() }
     }
 }
 
-impl CoarsePicture {
-    /// Looks at a picture: `columns` x `rows` cells (at least one each way) of `side` x `side` points.
+impl CellBrightness {
+    /// Computes mean and range over `columns` x `rows` cells (at least one each way) of `side` x `side` samples.
     ///
     /// # Errors
-    /// As the pre-processing of pictures.
-    pub fn look(&mut self, view: ImageView<'_>, columns: usize, rows: usize, side: usize) -> Result<()> {
+    /// As the pre-processing of images.
+    pub fn compute(&mut self, view: ImageView<'_>, columns: usize, rows: usize, side: usize) -> Result<()> {
         let (columns, rows, side) = (columns.max(1), rows.max(1), side.max(1));
         (self.columns, self.rows) = (columns, rows);
         let width = columns * side;
@@ -50,22 +50,22 @@ impl CoarsePicture {
         Ok(())
     }
 
-    /// Columns and rows of cells.
+    /// Returns the number of columns and rows of cells.
     pub fn size(&self) -> [usize; 2] {
         [self.columns, self.rows]
     }
 
-    /// How much brightness differs in each cell, 0..=255, row by row.
+    /// Returns the range of brightness in each cell, 0..=255, row by row.
     pub fn ranges(&self) -> &[u8] {
         &self.ranges
     }
 
-    /// The mean brightness of each cell, 0..=255, row by row.
+    /// Returns the mean brightness of each cell, 0..=255, row by row.
     pub fn means(&self) -> &[u8] {
         &self.means
     }
 
-    /// How much brightness differs in a cell; 0 beside the picture.
+    /// Returns the range of brightness in a cell; 0 outside the grid.
     pub fn range(&self, column: usize, row: usize) -> u8 {
         self.ranges.get(row * self.columns + column).copied().unwrap_or(0)
     }
@@ -78,13 +78,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cells_tell_brightness_and_detail() {
-        // Left half dark, right half of alternating columns.
+    fn cells_have_mean_and_range_of_brightness() {
+        // The left half is dark, the right half has alternating columns.
         let level = |at: usize| if at % 32 < 16 { 10 } else { [0, 200][at % 2] };
         let samples = (0..32 * 16).flat_map(|at| [level(at); 3]).collect();
         let image = Image::from_rgb8(samples, 32, 16).unwrap();
-        let mut coarse = CoarsePicture::default();
-        coarse.look(image.view(), 2, 1, 16).unwrap();
+        let mut coarse = CellBrightness::default();
+        coarse.compute(image.view(), 2, 1, 16).unwrap();
         assert_eq!(coarse.size(), [2, 1]);
         assert_eq!(coarse.means(), [10, 100]);
         assert_eq!((coarse.range(0, 0), coarse.range(1, 0), coarse.range(5, 5)), (0, 200, 0));

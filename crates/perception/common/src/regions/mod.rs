@@ -1,49 +1,49 @@
-//! Where to look closer: from a coarse look at a large picture to the few parts of it that are worth a second one.
+//! Regions of interest of a large image for a second pass.
 //!
-//! A first pass marks cells of a [`CellGrid`]; cells that touch become a [`Region`]; regions are grown by a margin,
-//! joined where they overlap, and cut into tiles where they are larger than a second pass can magnify. What a
-//! [`CoarsePicture`] shows of brightness tells where there is detail, and where something moved.
+//! A first pass marks cells of a [`CellGrid`]; connected cells become a [`Region`]. Regions are grown by a margin, merged
+//! where they overlap, and divided into tiles where they are larger than the second pass can magnify. A [`CellBrightness`]
+//! has the brightness per cell, which shows detail and motion.
 
 mod cell_grid;
 mod coarse_picture;
 
 pub use cell_grid::CellGrid;
-pub use coarse_picture::CoarsePicture;
+pub use coarse_picture::CellBrightness;
 
-/// A part of a picture, in whole pixels.
+/// A region of an image, in whole pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Region {
-    /// Left edge.
+    /// Left edge in pixels.
     pub x: usize,
-    /// Upper edge.
+    /// Upper edge in pixels.
     pub y: usize,
-    /// Width.
+    /// Width in pixels.
     pub width: usize,
-    /// Height.
+    /// Height in pixels.
     pub height: usize,
 }
 
 impl Region {
-    /// The pixels between `[left, top, right, bottom]`, as far as they lie in a picture of `size` and are finite.
+    /// Returns the pixels between `[left, top, right, bottom]`, clipped to an image of `size`; NaN counts as 0.
     pub fn from_corners([left, top, right, bottom]: [f32; 4], [width, height]: [usize; 2]) -> Self {
-        // Casting cuts: NaN becomes 0.
+        // Casting saturates: NaN becomes 0.
         let cut = |edge: f32, end: usize| (edge.max(0.0) as usize).min(end);
         let (x, y) = (cut(left.floor(), width), cut(top.floor(), height));
         let (right, bottom) = (cut(right.ceil(), width), cut(bottom.ceil(), height));
         Self { x, y, width: right.saturating_sub(x), height: bottom.saturating_sub(y) }
     }
 
-    /// `[left, top, right, bottom]`.
+    /// Returns `[left, top, right, bottom]`.
     pub fn corners(&self) -> [f32; 4] {
         [self.x, self.y, self.x + self.width, self.y + self.height].map(|edge| edge as f32)
     }
 
-    /// Whether it has no pixel.
+    /// Returns whether the region has no pixel.
     pub fn is_empty(&self) -> bool {
         self.width == 0 || self.height == 0
     }
 
-    /// Larger on each side by `share` of its longer side, within a picture of `size`.
+    /// Returns the region grown on each side by `share` of its longer side, clipped to an image of `size`.
     #[must_use]
     pub fn grown(&self, share: f32, size: [usize; 2]) -> Self {
         let by = share * self.width.max(self.height) as f32;
@@ -51,29 +51,29 @@ impl Region {
         Self::from_corners([left - by, top - by, right + by, bottom + by], size)
     }
 
-    /// The smallest region with both.
+    /// Returns the smallest region that contains both.
     #[must_use]
-    pub fn joined(&self, other: &Self) -> Self {
+    pub fn union(&self, other: &Self) -> Self {
         let (x, y) = (self.x.min(other.x), self.y.min(other.y));
         let right = (self.x + self.width).max(other.x + other.width);
         let bottom = (self.y + self.height).max(other.y + other.height);
         Self { x, y, width: right - x, height: bottom - y }
     }
 
-    /// Whether a place lies in it.
-    pub fn holds(&self, [x, y]: [f32; 2]) -> bool {
+    /// Returns whether the region contains a point.
+    pub fn contains(&self, [x, y]: [f32; 2]) -> bool {
         let [left, top, right, bottom] = self.corners();
         (left..right).contains(&x) && (top..bottom).contains(&y)
     }
 
-    /// Whether both share a pixel.
+    /// Returns whether both regions share a pixel.
     pub fn overlaps(&self, other: &Self) -> bool {
         let meet = |a: usize, a_long: usize, b: usize, b_long: usize| a < b + b_long && b < a + a_long;
         meet(self.x, self.width, other.x, other.width) && meet(self.y, self.height, other.y, other.height)
     }
 
-    /// The region in tiles with sides of at most `side` pixels, as equal as can be, that overlap by `overlap` where it
-    /// takes several; row by row.
+    /// Divides the region into tiles of at most `side` pixels per side, as equal as possible, row by row. Neighbouring
+    /// tiles overlap by about `overlap` pixels.
     pub fn tiles(self, side: usize, overlap: usize) -> impl Iterator<Item = Self> {
         let overlap = overlap.min(side / 2);
         let cut = move |length: usize| -> (usize, usize) {
@@ -94,15 +94,15 @@ impl Region {
     }
 }
 
-/// Joins regions that overlap until none do. Their order is kept as far as it can be.
-pub fn join_overlapping(regions: &mut Vec<Region>) {
+/// Merges regions that overlap until none do. Their order is kept as far as possible.
+pub fn merge_overlapping(regions: &mut Vec<Region>) {
     let mut at = 0;
     while at < regions.len() {
         let later = (at + 1..regions.len()).find(|other| regions[at].overlaps(&regions[*other]));
         match later {
-            // What grew may now overlap an earlier one.
+            // A merged region may overlap an earlier one.
             Some(other) => {
-                let joined = regions[at].joined(&regions[other]);
+                let joined = regions[at].union(&regions[other]);
                 regions.remove(other);
                 regions[at] = joined;
                 at = 0;
@@ -119,7 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn strange_corners_are_cut() {
+    fn invalid_corners_are_clipped() {
         let size = [100, 50];
         let region = |corners| Region::from_corners(corners, size);
         assert_eq!(region([-5.0, 2.5, 300.0, 9.0]), Region { x: 0, y: 2, width: 100, height: 7 });
@@ -138,7 +138,7 @@ mod tests {
             let region = Region { x: 7, y: 9, width, height };
             let tiles: Vec<_> = region.tiles(side, overlap).collect();
             prop_assert!(tiles.iter().all(|tile| tile.width <= side && tile.height <= side && !tile.is_empty()));
-            prop_assert!(tiles.iter().all(|tile| region.joined(tile) == region));
+            prop_assert!(tiles.iter().all(|tile| region.union(tile) == region));
             for x in (0..width).step_by(13) {
                 for y in (0..height).step_by(11) {
                     let pixel = Region { x: 7 + x, y: 9 + y, width: 1, height: 1 };
@@ -154,12 +154,12 @@ mod tests {
             let all: Vec<_> =
                 boxes.into_iter().map(|(x, y, width, height)| Region { x, y, width, height }).collect();
             let mut joined = all.clone();
-            join_overlapping(&mut joined);
+            merge_overlapping(&mut joined);
             for (at, region) in joined.iter().enumerate() {
                 prop_assert!(joined[at + 1..].iter().all(|other| !region.overlaps(other)));
             }
             for region in &all {
-                prop_assert!(joined.iter().any(|whole| whole.joined(region) == *whole));
+                prop_assert!(joined.iter().any(|whole| whole.union(region) == *whole));
             }
         }
     }

@@ -1,6 +1,6 @@
-use super::{Candidate, keep_unmarked, overlap};
+use super::candidate::{Candidate, keep_unmarked, overlap};
 
-/// A box is dropped when any better box overlaps it, be that one dropped itself or not.
+/// Drops every box that a box of a higher score overlaps, even if that one is dropped itself.
 pub fn suppress(candidates: &mut Vec<Candidate>, dropped: &mut Vec<bool>, limit: f32) {
     dropped.clear();
     dropped.extend((0..candidates.len()).map(|at| {

@@ -1,6 +1,6 @@
-use super::{Candidate, keep_unmarked, overlap};
+use super::candidate::{Candidate, keep_unmarked, overlap};
 
-/// Greedy: the best box drops all that overlap it, then the next best that is left.
+/// Greedy NMS: the box with the highest score drops all that overlap it, then the next that is left.
 pub fn suppress(candidates: &mut Vec<Candidate>, dropped: &mut Vec<bool>, limit: f32, most: usize) {
     dropped.clear();
     dropped.resize(candidates.len(), false);

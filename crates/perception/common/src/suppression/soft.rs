@@ -1,9 +1,9 @@
-use super::{Candidate, by_score, iou};
+use super::candidate::{Candidate, by_score, iou};
 
-/// Width of the Gaussian that lowers scores.
+/// Sigma of the Gaussian that lowers scores.
 const SIGMA: f32 = 0.5;
 
-/// The best box lowers the scores of those that overlap it; then the next best by the new scores.
+/// The box with the highest score lowers the scores of those that overlap it, then the next by the new scores.
 pub fn suppress(candidates: &mut Vec<Candidate>, threshold: f32, most: usize) {
     let mut done = 0;
     while done < candidates.len() && done < most {

@@ -1,35 +1,30 @@
-//! Suppression of boxes in space, by the ground that they share.
+//! Non-maximum suppression of 3D boxes in bird's-eye view.
 
 use opendr_engine::overlap::RotatedRectangle;
 
-/// A box in space before suppression.
+/// A 3D box before suppression.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StandingCandidate {
-    /// Its floor.
-    pub floor: RotatedRectangle,
+pub struct BevCandidate {
+    /// Footprint on the ground plane.
+    pub footprint: RotatedRectangle,
     /// Score, 0..=1.
     pub score: f32,
-    /// Class number; boxes of different classes never suppress each other.
+    /// Class index; boxes of different classes never suppress each other.
     pub class: u32,
-    /// The caller's number of the box, to find what else belongs to it.
+    /// Index of the box for the caller, to look up other data of it.
     pub index: u32,
 }
 
-/// Greedy suppression: the best box drops all of its class whose floors overlap it by more than `overlap` (intersection
-/// over union of the turned rectangles, exact), then the next best that is left; at most `most` stay, best first.
+/// Greedy NMS by the IoU of footprints (rotated rectangles, exact): the box with the highest score drops all of its class
+/// that overlap it by more than `overlap`, then the next that is left. At most `most` boxes are kept, highest score first.
 ///
-/// Boxes that are not finite or without area are dropped. `dropped` is work memory. Most pairs are told apart by the circles
-/// about them, and cost no polygon.
-pub fn suppress_standing(
-    candidates: &mut Vec<StandingCandidate>,
-    dropped: &mut Vec<bool>,
-    overlap: f32,
-    most: usize,
-) {
+/// Boxes that are not finite or have no area are dropped. `dropped` is work memory. A comparison of circumscribed circles
+/// spares most pairs the intersection of polygons.
+pub fn suppress_bev(candidates: &mut Vec<BevCandidate>, dropped: &mut Vec<bool>, overlap: f32, most: usize) {
     candidates.retain(|candidate| {
-        let RotatedRectangle { center, size, angle } = candidate.floor;
+        let RotatedRectangle { center, size, angle } = candidate.footprint;
         let is_finite = center.iter().chain(&size).chain([&angle]).all(|part| part.is_finite());
-        is_finite && candidate.score.is_finite() && candidate.floor.area() > 0.0
+        is_finite && candidate.score.is_finite() && candidate.footprint.area() > 0.0
     });
     candidates.sort_unstable_by(|a, b| b.score.total_cmp(&a.score).then(a.index.cmp(&b.index)));
     dropped.clear();
@@ -46,7 +41,7 @@ pub fn suppress_standing(
         }
         for other in best + 1..candidates.len() {
             if !dropped[other] && candidates[other].class == candidates[best].class {
-                let shared = candidates[best].floor.overlap(&candidates[other].floor);
+                let shared = candidates[best].footprint.iou(&candidates[other].footprint);
                 dropped[other] = shared > f64::from(overlap);
             }
         }
@@ -59,17 +54,17 @@ pub fn suppress_standing(
 mod tests {
     use super::*;
 
-    fn car(x: f64, angle: f64, score: f32, index: u32) -> StandingCandidate {
+    fn car(x: f64, angle: f64, score: f32, index: u32) -> BevCandidate {
         let floor = RotatedRectangle { center: [x, 0.0], size: [4.0, 2.0], angle };
-        StandingCandidate { floor, score, class: 0, index }
+        BevCandidate { footprint: floor, score, class: 0, index }
     }
 
-    fn run(mut candidates: Vec<StandingCandidate>, overlap: f32, most: usize) -> Vec<u32> {
-        suppress_standing(&mut candidates, &mut Vec::new(), overlap, most);
+    fn run(mut candidates: Vec<BevCandidate>, overlap: f32, most: usize) -> Vec<u32> {
+        suppress_bev(&mut candidates, &mut Vec::new(), overlap, most);
         candidates.iter().map(|candidate| candidate.index).collect()
     }
 
-    /// Floors 4 x 2, shifted by 2 along x: 4 of 12 square metres are shared, a third. Crossed: 4 of 12 too.
+    /// Footprints of 4 x 2 m, shifted by 2 m along x, share 4 of 12 square metres, a third. Crossed ones share 4 of 12 too.
     #[test]
     fn by_hand() {
         let both = |angle: f64, x: f64| vec![car(0.0, 0.0, 0.8, 0), car(x, angle, 0.9, 1)];
@@ -84,11 +79,11 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_box_is_dropped() {
+    fn invalid_boxes_are_dropped() {
         let mut boxes =
             vec![car(0.0, f64::NAN, 0.9, 0), car(f64::INFINITY, 0.0, 0.9, 1), car(0.0, 0.0, f32::NAN, 2)];
-        boxes.push(StandingCandidate {
-            floor: RotatedRectangle { center: [0.0; 2], size: [-1.0, 2.0], angle: 0.0 },
+        boxes.push(BevCandidate {
+            footprint: RotatedRectangle { center: [0.0; 2], size: [-1.0, 2.0], angle: 0.0 },
             ..car(0.0, 0.0, 0.9, 3)
         });
         boxes.push(car(0.0, 0.1, 0.1, 4));

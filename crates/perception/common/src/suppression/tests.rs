@@ -7,7 +7,8 @@ fn candidate(index: u32, [x, y, w, h]: [f32; 4], score: f32, class: u32) -> Cand
 }
 
 fn run(kind: SuppressionKind, mut candidates: Vec<Candidate>) -> Vec<Candidate> {
-    Suppression { kind, overlap: 0.5, threshold: 0.1, most: 100 }.run(&mut candidates, &mut Vec::new());
+    Suppression { kind, iou_threshold: 0.5, threshold: 0.1, max_boxes: 100 }
+        .run(&mut candidates, &mut Vec::new());
     candidates
 }
 
@@ -15,7 +16,7 @@ fn kept(kind: SuppressionKind, candidates: Vec<Candidate>) -> Vec<u32> {
     run(kind, candidates).iter().map(|candidate| candidate.index).collect()
 }
 
-/// Three boxes in a row, each overlapping only its neighbours, and one of another class.
+/// Returns three boxes in a row, each overlapping only its neighbours, and one of another class.
 fn row() -> Vec<Candidate> {
     vec![
         candidate(0, [4.0, 0.0, 10.0, 10.0], 0.6, 0),
@@ -43,7 +44,7 @@ fn each_method_on_a_row() {
 fn most_is_a_limit() {
     let mut candidates: Vec<_> =
         (0..5000).map(|at| candidate(at, [at as f32 * 20.0, 0.0, 10.0, 10.0], 0.5, 0)).collect();
-    Suppression { kind: SuppressionKind::Hard, overlap: 0.5, threshold: 0.1, most: 7 }
+    Suppression { kind: SuppressionKind::Hard, iou_threshold: 0.5, threshold: 0.1, max_boxes: 7 }
         .run(&mut candidates, &mut Vec::new());
     assert_eq!(candidates.iter().map(|candidate| candidate.index).collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5, 6]);
 }

@@ -1,7 +1,8 @@
-use super::{Candidate, by_score, overlap};
+use super::candidate::{Candidate, by_score, overlap};
 
-/// Weighted suppression (Bazarevsky et al., BlazeFace, 2019): each best box takes those that overlap it by more than
-/// `limit` with it, and `merge` sees them together, the best first, to blend them by their scores.
+/// Weighted NMS (Bazarevsky et al., BlazeFace, 2019): the box with the highest score forms a group with those that overlap
+/// it by more than `limit`, then the next that is left. `merge` receives each group, highest score first, and blends it by
+/// scores.
 ///
 /// `candidates` is empty afterwards; `members` is work memory.
 pub fn merge_overlapping(

@@ -1,7 +1,7 @@
-//! CenterNet on MobileNetV3: objects as peaks of a heat map.
+//! CenterNet on MobileNetV3: objects as peaks of a heatmap.
 //!
-//! Zhou et al., Objects as Points, 2019. The network ends in its own decoder: 100 boxes, best first. A light
-//! suppression is still wanted, since two peaks may stand on one large object.
+//! Zhou et al., Objects as Points, 2019. The network contains its decoder: 100 boxes, highest score first. A light
+//! suppression is still useful, as a large object may have two peaks.
 
 use opendr_engine::data::Image;
 use opendr_engine::learner::{Learner, Spec};
@@ -10,23 +10,23 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Device, Pool, Result, Task};
 use opendr_perception_common::boxes_from_candidates::boxes_from_candidates;
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
 use opendr_vision::Preprocess;
 
-/// What a user may set.
+/// Parameters of [`CenterNet`].
 #[derive(Debug, Clone, Params)]
 pub struct CenterNetParams {
-    /// Detections below this score are dropped.
+    /// Score below which detections are dropped.
     #[param(default = 0.3, range = 0.0..=1.0, live)]
     pub threshold: f32,
-    /// Boxes of one class that overlap more than this (intersection over union) are one object.
+    /// IoU above which boxes of one class count as one object.
     #[param(default = 0.5, range = 0.0..=1.0, live)]
     pub iou_threshold: f32,
-    /// At most this many boxes a picture.
+    /// Maximum number of boxes per image.
     #[param(default = 100, range = 1..=100, live)]
     pub max_detections: usize,
-    /// How overlapping boxes are thinned out.
+    /// Method of non-maximum suppression.
     #[param(live)]
     pub suppression: SuppressionKind,
 }
@@ -35,7 +35,7 @@ pub struct CenterNetParams {
 pub struct CenterNet {
     params: CenterNetParams,
     classes: Classes,
-    network: PictureNetwork,
+    network: ImageNetwork,
     detections: usize,
     scratch: Pool<Scratch>,
 }
@@ -46,30 +46,32 @@ struct Scratch {
     marks: Vec<bool>,
 }
 
-/// Side of the network's input, pixels.
+/// Side of the network's input, in pixels.
 const SIDE: usize = 512;
-/// Numbers of one detection: x0, y0, x1, y1, score, class.
+/// Number of values of a detection: x0, y0, x1, y1, score, class.
 const FIELDS: usize = 6;
 
 impl Learner for CenterNet {
     const SPEC: Spec = Spec::new("centernet", Task::ObjectDetection2d)
         .class("CenterNetDetectorLearner")
-        .about("CenterNet on MobileNetV3 finds the 80 COCO classes; the best of the light detectors here.")
+        .about(
+            "CenterNet on MobileNetV3 detects the 80 COCO classes; the most precise of the light detectors.",
+        )
         .without_effect(&[
-            ("img_size", "the network's input has one size"),
-            ("keep_size", "the whole picture is looked at, at the network's size"),
-            ("num_workers", Spec::OF_TRAINING),
-            ("epochs", Spec::OF_TRAINING),
-            ("val_after", Spec::OF_TRAINING),
-            ("log_after", Spec::OF_TRAINING),
-            ("weight_decay", Spec::OF_TRAINING),
-            ("momentum", Spec::OF_TRAINING),
-            ("wh_weight", Spec::OF_TRAINING),
-            ("center_reg_weight", Spec::OF_TRAINING),
-            ("lr_decay_epoch", Spec::OF_TRAINING),
-            ("lr_decay", Spec::OF_TRAINING),
-            ("warmup_epochs", Spec::OF_TRAINING),
-            ("flip_validation", Spec::OF_TRAINING),
+            ("img_size", "the network's input has a fixed size"),
+            ("keep_size", "the whole image is resized to the network's input"),
+            ("num_workers", Spec::TRAINING_ONLY),
+            ("epochs", Spec::TRAINING_ONLY),
+            ("val_after", Spec::TRAINING_ONLY),
+            ("log_after", Spec::TRAINING_ONLY),
+            ("weight_decay", Spec::TRAINING_ONLY),
+            ("momentum", Spec::TRAINING_ONLY),
+            ("wh_weight", Spec::TRAINING_ONLY),
+            ("center_reg_weight", Spec::TRAINING_ONLY),
+            ("lr_decay_epoch", Spec::TRAINING_ONLY),
+            ("lr_decay", Spec::TRAINING_ONLY),
+            ("warmup_epochs", Spec::TRAINING_ONLY),
+            ("flip_validation", Spec::TRAINING_ONLY),
         ]);
     type Params = CenterNetParams;
     type Input<'a> = &'a Image;
@@ -77,7 +79,7 @@ impl Learner for CenterNet {
     type State = ();
 
     fn load(model: &Model, params: CenterNetParams, device: Device) -> Result<Self> {
-        let network = PictureNetwork::open(model, device, |_| Preprocess::new(SIDE, SIDE))?;
+        let network = ImageNetwork::open(model, device, |_| Preprocess::new(SIDE, SIDE))?;
         Ok(Self {
             detections: network.output("tower_0/detections")?,
             classes: model.manifest().classes.clone(),
@@ -103,7 +105,7 @@ impl Learner for CenterNet {
         let Scratch { candidates, marks } = &mut *self.scratch.take();
         let CenterNetParams { threshold, iou_threshold, max_detections, suppression } = self.params;
         let suppression =
-            Suppression { kind: suppression, overlap: iou_threshold, threshold, most: max_detections };
+            Suppression { kind: suppression, iou_threshold, threshold, max_boxes: max_detections };
         candidates.clear();
         self.network.run(image, |outputs, geometry| {
             candidates.extend(outputs[self.detections].values()?.chunks_exact(FIELDS).zip(0..).map(

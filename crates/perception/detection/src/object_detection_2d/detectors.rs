@@ -5,7 +5,7 @@ use opendr_tiling::{Open, open_as};
 
 use super::{CenterNet, Nanodet, SingleShotDetector};
 
-/// The learners that find boxes in a picture: one line each.
+/// The learners that detect boxes in an image.
 pub const DETECTORS: &[(&str, Open<BoundingBoxList>)] = &[
     (Nanodet::SPEC.name, open_as::<BoundingBoxList, Nanodet>),
     (CenterNet::SPEC.name, open_as::<BoundingBoxList, CenterNet>),

@@ -1,4 +1,4 @@
-//! Boxes of faces in a picture.
+//! Detection of faces in images.
 
 mod masked_face;
 mod ultra_light_face;

@@ -1,7 +1,7 @@
-//! Ultra-Light-Fast-Generic-Face-Detector (RFB, 320x240): faces in a few milliseconds on any processor.
+//! Ultra-Light-Fast-Generic-Face-Detector (RFB, 320x240): faces in a few milliseconds on any CPU.
 //!
-//! Linzaer, MIT. An SSD with four levels; the model's own decoder gives boxes between 0 and 1. No landmarks: take
-//! [`super::Yunet`] where they are wanted.
+//! Linzaer, MIT. An SSD with four levels; the model contains its decoder, whose boxes are between 0 and 1. It has no
+//! landmarks; [`super::Yunet`] does.
 
 use opendr_engine::data::Image;
 use opendr_engine::learner::{Learner, Spec};
@@ -10,23 +10,23 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Device, Pool, Result, Task};
 use opendr_perception_common::boxes_from_candidates::boxes_from_candidates;
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
 use opendr_vision::Preprocess;
 
-/// What a user may set.
+/// Parameters of [`UltraLightFace`].
 #[derive(Debug, Clone, Params)]
 pub struct UltraLightFaceParams {
-    /// Faces below this score are dropped.
+    /// Score below which faces are dropped.
     #[param(default = 0.7, range = 0.0..=1.0, live)]
     pub threshold: f32,
-    /// Faces that overlap more than this (intersection over union) are one face.
+    /// IoU above which boxes count as one face.
     #[param(default = 0.3, range = 0.0..=1.0, live)]
     pub iou_threshold: f32,
-    /// At most this many faces a picture.
+    /// Maximum number of faces per image.
     #[param(default = 200, range = 1..=1000, live)]
     pub max_detections: usize,
-    /// How overlapping boxes are thinned out.
+    /// Method of non-maximum suppression.
     #[param(live)]
     pub suppression: SuppressionKind,
 }
@@ -35,7 +35,7 @@ pub struct UltraLightFaceParams {
 pub struct UltraLightFace {
     params: UltraLightFaceParams,
     classes: Classes,
-    network: PictureNetwork,
+    network: ImageNetwork,
     scores: usize,
     boxes: usize,
     scratch: Pool<Scratch>,
@@ -53,14 +53,14 @@ const HEIGHT: usize = 240;
 impl Learner for UltraLightFace {
     const SPEC: Spec = Spec::new("ultra_light_face", Task::FaceDetection)
         .class("UltraLightFaceLearner")
-        .about("Ultra-Light RFB finds faces in a few milliseconds; boxes only.");
+        .about("Ultra-Light RFB detects faces in a few milliseconds; boxes only.");
     type Params = UltraLightFaceParams;
     type Input<'a> = &'a Image;
     type Target = BoundingBoxList;
     type State = ();
 
     fn load(model: &Model, params: UltraLightFaceParams, device: Device) -> Result<Self> {
-        let network = PictureNetwork::open(model, device, |_| {
+        let network = ImageNetwork::open(model, device, |_| {
             Preprocess::new(WIDTH, HEIGHT).normalise([127.0; 3], [128.0; 3])
         })?;
         Ok(Self {
@@ -89,7 +89,7 @@ impl Learner for UltraLightFace {
         let Scratch { candidates, marks } = &mut *self.scratch.take();
         let UltraLightFaceParams { threshold, iou_threshold, max_detections, suppression } = self.params;
         let suppression =
-            Suppression { kind: suppression, overlap: iou_threshold, threshold, most: max_detections };
+            Suppression { kind: suppression, iou_threshold, threshold, max_boxes: max_detections };
         candidates.clear();
         self.network.run(image, |outputs, geometry| {
             let (scores, boxes) =

@@ -1,8 +1,8 @@
 //! YuNet: a face detector of 75 thousand parameters with five landmarks.
 //!
-//! Wu et al., YuNet: A Tiny Millisecond-level Face Detector, Machine Intelligence Research 2023. Faces from about 10
-//! pixels in the network's input upwards; take the variant `dynamic` with a larger `size` for crowds. A container may carry a
-//! network as its part `mask` that tells which faces wear one, as OpenDR's RetinaFace does.
+//! Wu et al., YuNet: A Tiny Millisecond-level Face Detector, Machine Intelligence Research 2023. It detects faces from
+//! about 10 pixels in the network's input; the variant `dynamic` with a larger `size` suits crowds. A container may contain
+//! a network as its part `mask` that classifies faces with and without a mask, as OpenDR's RetinaFace does.
 
 use std::array;
 
@@ -12,28 +12,28 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes};
 use opendr_engine::{Device, Pool, Result, Task};
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
-use opendr_vision::{Anchor, ChannelOrder, InputGeometry, Preprocess};
+use opendr_vision::{ChannelOrder, InputGeometry, LetterboxAlign, Preprocess};
 
 use super::masked_face::MaskNetwork;
 
-/// What a user may set.
+/// Parameters of [`Yunet`].
 #[derive(Debug, Clone, Params)]
 pub struct YunetParams {
-    /// Faces below this score are dropped.
+    /// Score below which faces are dropped.
     #[param(default = 0.6, range = 0.0..=1.0, live)]
     pub threshold: f32,
-    /// Faces that overlap more than this (intersection over union) are one face.
+    /// IoU above which boxes count as one face.
     #[param(default = 0.3, range = 0.0..=1.0, live)]
     pub iou_threshold: f32,
-    /// At most this many faces a picture.
+    /// Maximum number of faces per image.
     #[param(default = 200, range = 1..=1000, live)]
     pub max_detections: usize,
-    /// Side of the network's input, for models that take any; a multiple of 32.
+    /// Side of the network's input, for models of dynamic size; a multiple of 32.
     #[param(default = 640, range = 32..=4096, unit = "px")]
     pub size: usize,
-    /// How overlapping boxes are thinned out.
+    /// Method of non-maximum suppression.
     #[param(live)]
     pub suppression: SuppressionKind,
 }
@@ -42,7 +42,7 @@ pub struct YunetParams {
 pub struct Yunet {
     params: YunetParams,
     classes: Classes,
-    network: PictureNetwork,
+    network: ImageNetwork,
     side: usize,
     levels: [Level; 3],
     masks: Option<MaskNetwork>,
@@ -56,7 +56,7 @@ struct Scratch {
     marks: Vec<bool>,
 }
 
-/// One level of the feature pyramid and where its outputs stand.
+/// One level of the feature pyramid and the indices of its outputs.
 #[derive(Clone, Copy)]
 struct Level {
     stride: usize,
@@ -69,7 +69,7 @@ struct Level {
 impl Learner for Yunet {
     const SPEC: Spec = Spec::new("yunet", Task::FaceDetection)
         .class("YunetLearner")
-        .about("YuNet finds faces with eyes, nose and corners of the mouth; tiny and fast.");
+        .about("YuNet detects faces with eyes, nose and corners of the mouth; tiny and fast.");
     type Params = YunetParams;
     type Input<'a> = &'a Image;
     type Target = BoundingBoxList;
@@ -77,9 +77,9 @@ impl Learner for Yunet {
 
     fn load(model: &Model, mut params: YunetParams, device: Device) -> Result<Self> {
         let mut side = params.size.next_multiple_of(32);
-        let network = PictureNetwork::open(model, device, |input| {
+        let network = ImageNetwork::open(model, device, |input| {
             side = input.dims.get(2).copied().flatten().unwrap_or(side);
-            Preprocess::new(side, side).letterbox(Anchor::TopLeft, 0.0).order(ChannelOrder::Bgr)
+            Preprocess::new(side, side).letterbox(LetterboxAlign::TopLeft, 0.0).order(ChannelOrder::Bgr)
         })?;
         params.size = side;
         let level = |stride: usize| -> Result<Level> {
@@ -115,7 +115,7 @@ impl Learner for Yunet {
         let Scratch { candidates, landmarks, marks } = &mut *self.scratch.take();
         let YunetParams { threshold, iou_threshold, max_detections, suppression, .. } = self.params;
         let suppression =
-            Suppression { kind: suppression, overlap: iou_threshold, threshold, most: max_detections };
+            Suppression { kind: suppression, iou_threshold, threshold, max_boxes: max_detections };
         candidates.clear();
         landmarks.clear();
         faces.classes.clone_from(&self.classes);
@@ -134,7 +134,7 @@ impl Learner for Yunet {
     }
 }
 
-/// Faces may reach beyond the border, so their boxes are not cut: alignment needs the whole.
+/// Converts a candidate to a face. Its box is not clipped to the image, as alignment needs all of it.
 fn face(candidate: &Candidate, landmarks: &[[[f32; 2]; 5]], geometry: &InputGeometry) -> BoundingBox {
     let [x0, y0, x1, y1] = candidate.corners;
     let ([left, top], [right, bottom]) =
@@ -146,8 +146,8 @@ fn face(candidate: &Candidate, landmarks: &[[[f32; 2]; 5]], geometry: &InputGeom
 }
 
 impl Level {
-    /// `[cells]` class and object scores, `[cells, 4]` boxes, `[cells, 10]` landmarks; all relative to the cell's
-    /// left-top corner, in strides.
+    /// Decodes `[cells]` class and object scores, `[cells, 4]` boxes and `[cells, 10]` landmarks, all relative to the
+    /// cell's left-top corner, in strides.
     fn decode(
         &self,
         columns: usize,

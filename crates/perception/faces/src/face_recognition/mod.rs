@@ -1,4 +1,4 @@
-//! Whose face it is.
+//! Recognition of persons by their faces.
 
 mod recognition;
 

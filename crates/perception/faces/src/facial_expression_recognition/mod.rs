@@ -1,4 +1,4 @@
-//! What a face expresses.
+//! Recognition of facial expressions.
 
 mod facial_emotion;
 mod progressive_spatio_temporal_bln;

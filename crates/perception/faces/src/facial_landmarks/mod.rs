@@ -1,4 +1,4 @@
-//! Points of faces.
+//! Landmarks of faces.
 
 mod face_mesh;
 

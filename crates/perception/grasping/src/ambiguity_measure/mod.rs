@@ -1,8 +1,8 @@
-//! Whether a map of values, of which a robot takes the highest, leaves a doubt where that is.
+//! Ambiguity of a map of values of which a robot selects the highest.
 //!
-//! As OpenDR's `AmbiguityMeasure`, for maps of Transporter Nets (A. Zeng et al., CoRL 2020) and the like: the map's peaks
-//! ([`persistence`]) share a probability by a softmax of their values. Unlike there, a map is ambiguous when the best peak is
-//! *not* certain.
+//! As OpenDR's `AmbiguityMeasure`, for maps of Transporter Nets (A. Zeng et al., CoRL 2020) and the like: the probabilities of
+//! the map's peaks ([`persistence`]) are a softmax of their values. Different from OpenDR, a map is ambiguous when the best
+//! peak is *not* certain.
 
 pub mod persistence;
 
@@ -11,31 +11,31 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes, Heatmap, HeatmapValues};
 use opendr_engine::{Device, Error, Pool, Result, Task};
-use opendr_perception_common::category_scores::category_of_two;
+use opendr_perception_common::category_scores::binary_category;
 
 use persistence::{Peak, Persistence};
 
-/// What a user may set.
+/// Parameters of [`AmbiguityMeasure`].
 #[derive(Debug, Clone, Params)]
 pub struct AmbiguityMeasureParams {
-    /// A map is ambiguous where what is left beside the best peak has this probability.
+    /// Minimum probability of all peaks except the best one at which a map is ambiguous.
     #[param(default = 0.5, range = 0.0..=0.999_999, live)]
     pub threshold: f64,
-    /// Of the softmax; larger ones make maps more ambiguous.
+    /// Temperature of the softmax; a higher one makes maps more ambiguous.
     #[param(default = 1.0, range = 1e-6..=1e6, live)]
     pub temperature: f64,
 }
 
-/// What is told of a map.
+/// Prediction for a map.
 #[derive(Default, Targets)]
 pub struct AmbiguityMeasureTargets {
-    /// Class 1 where it is ambiguous, else 0; the probabilities are those of the best peak and of all others.
+    /// Class 1 if the map is ambiguous, else 0; the probabilities are those of the best peak and of all others.
     pub category: Category,
-    /// `[peaks, 4]`: row, column, value and probability of each peak, the most persistent first.
+    /// Peaks `[peaks, 4]`: row, column, value and probability, sorted by persistence.
     pub peaks: Heatmap,
 }
 
-/// The measure.
+/// Learner of the ambiguity of maps.
 pub struct AmbiguityMeasure {
     params: AmbiguityMeasureParams,
     classes: Classes,
@@ -48,13 +48,13 @@ struct Work {
     peaks: Vec<Peak>,
 }
 
-/// Pixels of a map at most.
+/// Maximum number of pixels of a map.
 const MOST_PIXELS: usize = 1 << 26;
 
 impl Learner for AmbiguityMeasure {
     const SPEC: Spec = Spec::new("ambiguity_measure", Task::AmbiguityMeasure)
         .class("AmbiguityMeasureLearner")
-        .about("Tells whether a map of values leaves a doubt where the best place is.");
+        .about("Measures whether the highest peak of a map of values is ambiguous.");
     type Params = AmbiguityMeasureParams;
     type Input<'a> = &'a Heatmap;
     type Target = AmbiguityMeasureTargets;
@@ -79,19 +79,19 @@ impl Learner for AmbiguityMeasure {
     fn infer_into(&self, _: &mut (), map: &Heatmap, targets: &mut AmbiguityMeasureTargets) -> Result<()> {
         let (&[height, width], HeatmapValues::Scores(values)) = (map.shape(), map.values()) else {
             return Err(Error::invalid_input(format!(
-                "a map of shape {:?} is no map of values [height, width]; give one of scores",
+                "the map has shape {:?}; it must be a map of scores [height, width]",
                 map.shape()
             )));
         };
         if values.is_empty() || values.len() > MOST_PIXELS {
             return Err(Error::invalid_input(format!(
-                "a map of {height}x{width} values; give 1 to {MOST_PIXELS} of them"
+                "the map has {height}x{width} values; it must have 1 to {MOST_PIXELS}"
             )));
         }
         if let Some(at) = values.iter().position(|value| !value.is_finite()) {
             let (row, column) = (at / width, at % width);
             return Err(Error::invalid_input(format!(
-                "the value in row {row}, column {column} is {}; give finite values",
+                "the value in row {row}, column {column} is {}; all values must be finite",
                 values[at]
             )));
         }
@@ -107,15 +107,15 @@ impl Learner for AmbiguityMeasure {
             row.copy_from_slice(&[place[0], place[1], peak.value, (weight(peak) / sum) as f32]);
         }
         // The highest peak is the first, with the weight 1.
-        let doubt = 1.0 - 1.0 / sum;
-        let is_ambiguous = doubt >= threshold && peaks.len() > 1;
-        category_of_two(&mut targets.category, is_ambiguous, doubt as f32, &self.classes);
+        let ambiguity = 1.0 - 1.0 / sum;
+        let is_ambiguous = ambiguity >= threshold && peaks.len() > 1;
+        binary_category(&mut targets.category, is_ambiguous, ambiguity as f32, &self.classes);
         Ok(())
     }
 }
 
 impl AmbiguityMeasure {
-    /// The measure; it needs no model.
+    /// Creates the learner; it needs no model.
     pub fn with_params(params: AmbiguityMeasureParams) -> Self {
         Self { params, classes: ["clear", "ambiguous"].into_iter().collect(), work: Pool::default() }
     }
@@ -146,24 +146,24 @@ mod tests {
         assert_eq!(one.category.class, 0);
         assert_eq!(one.peaks.shape(), [2, 4]);
         let HeatmapValues::Scores(peaks) = one.peaks.values() else { panic!() };
-        // Softmax of 9 and 1, as NumPy has it.
-        for (found, wanted) in peaks.iter().zip([0.0, 0.0, 9.0, 0.999_664_6, 0.0, 2.0, 1.0, 0.000_335_35]) {
-            assert!((found - wanted).abs() < 1e-6, "{peaks:?}");
+        // Softmax of 9 and 1, computed with NumPy.
+        for (found, expected) in peaks.iter().zip([0.0, 0.0, 9.0, 0.999_664_6, 0.0, 2.0, 1.0, 0.000_335_35]) {
+            assert!((found - expected).abs() < 1e-6, "{peaks:?}");
         }
         assert_eq!(measure(&map(&[9.0, 0.0, 1.0]), 0.3, 20.0).unwrap().category.class, 1);
-        // A single peak is certain, even where nothing is asked for.
+        // A single peak is certain at every threshold.
         assert_eq!(measure(&map(&[2.0, 2.0]), 0.0, 1.0).unwrap().category.class, 0);
     }
 
     #[test]
-    fn huge_values_share_as_small_ones_do() {
+    fn huge_values_do_not_overflow() {
         let huge =
             measure(&map(&[f32::MAX, 0.0, f32::MAX, -f32::MAX, f32::MIN_POSITIVE]), 0.5, 1e-6).unwrap();
         assert_eq!(huge.category.probabilities, [0.5, 0.5]);
     }
 
     #[test]
-    fn what_is_no_map_of_values_is_refused() {
+    fn invalid_maps_are_refused() {
         let labels = Heatmap::from_labels(vec![1, 2], &[1, 2]).unwrap();
         let row = Heatmap::from_scores(vec![1.0, 2.0], &[2]).unwrap();
         let empty = Heatmap::from_scores(vec![], &[0, 5]).unwrap();

@@ -1,33 +1,33 @@
-//! Peaks of a map, and how much each stands out.
+//! Peaks of a map and their topological persistence.
 //!
-//! H. Edelsbrunner, D. Letscher, A. Zomorodian, "Topological persistence and simplification", 2002: water falls from the highest
-//! level on; islands rise at peaks, and where two meet, the lower one ends.
+//! H. Edelsbrunner, D. Letscher, A. Zomorodian, "Topological persistence and simplification", 2002: as a level falls from the
+//! highest value, components arise at peaks; where two meet, the component of the lower peak ends.
 
 /// A peak of a map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Peak {
-    /// Its pixel, row by row.
+    /// Index of its pixel, row-major.
     pub at: usize,
-    /// The value there.
+    /// Value of the pixel.
     pub value: f32,
-    /// How far the water falls until its island joins a higher one; for the highest peak, its value.
+    /// Difference between the value and the level at which its component joins a higher one; for the highest peak, its value.
     pub persistence: f32,
 }
 
-/// Finds peaks; memory is used again.
+/// Computes peaks; buffers are reused.
 #[derive(Debug, Default)]
 pub struct Persistence {
     order: Vec<u32>,
-    /// The pixel towards the island's peak; [`UNDER_WATER`] where there is none yet.
+    /// Pixel towards the peak of the component; [`BELOW_LEVEL`] for pixels below the level.
     parents: Vec<u32>,
     ranks: Vec<u32>,
 }
 
-const UNDER_WATER: u32 = u32::MAX;
+const BELOW_LEVEL: u32 = u32::MAX;
 
 impl Persistence {
-    /// Writes all peaks of a map of finite values, `width` a row, the most persistent first. Pixels touch at corners too; of
-    /// equal values the first, row by row, is higher.
+    /// Writes all peaks of a map of finite values, `width` per row, sorted by persistence. Diagonal pixels are neighbours; of
+    /// equal values the first, row-major, is higher.
     pub fn peaks(&mut self, map: &[f32], width: usize, peaks: &mut Vec<Peak>) {
         peaks.clear();
         let Self { order, parents, ranks } = self;
@@ -38,7 +38,7 @@ impl Persistence {
             map[*other as usize].total_cmp(&map[*one as usize]).then(one.cmp(other))
         });
         parents.clear();
-        parents.resize(map.len(), UNDER_WATER);
+        parents.resize(map.len(), BELOW_LEVEL);
         ranks.clear();
         ranks.resize(map.len(), 0);
         for (rank, at) in (0..).zip(order.iter()) {
@@ -50,14 +50,14 @@ impl Persistence {
             for row in y.saturating_sub(1)..(y + 2).min(height) {
                 for column in x.saturating_sub(1)..(x + 2).min(width) {
                     let other = row * width + column;
-                    if other == at || parents[other] == UNDER_WATER {
+                    if other == at || parents[other] == BELOW_LEVEL {
                         continue;
                     }
                     let (mine, theirs) = (top(parents, at), top(parents, other));
                     if mine == theirs {
                         continue;
                     }
-                    // The island that rose later ends here.
+                    // The component of the lower peak ends here.
                     let (low, high) =
                         if ranks[mine] > ranks[theirs] { (mine, theirs) } else { (theirs, mine) };
                     parents[low] = high as u32;
@@ -73,13 +73,13 @@ impl Persistence {
         let rank = |peak: &Peak| ranks[peak.at];
         peaks.sort_by(|one, other| {
             let by_persistence = other.persistence.total_cmp(&one.persistence);
-            // The highest one comes first, even where values are below 0.
+            // The highest peak comes first, even where values are below 0.
             (rank(one) != 0).cmp(&(rank(other) != 0)).then(by_persistence).then(rank(one).cmp(&rank(other)))
         });
     }
 }
 
-/// The peak of a pixel's island, with the way to it made shorter.
+/// Returns the peak of a pixel's component, with path compression.
 fn top(parents: &mut [u32], mut at: usize) -> usize {
     while parents[at] as usize != at {
         parents[at] = parents[parents[at] as usize];
@@ -99,9 +99,9 @@ mod tests {
     }
 
     #[test]
-    fn lower_islands_end_where_they_meet() {
+    fn the_lower_component_ends_at_the_saddle() {
         assert_eq!(peaks(&[1.0, 5.0, 2.0, 4.0, 0.0, 3.0], 6), [(1, 5.0, 5.0), (5, 3.0, 3.0), (3, 4.0, 2.0)]);
-        // Over the corner there is no valley.
+        // Diagonal pixels are connected.
         assert_eq!(peaks(&[5.0, 0.0, 0.0, 4.0], 2), [(0, 5.0, 5.0)]);
         assert_eq!(peaks(&[-3.0, -5.0, -4.0], 3), [(0, -3.0, -3.0), (2, -4.0, 1.0)]);
     }

@@ -1,4 +1,4 @@
-//! Where a gripper can take hold.
+//! Grasp detection.
 
 mod gr_conv_net;
 

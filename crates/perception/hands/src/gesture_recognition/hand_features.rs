@@ -1,14 +1,14 @@
-//! Hands and paths of finger tips as the numbers that gesture networks take.
+//! Input features of gesture networks from hands and paths of finger tips.
 //!
-//! The recipe of the rows of Kazuhito Takahashi's hand-gesture-recognition-using-mediapipe (Apache-2.0).
+//! The features are those of Kazuhito Takahashi's hand-gesture-recognition-using-mediapipe (Apache-2.0).
 
 use opendr_engine::target::Pose;
 
-/// Joints of a hand.
+/// Number of joints of a hand.
 const JOINTS: usize = 21;
 
-/// x and y of each of 21 joints, counted from the wrist, in shares of the longest of these ways: -1..=1, 42 numbers.
-/// `None` where the pose has other joints, one is not finite, or all are one point.
+/// Returns x and y of each of 21 joints relative to the wrist, divided by the largest absolute value: 42 values in -1..=1.
+/// `None` when the pose has another number of joints, one is not finite, or all are one point.
 pub fn features_of_hand(hand: &Pose) -> Option<[f32; 2 * JOINTS]> {
     let points = &hand.keypoints[..];
     if points.len() != JOINTS {
@@ -27,8 +27,8 @@ pub fn features_of_hand(hand: &Pose) -> Option<[f32; 2 * JOINTS]> {
     Some(features)
 }
 
-/// x and y of each point of a path, counted from its first, in shares of the picture's width and height; `out` has two
-/// numbers a point. `false` where there are not as many points, or one is not finite.
+/// Writes x and y of each point of a path relative to its first, divided by the image's width and height, into `out`, which
+/// has two values per point. Returns `false` when the number of points differs, or one is not finite.
 pub fn features_of_path(
     points: impl ExactSizeIterator<Item = [f32; 2]>,
     [width, height]: [usize; 2],
@@ -52,7 +52,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn place_and_size_do_not_matter() {
+    fn features_ignore_position_and_size() {
         let hand = |scale: f32, left: f32| Pose {
             keypoints: (0..JOINTS)
                 .map(|at| Keypoint {
@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn paths_begin_at_nothing() {
+    fn paths_begin_at_zero() {
         let path = [[10.0, 10.0], [20.0, 5.0]];
         let mut out = [1.0; 4];
         assert!(features_of_path(path.into_iter(), [100, 50], &mut out));

@@ -1,4 +1,4 @@
-//! What hands say.
+//! Recognition of hand gestures.
 
 mod hand_features;
 mod hand_gesture;

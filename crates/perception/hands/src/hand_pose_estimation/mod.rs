@@ -1,4 +1,4 @@
-//! Key points of hands in a picture.
+//! Hand pose estimation in images.
 
 mod hand_pose;
 

@@ -1,4 +1,4 @@
-//! What persons feel or say, told by two senses at a time.
+//! Recognition of emotions and gestures from two modalities.
 
 mod audiovisual_emotion;
 mod rgbd_hand_gesture;

@@ -1,4 +1,4 @@
-//! The class and the object of every pixel.
+//! Panoptic segmentation: class and instance of every pixel or point.
 
 mod efficient_lps;
 mod efficient_ps;

@@ -1,4 +1,4 @@
-//! Whether persons have fallen.
+//! Detection of fallen persons.
 
 mod fall_detector;
 mod posture;

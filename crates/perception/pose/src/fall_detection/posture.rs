@@ -1,29 +1,29 @@
-//! Lying or not: a rule on one pose.
+//! Posture of a person: a rule on one pose.
 
 use opendr_engine::target::{Keypoint, Pose};
 
-/// How a person is held, as far as the joints tell.
+/// Posture of a person by its joints.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub enum Posture {
-    /// No two joints that lie above each other in a person who stands are there.
+    /// No two of the joints that the rule compares are detected.
     #[default]
     Unknown,
-    /// On the ground.
+    /// Lying.
     Fallen,
-    /// Standing, sitting, bending.
+    /// Standing, sitting or bending.
     Upright,
 }
 
-/// Degrees from the vertical beyond which a part of the body lies; those of OpenDR's rule.
+/// Angles from the vertical, in degrees, above which a part of the body lies, as in OpenDR's rule.
 const TORSO: f32 = 45.0;
 const THIGHS: f32 = 60.0;
 const CALVES: f32 = 70.0;
 
 impl Posture {
-    /// The posture of a person, by the names of the joints: any skeleton that has shoulders, hips, knees and ankles.
+    /// Returns the posture of a person, by joint names: any skeleton with shoulders, hips, knees and ankles.
     ///
-    /// A person has fallen when the torso lies, where it is seen, and more than half of torso, thighs and calves do.
-    /// Who bends over has a torso that lies on legs that stand; who sits has a torso that stands.
+    /// A person has fallen when the torso lies, if it is visible, and more than half of torso, thighs and calves do. A
+    /// bending person has a lying torso on upright legs; a sitting person has an upright torso.
     pub fn of(pose: &Pose) -> Self {
         let middle = |names: &[&str]| middle_of(pose, names);
         let neck = middle(&["neck"]).or_else(|| middle(&["r_sho", "l_sho"]));
@@ -36,17 +36,17 @@ impl Posture {
         };
         let torso = lies(neck, hips, TORSO);
         let parts = [torso, lies(hips, knees, THIGHS), lies(knees, ankles, CALVES)];
-        let seen = parts.iter().flatten().count();
+        let visible = parts.iter().flatten().count();
         let lying = parts.iter().flatten().filter(|lies| **lies).count();
-        match (seen, torso) {
+        match (visible, torso) {
             (0, _) => Self::Unknown,
             (_, Some(false)) => Self::Upright,
-            _ if 2 * lying > seen => Self::Fallen,
+            _ if 2 * lying > visible => Self::Fallen,
             _ => Self::Upright,
         }
     }
 
-    /// OpenDR's words: nothing can be told, a fall, or none.
+    /// Returns OpenDR's name of the posture.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Unknown => "unknown",
@@ -56,7 +56,7 @@ impl Posture {
     }
 }
 
-/// The mean of the joints that were found.
+/// Returns the mean of the detected joints.
 fn middle_of(pose: &Pose, names: &[&str]) -> Option<[f32; 2]> {
     let found = names.iter().filter_map(|name| pose.keypoint(name)).filter(|joint| is_usable(joint));
     let (sum, count) =
@@ -65,10 +65,10 @@ fn middle_of(pose: &Pose, names: &[&str]) -> Option<[f32; 2]> {
 }
 
 fn is_usable(joint: &Keypoint) -> bool {
-    joint.is_found() && joint.x.is_finite() && joint.y.is_finite()
+    joint.is_detected() && joint.x.is_finite() && joint.y.is_finite()
 }
 
-/// 0 where `lower` is right below `upper`, 180 where it is above; `None` where both are one point.
+/// Returns 0 when `lower` is below `upper`, 180 when it is above; `None` when both are one point.
 fn degrees_from_vertical(upper: [f32; 2], lower: [f32; 2]) -> Option<f32> {
     let (across, down) = (lower[0] - upper[0], lower[1] - upper[1]);
     (across != 0.0 || down != 0.0).then(|| across.abs().atan2(down).to_degrees())
@@ -80,7 +80,7 @@ mod tests {
 
     use super::*;
 
-    /// A person with the joints at the places given.
+    /// Returns a person with the given joints.
     fn person(joints: &[(&str, [f32; 2])]) -> Pose {
         let mut pose = Pose { skeleton: Skeleton::Opendr18, ..Pose::default() };
         pose.keypoints = [Keypoint::MISSING; 18].into();
@@ -128,14 +128,14 @@ mod tests {
         assert_eq!(Posture::of(&person(&sitting)), Posture::Upright);
         assert_eq!(Posture::of(&person(&bending)), Posture::Upright);
         assert_eq!(Posture::of(&person(&on_the_floor)), Posture::Upright);
-        // What is not seen does not count.
+        // Undetected joints do not count.
         assert_eq!(Posture::of(&person(&lying[..2])), Posture::Fallen);
         assert_eq!(Posture::of(&person(&lying[2..])), Posture::Fallen);
         assert_eq!(Posture::of(&person(&standing[1..3])), Posture::Upright);
         assert_eq!(Posture::of(&person(&standing[..1])), Posture::Unknown);
         assert_eq!(Posture::of(&person(&[])), Posture::Unknown);
         assert_eq!(Posture::of(&Pose::default()), Posture::Unknown);
-        // On one's head: nothing hangs as it should.
+        // Upside down.
         let turned = standing.map(|(name, [x, y])| (name, [x, 100.0 - y]));
         assert_eq!(Posture::of(&person(&turned)), Posture::Fallen);
         let broken = [("neck", [f32::NAN, 1.0]), ("r_hip", [2.0, f32::INFINITY]), ("r_knee", [1.0, 1.0])];
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn shoulders_stand_for_a_neck() {
+    fn shoulders_replace_a_neck() {
         let mut pose = Pose { skeleton: Skeleton::Coco17, ..Pose::default() };
         pose.keypoints = vec![Keypoint::MISSING; 17].into();
         let mut put = |name: &str, x: f32, y: f32| {

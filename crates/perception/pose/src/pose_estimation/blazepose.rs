@@ -1,9 +1,9 @@
-//! BlazePose: 33 points of one person, followed from frame to frame.
+//! BlazePose: 33 keypoints of one person, tracked from frame to frame.
 //!
-//! Bazarevsky et al., "BlazePose: On-device Real-time Body Pose Tracking", 2020, Apache-2.0. The network looks at a square
-//! that is turned as the person is; two of its points say where that square is in the next frame. A person who is not
-//! followed yet is looked for in the whole picture, then again in the square that this gave: the person should be the
-//! largest one, and alone. For several persons take MoveNet MultiPose or Lightweight OpenPose.
+//! Bazarevsky et al., "BlazePose: On-device Real-time Body Pose Tracking", 2020, Apache-2.0. The input of the network is a
+//! rotated square around the person; two of its keypoints define the square of the next frame. A person who is not tracked
+//! yet is searched in the whole image, then in the square of that result, so the person should be the largest one, and
+//! alone. For several persons use MoveNet MultiPose or Lightweight OpenPose.
 
 use opendr_engine::data::Image;
 use opendr_engine::learner::{Learner, Spec};
@@ -11,23 +11,23 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Keypoint, Pose, PoseList, Skeleton};
 use opendr_engine::{Device, Error, Result, Task};
-use opendr_perception_common::picture_network::{PictureNetwork, input_of};
-use opendr_perception_common::turned_square::{TurnedSquare, angle_upwards};
+use opendr_perception_common::image_network::{ImageNetwork, preprocess_from_input};
+use opendr_perception_common::rotated_square::{RotatedSquare, angle_upwards};
 use opendr_vision::Border;
 
-/// What a user may set.
+/// Parameters of [`BlazePose`].
 #[derive(Debug, Clone, Params)]
 pub struct BlazePoseParams {
-    /// A person below this score is dropped, and followed no longer.
+    /// Score below which the person is dropped and not tracked further.
     #[param(default = 0.5, range = 0.0..=1.0, live)]
     pub threshold: f32,
-    /// Points that are visible with less than this probability are missing.
+    /// Probability of visibility below which keypoints are missing.
     #[param(default = 0.1, range = 0.0..=1.0, live)]
     pub keypoint_threshold: f32,
-    /// How often a person who is not followed yet is looked at: each look starts from where the one before saw the person.
-    #[param(default = 2, range = 1..=4, live)]
-    pub looks: usize,
-    /// Whether the person is followed from frame to frame. Switch it off for single pictures.
+    /// Number of passes for a person who is not tracked yet; each pass starts from the square of the previous one.
+    #[param(default = 2, range = 1..=4, live, former = "looks")]
+    pub passes: usize,
+    /// Whether the person is tracked from frame to frame; switch it off for single images.
     #[param(default = true, live)]
     pub track: bool,
 }
@@ -35,34 +35,34 @@ pub struct BlazePoseParams {
 /// A loaded BlazePose.
 pub struct BlazePose {
     params: BlazePoseParams,
-    network: PictureNetwork,
+    network: ImageNetwork,
     side: usize,
     outputs: [usize; 2],
 }
 
-/// What a stream remembers: where the person was.
+/// State of a stream: the last square of the person.
 #[derive(Default)]
 pub struct BlazePoseState {
     size: [usize; 2],
-    square: Option<TurnedSquare>,
+    square: Option<RotatedSquare>,
 }
 
-/// Outputs: 39 points, each x, y, z, visibility and presence; the score of the person.
+/// Names of the outputs: 39 points, each x, y, z, visibility and presence; the score of the person.
 const OUTPUTS: [&str; 2] = ["Identity", "Identity_1"];
 const POINT: usize = 5;
-/// The points of the skeleton, and how many come with those that say where the person is.
+/// Number of keypoints of the skeleton, and number of all points with those that define the square.
 const JOINTS: usize = 33;
 const POINTS: usize = 39;
-/// The middle of the hips, and a point on the circle around the person, above it.
+/// Indices of the centre of the hips, and of a point above it on the circle around the person.
 const HIPS: usize = 33;
 const ABOVE: usize = 34;
-/// The square's side in diameters of that circle (MediaPipe).
+/// Side of the square in diameters of that circle (MediaPipe).
 const ROOM: f32 = 1.25;
 
 impl Learner for BlazePose {
     const SPEC: Spec = Spec::new("blazepose", Task::PoseEstimation)
         .class("BlazePoseLearner")
-        .about("BlazePose finds 33 points of one person and follows them; hands, feet and face among them.");
+        .about("BlazePose detects and tracks 33 keypoints of one person, including hands, feet and face.");
     type Params = BlazePoseParams;
     type Input<'a> = &'a Image;
     type Target = PoseList;
@@ -70,13 +70,16 @@ impl Learner for BlazePose {
 
     fn load(model: &Model, params: BlazePoseParams, device: Device) -> Result<Self> {
         let mut side = 0;
-        let network = PictureNetwork::open_file(model, "model.onnx", device, |input| {
-            let preprocess = input_of(input)?.border(Border::Level(0.0)).normalise([0.0; 3], [255.0; 3]);
+        let network = ImageNetwork::open_file(model, "model.onnx", device, |input| {
+            let preprocess =
+                preprocess_from_input(input)?.border(Border::Constant(0.0)).normalise([0.0; 3], [255.0; 3]);
             let [width, height] = preprocess.size();
             side = width;
             match width == height {
                 true => Ok(preprocess),
-                false => Err(Error::format(format!("BlazePose takes square pictures, not {width}x{height}"))),
+                false => Err(Error::format(format!(
+                    "the network's input is {width}x{height}; BlazePose needs a square one"
+                ))),
             }
         })?;
         let [points, score] = OUTPUTS;
@@ -97,11 +100,11 @@ impl Learner for BlazePose {
         let known = state.square.take().filter(|_| self.params.track && state.size == size);
         state.size = size;
         poses.poses.resize_with(1, Pose::default);
-        let looks = if known.is_some() { 1 } else { self.params.looks };
+        let looks = if known.is_some() { 1 } else { self.params.passes };
         let mut square = Some(known.unwrap_or_else(|| whole(size)));
         for _ in 0..looks {
             let Some(at) = square.filter(|square| square.is_in(size)) else { break };
-            square = self.look(image, &at, &mut poses.poses[0])?;
+            square = self.predict(image, &at, &mut poses.poses[0])?;
             if square.is_none() {
                 break;
             }
@@ -116,8 +119,13 @@ impl Learner for BlazePose {
 }
 
 impl BlazePose {
-    /// Writes the person in a square into `pose`, and tells where to look next; `None` where nobody is.
-    fn look(&self, image: &Image, square: &TurnedSquare, pose: &mut Pose) -> Result<Option<TurnedSquare>> {
+    /// Writes the person in a square into `pose` and returns the next square; `None` without a person.
+    fn predict(
+        &self,
+        image: &Image,
+        square: &RotatedSquare,
+        pose: &mut Pose,
+    ) -> Result<Option<RotatedSquare>> {
         let crop = square.crop(self.side);
         let mut next = None;
         self.network.run_crop(image, &crop, |outputs| {
@@ -125,7 +133,7 @@ impl BlazePose {
             let (points, score) = (points?, score?);
             let (true, &[score]) = (points.len() == POINTS * POINT, score) else {
                 return Err(Error::format(format!(
-                    "BlazePose answers {} numbers and a score, not {} and {}",
+                    "BlazePose needs outputs of {} values and 1 score, not {} and {}",
                     POINTS * POINT,
                     points.len(),
                     score.len()
@@ -151,7 +159,7 @@ impl BlazePose {
             (pose.id, pose.region) = (None, None);
             let [hips, above] = [HIPS, ABOVE].map(place);
             let radius = (above[0] - hips[0]).hypot(above[1] - hips[1]);
-            next = Some(TurnedSquare {
+            next = Some(RotatedSquare {
                 centre: hips,
                 side: 2.0 * radius * ROOM,
                 angle: angle_upwards(hips, above),
@@ -162,10 +170,10 @@ impl BlazePose {
     }
 }
 
-/// The whole picture, upright.
-fn whole([width, height]: [usize; 2]) -> TurnedSquare {
+/// Returns the whole image, upright.
+fn whole([width, height]: [usize; 2]) -> RotatedSquare {
     let [width, height] = [width as f32, height as f32];
-    TurnedSquare { centre: [width / 2.0, height / 2.0], side: width.max(height), angle: 0.0 }
+    RotatedSquare { centre: [width / 2.0, height / 2.0], side: width.max(height), angle: 0.0 }
 }
 
 #[cfg(test)]
@@ -178,7 +186,7 @@ mod tests {
 
     use super::*;
 
-    /// BlazePose's number of each of COCO's 17 joints.
+    /// BlazePose's indices of COCO's 17 joints.
     const COCO: [usize; 17] = [0, 2, 5, 7, 8, 11, 12, 13, 14, 15, 16, 23, 24, 25, 26, 27, 28];
 
     fn handle(shared: &std::path::Path) -> Handle<BlazePose> {

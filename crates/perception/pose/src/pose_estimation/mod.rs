@@ -1,4 +1,4 @@
-//! Key points of persons in a picture.
+//! Human pose estimation in images.
 
 mod blazepose;
 mod high_resolution_pose_estimation;
@@ -22,13 +22,13 @@ use opendr_engine::target::{Keypoint, Pose, Skeleton};
 pub(crate) use pose_tracks::PoseTracks;
 pub use posenet::{Posenet, PosenetParams};
 
-/// COCO's number of each of OpenDR's 18 joints; the neck (1) is made of the shoulders.
+/// COCO's index of each of OpenDR's 18 joints; the neck (1) is derived from the shoulders.
 const COCO_FROM_OPENDR: [usize; 18] = [0, usize::MAX, 6, 8, 10, 5, 7, 9, 12, 14, 16, 11, 13, 15, 2, 1, 4, 3];
 const NECK: usize = 1;
 const SHOULDERS: [usize; 2] = [5, 6];
 
-/// Writes COCO's 17 joints into OpenDR's 18. Joints below `threshold` are missing; the neck is the middle of the
-/// shoulders with the lower of their scores.
+/// Converts COCO's 17 joints to OpenDR's 18. Joints below `threshold` are missing; the neck is the middle of the shoulders
+/// with the lower of their scores.
 pub(crate) fn opendr_from_coco(pose: &mut Pose, joints: &[Keypoint; 17], threshold: f32) {
     pose.skeleton = Skeleton::Opendr18;
     pose.keypoints.clear();
@@ -68,7 +68,7 @@ mod tests {
         let mut pose = Pose::default();
         opendr_from_coco(&mut pose, &joints, 0.45);
         assert_eq!(pose.keypoints.len(), 18);
-        assert!(!pose.keypoints[NECK].is_found());
+        assert!(!pose.keypoints[NECK].is_detected());
         opendr_from_coco(&mut pose, &joints, 0.3);
         assert_eq!(pose.keypoints[NECK], Keypoint { x: 15.0, y: 21.0, confidence: 0.4 });
     }

@@ -1,6 +1,7 @@
-//! MoveNet: fast key points of one person (Lightning) or of up to six (MultiPose).
+//! MoveNet: fast keypoints of one person (Lightning) or of up to six (MultiPose).
 //!
-//! Votel and Li, Google, 2021, Apache-2.0. Lightning expects the person to fill the picture: crop, or take MultiPose.
+//! Votel and Li, Google, 2021, Apache-2.0. Lightning expects a person who fills the image: crop the image, or use
+//! MultiPose.
 
 use std::array;
 
@@ -10,21 +11,21 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Keypoint, Pose, PoseList};
 use opendr_engine::{Device, Error, Result, Task};
-use opendr_perception_common::picture_network::PictureNetwork;
-use opendr_vision::{Anchor, InputGeometry, Preprocess};
+use opendr_perception_common::image_network::ImageNetwork;
+use opendr_vision::{InputGeometry, LetterboxAlign, Preprocess};
 
 use crate::pose_estimation::opendr_from_coco;
 
-/// What a user may set.
+/// Parameters of [`Movenet`].
 #[derive(Debug, Clone, Params)]
 pub struct MovenetParams {
-    /// Persons below this score are dropped.
+    /// Score below which persons are dropped.
     #[param(default = 0.2, range = 0.0..=1.0, live)]
     pub threshold: f32,
-    /// Joints below this score are missing.
+    /// Score below which joints are missing.
     #[param(default = 0.1, range = 0.0..=1.0, live)]
     pub keypoint_threshold: f32,
-    /// Longer side of the input of MultiPose; a multiple of 32. Larger finds smaller persons.
+    /// Longer side of the input of MultiPose; a multiple of 32. Larger values detect smaller persons.
     #[param(default = 256, range = 128..=1024, unit = "px")]
     pub size: usize,
 }
@@ -32,28 +33,28 @@ pub struct MovenetParams {
 /// A loaded MoveNet.
 pub struct Movenet {
     params: MovenetParams,
-    network: PictureNetwork,
+    network: ImageNetwork,
     heads: Heads,
     side: usize,
 }
 
-/// How a network lays out its persons.
+/// Layout of the network's output.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Heads {
-    /// `[1, 1, 17, 3]`: y, x, score.
+    /// One person, `[1, 1, 17, 3]`: y, x, score.
     One,
-    /// `[1, 6, 56]`: 17 times y, x, score; then the box and the score of the person.
+    /// Six persons, `[1, 6, 56]`: 17 times y, x, score; then the box and the score of the person.
     Six,
 }
 
-/// Numbers of one person.
+/// Number of values per person.
 const ONE: usize = 17 * 3;
 const SIX: usize = ONE + 5;
 
 impl Learner for Movenet {
     const SPEC: Spec = Spec::new("movenet", Task::PoseEstimation)
         .class("MovenetLearner")
-        .about("MoveNet finds 18 joints of one person (lightning) or of up to six (multipose).");
+        .about("MoveNet detects 18 joints of one person (lightning) or of up to six (multipose).");
     type Params = MovenetParams;
     type Input<'a> = &'a Image;
     type Target = PoseList;
@@ -61,9 +62,9 @@ impl Learner for Movenet {
 
     fn load(model: &Model, mut params: MovenetParams, device: Device) -> Result<Self> {
         let mut side = params.size.next_multiple_of(32);
-        let network = PictureNetwork::open(model, device, |input| {
+        let network = ImageNetwork::open(model, device, |input| {
             side = input.dims.get(2).copied().flatten().unwrap_or(side);
-            Preprocess::new(side, side).letterbox(Anchor::Centre, 0.0)
+            Preprocess::new(side, side).letterbox(LetterboxAlign::Centre, 0.0)
         })?;
         params.size = side;
         let last = network.outputs().first().and_then(|output| *output.dims.last()?);
@@ -72,7 +73,7 @@ impl Learner for Movenet {
             Some(SIX) => Heads::Six,
             last => {
                 return Err(Error::format(format!(
-                    "a MoveNet answers rows of 3 or {SIX} numbers, not {last:?}"
+                    "the output of a MoveNet needs rows of 3 or {SIX} values, not {last:?}; load another model"
                 )));
             }
         };
@@ -93,7 +94,7 @@ impl Learner for Movenet {
 }
 
 impl Movenet {
-    /// As [`Learner::infer_into`], by thresholds that are not this learner's own.
+    /// As [`Learner::infer_into`], with other thresholds than the learner's own.
     pub(crate) fn find_with(
         &self,
         params: &MovenetParams,

@@ -1,36 +1,36 @@
-//! The 1 EUR filter: still where a signal rests, quick where it moves.
+//! The 1 EUR filter: an adaptive low-pass filter, strong at rest and weak in motion.
 //!
 //! Casiez, Roussel and Vogel, "1 EUR Filter: A Simple Speed-based Low-pass Filter for Noisy Input in Interactive
 //! Systems", CHI 2012.
 
 use std::f32::consts::TAU;
 
-/// How a signal is smoothed.
+/// Parameters of the filter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct OneEuro {
-    /// Cut-off frequency at rest, hertz: lower jitters less.
+    /// Cut-off frequency at rest, in hertz; lower values reduce jitter.
     pub(crate) min_cutoff: f32,
-    /// Hertz more per unit a second: higher lags less.
+    /// Increase of the cut-off frequency per speed, in hertz; higher values reduce lag.
     pub(crate) beta: f32,
-    /// Cut-off frequency of the speed, hertz.
+    /// Cut-off frequency of the speed, in hertz.
     pub(crate) speed_cutoff: f32,
 }
 
-/// A signal so far.
+/// State of a filtered signal.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Smoothed {
     value: f32,
-    /// Units a second.
+    /// Units per second.
     speed: f32,
 }
 
 impl Smoothed {
-    /// A signal that begins.
+    /// Starts a signal.
     pub(crate) fn new(value: f32) -> Self {
         Self { value, speed: 0.0 }
     }
 
-    /// The next value, `seconds` after the last; returned smoothed. A unit of speed is `unit` of the signal a second.
+    /// Returns the next value, `seconds` after the last one, filtered. A unit of speed is `unit` of the signal per second.
     pub(crate) fn next(&mut self, filter: &OneEuro, value: f32, seconds: f32, unit: f32) -> f32 {
         let speed = (value - self.value) / (seconds * unit);
         self.speed += weight(filter.speed_cutoff, seconds) * (speed - self.speed);
@@ -40,7 +40,7 @@ impl Smoothed {
     }
 }
 
-/// The weight of a new value in a low-pass filter (Eq. 4 and 5).
+/// Returns the weight of a new value in a low-pass filter (Eq. 4 and 5).
 fn weight(cutoff: f32, seconds: f32) -> f32 {
     let part = TAU * cutoff * seconds;
     part / (part + 1.0)
@@ -54,7 +54,7 @@ mod tests {
     const SECONDS: f32 = 1.0 / 30.0;
 
     #[test]
-    fn jitter_is_calmed_and_steps_are_followed() {
+    fn jitter_is_reduced_and_motion_has_little_lag() {
         let mut signal = Smoothed::new(100.0);
         let jitter: Vec<f32> = (0..60)
             .map(|at| signal.next(&FILTER, 100.0 + if at % 2 == 0 { 1.0 } else { -1.0 }, SECONDS, 50.0))

@@ -1,7 +1,7 @@
-//! Who is who from frame to frame, and smoothed joints: what a stream of poses remembers.
+//! Identities of persons over frames, and smoothed joints.
 //!
-//! As Osokin's `propagate_ids`: a pose takes the identity of the most similar one before. Similarity is COCO's object
-//! key point similarity, speeds are measured in sizes of the person, and a person may be away for a few frames.
+//! As Osokin's `propagate_ids`: a pose gets the identity of the most similar previous one. Similarity is COCO's object
+//! keypoint similarity, speeds are relative to the size of the person, and a person may be undetected for a few frames.
 
 use opendr_engine::Header;
 use opendr_engine::target::{Keypoint, Pose};
@@ -17,9 +17,9 @@ const FALLOFFS: [f32; JOINTS] = [
     0.05, 0.07, 0.07,
 ];
 
-/// Poses less similar than this are not the same person.
+/// Minimum similarity of poses of one person.
 const MIN_SIMILARITY: f32 = 0.2;
-/// Frames after which a person that is away is forgotten.
+/// Number of frames without a detection after which a person is dropped.
 const PATIENCE: u32 = 10;
 
 const FILTER: OneEuro = OneEuro { min_cutoff: 2.0, beta: 6.0, speed_cutoff: 1.0 };
@@ -39,14 +39,14 @@ struct Track {
     id: i64,
     joints: [Keypoint; JOINTS],
     smoothed: [Option<[Smoothed; 2]>; JOINTS],
-    /// Frames since the person was seen.
+    /// Frames since the last detection.
     away: u32,
-    /// Whether a pose of this frame is this person.
+    /// Whether a pose of this frame is assigned to the track.
     is_taken: bool,
 }
 
 impl PoseTracks {
-    /// Gives every pose of a frame its identity and, if `smooth`, calms its joints.
+    /// Assigns an identity to every pose of a frame and, if `smooth`, smooths its joints.
     pub(crate) fn update(&mut self, header: &Header, poses: &mut [Pose], smooth: bool) {
         let seconds = self.clock.seconds_to(header);
         self.tracks.iter_mut().for_each(|track| (track.is_taken, track.away) = (false, track.away + 1));
@@ -68,7 +68,7 @@ impl PoseTracks {
         }
     }
 
-    /// All pairs that may be the same person, the most similar first.
+    /// Lists all pairs above the minimum similarity, the most similar first.
     fn pair(&mut self, poses: &[Pose]) {
         let Self { tracks, pairs, .. } = self;
         pairs.clear();
@@ -88,7 +88,7 @@ impl Track {
         Self { id, joints, smoothed: [None; JOINTS], away: 0, is_taken: false }
     }
 
-    /// Takes over a pose of this frame.
+    /// Updates the track with a pose of this frame.
     fn follow(&mut self, pose: &mut Pose, seconds: f32, smooth: bool) {
         pose.id = Some(self.id);
         for (kept, joint) in self.joints.iter_mut().zip(&pose.keypoints) {
@@ -106,7 +106,7 @@ impl Track {
         let unit = size(&self.joints).unwrap_or(1.0).max(1.0);
         let seconds = seconds * self.away.max(1) as f32;
         for (smoothed, joint) in self.smoothed.iter_mut().zip(&mut pose.keypoints) {
-            if !joint.is_found() {
+            if !joint.is_detected() {
                 *smoothed = None;
                 continue;
             }
@@ -121,9 +121,9 @@ impl Track {
     }
 }
 
-/// The root of the area of the box around the joints that were found, pixels.
+/// Returns the square root of the area of the box around the detected joints, in pixels.
 fn size(joints: &[Keypoint]) -> Option<f32> {
-    let mut found = joints.iter().filter(|joint| joint.is_found());
+    let mut found = joints.iter().filter(|joint| joint.is_detected());
     let first = found.next()?;
     let [x0, y0, x1, y1] = found.fold([first.x, first.y, first.x, first.y], |[x0, y0, x1, y1], joint| {
         [x0.min(joint.x), y0.min(joint.y), x1.max(joint.x), y1.max(joint.y)]
@@ -131,14 +131,14 @@ fn size(joints: &[Keypoint]) -> Option<f32> {
     Some(((x1 - x0) * (y1 - y0)).max(0.0).sqrt())
 }
 
-/// COCO's object key point similarity over the joints that both have, those that only one has counting as 0; `None`
-/// where they share none.
+/// Returns COCO's object keypoint similarity over the joints that both have; those that only one has count as 0. `None`
+/// without common joints.
 fn similarity(a: &[Keypoint], b: &[Keypoint]) -> Option<f32> {
     let size = size(a)?.max(size(b)?).max(1.0);
     let (mut sum, mut shared, mut either) = (0.0, 0, 0);
     for ((a, b), falloff) in a.iter().zip(b).zip(FALLOFFS) {
-        either += usize::from(a.is_found() || b.is_found());
-        if a.is_found() && b.is_found() {
+        either += usize::from(a.is_detected() || b.is_detected());
+        if a.is_detected() && b.is_detected() {
             let squares = (a.x - b.x).powi(2) + (a.y - b.y).powi(2);
             sum += (-squares / (2.0 * (size * falloff).powi(2))).exp();
             shared += 1;
@@ -171,7 +171,7 @@ mod tests {
         assert_eq!(ids(&mut tracks, &mut [pose(100.0), pose(300.0)]), [0, 1]);
         assert_eq!(ids(&mut tracks, &mut [pose(305.0), pose(104.0)]), [1, 0]);
         assert_eq!(ids(&mut tracks, &mut [pose(900.0), pose(108.0)]), [2, 0]);
-        // The second was away for a frame.
+        // The second was undetected for a frame.
         assert_eq!(ids(&mut tracks, &mut [pose(108.0), pose(306.0)]), [0, 1]);
         (0..=PATIENCE).for_each(|_| drop(ids(&mut tracks, &mut [])));
         assert_eq!(ids(&mut tracks, &mut [pose(108.0)]), [3]);
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn jitter_is_calmed_by_stamps_or_without() {
+    fn jitter_is_reduced_with_stamps_and_without() {
         for stamps in [true, false] {
             let (mut tracks, mut largest) = (PoseTracks::default(), 0.0f32);
             for frame in 0..40i64 {
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn stamps_that_go_back_do_no_harm() {
+    fn decreasing_stamps_give_finite_joints() {
         let mut tracks = PoseTracks::default();
         for stamp in [5, 5, i64::MIN, i64::MAX, 0] {
             let mut poses = [pose(200.0)];

@@ -1,7 +1,7 @@
-//! PoseNet: any number of persons by heat maps and part displacements.
+//! PoseNet: poses of several persons by heatmaps and part displacements.
 //!
-//! Papandreou et al., PersonLab, ECCV 2018; MobileNetV1, Google, Apache-2.0. The simplest graph of all (convolutions
-//! only), so it runs everywhere; MoveNet is more precise for few persons.
+//! Papandreou et al., PersonLab, ECCV 2018; MobileNetV1, Google, Apache-2.0. Its graph has convolutions only, so it runs
+//! with any runtime; MoveNet is more precise for few persons.
 
 use opendr_engine::data::Image;
 use opendr_engine::learner::{Learner, Spec};
@@ -10,28 +10,28 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Keypoint, Pose, PoseList};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::TensorView;
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_perception_common::part_tree::{PartMaps, PartTree, Peak, Person};
-use opendr_perception_common::picture_network::PictureNetwork;
-use opendr_vision::{Anchor, InputGeometry, Preprocess};
+use opendr_vision::{InputGeometry, LetterboxAlign, Preprocess};
 
 use crate::pose_estimation::opendr_from_coco;
 
-/// What a user may set.
+/// Parameters of [`Posenet`].
 #[derive(Debug, Clone, Params)]
 pub struct PosenetParams {
-    /// Persons below this score are dropped.
+    /// Score below which persons are dropped.
     #[param(default = 0.25, range = 0.0..=1.0, live)]
     pub threshold: f32,
-    /// Joints below this score are missing.
+    /// Score below which joints are missing.
     #[param(default = 0.1, range = 0.0..=1.0, live)]
     pub keypoint_threshold: f32,
-    /// Joints below this score start no person.
+    /// Score below which joints start no person.
     #[param(default = 0.5, range = 0.01..=0.99, live)]
     pub peak_threshold: f32,
-    /// Joints of one kind nearer than this belong to one person, in pixels of the network's input.
+    /// Distance below which joints of one kind belong to one person, in pixels of the network's input.
     #[param(default = 20.0, range = 0.0..=200.0, unit = "px", live)]
     pub nms_radius: f32,
-    /// At most this many persons a picture.
+    /// Maximum number of persons per image.
     #[param(default = 20, range = 1..=100, live)]
     pub max_detections: usize,
 }
@@ -39,7 +39,7 @@ pub struct PosenetParams {
 /// A loaded PoseNet.
 pub struct Posenet {
     params: PosenetParams,
-    network: PictureNetwork,
+    network: ImageNetwork,
     heatmap: usize,
     offsets: usize,
     forward: usize,
@@ -53,22 +53,24 @@ struct Scratch {
     persons: Vec<Person>,
 }
 
-/// Side of the network's input and the distance of its cells, pixels.
+/// Side of the network's input and stride of its cells, in pixels.
 const SIDE: usize = 385;
 const STRIDE: f32 = 16.0;
 
 impl Learner for Posenet {
     const SPEC: Spec = Spec::new("posenet", Task::PoseEstimation)
         .class("PosenetLearner")
-        .about("PoseNet finds 18 joints of any number of persons; convolutions only.");
+        .about("PoseNet detects 18 joints of several persons; convolutions only.");
     type Params = PosenetParams;
     type Input<'a> = &'a Image;
     type Target = PoseList;
     type State = ();
 
     fn load(model: &Model, params: PosenetParams, device: Device) -> Result<Self> {
-        let network = PictureNetwork::open(model, device, |_| {
-            Preprocess::new(SIDE, SIDE).letterbox(Anchor::Centre, 0.0).normalise([127.5; 3], [127.5; 3])
+        let network = ImageNetwork::open(model, device, |_| {
+            Preprocess::new(SIDE, SIDE)
+                .letterbox(LetterboxAlign::Centre, 0.0)
+                .normalise([127.5; 3], [127.5; 3])
         })?;
         let output = |name: &str| network.output(&format!("MobilenetV1/{name}_2/BiasAdd"));
         Ok(Self {
@@ -93,7 +95,7 @@ impl Learner for Posenet {
     fn infer_into(&self, _: &mut (), image: &Image, poses: &mut PoseList) -> Result<()> {
         let Scratch { peaks, persons } = &mut *self.scratch.take();
         let PosenetParams { peak_threshold, nms_radius, max_detections, .. } = self.params;
-        let tree = PartTree { peak_threshold, radius: nms_radius, most: max_detections };
+        let tree = PartTree { peak_threshold, radius: nms_radius, max_persons: max_detections };
         poses.poses.clear();
         self.network.run(image, |outputs, geometry| {
             tree.decode(&self.maps(outputs)?, peaks, persons);
@@ -110,14 +112,15 @@ impl Posenet {
         let [1, 17, rows, columns] = *outputs[self.heatmap].shape() else {
             let shape = outputs[self.heatmap].shape();
             return Err(Error::format(format!(
-                "a PoseNet's heat maps are [1, 17, rows, columns], not {shape:?}"
+                "the heatmaps need the shape [1, 17, rows, columns], not {shape:?}; load another model"
             )));
         };
         let values = |output: usize, channels: usize| match outputs[output].values::<f32>() {
             Ok(values) if values.len() == rows * columns * channels => Ok(values),
-            Ok(values) => {
-                Err(Error::format(format!("an output has {} numbers for {channels} maps", values.len())))
-            }
+            Ok(values) => Err(Error::format(format!(
+                "an output has {} values, which is not {channels} maps; load another model",
+                values.len()
+            ))),
             Err(error) => Err(error),
         };
         Ok(PartMaps {

@@ -1,4 +1,4 @@
-//! Where a large picture shows what is looked for, and where not.
+//! Binary classification of the patches of a large image.
 
 mod high_resolution_patches;
 

@@ -1,4 +1,4 @@
-//! The pixels of each object in a picture.
+//! Instance segmentation.
 
 mod bodypix;
 mod owner_map;

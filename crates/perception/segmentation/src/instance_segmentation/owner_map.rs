@@ -1,9 +1,9 @@
-//! Which object each pixel of a picture belongs to, and boxes with masks of it.
+//! Map from pixels to objects, and its boxes with masks.
 
 use opendr_engine::target::{BoundingBox, Name, Rle, Segment, Segmentation};
 use opendr_engine::{Error, Result};
 
-/// The number of an object for each pixel, 0 being none; memory is used again.
+/// Index of the object of each pixel, 0 for none; buffers are reused.
 #[derive(Debug, Clone, Default)]
 pub struct OwnerMap {
     size: [usize; 2],
@@ -11,7 +11,7 @@ pub struct OwnerMap {
     extents: Vec<Extent>,
 }
 
-/// What the pixels of an object span.
+/// Extent of the pixels of an object.
 #[derive(Debug, Clone, Copy)]
 struct Extent {
     left: usize,
@@ -22,7 +22,7 @@ struct Extent {
 }
 
 impl OwnerMap {
-    /// A map of `[width, height]` pixels of which `fill_row` fills a row of zeros, given its number.
+    /// Resets the map to `[width, height]` pixels; `fill_row` fills a row of zeros, given its index.
     pub fn fill(&mut self, size @ [width, height]: [usize; 2], mut fill_row: impl FnMut(usize, &mut [u8])) {
         self.size = size;
         let nothing = Extent { left: width, top: height, right: 0, bottom: 0, pixels: 0 };
@@ -45,22 +45,22 @@ impl OwnerMap {
         }
     }
 
-    /// The objects' numbers, row by row.
+    /// Returns the object indices, row by row.
     pub fn owners(&self) -> &[u8] {
         &self.owners
     }
 
-    /// `[left, top, right, bottom]` around the pixels of an object; `None` when it has no pixel.
+    /// Returns `[left, top, right, bottom]` of the pixels of an object; `None` when it has no pixel.
     pub fn corners(&self, object: u8) -> Option<[f32; 4]> {
         let extent = self.extents.get(usize::from(object)).filter(|extent| extent.pixels > 0)?;
         let Extent { left, top, right, bottom, .. } = *extent;
         Some([left, top, right + 1, bottom + 1].map(|edge| edge as f32))
     }
 
-    /// The box around the pixels of an object, with their mask; `None` when it has no pixel.
+    /// Returns the bounding box of an object with its mask; `None` when it has no pixel.
     ///
     /// # Errors
-    /// `InvalidInput` for a picture whose sides are above 2^32 pixels.
+    /// `InvalidInput` for an image with a side above 2^32 pixels.
     pub fn bounding_box(&self, object: u8, name: Name, confidence: f32) -> Result<Option<BoundingBox>> {
         let (Some(corners), Some(extent)) = (self.corners(object), self.extents.get(usize::from(object)))
         else {
@@ -83,7 +83,7 @@ impl OwnerMap {
                     let at = x * height + y;
                     inside = is_object;
                     match counts.pop_if(|_| is_object && at == begun) {
-                        // From the foot of a column to the head of the next.
+                        // The run continues from the bottom of a column to the top of the next.
                         Some(run) => begun -= run as usize,
                         None => {
                             counts.push((at - begun) as u32);
@@ -96,8 +96,11 @@ impl OwnerMap {
         if begun < width * height {
             counts.push((width * height - begun) as u32);
         }
-        let side =
-            |side: usize| u32::try_from(side).map_err(|_| Error::invalid_input("the picture is too large"));
+        let side = |side: usize| {
+            u32::try_from(side).map_err(|_| {
+                Error::invalid_input("the image is too large; its sides must be below 2^32 pixels")
+            })
+        };
         Rle::new(side(height)?, side(width)?, counts)
     }
 }
@@ -107,7 +110,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn masks_are_those_of_the_pixels() {
+    fn masks_contain_the_pixels_of_their_object() {
         let picture = ["..11", "2.11", "2..1", "2..."];
         let pixels: Vec<u8> =
             picture.concat().bytes().map(|byte| if byte == b'.' { 0 } else { byte - b'0' }).collect();

@@ -1,8 +1,8 @@
-//! DeepLab v3 on MobileNets: the class of every pixel.
+//! DeepLab v3 on MobileNets: semantic segmentation.
 //!
-//! Chen, Papandreou, Schroff and Adam, Rethinking Atrous Convolution for Semantic Image Segmentation, 2017
-//! (arXiv 1706.05587). The network looks at the picture stretched to its own square and answers the number of a class
-//! for each of its pixels; pixels of the picture take that of the nearest.
+//! Chen, Papandreou, Schroff and Adam, Rethinking Atrous Convolution for Semantic Image Segmentation, 2017 (arXiv 1706.05587).
+//! The image is stretched to the network's square input; the network returns a class index for each of its pixels, and the map
+//! is resized by nearest neighbour.
 
 use opendr_engine::data::Image;
 use opendr_engine::learner::{Learner, Spec};
@@ -11,15 +11,15 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Classes, Heatmap};
 use opendr_engine::{Device, Error, Result, Task};
 use opendr_inference::TensorView;
-use opendr_perception_common::described_input::described_input;
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
+use opendr_perception_common::manifest_preprocess::preprocess_from_manifest;
 
 use super::nearest;
 
-/// What a user may set.
+/// Parameters of [`Deeplab`].
 #[derive(Debug, Clone, Params)]
 pub struct DeeplabParams {
-    /// Whether the map has the size of the picture; else it has the network's.
+    /// Whether the map has the size of the image; else it has the network's.
     #[param(default = true, live)]
     pub full_size: bool,
 }
@@ -28,27 +28,27 @@ pub struct DeeplabParams {
 pub struct Deeplab {
     params: DeeplabParams,
     classes: Classes,
-    network: PictureNetwork,
-    /// Of the network's map.
+    network: ImageNetwork,
+    /// Size of the network's map.
     width: usize,
     height: usize,
 }
 
-/// Levels 0..=255 become -1..1 where a model says nothing else.
-const USUAL: f32 = 127.5;
+/// Default divisor, which maps levels 0..=255 to -1..1.
+const DEFAULT_LEVEL: f32 = 127.5;
 
 impl Learner for Deeplab {
     const SPEC: Spec = Spec::new("deeplab", Task::SemanticSegmentation)
         .class("DeeplabLearner")
-        .about("DeepLab v3 tells the class of every pixel, in 8 bits.");
+        .about("DeepLab v3 predicts the class of every pixel, in INT8.");
     type Params = DeeplabParams;
     type Input<'a> = &'a Image;
     type Target = Heatmap;
     type State = ();
 
     fn load(model: &Model, params: DeeplabParams, device: Device) -> Result<Self> {
-        let network = PictureNetwork::open_file(model, "model.onnx", device, |input| {
-            described_input(model, input, USUAL)
+        let network = ImageNetwork::open_file(model, "model.onnx", device, |input| {
+            preprocess_from_manifest(model, input, DEFAULT_LEVEL)
         })?;
         let [map] = network.outputs() else {
             let count = network.outputs().len();
@@ -57,7 +57,9 @@ impl Learner for Deeplab {
             )));
         };
         let &[Some(1), Some(height), Some(width)] = &map.dims[..] else {
-            return Err(Error::format(format!("{map} is no map of classes [1, height, width]")));
+            return Err(Error::format(format!(
+                "the output {map} is not a map of classes [1, height, width]"
+            )));
         };
         Ok(Self { params, classes: model.classes().clone(), network, width, height })
     }
@@ -85,14 +87,17 @@ impl Learner for Deeplab {
             let classes = outputs.first().map_or(Ok(&[][..]), TensorView::values::<i64>)?;
             if classes.len() != self.width * self.height || width == 0 || height == 0 {
                 let (count, wanted) = (classes.len(), self.width * self.height);
-                return Err(Error::format(format!("a map of {count} classes instead of {wanted}")));
+                return Err(Error::format(format!(
+                    "the network returns {count} classes instead of {wanted}"
+                )));
             }
             for (y, row) in labels.chunks_exact_mut(width).enumerate() {
                 let from = nearest(y, height, self.height) * self.width;
                 for (x, label) in row.iter_mut().enumerate() {
                     let class = classes[from + nearest(x, width, self.width)];
-                    *label = u32::try_from(class)
-                        .map_err(|_| Error::format(format!("the network answers class {class}")))?;
+                    *label = u32::try_from(class).map_err(|_| {
+                        Error::format(format!("the network returns the invalid class {class}"))
+                    })?;
                 }
             }
             Ok(())

@@ -1,4 +1,4 @@
-//! The class of every pixel of a picture.
+//! Semantic segmentation.
 
 mod bisenet;
 mod deeplab;

@@ -4,5 +4,5 @@ use opendr_tiling::{Open, open_as};
 
 use super::Deeplab;
 
-/// The learners that tell the class of every pixel of a picture: one line each.
+/// Semantic segmentation learners that run in tiles, one line each.
 pub const SEGMENTERS: &[(&str, Open<Heatmap>)] = &[(Deeplab::SPEC.name, open_as::<Heatmap, Deeplab>)];

@@ -1,7 +1,7 @@
-//! MediaPipe's selfie segmentation: which pixels are those of a person near the camera.
+//! MediaPipe's selfie segmentation: separates a person near the camera from the background.
 //!
-//! Google, model card "MediaPipe Selfie Segmentation", 2021, Apache-2.0: a MobileNetV3 in the shape of a U that answers a
-//! probability for each pixel of the picture stretched to its own size.
+//! Google, model card "MediaPipe Selfie Segmentation", 2021, Apache-2.0: a MobileNetV3 in the shape of a U-Net that predicts a
+//! probability for each pixel of the image, which is stretched to the network's size.
 
 use opendr_engine::data::Image;
 use opendr_engine::learner::{Learner, Spec};
@@ -10,13 +10,13 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Classes, Heatmap};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::TensorView;
-use opendr_perception_common::described_input::described_input;
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
+use opendr_perception_common::manifest_preprocess::preprocess_from_manifest;
 
-/// What a user may set.
+/// Parameters of [`SelfieSegmentation`].
 #[derive(Debug, Clone, Params)]
 pub struct SelfieSegmentationParams {
-    /// Pixels from this probability on are a person's.
+    /// Minimum probability of a pixel of the person.
     #[param(default = 0.5, range = 0.0..=1.0, live)]
     pub threshold: f32,
     /// Whether the map holds probabilities, for blending, instead of classes.
@@ -28,28 +28,28 @@ pub struct SelfieSegmentationParams {
 pub struct SelfieSegmentation {
     params: SelfieSegmentationParams,
     classes: Classes,
-    network: PictureNetwork,
-    /// Of the network's map.
+    network: ImageNetwork,
+    /// Size of the network's map.
     width: usize,
     height: usize,
     rows: Pool<Vec<f32>>,
 }
 
-/// Levels 0..=255 become 0..1 where a model says nothing else.
-const USUAL: f32 = 255.0;
+/// Default divisor, which maps levels 0..=255 to 0..1.
+const DEFAULT_LEVEL: f32 = 255.0;
 
 impl Learner for SelfieSegmentation {
     const SPEC: Spec = Spec::new("selfie_segmentation", Task::SemanticSegmentation)
         .class("SelfieSegmentationLearner")
-        .about("Tells a person near the camera from what is behind.");
+        .about("Separates a person near the camera from the background.");
     type Params = SelfieSegmentationParams;
     type Input<'a> = &'a Image;
     type Target = Heatmap;
     type State = ();
 
     fn load(model: &Model, params: SelfieSegmentationParams, device: Device) -> Result<Self> {
-        let network = PictureNetwork::open_file(model, "model.onnx", device, |input| {
-            described_input(model, input, USUAL)
+        let network = ImageNetwork::open_file(model, "model.onnx", device, |input| {
+            preprocess_from_manifest(model, input, DEFAULT_LEVEL)
         })?;
         let [map] = network.outputs() else {
             let count = network.outputs().len();
@@ -58,10 +58,12 @@ impl Learner for SelfieSegmentation {
         let (&[Some(1), Some(1), Some(height), Some(width)] | &[Some(1), Some(height), Some(width), Some(1)]) =
             &map.dims[..]
         else {
-            return Err(Error::format(format!("{map} is no map of probabilities [1, 1, height, width]")));
+            return Err(Error::format(format!(
+                "the output {map} is not a map of probabilities [1, 1, height, width]"
+            )));
         };
         if width * height == 0 {
-            return Err(Error::format(format!("{map} has no pixels")));
+            return Err(Error::format(format!("the output {map} has no pixels")));
         }
         let classes = model.classes().clone();
         Ok(Self { params, classes, network, width, height, rows: Pool::default() })
@@ -89,7 +91,9 @@ impl Learner for SelfieSegmentation {
             let found = outputs.first().map_or(Ok(&[][..]), TensorView::values::<f32>)?;
             if found.len() != self.width * self.height {
                 let (count, wanted) = (found.len(), self.width * self.height);
-                return Err(Error::format(format!("a map of {count} probabilities instead of {wanted}")));
+                return Err(Error::format(format!(
+                    "the network returns {count} probabilities instead of {wanted}"
+                )));
             }
             if probabilities {
                 let out = map.scores_mut(&shape).chunks_exact_mut(width);
@@ -104,7 +108,8 @@ impl Learner for SelfieSegmentation {
 }
 
 impl SelfieSegmentation {
-    /// Writes the map at the picture's size, `[height, width]`, bilinear with half-pixel centres. `between` is a row's work memory.
+    /// Writes the map at the image's size, `[height, width]`, by bilinear interpolation with half-pixel centres. `between` is
+    /// the buffer of a row.
     fn each_row<'o, T: 'o>(
         &self,
         found: &[f32],
@@ -127,7 +132,8 @@ impl SelfieSegmentation {
     }
 }
 
-/// Between which pixels of `there` the middle of pixel `at` of `here` lies, and how far from the first.
+/// Returns the two of `there` pixels around the centre of pixel `at` of `here` pixels, and the share of the distance from the
+/// first.
 fn neighbours(at: usize, here: usize, there: usize) -> (usize, usize, f32) {
     let place = ((at as f32 + 0.5) * there as f32 / here as f32 - 0.5).clamp(0.0, (there - 1) as f32);
     let before = place as usize;
@@ -139,7 +145,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn middles_lie_between_middles() {
+    fn centres_lie_between_centres() {
         assert_eq!(
             (0..4).map(|at| neighbours(at, 4, 2)).collect::<Vec<_>>(),
             [(0, 1, 0.0), (0, 1, 0.25), (0, 1, 0.75), (1, 1, 0.0)]

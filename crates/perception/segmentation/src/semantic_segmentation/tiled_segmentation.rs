@@ -1,7 +1,7 @@
-//! Any network that tells the class of every pixel, in tiles of a large picture: its finest look counts.
+//! Semantic segmentation of large images in tiles, with any segmentation network; tiles take precedence over the whole image.
 //!
-//! How is said in [`tiling`](opendr_tiling). A stream remembers the classes of each tile, so that tiles in which nothing moves
-//! cost nothing, and those for which there was no time in one picture are looked at in the next.
+//! The crate [`tiling`](opendr_tiling) selects the tiles. A stream keeps the classes of each tile, so that unchanged tiles cost
+//! nothing, and tiles that exceeded the time budget of one frame are processed in the next.
 
 use opendr_engine::data::Image;
 use opendr_engine::learner::{Learner, Spec};
@@ -11,51 +11,51 @@ use opendr_engine::target::{Classes, Heatmap, HeatmapValues};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_perception_common::regions::Region;
 use opendr_tiling::{
-    Allowance, PictureLearner, TilePicture, Tiles, TilingParams, look_side_by_side, open_copies,
+    ImageLearner, TileImage, Tiles, TilingParams, TimeBudget, open_copies, run_within_budget,
 };
 
 use super::SEGMENTERS;
 
-/// What a user may set.
+/// Parameters of [`TiledSegmentation`].
 #[derive(Debug, Clone, Params)]
 pub struct TiledSegmentationParams {
-    /// How the picture is looked at.
+    /// Options of the tiles.
     #[param(flatten, tile = 512, tile_overlap = 64)]
     pub tiling: TilingParams,
 }
 
-/// A loaded network, as often as tiles are looked at side by side.
+/// A loaded network, one copy per tile that is processed in parallel.
 pub struct TiledSegmentation {
     params: TiledSegmentationParams,
-    segmenters: Vec<Box<dyn PictureLearner<Heatmap>>>,
+    segmenters: Vec<Box<dyn ImageLearner<Heatmap>>>,
     classes: Classes,
     scratch: Pool<Scratch>,
 }
 
 #[derive(Default)]
 struct Scratch {
-    tile: TilePicture,
+    tile: TileImage,
     map: Heatmap,
 }
 
-/// What was seen in the tiles of one stream.
+/// State of a stream: the classes of its tiles.
 #[derive(Default)]
 pub struct TiledSegmentationState {
     tiles: Tiles,
-    /// The class of every pixel where only the whole picture was looked at, and where tiles were.
+    /// Class of every pixel from the whole image, and from tiles.
     coarse: Vec<u32>,
     fine: Vec<u32>,
 }
 
-/// The part of the container.
+/// Name of the part in the container.
 const SEGMENTER: &str = "segmenter";
-/// No tile said anything of a pixel.
+/// Value of pixels without a prediction.
 const UNKNOWN: u32 = u32::MAX;
 
 impl Learner for TiledSegmentation {
     const SPEC: Spec = Spec::new("tiled_segmentation", Task::SemanticSegmentation)
         .class("TiledSegmentationLearner")
-        .about("Tells the class of every pixel of large pictures in tiles, within a time budget.");
+        .about("Predicts the class of every pixel of large images in tiles, within a time budget.");
     type Params = TiledSegmentationParams;
     type Input<'a> = &'a Image;
     type Target = Heatmap;
@@ -82,60 +82,64 @@ impl Learner for TiledSegmentation {
 
     fn infer_into(&self, state: &mut TiledSegmentationState, image: &Image, map: &mut Heatmap) -> Result<()> {
         let tiling = &self.params.tiling;
-        let allowance = Allowance::of_milliseconds(tiling.time_budget);
+        let allowance = TimeBudget::from_milliseconds(tiling.time_budget);
         let TiledSegmentationState { tiles, coarse, fine } = state;
         let (width, height) = (image.width(), image.height());
-        if tiles.plan(tiling, image.view(), |_, tile| tile.seen.is_some())? {
+        if tiles.plan(tiling, image.view(), |_, tile| tile.last_processed.is_some())? {
             for labels in [&mut *coarse, &mut *fine] {
                 labels.clear();
                 labels.resize(width * height, UNKNOWN);
             }
         }
-        let looked = look_side_by_side(self.segmenters.len(), tiles.order(), allowance, |worker, index| {
-            self.look(worker, image, tiles, index)
-        })?;
-        for (index, labels) in looked {
-            tiles.saw(index, true);
+        let segmented =
+            run_within_budget(self.segmenters.len(), tiles.order(), allowance, |worker, index| {
+                self.segment(worker, image, tiles, index)
+            })?;
+        for (index, labels) in segmented {
+            tiles.record(index, true);
             let Some(tile) = tiles.tiles().get(index) else { continue };
             match tile.core.is_empty() {
                 true => coarse.copy_from_slice(&labels),
-                false => put(fine, width, &tile.core, &labels),
+                false => copy_region(fine, width, &tile.core, &labels),
             }
         }
         for (index, tile) in tiles.tiles().iter().enumerate() {
-            if !tiles.holds(index, tiling.memory) && tile.seen.is_some() {
+            if !tiles.is_valid(index, tiling.memory) && tile.last_processed.is_some() {
                 let Region { x, y, width: across, height: down } = tile.core;
                 let rows = fine.chunks_exact_mut(width).skip(y).take(down);
                 rows.for_each(|row| row[x..x + across].fill(UNKNOWN));
             }
         }
         map.classes.clone_from(&self.classes);
-        let answer = map.labels_mut(&[height, width]);
-        for (answer, (fine, coarse)) in answer.iter_mut().zip(fine.iter().zip(&*coarse)) {
+        let output = map.labels_mut(&[height, width]);
+        for (output, (fine, coarse)) in output.iter_mut().zip(fine.iter().zip(&*coarse)) {
             let label = if *fine == UNKNOWN { *coarse } else { *fine };
-            // Where nobody looked yet, there is background.
-            *answer = if label == UNKNOWN { 0 } else { label };
+            // Pixels without a prediction are background.
+            *output = if label == UNKNOWN { 0 } else { label };
         }
         Ok(())
     }
 }
 
 impl TiledSegmentation {
-    /// The classes of the pixels of a tile's core, or of the whole picture.
-    fn look(&self, worker: usize, image: &Image, tiles: &Tiles, index: usize) -> Result<Vec<u32>> {
+    /// Returns the classes of the pixels of a tile's core, or of the whole image.
+    fn segment(&self, worker: usize, image: &Image, tiles: &Tiles, index: usize) -> Result<Vec<u32>> {
         let (Some(tile), Some(segmenter)) = (tiles.tiles().get(index), self.segmenters.get(worker)) else {
             return Ok(Vec::new());
         };
         let Scratch { tile: picture, map } = &mut *self.scratch.take();
         let Region { x, y, width, height } = tile.region;
         let is_whole = [width, height] == [image.width(), image.height()];
-        let picture = if is_whole { image } else { picture.cut(image.view(), &tile.region)? };
+        let picture = if is_whole { image } else { picture.crop(image.view(), &tile.region)? };
         segmenter.answer(picture, map)?;
         let HeatmapValues::Labels(labels) = map.values() else {
-            return Err(Error::format("the network tells scores instead of the class of every pixel"));
+            return Err(Error::format("the network returns scores instead of the class of every pixel"));
         };
         if map.shape() != [height, width] {
-            return Err(Error::format(format!("a map of {:?} for {height}x{width} pixels", map.shape())));
+            return Err(Error::format(format!(
+                "the network returns a map of {:?} for {height}x{width} pixels",
+                map.shape()
+            )));
         }
         let core = if tile.core.is_empty() { tile.region } else { tile.core };
         let rows = labels.chunks_exact(width).skip(core.y - y).take(core.height);
@@ -143,8 +147,8 @@ impl TiledSegmentation {
     }
 }
 
-/// Puts the classes of a region into those of a picture `width` pixels wide.
-fn put(all: &mut [u32], width: usize, region: &Region, labels: &[u32]) {
+/// Copies the classes of a region into those of an image `width` pixels wide.
+fn copy_region(all: &mut [u32], width: usize, region: &Region, labels: &[u32]) {
     let rows = all.chunks_exact_mut(width).skip(region.y).take(region.height);
     for (row, labels) in rows.zip(labels.chunks_exact(region.width)) {
         row[region.x..region.x + region.width].copy_from_slice(labels);

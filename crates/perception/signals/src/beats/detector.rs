@@ -1,4 +1,4 @@
-//! From a signal to its beats.
+//! Detection of beats in a signal.
 
 use std::collections::VecDeque;
 
@@ -7,53 +7,53 @@ use opendr_engine::{Error, Result};
 use crate::beats::filter::{Filter, FilterMemory};
 use crate::beats::threshold::{Peak, Threshold};
 
-/// Finds beats in signals of one sample rate.
+/// Detects beats in signals of one sample rate.
 #[derive(Debug, Clone)]
 pub struct BeatDetector {
     rate: f64,
     high: Filter,
     low: Filter,
-    /// Samples over which slopes are summed.
+    /// Number of samples over which slopes are summed.
     window: usize,
-    /// Least samples between two beats.
+    /// Minimum number of samples between two beats.
     apart: u64,
 }
 
-/// What is remembered of one signal: less than half a second of it.
+/// State of one signal: less than half a second of it.
 #[derive(Debug, Clone, Default)]
 pub struct BeatSignal {
-    /// Samples so far.
-    heard: u64,
+    /// Number of samples so far.
+    count: u64,
     high: FilterMemory,
     low: FilterMemory,
     /// The last five filtered samples, newest first.
     filtered: [f64; 5],
-    /// The last slopes, squared, and their sum.
+    /// The last squared slopes, and their sum.
     slopes: VecDeque<f64>,
-    /// The last samples, as they came.
+    /// The last samples, unfiltered.
     samples: VecDeque<f32>,
     top: Peak,
     threshold: Threshold,
 }
 
-/// The pass band, Hz.
+/// Pass band in Hz.
 const BAND: [f64; 2] = [5.0, 15.0];
 /// Seconds over which slopes are summed.
 const WINDOW: f64 = 0.15;
-/// Least seconds between two beats.
+/// Minimum seconds between two beats.
 const APART: f64 = 0.2;
-/// Seconds before its peak in which a beat is.
+/// Seconds before the peak of the slopes within which the beat is.
 const BEFORE_PEAK: f64 = 0.21;
 
 impl BeatDetector {
-    /// For signals of `rate` samples a second.
+    /// Creates a detector for signals at `rate` Hz.
     ///
     /// # Errors
-    /// `InvalidParam` for a rate that is not within 50 and 10000 Hz.
+    /// `InvalidParam` for a rate outside of 50 to 10000 Hz.
     pub fn new(rate: f64) -> Result<Self> {
         if !(50.0..=10_000.0).contains(&rate) {
             return Err(Error::invalid_param(format!(
-                "beats in a signal of {rate} Hz; give 50 to 10000 Hz, or resample it"
+                "beats cannot be detected at {rate} Hz; resample the signal to 50 to 10000 Hz"
             )));
         }
         Ok(Self {
@@ -65,16 +65,16 @@ impl BeatDetector {
         })
     }
 
-    /// Takes the next samples, of any number and unit, and tells each beat by its sample, counted from the begin of the signal.
+    /// Adds any number of samples in any unit and passes each beat to `each`, as its sample index from the start of the signal.
     ///
-    /// A sample that is no number stands for the one before it.
+    /// A NaN or infinite sample is replaced by the one before it.
     pub fn push(&self, signal: &mut BeatSignal, samples: &[f32], mut each: impl FnMut(u64)) {
         for sample in samples {
             self.next(signal, *sample, &mut each);
         }
     }
 
-    /// The signal is over: tells the beats that are not told yet. The signal is a fresh one after.
+    /// Ends the signal, passes the remaining beats to `each` and resets the signal.
     pub fn flush(&self, signal: &mut BeatSignal, mut each: impl FnMut(u64)) {
         let mut signal = std::mem::take(signal);
         if signal.top.height > 0.0 {
@@ -87,15 +87,15 @@ impl BeatDetector {
         let last = signal.samples.back().copied();
         let sample = if sample.is_finite() { sample } else { last.unwrap_or(0.0) };
         if last.is_none() {
-            // The filters begin as if the signal had always been what it begins with.
+            // The filters start in the steady state of the first sample.
             for _ in 0..self.rate as usize * 2 {
                 self.slope(signal, sample);
             }
             signal.slopes.clear();
         }
         let slope = self.slope(signal, sample);
-        let (at, kept) = (signal.heard, (BEFORE_PEAK + APART) * self.rate);
-        signal.heard += 1;
+        let (at, kept) = (signal.count, (BEFORE_PEAK + APART) * self.rate);
+        signal.count += 1;
         signal.samples.push_back(sample);
         if signal.samples.len() > kept as usize + 2 {
             signal.samples.pop_front();
@@ -114,7 +114,7 @@ impl BeatDetector {
         }
     }
 
-    /// The square of the slope of what is in the pass band.
+    /// Returns the square of the slope of the filtered signal.
     fn slope(&self, signal: &mut BeatSignal, sample: f32) -> f64 {
         let high = self.high.next(&mut signal.high, f64::from(sample));
         let filtered = self.low.next(&mut signal.low, high);
@@ -124,10 +124,10 @@ impl BeatDetector {
         ((2.0 * newest + new - old - 2.0 * oldest) / 8.0).powi(2)
     }
 
-    /// Hands the top on, with the sample that stands out most before it.
+    /// Passes the peak on, with the sample before it that deviates most.
     fn confirm(&self, signal: &mut BeatSignal, each: &mut impl FnMut(u64)) {
-        let BeatSignal { top, samples, heard, threshold, .. } = signal;
-        let first = *heard - samples.len() as u64;
+        let BeatSignal { top, samples, count, threshold, .. } = signal;
+        let first = *count - samples.len() as u64;
         let begin = top.at.saturating_sub((BEFORE_PEAK * self.rate) as u64).max(first);
         let part = || samples.iter().skip((begin - first) as usize).take((top.at - begin + 1) as usize);
         let mean = part().map(|sample| f64::from(*sample)).sum::<f64>() / (top.at - begin + 1) as f64;

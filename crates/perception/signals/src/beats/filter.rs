@@ -1,20 +1,20 @@
-//! Filters of second order.
+//! Second-order filters.
 
 use std::f64::consts::{PI, SQRT_2};
 
-/// A Butterworth filter of second order.
+/// A second-order Butterworth filter.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Filter {
     ahead: [f64; 3],
     back: [f64; 2],
 }
 
-/// What a filter remembers of a signal.
+/// State of a filter.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct FilterMemory([f64; 2]);
 
 impl Filter {
-    /// Lets through what is below `cut` Hz.
+    /// Creates a low-pass filter with cutoff `cut` in Hz.
     pub fn low(cut: f64, rate: f64) -> Self {
         let k = (PI * cut / rate).tan();
         let scale = 1.0 / (1.0 + SQRT_2 * k + k * k);
@@ -22,7 +22,7 @@ impl Filter {
         Self { ahead: [ahead, 2.0 * ahead, ahead], back: Self::back(k, scale) }
     }
 
-    /// Lets through what is above `cut` Hz.
+    /// Creates a high-pass filter with cutoff `cut` in Hz.
     pub fn high(cut: f64, rate: f64) -> Self {
         let k = (PI * cut / rate).tan();
         let scale = 1.0 / (1.0 + SQRT_2 * k + k * k);
@@ -33,7 +33,7 @@ impl Filter {
         [2.0 * (k * k - 1.0) * scale, (1.0 - SQRT_2 * k + k * k) * scale]
     }
 
-    /// The next sample, filtered.
+    /// Filters the next sample.
     pub fn next(&self, memory: &mut FilterMemory, sample: f64) -> f64 {
         let FilterMemory([first, second]) = memory;
         let out = self.ahead[0] * sample + *first;
@@ -47,7 +47,7 @@ impl Filter {
 mod tests {
     use super::*;
 
-    /// How much is left of a wave.
+    /// Returns the remaining amplitude of a wave.
     fn gain(filter: Filter, hz: f64) -> f64 {
         let mut memory = FilterMemory::default();
         let wave = |at: usize| (2.0 * PI * hz * at as f64 / 360.0).sin();

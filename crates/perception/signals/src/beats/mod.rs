@@ -1,11 +1,11 @@
-//! Where the heart beats in a signal: one sample for each beat, found while the signal comes in.
+//! Detection of heart beats in a signal: one sample index per beat, during the recording.
 //!
-//! Pan and Tompkins, A Real-Time QRS Detection Algorithm, IEEE Transactions on Biomedical Engineering, 1985: what lies
-//! between 5 and 15 Hz, its slope squared and summed over 150 ms; peaks of that above a threshold that follows the heights of
-//! beats and of noise, and a lower one where a beat is missing.
+//! Pan and Tompkins, A Real-Time QRS Detection Algorithm, IEEE Transactions on Biomedical Engineering, 1985: the band from 5 to
+//! 15 Hz, its slope squared and summed over 150 ms; peaks above a threshold that follows the heights of beats and of noise, and
+//! a lower one where a beat is missing.
 //!
-//! A beat is told at the latest when the next peak after it was seen, mostly 200 ms after it; the first two seconds
-//! are learnt from and answered together.
+//! A beat is reported at the latest with the next peak, mostly 200 ms after it; the beats of the first two seconds, in which
+//! the threshold is initialised, are reported together.
 //!
 //! ```
 //! use opendr_signals::beats::{BeatDetector, BeatSignal};

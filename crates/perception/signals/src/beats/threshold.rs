@@ -1,46 +1,46 @@
-//! Which peaks are beats.
+//! Adaptive threshold between beats and noise.
 
 /// A peak of the summed slopes.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Peak {
-    /// The highest sum.
+    /// Highest sum.
     pub height: f64,
-    /// The steepest slope before it, squared.
+    /// Steepest slope before it, squared.
     pub slope: f64,
-    /// Where it is.
+    /// Position of the peak.
     pub at: u64,
-    /// The sample of the signal that stands for it.
+    /// Sample of the beat.
     pub beat: u64,
 }
 
-/// What is known of the beats and the noise of a signal.
+/// Running estimates of beats and noise of a signal.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Threshold {
     /// Heights of beats and of noise.
     beat: f64,
     noise: f64,
     last: Option<Peak>,
-    /// Between two beats, in samples; the mean of about the last eight.
+    /// Mean interval of about the last eight beats, in samples.
     interval: Option<f64>,
-    /// The highest peak since the last beat that was taken for noise.
+    /// Highest peak since the last beat that was classified as noise.
     passed: Option<Peak>,
-    /// Peaks of the first seconds, and when they began.
+    /// Peaks of the initialisation, and its start.
     learning: Vec<Peak>,
     since: u64,
     ready: bool,
 }
 
-/// Seconds that are learnt from.
+/// Seconds of initialisation.
 const LEARNING: f64 = 2.0;
-/// Seconds without a beat after which heights are learnt anew.
+/// Seconds without a beat after which the heights are initialised again.
 const LOST: f64 = 5.0;
 /// Seconds after a beat within which a peak of less than half its slope is its T wave.
 const T_WAVE: f64 = 0.36;
-/// Most intervals without a beat before one is looked for among what was taken for noise.
+/// Number of intervals without a beat after which a beat is searched among the noise.
 const MISSING: f64 = 1.66;
 
 impl Threshold {
-    /// Takes the next peak, and tells each beat by the sample that stands for it.
+    /// Processes the next peak and passes each beat to `each`, as its sample.
     pub fn next(&mut self, peak: Peak, rate: f64, mut each: impl FnMut(u64)) {
         if !self.ready {
             self.learning.push(peak);
@@ -56,7 +56,7 @@ impl Threshold {
         }
     }
 
-    /// The signal is over: judges what is still learnt from.
+    /// Ends the signal: classifies the peaks of an unfinished initialisation.
     pub fn finish(&mut self, rate: f64, mut each: impl FnMut(u64)) {
         if !self.ready {
             self.learn(rate, &mut each);
@@ -66,7 +66,7 @@ impl Threshold {
     fn learn(&mut self, rate: f64, each: &mut impl FnMut(u64)) {
         let peaks = std::mem::take(&mut self.learning);
         let highest = peaks.iter().map(|peak| peak.height).fold(0.0, f64::max);
-        // The first seconds may hold an artefact or a filter's start: the second highest peak is that of a beat too.
+        // The first seconds may contain an artefact or a filter transient, so the second highest peak counts as a beat, too.
         let second =
             peaks.iter().map(|peak| peak.height).filter(|height| *height < highest).fold(0.0, f64::max);
         self.beat = if second > 0.2 * highest { second } else { highest };
@@ -98,7 +98,7 @@ impl Threshold {
         }
     }
 
-    /// The least height of a beat.
+    /// Returns the minimum height of a beat.
     fn level(&self) -> f64 {
         self.noise + 0.25 * (self.beat - self.noise)
     }

@@ -1,4 +1,4 @@
-//! Heart beats out of a stream, as learners take them.
+//! Heart beats of a stream as inputs of the learners.
 
 use std::collections::VecDeque;
 
@@ -6,27 +6,27 @@ use opendr_engine::{Error, Pool, Result};
 
 use crate::beats::{BeatDetector, BeatSignal};
 
-/// What a stream of a heart signal remembers: its last seconds, and the beats that are not whole yet.
+/// State of a stream of a heart signal: its last seconds, and the incomplete beats.
 ///
-/// A beat is found in the first feature ([`beats`](crate::beats)). It is cut from a quarter of a second before it to half a
-/// second after, brought to the length that the network takes by linear interpolation, and each feature to
-/// mean zero and deviation one, as beats of the UCR archive are. Beats too near to the begin or the end of the
-/// stream are left out; a measurement that is no number stands for the one before it. Time is counted in instants, so the
-/// length of pieces plays no part, nor do their stamps.
+/// Beats are detected in the first feature ([`beats`](crate::beats)). A beat is cut from a quarter of a second before it to
+/// half a second after it, resampled to the length of the network's input by linear interpolation, and each feature is
+/// normalised to zero mean and unit deviation, as in the UCR archive. Beats too near to the start or end of the stream are
+/// skipped; a measurement that is not finite is replaced by the one before it. Time is counted in samples, so the length of the
+/// pieces and their stamps do not matter.
 #[derive(Debug, Default)]
 pub struct BeatStream {
     signal: BeatSignal,
-    /// Instants `[time, features]`, from `begin` on.
+    /// Samples `[time, features]` from `begin` on.
     kept: VecDeque<f32>,
     begin: u64,
-    /// Beats that are not whole yet.
+    /// Incomplete beats.
     found: VecDeque<u64>,
 }
 
 /// Cuts beats out of streams.
 pub(super) struct Beats {
     detector: BeatDetector,
-    /// Instants before and after a beat, and how many are kept.
+    /// Number of samples before and after a beat, and of the samples that are kept.
     before: usize,
     after: usize,
     kept: usize,
@@ -37,18 +37,20 @@ pub(super) struct Beats {
 /// Seconds before and after a beat that belong to it.
 const BEFORE: f64 = 0.25;
 const AFTER: f64 = 0.5;
-/// Seconds of a stream that are kept: beats that are found later are left out.
+/// Seconds of a stream that are kept; beats detected later are skipped.
 const KEPT: f64 = 8.0;
 
 impl Beats {
-    /// Beats of `[time, features]` out of streams with `rate` instants a second.
+    /// Cuts beats of `[time, features]` out of streams at `rate` Hz.
     ///
     /// # Errors
     /// As [`BeatDetector::new`]; `Format` where a size is zero.
     pub fn new(rate: f64, shape: [usize; 2]) -> Result<Self> {
         if shape.contains(&0) {
             let [time, features] = shape;
-            return Err(Error::format(format!("a network of {time} instants with {features} features")));
+            return Err(Error::format(format!(
+                "the network takes {time} time steps with {features} features; both must be at least 1"
+            )));
         }
         let instants = |seconds: f64| (seconds * rate).round() as usize;
         Ok(Self {
@@ -61,10 +63,10 @@ impl Beats {
         })
     }
 
-    /// Takes the next instants `[time, features]` and hands on each beat that they complete.
+    /// Adds samples `[time, features]` and passes each completed beat to `each`.
     ///
     /// # Errors
-    /// What `each` fails with.
+    /// The errors of `each`.
     pub fn push(
         &self,
         stream: &mut BeatStream,
@@ -89,10 +91,10 @@ impl Beats {
         Ok(())
     }
 
-    /// The stream is over: hands on the beats that are whole; the stream is a fresh one after.
+    /// Ends the stream, passes the complete beats to `each` and resets the stream.
     ///
     /// # Errors
-    /// What `each` fails with.
+    /// The errors of `each`.
     pub fn flush(&self, stream: &mut BeatStream, mut each: impl FnMut(&[f32]) -> Result<()>) -> Result<()> {
         let mut stream = std::mem::take(stream);
         let BeatStream { signal, found, .. } = &mut stream;
@@ -100,7 +102,7 @@ impl Beats {
         self.cut(&mut stream, &mut each)
     }
 
-    /// Hands on the beats that are whole.
+    /// Passes the complete beats to `each`.
     fn cut(&self, stream: &mut BeatStream, each: &mut impl FnMut(&[f32]) -> Result<()>) -> Result<()> {
         let [_, features] = self.shape;
         let end = stream.begin + (stream.kept.len() / features) as u64;
@@ -114,7 +116,7 @@ impl Beats {
         Ok(())
     }
 
-    /// Replaces `beat` by the `before + after` instants from `begin` on, in the network's length.
+    /// Replaces `beat` by the `before + after` samples from `begin` on, resampled to the network's length.
     fn resample(&self, kept: &[f32], begin: usize, beat: &mut Vec<f32>) {
         let [time, features] = self.shape;
         let length = self.before + self.after;
@@ -144,7 +146,7 @@ impl Beats {
 mod tests {
     use super::*;
 
-    /// A spike every second of 100 instants, and its double as second feature.
+    /// A spike every second at 100 Hz, and its double as second feature.
     fn spikes(seconds: usize) -> Vec<f32> {
         let spike =
             |at: usize| if at % 100 == 50 { 1.0 + (at / 100) as f32 * 0.01 } else { 0.01 * (at % 7) as f32 };
@@ -167,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn beats_of_a_stream_are_those_of_the_whole() {
+    fn beats_do_not_depend_on_the_pieces() {
         let instants = spikes(30);
         let whole = beats(&instants, 3000);
         assert_eq!(whole.len(), 30);

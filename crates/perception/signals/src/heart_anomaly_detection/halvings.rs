@@ -1,4 +1,4 @@
-//! Convolutions that shorten a heart signal.
+//! Strided convolutions that shorten a heart signal.
 
 use burn::module::Module;
 use burn::nn::conv::{Conv1d, Conv1dConfig};
@@ -6,21 +6,20 @@ use burn::nn::{BatchNorm, BatchNormConfig, PaddingConfig1d};
 use burn::tensor::activation::relu;
 use burn::tensor::{Device, Tensor};
 
-/// Most steps that are left.
+/// Maximum number of remaining steps.
 const MOST_STEPS: usize = 64;
-/// Channels of the convolutions.
+/// Number of channels of the convolutions.
 const CHANNELS: usize = 32;
-/// Instants that a convolution sees.
+/// Kernel size in time.
 const KERNEL: usize = 7;
 
-/// As many convolutions with stride two as it takes to leave at most 64 steps; `[batch, features, time]` to
-/// `[batch, channels, steps]`.
+/// Convolutions of stride two, as many as leave at most 64 steps; `[batch, features, time]` to `[batch, channels, steps]`.
 #[derive(Module, Debug)]
 pub struct Halvings {
     layers: Vec<Halving>,
 }
 
-/// A convolution with stride two, normalised and rectified.
+/// A convolution of stride two with normalisation and ReLU.
 #[derive(Module, Debug)]
 struct Halving {
     convolution: Conv1d,
@@ -28,8 +27,7 @@ struct Halving {
 }
 
 impl Halvings {
-    /// The layers for series of `[time, features]`, with weights as training begins with, and the `[steps, channels]`
-    /// that they leave.
+    /// Returns the layers for series of `[time, features]`, with initial weights, and the `[steps, channels]` of their output.
     pub fn new([time, features]: [usize; 2], device: &Device) -> (Self, [usize; 2]) {
         let (mut layers, mut steps, mut channels) = (Vec::new(), time, features);
         while steps > MOST_STEPS {
@@ -39,7 +37,7 @@ impl Halvings {
         (Self { layers }, [steps, channels])
     }
 
-    /// What they leave of a signal.
+    /// Returns the shortened signal.
     pub fn forward(&self, signal: Tensor<3>) -> Tensor<3> {
         self.layers.iter().fold(signal, |signal, layer| layer.forward(signal))
     }

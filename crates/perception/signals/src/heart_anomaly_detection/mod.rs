@@ -1,4 +1,4 @@
-//! Whether a heart signal is normal.
+//! Detection of anomalies in heart signals.
 
 mod attention_neural_bag_of_feature;
 mod beat_stream;

@@ -1,22 +1,26 @@
-//! Mel bands: overlapping triangles over a spectrum.
+//! Mel bands: overlapping triangular filters over a spectrum.
+
+use opendr_kernels::FOURIER_FRAMES;
 
 use crate::mfcc::options::{MelBands, MelScale, Sides};
-use crate::mfcc::transform::Frames;
 
-/// The weights of each band, without the zeros.
+/// One value of each frame of a group that is transformed together.
+pub(super) type Frames = [f32; FOURIER_FRAMES];
+
+/// Weights of each band, without the zeros.
 pub(super) struct MelBank {
     bands: Vec<Band>,
     weights: Vec<f32>,
 }
 
-/// Where a band begins in the spectrum, and where its weights lie.
+/// First bin of a band in the spectrum, and the range of its weights.
 struct Band {
     bin: usize,
     weights: std::ops::Range<usize>,
 }
 
 impl MelBank {
-    /// The bands over the `fft / 2 + 1` frequencies of a transform of `fft` points.
+    /// Creates the bands over the `fft / 2 + 1` frequencies of a transform of `fft` points.
     pub fn new(options: &MelBands, fft: usize, sample_rate: u32) -> Self {
         let MelBands { count, low_hz, high_hz, scale, sides, unit_area } = *options;
         let (low, high) = (scale.mel_from_hz(low_hz), scale.mel_from_hz(high_hz));
@@ -69,15 +73,15 @@ impl MelBank {
     }
 }
 
-/// Where Slaney's scale changes from linear to logarithmic.
+/// Frequency at which Slaney's scale changes from linear to logarithmic.
 const BREAK_HZ: f64 = 1000.0;
-/// Width of a mel below that.
+/// Width of a mel below `BREAK_HZ`.
 const LINEAR_HZ: f64 = 200.0 / 3.0;
-/// Mels from 1000 Hz to 6400 Hz.
+/// Number of mels from 1000 Hz to 6400 Hz.
 const LOG_MELS: f64 = 27.0;
 
 impl MelScale {
-    /// The pitch of a frequency.
+    /// Returns the pitch of a frequency.
     pub fn mel_from_hz(self, hz: f64) -> f64 {
         match self {
             Self::Htk => 1127.0 * (hz / 700.0).ln_1p(),
@@ -86,7 +90,7 @@ impl MelScale {
         }
     }
 
-    /// The frequency of a pitch.
+    /// Returns the frequency of a pitch.
     pub fn hz_from_mel(self, mel: f64) -> f64 {
         let log_mel = mel - BREAK_HZ / LINEAR_HZ;
         match self {
@@ -99,14 +103,14 @@ impl MelScale {
 
 #[cfg(test)]
 mod tests {
-    use opendr_kernels::FOURIER_FRAMES;
-
     use super::*;
 
-    /// Values of `librosa.hz_to_mel`, and of the constants of TensorFlow.
+    /// Expected values of `librosa.hz_to_mel`, and of TensorFlow's constants.
     #[test]
     fn pitches() {
-        let close = |got: f64, wanted: f64| assert!((got - wanted).abs() < 1e-3, "{got} is not {wanted}");
+        let close = |actual: f64, expected: f64| {
+            assert!((actual - expected).abs() < 1e-3, "{actual} is not {expected}")
+        };
         close(MelScale::Slaney.mel_from_hz(60.0), 0.9);
         close(MelScale::Slaney.mel_from_hz(6400.0), 42.0);
         close(MelScale::Htk.mel_from_hz(1000.0), 999.9907);
@@ -118,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn a_flat_spectrum_fills_bands_of_unit_area_alike() {
+    fn a_flat_spectrum_yields_equal_bands_of_unit_area() {
         let options = MelBands {
             count: 20,
             low_hz: 0.0,
@@ -131,8 +135,8 @@ mod tests {
         let mut sums = Vec::new();
         bank.sums(&[[1.0; FOURIER_FRAMES]; 2049], &mut sums);
         // One over the width of a bin.
-        let wanted = 4096.0 / 16_000.0;
-        assert!(sums.as_flattened().iter().all(|sum| (sum / wanted - 1.0).abs() < 0.02), "{sums:?}");
+        let expected = 4096.0 / 16_000.0;
+        assert!(sums.as_flattened().iter().all(|sum| (sum / expected - 1.0).abs() < 0.02), "{sums:?}");
         assert_eq!(sums.len(), 20);
     }
 }

@@ -1,8 +1,8 @@
-//! Mel-frequency cepstral coefficients: what speech networks are given instead of sound.
+//! Mel-frequency cepstral coefficients (MFCC), the input of speech networks.
 //!
-//! Davis and Mermelstein, Comparison of Parametric Representations for Monosyllabic Word Recognition, 1980. The recipes
-//! of the field differ in every detail, and a network knows only its own: [`MfccOptions`] says which one, and gives
-//! TensorFlow's and librosa's numbers to rounding.
+//! Davis and Mermelstein, Comparison of Parametric Representations for Monosyllabic Word Recognition, 1980. Implementations
+//! differ in every detail, and a network needs the one it was trained with: [`MfccOptions`] selects it, and reproduces
+//! TensorFlow and librosa up to rounding.
 //!
 //! ```
 //! use opendr_sound::mfcc::{Mfcc, MfccOptions};
@@ -33,7 +33,7 @@ pub use stream::MfccStream;
 use mel_bank::MelBank;
 use transform::{CosineTransform, FrameSpectrum, FrameWork};
 
-/// Cepstra of sound by one recipe. After the first sound of a length nothing is allocated.
+/// Computes cepstra. Does not allocate after the first recording of a length.
 pub struct Mfcc {
     options: MfccOptions,
     spectrum: FrameSpectrum,
@@ -45,15 +45,15 @@ pub struct Mfcc {
 #[derive(Default)]
 struct Work {
     frames: FrameWork,
-    /// Logarithms of the bands `[frames, bands]`.
+    /// Log-mel bands `[frames, bands]`.
     bands: Vec<f32>,
 }
 
 impl Mfcc {
-    /// Makes the tables of a recipe.
+    /// Creates the tables for `options`.
     ///
     /// # Errors
-    /// `InvalidParam` for sizes that are zero, too large or do not fit each other, or frequencies that do not rise.
+    /// `InvalidParam` for sizes that are zero, too large or inconsistent, or frequencies that do not increase.
     pub fn new(options: MfccOptions) -> Result<Self> {
         options.check()?;
         let MelBands { count, .. } = options.bands;
@@ -66,12 +66,12 @@ impl Mfcc {
         })
     }
 
-    /// The recipe.
+    /// Returns the options.
     pub fn options(&self) -> &MfccOptions {
         &self.options
     }
 
-    /// How many frames sound of one channel with so many samples has.
+    /// Returns the number of frames of `samples` samples of one channel.
     pub fn frames(&self, samples: usize) -> usize {
         match self.options.edges {
             _ if samples == 0 => 0,
@@ -82,13 +82,13 @@ impl Mfcc {
         }
     }
 
-    /// Replaces `cepstra` by those of `samples`, `[frames, coefficients]`, and tells the number of frames.
+    /// Replaces `cepstra` by those of `samples`, `[frames, coefficients]`, and returns the number of frames.
     pub fn run_into(&self, samples: &[f32], cepstra: &mut Vec<f32>) -> usize {
         self.run_scaled_into(samples, 1.0, cepstra)
     }
 
-    /// As [`Mfcc::run_into`] of samples that are all multiplied by `factor`, a positive number, without a pass over them: their
-    /// bands are instead.
+    /// Like [`Mfcc::run_into`] for samples multiplied by `factor`, a positive number; the factor is applied to the bands and
+    /// not to the samples.
     pub fn run_scaled_into(&self, samples: &[f32], factor: f32, cepstra: &mut Vec<f32>) -> usize {
         let Work { frames: work, bands } = &mut *self.work.take();
         let frames = self.log_mel_of(samples, factor, work, bands);
@@ -97,8 +97,8 @@ impl Mfcc {
         frames
     }
 
-    /// Replaces `bands` by the logarithms of the mel bands, `[frames, bands]`, from which cepstra are made, and tells the
-    /// number of frames.
+    /// Replaces `bands` by the log-mel bands, `[frames, bands]`, from which cepstra are computed, and returns the number of
+    /// frames.
     pub fn log_mel_into(&self, samples: &[f32], bands: &mut Vec<f32>) -> usize {
         self.log_mel_of(samples, 1.0, &mut self.work.take().frames, bands)
     }
@@ -115,7 +115,7 @@ impl Mfcc {
         frames
     }
 
-    /// The logarithms of the bands of the first frames in `work`, `[frames, bands]`, as if all samples were multiplied by
+    /// Writes the log-mel bands of the first frames in `work`, `[frames, bands]`, as if all samples were multiplied by
     /// `factor`.
     fn log_bands(&self, work: &mut FrameWork, factor: f32, bands: &mut [f32]) {
         let count = self.options.bands.count;
@@ -141,10 +141,10 @@ impl Mfcc {
     }
 }
 
-/// What brings the highest sample of sound to 1, as TensorFlow's keyword spotting does: a factor for
+/// Returns the factor that normalises the peak of `samples` to 1, as in TensorFlow's keyword spotting, for
 /// [`Mfcc::run_scaled_into`]; 1 for silence.
 pub fn peak_factor(samples: &[f32]) -> f32 {
-    // In lanes, which the compiler makes vector instructions of.
+    // Lanes that the compiler can vectorise.
     let mut peaks = [0.0_f32; 16];
     let (chunks, rest) = samples.as_chunks::<16>();
     for chunk in chunks.iter().map(|chunk| &chunk[..]).chain([rest]) {

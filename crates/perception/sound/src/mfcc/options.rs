@@ -1,63 +1,63 @@
-//! What cepstra are made of.
+//! Options of the cepstra.
 
 use opendr_engine::{Error, Result};
 use opendr_kernels::Spectrum;
 
-/// The recipe of an [`Mfcc`](crate::mfcc::Mfcc).
+/// Options of an [`Mfcc`](crate::mfcc::Mfcc).
 #[derive(Debug, Clone, PartialEq)]
 pub struct MfccOptions {
-    /// Samples a second.
+    /// Sample rate in Hz.
     pub sample_rate: u32,
-    /// Samples that the window (Hann, periodic) of a frame spans.
+    /// Length of a frame's window (Hann, periodic) in samples.
     pub window: usize,
-    /// Samples from one frame to the next.
+    /// Distance between frames in samples.
     pub hop: usize,
-    /// Points of the Fourier transform, an even number of at least `window`; what the window does not span is zero.
+    /// Points of the Fourier transform, an even number of at least `window`; samples outside the window are zero.
     pub fft: usize,
-    /// Where frames lie.
+    /// Position of the frames.
     pub edges: Edges,
-    /// What the mel bands sum.
+    /// Spectrum that the mel bands sum.
     pub spectrum: Spectrum,
     /// The mel bands.
     pub bands: MelBands,
-    /// How the sums of the bands are compressed.
+    /// Compression of the bands' sums.
     pub log: Log,
-    /// How the cosine transform (DCT-II) is scaled.
+    /// Scaling of the cosine transform (DCT-II).
     pub scale: CosineScale,
-    /// Coefficients of a frame that are kept, from the first.
+    /// Number of coefficients per frame, from the first.
     pub coefficients: usize,
 }
 
-/// Where frames lie.
+/// Position of the frames and padding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Edges {
-    /// Only where they fit into the sound: `1 + (samples - window) / hop` frames.
+    /// Frames within the audio only: `1 + (samples - window) / hop` frames.
     Inside,
-    /// The middle of frame `i` is sample `i * hop`; before its begin and after its end the sound is reflected
-    /// (`librosa` with `center=True, pad_mode="reflect"`): `1 + samples / hop` frames.
+    /// Frame `i` is centred on sample `i * hop`; the audio is padded by reflection (`librosa` with
+    /// `center=True, pad_mode="reflect"`): `1 + samples / hop` frames.
     Reflected,
-    /// As `Reflected`, with silence before its begin and after its end.
+    /// As `Reflected`, but padded with silence.
     Silent,
 }
 
-/// Overlapping triangles, evenly spaced on a mel scale.
+/// Mel bands: overlapping triangular filters, evenly spaced on a mel scale.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MelBands {
-    /// How many.
+    /// Number of bands.
     pub count: usize,
-    /// Where the first begins, Hz.
+    /// Start of the first band in Hz.
     pub low_hz: f64,
-    /// Where the last ends, Hz.
+    /// End of the last band in Hz.
     pub high_hz: f64,
-    /// The scale on which they are evenly spaced.
+    /// Scale on which the bands are evenly spaced.
     pub scale: MelScale,
-    /// Over which axis the sides of the triangles are straight.
+    /// Axis on which the sides of the triangles are straight.
     pub sides: Sides,
-    /// Whether each is scaled to an area of one over frequency (`norm="slaney"`) rather than to a height of one.
+    /// Whether each band is scaled to unit area over frequency (`norm="slaney"`), else to unit height.
     pub unit_area: bool,
 }
 
-/// Pitch as it is heard, against frequency.
+/// Mel scale: perceived pitch as a function of frequency.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MelScale {
     /// Slaney's Auditory Toolbox: linear up to 1000 Hz, logarithmic above.
@@ -66,34 +66,34 @@ pub enum MelScale {
     Htk,
 }
 
-/// Over which axis the sides of a triangle are straight.
+/// Axis on which the sides of a triangle are straight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sides {
     /// Over frequency, as in librosa and torchaudio.
     Hertz,
-    /// Over the mel scale, as in TensorFlow, which also leaves the constant part out.
+    /// Over the mel scale, as in TensorFlow, which also omits the constant component.
     Mel,
 }
 
-/// How the sums of the bands are compressed.
+/// Compression of the bands' sums.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Log {
     /// `ln(sum + offset)`.
     Natural {
-        /// What keeps silence finite.
+        /// Offset that keeps silence finite.
         offset: f32,
     },
-    /// `10 log10(max(sum, least))`, and nothing further than `range` below the loudest band of the whole sound
-    /// (`librosa.power_to_db` with `ref=1`).
+    /// `10 log10(max(sum, least))`, limited to `range` below the loudest band of the whole recording (`librosa.power_to_db`
+    /// with `ref=1`).
     Decibel {
-        /// The least sum.
+        /// Minimum sum.
         least: f32,
-        /// dB; `None` keeps everything.
+        /// Range in dB; `None` for no limit.
         range: Option<f32>,
     },
 }
 
-/// How the cosine transform (DCT-II) of `n` bands is scaled.
+/// Scaling of the cosine transform (DCT-II) of `n` bands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CosineScale {
     /// `sqrt(2 / n)`, and `sqrt(1 / n)` for the first coefficient: `norm="ortho"` of SciPy and librosa.
@@ -102,12 +102,12 @@ pub enum CosineScale {
     Uniform,
 }
 
-/// Most samples of a window, points of a transform, bands or coefficients.
+/// Maximum of window, transform size, bands and coefficients.
 const MOST: usize = 1 << 16;
 
 impl MfccOptions {
-    /// The recipe of TensorFlow's keyword spotting (TinyML, DS-CNN): 40 bands from 20 to 4000 Hz of 30 ms every 20 ms,
-    /// ten coefficients. The sound is brought to its [peak](crate::mfcc::peak_factor).
+    /// Returns the options of TensorFlow's keyword spotting (TinyML, DS-CNN): 40 bands from 20 to 4000 Hz of 30 ms every 20 ms,
+    /// ten coefficients. The audio is first normalised by its [peak](crate::mfcc::peak_factor).
     pub fn keywords() -> Self {
         Self {
             sample_rate: 16_000,
@@ -130,6 +130,7 @@ impl MfccOptions {
         }
     }
 
+    /// Returns the options of
     /// `librosa.feature.mfcc(y, sr=sample_rate, n_mfcc=coefficients, n_fft=window, hop_length=hop, pad_mode="reflect")`:
     /// librosa's defaults, with the reflection that was its default before 0.10.
     pub fn librosa(sample_rate: u32, window: usize, hop: usize, coefficients: usize) -> Self {
@@ -154,8 +155,9 @@ impl MfccOptions {
         }
     }
 
-    /// The bands of Whisper's spectrogram in decibels, from `librosa.filters.mel(sr=16000, n_fft=400, n_mels=bands)`:
-    /// 25 ms every 10 ms. Whisper takes them [before](crate::mfcc::Mfcc::log_mel_into) the cosine transform.
+    /// Returns the options of Whisper's spectrogram in decibels, with the bands of
+    /// `librosa.filters.mel(sr=16000, n_fft=400, n_mels=bands)`: 25 ms every 10 ms. Whisper uses the bands
+    /// [before](crate::mfcc::Mfcc::log_mel_into) the cosine transform.
     pub fn whisper(bands: usize) -> Self {
         let librosa = Self::librosa(16_000, 400, 160, 1);
         Self { bands: MelBands { count: bands, ..librosa.bands }, ..librosa }
@@ -171,26 +173,28 @@ impl MfccOptions {
         ];
         for (name, size) in sizes {
             if !(1..=MOST).contains(&size) {
-                return Err(Error::invalid_param(format!("{name} = {size} of an MFCC: give 1 to {MOST}")));
+                return Err(Error::invalid_param(format!(
+                    "{name} = {size} of an MFCC is out of range; use 1 to {MOST}"
+                )));
             }
         }
         if self.fft < self.window || !self.fft.is_multiple_of(2) {
             let (fft, window) = (self.fft, self.window);
             return Err(Error::invalid_param(format!(
-                "a transform of {fft} points for a window of {window} samples; give an even number, at least as many"
+                "fft = {fft} is invalid for a window of {window} samples; use an even number of at least {window}"
             )));
         }
         if self.coefficients > self.bands.count {
             let (coefficients, bands) = (self.coefficients, self.bands.count);
             return Err(Error::invalid_param(format!(
-                "{coefficients} coefficients of {bands} bands; give at least as many bands"
+                "{coefficients} coefficients need at least as many bands, not {bands}"
             )));
         }
         let MelBands { low_hz, high_hz, .. } = self.bands;
         let highest = f64::from(self.sample_rate) / 2.0;
         if !(0.0 <= low_hz && low_hz < high_hz && high_hz <= highest) {
             return Err(Error::invalid_param(format!(
-                "mel bands from {low_hz} to {high_hz} Hz; give frequencies that rise within 0 and {highest} Hz"
+                "mel bands from {low_hz} to {high_hz} Hz are invalid; use increasing frequencies within 0 and {highest} Hz"
             )));
         }
         Ok(())

@@ -1,21 +1,21 @@
-//! Cepstra of sound that comes in pieces.
+//! Cepstra of a stream of audio.
 
 use opendr_engine::{Error, Result};
 use opendr_kernels::FOURIER_FRAMES;
 
 use crate::mfcc::{Edges, Log, Mfcc, Work};
 
-/// What one stream of sound remembers between its pieces: less than a window of samples.
+/// State of a stream: less than a window of samples.
 #[derive(Debug, Default, Clone)]
 pub struct MfccStream {
-    /// Samples from the begin of the next frame on.
+    /// Samples from the start of the next frame on.
     pending: Vec<f32>,
-    /// Samples to be left out before the next frame, where the hop is longer than the window.
+    /// Number of samples to skip before the next frame, where the hop is longer than the window.
     skip: usize,
 }
 
 impl MfccStream {
-    /// Forgets the stream: the next piece begins a new one.
+    /// Resets the stream; the next piece starts a new one.
     pub fn reset(&mut self) {
         self.pending.clear();
         self.skip = 0;
@@ -23,17 +23,16 @@ impl MfccStream {
 }
 
 impl Mfcc {
-    /// Takes the next piece of a stream, of any length, and hands on the coefficients of each frame that it completes:
-    /// in all the same as [`Mfcc::run_into`] gives for the stream in one piece.
+    /// Adds a piece of any length and passes the coefficients of each completed frame to `frame`; in total the same as
+    /// [`Mfcc::run_into`] of the stream in one piece.
     ///
     /// # Errors
-    /// `Unsupported` for a recipe that needs the whole sound: frames that reach over its edges, or loudness that is
-    /// limited in relation to the loudest.
+    /// `Unsupported` for options that need the whole recording: padding at its edges, or a range relative to its loudest band.
     pub fn push(&self, stream: &mut MfccStream, piece: &[f32], mut frame: impl FnMut(&[f32])) -> Result<()> {
         let options = self.options();
         if options.edges != Edges::Inside || matches!(options.log, Log::Decibel { range: Some(_), .. }) {
             return Err(Error::unsupported(
-                "this recipe of MFCC needs the whole sound; use Edges::Inside and no range for pieces",
+                "these MFCC options need the whole recording; for a stream, use Edges::Inside and no decibel range",
             ));
         }
         let left_out = stream.skip.min(piece.len());

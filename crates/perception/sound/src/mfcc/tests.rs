@@ -2,7 +2,7 @@ use opendr_engine::ErrorKind;
 
 use super::*;
 
-/// A falling and rising tone, louder with time.
+/// A tone with falling and rising pitch and increasing volume.
 fn tone(samples: usize) -> Vec<f32> {
     let sample = |at: usize| {
         let time = at as f64 / 16_000.0;
@@ -18,7 +18,7 @@ fn cepstra(options: MfccOptions, samples: &[f32]) -> (usize, Vec<f32>) {
 }
 
 #[test]
-fn frames_lie_where_the_recipe_says() {
+fn frame_counts_follow_the_options() {
     let frames = |options: MfccOptions, samples| Mfcc::new(options).unwrap().frames(samples);
     let counts = [0, 479, 480, 799, 800, 16_000].map(|samples| frames(MfccOptions::keywords(), samples));
     assert_eq!(counts, [0, 0, 1, 1, 2, 49]);
@@ -31,7 +31,7 @@ fn frames_lie_where_the_recipe_says() {
 }
 
 #[test]
-fn pieces_give_what_the_whole_gives() {
+fn pieces_yield_the_cepstra_of_the_whole() {
     let long_hop = MfccOptions { hop: 700, ..MfccOptions::keywords() };
     for options in [MfccOptions::keywords(), long_hop] {
         let samples = tone(9_000);
@@ -50,7 +50,7 @@ fn pieces_give_what_the_whole_gives() {
 }
 
 #[test]
-fn what_needs_the_whole_takes_no_pieces() {
+fn options_that_need_the_whole_recording_refuse_pieces() {
     let mfcc = Mfcc::new(MfccOptions::librosa(16_000, 640, 480, 64)).unwrap();
     let refused = mfcc.push(&mut MfccStream::default(), &[0.0; 9], |_| {});
     assert_eq!(refused.unwrap_err().kind(), ErrorKind::Unsupported);
@@ -85,22 +85,22 @@ impl MapEach for Vec<f32> {
 }
 
 #[test]
-fn a_peak_becomes_one() {
+fn the_peak_is_normalised_to_one() {
     let loud: Vec<f32> = (0..16_000).map(|at| 0.25 * (at as f32 * 0.05).sin()).collect();
     let factor = peak_factor(&loud);
     assert!((factor - 4.0).abs() < 1e-3, "{factor}");
     let whole: Vec<f32> = loud.iter().map(|sample| sample * factor).collect();
     for options in [MfccOptions::keywords(), MfccOptions::librosa(16_000, 640, 480, 64)] {
         let mfcc = Mfcc::new(options).unwrap();
-        let (mut scaled, mut wanted) = (Vec::new(), Vec::new());
+        let (mut scaled, mut expected) = (Vec::new(), Vec::new());
         mfcc.run_scaled_into(&loud, factor, &mut scaled);
-        mfcc.run_into(&whole, &mut wanted);
-        assert!(scaled.iter().zip(&wanted).all(|(one, other)| (one - other).abs() < 2e-3));
+        mfcc.run_into(&whole, &mut expected);
+        assert!(scaled.iter().zip(&expected).all(|(one, other)| (one - other).abs() < 2e-3));
     }
 }
 
 #[test]
-fn silence_and_what_is_nearly_silence_stay_numbers() {
+fn cepstra_of_near_silence_are_finite() {
     assert_eq!(peak_factor(&[0.0, -1.0]), 1.0);
     let mut cepstra = Vec::new();
     for level in [0.0, f32::from_bits(1), f32::MIN_POSITIVE] {
@@ -115,7 +115,7 @@ fn silence_and_what_is_nearly_silence_stay_numbers() {
 }
 
 #[test]
-fn recipes_that_cannot_be_are_refused() {
+fn invalid_options_are_refused() {
     let good = MfccOptions::keywords();
     let bands = |low_hz, high_hz| MelBands { low_hz, high_hz, ..good.bands };
     for wrong in [

@@ -1,37 +1,32 @@
-//! From a frame of sound to its spectrum, and from bands to coefficients.
+//! Spectra of frames, and coefficients of bands.
 
 use std::f64::consts::PI;
 
-use opendr_kernels::{
-    Compute, FOURIER_FRAMES, FourierWork, Isa, Matrix, MatrixMut, Product, RealFourier, Spectrum,
-};
+use opendr_kernels::{Compute, FourierScratch, Isa, Matrix, MatrixMut, Product, RealFourier, Spectrum};
 
-use crate::mfcc::mel_bank::MelBank;
+use crate::mfcc::mel_bank::{Frames, MelBank};
 use crate::mfcc::options::{CosineScale, Edges, MfccOptions};
 
-/// A number of each frame that is transformed together with others.
-pub(super) type Frames = [f32; FOURIER_FRAMES];
-
-/// Windowed frames and their spectra, several frames at a time.
+/// Window function and Fourier transform of several frames at a time.
 pub(super) struct FrameSpectrum {
     fourier: RealFourier,
     window: Vec<f32>,
-    /// Where the window begins in the frame that is transformed.
+    /// Offset of the window in the transformed frame.
     begin: usize,
     hop: usize,
     edges: Edges,
     kind: Spectrum,
 }
 
-/// Memory for the frames that are transformed together.
+/// Buffers of the frames that are transformed together.
 #[derive(Default)]
 pub(super) struct FrameWork {
-    /// The frames, windowed; what no window spans stays zero.
+    /// Windowed frames; samples outside the window stay zero.
     samples: Vec<Frames>,
-    fourier: FourierWork,
+    fourier: FourierScratch,
     /// Magnitude or power of each frequency.
     values: Vec<Frames>,
-    /// What each band sums of them.
+    /// Sums of each band.
     sums: Vec<Frames>,
 }
 
@@ -49,7 +44,7 @@ impl FrameSpectrum {
         }
     }
 
-    /// Puts frame number `index` of `samples`, which are not empty, into place `lane` of those that `work` transforms together.
+    /// Writes frame `index` of `samples`, which are not empty, into lane `lane` of `work`.
     pub fn fill(&self, samples: &[f32], index: usize, lane: usize, work: &mut FrameWork) {
         let (size, start) = (self.fourier.size(), index * self.hop);
         let inside = |first: usize| samples.get(first..first + self.window.len());
@@ -71,14 +66,14 @@ impl FrameSpectrum {
         self.place((0..self.window.len()).map(sample), lane, work);
     }
 
-    /// Puts the samples of a frame, as many as the window spans, into place `lane` of those that `work` transforms together.
+    /// Writes the samples of a frame, as many as the window spans, into lane `lane` of `work`.
     pub fn place(&self, frame: impl Iterator<Item = f32>, lane: usize, work: &mut FrameWork) {
         work.samples.resize(self.fourier.size(), Frames::default());
         let places = work.samples[self.begin..].iter_mut().zip(&self.window);
         places.zip(frame).for_each(|((place, weight), sample)| place[lane] = weight * sample);
     }
 
-    /// The sums of the bands of the frames in `work`.
+    /// Computes the bands' sums of the frames in `work`.
     pub fn band_sums<'w>(&self, bank: &MelBank, work: &'w mut FrameWork) -> &'w [Frames] {
         let FrameWork { samples, fourier, values, sums } = work;
         self.fourier.run(Isa::best(), self.kind, samples, fourier, values);
@@ -87,7 +82,7 @@ impl FrameSpectrum {
     }
 }
 
-/// The place within `count` samples that `at` is reflected to, at the first and the last sample, as often as needed.
+/// Returns the index within `count` samples to which `at` is reflected at the first and the last sample, repeatedly.
 fn reflected(at: isize, count: usize) -> usize {
     let period = (2 * (count - 1)).max(1);
     let at = at.rem_euclid(period as isize) as usize;
@@ -98,7 +93,7 @@ fn reflected(at: isize, count: usize) -> usize {
 pub(super) struct CosineTransform {
     bands: usize,
     coefficients: usize,
-    /// `[bands, coefficients]`.
+    /// Matrix `[bands, coefficients]`.
     table: Vec<f32>,
     compute: Compute,
 }
@@ -134,7 +129,7 @@ impl CosineTransform {
 mod tests {
     use super::reflected;
 
-    /// `numpy.pad(range(4), 7, "reflect")`, and one sample.
+    /// Expected values of `numpy.pad(range(4), 7, "reflect")`, and of one sample.
     #[test]
     fn reflections_repeat() {
         let places: Vec<usize> = (-7..8).map(|at| reflected(at, 4)).collect();

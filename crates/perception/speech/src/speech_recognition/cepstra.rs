@@ -1,17 +1,17 @@
-//! From sound to what the network is given.
+//! Input of the networks: cepstra of audio.
 
 use opendr_engine::{Error, Pool, Result};
 use opendr_sound::mfcc::{Mfcc, MfccOptions};
-use opendr_sound::{Sound, standardise};
+use opendr_sound::{AudioInput, standardise};
 
-/// Frames that the network is given: 1.2 s of sound; what is longer is cut, what is shorter filled up.
+/// Number of frames in the network's input: 1.2 s of audio; longer audio is cut, shorter audio is padded.
 pub const FRAMES: usize = 40;
 
-/// Cepstra as OpenDR's learners make them: coefficients of 40 ms every 30 ms, with librosa's recipe, brought to mean
-/// zero and deviation one over the sound. Different from OpenDR, what fills up short sound is that mean, not a value
-/// that stands for loud noise.
+/// MFCC front end of OpenDR's learners: windows of 40 ms every 30 ms, computed as librosa does, normalised to zero mean and
+/// unit deviation over the audio. Different from OpenDR, short audio is padded with that mean, not with a value that
+/// corresponds to loud noise.
 pub struct FrontEnd {
-    /// `None`: series are cepstra already.
+    /// `None` when the input consists of cepstra.
     mfcc: Option<Mfcc>,
     sample_rate: u32,
     coefficients: usize,
@@ -19,21 +19,21 @@ pub struct FrontEnd {
 }
 
 impl FrontEnd {
-    /// The front end for sound at `sample_rate`; with `mfcc` unset, for cepstra `[frames, coefficients]` instead.
+    /// Creates the front end for audio at `sample_rate` in Hz; with `mfcc` unset, for cepstra `[frames, coefficients]`.
     ///
     /// # Errors
-    /// `InvalidParam` for a rate that is too low.
+    /// `InvalidParam` for a sample rate that is too low.
     pub fn new(mfcc: bool, sample_rate: u32, coefficients: usize) -> Result<Self> {
         let (window, hop) = (sample_rate as usize / 25, sample_rate as usize * 3 / 100);
         let make = || Mfcc::new(MfccOptions::librosa(sample_rate, window, hop, coefficients));
         Ok(Self { mfcc: mfcc.then(make).transpose()?, sample_rate, coefficients, cepstra: Pool::default() })
     }
 
-    /// Replaces `input` by what the network is given, `[coefficients, FRAMES]`.
+    /// Replaces `input` by the network's input, `[coefficients, FRAMES]`.
     ///
     /// # Errors
-    /// `InvalidInput` when it is no sound of that rate, or (without MFCC) no cepstra.
-    pub fn input_into(&self, sound: Sound<'_>, input: &mut Vec<f32>) -> Result<()> {
+    /// `InvalidInput` for audio of another sample rate, or (without MFCC) for an input that is no cepstra.
+    pub fn input_into(&self, sound: AudioInput<'_>, input: &mut Vec<f32>) -> Result<()> {
         let cepstra = &mut *self.cepstra.take();
         self.cepstra_into(sound, cepstra)?;
         input.clear();
@@ -45,11 +45,11 @@ impl FrontEnd {
         Ok(())
     }
 
-    /// Replaces `cepstra` by the frames, at most [`FRAMES`], with as many coefficients as [`FrontEnd::new`] was told.
+    /// Replaces `cepstra` by at most [`FRAMES`] frames, each with the number of coefficients given to [`FrontEnd::new`].
     ///
     /// # Errors
     /// As [`FrontEnd::input_into`].
-    pub fn cepstra_into(&self, sound: Sound<'_>, cepstra: &mut Vec<f32>) -> Result<()> {
+    pub fn cepstra_into(&self, sound: AudioInput<'_>, cepstra: &mut Vec<f32>) -> Result<()> {
         match (&self.mfcc, sound) {
             (Some(mfcc), sound) => {
                 mfcc.run_into(&sound.samples(self.sample_rate)?, cepstra);
@@ -57,7 +57,7 @@ impl FrontEnd {
                 standardise(cepstra);
                 Ok(())
             }
-            (None, Sound::Series(series)) if series.shape()[1] == self.coefficients => {
+            (None, AudioInput::Series(series)) if series.shape()[1] == self.coefficients => {
                 cepstra.clear();
                 cepstra.extend(series.as_slice().iter().take(FRAMES * self.coefficients));
                 Ok(())
@@ -65,8 +65,8 @@ impl FrontEnd {
             (None, _) => {
                 let coefficients = self.coefficients;
                 Err(Error::invalid_input(format!(
-                    "with preprocess_to_mfcc = false the learner takes a Timeseries of {coefficients} coefficients a \
-                     frame; give that, or sound with preprocess_to_mfcc = true"
+                    "with preprocess_to_mfcc = false the input must be a Timeseries of {coefficients} coefficients per \
+                     frame; pass such a series, or audio with preprocess_to_mfcc = true"
                 )))
             }
         }
@@ -82,7 +82,7 @@ mod tests {
     const COEFFICIENTS: usize = 64;
 
     #[test]
-    fn short_sound_is_filled_and_long_sound_cut() {
+    fn short_audio_is_padded_and_long_audio_cut() {
         let front_end = FrontEnd::new(true, 16_000, COEFFICIENTS).unwrap();
         let noise = |samples: usize| {
             let samples: Vec<f32> = (0..samples).map(|at| ((at * at) as f32 * 0.01).sin()).collect();
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn cepstra_are_taken_as_they_are() {
+    fn cepstra_pass_unchanged() {
         let front_end = FrontEnd::new(false, 16_000, COEFFICIENTS).unwrap();
         let numbers: Vec<f32> = (0..2 * COEFFICIENTS).map(|at| at as f32).collect();
         let series = Timeseries::new(numbers, [2, COEFFICIENTS]).unwrap();

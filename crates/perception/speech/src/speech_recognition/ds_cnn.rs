@@ -1,8 +1,8 @@
-//! DS-CNN: convolutions that are separable in depth, over ten cepstra a frame; 12 words in 52 kB.
+//! DS-CNN: depthwise separable convolutions over ten cepstra per frame; 12 words in 52 kB.
 //!
-//! Zhang, Suda, Lai and Chandra, Hello Edge: Keyword Spotting on Microcontrollers, 2017; the network that MLPerf Tiny ships,
-//! in eight bits. A sound is brought to its peak first; what is longer than a second is cut, what is shorter filled up
-//! with silence. A stream is answered twice a second, each time for the second before.
+//! Zhang, Suda, Lai and Chandra, Hello Edge: Keyword Spotting on Microcontrollers, 2017; the INT8 network of MLPerf Tiny. Audio
+//! is normalised by its peak; longer than a second it is cut, shorter it is padded with silence. A stream yields a prediction
+//! twice per second, each for the last second.
 
 use opendr_engine::learner::{Learner, Spec, Streaming};
 use opendr_engine::model::Model;
@@ -11,15 +11,15 @@ use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{ElementType, Session, TensorView};
 use opendr_perception_common::category_scores::category_from_probabilities;
-use opendr_sound::Sound;
+use opendr_sound::AudioInput;
 use opendr_sound::mfcc::{Mfcc, MfccOptions, peak_factor};
 
-use crate::speech_recognition::word_stream::{Listening, WordStream, WordStreamParams};
+use crate::speech_recognition::word_stream::{SpeechWindows, WordStream, WordStreamParams};
 
-/// What a user may set.
+/// Parameters of [`DsCnn`].
 #[derive(Debug, Clone, Params)]
 pub struct DsCnnParams {
-    /// How a stream is listened to.
+    /// Options of streams.
     #[param(flatten)]
     pub stream: WordStreamParams,
 }
@@ -29,23 +29,23 @@ pub struct DsCnn {
     params: DsCnnParams,
     classes: Classes,
     mfcc: Mfcc,
-    listening: Listening,
+    windows: SpeechWindows,
     session: Session,
     work: Pool<Work>,
 }
 
 #[derive(Default)]
 struct Work {
-    /// What is shorter than a second, filled up.
+    /// Audio of less than a second, padded to a second.
     second: Vec<f32>,
     cepstra: Vec<f32>,
 }
 
-/// The network in every container: cepstra `[1, 1, 49, 10]` to the probability of each class, in 8 bits between.
+/// File of the network in every container: cepstra `[1, 1, 49, 10]` to class probabilities, in INT8 internally.
 const FILE: &str = "model.onnx";
-/// Samples a second that the network knows, and all that it hears.
+/// Sample rate of the network, and length of its input in samples.
 const SAMPLE_RATE: u32 = 16_000;
-/// Frames of a second, coefficients of a frame.
+/// Frames per second of audio, and coefficients per frame.
 const FRAMES: usize = 49;
 const COEFFICIENTS: usize = 10;
 
@@ -73,26 +73,26 @@ impl DsCnn {
 impl Learner for DsCnn {
     const SPEC: Spec = Spec::new("ds_cnn", Task::SpeechRecognition)
         .class("DsCnnLearner")
-        .about("DS-CNN tells twelve words apart, in 52 kB and 8 bits.");
+        .about("DS-CNN classifies twelve spoken words, in 52 kB and INT8.");
     type Params = DsCnnParams;
-    type Input<'a> = Sound<'a>;
+    type Input<'a> = AudioInput<'a>;
     type Target = Category;
     type State = WordStream;
 
     fn load(model: &Model, params: DsCnnParams, device: Device) -> Result<Self> {
         let session = Session::open(&model.file(FILE)?, device)?;
         let ([input], [output]) = (session.inputs(), session.outputs()) else {
-            return Err(Error::format(format!("{FILE} has not one input and one output")));
+            return Err(Error::format(format!("{FILE} does not have exactly one input and one output")));
         };
         let floats = [input, output].iter().all(|tensor| tensor.element_type == ElementType::F32);
         if !floats || !matches!(input.dims[..], [_, Some(1), Some(FRAMES), Some(COEFFICIENTS)]) {
             return Err(Error::format(format!(
-                "{FILE} turns {input} into {output}; this learner wants 49 frames of 10 cepstra, and gives probabilities"
+                "{FILE} maps {input} to {output}; expected 49 frames of 10 cepstra as input and class probabilities as output"
             )));
         }
         Ok(Self {
             mfcc: Mfcc::new(MfccOptions::keywords())?,
-            listening: Listening::new(&params.stream, SAMPLE_RATE, device)?,
+            windows: SpeechWindows::new(&params.stream, SAMPLE_RATE, device)?,
             classes: model.manifest().classes.clone(),
             work: Pool::default(),
             params,
@@ -112,15 +112,20 @@ impl Learner for DsCnn {
         self.classes.clone()
     }
 
-    fn infer_into(&self, _: &mut WordStream, sound: Sound<'_>, category: &mut Category) -> Result<()> {
+    fn infer_into(&self, _: &mut WordStream, sound: AudioInput<'_>, category: &mut Category) -> Result<()> {
         self.category(&sound.samples(SAMPLE_RATE)?, category)
     }
 }
 
-/// An answer for every second of sound, each half a second after the one before.
+/// Yields a prediction for every second of audio, each half a second after the one before.
 impl Streaming for DsCnn {
-    fn push(&self, state: &mut WordStream, piece: Sound<'_>, emit: &mut dyn FnMut(Category)) -> Result<()> {
-        self.listening.push(state, &piece.samples(SAMPLE_RATE)?, |second| {
+    fn push(
+        &self,
+        state: &mut WordStream,
+        piece: AudioInput<'_>,
+        emit: &mut dyn FnMut(Category),
+    ) -> Result<()> {
+        self.windows.push(state, &piece.samples(SAMPLE_RATE)?, |second| {
             let mut category = Category::default();
             self.category(second.as_slice(), &mut category)?;
             emit(category);
@@ -129,7 +134,7 @@ impl Streaming for DsCnn {
     }
 
     fn flush(&self, state: &mut WordStream, emit: &mut dyn FnMut(Category)) -> Result<()> {
-        if let Some(rest) = self.listening.flush(state)? {
+        if let Some(rest) = self.windows.flush(state)? {
             let mut category = Category::default();
             self.category(rest.as_slice(), &mut category)?;
             emit(category);

@@ -1,4 +1,4 @@
-//! Words in a stream of sound.
+//! Words in a stream of audio.
 
 use std::collections::VecDeque;
 
@@ -9,52 +9,51 @@ use opendr_engine::{Device, Error, Result};
 
 use crate::voice_activity::{CHUNK, SAMPLE_RATE, Speech, VoiceNetwork, VoiceRule, VoiceStream};
 
-/// How a stream of sound is listened to.
+/// Options of streams of audio.
 #[derive(Debug, Clone, Params)]
 pub struct WordStreamParams {
-    /// A container of `silero_vad`: seconds of a stream in which nobody speaks are then not answered, which is
-    /// the wake-word mode. None: every second is answered.
+    /// Path of a container of `silero_vad`; seconds of a stream without speech then yield no prediction (wake-word mode). None:
+    /// every second yields a prediction.
     pub voice_activity: Option<String>,
 }
 
-/// What a stream remembers: at most a second of sound, and whether somebody spoke in it.
+/// State of a stream: at most a second of audio, and whether it contains speech.
 ///
-/// Time is counted in samples. Pieces may have any length, and pieces that come late or with other stamps change nothing:
-/// whoever loses sound gives silence instead, or resets the stream. A piece of another sample rate is refused
-/// and leaves the stream as it was.
+/// Time is counted in samples. Pieces may have any length, and late pieces or other stamps change nothing: the caller passes
+/// silence for lost audio, or resets the stream. A piece of another sample rate is refused and leaves the stream unchanged.
 #[derive(Debug, Default)]
 pub struct WordStream {
     pending: Vec<f32>,
-    /// Samples at its begin that an answer was given for.
-    heard: usize,
+    /// Number of samples at the start of `pending` that a prediction already covered.
+    processed: usize,
     voice: VoiceStream,
     speech: Speech,
-    /// Whether somebody spoke in each chunk of the last second.
+    /// Whether each chunk of the last second contains speech, newest first.
     spoken: VecDeque<bool>,
 }
 
-/// What decides which seconds of a stream are answered.
-pub(super) struct Listening {
+/// Cuts a stream into windows of a second and selects those with speech.
+pub(super) struct SpeechWindows {
     rate: usize,
     voice: Option<(VoiceNetwork, VoiceRule)>,
 }
 
-/// A file of the container of `silero_vad`.
+/// File of the network in a container of `silero_vad`.
 const FILE: &str = "model.onnx";
-/// Chunks with speech (128 ms) that a second must have to be answered.
+/// Minimum number of chunks with speech in a window that yields a prediction: 4 chunks are 128 ms.
 const LEAST_CHUNKS: usize = 4;
 
-impl Listening {
-    /// For sound at `rate`.
+impl SpeechWindows {
+    /// Creates windows for audio at `rate` in Hz.
     ///
     /// # Errors
-    /// `InvalidParam` where voice activity is wanted at another rate than its network knows, else what kept that
-    /// from being loaded.
+    /// `InvalidParam` where voice activity detection is requested at another rate than that of its network; the errors of
+    /// loading its container.
     pub fn new(params: &WordStreamParams, rate: u32, device: Device) -> Result<Self> {
         let voice = match &params.voice_activity {
             Some(_) if rate != SAMPLE_RATE => {
                 return Err(Error::invalid_param(format!(
-                    "voice_activity hears sound at {SAMPLE_RATE} Hz, not at {rate}; leave it out, or change sample_rate"
+                    "voice_activity requires sample_rate = {SAMPLE_RATE}, not {rate}; omit voice_activity or change sample_rate"
                 )));
             }
             Some(path) => {
@@ -66,10 +65,10 @@ impl Listening {
         Ok(Self { rate: rate as usize, voice })
     }
 
-    /// Takes sound in, and hands on each second of it, half a second after the one before, that is to be answered.
+    /// Adds samples and passes every window with speech to `each`; windows of a second start half a second apart.
     ///
     /// # Errors
-    /// Whatever the network or `each` fails with.
+    /// The errors of the network and of `each`.
     pub fn push(
         &self,
         stream: &mut WordStream,
@@ -81,34 +80,33 @@ impl Listening {
             let (now, later) = samples.split_at((second - stream.pending.len()).min(samples.len()));
             stream.pending.extend_from_slice(now);
             samples = later;
-            self.listen(stream, now)?;
+            self.detect_voice(stream, now)?;
             if stream.pending.len() < second {
                 return Ok(());
             }
-            if self.is_answered(stream) {
+            if self.has_speech(stream) {
                 each(&self.audio(&stream.pending)?)?;
             }
-            stream.heard = second - second / 2;
+            stream.processed = second - second / 2;
             stream.pending.drain(..second / 2);
         }
     }
 
-    /// What is left when the stream ends, where it is to be answered and no answer was given for it; the stream is a fresh one
-    /// after.
+    /// Ends the stream and resets it. Returns the remaining samples, where they contain speech and no window covered them.
     ///
-    /// # Errors
+    /// The errors of the network.
     /// Whatever the network fails with.
     pub fn flush(&self, stream: &mut WordStream) -> Result<Option<Audio>> {
         let rest = std::mem::take(stream);
-        let wanted = rest.pending.len() > rest.heard && self.is_answered(&rest);
-        if wanted { self.audio(&rest.pending).map(Some) } else { Ok(None) }
+        let is_pending = rest.pending.len() > rest.processed && self.has_speech(&rest);
+        if is_pending { self.audio(&rest.pending).map(Some) } else { Ok(None) }
     }
 
     fn audio(&self, samples: &[f32]) -> Result<Audio> {
         Audio::new(samples.to_vec(), 1, self.rate as u32)
     }
 
-    fn listen(&self, stream: &mut WordStream, samples: &[f32]) -> Result<()> {
+    fn detect_voice(&self, stream: &mut WordStream, samples: &[f32]) -> Result<()> {
         let Some((network, rule)) = &self.voice else { return Ok(()) };
         let WordStream { voice, speech, spoken, .. } = stream;
         network.push(voice, samples, |probability| {
@@ -119,7 +117,7 @@ impl Listening {
         })
     }
 
-    fn is_answered(&self, stream: &WordStream) -> bool {
+    fn has_speech(&self, stream: &WordStream) -> bool {
         let chunks = stream.spoken.iter().take(stream.pending.len() / CHUNK);
         self.voice.is_none() || chunks.filter(|spoken| **spoken).count() >= LEAST_CHUNKS
     }
@@ -129,26 +127,26 @@ impl Listening {
 mod tests {
     use super::*;
 
-    fn listening(rate: usize) -> Listening {
-        Listening { rate, voice: None }
+    fn windows_at(rate: usize) -> SpeechWindows {
+        SpeechWindows { rate, voice: None }
     }
 
     #[test]
-    fn pieces_give_the_windows_of_the_whole() {
+    fn pieces_yield_the_windows_of_the_whole() {
         let sound: Vec<f32> = (0..37).map(|at| at as f32).collect();
         let windows = |size: usize| {
             let (mut stream, mut windows) = (WordStream::default(), Vec::new());
             for piece in sound.chunks(size) {
-                let taken = listening(10).push(&mut stream, piece, |window| {
+                let taken = windows_at(10).push(&mut stream, piece, |window| {
                     windows.push(window.as_slice().to_vec());
                     Ok(())
                 });
                 taken.unwrap();
                 assert!(stream.pending.len() < 10);
             }
-            let rest = listening(10).flush(&mut stream).unwrap();
+            let rest = windows_at(10).flush(&mut stream).unwrap();
             windows.extend(rest.map(|rest| rest.as_slice().to_vec()));
-            assert!(listening(10).flush(&mut stream).unwrap().is_none());
+            assert!(windows_at(10).flush(&mut stream).unwrap().is_none());
             windows
         };
         let whole = windows(37);
@@ -161,18 +159,18 @@ mod tests {
     }
 
     #[test]
-    fn what_was_answered_is_not_left() {
+    fn flush_omits_covered_samples() {
         let mut stream = WordStream::default();
-        listening(10).push(&mut stream, &[0.0; 15], |_| Ok(())).unwrap();
-        assert!(listening(10).flush(&mut stream).unwrap().is_none());
+        windows_at(10).push(&mut stream, &[0.0; 15], |_| Ok(())).unwrap();
+        assert!(windows_at(10).flush(&mut stream).unwrap().is_none());
     }
 
     #[test]
-    fn an_hour_of_silence_takes_the_memory_of_a_second() {
+    fn memory_is_bounded_over_an_hour_of_silence() {
         let (mut stream, mut windows) = (WordStream::default(), 0);
-        let listening = listening(16_000);
+        let windows_at = windows_at(16_000);
         for _ in 0..3600 * 16 {
-            let taken = listening.push(&mut stream, &[0.0; 1000], |_| {
+            let taken = windows_at.push(&mut stream, &[0.0; 1000], |_| {
                 windows += 1;
                 Ok(())
             });

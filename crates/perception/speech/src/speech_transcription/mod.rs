@@ -1,4 +1,4 @@
-//! What was said.
+//! Speech transcription.
 
 mod whisper;
 

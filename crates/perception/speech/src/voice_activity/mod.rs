@@ -1,8 +1,8 @@
-//! Whether somebody speaks: a probability for every 32 ms of sound, and where speech begins and ends.
+//! Voice activity detection: a speech probability for every 32 ms of audio, and the start and end of speech.
 //!
-//! [`VoiceNetwork`] is Silero's network (Silero Team, Silero VAD, 2024), [`VoiceRule`] turns its probabilities into speech
-//! with a beginning and an end, with the hysteresis of that project's iterator. Both take a stream in pieces of any length
-//! and keep what they remember outside of themselves, in [`VoiceStream`] and [`Speech`]; time is counted in samples.
+//! [`VoiceNetwork`] is Silero's network (Silero Team, Silero VAD, 2024). [`VoiceRule`] turns its probabilities into speech with
+//! a start and an end, with the hysteresis of that project's iterator. Both process a stream in pieces of any length; the state
+//! is in [`VoiceStream`] and [`Speech`]. Time is counted in samples.
 //!
 //! ```
 //! use opendr_speech::voice_activity::{CHUNK, Speech, SpeechChange, VoiceRule};

@@ -1,15 +1,15 @@
-//! Silero's network over a stream.
+//! Silero's network on a stream.
 
 use opendr_engine::{Device, Error, Result};
 use opendr_inference::{Session, TensorInfo, TensorView};
 
-/// Samples a second that the network knows.
+/// Sample rate of the network in Hz.
 pub const SAMPLE_RATE: u32 = 16_000;
-/// Samples of a chunk, each with a probability.
+/// Samples per chunk; each chunk has a probability.
 pub const CHUNK: usize = 512;
-/// Samples before a chunk that the network sees too.
+/// Samples before a chunk that are part of the network's input.
 const CONTEXT: usize = 64;
-/// Numbers that the network remembers from chunk to chunk.
+/// Shape of the network's recurrent state.
 const MEMORY: [usize; 3] = [2, 1, 128];
 
 /// A loaded network: `input` `[1, 576]` and `state` `[2, 1, 128]` to `output` `[1, 1]` and `stateN`.
@@ -19,10 +19,10 @@ pub struct VoiceNetwork {
     memory: usize,
 }
 
-/// What a stream of sound remembers: the network's memory and less than a chunk of samples.
+/// State of a stream of audio: the network's recurrent state and less than a chunk of samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VoiceStream {
-    /// Context, then the samples of the chunk that is not whole yet.
+    /// Context, then the samples of the incomplete chunk.
     samples: Vec<f32>,
     memory: Vec<f32>,
 }
@@ -37,7 +37,7 @@ impl VoiceNetwork {
     /// Opens the network.
     ///
     /// # Errors
-    /// `Format` when the bytes are another model, `Device` when the device is not there.
+    /// `Format` when the bytes are another model, `Device` when the device is not available.
     pub fn open(model: &[u8], device: Device) -> Result<Self> {
         let session = Session::open(model, device)?;
         let takes = |input: Option<&TensorInfo>, shape: &[usize]| {
@@ -52,18 +52,18 @@ impl VoiceNetwork {
             && takes(inputs.get(1), &MEMORY);
         if !fits {
             return Err(Error::format(
-                "the model takes no 576 samples with a state of 2x1x128; give Silero's network for 16 kHz, version 5 or 6",
+                "the model does not take 576 samples and a state of 2x1x128; use Silero's network for 16 kHz, version 5 or 6",
             ));
         }
         let (probability, memory) = (session.output_index("output")?, session.output_index("stateN")?);
         Ok(Self { session, probability, memory })
     }
 
-    /// Takes the next samples of a stream, of any number, at [`SAMPLE_RATE`], and hands on the probability of speech, 0..=1,
-    /// in each chunk of [`CHUNK`] that they complete.
+    /// Adds any number of samples at [`SAMPLE_RATE`] and passes the speech probability, 0..=1, of each completed chunk of
+    /// [`CHUNK`] samples to `each`.
     ///
     /// # Errors
-    /// Whatever the runtime or `each` fails with.
+    /// The errors of the runtime and of `each`.
     pub fn push(
         &self,
         stream: &mut VoiceStream,
@@ -82,11 +82,11 @@ impl VoiceNetwork {
         }
     }
 
-    /// The probability of what is left when the stream ends, filled up with silence; `None` when nothing is left. The stream
-    /// begins anew after.
+    /// Ends the stream and resets it. Returns the probability of the remaining samples, padded with silence; `None` when none
+    /// remain.
     ///
     /// # Errors
-    /// Whatever the runtime fails with.
+    /// The errors of the runtime.
     pub fn flush(&self, stream: &mut VoiceStream) -> Result<Option<f32>> {
         let left = stream.samples.len() > CONTEXT;
         stream.samples.resize(CONTEXT + CHUNK, 0.0);
@@ -99,10 +99,10 @@ impl VoiceNetwork {
         let VoiceStream { samples, memory } = stream;
         let mut probability = 0.0;
         let input = TensorView::new(&[1, CONTEXT + CHUNK], &samples[..])?;
-        // What is remembered is replaced while the session still reads it elsewhere, so by way of a copy on the stack.
+        // The session still borrows the state while the new one is read, so it is copied to the stack first.
         let mut next = [0.0; MEMORY[0] * MEMORY[1] * MEMORY[2]];
         self.session.run(&[input, TensorView::new(&MEMORY, &memory[..])?], |outputs| {
-            let wrong = || Error::format("the network gives no probability and state");
+            let wrong = || Error::format("the network does not return a probability and a state");
             let output = |index: usize| outputs.get(index).ok_or_else(wrong)?.values::<f32>();
             probability = *output(self.probability)?.first().ok_or_else(wrong)?;
             let memory = output(self.memory)?;

@@ -1,4 +1,4 @@
-//! Whether somebody speaks.
+//! Voice activity detection.
 
 mod silero_vad;
 

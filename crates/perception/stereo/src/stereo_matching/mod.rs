@@ -1,4 +1,4 @@
-//! How far away everything is that two cameras see.
+//! Stereo matching.
 
 mod obstacles;
 mod semi_global_matching;

@@ -1,26 +1,26 @@
-//! Boxes around what stands on a floor, out of a map of depths.
+//! Boxes around obstacles on a floor, from a depth map.
 
 use opendr_engine::target::BoundingBox3D;
-use opendr_vision::components::{Components, Touching};
+use opendr_vision::components::{Components, Connectivity};
 use opendr_vision::stereo::StereoCamera;
 
-/// What counts as an obstacle.
+/// Criteria of an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ObstacleOptions {
-    /// Of the camera above the floor, metres.
+    /// Height of the camera above the floor in metres.
     pub camera_height: f32,
-    /// How far the camera looks down, radians.
+    /// Pitch of the camera in radians, positive downwards.
     pub camera_pitch: f32,
-    /// Lowest and highest place above the floor, metres.
+    /// Minimum and maximum height above the floor in metres.
     pub heights: [f32; 2],
-    /// Metres ahead and to each side.
+    /// Range ahead and to each side in metres.
     pub farthest: f32,
 }
 
-/// Finds obstacles; memory is used again.
+/// Detects obstacles; buffers are reused.
 ///
-/// Points between the two heights are counted in the squares of a grid on the floor. Squares with a quarter of the points that
-/// a surface of one square's size would have at that distance are taken, and those that touch are an obstacle.
+/// Points between the two heights are counted in the squares of a grid on the floor. Squares with at least a quarter of the
+/// points that a surface of a square's size has at that distance are occupied, and connected occupied squares are an obstacle.
 #[derive(Debug, Default)]
 pub struct Obstacles {
     counts: Vec<u32>,
@@ -28,13 +28,13 @@ pub struct Obstacles {
     extents: Vec<Extent>,
 }
 
-/// Side of a square, metres.
+/// Side of a square in metres.
 const SIDE: f32 = 0.1;
-/// Least share of a surface's points, and least points.
+/// Minimum share of a surface's points, and minimum number of points.
 const SHARE: f32 = 0.25;
 const LEAST: f32 = 4.0;
 
-/// What the points of an obstacle span: x, y, z in metres, and pixels.
+/// Extent of the points of an obstacle: x, y, z in metres, and pixels.
 #[derive(Debug, Clone, Copy)]
 struct Extent {
     low: [f32; 3],
@@ -43,8 +43,8 @@ struct Extent {
 }
 
 impl Obstacles {
-    /// Writes the obstacles in a map of depths, metres, `width` a row, 0 being unknown: the nearest first, class 0, with the
-    /// score 1, in the frame of a level camera at the same place: x right, y down, z ahead along the floor.
+    /// Writes the obstacles in a depth map in metres, `width` per row, 0 for unknown: the nearest first, class 0, score 1, in
+    /// the frame of a level camera at the same position: x right, y down, z ahead along the floor.
     pub fn find(
         &mut self,
         camera: &StereoCamera,
@@ -58,7 +58,7 @@ impl Obstacles {
         let rows = (farthest / SIDE).ceil() as usize;
         let columns = 2 * rows;
         let (sine, cosine) = options.camera_pitch.sin_cos();
-        // A pixel's place and square, where it may belong to an obstacle.
+        // Position and square of a pixel that may belong to an obstacle.
         let seen = |at: usize| {
             let (x, y) = (at % width, at / width);
             let [right, below, depth] = camera.point([x as f32 + 0.5, y as f32 + 0.5], depths[at]);
@@ -85,10 +85,10 @@ impl Obstacles {
         let counts = &self.counts;
         let is_taken = |square: usize| {
             let depth = ((square / columns) as f32 + 0.5) * SIDE;
-            let surface = (camera.focal * SIDE / depth).powi(2);
+            let surface = (camera.focal_length * SIDE / depth).powi(2);
             counts[square] as f32 >= (SHARE * surface).max(LEAST)
         };
-        let count = self.components.label([columns, rows], Touching::Corners, is_taken, |_, _| true);
+        let count = self.components.label([columns, rows], Connectivity::Eight, is_taken, |_, _| true);
         let nothing =
             Extent { low: [f32::MAX; 3], high: [f32::MIN; 3], pixels: [f32::MAX, f32::MAX, 0.0, 0.0] };
         self.extents.clear();
@@ -130,12 +130,16 @@ impl Extent {
 mod tests {
     use super::*;
 
-    const CAMERA: StereoCamera =
-        StereoCamera { focal: 100.0, baseline: 0.1, centre: [80.0, 60.0], offset: 0.0 };
+    const CAMERA: StereoCamera = StereoCamera {
+        focal_length: 100.0,
+        baseline: 0.1,
+        principal_point: [80.0, 60.0],
+        principal_point_offset: 0.0,
+    };
     const OPTIONS: ObstacleOptions =
         ObstacleOptions { camera_height: 1.0, camera_pitch: 0.0, heights: [0.2, 2.0], farthest: 10.0 };
 
-    /// A floor, a near box on the left and a farther one on the right.
+    /// Returns the depths of a floor, a near box on the left and a farther one on the right.
     fn depths() -> Vec<f32> {
         let depth = |at: usize| {
             let (x, y) = (at % 160, at / 160);
@@ -150,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn two_boxes_stand_on_the_floor() {
+    fn two_boxes_on_the_floor_are_obstacles() {
         let mut boxes = Vec::new();
         Obstacles::default().find(&CAMERA, &depths(), 160, &OPTIONS, &mut boxes);
         let [near, far] = &boxes[..] else { panic!("{boxes:?}") };
@@ -163,9 +167,9 @@ mod tests {
         assert!((far.dimensions[0] - 0.76).abs() < 0.01 && (far.location[0] - 1.2).abs() < 0.01, "{far:?}");
     }
 
-    /// A floor alone is none, however the camera looks at it, if that is told.
+    /// A floor alone has no obstacle at any known pitch of the camera.
     #[test]
-    fn a_floor_below_a_camera_that_looks_down_is_no_obstacle() {
+    fn a_floor_below_a_pitched_camera_is_no_obstacle() {
         let pitch = 0.3_f32;
         let depth = |at: usize| {
             let below = ((at / 160) as f32 + 0.5 - 60.0) / 100.0;
@@ -181,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn nonsense_and_nothing_are_no_obstacles() {
+    fn invalid_and_unknown_depths_are_no_obstacles() {
         let mut boxes = vec![BoundingBox3D::default()];
         let mut finder = Obstacles::default();
         for depth in [0.0, -3.0, f32::NAN, f32::INFINITY, 1e9] {
@@ -190,7 +194,7 @@ mod tests {
         }
         finder.find(&CAMERA, &[], 160, &OPTIONS, &mut boxes);
         assert!(boxes.is_empty());
-        let wild = StereoCamera { focal: f32::NAN, ..CAMERA };
+        let wild = StereoCamera { focal_length: f32::NAN, ..CAMERA };
         finder.find(&wild, &depths(), 160, &OPTIONS, &mut boxes);
         assert!(boxes.is_empty());
     }

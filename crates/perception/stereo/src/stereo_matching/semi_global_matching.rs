@@ -1,6 +1,6 @@
 //! Semi-global matching: disparities, depths and obstacles of a rectified stereo pair, without a network.
 //!
-//! [`opendr_vision::stereo`] says how; [`StereoCamera::points`] makes a cloud of the depths.
+//! [`opendr_vision::stereo`] implements the matching; [`StereoCamera::points`] converts depths to a point cloud.
 
 use opendr_engine::data::Image;
 use opendr_engine::learner::{Inputs, Learner, Spec, Targets};
@@ -12,87 +12,87 @@ use opendr_vision::stereo::{StereoCamera, StereoMatcher, StereoOptions};
 
 use super::obstacles::{ObstacleOptions, Obstacles};
 
-/// What a user may set.
+/// Parameters of [`SemiGlobalMatching`].
 #[derive(Debug, Clone, Params)]
 pub struct SemiGlobalMatchingParams {
-    /// The least disparity that is looked for.
+    /// Minimum disparity.
     #[param(default = 0, range = 0..=4096, unit = "px", live)]
     pub min_disparity: usize,
-    /// How many disparities are looked for; rounded up to a multiple of 16.
+    /// Number of disparities; rounded up to a multiple of 16.
     #[param(default = 64, range = 1..=1024, unit = "px", live)]
     pub num_disparities: usize,
-    /// What a step of one pixel in disparity costs, in differing neighbours of 62.
+    /// Penalty of a disparity change of one pixel, in differing bits of the 62-bit census.
     #[param(default = 8, range = 0..=193, live)]
     pub p1: u32,
-    /// What a larger step costs.
+    /// Penalty of a larger disparity change.
     #[param(default = 40, range = 0..=193, live)]
     pub p2: u32,
-    /// By how many percent the second best disparity must be worse.
+    /// Margin by which the best disparity must be better than the second best.
     #[param(default = 5, range = 0..=99, unit = "%", live)]
     pub uniqueness_ratio: u32,
-    /// How far the right picture may disagree; -1 does not ask it.
+    /// Maximum difference in the left-right check; -1 for no check.
     #[param(default = 1, range = -1..=1000, unit = "px", live)]
     pub disp12_max_diff: i32,
-    /// Islands of at most so many pixels are forgotten.
+    /// Maximum size of speckles, which are removed.
     #[param(default = 100, range = 0..=1_000_000, unit = "px", live)]
     pub speckle_window_size: u32,
-    /// Neighbours belong to one island where they differ by at most so much.
+    /// Maximum disparity difference between neighbours of one speckle.
     #[param(default = 1.0, range = 0.0..=1000.0, unit = "px", live)]
     pub speckle_range: f32,
     /// Whether holes are filled from the background in their row.
     #[param(default = false, live)]
     pub fill: bool,
-    /// Squares of as many pixels along each side are matched as one: faster, coarser.
+    /// Factor by which the images are downscaled for matching: faster, coarser.
     #[param(default = 1, range = 1..=16, unit = "px", live)]
     pub shrink: usize,
-    /// Focal length of the rectified pair. Depths need it.
+    /// Focal length of the rectified pair. Required for depths.
     #[param(default = 0.0, range = 0.0..=1e6, unit = "px", live)]
     pub focal_length: f32,
-    /// Between the cameras. Depths need it.
+    /// Distance between the cameras. Required for depths.
     #[param(default = 0.0, range = 0.0..=1000.0, unit = "m", live)]
     pub baseline: f32,
-    /// How much further right the right principal point lies (Middlebury's doffs).
+    /// Difference of the principal points' x, right minus left (Middlebury's doffs).
     #[param(default = 0.0, range = -1e4..=1e4, unit = "px", live)]
     pub disparity_offset: f32,
-    /// How high the cameras are above the floor. Obstacles need it.
+    /// Height of the cameras above the floor. Required for obstacles.
     #[param(default = 0.0, range = 0.0..=100.0, unit = "m", live)]
     pub camera_height: f32,
-    /// How far the cameras look down.
+    /// Pitch of the cameras, positive downwards.
     #[param(default = 0.0, range = -89.0..=89.0, unit = "deg", live)]
     pub camera_pitch: f32,
-    /// What rises less above the floor is no obstacle.
+    /// Minimum height of an obstacle above the floor.
     #[param(default = 0.2, range = 0.0..=100.0, unit = "m", live)]
     pub min_height: f32,
-    /// What hangs higher above the floor is no obstacle.
+    /// Maximum height of an obstacle above the floor.
     #[param(default = 2.0, range = 0.0..=100.0, unit = "m", live)]
     pub max_height: f32,
-    /// What is farther is no obstacle.
+    /// Maximum distance of an obstacle.
     #[param(default = 10.0, range = 0.1..=100.0, unit = "m", live)]
     pub max_distance: f32,
 }
 
-/// A rectified pair of one size: what is in a row of one is in the same row of the other.
+/// A rectified pair of equal size, in which corresponding points are in the same row.
 #[derive(Inputs)]
 pub struct SemiGlobalMatchingInputs<'a> {
-    /// Of the left camera.
+    /// Image of the left camera.
     pub left: &'a Image,
-    /// Of the right camera.
+    /// Image of the right camera.
     pub right: &'a Image,
 }
 
-/// What is told of a pair.
+/// Prediction for a pair.
 #[derive(Default, Targets)]
 pub struct SemiGlobalMatchingTargets {
-    /// Disparity of each pixel of the left picture, pixels; 0 where nothing is known.
+    /// Disparity of each pixel of the left image in pixels; 0 where it is unknown.
     pub disparity: Heatmap,
-    /// Distance ahead of each pixel, metres; 0 where nothing is known. Empty without focal length and baseline.
+    /// Depth of each pixel in metres; 0 where it is unknown. Empty without focal length and baseline.
     pub depth: Heatmap,
-    /// What stands on the floor, nearest first, seen from a level camera at the same place. None without focal length, baseline
-    /// and camera height.
+    /// Obstacles on the floor, nearest first, in the frame of a level camera at the same position. Empty without focal length,
+    /// baseline and camera height.
     pub obstacles: BoundingBox3DList,
 }
 
-/// A stereo matcher.
+/// Learner of stereo matching.
 pub struct SemiGlobalMatching {
     params: SemiGlobalMatchingParams,
     classes: Classes,
@@ -108,7 +108,7 @@ struct Work {
 impl Learner for SemiGlobalMatching {
     const SPEC: Spec = Spec::new("semi_global_matching", Task::StereoMatching)
         .class("SemiGlobalMatchingLearner")
-        .about("Tells the distance of what two cameras see, by semi-global matching.");
+        .about("Computes disparity, depth and obstacles of a stereo pair by semi-global matching.");
     type Params = SemiGlobalMatchingParams;
     type Input<'a> = SemiGlobalMatchingInputs<'a>;
     type Target = SemiGlobalMatchingTargets;
@@ -159,17 +159,23 @@ impl Learner for SemiGlobalMatching {
 }
 
 impl SemiGlobalMatching {
-    /// A matcher; it needs no model.
+    /// Creates the learner; it needs no model.
     pub fn with_params(params: SemiGlobalMatchingParams) -> Self {
         Self { params, classes: ["obstacle"].into_iter().collect(), work: Pool::default() }
     }
 
-    /// The camera that pictures of `size` come from, as far as the parameters tell; its principal point is the middle.
+    /// Returns the camera of images of `size`, with the principal point in the centre; `None` without focal length and
+    /// baseline.
     pub fn camera(&self, size: [usize; 2]) -> Option<StereoCamera> {
         let SemiGlobalMatchingParams { focal_length: focal, baseline, disparity_offset: offset, .. } =
             self.params;
         let centre = size.map(|side| side as f32 / 2.0);
-        (focal > 0.0 && baseline > 0.0).then_some(StereoCamera { focal, baseline, centre, offset })
+        (focal > 0.0 && baseline > 0.0).then_some(StereoCamera {
+            focal_length: focal,
+            baseline,
+            principal_point: centre,
+            principal_point_offset: offset,
+        })
     }
 
     fn options(&self) -> StereoOptions {
@@ -177,14 +183,14 @@ impl SemiGlobalMatching {
         StereoOptions {
             min_disparity: params.min_disparity,
             disparities: params.num_disparities,
-            small_penalty: byte(params.p1),
-            large_penalty: byte(params.p2),
+            p1: byte(params.p1),
+            p2: byte(params.p2),
             uniqueness: byte(params.uniqueness_ratio),
-            left_right: u16::try_from(params.disp12_max_diff).ok(),
+            max_left_right_difference: u16::try_from(params.disp12_max_diff).ok(),
             speckle_size: params.speckle_window_size,
             speckle_range: params.speckle_range,
             fill: params.fill,
-            shrink: params.shrink,
+            downscale: params.shrink,
         }
     }
 

@@ -1,77 +1,68 @@
-//! ByteTrack: detections of low confidence, which others throw away, go on with tracks that are there.
+//! ByteTrack: tracking with detections of low scores too, which resume existing tracks.
 //!
-//! Y. Zhang et al., "ByteTrack: Multi-Object Tracking by Associating Every Detection Box", ECCV 2022, Algorithm 1. A person
-//! behind another is found with a low score: good enough to go on with, not to begin with.
+//! Y. Zhang et al., "ByteTrack: Multi-Object Tracking by Associating Every Detection Box", ECCV 2022, Algorithm 1. A partly
+//! occluded person has a detection of a low score, which is enough to resume a track, but not to start one.
 
 use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
-use opendr_engine::overlap::image_overlap;
+use opendr_engine::overlap::box_iou;
 use opendr_engine::params::Params;
-use opendr_engine::target::{Name, TrackingAnnotationList};
+use opendr_engine::target::TrackingAnnotationList;
 use opendr_engine::{Device, Result, Task};
 
 use super::TrackerInputs;
-use crate::tracking::camera_motion::CameraMotion;
-use crate::tracking::{HeightFilter, Life, MOST_BOXES, Pairing, SoundBox, sound_boxes};
+use super::tracks::{Rules, Track, Tracks};
+use crate::tracking::camera_motion::SimilarityMotion;
+use crate::tracking::{HeightFilter, ValidBox};
 
-/// What a user may set.
+/// Parameters of [`ByteTrack`].
 #[derive(Debug, Clone, Params)]
 pub struct ByteTrackParams {
-    /// Detections from this score on are paired first.
+    /// Score above which detections are associated first.
     #[param(default = 0.6, range = 0.0..=1.0, live)]
     pub threshold: f32,
-    /// Detections from this score on only go on with tracks.
+    /// Score above which detections resume tracks.
     #[param(default = 0.1, range = 0.0..=1.0, live)]
     pub low_threshold: f32,
-    /// A detection begins a track from this score on.
+    /// Score above which a detection starts a track.
     #[param(default = 0.7, range = 0.0..=1.0, live)]
     pub new_threshold: f32,
-    /// A track and a detection may be one object when their overlap times the score is at least this.
+    /// Minimum of IoU times score of a track and its detection.
     #[param(default = 0.2, range = 0.01..=1.0, live)]
     pub iou_threshold: f32,
-    /// The same for detections of a low score, by overlap alone.
+    /// Minimum IoU of a track and its detection of a low score.
     #[param(default = 0.5, range = 0.01..=1.0, live)]
     pub low_iou_threshold: f32,
-    /// Frames for which an object may be out of sight.
+    /// Number of frames that a track is kept without a detection.
     #[param(default = 30, range = 0..=1000, live)]
     pub track_buffer: u32,
-    /// An object is told once it was seen in so many frames in a row; in the first frames of a stream at once.
+    /// Number of detections in a row that confirm a track; in the first frames of a stream, one.
     #[param(default = 2, range = 1..=100, live)]
     pub min_hits: u32,
-    /// Only boxes of the same class can be one object.
+    /// Whether only boxes of the same class match.
     #[param(default = true, live)]
     pub per_class: bool,
 }
 
-/// ByteTrack, ready to track.
+/// The ByteTrack tracker.
 pub struct ByteTrack {
     params: ByteTrackParams,
 }
 
-/// The objects of one stream.
+/// The tracks of one stream.
 #[derive(Default)]
 pub struct ByteTrackState {
-    tracks: Vec<Track>,
-    last_id: i64,
-    frame: i64,
-    camera: CameraMotion,
-    boxes: Vec<SoundBox>,
-    is_taken: Vec<bool>,
-    pairing: Pairing,
+    tracks: Tracks<Motion>,
 }
 
-struct Track {
+struct Motion {
     filter: HeightFilter,
     expected: [f64; 4],
-    name: Name,
-    life: Life,
-    /// Place of its box in the list of this frame, if it is in it.
-    seen: Option<usize>,
 }
 
 impl Learner for ByteTrack {
     const SPEC: Spec = Spec::new("byte_track", Task::ObjectTracking2d).class("ByteTrackLearner").about(
-        "ByteTrack follows what a detector finds, through crowds too: detections of low confidence count.",
+        "ByteTrack tracks the detections of any detector, also through crowds, with detections of low scores.",
     );
     type Params = ByteTrackParams;
     type Input<'a> = TrackerInputs<'a>;
@@ -94,122 +85,85 @@ impl Learner for ByteTrack {
         &self,
         state: &mut ByteTrackState,
         input: TrackerInputs<'_>,
-        answer: &mut TrackingAnnotationList,
+        target: &mut TrackingAnnotationList,
     ) -> Result<()> {
         state.update(&self.params, &input)?;
-        input.begin(answer);
-        for track in &state.tracks {
-            if let (Some(index), Some(id)) = (track.seen, track.life.id) {
-                input.tell(index, id, state.frame, answer);
-            }
-        }
+        state.tracks.write(&input, target);
         Ok(())
     }
 }
 
 impl ByteTrack {
-    /// A tracker; there are no weights to load.
+    /// Creates a tracker; there are no weights to load.
     pub const fn with_params(params: ByteTrackParams) -> Self {
         Self { params }
     }
 }
 
 impl ByteTrackState {
-    /// How many objects are remembered, those out of sight too.
+    /// Returns the number of tracks, including those without a detection in the last frame.
     pub fn track_count(&self) -> usize {
-        self.tracks.len()
+        self.tracks.list.len()
     }
 
     fn update(&mut self, params: &ByteTrackParams, input: &TrackerInputs<'_>) -> Result<()> {
+        let rules = Rules { min_hits: params.min_hits, per_class: params.per_class };
         let lowest = params.low_threshold.min(params.threshold);
-        sound_boxes(input.detections, f64::from(lowest), &mut self.boxes);
-        self.is_taken.clear();
-        self.is_taken.resize(self.boxes.len(), false);
-        self.frame = self.frame.saturating_add(1);
-        let motion = input.motion(&mut self.camera, &self.boxes)?;
-        for track in &mut self.tracks {
-            if let Some(motion) = &motion {
-                track.filter.move_camera(motion);
-            }
-            if track.life.away > 0 {
-                track.filter.stop_growing();
-            }
-            track.filter.predict();
-            track.life.pass();
-            track.seen = None;
-            track.expected = track.filter.corners();
-        }
-        // Whoever is out of sight comes back by a sure detection only.
+        self.tracks.begin_frame(input, f64::from(lowest), Motion::predict)?;
         let high = f64::from(params.threshold);
-        let likelihood = |_: &Track, found: &SoundBox, overlap: f64| {
-            let likelihood = overlap * found.confidence.min(1.0);
-            (found.confidence >= high).then_some(likelihood - f64::from(params.iou_threshold))
+        let is_confirmed = |track: &Track<Motion>| track.life.id.is_some();
+        let by_likelihood = |track: &Track<Motion>, found: &ValidBox| {
+            track.motion.gain(found, |overlap| {
+                let likelihood = overlap * found.confidence.min(1.0);
+                (found.confidence >= high).then_some(likelihood - f64::from(params.iou_threshold))
+            })
         };
-        self.pair(params, input, |track| track.life.id.is_some(), likelihood);
-        let low = |track: &Track, found: &SoundBox, overlap: f64| {
-            let was_seen = track.life.away == 1;
-            (was_seen && found.confidence < high).then_some(overlap - f64::from(params.low_iou_threshold))
+        // Only a detection of a high score resumes a lost track.
+        let by_overlap = |track: &Track<Motion>, found: &ValidBox| {
+            track.motion.gain(found, |overlap| {
+                let was_seen = track.life.away == 1;
+                (was_seen && found.confidence < high).then_some(overlap - f64::from(params.low_iou_threshold))
+            })
         };
-        self.pair(params, input, |track| track.life.id.is_some(), low);
-        self.pair(params, input, |track| track.life.id.is_none(), likelihood);
-        self.tracks.retain(|track| {
-            // Who is not sure to be there must be seen in every frame.
-            let patience = if track.life.id.is_some() { params.track_buffer } else { 0 };
+        self.tracks.associate(rules, input, is_confirmed, by_likelihood, Motion::update);
+        self.tracks.associate(rules, input, is_confirmed, by_overlap, Motion::update);
+        self.tracks.associate(rules, input, |track| !is_confirmed(track), by_likelihood, Motion::update);
+        self.tracks.list.retain(|track| {
+            // A track that is not confirmed needs a detection in every frame.
+            let patience = if is_confirmed(track) { params.track_buffer } else { 0 };
             track.life.away <= patience
         });
-        self.begin(params, input);
+        self.tracks.start(rules, input, |found| {
+            (found.confidence >= f64::from(params.new_threshold)).then(|| Motion::new(found))
+        });
         Ok(())
     }
+}
 
-    /// Pairs those of `which` that are not yet seen with boxes that are not yet taken, where `gain` is at least 0.
-    fn pair(
-        &mut self,
-        params: &ByteTrackParams,
-        input: &TrackerInputs<'_>,
-        which: impl Fn(&Track) -> bool,
-        gain: impl Fn(&Track, &SoundBox, f64) -> Option<f64>,
-    ) {
-        self.pairing.begin();
-        let open = |(_, track): &(usize, &Track)| track.seen.is_none() && which(track);
-        for (row, track) in self.tracks.iter().enumerate().filter(open) {
-            for (column, found) in self.boxes.iter().enumerate() {
-                if self.is_taken[column] || (params.per_class && input.name(found.index) != Some(&track.name))
-                {
-                    continue;
-                }
-                let overlap = image_overlap(track.expected, found.corners);
-                if overlap > 0.0
-                    && let Some(gain) = gain(track, found, overlap).filter(|gain| *gain >= 0.0)
-                {
-                    self.pairing.propose(row, column, gain + f64::EPSILON);
-                }
-            }
-        }
-        let needed = self.needed(params);
-        for &(row, column) in self.pairing.solve() {
-            let (track, found) = (&mut self.tracks[row], &self.boxes[column]);
-            self.is_taken[column] = true;
-            track.filter.update(found.corners);
-            track.life.see(needed, &mut self.last_id);
-            track.seen = Some(found.index);
-        }
+impl Motion {
+    fn new(found: &ValidBox) -> Self {
+        Self { filter: HeightFilter::new(found.corners), expected: found.corners }
     }
 
-    fn begin(&mut self, params: &ByteTrackParams, input: &TrackerInputs<'_>) {
-        let needed = self.needed(params);
-        for (found, is_taken) in self.boxes.iter().zip(&self.is_taken) {
-            let begins = !is_taken
-                && found.confidence >= f64::from(params.new_threshold)
-                && self.tracks.len() < MOST_BOXES;
-            let Some(name) = input.name(found.index).filter(|_| begins) else { continue };
-            let mut life = Life::default();
-            life.see(needed, &mut self.last_id);
-            let (filter, expected) = (HeightFilter::new(found.corners), found.corners);
-            self.tracks.push(Track { filter, expected, name: name.clone(), life, seen: Some(found.index) });
+    fn predict(&mut self, away: u32, camera: Option<&SimilarityMotion>) {
+        if let Some(camera) = camera {
+            self.filter.move_camera(camera);
         }
+        if away > 0 {
+            self.filter.stop_growing();
+        }
+        self.filter.predict();
+        self.expected = self.filter.corners();
     }
 
-    fn needed(&self, params: &ByteTrackParams) -> u32 {
-        if self.frame <= i64::from(params.min_hits) { 1 } else { params.min_hits }
+    fn update(&mut self, found: &ValidBox, _: u32) {
+        self.filter.update(found.corners);
+    }
+
+    /// Returns the gain of an association, above 0, where the boxes overlap and `surplus` of the overlap is at least 0.
+    fn gain(&self, found: &ValidBox, surplus: impl Fn(f64) -> Option<f64>) -> Option<f64> {
+        let overlap = box_iou(self.expected, found.corners);
+        let surplus = if overlap > 0.0 { surplus(overlap) } else { None };
+        surplus.filter(|surplus| *surplus >= 0.0).map(|surplus| surplus + f64::EPSILON)
     }
 }

@@ -1,7 +1,7 @@
-//! Detector and tracker in one call, behind the interface of OpenDR's FairMOT.
+//! Detector and tracker in one learner, with the interface of OpenDR's FairMOT.
 //!
-//! It is not FairMOT's network (Y. Zhang et al., IJCV 2021), of which there are no weights that may be used: NanoDet finds the
-//! persons, [`ByteTrack`] follows them, and the frame tells how the camera moved.
+//! It is not FairMOT's network (Y. Zhang et al., IJCV 2021), which has no freely usable weights: NanoDet detects the
+//! persons, [`ByteTrack`] tracks them, and the motion of the camera is estimated from the frames.
 
 use opendr_detection::object_detection_2d::{Nanodet, NanodetParams};
 use opendr_engine::data::Image;
@@ -13,22 +13,22 @@ use opendr_engine::{Device, Result, Task};
 
 use super::{ByteTrack, ByteTrackParams, ByteTrackState, TrackerInputs};
 
-/// What a user may set.
+/// Parameters of [`FairMot`].
 #[derive(Debug, Clone, Params)]
 pub struct FairMotParams {
-    /// Detections from this score on are paired first; 0.1 more begins a track.
+    /// Score above which detections are associated first; 0.1 more starts a track.
     #[param(default = 0.3, range = 0.1..=1.0, live)]
     pub threshold: f32,
-    /// Frames for which an object may be out of sight.
+    /// Number of frames that a track is kept without a detection.
     #[param(default = 30, range = 0..=1000, live)]
     pub track_buffer: u32,
-    /// Smaller boxes are left out.
+    /// Area below which boxes are ignored.
     #[param(default = 100.0, range = 0.0..=1e6, unit = "px^2", live)]
     pub min_box_area: f32,
-    /// Whether all classes of the detector are followed, or persons alone.
+    /// Whether all classes of the detector are tracked, instead of persons only.
     #[param(default = false, live)]
     pub every_class: bool,
-    /// Whether frames tell how the camera moved; a camera that stands still needs it not.
+    /// Whether the motion of the camera is compensated; a fixed camera does not need it.
     #[param(default = true, live)]
     pub camera_motion: bool,
 }
@@ -37,52 +37,52 @@ pub struct FairMotParams {
 pub struct FairMot {
     params: FairMotParams,
     detector: Nanodet,
-    /// The detector's number of persons.
+    /// The detector's class index of persons.
     person: Option<i64>,
 }
 
-/// The objects of one stream.
+/// The tracks of one stream.
 #[derive(Default)]
 pub struct FairMotState {
     tracks: ByteTrackState,
     found: BoundingBoxList,
 }
 
-/// The part of the container.
+/// Name of the detector in the container.
 const DETECTOR: &str = "detector";
-/// What is found with a lower score is noise.
+/// Score below which detections are noise.
 const LOWEST: f32 = 0.1;
 
 impl Learner for FairMot {
     const SPEC: Spec = Spec::new("fair_mot", Task::ObjectTracking2d)
         .class("ObjectTracking2DFairMotLearner")
-        .about("NanoDet and ByteTrack in one call follow the persons in a video.")
+        .about("NanoDet and ByteTrack in one learner track the persons in a video.")
         .without_effect(&[
             ("backbone", "the detector is NanoDet"),
             ("network_head", "the detector is NanoDet"),
             ("scale", "the detector scales frames itself"),
-            ("num_classes", "`every_class` says whether more than persons are followed"),
-            ("max_objs", "the detector finds at most a hundred"),
+            ("num_classes", "`every_class` selects the tracked classes"),
+            ("max_objs", "the detector returns at most 100 boxes"),
             ("frame_rate", "`track_buffer` counts frames"),
-            ("image_mean", "the detector knows it"),
-            ("image_std", "the detector knows it"),
-            ("lr", Spec::OF_TRAINING),
-            ("iters", Spec::OF_TRAINING),
-            ("batch_size", Spec::OF_TRAINING),
-            ("optimizer", Spec::OF_TRAINING),
-            ("lr_schedule", Spec::OF_TRAINING),
-            ("lr_step", Spec::OF_TRAINING),
-            ("num_epochs", Spec::OF_TRAINING),
-            ("checkpoint_after_iter", Spec::OF_TRAINING),
-            ("checkpoint_load_iter", Spec::OF_TRAINING),
-            ("num_workers", Spec::OF_TRAINING),
-            ("gpus", Spec::OF_TRAINING),
-            ("mse_loss", Spec::OF_TRAINING),
-            ("reg_loss", Spec::OF_TRAINING),
-            ("hm_weight", Spec::OF_TRAINING),
-            ("wh_weight", Spec::OF_TRAINING),
-            ("off_weight", Spec::OF_TRAINING),
-            ("id_weight", Spec::OF_TRAINING),
+            ("image_mean", "the detector defines it"),
+            ("image_std", "the detector defines it"),
+            ("lr", Spec::TRAINING_ONLY),
+            ("iters", Spec::TRAINING_ONLY),
+            ("batch_size", Spec::TRAINING_ONLY),
+            ("optimizer", Spec::TRAINING_ONLY),
+            ("lr_schedule", Spec::TRAINING_ONLY),
+            ("lr_step", Spec::TRAINING_ONLY),
+            ("num_epochs", Spec::TRAINING_ONLY),
+            ("checkpoint_after_iter", Spec::TRAINING_ONLY),
+            ("checkpoint_load_iter", Spec::TRAINING_ONLY),
+            ("num_workers", Spec::TRAINING_ONLY),
+            ("gpus", Spec::TRAINING_ONLY),
+            ("mse_loss", Spec::TRAINING_ONLY),
+            ("reg_loss", Spec::TRAINING_ONLY),
+            ("hm_weight", Spec::TRAINING_ONLY),
+            ("wh_weight", Spec::TRAINING_ONLY),
+            ("off_weight", Spec::TRAINING_ONLY),
+            ("id_weight", Spec::TRAINING_ONLY),
             ("head_conv", "the detector is NanoDet"),
             ("ltrb", "the detector is NanoDet"),
             ("reg_offset", "the detector is NanoDet"),
@@ -91,7 +91,7 @@ impl Learner for FairMot {
             ("norm_wh", "the detector is NanoDet"),
             ("reid_dim", "the detector is NanoDet"),
             ("down_ratio", "the detector is NanoDet"),
-            ("use_pretrained_backbone", Spec::OF_TRAINING),
+            ("use_pretrained_backbone", Spec::TRAINING_ONLY),
         ]);
     type Params = FairMotParams;
     type Input<'a> = &'a Image;
@@ -121,7 +121,7 @@ impl Learner for FairMot {
         &self,
         state: &mut FairMotState,
         image: &Image,
-        answer: &mut TrackingAnnotationList,
+        target: &mut TrackingAnnotationList,
     ) -> Result<()> {
         let FairMotParams { threshold, track_buffer, min_box_area, every_class, camera_motion } = self.params;
         let FairMotState { tracks, found } = state;
@@ -138,6 +138,6 @@ impl Learner for FairMot {
             ..ByteTrackParams::default()
         });
         let input = TrackerInputs { detections: found, image: camera_motion.then_some(image) };
-        tracker.infer_into(tracks, input, answer)
+        tracker.infer_into(tracks, input, target)
     }
 }

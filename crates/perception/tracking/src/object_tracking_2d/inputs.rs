@@ -1,44 +1,44 @@
-//! What trackers of detections are given, and what they answer of it.
+//! Inputs of the trackers of detections, and their output.
 
 use opendr_engine::Result;
 use opendr_engine::data::Image;
 use opendr_engine::learner::Inputs;
 use opendr_engine::target::{BoundingBoxList, Name, TrackingAnnotation, TrackingAnnotationList};
 
-use crate::tracking::SoundBox;
-use crate::tracking::camera_motion::{CameraMotion, PlaneMotion};
+use crate::tracking::ValidBox;
+use crate::tracking::camera_motion::{CameraMotion, SimilarityMotion};
 
-/// What was found in a frame.
+/// The detections in a frame.
 #[derive(Debug, Clone, Copy, Inputs)]
 pub struct TrackerInputs<'a> {
-    /// What was found in the frame; the confidences count.
+    /// Detections in the frame, with their scores.
     pub detections: &'a BoundingBoxList,
-    /// The frame, which tells how the camera moved. All frames of a stream, or none.
+    /// Frame, from which the motion of the camera is estimated. Either all frames of a stream have one, or none.
     pub image: Option<&'a Image>,
 }
 
 impl TrackerInputs<'_> {
-    /// How the camera moved since the frame before; `None` where nothing tells.
+    /// Returns the motion of the camera since the last frame; `None` without an image or without motion.
     pub(crate) fn motion(
         &self,
         camera: &mut CameraMotion,
-        boxes: &[SoundBox],
-    ) -> Result<Option<PlaneMotion>> {
-        let motion = self.image.map(|image| camera.next(image, boxes)).transpose()?;
-        Ok(motion.filter(|motion| *motion != PlaneMotion::NONE))
+        boxes: &[ValidBox],
+    ) -> Result<Option<SimilarityMotion>> {
+        let motion = self.image.map(|image| camera.update(image, boxes)).transpose()?;
+        Ok(motion.filter(|motion| *motion != SimilarityMotion::NONE))
     }
 
-    /// Begins the answer to a frame.
-    pub(crate) fn begin(&self, answer: &mut TrackingAnnotationList) {
-        answer.annotations.clear();
-        answer.classes.clone_from(&self.detections.classes);
-        answer.action = None;
+    /// Clears the output for a frame.
+    pub(crate) fn begin(&self, target: &mut TrackingAnnotationList) {
+        target.annotations.clear();
+        target.classes.clone_from(&self.detections.classes);
+        target.action = None;
     }
 
-    /// Answers the detection at `index` as object `id`.
-    pub(crate) fn tell(&self, index: usize, id: i64, frame: i64, answer: &mut TrackingAnnotationList) {
+    /// Writes the detection at `index` as the object `id` into `target`.
+    pub(crate) fn write(&self, index: usize, id: i64, frame: i64, target: &mut TrackingAnnotationList) {
         if let Some(found) = self.detections.boxes.get(index) {
-            answer.annotations.push(TrackingAnnotation {
+            target.annotations.push(TrackingAnnotation {
                 bounding_box: found.clone(),
                 id,
                 frame: Some(frame),
@@ -46,7 +46,7 @@ impl TrackerInputs<'_> {
         }
     }
 
-    /// The class of the detection at `index`.
+    /// Returns the class of the detection at `index`.
     pub(crate) fn name(&self, index: usize) -> Option<&Name> {
         self.detections.boxes.get(index).map(|found| &found.name)
     }

@@ -1,10 +1,11 @@
-//! Objects that keep their number from frame to frame of a video.
+//! Tracking of objects over the frames of a video.
 //!
-//! [`Sort`], [`ByteTrack`] and [`OcSort`] take what a detector found; their answers have the detector's own boxes, with the
-//! numbers of the objects, from 1. Frames are counted, not timed. A frame may be given besides: then the camera's motion is
-//! made up for. Boxes that are not finite or have no area are left out, and of more than
-//! [`MOST_BOXES`](crate::tracking::MOST_BOXES) the best are taken. [`DeepSort`] looks at the boxes too, and [`FairMot`] finds
-//! them itself. [`NanoTrack`] follows one object, whatever it is, from a box in the first frame.
+//! [`Sort`], [`ByteTrack`] and [`OcSort`] take the detections of any detector; their predictions are the detector's own
+//! boxes with the identities of the objects, from 1. Time is counted in frames. With the frames as optional inputs, the
+//! motion of the camera is compensated. Boxes that are not finite or have no area are dropped, and of more than
+//! [`MAX_BOXES`](crate::tracking::MAX_BOXES) those with the highest scores are kept. [`DeepSort`] also uses the
+//! appearance in the boxes, and [`FairMot`] contains its detector. [`NanoTrack`] tracks one object of any class, from a box
+//! in the first frame.
 
 mod byte_track;
 mod deep_sort;
@@ -13,6 +14,7 @@ mod inputs;
 mod nano_track;
 mod oc_sort;
 mod sort;
+mod tracks;
 
 pub use byte_track::{ByteTrack, ByteTrackParams, ByteTrackState};
 pub use deep_sort::{DeepSort, DeepSortInputs, DeepSortParams, DeepSortState};

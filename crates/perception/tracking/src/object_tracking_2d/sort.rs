@@ -1,69 +1,69 @@
-//! SORT: boxes expected by Kalman filters, paired by their overlap with what was found.
+//! SORT: boxes predicted by Kalman filters, associated with detections by their overlap.
 //!
-//! A. Bewley, Z. Ge, L. Ott, F. Ramos, B. Upcroft, "Simple Online and Realtime Tracking", ICIP 2016; written from the paper.
-//! The fastest of the trackers and the first choice where the detector misses little.
+//! A. Bewley, Z. Ge, L. Ott, F. Ramos, B. Upcroft, "Simple Online and Realtime Tracking", ICIP 2016; written from the
+//! paper. The fastest of the trackers, suited to detectors that miss little.
 
 use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
-use opendr_engine::overlap::image_overlap;
+use opendr_engine::overlap::box_iou;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Name, TrackingAnnotationList};
 use opendr_engine::{Device, Result, Task};
 
 use super::TrackerInputs;
 use crate::tracking::camera_motion::CameraMotion;
-use crate::tracking::{AreaFilter, Life, MOST_BOXES, Pairing, SoundBox, sound_boxes};
+use crate::tracking::{AreaFilter, Life, MAX_BOXES, SparseAssignment, ValidBox, valid_boxes};
 
-/// What a user may set.
+/// Parameters of [`Sort`].
 #[derive(Debug, Clone, Params)]
 pub struct SortParams {
-    /// Detections below this score are left out.
+    /// Score below which detections are ignored.
     #[param(default = 0.3, range = 0.0..=1.0, live)]
     pub threshold: f32,
-    /// A track and a detection may be one object when they overlap at least this much (intersection over union).
+    /// Minimum IoU of a track and its detection.
     #[param(default = 0.3, range = 0.01..=1.0, live)]
     pub iou_threshold: f32,
-    /// Frames for which an object may be out of sight.
+    /// Number of frames that a track is kept without a detection.
     #[param(default = 1, range = 0..=1000, live)]
     pub max_age: u32,
-    /// An object is told once it was seen in so many frames in a row; in the first frames of a stream at once.
+    /// Number of detections in a row that confirm a track; in the first frames of a stream, one.
     #[param(default = 3, range = 1..=100, live)]
     pub min_hits: u32,
-    /// Only boxes of the same class can be one object.
+    /// Whether only boxes of the same class match.
     #[param(default = true, live)]
     pub per_class: bool,
 }
 
-/// SORT, ready to track.
+/// The SORT tracker.
 pub struct Sort {
     params: SortParams,
 }
 
-/// The objects of one stream.
+/// The tracks of one stream.
 #[derive(Default)]
 pub struct SortState {
     tracks: Vec<Track>,
     last_id: i64,
     frame: i64,
     camera: CameraMotion,
-    boxes: Vec<SoundBox>,
+    boxes: Vec<ValidBox>,
     expected: Vec<[f64; 4]>,
     is_taken: Vec<bool>,
-    pairing: Pairing,
+    pairing: SparseAssignment,
 }
 
 struct Track {
     filter: AreaFilter,
     name: Name,
     life: Life,
-    /// Place of its box in the list of this frame, if it is in it.
+    /// Index of its detection in this frame, if there is one.
     seen: Option<usize>,
 }
 
 impl Learner for Sort {
     const SPEC: Spec = Spec::new("sort", Task::ObjectTracking2d)
         .class("SortLearner")
-        .about("SORT follows what a detector finds by motion and overlap alone, at next to no cost.");
+        .about("SORT tracks the detections of any detector by motion and overlap only, at very low cost.");
     type Params = SortParams;
     type Input<'a> = TrackerInputs<'a>;
     type Target = TrackingAnnotationList;
@@ -85,11 +85,11 @@ impl Learner for Sort {
         &self,
         state: &mut SortState,
         input: TrackerInputs<'_>,
-        answer: &mut TrackingAnnotationList,
+        target: &mut TrackingAnnotationList,
     ) -> Result<()> {
         let params = &self.params;
-        input.begin(answer);
-        sound_boxes(input.detections, f64::from(params.threshold), &mut state.boxes);
+        input.begin(target);
+        valid_boxes(input.detections, f64::from(params.threshold), &mut state.boxes);
         let motion = input.motion(&mut state.camera, &state.boxes)?;
         state.frame = state.frame.saturating_add(1);
         state.expected.clear();
@@ -105,7 +105,7 @@ impl Learner for Sort {
         state.pair(params, &input);
         for track in &state.tracks {
             if let (Some(index), Some(id)) = (track.seen, track.life.id) {
-                input.tell(index, id, state.frame, answer);
+                input.write(index, id, state.frame, target);
             }
         }
         Ok(())
@@ -113,28 +113,28 @@ impl Learner for Sort {
 }
 
 impl Sort {
-    /// A tracker; there are no weights to load.
+    /// Creates a tracker; there are no weights to load.
     pub const fn with_params(params: SortParams) -> Self {
         Self { params }
     }
 }
 
 impl SortState {
-    /// How many objects are remembered, those out of sight too.
+    /// Returns the number of tracks, including those without a detection in the last frame.
     pub fn track_count(&self) -> usize {
         self.tracks.len()
     }
 
-    /// Pairs tracks and boxes; the rest of the tracks may be forgotten, and the rest of the boxes begin tracks.
+    /// Associates tracks and boxes, drops old tracks, and starts tracks for the other boxes.
     fn pair(&mut self, params: &SortParams, input: &TrackerInputs<'_>) {
         let needed = if self.frame <= i64::from(params.min_hits) { 1 } else { params.min_hits };
-        self.pairing.begin();
+        self.pairing.clear();
         for (row, (track, expected)) in self.tracks.iter().zip(&self.expected).enumerate() {
             for (column, found) in self.boxes.iter().enumerate() {
-                let overlap = image_overlap(*expected, found.corners);
-                let may_be = overlap >= f64::from(params.iou_threshold)
+                let overlap = box_iou(*expected, found.corners);
+                let may_match = overlap >= f64::from(params.iou_threshold)
                     && (!params.per_class || input.name(found.index) == Some(&track.name));
-                if may_be {
+                if may_match {
                     self.pairing.propose(row, column, overlap);
                 }
             }
@@ -145,17 +145,17 @@ impl SortState {
             let (track, found) = (&mut self.tracks[row], &self.boxes[column]);
             self.is_taken[column] = true;
             track.filter.update(found.corners);
-            track.life.see(needed, &mut self.last_id);
+            track.life.hit(needed, &mut self.last_id);
             track.seen = Some(found.index);
         }
         self.tracks.retain(|track| track.life.away <= params.max_age);
         for (found, is_taken) in self.boxes.iter().zip(&self.is_taken) {
-            let Some(name) = input.name(found.index).filter(|_| !is_taken && self.tracks.len() < MOST_BOXES)
+            let Some(name) = input.name(found.index).filter(|_| !is_taken && self.tracks.len() < MAX_BOXES)
             else {
                 continue;
             };
             let mut life = Life::default();
-            life.see(needed, &mut self.last_id);
+            life.hit(needed, &mut self.last_id);
             let filter = AreaFilter::new(found.corners);
             self.tracks.push(Track { filter, name: name.clone(), life, seen: Some(found.index) });
         }

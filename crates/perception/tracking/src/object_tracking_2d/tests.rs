@@ -1,4 +1,4 @@
-//! What every tracker of detections must do.
+//! Tests of all trackers of detections.
 
 use opendr_engine::data::Image;
 use opendr_engine::learner::Learner;
@@ -12,7 +12,7 @@ use super::*;
 struct Stream<L: Learner> {
     learner: L,
     state: L::State,
-    answer: TrackingAnnotationList,
+    output: TrackingAnnotationList,
 }
 
 impl<L> Stream<L>
@@ -23,18 +23,18 @@ where
         let map: ParamMap =
             params.iter().map(|(name, value)| ((*name).to_owned(), (*value).into())).collect();
         let learner = make(L::Params::from_map(&map).unwrap());
-        Self { learner, state: L::State::default(), answer: TrackingAnnotationList::default() }
+        Self { learner, state: L::State::default(), output: TrackingAnnotationList::default() }
     }
 
     fn run(&mut self, boxes: Vec<BoundingBox>) -> &[TrackingAnnotation] {
-        self.see(None, boxes)
+        self.run_with_image(None, boxes)
     }
 
-    fn see(&mut self, image: Option<&Image>, boxes: Vec<BoundingBox>) -> &[TrackingAnnotation] {
-        self.see_at(0, image, boxes)
+    fn run_with_image(&mut self, image: Option<&Image>, boxes: Vec<BoundingBox>) -> &[TrackingAnnotation] {
+        self.run_at(0, image, boxes)
     }
 
-    fn see_at(
+    fn run_at(
         &mut self,
         stamp: i64,
         image: Option<&Image>,
@@ -42,8 +42,8 @@ where
     ) -> &[TrackingAnnotation] {
         let detections = BoundingBoxList { header: Header::new(stamp, "camera"), ..boxes.into() };
         let input = TrackerInputs { detections: &detections, image };
-        self.learner.infer_into(&mut self.state, input, &mut self.answer).unwrap();
-        &self.answer.annotations
+        self.learner.infer_into(&mut self.state, input, &mut self.output).unwrap();
+        &self.output.annotations
     }
 }
 
@@ -83,7 +83,7 @@ fn two_persons_who_walk_keep_their_numbers() {
         if frame % 2 == 1 {
             boxes.reverse();
         }
-        let wanted = boxes.clone();
+        let expected = boxes.clone();
         let found = tracker.run(boxes);
         let mut ids: Vec<_> = found.iter().map(|track| track.id).collect();
         ids.sort_unstable();
@@ -93,13 +93,13 @@ fn two_persons_who_walk_keep_their_numbers() {
             let height = if track.id == 1 { 50.0 } else { 120.0 };
             let first = found.iter().find(|other| other.id == 1).unwrap();
             assert_eq!(first.bounding_box.top == 50.0, track.bounding_box.top == height);
-            assert!(wanted.contains(&track.bounding_box));
+            assert!(expected.contains(&track.bounding_box));
         }
     });
 }
 
 #[test]
-fn who_is_hidden_comes_back_with_the_same_number() {
+fn an_occluded_object_keeps_its_identity() {
     let hidden = |frame: i64| (15..22).contains(&frame);
     let walk = |frame: i64| {
         if hidden(frame) { Vec::new() } else { vec![person(frame as f32 * 4.0, 50.0, 0.9)] }
@@ -117,7 +117,7 @@ fn who_is_hidden_comes_back_with_the_same_number() {
 }
 
 #[test]
-fn a_false_alarm_is_not_told() {
+fn a_false_detection_is_not_confirmed() {
     each!(&[("min_hits", 3.0)], |tracker| for frame in 0..30 {
         let mut boxes = vec![person(50.0, 50.0, 0.9)];
         if frame == 12 {
@@ -128,7 +128,7 @@ fn a_false_alarm_is_not_told() {
 }
 
 #[test]
-fn low_confidence_goes_on_but_does_not_begin() {
+fn low_scores_resume_tracks_but_start_none() {
     let mut tracker = byte_track(&[]);
     for frame in 0..20 {
         let confidence = if frame < 5 { 0.9 } else { 0.3 };
@@ -139,7 +139,7 @@ fn low_confidence_goes_on_but_does_not_begin() {
 }
 
 #[test]
-fn classes_do_not_mix_unless_they_may() {
+fn classes_match_only_without_per_class() {
     let walk = |frame: i64| BoundingBox { name: (frame % 2).into(), ..person(50.0, 50.0, 0.9) };
     let (mut strict, mut free) = (oc_sort(&[("min_hits", 1.0)]), oc_sort(&[("min_hits", 1.0)]));
     free.learner.params_mut().per_class = false;
@@ -149,12 +149,12 @@ fn classes_do_not_mix_unless_they_may() {
     }
 }
 
-/// Smooth noise of a fixed seed, coarse and fine, that the camera sees from `shift` pixels further right.
+/// Returns smooth noise of a fixed seed, coarse and fine, from a camera at `shift` pixels to the right.
 fn scene(shift: usize) -> Image {
     let noise = |x: usize, y: usize, cell: usize| {
         let corner = |across: usize, down: usize| {
             let place = [cell as u64, (x / cell + across) as u64, (y / cell + down) as u64];
-            Random::at(place).unit()
+            Random::from_key(place).unit()
         };
         let [across, down] = [x, y].map(|at| (at % cell) as f64 / cell as f64);
         let row = |down| corner(0, down) + across * (corner(1, down) - corner(0, down));
@@ -170,13 +170,13 @@ fn scene(shift: usize) -> Image {
 
 /// The camera turns so fast that no box overlaps the one before.
 #[test]
-fn a_camera_that_turns_is_made_up_for() {
+fn camera_motion_is_compensated() {
     let shift = |frame: usize| 48 * frame.saturating_sub(2);
     let still = |frame: usize| vec![person(500.0 - shift(frame) as f32, 200.0, 0.9)];
     let scenes: Vec<_> = (0..5).map(|frame| scene(shift(frame))).collect();
     each!(&[("min_hits", 1.0)], |tracker| {
         for (frame, scene) in scenes.iter().enumerate() {
-            let found = tracker.see(Some(scene), still(frame));
+            let found = tracker.run_with_image(Some(scene), still(frame));
             assert_eq!(found.iter().map(|track| track.id).collect::<Vec<_>>(), [1], "frame {frame}");
         }
     });
@@ -210,22 +210,22 @@ fn hostile_frames_never_panic_and_memory_is_bounded() {
         (0..count).map(|_| one()).collect()
     };
     let frames: Vec<_> = (0..10_000).map(&mut frame).collect();
-    // Objects are remembered for long, and time runs backwards.
+    // Tracks are kept for long, and time runs backwards.
     each!(&[], |tracker| for (at, boxes) in frames.iter().enumerate() {
         let most = boxes.len();
-        let found = tracker.see_at(-(at as i64), None, boxes.clone());
-        assert!(found.len() <= most.min(crate::tracking::MOST_BOXES));
+        let found = tracker.run_at(-(at as i64), None, boxes.clone());
+        assert!(found.len() <= most.min(crate::tracking::MAX_BOXES));
         let mut ids: Vec<_> = found.iter().map(|track| track.id).collect();
         ids.sort_unstable();
         ids.dedup();
         assert_eq!(ids.len(), found.len(), "no number twice");
         assert!(found.iter().all(|track| track.id > 0 && track.bounding_box.corners().iter().all(|edge| edge.is_finite())));
-        assert!(tracker.state.track_count() <= crate::tracking::MOST_BOXES);
+        assert!(tracker.state.track_count() <= crate::tracking::MAX_BOXES);
     });
 }
 
 #[test]
-fn the_same_frames_give_the_same_answers() {
+fn the_same_frames_give_the_same_outputs() {
     each!(&[], |tracker| {
         let mut random = Random::new(5);
         let frames: Vec<Vec<_>> = (0..60)
@@ -233,11 +233,11 @@ fn the_same_frames_give_the_same_answers() {
                 (0..12).map(|_| person(random.uniform(0.0, 300.0), random.uniform(0.0, 200.0), 0.9)).collect()
             })
             .collect();
-        let answers = [0, 1].map(|_| {
+        let outputs = [0, 1].map(|_| {
             tracker.state = Default::default();
             frames.iter().map(|frame| tracker.run(frame.clone()).to_vec()).collect::<Vec<_>>()
         });
-        assert_eq!(answers[0], answers[1]);
-        assert!(answers[0].iter().flatten().count() > 30);
+        assert_eq!(outputs[0], outputs[1]);
+        assert!(outputs[0].iter().flatten().count() > 30);
     });
 }

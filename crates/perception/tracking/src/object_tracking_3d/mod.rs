@@ -1,4 +1,4 @@
-//! Objects that keep their number from moment to moment, in space.
+//! Tracking of objects in 3D over time.
 
 mod ab3dmot;
 mod vpit;

@@ -1,10 +1,10 @@
-//! SORT's filter of a box.
+//! SORT's Kalman filter of a box.
 
-use super::camera_motion::PlaneMotion;
+use super::camera_motion::SimilarityMotion;
 use super::{Constant, ConstantVelocity, corners, middle_and_size};
 
-/// Middle and area of a box, each with its velocity, and its aspect ratio, which stays (A. Bewley et al., "Simple Online and
-/// Realtime Tracking", ICIP 2016). Positions in pixels, variances as OC-SORT has them.
+/// Kalman filter of centre and area of a box, each with its velocity, and its constant aspect ratio (A. Bewley et al.,
+/// "Simple Online and Realtime Tracking", ICIP 2016). Positions are in pixels, variances are OC-SORT's.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AreaFilter {
     x: ConstantVelocity,
@@ -13,7 +13,7 @@ pub struct AreaFilter {
     ratio: Constant,
 }
 
-/// Where nothing is known of velocities.
+/// Variances of a state with unknown velocities, of the process and of measurements.
 const START: [f64; 2] = [10.0, 1e4];
 const MOTION: [f64; 2] = [1.0, 0.01];
 const GROWTH: [f64; 2] = [1.0, 1e-4];
@@ -21,16 +21,16 @@ const MEASURED: f64 = 1.0;
 const MEASURED_SHAPE: f64 = 10.0;
 
 impl AreaFilter {
-    /// Of a box `[x0, y0, x1, y1]` seen for the first time.
-    pub fn new(seen: [f64; 4]) -> Self {
-        let [x, y, width, height] = middle_and_size(seen);
+    /// Creates a filter for the first observation `[x0, y0, x1, y1]` of a box.
+    pub fn new(observed: [f64; 4]) -> Self {
+        let [x, y, width, height] = middle_and_size(observed);
         let [x, y, area] = [x, y, width * height].map(|value| ConstantVelocity::new(value, START));
         Self { x, y, area, ratio: Constant::new(width / height, START[0]) }
     }
 
-    /// One frame on.
+    /// Advances by one frame.
     pub fn predict(&mut self) {
-        // A box does not shrink to nothing.
+        // The area stays positive.
         if self.area.position + self.area.velocity <= 0.0 {
             self.area.velocity = 0.0;
         }
@@ -40,16 +40,16 @@ impl AreaFilter {
         self.ratio.predict(MOTION[0]);
     }
 
-    /// Takes in where the box was seen.
-    pub fn update(&mut self, seen: [f64; 4]) {
-        let [x, y, width, height] = middle_and_size(seen);
+    /// Updates with an observation.
+    pub fn update(&mut self, observed: [f64; 4]) {
+        let [x, y, width, height] = middle_and_size(observed);
         self.x.update(x, MEASURED);
         self.y.update(y, MEASURED);
         self.area.update(width * height, MEASURED_SHAPE);
         self.ratio.update(width / height, MEASURED_SHAPE);
     }
 
-    /// Where the box is, `[x0, y0, x1, y1]`.
+    /// Returns the box `[x0, y0, x1, y1]`.
     pub fn corners(&self) -> [f64; 4] {
         let (area, ratio) = (self.area.position.max(0.0), self.ratio.value.max(0.0));
         let width = (area * ratio).sqrt();
@@ -57,10 +57,10 @@ impl AreaFilter {
         corners([self.x.position, self.y.position, width, height])
     }
 
-    /// Takes in that the camera moved. Turns of the camera are small: they change places and velocities, not variances.
-    pub fn move_camera(&mut self, motion: &PlaneMotion) {
+    /// Compensates a motion of the camera. Its rotations are small: they change positions and velocities, not variances.
+    pub fn move_camera(&mut self, motion: &SimilarityMotion) {
         let [x, y] = motion.map([self.x.position, self.y.position]);
-        let [across, down] = motion.turn([self.x.velocity, self.y.velocity]);
+        let [across, down] = motion.map_direction([self.x.velocity, self.y.velocity]);
         (self.x.position, self.x.velocity) = (x, across);
         (self.y.position, self.y.velocity) = (y, down);
         self.area.rescale(motion.scale().powi(2));
@@ -83,10 +83,10 @@ mod tests {
             filter.update(at(f64::from(frame)));
         }
         filter.predict();
-        let (found, wanted) = (filter.corners(), at(20.0));
+        let (found, expected) = (filter.corners(), at(20.0));
         assert!(
-            found.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() < 1.5),
-            "{found:?} {wanted:?}"
+            found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1.5),
+            "{found:?} {expected:?}"
         );
     }
 
@@ -108,9 +108,12 @@ mod tests {
     #[test]
     fn moves_with_the_camera() {
         let mut filter = AreaFilter::new([10.0, 10.0, 30.0, 50.0]);
-        filter.move_camera(&PlaneMotion::new([2.0, 0.0], [5.0, -5.0]));
+        filter.move_camera(&SimilarityMotion::new([2.0, 0.0], [5.0, -5.0]));
         let found = filter.corners();
-        let wanted = [25.0, 15.0, 65.0, 95.0];
-        assert!(found.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() < 1e-9), "{found:?}");
+        let expected = [25.0, 15.0, 65.0, 95.0];
+        assert!(
+            found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-9),
+            "{found:?}"
+        );
     }
 }

@@ -1,10 +1,11 @@
-//! DeepSORT's filter of a box.
+//! DeepSORT's Kalman filter of a box.
 
-use super::camera_motion::PlaneMotion;
+use super::camera_motion::SimilarityMotion;
 use super::{ConstantVelocity, corners, middle_and_size};
 
-/// Middle, aspect ratio and height of a box, each with its velocity (N. Wojke et al., "Simple Online and Realtime Tracking
-/// with a Deep Association Metric", ICIP 2017). Uncertainty is in parts of the height: what is near moves more pixels.
+/// Kalman filter of centre, aspect ratio and height of a box, each with its velocity (N. Wojke et al., "Simple Online and
+/// Realtime Tracking with a Deep Association Metric", ICIP 2017). Standard deviations are relative to the height: near
+/// objects move more pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeightFilter {
     x: ConstantVelocity,
@@ -13,7 +14,7 @@ pub struct HeightFilter {
     height: ConstantVelocity,
 }
 
-/// Standard deviations in parts of the height: of a position, and of a velocity.
+/// Standard deviations relative to the height: of a position, and of a velocity.
 const POSITION: f64 = 1.0 / 20.0;
 const VELOCITY: f64 = 1.0 / 160.0;
 /// Standard deviations of the aspect ratio, of its velocity, and of its measurement.
@@ -22,20 +23,20 @@ const RATIO_VELOCITY: f64 = 1e-5;
 const MEASURED_RATIO: f64 = 1e-1;
 
 impl HeightFilter {
-    /// The 95 % quantile of the chi-squared distribution with four degrees of freedom:
-    /// [`HeightFilter::squared_distance`] is beyond it once in twenty times.
+    /// 95 % quantile of the chi-squared distribution with four degrees of freedom: the gate of
+    /// [`HeightFilter::squared_distance`].
     pub const GATE: f64 = 9.4877;
 
-    /// Of a box `[x0, y0, x1, y1]` seen for the first time.
-    pub fn new(seen: [f64; 4]) -> Self {
-        let [x, y, width, height] = middle_and_size(seen);
+    /// Creates a filter for the first observation `[x0, y0, x1, y1]` of a box.
+    pub fn new(observed: [f64; 4]) -> Self {
+        let [x, y, width, height] = middle_and_size(observed);
         let moving = [(2.0 * POSITION * height).powi(2), (10.0 * VELOCITY * height).powi(2)];
         let [x, y, height_of] = [x, y, height].map(|value| ConstantVelocity::new(value, moving));
         let shape = [RATIO * RATIO, RATIO_VELOCITY * RATIO_VELOCITY];
         Self { x, y, ratio: ConstantVelocity::new(width / height, shape), height: height_of }
     }
 
-    /// One frame on.
+    /// Advances by one frame.
     pub fn predict(&mut self) {
         let height = self.height.position;
         let noise = [(POSITION * height).powi(2), (VELOCITY * height).powi(2)];
@@ -45,9 +46,9 @@ impl HeightFilter {
         self.height.predict(noise);
     }
 
-    /// Takes in where the box was seen.
-    pub fn update(&mut self, seen: [f64; 4]) {
-        let [x, y, width, height] = middle_and_size(seen);
+    /// Updates with an observation.
+    pub fn update(&mut self, observed: [f64; 4]) {
+        let [x, y, width, height] = middle_and_size(observed);
         let noise = self.measured();
         self.x.update(x, noise);
         self.y.update(y, noise);
@@ -55,9 +56,9 @@ impl HeightFilter {
         self.height.update(height, noise);
     }
 
-    /// How far `seen` is from where the box is expected: the squared distance in standard deviations (Mahalanobis).
-    pub fn squared_distance(&self, seen: [f64; 4]) -> f64 {
-        let [x, y, width, height] = middle_and_size(seen);
+    /// Returns the squared Mahalanobis distance of `observed` from the prediction.
+    pub fn squared_distance(&self, observed: [f64; 4]) -> f64 {
+        let [x, y, width, height] = middle_and_size(observed);
         let noise = self.measured();
         self.x.squared_distance(x, noise)
             + self.y.squared_distance(y, noise)
@@ -69,21 +70,21 @@ impl HeightFilter {
         (POSITION * self.height.position).powi(2)
     }
 
-    /// Who is out of sight neither grows nor shrinks.
+    /// Sets the velocity of the height to 0, for objects without a detection.
     pub fn stop_growing(&mut self) {
         self.height.velocity = 0.0;
     }
 
-    /// Where the box is, `[x0, y0, x1, y1]`.
+    /// Returns the box `[x0, y0, x1, y1]`.
     pub fn corners(&self) -> [f64; 4] {
         let height = self.height.position.max(0.0);
         corners([self.x.position, self.y.position, (self.ratio.position * height).max(0.0), height])
     }
 
-    /// Takes in that the camera moved. Turns of the camera are small: they change places and velocities, not variances.
-    pub fn move_camera(&mut self, motion: &PlaneMotion) {
+    /// Compensates a motion of the camera. Its rotations are small: they change positions and velocities, not variances.
+    pub fn move_camera(&mut self, motion: &SimilarityMotion) {
         let [x, y] = motion.map([self.x.position, self.y.position]);
-        let [across, down] = motion.turn([self.x.velocity, self.y.velocity]);
+        let [across, down] = motion.map_direction([self.x.velocity, self.y.velocity]);
         (self.x.position, self.x.velocity) = (x, across);
         (self.y.position, self.y.velocity) = (y, down);
         self.height.rescale(motion.scale());
@@ -103,21 +104,24 @@ mod tests {
             filter.update(at(f64::from(frame)));
         }
         filter.predict();
-        let (found, wanted) = (filter.corners(), at(30.0));
+        let (found, expected) = (filter.corners(), at(30.0));
         assert!(
-            found.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() < 0.5),
-            "{found:?} {wanted:?}"
+            found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 0.5),
+            "{found:?} {expected:?}"
         );
-        assert!(filter.squared_distance(wanted) < 0.1);
+        assert!(filter.squared_distance(expected) < 0.1);
         assert!(filter.squared_distance(at(40.0)) > HeightFilter::GATE);
     }
 
     #[test]
     fn moves_with_the_camera() {
         let mut filter = HeightFilter::new([10.0, 10.0, 30.0, 50.0]);
-        filter.move_camera(&PlaneMotion::new([2.0, 0.0], [5.0, -5.0]));
+        filter.move_camera(&SimilarityMotion::new([2.0, 0.0], [5.0, -5.0]));
         let found = filter.corners();
-        let wanted = [25.0, 15.0, 65.0, 95.0];
-        assert!(found.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() < 1e-9), "{found:?}");
+        let expected = [25.0, 15.0, 65.0, 95.0];
+        assert!(
+            found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-9),
+            "{found:?}"
+        );
     }
 }

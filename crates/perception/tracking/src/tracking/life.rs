@@ -1,18 +1,18 @@
-//! How long a track has been there, and whether it is told.
+//! Age and identity of a track.
 
-/// Sightings of one track.
+/// Detections of one track over time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Life {
-    /// The number under which it is told, once it is.
+    /// Identity, once the track is confirmed.
     pub id: Option<i64>,
-    /// Frames in a row in which it was seen.
+    /// Number of consecutive frames with a detection.
     pub hits: u32,
-    /// Frames since it was seen; 0 in a frame in which it is.
+    /// Number of frames since the last detection; 0 in a frame with one.
     pub away: u32,
 }
 
 impl Life {
-    /// A frame begins.
+    /// Begins a frame.
     pub fn pass(&mut self) {
         if self.away > 0 {
             self.hits = 0;
@@ -20,8 +20,8 @@ impl Life {
         self.away = self.away.saturating_add(1);
     }
 
-    /// It is seen in this frame. From the `needed`th frame in a row on it has a number, and keeps it.
-    pub fn see(&mut self, needed: u32, last_id: &mut i64) {
+    /// Records a detection in this frame. At the `needed`th consecutive one the track gets its identity, which it keeps.
+    pub fn hit(&mut self, needed: u32, last_id: &mut i64) {
         self.away = 0;
         self.hits = self.hits.saturating_add(1);
         if self.hits >= needed && self.id.is_none() {
@@ -36,21 +36,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_come_with_the_needed_sighting_and_stay() {
+    fn identities_start_at_the_needed_detection_and_stay() {
         let (mut life, mut last_id) = (Life::default(), 6);
-        life.see(3, &mut last_id);
+        life.hit(3, &mut last_id);
         for seen in [true, false, true, true] {
             life.pass();
             if seen {
-                life.see(3, &mut last_id);
+                life.hit(3, &mut last_id);
             }
         }
         assert_eq!((life.id, life.hits), (None, 2));
         life.pass();
-        life.see(3, &mut last_id);
+        life.hit(3, &mut last_id);
         life.pass();
         life.pass();
-        life.see(3, &mut last_id);
+        life.hit(3, &mut last_id);
         assert_eq!((life.id, life.away, last_id), (Some(7), 0, 7));
     }
 }

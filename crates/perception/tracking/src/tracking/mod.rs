@@ -1,7 +1,7 @@
-//! Following objects over time: filters of boxes, pairing tracks with what was found, and how the camera moved.
+//! Parts of trackers: Kalman filters of boxes, association of tracks and detections, and the motion of the camera.
 //!
-//! The trackers of [`object_tracking_2d`](crate::object_tracking_2d) and
-//! [`object_tracking_3d`](crate::object_tracking_3d) are made of these. Time is counted in frames.
+//! The trackers of [`object_tracking_2d`](crate::object_tracking_2d) and [`object_tracking_3d`](crate::object_tracking_3d)
+//! are built from these. Time is counted in frames.
 
 pub mod camera_motion;
 
@@ -15,17 +15,17 @@ mod sound_boxes;
 pub use area_filter::AreaFilter;
 pub use constant_velocity::{Constant, ConstantVelocity};
 pub use height_filter::HeightFilter;
-pub use pairing::Pairing;
-pub use sound_boxes::{MOST_BOXES, SoundBox, sound_boxes};
+pub use pairing::SparseAssignment;
+pub use sound_boxes::{MAX_BOXES, ValidBox, valid_boxes};
 
 pub(crate) use life::Life;
 
-/// Middle, width and height of `[x0, y0, x1, y1]`.
+/// Returns centre, width and height of `[x0, y0, x1, y1]`.
 fn middle_and_size([x0, y0, x1, y1]: [f64; 4]) -> [f64; 4] {
     [(x0 + x1) / 2.0, (y0 + y1) / 2.0, x1 - x0, y1 - y0]
 }
 
-/// `[x0, y0, x1, y1]` of middle, width and height.
+/// Returns `[x0, y0, x1, y1]` of centre, width and height.
 fn corners([x, y, width, height]: [f64; 4]) -> [f64; 4] {
     [x - width / 2.0, y - height / 2.0, x + width / 2.0, y + height / 2.0]
 }

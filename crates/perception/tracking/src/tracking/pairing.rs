@@ -1,26 +1,26 @@
-//! Pairing tracks with what was found, where most pairs are out of the question.
+//! Sparse linear assignment of tracks and detections.
 
 use opendr_engine::assignment::Assignment;
 
-/// Pairs rows with columns for the largest sum of gains. Memory is used again from frame to frame.
+/// Assigns rows to columns for the largest sum of gains. Its memory is reused.
 ///
-/// Only proposed pairs are looked at. They fall apart into groups that share no row and no column, mostly of one pair each,
-/// and each group is solved exactly, by linear assignment; so time and memory follow the crowds in a frame, not the
-/// product of all tracks and boxes.
+/// Only proposed pairs are considered. They separate into groups without a common row or column, mostly of one pair each,
+/// and each group is solved exactly by linear assignment. Time and memory therefore depend on the crowds in a frame, not on
+/// the product of tracks and boxes.
 ///
 /// ```
-/// use opendr_tracking::tracking::Pairing;
+/// use opendr_tracking::tracking::SparseAssignment;
 ///
-/// let mut pairing = Pairing::default();
+/// let mut pairing = SparseAssignment::default();
 /// pairing.propose(0, 0, 0.9);
 /// pairing.propose(0, 1, 0.8);
 /// pairing.propose(1, 0, 0.7);
 /// assert_eq!(pairing.solve(), [(0, 1), (1, 0)]);
 /// ```
 #[derive(Debug, Clone, Default)]
-pub struct Pairing {
+pub struct SparseAssignment {
     proposals: Vec<Proposal>,
-    /// Of each row, then of each column: another of its group, or itself.
+    /// Union-find parents of rows, then a row of each column.
     leaders: [Vec<usize>; 2],
     assignment: Assignment,
     rows: Vec<usize>,
@@ -34,27 +34,27 @@ struct Proposal {
     row: usize,
     column: usize,
     gain: f64,
-    /// The first row of its group.
+    /// First row of its group.
     group: usize,
 }
 
-/// Groups of more rows times columns are paired by the largest gain first: exactly, they would take seconds.
+/// Maximum of rows times columns of a group that is solved exactly; larger groups are solved greedily by the largest gain.
 const LARGEST_GROUP: usize = 1 << 20;
 
-impl Pairing {
-    /// Forgets what was proposed and paired.
-    pub fn begin(&mut self) {
+impl SparseAssignment {
+    /// Clears the proposals.
+    pub fn clear(&mut self) {
         self.proposals.clear();
     }
 
-    /// A pair that may be made and what it is worth; one that is not worth more than 0 is not proposed.
+    /// Proposes a pair with its gain; gains that are not above 0 and finite are ignored.
     pub fn propose(&mut self, row: usize, column: usize, gain: f64) {
         if gain > 0.0 && gain.is_finite() {
             self.proposals.push(Proposal { row, column, gain, group: 0 });
         }
     }
 
-    /// The best pairs `(row, column)`, in rising order of rows.
+    /// Returns the best pairs `(row, column)`, sorted by rows.
     pub fn solve(&mut self) -> &[(usize, usize)] {
         self.pairs.clear();
         self.group();
@@ -70,10 +70,10 @@ impl Pairing {
         &self.pairs
     }
 
-    /// Gives every proposal its group: what is connected by rows or columns in common.
+    /// Assigns every proposal to its group: those connected by common rows or columns.
     fn group(&mut self) {
         let Self { proposals, leaders: [rows, columns], .. } = self;
-        // A column's leader is a row; none yet.
+        // A column has the first row that was proposed with it.
         const NONE: usize = usize::MAX;
         let most = |of: fn(&Proposal) -> usize| proposals.iter().map(of).max().map_or(0, |most| most + 1);
         let counts = [most(|proposal| proposal.row), most(|proposal| proposal.column)];
@@ -116,16 +116,16 @@ impl Pairing {
         for proposal in proposals.iter() {
             let at = |list: &[usize], value: usize| list.binary_search(&value).unwrap_or_default();
             let cell = at(rows, proposal.row) * columns.len() + at(columns, proposal.column);
-            // Proposed twice, the better counts.
+            // Of repeated proposals the best counts.
             costs[cell] = costs[cell].min(-proposal.gain);
         }
         let found = assignment.cheapest_pairs(costs, columns.len()).iter();
-        let made = found.filter(|(row, column)| costs[row * columns.len() + column] < 0.0);
-        pairs.extend(made.map(|(row, column)| (rows[*row], columns[*column])));
+        let matched = found.filter(|(row, column)| costs[row * columns.len() + column] < 0.0);
+        pairs.extend(matched.map(|(row, column)| (rows[*row], columns[*column])));
     }
 }
 
-/// The first row of the group of `row`; shortens the way there.
+/// Returns the first row of the group of `row`, and shortens the path to it.
 fn leader(rows: &mut [usize], mut row: usize) -> usize {
     while rows[row] != row {
         rows[row] = rows[rows[row]];
@@ -134,7 +134,7 @@ fn leader(rows: &mut [usize], mut row: usize) -> usize {
     row
 }
 
-/// Takes the pair of the largest gain, again and again. `rows` and `columns` lose those that are taken.
+/// Takes the pairs in the order of decreasing gains. `rows` and `columns` lose those that are taken.
 fn greedy(
     proposals: &mut [Proposal],
     rows: &mut Vec<usize>,
@@ -165,21 +165,21 @@ mod tests {
     }
 
     proptest! {
-        /// Groups change nothing: the sum is that of the whole matrix, in which no pair costs nothing.
+        /// Checks that groups do not change the result: the sum equals that of the whole matrix.
         #[test]
         fn as_the_whole_matrix(rows in 1usize..12, columns in 1usize..12, seed in prop::collection::vec(0u8..40, 144)) {
             let gains: Vec<f64> = seed[..rows * columns].iter().map(|number| f64::from(*number) - 28.0).collect();
-            let mut pairing = Pairing::default();
-            // Twice: memory is used again.
+            let mut pairing = SparseAssignment::default();
+            // Twice, as memory is reused.
             for _ in 0..2 {
-                pairing.begin();
+                pairing.clear();
                 for (at, gain) in gains.iter().enumerate() {
                     pairing.propose(at / columns, at % columns, *gain);
                 }
                 let pairs = pairing.solve().to_vec();
                 let costs: Vec<f64> = gains.iter().map(|gain| (-gain).min(0.0)).collect();
-                let wanted: f64 = cheapest_pairs(&costs, columns).iter().map(|(row, column)| -costs[row * columns + column]).sum();
-                prop_assert!((sum(&gains, &pairs, columns) - wanted).abs() < 1e-9);
+                let expected: f64 = cheapest_pairs(&costs, columns).iter().map(|(row, column)| -costs[row * columns + column]).sum();
+                prop_assert!((sum(&gains, &pairs, columns) - expected).abs() < 1e-9);
                 prop_assert!(pairs.is_sorted_by_key(|(row, _)| *row));
                 let mut taken: Vec<_> = pairs.iter().map(|(_, column)| *column).collect();
                 taken.sort_unstable();
@@ -190,8 +190,8 @@ mod tests {
     }
 
     #[test]
-    fn a_crowd_without_end_is_paired_by_the_largest_gain() {
-        let mut pairing = Pairing::default();
+    fn a_large_group_is_solved_greedily() {
+        let mut pairing = SparseAssignment::default();
         for row in 0..1100 {
             (0..1100)
                 .for_each(|column| pairing.propose(row, column, 1.0 / (1.0 + row.abs_diff(column) as f64)));
@@ -200,8 +200,8 @@ mod tests {
     }
 
     #[test]
-    fn what_is_worth_nothing_is_not_paired() {
-        let mut pairing = Pairing::default();
+    fn pairs_without_gain_are_not_assigned() {
+        let mut pairing = SparseAssignment::default();
         for gain in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             pairing.propose(0, 0, gain);
         }

@@ -1,25 +1,24 @@
-//! What a tracker takes of a detector's list.
+//! Valid boxes of a detector's list.
 
 use opendr_engine::target::BoundingBoxList;
 
-/// So many of the best boxes of a frame are looked at, and so many tracks are kept: more are noise or malice, and time
-/// grows with their product.
-pub const MOST_BOXES: usize = 1000;
+/// Maximum number of boxes per frame, by score, and of tracks. More are noise, and time grows with their product.
+pub const MAX_BOXES: usize = 1000;
 
-/// A box that can be followed.
+/// A valid box.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SoundBox {
-    /// `[x0, y0, x1, y1]`, finite, with x1 > x0 and y1 > y0.
+pub struct ValidBox {
+    /// Corners `[x0, y0, x1, y1]`, finite, with x1 > x0 and y1 > y0.
     pub corners: [f64; 4],
-    /// Its score.
+    /// Score.
     pub confidence: f64,
-    /// Its place in the list.
+    /// Index in the list.
     pub index: usize,
 }
 
-/// Fills `sound` with the boxes of a list that score at least `threshold`, are finite and have an area, in the order of the
-/// list; of more than [`MOST_BOXES`] the best.
-pub fn sound_boxes(list: &BoundingBoxList, threshold: f64, sound: &mut Vec<SoundBox>) {
+/// Fills `sound` with the boxes of a list that have at least the score `threshold`, are finite and have an area, in the
+/// order of the list; of more than [`MAX_BOXES`], those with the highest scores.
+pub fn valid_boxes(list: &BoundingBoxList, threshold: f64, sound: &mut Vec<ValidBox>) {
     sound.clear();
     sound.extend(list.boxes.iter().enumerate().filter_map(|(index, found)| {
         let [left, top, width, height] = [found.left, found.top, found.width, found.height].map(f64::from);
@@ -27,13 +26,13 @@ pub fn sound_boxes(list: &BoundingBoxList, threshold: f64, sound: &mut Vec<Sound
         let confidence = f64::from(found.confidence);
         let has_area = corners[2] > corners[0] && corners[3] > corners[1];
         let is_sound = has_area && corners.iter().all(|edge| edge.is_finite()) && confidence >= threshold;
-        is_sound.then_some(SoundBox { corners, confidence, index })
+        is_sound.then_some(ValidBox { corners, confidence, index })
     }));
-    if sound.len() > MOST_BOXES {
+    if sound.len() > MAX_BOXES {
         let best_first =
-            |a: &SoundBox, b: &SoundBox| b.confidence.total_cmp(&a.confidence).then(a.index.cmp(&b.index));
-        sound.select_nth_unstable_by(MOST_BOXES, best_first);
-        sound.truncate(MOST_BOXES);
+            |a: &ValidBox, b: &ValidBox| b.confidence.total_cmp(&a.confidence).then(a.index.cmp(&b.index));
+        sound.select_nth_unstable_by(MAX_BOXES, best_first);
+        sound.truncate(MAX_BOXES);
         sound.sort_unstable_by_key(|found| found.index);
     }
 }
@@ -45,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_cannot_be_followed_is_left_out() {
+    fn invalid_boxes_are_dropped() {
         let rows = [
             [0.0, 0.0, 5.0, 5.0, 0.9],
             [f32::NAN, 0.0, 5.0, 5.0, 0.9],
@@ -61,7 +60,7 @@ mod tests {
         let boxes = rows
             .map(|[left, top, width, height, score]| BoundingBox::new(0, left, top, width, height, score));
         let mut sound = Vec::new();
-        sound_boxes(&boxes.to_vec().into(), 0.3, &mut sound);
+        valid_boxes(&boxes.to_vec().into(), 0.3, &mut sound);
         assert_eq!(sound.iter().map(|found| found.index).collect::<Vec<_>>(), [0, 9]);
         assert_eq!(sound[1].corners, [1.0, 2.0, 4.0, 6.0]);
     }
@@ -71,8 +70,8 @@ mod tests {
         let boxes =
             (0..5000).map(|at| BoundingBox::new(0, at as f32, 0.0, 1.0, 1.0, (at % 10) as f32 / 10.0));
         let mut sound = Vec::new();
-        sound_boxes(&boxes.collect::<Vec<_>>().into(), 0.0, &mut sound);
-        assert_eq!(sound.len(), MOST_BOXES);
+        valid_boxes(&boxes.collect::<Vec<_>>().into(), 0.0, &mut sound);
+        assert_eq!(sound.len(), MAX_BOXES);
         assert!(sound.is_sorted_by_key(|found| found.index));
         assert!(sound.iter().all(|found| found.index % 10 >= 8));
     }

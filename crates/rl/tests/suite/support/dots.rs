@@ -1,4 +1,4 @@
-//! A small world of pictures.
+//! A small environment with image observations.
 
 use opendr_engine::environment::{
     Environment, EnvironmentSpec, Info, ResetOptions, Snapshot, Space, StateReader, Step,
@@ -7,7 +7,7 @@ use opendr_engine::{Random, Result};
 use opendr_simulation::vector::{Autoreset, EnvironmentVector, VecEnvironment};
 use opendr_simulation::wrappers::TimeLimit;
 
-/// A bright bar stands left or right in a picture of 20x20; what is to be done is -1 or 1. Each step shows another.
+/// A bright bar on the left or right of a 20x20 image; the correct action is -1 or 1. Each step has another image.
 pub struct Dots {
     spec: EnvironmentSpec,
     random: Random,
@@ -24,7 +24,7 @@ impl Dots {
         Self { spec, random: Random::new(0), is_right: false }
     }
 
-    fn show(&mut self, observation: &mut [f32]) {
+    fn observe(&mut self, observation: &mut [f32]) {
         self.is_right = self.random.chance(0.5);
         let bar = if self.is_right { 14..17 } else { 3..6 };
         for (at, pixel) in observation.iter_mut().enumerate() {
@@ -44,14 +44,14 @@ impl Environment for Dots {
         if let Some(seed) = seed {
             self.random = Random::new(seed);
         }
-        self.show(observation);
+        self.observe(observation);
         Ok(Info::default())
     }
 
     fn step(&mut self, action: &[f32], observation: &mut [f32]) -> Result<Step> {
         let wanted = if self.is_right { 1.0 } else { -1.0 };
         let reward = -f64::from((action[0] - wanted).abs());
-        self.show(observation);
+        self.observe(observation);
         Ok(Step { reward, ..Step::default() })
     }
 

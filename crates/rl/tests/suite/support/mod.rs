@@ -1,4 +1,4 @@
-//! What several tests of learners need.
+//! Shared test code.
 
 pub mod dots;
 
@@ -21,7 +21,7 @@ pub struct Folder(PathBuf);
 
 impl Folder {
     pub fn new(name: &str) -> Self {
-        // Tests of one process run side by side.
+        // Tests of one process run in parallel.
         static COUNT: AtomicUsize = AtomicUsize::new(0);
         let (process, count) = (std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
         let path = std::env::temp_dir().join(format!("opendr-rl-{name}-{process}-{count}"));
@@ -50,7 +50,7 @@ pub fn trained(
     (0..iterations).try_for_each(|_| learner.iterate(worlds, TOTAL).map(drop))
 }
 
-/// Stops after a number of iterations that nobody chose, goes on elsewhere, on other threads, and compares everything.
+/// Stops after a random number of iterations, resumes with other threads, and compares the final states.
 pub fn assert_resumes<A: Algorithm>(
     worlds: impl Fn(usize) -> Box<dyn VecEnvironment>,
     iterations: usize,
@@ -60,7 +60,7 @@ pub fn assert_resumes<A: Algorithm>(
     let mut worlds = environments(1);
     let mut whole = make(Compute::single());
     trained(&mut whole, &mut *worlds, iterations).unwrap();
-    let wanted: SavedState = whole.saved_state(&*worlds).unwrap();
+    let expected: SavedState = whole.saved_state(&*worlds).unwrap();
 
     let nanoseconds = std::time::SystemTime::UNIX_EPOCH.elapsed().unwrap().as_nanos() as u64;
     let stop = 1 + Random::new(nanoseconds).below(iterations - 1);
@@ -78,6 +78,6 @@ pub fn assert_resumes<A: Algorithm>(
     let checkpoint = second.load(&folder.checkpoints(), &mut *worlds).unwrap().unwrap();
     assert_eq!(checkpoint.step, second.report().timesteps);
     trained(&mut second, &mut *worlds, iterations - stop).unwrap();
-    assert!(second.saved_state(&*worlds).unwrap() == wanted, "{} stopped after {stop}", whole.name());
+    assert!(second.saved_state(&*worlds).unwrap() == expected, "{} stopped after {stop}", whole.name());
     assert_eq!(second.report(), whole.report());
 }

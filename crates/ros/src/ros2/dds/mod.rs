@@ -1,4 +1,4 @@
-//! ROS 2 over DDS, in Rust alone (ros2-client on RustDDS).
+//! ROS 2 over DDS, in pure Rust (ros2-client on RustDDS).
 
 mod qos;
 mod service;
@@ -19,22 +19,23 @@ use ros2_client::dds::rustdds::discovery::DiscoveredReaderData;
 use ros2_client::dds::rustdds::{DomainParticipant, DomainParticipantBuilder};
 use ros2_client::{Context, MessageTypeName, Name, Node, NodeName, NodeOptions};
 
+use super::error::network_error;
 use super::typed_services::TypedServices as _;
-use super::{Ros2Node, lifecycle, log, network_error, parameter_services};
+use super::{Ros2Node, lifecycle, log, parameter_services};
 use crate::clock::{self, NO_SIM_TIME};
-use crate::graph::{Clock, Deliver, Graph, Log, Publisher, Qos, Trigger, answer_to};
+use crate::graph::{Clock, Graph, Log, MessageCallback, Publisher, Qos, TriggerHandler, answer_to};
 use crate::{Names, ParameterTable};
 
-/// A participant, which several nodes of a process share.
+/// A DDS participant, shared by the nodes of a process.
 pub(super) struct Participant {
     context: Context,
 }
 
-/// Room for many large pictures, where the system grants it: DDS sends them in pieces that come all at once.
+/// Requested size of the socket's receive buffer, for bursts of fragments of large images.
 const RECEIVE_BUFFER_BYTES: usize = 8 << 20;
 
 impl Participant {
-    /// Joins the domain by the networks of these addresses, or by all.
+    /// Joins the domain on the networks of these addresses, or on all.
     pub fn new(domain_id: u16, networks: &[IpAddr]) -> Result<Self> {
         let mut builder =
             DomainParticipantBuilder::new(domain_id).socket_receive_buffer_size(RECEIVE_BUFFER_BYTES);
@@ -47,14 +48,14 @@ impl Participant {
         Ok(Self { context })
     }
 
-    /// A node in the domain.
+    /// Creates a node in the domain.
     pub fn node(&self, names: Names) -> Result<DdsNode> {
         let name = NodeName::new(names.namespace(), names.node())
             .map_err(|error| Error::invalid_input(format!("the node's name {}: {error}", names.full())))?;
-        // Parameters and /rosout are our own: ranges, descriptions and read-only ones are not known to ros2-client.
+        // Parameter services and /rosout are our own, since ros2-client has no ranges, descriptions or read-only parameters.
         let options = NodeOptions::new().start_parameter_services(false).enable_rosout(false);
         let node =
-            self.context.new_node(name, options).map_err(|error| network_error("making a node", &error))?;
+            self.context.new_node(name, options).map_err(|error| network_error("creating a node", &error))?;
         let mut node = DdsNode {
             full_name: names.full(),
             names,
@@ -73,17 +74,17 @@ impl Participant {
 
 type Task = Pin<Box<dyn Future<Output = ()> + Send>>;
 
-/// A node of ROS 2 over DDS.
+/// A ROS 2 node over DDS.
 pub(super) struct DdsNode {
     full_name: String,
     names: Names,
     node: Node,
     participant: DomainParticipant,
-    /// What runs on one thread together: services, discovery.
+    /// Tasks that share one thread: services, discovery.
     tasks: Vec<Task>,
     threads: Vec<(oneshot::Sender<()>, JoinHandle<()>)>,
     sim_time: Arc<AtomicI64>,
-    /// Whether a manager has shut it down.
+    /// Whether a lifecycle manager has shut the node down.
     over: Arc<AtomicBool>,
     log: Log,
 }
@@ -127,7 +128,7 @@ impl Ros2Node for DdsNode {
     fn start(&mut self) -> Result<()> {
         let spinner = self.node.spinner().map_err(|error| network_error("spinning", &error))?;
         self.tasks.push(Box::pin(async move {
-            // It ends with the node.
+            // The spinner ends with the node.
             let _ = spinner.spin().await;
         }));
         let tasks = std::mem::take(&mut self.tasks);
@@ -162,7 +163,7 @@ impl Graph for DdsNode {
         topic: &str,
         message_type: MessageType,
         qos: Qos,
-        mut deliver: Deliver,
+        mut deliver: MessageCallback,
     ) -> Result<()> {
         let name = self.names.resolve(topic)?;
         let topic = self.topic(topic, message_type, qos)?;
@@ -176,7 +177,7 @@ impl Graph for DdsNode {
             while let Some(message) = messages.next().await {
                 deliver(message.map(|(message, _)| message).map_err(|error| {
                     Error::format(format!(
-                        "{name}: a message that is no {}: {error}",
+                        "{name}: the message cannot be read as {}: {error}",
                         message_type.ros2_name()
                     ))
                 }));
@@ -184,7 +185,7 @@ impl Graph for DdsNode {
         })
     }
 
-    fn serve(&mut self, service: &str, mut trigger: Trigger) -> Result<()> {
+    fn serve(&mut self, service: &str, mut trigger: TriggerHandler) -> Result<()> {
         self.serve_typed::<StdSrvsTrigger>(service, move |_| answer_to(&mut trigger))
     }
 
@@ -213,7 +214,7 @@ impl Drop for DdsNode {
         let handles: Vec<_> = threads
             .into_iter()
             .map(|(stop, thread)| {
-                // The thread may be over already.
+                // The thread may have ended already.
                 let _ = stop.send(());
                 thread
             })
@@ -228,11 +229,11 @@ struct DdsPublisher {
     publisher: ros2_client::Publisher<Message>,
     participant: DomainParticipant,
     dds_topic: String,
-    /// When the listeners were counted, and how many there were.
+    /// Time and result of the last count of subscribers.
     counted: Mutex<Option<(Instant, usize)>>,
 }
 
-/// Counting walks through all that was discovered.
+/// Minimum time between counts, since a count iterates over all discovered endpoints.
 const COUNTING_PERIOD: Duration = Duration::from_millis(200);
 
 impl Publisher for DdsPublisher {

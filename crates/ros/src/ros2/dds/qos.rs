@@ -1,4 +1,4 @@
-//! Our quality of service in DDS's words.
+//! Conversion of the quality of service to DDS.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use ros2_client::qos::{Durability, History, WhenFull};
 
 use crate::Qos;
 
-/// How long a reliable message waits for room when peers do not confirm.
+/// Maximum blocking time of a reliable publisher when peers do not acknowledge.
 const PATIENCE: Duration = Duration::from_millis(20);
 
 pub(super) fn profile(qos: Qos) -> QosProfile {

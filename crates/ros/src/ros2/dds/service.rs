@@ -1,4 +1,4 @@
-//! Services of any type.
+//! Typed services over DDS.
 
 use futures::StreamExt;
 use opendr_engine::{Error, Result};
@@ -9,17 +9,17 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::DdsNode;
-use crate::ros2::network_error;
+use crate::ros2::error::network_error;
 use crate::ros2::typed_services::TypedServices;
 
-/// A message as ros2-client marks them.
+/// A message with the marker trait of ros2-client.
 #[derive(Clone, Serialize, Deserialize)]
 #[serde(transparent)]
 struct Marked<T>(T);
 
 impl<T: Serialize + DeserializeOwned> Message for Marked<T> {}
 
-/// From the thread of the node's services.
+/// Handlers run on the thread of the node's services.
 impl TypedServices for DdsNode {
     fn serve_typed<S: RosService>(
         &mut self,
@@ -29,7 +29,7 @@ impl TypedServices for DdsNode {
         let absolute = self.names.resolve(service)?;
         let name = Name::parse(&absolute)
             .map_err(|error| Error::invalid_input(format!("the service {absolute}: {error}")))?;
-        // As rmw_qos_profile_services_default.
+        // Equals rmw_qos_profile_services_default.
         let qos = QosProfile::subscription_default()
             .reliability_reliable(WhenFull::DEFAULT)
             .history(History::KeepLast { depth: 10 });
@@ -46,9 +46,9 @@ impl TypedServices for DdsNode {
         self.tasks.push(Box::pin(async move {
             let mut requests = server.receive_request_stream();
             while let Some(request) = requests.next().await {
-                // What is no request has nobody to answer to.
+                // An unreadable request has no client to respond to.
                 let Ok((id, Marked(request))) = request else { continue };
-                // Who asked may be gone.
+                // The client may have ended.
                 let _ = server.async_send_response(id, Marked(answer(request))).await;
             }
         }));

@@ -1,9 +1,9 @@
-//! What goes beside every message: who sent it, when, as which.
+//! Attachment of every message: sender, time and sequence number.
 
 use opendr_engine::{Error, Result};
 
-/// An attachment as `rmw_zenoh_cpp` writes it: sequence number and time in nanoseconds (each 8 bytes, little-endian), then
-/// the number of bytes of the sender's id and the id.
+/// Attachment in the format of `rmw_zenoh_cpp`: sequence number and time in nanoseconds (8 bytes each, little-endian), then length
+/// and bytes of the sender's id.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Attachment {
     pub sequence_number: i64,
@@ -36,7 +36,10 @@ impl Attachment {
                 source_gid.copy_from_slice(&all[17..]);
                 Ok(Self { sequence_number: number(0), source_timestamp: number(8), source_gid })
             }
-            _ => Err(Error::format(format!("an attachment of {} bytes is none of ROS 2's", bytes.len()))),
+            _ => Err(Error::format(format!(
+                "an attachment of {} bytes is not in the format of ROS 2",
+                bytes.len()
+            ))),
         }
     }
 }

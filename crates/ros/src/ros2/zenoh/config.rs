@@ -1,11 +1,11 @@
-//! The session's configuration, from where `rmw_zenoh_cpp` takes it.
+//! Configuration of the session, from the same sources as in `rmw_zenoh_cpp`.
 
 use std::env;
 
 use opendr_engine::{Error, Result};
 use zenoh::Config;
 
-/// As rmw_zenoh's own file has it: a peer that finds others through the router of this machine, not by multicast.
+/// Defaults of rmw_zenoh: a peer that discovers others through the router of this machine, not by multicast.
 const DEFAULTS: [(&str, &str); 4] = [
     ("mode", "\"peer\""),
     ("connect/endpoints", "[\"tcp/localhost:7447\"]"),
@@ -13,7 +13,8 @@ const DEFAULTS: [(&str, &str); 4] = [
     ("scouting/multicast/enabled", "false"),
 ];
 
-/// The file of `ZENOH_SESSION_CONFIG_URI`, or the defaults; then `ZENOH_CONFIG_OVERRIDE`, a list of `key/path=value;`.
+/// Returns the configuration of `ZENOH_SESSION_CONFIG_URI` or the defaults, with `ZENOH_CONFIG_OVERRIDE`, a list of
+/// `key/path=value;`.
 pub(super) fn config() -> Result<Config> {
     let mut config = match set("ZENOH_SESSION_CONFIG_URI") {
         Some(path) => Config::from_file(&path)
@@ -32,7 +33,7 @@ pub(super) fn config() -> Result<Config> {
         if pair.trim().is_empty() {
             continue;
         }
-        let set = pair.split_once('=').ok_or_else(|| "it has no =".to_owned()).and_then(|(key, value)| {
+        let set = pair.split_once('=').ok_or_else(|| "there is no =".to_owned()).and_then(|(key, value)| {
             config.insert_json5(key.trim(), value.trim()).map_err(|error| error.to_string())
         });
         set.map_err(|error| Error::invalid_param(format!("ZENOH_CONFIG_OVERRIDE, {pair:?}: {error}")))?;
@@ -49,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn defaults_are_keys_that_zenoh_knows() {
+    fn defaults_are_keys_of_zenoh() {
         let config = config().unwrap();
         assert!(config.get_json("connect/endpoints").unwrap().contains("tcp/localhost:7447"));
         assert_eq!(config.get_json("scouting/multicast/enabled").unwrap(), "false");

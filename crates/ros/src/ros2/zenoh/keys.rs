@@ -1,11 +1,10 @@
-//! Key expressions: where messages go, and the liveliness tokens by which others see nodes and topics (design.md of
-//! rmw_zenoh).
+//! Key expressions of messages, and liveliness tokens of nodes and topics (design.md of rmw_zenoh).
 
 use opendr_messages::{MessageType, ServiceType};
 
 use crate::{Names, Qos};
 
-/// A kind of message or service as its key has it: a name and a hash.
+/// Type of a message or service in a key: name and hash.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct KeyType {
     name: String,
@@ -25,18 +24,18 @@ impl From<ServiceType> for KeyType {
     }
 }
 
-/// Where the messages of the topic or the requests of the service called `name` go.
+/// Returns the key of the messages of a topic or the requests of a service `name`.
 pub(super) fn data_key(domain_id: u16, name: &str, of: &KeyType) -> String {
     let KeyType { name: of, hash } = of;
     format!("{domain_id}/{}/{of}/{hash}", name.trim_matches('/'))
 }
 
-/// All liveliness tokens of a domain.
+/// Returns the key expression of all liveliness tokens of a domain.
 pub(super) fn all_tokens(domain_id: u16) -> String {
     format!("@ros2_lv/{domain_id}/**")
 }
 
-/// What a node has.
+/// Kind of an entity of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Publisher,
@@ -44,23 +43,23 @@ pub(super) enum Kind {
     Server,
 }
 
-/// Who has it.
+/// Node of an entity.
 #[derive(Debug, Clone)]
 pub(super) struct Owner<'a> {
     pub domain_id: u16,
     pub session: String,
-    /// The number of the node in the session.
+    /// Id of the node in the session.
     pub node: u64,
     pub names: &'a Names,
 }
 
 impl Owner<'_> {
-    /// The token of the node itself.
+    /// Returns the token of the node itself.
     pub fn node_token(&self) -> String {
         self.token(self.node, "NN")
     }
 
-    /// The token of what the node has, the `entity`th of the session.
+    /// Returns the token of an entity of the node, with its id in the session.
     pub fn entity_token(&self, entity: u64, kind: Kind, name: &str, of: &KeyType, qos: Qos) -> String {
         let kind = match kind {
             Kind::Publisher => "MP",
@@ -74,29 +73,30 @@ impl Owner<'_> {
     fn token(&self, entity: u64, kind: &str) -> String {
         let Self { domain_id, session, node, names } = self;
         let namespace = one_level(names.namespace());
-        // The enclave of nodes without security is `/`.
+        // Nodes without security have the enclave `/`.
         format!("@ros2_lv/{domain_id}/{session}/{node}/{entity}/{kind}/%/{namespace}/{}", names.node())
     }
 }
 
-/// A name without the levels that a `/` begins.
+/// Encodes a name as one level of a key.
 fn one_level(name: &str) -> String {
     name.replace('/', "%")
 }
 
-/// What differs from ROS 2's default, by the numbers of `rmw/types.h`; deadline, lifespan and liveliness never do.
+/// Encodes the quality of service by the numbers of `rmw/types.h`, with defaults omitted; deadline, lifespan and liveliness are
+/// always the defaults.
 fn quality(qos: Qos) -> String {
     let reliability = if qos.reliable { "" } else { "2" };
     format!("{reliability}::,{}:,:,:,,", qos.depth)
 }
 
-/// The topic that the token of a subscription names, as one level.
+/// Returns the topic in the token of a subscription, as one level.
 pub(super) fn subscribed_topic(token: &str) -> Option<&str> {
     let mut levels = token.split('/');
     (levels.nth(5)? == "MS").then(|| levels.nth(3)).flatten()
 }
 
-/// The topic called `name` as tokens name it.
+/// Returns the topic `name` in the form of tokens.
 pub(super) fn topic_in_tokens(name: &str) -> String {
     one_level(name)
 }
@@ -108,14 +108,14 @@ mod tests {
     const HASH: &str = "RIHS01_d31d41a9a4c4bc8eae9be757b0beed306564f7526c88ea6a4588fb9582527d47";
 
     #[test]
-    fn messages_go_where_the_cpp_implementation_looks() {
+    fn data_keys_equal_those_of_the_cpp_implementation() {
         let of = KeyType::from(MessageType::SensorMsgsImage);
         let key = data_key(3, "/camera/image_raw", &of);
         assert_eq!(key, format!("3/camera/image_raw/sensor_msgs::msg::dds_::Image_/{HASH}"));
     }
 
     #[test]
-    fn tokens_are_those_of_the_cpp_implementation() {
+    fn tokens_equal_those_of_the_cpp_implementation() {
         let names = Names::new("/robot/front", "eyes", [""; 0]).unwrap();
         let owner = Owner { domain_id: 0, session: "aac3".to_owned(), node: 4, names: &names };
         assert_eq!(owner.node_token(), "@ros2_lv/0/aac3/4/4/NN/%/%robot%front/eyes");

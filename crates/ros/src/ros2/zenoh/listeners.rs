@@ -1,4 +1,4 @@
-//! Who listens to which topic, out of the liveliness tokens of the domain.
+//! Subscribers of topics, from the liveliness tokens of the domain.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -8,17 +8,17 @@ use zenoh::Wait;
 use zenoh::sample::SampleKind;
 
 use super::keys::{all_tokens, subscribed_topic, topic_in_tokens};
-use crate::ros2::network_error;
+use crate::ros2::error::network_error;
 
-/// More than any ROS has; tokens beyond are not counted, so that nobody can fill the memory with them.
+/// Maximum number of counted tokens, which bounds the memory.
 const MAX_TOKENS: usize = 100_000;
 
-/// The subscriptions of a domain.
+/// Subscriptions of a domain.
 #[derive(Debug, Default)]
 pub(super) struct Listeners(Mutex<HashMap<String, String>>);
 
 impl Listeners {
-    /// Follows the tokens of a domain until the session ends, beginning with those that are there.
+    /// Follows the tokens of a domain until the session ends, including the existing ones.
     pub fn follow(session: &zenoh::Session, domain_id: u16) -> Result<Arc<Self>> {
         let listeners = Arc::<Self>::default();
         let follows = listeners.clone();
@@ -32,11 +32,11 @@ impl Listeners {
             })
             .background()
             .wait()
-            .map_err(|error| network_error("following Zenoh's nodes", &error))?;
+            .map_err(|error| network_error("subscribing to Zenoh's liveliness tokens", &error))?;
         Ok(listeners)
     }
 
-    /// How many subscriptions the topic called `name` has.
+    /// Returns the number of subscriptions of the topic `name`.
     pub fn count(&self, name: &str) -> usize {
         let topic = topic_in_tokens(name);
         let tokens = self.0.lock().unwrap_or_else(PoisonError::into_inner);

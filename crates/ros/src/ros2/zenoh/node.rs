@@ -1,10 +1,10 @@
-//! A node over Zenoh.
+//! ROS 2 nodes over Zenoh.
 
 use std::sync::atomic::{AtomicBool, AtomicI64, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use opendr_engine::{Error, Result};
-use opendr_messages::{Message, MessageType, StdSrvsTrigger, Wire};
+use opendr_messages::{Message, MessageType, StdSrvsTrigger, WireFormat};
 use twox_hash::XxHash3_128;
 use zenoh::Wait;
 use zenoh::liveliness::LivelinessToken;
@@ -12,17 +12,18 @@ use zenoh::pubsub::Subscriber;
 use zenoh::qos::CongestionControl;
 use zenoh::query::Queryable;
 
-use super::Session;
 use super::keys::{KeyType, Kind, Owner, data_key};
 use super::listeners::Listeners;
 use super::publisher::ZenohPublisher;
+use super::session::Session;
 use crate::clock::{self, NO_SIM_TIME};
-use crate::graph::{Clock, Deliver, Graph, Log, Publisher, Qos, Trigger, answer_to};
+use crate::graph::{Clock, Graph, Log, MessageCallback, Publisher, Qos, TriggerHandler, answer_to};
+use crate::ros2::error::network_error;
 use crate::ros2::typed_services::TypedServices as _;
-use crate::ros2::{Ros2Node, lifecycle, log, network_error, parameter_services};
+use crate::ros2::{Ros2Node, lifecycle, log, parameter_services};
 use crate::{Names, ParameterTable, Severity};
 
-/// A node of ROS 2 over Zenoh.
+/// A ROS 2 node over Zenoh.
 pub(in crate::ros2) struct ZenohNode {
     pub(super) session: zenoh::Session,
     pub(super) domain_id: u16,
@@ -31,7 +32,7 @@ pub(in crate::ros2) struct ZenohNode {
     number: u64,
     entities: Arc<AtomicU64>,
     listeners: Arc<Listeners>,
-    // What ends when it goes.
+    // Dropped with the node.
     subscriptions: Vec<Subscriber<()>>,
     pub(super) services: Vec<Queryable<()>>,
     tokens: Vec<LivelinessToken>,
@@ -67,7 +68,7 @@ impl ZenohNode {
         Owner { domain_id: self.domain_id, session, node: self.number, names: &self.names }
     }
 
-    /// Lets others see what the node has; the id that follows from it.
+    /// Announces an entity of the node by a liveliness token and returns its global id.
     pub(super) fn announce(&mut self, kind: Kind, name: &str, of: &KeyType, qos: Qos) -> Result<[u8; 16]> {
         let entity = self.entities.fetch_add(1, Ordering::Relaxed);
         let token = self.owner().entity_token(entity, kind, name, of, qos);
@@ -93,7 +94,7 @@ impl Ros2Node for ZenohNode {
         if self.session.info().routers_zid().wait().next().is_none() {
             (self.log)(
                 Severity::Warn,
-                "no Zenoh router is there yet; start one: ros2 run rmw_zenoh_cpp rmw_zenohd",
+                "no Zenoh router is reachable; start one: ros2 run rmw_zenoh_cpp rmw_zenohd",
             );
         }
         Ok(())
@@ -115,7 +116,7 @@ impl Graph for ZenohNode {
         let publisher = self
             .session
             .declare_publisher(data_key(self.domain_id, &topic, &of))
-            // Who is slow loses messages; nothing waits for them.
+            // Slow subscribers lose messages; the publisher does not wait.
             .congestion_control(CongestionControl::Drop)
             .wait()
             .map_err(|error| network_error(&topic, &error))?;
@@ -129,7 +130,7 @@ impl Graph for ZenohNode {
         topic: &str,
         message_type: MessageType,
         qos: Qos,
-        deliver: Deliver,
+        deliver: MessageCallback,
     ) -> Result<()> {
         let topic = self.names.resolve(topic)?;
         let of = KeyType::from(message_type);
@@ -138,7 +139,7 @@ impl Graph for ZenohNode {
             .session
             .declare_subscriber(data_key(self.domain_id, &topic, &of))
             .callback(move |sample| {
-                let read = Message::from_bytes(message_type, Wire::Cdr, &sample.payload().to_bytes());
+                let read = Message::from_bytes(message_type, WireFormat::Cdr, &sample.payload().to_bytes());
                 let message = read.map_err(|error: Error| error.context(name.clone()));
                 deliver.lock().unwrap_or_else(PoisonError::into_inner)(message);
             })
@@ -148,7 +149,7 @@ impl Graph for ZenohNode {
         self.announce(Kind::Subscription, &topic, &of, qos).map(drop)
     }
 
-    fn serve(&mut self, service: &str, mut trigger: Trigger) -> Result<()> {
+    fn serve(&mut self, service: &str, mut trigger: TriggerHandler) -> Result<()> {
         self.serve_typed::<StdSrvsTrigger>(service, move |_| answer_to(&mut trigger))
     }
 

@@ -1,4 +1,4 @@
-//! Services, which are queryables.
+//! Services over Zenoh, as queryables.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -12,7 +12,7 @@ use super::keys::{KeyType, Kind, data_key};
 use super::node::ZenohNode;
 use crate::Qos;
 use crate::clock::system_time_ns;
-use crate::ros2::network_error;
+use crate::ros2::error::network_error;
 use crate::ros2::typed_services::TypedServices;
 
 impl TypedServices for ZenohNode {
@@ -29,7 +29,7 @@ impl TypedServices for ZenohNode {
             let answered =
                 answer_to::<S>(&query, &mut *answer.lock().unwrap_or_else(PoisonError::into_inner));
             if let Err(error) = answered {
-                // Who asked may be gone.
+                // The client may have ended.
                 query.reply_err(error.to_string()).wait().ok();
             }
         };
@@ -40,11 +40,11 @@ impl TypedServices for ZenohNode {
 }
 
 fn answer_to<S: RosService>(query: &Query, answer: &mut impl FnMut(S::Request) -> S::Response) -> Result<()> {
-    let missing = || Error::format("a request of ROS 2 has a payload and an attachment");
+    let missing = || Error::format("a request needs a payload and an attachment");
     let asked = Attachment::from_bytes(&query.attachment().ok_or_else(missing)?.to_bytes())?;
     let request = message_from_cdr::<S::Request>(&query.payload().ok_or_else(missing)?.to_bytes())?;
     let response = cdr_from_message(&answer(request))?;
-    // By number and sender the answer finds its request.
+    // The client matches the response by sequence number and sender.
     let answered = Attachment { source_timestamp: system_time_ns(), ..asked };
     query
         .reply(query.key_expr(), response)

@@ -1,17 +1,15 @@
-//! Values that are known before a graph runs: initialisers, constants, and what stands for quantised ones.
+//! Constant tensors of a graph: initialisers, constants, and dequantised values.
 
 use std::collections::HashMap;
 
 use opendr_engine::{Error, Result};
-use opendr_onnx::proto::{DataType, GraphProto, NodeProto, TensorProto};
+use opendr_onnx::proto::{AttributeProto, DataType, GraphProto, NodeProto, TensorProto};
 use opendr_onnx::{FloatType, element_count};
 
-use super::attribute;
-
-/// How long a chain of nodes from a constant may be.
+/// Maximum length of a chain of nodes from a constant.
 const MAX_CHAIN: usize = 4;
 
-/// A known tensor, under the name of the initialiser that it comes from.
+/// A constant tensor, with the name of its initialiser.
 pub(super) struct Constant {
     pub name: String,
     pub shape: Vec<usize>,
@@ -19,7 +17,7 @@ pub(super) struct Constant {
 }
 
 impl Constant {
-    /// Rows and columns of a matrix change places; others stay.
+    /// Transposes a matrix; other tensors are unchanged.
     pub fn transpose(&mut self) {
         if let [rows, columns] = self.shape[..] {
             let column = |at| self.values.iter().skip(at).step_by(columns.max(1)).copied();
@@ -35,7 +33,7 @@ pub(super) struct Constants<'g> {
 }
 
 impl<'g> Constants<'g> {
-    /// What is known in `graph`.
+    /// Collects the constants of `graph`.
     pub fn of(graph: &'g GraphProto) -> Result<Self> {
         let mut known = Self { tensors: HashMap::new(), makers: HashMap::new() };
         known.tensors.extend(graph.initializer.iter().map(|tensor| (tensor.name.as_str(), tensor)));
@@ -54,14 +52,14 @@ impl<'g> Constants<'g> {
         }
         match known.tensors.values().find(|tensor| tensor.data_location == 1) {
             Some(tensor) => Err(Error::unsupported(format!(
-                "the weight {:.80?} lies in another file; save the model as one file",
+                "the weight {:.80?} is in another file; save the model as one file",
                 tensor.name
             ))),
             None => Ok(known),
         }
     }
 
-    /// The nodes from the tensor called `name` back to the one that is stored.
+    /// Returns the nodes from the tensor `name` back to a stored tensor.
     fn chain(&self, name: &str) -> Option<(&'g str, &'g TensorProto, Vec<&'g NodeProto>)> {
         let (mut name, mut nodes) = (name, Vec::new());
         loop {
@@ -74,18 +72,19 @@ impl<'g> Constants<'g> {
         }
     }
 
-    /// How many numbers the tensor called `name` has, if it is known.
+    /// Returns the number of elements of the tensor `name`, if it is constant.
     pub fn count(&self, name: &str) -> Option<usize> {
         element_count(&shape_of(self.chain(name)?.1)?)
     }
 
-    /// The tensor called `name`, if it is known and of numbers.
+    /// Returns the tensor `name`, if it is constant and numeric.
     ///
     /// # Errors
-    /// `Format` for one that contradicts itself.
+    /// `Format` for inconsistent data.
     pub fn get(&self, name: &str) -> Result<Option<Constant>> {
         let Some((name, tensor, nodes)) = self.chain(name) else { return Ok(None) };
-        let damaged = || Error::format(format!("ONNX: the weight {name:.80?} is damaged; get the file anew"));
+        let damaged =
+            || Error::format(format!("ONNX: the weight {name:.80?} is damaged; download the file again"));
         let shape = shape_of(tensor).ok_or_else(damaged)?;
         let quantised = nodes.iter().find(|node| node.op_type == "DequantizeLinear");
         let values = match quantised {
@@ -99,7 +98,7 @@ impl<'g> Constants<'g> {
         }
     }
 
-    /// `(x - zero) * scale`, with one scale or one for each place of an axis.
+    /// Returns `(x - zero) * scale`, with one scale or one per index of an axis.
     fn dequantised(&self, node: &NodeProto, tensor: &TensorProto, shape: &[usize]) -> Option<Vec<f32>> {
         let numbers = integers(tensor)?;
         let stored = |at: usize| self.chain(node.input.get(at)?).map(|(_, tensor, _)| tensor);
@@ -134,7 +133,7 @@ fn shape_of(tensor: &TensorProto) -> Option<Vec<usize>> {
     tensor.dims.iter().map(|side| usize::try_from(*side).ok()).collect()
 }
 
-/// The numbers of a tensor of floats.
+/// Returns the elements of a float tensor.
 fn floats(tensor: &TensorProto) -> Option<Vec<f32>> {
     let raw = &tensor.raw_data;
     let halves =
@@ -144,17 +143,17 @@ fn floats(tensor: &TensorProto) -> Option<Vec<f32>> {
         DataType::Double if raw.is_empty() => {
             tensor.double_data.iter().map(|number| *number as f32).collect()
         }
-        DataType::Float16 if raw.is_empty() => FloatType::F16.numbers(&halves()),
-        DataType::Bfloat16 if raw.is_empty() => FloatType::Bf16.numbers(&halves()),
-        DataType::Float => FloatType::F32.numbers(raw),
-        DataType::Double => FloatType::F64.numbers(raw),
-        DataType::Float16 => FloatType::F16.numbers(raw),
-        DataType::Bfloat16 => FloatType::Bf16.numbers(raw),
+        DataType::Float16 if raw.is_empty() => FloatType::F16.decode(&halves()),
+        DataType::Bfloat16 if raw.is_empty() => FloatType::Bf16.decode(&halves()),
+        DataType::Float => FloatType::F32.decode(raw),
+        DataType::Double => FloatType::F64.decode(raw),
+        DataType::Float16 => FloatType::F16.decode(raw),
+        DataType::Bfloat16 => FloatType::Bf16.decode(raw),
         _ => return None,
     })
 }
 
-/// The numbers of a tensor of integers.
+/// Returns the elements of an integer tensor.
 fn integers(tensor: &TensorProto) -> Option<Vec<i32>> {
     let raw = &tensor.raw_data;
     Some(match DataType::try_from(tensor.data_type).ok()? {
@@ -170,4 +169,9 @@ fn integers(tensor: &TensorProto) -> Option<Vec<i32>> {
         DataType::Int32 => raw.as_chunks().0.iter().map(|b| i32::from_le_bytes(*b)).collect(),
         _ => return None,
     })
+}
+
+/// Returns the attribute of a node by name.
+pub(super) fn attribute<'n>(node: &'n NodeProto, name: &str) -> Option<&'n AttributeProto> {
+    node.attribute.iter().find(|attribute| attribute.name == name)
 }

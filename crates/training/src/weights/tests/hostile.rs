@@ -5,7 +5,7 @@ fn error_of(bytes: &[u8]) -> opendr_engine::Error {
     WeightTable::from_file(&file.0).unwrap_err()
 }
 
-/// The checkpoint's pickle with `from` replaced.
+/// Returns the checkpoint's pickle with `from` replaced.
 fn forged(from: &[u8], to: &[u8]) -> Vec<u8> {
     let bytes = checkpoint(&weights(true, false));
     let at = bytes.windows(from.len()).position(|window| window == from).unwrap();
@@ -15,7 +15,7 @@ fn forged(from: &[u8], to: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn nothing_of_a_checkpoint_is_run() {
+fn nothing_of_a_checkpoint_is_executed() {
     let marker = std::env::temp_dir().join("opendr-weights-ran");
     let command = format!("cos\nsystem\n(Vtouch {}\ntR.", marker.display());
     let pickles = [command.as_bytes().to_vec(), [b"\x80\x02", command.as_bytes()].concat()];
@@ -26,8 +26,8 @@ fn nothing_of_a_checkpoint_is_run() {
 }
 
 #[test]
-fn sizes_are_checked_before_memory_is_asked_for() {
-    // A view of a storage of eight numbers that claims 16 G of them.
+fn sizes_are_checked_before_memory_is_allocated() {
+    // A view of a storage of eight values that claims 16 G of them.
     let shape = [2u32, 1, 2, 2].map(u32::to_le_bytes);
     let from = [b"(J", &shape[0][..], b"J", &shape[1], b"J", &shape[2], b"J", &shape[3], b"t"].concat();
     let huge = 1u32 << 17;

@@ -36,7 +36,7 @@ fn int(mut node: NodeProto, name: &str, value: i64) -> NodeProto {
     node
 }
 
-/// A convolution with a scale for each output and a bias in 32 bits, and a product with a sum.
+/// Returns a convolution with a scale per output and a 32-bit bias, and a product with a sum.
 pub(super) fn quantised() -> Vec<u8> {
     let graph = GraphProto {
         initializer: vec![
@@ -62,7 +62,7 @@ pub(super) fn quantised() -> Vec<u8> {
 }
 
 #[test]
-fn integers_become_what_they_stand_for() {
+fn integers_are_dequantised() {
     let table = WeightTable::from_bytes(&quantised()).unwrap();
     let names: Vec<_> = table.weights().iter().map(Weight::name).collect();
     assert_eq!(names, ["k.weight", "k.bias", "d.weight", "d.bias"]);
@@ -77,7 +77,7 @@ fn integers_become_what_they_stand_for() {
 }
 
 #[test]
-fn graphs_that_go_in_circles_or_name_other_files_are_refused() {
+fn cyclic_graphs_and_external_files_are_refused() {
     let mut looped = GraphProto {
         node: vec![
             node("Identity", &["b"], "a"),
@@ -95,7 +95,7 @@ fn graphs_that_go_in_circles_or_name_other_files_are_refused() {
 }
 
 #[test]
-fn models_of_others_give_all_their_layers() {
+fn published_models_yield_all_their_layers() {
     let Some(shared) = std::env::var_os("OPENDR_TEST_DATA").map(PathBuf::from) else {
         println!("skipped: no OPENDR_TEST_DATA");
         return;

@@ -2,7 +2,7 @@ use std::process::Command;
 
 use super::*;
 
-/// Layers as torchvision's MobileNet has them, saved in each of PyTorch's formats; numbers count up from 0.
+/// Layers named as in torchvision's MobileNet, saved in each of PyTorch's formats; the values count up from 0.
 const WRITE: &str = r#"
 import sys, torch
 from torch import nn

@@ -1,4 +1,4 @@
-//! A network, exported twice, with what Burn answers.
+//! A network, exported twice, with Burn's outputs.
 
 use burn::module::{Module, ModuleMapper, Param};
 use burn::tensor::{Device, Distribution, Tensor};
@@ -6,14 +6,14 @@ use burn_store::{ModuleSnapshot, SafetensorsStore};
 use opendr_engine::Result;
 use opendr_training::export::{self, Input, Outputs};
 
-/// Sizes and elements.
+/// Shape and values of a tensor.
 #[derive(Debug, Clone)]
 pub struct Values {
     pub shape: Vec<usize>,
     pub values: Vec<f32>,
 }
 
-/// A model, an input and what Burn answers.
+/// A model, an input and Burn's outputs.
 pub struct Run {
     pub model: Result<Vec<u8>>,
     pub input: Values,
@@ -25,30 +25,30 @@ pub struct Case {
     pub name: &'static str,
     /// Exported for a batch of two.
     pub fixed: Run,
-    /// Exported with an open batch, run with one of three.
+    /// Exported with an open batch, run with a batch of three.
     pub open: Run,
     /// Parameters and statistics, as a safetensors file.
     pub parameters: Vec<u8>,
 }
 
 /// Tensors, or tuples, arrays and vectors of them.
-pub trait Answers: Outputs {
+pub trait OutputValues: Outputs {
     fn values(self, to: &mut Vec<Values>);
 }
 
-impl<const D: usize> Answers for Tensor<D> {
+impl<const D: usize> OutputValues for Tensor<D> {
     fn values(self, to: &mut Vec<Values>) {
         to.push(values(self));
     }
 }
 
-impl<A: Answers> Answers for Vec<A> {
+impl<A: OutputValues> OutputValues for Vec<A> {
     fn values(self, to: &mut Vec<Values>) {
         self.into_iter().for_each(|answer| answer.values(to));
     }
 }
 
-impl<A: Answers, const N: usize> Answers for [A; N] {
+impl<A: OutputValues, const N: usize> OutputValues for [A; N] {
     fn values(self, to: &mut Vec<Values>) {
         self.into_iter().for_each(|answer| answer.values(to));
     }
@@ -57,7 +57,7 @@ impl<A: Answers, const N: usize> Answers for [A; N] {
 macro_rules! impl_answers {
     ($($name:ident),+) => {
         #[allow(non_snake_case)]
-        impl<$($name: Answers),+> Answers for ($($name,)+) {
+        impl<$($name: OutputValues),+> OutputValues for ($($name,)+) {
             fn values(self, to: &mut Vec<Values>) {
                 let ($($name,)+) = self;
                 $($name.values(to);)+
@@ -76,7 +76,7 @@ pub fn values<const D: usize>(tensor: Tensor<D>) -> Values {
     Values { shape: tensor.dims().to_vec(), values: tensor.into_data().try_to_vec_as().unwrap() }
 }
 
-/// Moves what begins as ones or zeros (scales, shifts, biases) away from there.
+/// Perturbs parameters that are initialised to ones or zeros (scales, shifts, biases).
 struct Scatter;
 
 impl ModuleMapper for Scatter {
@@ -92,8 +92,8 @@ impl ModuleMapper for Scatter {
     }
 }
 
-/// Makes a network of random weights and statistics, exports it twice and runs it.
-pub fn case<const D: usize, M: Module, A: Answers>(
+/// Creates a network with random weights and statistics, exports it twice and runs it.
+pub fn case<const D: usize, M: Module, A: OutputValues>(
     name: &'static str,
     shape: [usize; D],
     outputs: &[&str],
@@ -109,7 +109,7 @@ pub fn case<const D: usize, M: Module, A: Answers>(
         shape[0] = batch;
         Tensor::<D>::random(shape, Distribution::Normal(0.2, 1.0), device)
     };
-    // Batch normalisations take up statistics.
+    // Collect the statistics of batch normalisations.
     for _ in 0..3 {
         forward(&network, random(4, &training));
     }
@@ -121,9 +121,9 @@ pub fn case<const D: usize, M: Module, A: Answers>(
         let input = if open { input.open(0) } else { input };
         let model = export::onnx(&network, input, outputs, &forward);
         let input = random(batch, &device);
-        let mut answers = Vec::new();
-        forward(&plain, input.clone()).values(&mut answers);
-        Run { model, input: values(input), outputs: answers }
+        let mut burn_outputs = Vec::new();
+        forward(&plain, input.clone()).values(&mut burn_outputs);
+        Run { model, input: values(input), outputs: burn_outputs }
     };
     let mut store = SafetensorsStore::from_bytes(None);
     plain.save_into(&mut store).unwrap();

@@ -1,4 +1,4 @@
-//! The architectures that exports are tested with. The example that writes them is a test's, so it may unwrap.
+//! Architectures of the export tests. An example of the crate uses them, too, so they may unwrap.
 #![allow(dead_code, clippy::unwrap_used)]
 
 pub mod case;
@@ -17,13 +17,13 @@ use opendr_training::layers::{
 
 use case::{Case, case};
 
-/// No parameters: `forward` is all there is.
+/// A module without parameters, for operators.
 #[derive(Module, Debug, Default)]
 pub struct Nothing {
     unused: usize,
 }
 
-/// Every architecture.
+/// Returns every architecture.
 pub fn all() -> Vec<Case> {
     let mut cases = vec![
         case(

@@ -1,4 +1,4 @@
-//! Networks that are made of Burn's layers.
+//! Networks of Burn's layers.
 
 use burn::module::{Module, Param};
 use burn::nn::attention::{MhaInput, MultiHeadAttention, MultiHeadAttentionConfig};
@@ -62,7 +62,7 @@ impl UNet {
     }
 }
 
-/// What MatchboxNet is made of.
+/// Separable 1D convolutions as in MatchboxNet.
 #[derive(Module, Debug)]
 struct Separable1d {
     depthwise: Conv1d,

@@ -1,4 +1,4 @@
-//! Every operation that is lowered, family by family.
+//! Every operation with a lowering, family by family.
 
 use burn::tensor::activation::{leaky_relu, log_sigmoid, quiet_softmax, softmin, softplus};
 use burn::tensor::module::{
@@ -8,10 +8,10 @@ use burn::tensor::ops::{AvgPoolOptions, InterpolateMode, InterpolateOptions, Max
 use burn::tensor::{Int, Tensor};
 
 use super::Nothing;
-use super::case::{Answers, Case, case};
+use super::case::{Case, OutputValues, case};
 
 /// A case without parameters.
-fn plain<const D: usize, A: Answers>(
+fn plain<const D: usize, A: OutputValues>(
     name: &'static str,
     shape: [usize; D],
     outputs: &[&str],

@@ -1,4 +1,4 @@
-//! A small problem for the tests: which of two spirals a point lies on.
+//! A small classification problem for the tests: points on two spirals.
 
 use burn::module::{Module, ModuleVisitor, Param};
 use burn::nn::loss::CrossEntropyLossConfig;
@@ -16,7 +16,7 @@ use opendr_training::{Container, Loss, Objective};
 /// Points on two spirals.
 pub struct Spirals {
     pub count: usize,
-    /// The point whose first coordinate is no number.
+    /// Index of a point whose first coordinate is NaN.
     pub broken: Option<usize>,
 }
 
@@ -29,7 +29,7 @@ impl DatasetIterator for Spirals {
 
     fn get(&self, index: usize) -> Result<Sample> {
         let class = (index % 2) as i64;
-        let mut random = Random::at([1, index as u64]);
+        let mut random = Random::from_key([1, index as u64]);
         let turn = random.uniform(0.2, 1.0);
         let angle = turn * 6.0 + class as f32 * std::f32::consts::PI;
         let x = if self.broken == Some(index) { f32::NAN } else { turn * angle.cos() };
@@ -71,10 +71,10 @@ impl Network {
     }
 }
 
-/// Cross entropy.
+/// Cross-entropy objective.
 #[derive(Default)]
-pub struct TellApart {
-    /// Numbers that are held in memory for each sample, for nothing.
+pub struct ClassifyPoints {
+    /// Number of values held in memory per sample.
     pub ballast: usize,
 }
 
@@ -97,7 +97,7 @@ impl Collate for Points {
         let (Some(Value::Vector(point)), Some(Value::Category(category))) =
             (sample.data.first(), &sample.target)
         else {
-            return Err(Error::invalid_input("no point with a class"));
+            return Err(Error::invalid_input("the sample has no point with a class"));
         };
         batch.points.extend(point.as_slice());
         batch.classes.push(category.class);
@@ -105,7 +105,7 @@ impl Collate for Points {
     }
 }
 
-impl Objective for TellApart {
+impl Objective for ClassifyPoints {
     type Network = Network;
     type Collate = Points;
 
@@ -122,7 +122,7 @@ impl Objective for TellApart {
         Ok((ballast + loss.forward(network.forward(points), classes)).into())
     }
 
-    /// The weights as they are: two networks are the same when their files are.
+    /// The raw weights: two networks are equal if their files are.
     fn container(&self, network: &Network) -> Result<Container> {
         let mut weights = Weights(Vec::new());
         network.visit(&mut weights);

@@ -6,24 +6,24 @@ use opendr_engine::{Random, Result};
 
 use crate::records::{StudyRecord, TrialRecord, TrialState, dominates};
 use crate::sampler::axis::Axis;
-use crate::sampler::{Drawn, Sampler, stream};
+use crate::sampler::{DrawnParameters, Sampler, stream};
 use crate::space::Parameter;
 use parzen::Mixture;
 
-/// Trials that are drawn at random before there is something to learn from.
+/// Number of random trials before the model is used.
 const STARTUP: usize = 10;
 const CANDIDATES: usize = 24;
-/// At most so many trials are good.
-const MOST_GOOD: usize = 25;
+/// Maximum number of good trials.
+const MAX_GOOD: usize = 25;
 
 /// The tree-structured Parzen estimator (Bergstra et al. 2011), multivariate, with the rules of Optuna 5's default.
 ///
-/// Of the finished trials the best tenth, at most 25, are good, all others bad; pruned and paused ones come after the
-/// complete, those that came farther first; running ones are bad, so that workers do not all try the same (the constant
-/// liar). Each set is a mixture of kernels over all parameters that take part together; of 24 candidates drawn from the
-/// good mixture the one is taken that is most likely there and least likely among the bad.
+/// The best tenth of the finished trials, at most 25, are good, all others bad. Pruned and paused trials rank after
+/// complete ones, by their progress; running ones are bad, so that workers do not all try the same (constant
+/// liar). Each set is a mixture of kernels over all parameters that are active together. Of 24 candidates drawn from the
+/// good mixture, the one with the highest ratio of good to bad density is taken.
 ///
-/// With several directions, trials are ranked by non-domination, and within a rank by how far from others they lie
+/// With several directions, trials are ranked by non-domination, and within a rank by crowding distance
 /// (Deb et al. 2002).
 #[derive(Debug, Clone, Copy)]
 pub struct Tpe {
@@ -31,16 +31,16 @@ pub struct Tpe {
 }
 
 impl Tpe {
-    /// The search that belongs to `seed`.
+    /// Creates the sampler.
     pub fn new(seed: u64) -> Self {
         Self { seed }
     }
 }
 
 impl Sampler for Tpe {
-    fn draw(&self, study: &StudyRecord, number: usize, wanted: &[&Parameter]) -> Result<Drawn> {
-        let mut random = stream(self.seed, number, wanted);
-        let axes: Vec<Axis> = wanted.iter().map(|parameter| Axis::new(&parameter.distribution)).collect();
+    fn draw(&self, study: &StudyRecord, number: usize, parameters: &[&Parameter]) -> Result<DrawnParameters> {
+        let mut random = stream(self.seed, number, parameters);
+        let axes: Vec<Axis> = parameters.iter().map(|parameter| Axis::new(&parameter.distribution)).collect();
         let others = study.trials.iter().filter(|trial| trial.number != number);
         let (finished, running): (Vec<_>, Vec<_>) = others
             .filter(|trial| {
@@ -51,14 +51,14 @@ impl Sampler for Tpe {
             axes.iter().map(|axis| axis.number_from_unit(random.unit())).collect()
         } else {
             let (good, bad) = split(study, finished, running);
-            let mixture = |trials: &[&TrialRecord]| Mixture::new(&axes, &numbers_of(trials, wanted));
+            let mixture = |trials: &[&TrialRecord]| Mixture::new(&axes, &numbers_of(trials, parameters));
             best_candidate(&mixture(&good), &mixture(&bad), &mut random)
         };
-        Ok(Drawn { numbers, notes: Vec::new() })
+        Ok(DrawnParameters { numbers, system_attributes: Vec::new() })
     }
 }
 
-/// The candidate of the good mixture that is least likely among the bad.
+/// Returns the candidate of the good mixture with the highest ratio of good to bad density.
 fn best_candidate(good: &Mixture<'_>, bad: &Mixture<'_>, random: &mut Random) -> Vec<f64> {
     let mut best = (f64::NEG_INFINITY, Vec::new());
     for _ in 0..CANDIDATES {
@@ -71,13 +71,13 @@ fn best_candidate(good: &Mixture<'_>, bad: &Mixture<'_>, random: &mut Random) ->
     best.1
 }
 
-/// The good and the bad, both in the order of their numbers.
+/// Splits trials into good and bad ones, both ordered by number.
 fn split<'a>(
     study: &StudyRecord,
     finished: Vec<&'a TrialRecord>,
     running: Vec<&'a TrialRecord>,
 ) -> (Vec<&'a TrialRecord>, Vec<&'a TrialRecord>) {
-    let count = finished.len().div_ceil(10).min(MOST_GOOD);
+    let count = finished.len().div_ceil(10).min(MAX_GOOD);
     let (mut complete, mut others): (Vec<_>, Vec<_>) =
         finished.into_iter().partition(|trial| trial.state == TrialState::Complete);
     match study.directions.len() {
@@ -99,14 +99,14 @@ fn split<'a>(
     (good, bad)
 }
 
-/// How far a pruned trial came, the farthest first, and how well it stood there.
+/// Sort key of a pruned or paused trial: its last step, farthest first, then its value there.
 fn progress(study: &StudyRecord, trial: &TrialRecord) -> (i64, f64) {
     trial
         .last_report()
         .map_or((1, 0.0), |(step, value)| (step.saturating_neg(), study.direction().loss(value)))
 }
 
-/// The undominated first; within a rank those first whose neighbours are far.
+/// Sorts by non-domination rank; within a rank, by crowding distance, largest first.
 fn sort_by_rank(study: &StudyRecord, trials: &mut Vec<&TrialRecord>) {
     let mut sorted = Vec::with_capacity(trials.len());
     while !trials.is_empty() {
@@ -125,7 +125,7 @@ fn sort_by_rank(study: &StudyRecord, trials: &mut Vec<&TrialRecord>) {
     *trials = sorted;
 }
 
-/// The crowding distance of Deb et al. (2002): the gap between the neighbours, summed over the objectives.
+/// Returns the crowding distance of Deb et al. (2002): the gap between the neighbours, summed over the objectives.
 fn crowding(own: &[f64], front: &[(&TrialRecord, Vec<f64>)]) -> f64 {
     let gap = |axis: usize| {
         let values = || front.iter().filter_map(move |(_, losses)| losses.get(axis).copied());
@@ -138,15 +138,15 @@ fn crowding(own: &[f64], front: &[(&TrialRecord, Vec<f64>)]) -> f64 {
     (0..own.len()).map(gap).sum()
 }
 
-/// The numbers of the trials that have all wanted parameters.
-fn numbers_of(trials: &[&TrialRecord], wanted: &[&Parameter]) -> Vec<Vec<f64>> {
+/// Returns the numbers of the trials that have all `parameters`.
+fn numbers_of(trials: &[&TrialRecord], parameters: &[&Parameter]) -> Vec<Vec<f64>> {
     let number = |trial: &TrialRecord, parameter: &Parameter| {
         let suggestion = trial.params.get(&parameter.name)?;
         suggestion.distribution.is_compatible(&parameter.distribution).then_some(suggestion.number)
     };
     trials
         .iter()
-        .filter_map(|trial| wanted.iter().map(|parameter| number(trial, parameter)).collect())
+        .filter_map(|trial| parameters.iter().map(|parameter| number(trial, parameter)).collect())
         .collect()
 }
 

@@ -1,30 +1,30 @@
-//! Mixtures of kernels.
+//! Parzen estimators: mixtures of kernels.
 
 use opendr_engine::Random;
 
 use crate::normal::{log_mass, mass};
 use crate::sampler::axis::{Axis, Line};
 
-/// From so many trials on the older ones weigh less.
+/// Number of trials above which older ones have less weight.
 const FULL_WEIGHT: usize = 25;
-/// Kernels do not get narrower than this share of the axis.
-const NARROWEST: f64 = 100.0;
+/// Divisor for the minimum kernel width on an axis.
+const MIN_WIDTH_DIVISOR: f64 = 100.0;
 
-/// A density over several axes: one kernel for each observation, and one as wide as the axes, all a product of one density
-/// for each axis.
+/// A density over several axes: one kernel per observation and one as wide as the axes, each a product of one density
+/// per axis.
 pub struct Mixture<'a> {
     axes: &'a [Axis],
-    /// Sum 1; the last is that of the wide kernel.
+    /// Weights with sum 1; the last is that of the wide kernel.
     weights: Vec<f64>,
-    /// By axis.
+    /// Densities by axis.
     densities: Vec<Density>,
 }
 
-/// The densities of all kernels over one axis.
+/// Densities of all kernels over one axis.
 enum Density {
-    /// Normal distributions cut off at 0 and 1.
+    /// Normal distributions truncated to [0, 1].
     Normals(Vec<Normal>),
-    /// The probability of each choice, by kernel.
+    /// Probability of each choice, by kernel.
     Choices(Vec<Vec<f64>>),
 }
 
@@ -32,12 +32,12 @@ enum Density {
 struct Normal {
     centre: f64,
     width: f64,
-    /// Logarithm of what of it lies between 0 and 1.
+    /// Log-probability of [0, 1] before truncation.
     log_inside: f64,
 }
 
 impl<'a> Mixture<'a> {
-    /// The density of `observations`, each with one number for each axis, the oldest first.
+    /// Creates the density of `observations`, each with one number per axis, oldest first.
     pub fn new(axes: &'a [Axis], observations: &[Vec<f64>]) -> Self {
         let mut weights = weights(observations.len());
         weights.push(1.0);
@@ -54,7 +54,7 @@ impl<'a> Mixture<'a> {
         Self { axes, weights, densities }
     }
 
-    /// Numbers from the density.
+    /// Draws numbers from the density.
     pub fn draw(&self, random: &mut Random) -> Vec<f64> {
         let kernel = drawn_index(&self.weights, random);
         let draw = |(axis, density): (&Axis, &Density)| match density {
@@ -64,7 +64,7 @@ impl<'a> Mixture<'a> {
         self.axes.iter().zip(&self.densities).map(draw).collect()
     }
 
-    /// The logarithm of the density at `numbers`, but for a constant that is the same for all densities over these axes.
+    /// Returns the log-density at `numbers`, up to a constant common to all densities over these axes.
     pub fn log_density(&self, numbers: &[f64]) -> f64 {
         let mut logs: Vec<f64> = self.weights.iter().map(|weight| weight.ln()).collect();
         for ((axis, density), number) in self.axes.iter().zip(&self.densities).zip(numbers) {
@@ -99,7 +99,7 @@ impl Normal {
         Self { centre, width, log_inside: mass(-centre / width, (1.0 - centre) / width).ln() }
     }
 
-    /// A place from 0 to 1. The centre lies there and the width is at most 1, so that one in three trials at least stays.
+    /// Draws a position in [0, 1] by rejection. The centre is inside and the width at most 1, so at least one in three draws is accepted.
     fn draw(&self, random: &mut Random) -> f64 {
         loop {
             let place = self.centre + self.width * random.normal();
@@ -123,7 +123,7 @@ fn add(sums: &mut [f64], terms: impl Iterator<Item = f64>) {
     sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
 }
 
-/// The newest weigh 1; before them weights fall evenly to one over the count.
+/// Returns the weights: 1 for the newest; older ones fall linearly to one over the count.
 fn weights(count: usize) -> Vec<f64> {
     let ramp = count.saturating_sub(FULL_WEIGHT);
     let last = 1.0 / count.max(1) as f64;
@@ -135,19 +135,19 @@ fn weights(count: usize) -> Vec<f64> {
     (0..count).map(weight).collect()
 }
 
-/// Each kernel as wide as the larger gap to its neighbours.
+/// Creates kernels as wide as the larger gap to their neighbours.
 fn normals(line: &Line, numbers: &[f64]) -> Vec<Normal> {
     let places: Vec<f64> =
         numbers.iter().map(|number| line.unit_from_number(*number).clamp(0.0, 1.0)).collect();
     let mut order: Vec<usize> = (0..places.len()).collect();
     order.sort_by(|a, b| places[*a].total_cmp(&places[*b]));
-    let narrowest = 1.0 / NARROWEST.min(places.len() as f64 + 2.0);
+    let narrowest = 1.0 / MIN_WIDTH_DIVISOR.min(places.len() as f64 + 2.0);
     let mut widths = vec![1.0; places.len()];
     for (at, trial) in order.iter().enumerate() {
         let place = places[*trial];
         let before = at.checked_sub(1).map(|before| place - places[order[before]]);
         let after = order.get(at + 1).map(|after| places[*after] - place);
-        // A kernel that is alone reaches to the farther end.
+        // A single kernel extends to the farther end.
         let gap = match (before, after) {
             (None, None) => place.max(1.0 - place),
             (before, after) => before.unwrap_or(0.0).max(after.unwrap_or(0.0)),
@@ -158,7 +158,7 @@ fn normals(line: &Line, numbers: &[f64]) -> Vec<Normal> {
     kernels.chain([Normal::new(0.5, 1.0)]).collect()
 }
 
-/// Each kernel prefers its choice; the more there are, the more.
+/// Creates kernels that prefer their choice, more strongly with more observations.
 fn choices(count: usize, numbers: &[f64]) -> Vec<Vec<f64>> {
     let kernels = numbers.len() + 1;
     let rest = 1.0 / kernels as f64;
@@ -170,7 +170,7 @@ fn choices(count: usize, numbers: &[f64]) -> Vec<Vec<f64>> {
     numbers.iter().map(kernel).chain([vec![1.0 / count as f64; count]]).collect()
 }
 
-/// An index with the probability of its weight; the sum of all is 1.
+/// Draws an index with probabilities `weights`, whose sum is 1.
 fn drawn_index(weights: &[f64], random: &mut Random) -> usize {
     let mut left = random.unit();
     let last = weights.len().saturating_sub(1);

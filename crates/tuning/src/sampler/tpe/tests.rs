@@ -5,9 +5,9 @@ use crate::{
     Budget, Direction, Distribution, Outcome, Progress, Sampler, SearchSpace, Storage, Study, Tpe, Trial,
 };
 
-/// Studies of the function on which an earlier version settled on a wrong choice with a quarter of the seeds.
+/// Studies of a function on which an earlier version converged to a wrong choice with a quarter of the seeds.
 #[test]
-fn no_seed_is_locked_in_a_wrong_choice() {
+fn no_seed_converges_to_a_wrong_choice() {
     let space = SearchSpace::new()
         .with("lr", Distribution::log_float(1e-6, 1e-1).unwrap())
         .and_then(|space| space.with("batch", Distribution::log_int(16, 1024)?))
@@ -37,7 +37,7 @@ fn no_seed_is_locked_in_a_wrong_choice() {
 }
 
 #[test]
-fn ranks_go_by_domination_and_then_by_distance() {
+fn ranks_follow_domination_then_crowding() {
     let study = Study::open(Storage::memory(), "s", &[Direction::Minimize; 2]).unwrap();
     let values = [[5.0, 5.0], [1.0, 4.0], [2.0, 2.9], [2.1, 2.8], [4.0, 1.0], [6.0, 6.0]];
     for pair in values {
@@ -54,7 +54,7 @@ fn ranks_go_by_domination_and_then_by_distance() {
 }
 
 #[test]
-fn running_trials_keep_others_away() {
+fn running_trials_repel_new_ones() {
     let space = SearchSpace::new().with("x", Distribution::float(0.0, 1.0).unwrap()).unwrap();
     let wanted: Vec<_> = space.parameters().iter().collect();
     let draws_near_the_best = |running: usize| {

@@ -1,4 +1,4 @@
-//! Optuna's numbers for directions and states.
+//! Optuna's codes of directions and states.
 
 use opendr_engine::{Error, Result};
 use serde_json::Value;
@@ -7,10 +7,10 @@ use crate::records::{Direction, TrialState};
 
 pub fn direction_from_json(code: &Value) -> Result<Direction> {
     match code.as_i64() {
-        // Not set, in Optuna: to be minimised.
+        // 0 is "not set" in Optuna: minimise.
         Some(0 | 1) => Ok(Direction::Minimize),
         Some(2) => Ok(Direction::Maximize),
-        _ => Err(Error::format(format!("{code} is no direction: 1 is to minimise, 2 to maximise"))),
+        _ => Err(Error::format(format!("{code} is not a direction; 1 is minimise, 2 maximise"))),
     }
 }
 
@@ -28,7 +28,7 @@ pub fn state_from_code(code: i64) -> Result<TrialState> {
         2 => TrialState::Pruned,
         3 => TrialState::Failed,
         4 => TrialState::Waiting,
-        _ => return Err(Error::format(format!("{code} is no state of a trial: 0 to 4"))),
+        _ => return Err(Error::format(format!("{code} is not a state of a trial; states are 0 to 4"))),
     })
 }
 

@@ -1,4 +1,4 @@
-//! The fields of a line, checked.
+//! Validated fields of a line.
 
 use opendr_engine::{Error, Result};
 use serde_json::{Map, Value};
@@ -12,11 +12,11 @@ pub struct Fields<'a>(pub &'a Map<String, Value>);
 impl Fields<'_> {
     fn read<T>(&self, key: &str, what: &str, read: impl FnOnce(&Value) -> Option<T>) -> Result<T> {
         let value = self.0.get(key).ok_or_else(|| Error::format(format!("no field {key:?}")))?;
-        read(value).ok_or_else(|| Error::format(format!("{key} is no {what}")))
+        read(value).ok_or_else(|| Error::format(format!("{key} is not a {what}")))
     }
 
     pub fn text(&self, key: &str) -> Result<String> {
-        self.read(key, "text", |value| value.as_str().map(str::to_owned))
+        self.read(key, "string", |value| value.as_str().map(str::to_owned))
     }
 
     pub fn whole(&self, key: &str) -> Result<i64> {
@@ -33,16 +33,18 @@ impl Fields<'_> {
 
     pub fn list(&self, key: &str) -> Result<&Vec<Value>> {
         let value = self.0.get(key).and_then(Value::as_array);
-        value.ok_or_else(|| Error::format(format!("{key} is no list")))
+        value.ok_or_else(|| Error::format(format!("{key} is not a list")))
     }
 
-    /// The numbers of a list; none where there is no list.
+    /// Returns the numbers of a list; empty if it is missing.
     pub fn numbers(&self, key: &str) -> Result<Vec<f64>> {
         match self.0.get(key) {
             None | Some(Value::Null) => Ok(Vec::new()),
             Some(_) => {
                 let number = |value| {
-                    number_from_value(value).ok_or_else(|| Error::format(format!("{key} holds {value}")))
+                    number_from_value(value).ok_or_else(|| {
+                        Error::format(format!("{key} contains {value}, which is not a number"))
+                    })
                 };
                 self.list(key)?.iter().map(number).collect()
             }
@@ -53,12 +55,12 @@ impl Fields<'_> {
         self.0.get(key)
     }
 
-    /// The fields of an object; none where there is no object.
+    /// Returns the fields of an object; empty if it is missing.
     pub fn object(&self, key: &str) -> Result<Map<String, Value>> {
         match self.0.get(key) {
             None => Ok(Map::new()),
             Some(Value::Object(map)) => Ok(map.clone()),
-            Some(_) => Err(Error::format(format!("{key} is no object"))),
+            Some(_) => Err(Error::format(format!("{key} is not an object"))),
         }
     }
 
@@ -73,7 +75,7 @@ impl Fields<'_> {
         let mut notes = self.object(key)?.into_iter();
         match (notes.next(), notes.next()) {
             (Some(note), None) => Ok(note),
-            _ => Err(Error::format(format!("{key} should hold one note"))),
+            _ => Err(Error::format(format!("{key} must have exactly one entry"))),
         }
     }
 }

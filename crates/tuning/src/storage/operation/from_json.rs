@@ -1,4 +1,4 @@
-//! What a line says.
+//! Parsing of journal lines.
 
 use opendr_engine::{Error, Result};
 use serde_json::Value;
@@ -12,9 +12,9 @@ use crate::storage::python_json::number_from_value;
 use crate::{Distribution, Timestamp};
 
 impl Operation {
-    /// As a line of the journal says it, and who did it.
+    /// Parses a line of the journal. Returns the operation and its worker.
     pub fn from_json(line: &Value) -> Result<(Self, String)> {
-        let fields = Fields(line.as_object().ok_or_else(|| Error::format("a line is no JSON object"))?);
+        let fields = Fields(line.as_object().ok_or_else(|| Error::format("the line is not a JSON object"))?);
         let operation = match fields.whole("op_code")? {
             0 => {
                 let directions = fields.list("directions")?.iter().map(direction_from_json);
@@ -64,7 +64,7 @@ impl Operation {
             }
             10 => Self::Ignored,
             code => {
-                let what = format!("op_code {code} is unknown; a newer program may have written it");
+                let what = format!("op_code {code} is unknown; a newer program may have written the file");
                 return Err(Error::format(what));
             }
         };
@@ -100,10 +100,10 @@ fn new_trial(fields: &Fields<'_>) -> Result<NewTrial> {
     Ok(NewTrial { state, params, values, reports, user_attributes, system_attributes, started, ended })
 }
 
-/// A parameter from a file, whose number must mean something.
+/// Creates a parameter from a file and checks that its number is in the distribution.
 pub fn checked_suggestion(distribution: Distribution, number: f64) -> Result<Suggestion> {
     match distribution.value_from_number(number) {
         Some(_) => Ok(Suggestion { distribution, number }),
-        None => Err(Error::format(format!("{number} is no value of {distribution}"))),
+        None => Err(Error::format(format!("{number} is not a value of {distribution}"))),
     }
 }

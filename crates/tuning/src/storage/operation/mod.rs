@@ -1,4 +1,4 @@
-//! One change of a storage: a line of Optuna's journal.
+//! Operations of a storage: the lines of Optuna's journal.
 
 mod code;
 mod field;
@@ -14,14 +14,14 @@ use crate::records::{Direction, Suggestion, TrialState};
 pub use from_json::checked_suggestion;
 pub use new_trial::NewTrial;
 
-/// Whose notes.
+/// Kind of an attribute.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Notes {
     User,
     System,
 }
 
-/// One change. Studies and trials are named by their numbers in the storage, counted from 0 in the order of creation.
+/// One operation. Studies and trials are identified by their numbers in the storage, counted from 0 in order of creation.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Operation {
     CreateStudy {

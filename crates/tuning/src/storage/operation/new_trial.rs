@@ -1,11 +1,11 @@
-//! A trial as it begins.
+//! New trials.
 
 use serde_json::{Map, Value};
 
 use crate::Timestamp;
 use crate::records::{Suggestion, TrialState};
 
-/// What a trial is when it begins.
+/// The initial content of a trial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewTrial {
     pub state: TrialState,
@@ -19,7 +19,7 @@ pub struct NewTrial {
 }
 
 impl NewTrial {
-    /// A trial in this state, without anything.
+    /// Creates an empty trial in this state.
     pub fn new(state: TrialState) -> Self {
         let started = (state == TrialState::Running).then(Timestamp::now);
         let (user_attributes, system_attributes) = (Map::new(), Map::new());

@@ -1,4 +1,4 @@
-//! A change as a line says it.
+//! Writing of journal lines.
 
 use serde_json::{Map, Value};
 
@@ -10,7 +10,7 @@ use crate::storage::distribution_json::json_from_distribution;
 use crate::storage::python_json::value_from_number;
 
 impl Operation {
-    /// As a line of the journal says it.
+    /// Returns the operation as a line of the journal.
     pub fn to_json(&self, worker: &str) -> Value {
         let mut line = Map::new();
         let mut put = |key: &str, value: Value| line.insert(key.to_owned(), value);

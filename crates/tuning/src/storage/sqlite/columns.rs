@@ -1,9 +1,9 @@
-//! The names of a table's columns, from the statement that made it.
+//! Column names of a table, from its definition.
 
-/// What begins a part of the statement that is no column.
+/// Keywords of parts of a definition that are not columns.
 const CONSTRAINTS: [&str; 5] = ["CONSTRAINT", "PRIMARY", "UNIQUE", "CHECK", "FOREIGN"];
 
-/// The columns of `CREATE TABLE name (a INTEGER NOT NULL, "b" VARCHAR(512), PRIMARY KEY (a))`, in order.
+/// Returns the columns of `CREATE TABLE name (a INTEGER NOT NULL, "b" VARCHAR(512), PRIMARY KEY (a))`, in order.
 pub fn columns_from_sql(sql: &str) -> Option<Vec<String>> {
     let (_, body) = sql.split_once('(')?;
     let (body, _) = body.rsplit_once(')')?;
@@ -26,7 +26,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn columns_are_told_from_constraints() {
+    fn columns_are_distinguished_from_constraints() {
         let sql = "CREATE TABLE t (\n\ta INTEGER NOT NULL, \n\t\"b\" VARCHAR(8), c VARCHAR(7) DEFAULT (1, 2) NOT NULL, \n\t\
                    PRIMARY KEY (a, b), UNIQUE (b), FOREIGN KEY(b) REFERENCES u (b), CONSTRAINT x CHECK (a IN (1, 2))\n)";
         assert_eq!(columns_from_sql(sql).unwrap(), ["a", "b", "c"]);

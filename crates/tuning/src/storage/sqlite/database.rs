@@ -1,4 +1,4 @@
-//! SQLite's file format (<https://www.sqlite.org/fileformat2.html>), as far as whole tables are to be read.
+//! SQLite's file format (<https://www.sqlite.org/fileformat2.html>), as far as reading whole tables needs it.
 
 use opendr_engine::{Error, Result};
 
@@ -9,18 +9,18 @@ const MAGIC: &[u8] = b"SQLite format 3\0";
 const HEADER: usize = 100;
 const LEAF: u8 = 13;
 const INTERIOR: u8 = 5;
-/// Deeper trees do not fit on a disk.
-const DEEPEST: usize = 20;
+/// Maximum depth of a tree; deeper ones exceed any disk.
+const MAX_DEPTH: usize = 20;
 
 /// A database in memory.
 pub struct Database<'a> {
     bytes: &'a [u8],
     page_size: usize,
-    /// Bytes of a page that are used.
+    /// Usable bytes of a page.
     usable: usize,
 }
 
-/// What may still be read of a tree: no page twice, no more bytes than the file has. What refers to itself ends there.
+/// Remaining pages and bytes of a tree: each page at most once, no more bytes than the file has. It ends cycles.
 struct Allowance {
     pages: usize,
     bytes: usize,
@@ -43,7 +43,7 @@ pub struct Row<'a> {
 impl<'a> Database<'a> {
     pub fn new(bytes: &'a [u8]) -> Result<Self> {
         if !bytes.starts_with(MAGIC) || bytes.len() < HEADER {
-            return Err(Error::format("no SQLite database"));
+            return Err(Error::format("the file is not a SQLite database"));
         }
         let page_size = match u16::from_be_bytes([bytes[16], bytes[17]]) {
             1 => 65_536,
@@ -53,14 +53,14 @@ impl<'a> Database<'a> {
         let (Some(usable), true) = (usable, page_size.is_power_of_two()) else {
             return Err(damaged("the size of its pages"));
         };
-        // 0 stands there while there are no tables.
+        // 0 before there are tables.
         if !matches!(bytes[59], 0 | 1) || bytes[56..59] != [0; 3] {
-            return Err(Error::unsupported("its texts are UTF-16; Optuna writes UTF-8"));
+            return Err(Error::unsupported("its text encoding is UTF-16; Optuna writes UTF-8"));
         }
         Ok(Self { bytes, page_size, usable })
     }
 
-    /// The table called `name`.
+    /// Returns the table `name`.
     pub fn table(&self, name: &str) -> Result<Table> {
         let schema = Table { name: "sqlite_schema".to_owned(), columns: Vec::new(), rows: self.rows(1)? };
         let found = schema.rows.iter().find_map(|row| match row.as_slice() {
@@ -71,8 +71,9 @@ impl<'a> Database<'a> {
             }
             _ => None,
         });
-        let (page, sql) =
-            found.ok_or_else(|| Error::format(format!("it has no table {name:?}: not one of Optuna's")))?;
+        let (page, sql) = found.ok_or_else(|| {
+            Error::format(format!("the database has no table {name:?}; it is not one of Optuna's"))
+        })?;
         let columns = columns_from_sql(sql).ok_or_else(|| damaged(&format!("the definition of {name:?}")))?;
         Ok(Table { name: name.to_owned(), columns, rows: self.rows(page)? })
     }
@@ -93,7 +94,7 @@ impl<'a> Database<'a> {
         rows: &mut Vec<Vec<Cell>>,
     ) -> Result<()> {
         left.pages =
-            left.pages.checked_sub(1).filter(|_| depth < DEEPEST).ok_or_else(|| damaged("a tree"))?;
+            left.pages.checked_sub(1).filter(|_| depth < MAX_DEPTH).ok_or_else(|| damaged("a tree"))?;
         let page = self.page(number)?;
         let header = page.get(if number == 1 { HEADER } else { 0 }..).unwrap_or_default();
         let &[kind, _, _, count_high, count_low, ..] = header else { return Err(damaged("a page")) };
@@ -133,7 +134,7 @@ impl<'a> Database<'a> {
         cells_from_record(&payload, key).ok_or_else(|| damaged("a row"))
     }
 
-    /// How much of a row of `length` bytes stands in the tree itself.
+    /// Returns how many bytes of a row of `length` bytes are stored in the tree page itself.
     fn local(&self, length: usize) -> usize {
         let (most, least) = (self.usable - 35, (self.usable - 12) * 32 / 255 - 23);
         if length <= most {
@@ -166,7 +167,7 @@ impl<'a> Row<'a> {
     }
 
     fn wrong(self, column: &str, what: &str) -> Error {
-        Error::format(format!("{}.{column} holds no {what}", self.table.name))
+        Error::format(format!("{}.{column} is not a {what}", self.table.name))
     }
 
     pub fn int(self, column: &str) -> Result<i64> {
@@ -186,14 +187,14 @@ impl<'a> Row<'a> {
     }
 
     pub fn text(self, column: &str) -> Result<&'a str> {
-        self.optional_text(column)?.ok_or_else(|| self.wrong(column, "text"))
+        self.optional_text(column)?.ok_or_else(|| self.wrong(column, "string"))
     }
 
     pub fn optional_text(self, column: &str) -> Result<Option<&'a str>> {
         match self.cell(column)? {
             Cell::Null => Ok(None),
             Cell::Text(text) => Ok(Some(text)),
-            _ => Err(self.wrong(column, "text")),
+            _ => Err(self.wrong(column, "string")),
         }
     }
 }
@@ -204,5 +205,5 @@ fn page_number(bytes: &[u8]) -> Result<usize> {
 }
 
 fn damaged(what: &str) -> Error {
-    Error::format(format!("damaged: {what}"))
+    Error::format(format!("the database is damaged: {what}"))
 }

@@ -1,7 +1,7 @@
-//! Optuna's SQLite files, read only.
+//! Reading of Optuna's SQLite files.
 //!
-//! The format of the file is read by a few hundred lines of our own: to read some tables once needs no query engine, and
-//! so no compiler of C on any platform.
+//! The file format is parsed here, since reading a few tables needs no query engine, and so no C compiler
+//! on any platform.
 
 mod columns;
 mod database;
@@ -21,10 +21,10 @@ use crate::storage::operation::{NewTrial, Notes, Operation, checked_suggestion};
 use crate::storage::python_json::value_from_text;
 use database::{Database, Row};
 
-/// Alembic's `v3.2.0.a`, of Optuna 3.2 to 5.
+/// Schema version of Optuna 3.2 to 5: Alembic's `v3.2.0.a`.
 const SCHEMA: i64 = 12;
 
-/// The bytes of a database that nobody is writing.
+/// Reads a database that no program is writing.
 pub fn bytes_from_file(path: &Path) -> Result<Vec<u8>> {
     let beside = |end: &str| {
         let mut name = OsString::from(path.as_os_str());
@@ -32,17 +32,17 @@ pub fn bytes_from_file(path: &Path) -> Result<Vec<u8>> {
         fs::metadata(&name).is_ok_and(|facts| facts.len() > 0)
     };
     let bytes = fs::read(path)?;
-    // A file beside it holds what is not, or not for certain, in the database.
+    // Such a file contains changes that are not, or not certainly, in the database.
     match ["-journal", "-wal"].into_iter().find(|end| beside(end)) {
         None => Ok(bytes),
         Some(end) => Err(Error::unsupported(format!(
-            "a program is writing it, or was killed while it did: there is a file that ends in {end}; end that program, \
+            "another program writes the database, or was killed while writing: a file ending in {end} exists; end that program, \
              or open the study once with Optuna"
         ))),
     }
 }
 
-/// The operations that make the studies of a database.
+/// Returns the operations that create the studies of a database.
 pub fn operations_from_bytes(bytes: &[u8]) -> Result<Vec<Operation>> {
     let database = Database::new(bytes)?;
     let version = database.table("version_info")?.rows().map(|row| row.int("schema_version")).last();
@@ -51,7 +51,7 @@ pub fn operations_from_bytes(bytes: &[u8]) -> Result<Vec<Operation>> {
         version => {
             let version = version.map_or("none".to_owned(), |version| version.to_string());
             return Err(Error::unsupported(format!(
-                "its schema is version {version}, not {SCHEMA}: run \"optuna storage upgrade\" with Optuna 3.2 or later"
+                "the schema version is {version}, not {SCHEMA}; run \"optuna storage upgrade\" with Optuna 3.2 or later"
             )));
         }
     }
@@ -63,14 +63,14 @@ pub fn operations_from_bytes(bytes: &[u8]) -> Result<Vec<Operation>> {
     Ok(operations)
 }
 
-/// The places of studies by their numbers in the database, and what makes them.
+/// Returns the indices of studies by their ids in the database, and the operations that create them.
 fn studies(database: &Database<'_>) -> Result<(BTreeMap<i64, usize>, Vec<Operation>)> {
     let mut directions: BTreeMap<i64, BTreeMap<i64, Direction>> = BTreeMap::new();
     for row in database.table("study_directions")?.rows() {
         let direction = match row.text("direction")? {
             "NOT_SET" | "MINIMIZE" => Direction::Minimize,
             "MAXIMIZE" => Direction::Maximize,
-            other => return Err(Error::format(format!("{other:?} is no direction"))),
+            other => return Err(Error::format(format!("{other:?} is not a direction"))),
         };
         directions.entry(row.int("study_id")?).or_default().insert(row.int("objective")?, direction);
     }
@@ -92,7 +92,7 @@ fn studies(database: &Database<'_>) -> Result<(BTreeMap<i64, usize>, Vec<Operati
     Ok((places, operations))
 }
 
-/// The trials with the numbers of their studies, in the order of their making.
+/// Returns the trials with the ids of their studies, in order of creation.
 fn trials(database: &Database<'_>) -> Result<Vec<(i64, NewTrial)>> {
     let mut trials: BTreeMap<i64, (i64, NewTrial)> = BTreeMap::new();
     for row in database.table("trials")?.rows() {
@@ -102,7 +102,7 @@ fn trials(database: &Database<'_>) -> Result<Vec<(i64, NewTrial)>> {
             "PRUNED" => TrialState::Pruned,
             "FAIL" => TrialState::Failed,
             "WAITING" => TrialState::Waiting,
-            other => return Err(Error::format(format!("{other:?} is no state of a trial"))),
+            other => return Err(Error::format(format!("{other:?} is not a state of a trial"))),
         };
         let (started, ended) = (moment(row, "datetime_start")?, moment(row, "datetime_complete")?);
         let trial = NewTrial { started, ended, ..NewTrial::new(state) };
@@ -120,7 +120,7 @@ fn trials(database: &Database<'_>) -> Result<Vec<(i64, NewTrial)>> {
         trial.params.push((row.text("param_name")?.to_owned(), suggestion));
         Ok(())
     })?;
-    // Rows of several values stand in the order of their objectives.
+    // Rows of several values are in the order of their objectives.
     each("trial_values", &|row, trial| {
         trial.values.push(number(row, "value", "value_type")?);
         Ok(())
@@ -141,7 +141,7 @@ fn trials(database: &Database<'_>) -> Result<Vec<(i64, NewTrial)>> {
 }
 
 fn moment(row: Row<'_>, column: &str) -> Result<Option<Timestamp>> {
-    let wrong = |text| Error::format(format!("{column}: {text:?} is no moment"));
+    let wrong = |text| Error::format(format!("{column}: {text:?} is not a timestamp"));
     row.optional_text(column)?.map(|text| Timestamp::parse(text).ok_or_else(|| wrong(text))).transpose()
 }
 
@@ -149,14 +149,14 @@ fn note(row: Row<'_>) -> Result<(String, serde_json::Value)> {
     Ok((row.text("key")?.to_owned(), value_from_text(row.text("value_json")?)?))
 }
 
-/// A number, with those that SQLite has not as words beside it.
+/// Reads a number; those that SQLite cannot store are words in a second column.
 fn number(row: Row<'_>, value: &str, kind: &str) -> Result<f64> {
     match row.text(kind)? {
         "FINITE" => row.number(value),
         "INF_POS" => Ok(f64::INFINITY),
         "INF_NEG" => Ok(f64::NEG_INFINITY),
         "NAN" => Ok(f64::NAN),
-        other => Err(Error::format(format!("{kind}: {other:?} is no kind of number"))),
+        other => Err(Error::format(format!("{kind}: {other:?} is not a kind of number"))),
     }
 }
 

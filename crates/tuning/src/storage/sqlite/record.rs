@@ -1,6 +1,6 @@
-//! Rows as SQLite writes them.
+//! Rows in SQLite's record format.
 
-/// One value of a row.
+/// A value of a row.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Cell {
     Null,
@@ -10,7 +10,7 @@ pub enum Cell {
     Bytes,
 }
 
-/// A whole number of up to nine bytes, and what follows it.
+/// Reads a variable-length integer of up to nine bytes. Returns it and the rest.
 pub fn varint(bytes: &[u8]) -> Option<(i64, &[u8])> {
     let mut number = 0u64;
     for at in 0..8 {
@@ -23,8 +23,8 @@ pub fn varint(bytes: &[u8]) -> Option<(i64, &[u8])> {
     Some(((number << 8 | u64::from(*bytes.get(8)?)) as i64, bytes.get(9..)?))
 }
 
-/// The values of a row. Where `Null` stands in the first column, that is its key: SQLite keeps the column that is the
-/// primary key nowhere else, and in all of Optuna's tables that is the first.
+/// Returns the values of a row. If the first is `Null`, it is the key: SQLite does not store an integer
+/// primary key in the row, and it is the first column in all of Optuna's tables.
 pub fn cells_from_record(record: &[u8], key: i64) -> Option<Vec<Cell>> {
     let (length, _) = varint(record)?;
     let length = usize::try_from(length).ok()?;
@@ -82,7 +82,7 @@ mod tests {
         let mut record = vec![7, 0, 1, 7, 9, 17, 14, 0xfe];
         record.extend(1.5f64.to_be_bytes());
         record.extend(b"hix");
-        let wanted = [
+        let expected = [
             Cell::Int(42),
             Cell::Int(-2),
             Cell::Real(1.5),
@@ -90,7 +90,7 @@ mod tests {
             Cell::Text("hi".to_owned()),
             Cell::Bytes,
         ];
-        assert_eq!(cells_from_record(&record, 42).unwrap(), wanted);
+        assert_eq!(cells_from_record(&record, 42).unwrap(), expected);
         for cut in 0..record.len() {
             assert_eq!(cells_from_record(&record[..cut], 42), None);
         }

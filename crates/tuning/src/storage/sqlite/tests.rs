@@ -6,20 +6,20 @@ use crate::{Storage, TrialState};
 const STUDY: &[u8] = include_bytes!("../../../../../fuzz/corpus/optuna_sqlite/study.db");
 
 #[test]
-fn optunas_study_is_read() {
+fn studies_of_optuna_are_read() {
     let storage = Storage::from_sqlite_bytes(STUDY).unwrap();
     let study = storage.studies().find(|study| study.name == "everything").unwrap();
     assert_eq!(study.user_attributes["note"].as_str().map(str::len), Some(20_000), "it spans pages");
     assert_eq!(study.trials.len(), 60);
     use TrialState::{Complete, Failed, Pruned, Waiting};
     for (number, trial) in study.trials.iter().enumerate() {
-        let wanted = match number {
+        let expected = match number {
             58 => Failed,
             59 => Waiting,
             number if number % 7 == 3 => Pruned,
             _ => Complete,
         };
-        assert_eq!(trial.state, wanted, "{number}");
+        assert_eq!(trial.state, expected, "{number}");
         assert_eq!(trial.number, number);
     }
     let trial = &study.trials[5];
@@ -41,7 +41,7 @@ fn damaged_databases_never_panic() {
         let mut bytes = STUDY.to_vec();
         for _ in 0..=random.below(8) {
             let page = random.below(bytes.len() / 4096) * 4096;
-            // Half of the time in the header of a page, where the structure is.
+            // Half of the changes are in the header of a page, which has the structure.
             let within = if random.chance(0.5) { 64 } else { 4096 };
             let at = page + random.below(within);
             bytes[at] = random.bits() as u8;
@@ -56,7 +56,7 @@ fn damaged_databases_never_panic() {
 }
 
 #[test]
-fn what_cannot_be_read_is_told() {
+fn unreadable_databases_are_reported() {
     let kind = |bytes: &[u8]| Storage::from_sqlite_bytes(bytes).unwrap_err().kind();
     assert_eq!(kind(b""), ErrorKind::Format);
     assert_eq!(kind(b"SQLite format 3\0"), ErrorKind::Format);

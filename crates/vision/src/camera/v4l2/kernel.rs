@@ -1,4 +1,4 @@
-//! What the kernel's interface of Video4Linux 2 looks like on 64-bit machines: its structures, requests and memory.
+//! Structures, requests and memory mappings of the kernel interface Video4Linux 2 on 64-bit machines.
 
 use std::fs::File;
 use std::io;
@@ -36,7 +36,7 @@ pub(super) struct FormatDescription {
     pub(super) reserved: [u32; 3],
 }
 
-/// The picture member of the kernel's union, which is aligned as its largest member.
+/// The `v4l2_pix_format` member of the kernel's union, aligned as the largest member.
 #[repr(C, align(8))]
 #[derive(Clone, Copy)]
 pub(super) struct PictureFormat {
@@ -92,19 +92,19 @@ pub(super) struct Buffer {
     pub(super) reserved: [u32; 2],
 }
 
-/// A structure of the kernel that may be all zeros.
+/// A kernel structure that is valid when zeroed.
 ///
 /// # Safety
-/// The type is `repr(C)`, made of integers alone, and laid out as the kernel's.
+/// The type is `repr(C)`, consists of integers only, and has the layout of the kernel's structure.
 pub(super) unsafe trait Kernel: Sized {
-    /// All zeros, for a video capture queue.
+    /// Returns a zeroed structure for a video capture queue.
     fn zeroed() -> Self {
-        // SAFETY: integers alone, for which zeros are valid.
+        // SAFETY: the type consists of integers only, for which zeros are valid.
         unsafe { std::mem::zeroed() }
     }
 }
 
-// SAFETY: as the trait asks; sizes and request numbers are tested.
+// SAFETY: `repr(C)` with integers only; sizes and request numbers are tested.
 unsafe impl Kernel for Capability {}
 // SAFETY: as above.
 unsafe impl Kernel for FormatDescription {}
@@ -119,7 +119,7 @@ unsafe impl Kernel for Buffer {}
 // SAFETY: as above.
 unsafe impl Kernel for u32 {}
 
-/// What an `ioctl` does with its structure.
+/// Direction in which an `ioctl` transfers its structure.
 #[derive(Clone, Copy)]
 pub(super) enum Direction {
     Write = 1,
@@ -127,7 +127,7 @@ pub(super) enum Direction {
     Both = 3,
 }
 
-/// The request number of an `ioctl` of Video4Linux over a `T`.
+/// Returns the request number of a Video4Linux `ioctl` with a `T`.
 pub(super) const fn request<T>(direction: Direction, number: u8) -> u32 {
     (direction as u32) << 30 | (size_of::<T>() as u32) << 16 | (b'V' as u32) << 8 | number as u32
 }
@@ -151,8 +151,8 @@ pub(super) fn ioctl<T: Kernel>(
 ) -> io::Result<()> {
     loop {
         let request = request::<T>(direction, number);
-        // SAFETY: the descriptor is open, and the request number tells the kernel the size of `T`, which is laid out
-        // as the kernel's structure for it.
+        // SAFETY: the descriptor is open, the request number encodes the size of `T`, and `T` has the layout of the
+        // kernel's structure.
         let status = unsafe { libc::ioctl(file.as_raw_fd(), request as _, ptr::from_mut(value)) };
         if status >= 0 {
             return Ok(());
@@ -171,13 +171,13 @@ pub(super) struct Mapping {
     pub(super) length: usize,
 }
 
-// SAFETY: the memory belongs to the mapping alone.
+// SAFETY: the mapping owns its memory.
 unsafe impl Send for Mapping {}
 
 impl Mapping {
     pub(super) fn new(file: &File, buffer: &Buffer) -> io::Result<Self> {
         let (length, offset) = (buffer.length as usize, buffer.offset as u32);
-        // SAFETY: a new mapping at an address of the kernel's choice; it touches no memory of ours.
+        // SAFETY: a new mapping at an address that the kernel chooses; no existing memory is affected.
         let start = unsafe {
             libc::mmap(
                 ptr::null_mut(),
@@ -191,7 +191,7 @@ impl Mapping {
         if start == libc::MAP_FAILED { Err(io::Error::last_os_error()) } else { Ok(Self { start, length }) }
     }
 
-    /// The first `used` bytes. The driver writes only to buffers that are enqueued: callers hold this one.
+    /// Returns the first `used` bytes. The driver writes only to enqueued buffers; the caller has dequeued this one.
     pub(super) fn bytes(&self, used: usize) -> &[u8] {
         // SAFETY: mapped readable for `length` bytes until drop, and not written to while dequeued.
         unsafe { std::slice::from_raw_parts(self.start.cast(), used.min(self.length)) }
@@ -200,7 +200,7 @@ impl Mapping {
 
 impl Drop for Mapping {
     fn drop(&mut self) {
-        // SAFETY: mapped by `new` with this length, and no slice of it outlives `self`.
+        // SAFETY: `new` mapped this length, and no slice of it outlives `self`.
         unsafe { libc::munmap(self.start, self.length) };
     }
 }

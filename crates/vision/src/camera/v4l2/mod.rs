@@ -1,7 +1,7 @@
-//! Cameras through Video4Linux 2, with memory shared between kernel and process.
+//! Cameras through Video4Linux 2, with buffers shared between kernel and process.
 //!
-//! Unverified here: the machines that test this have no camera. Tested are the layout of the kernel's structures, the
-//! conversion of pixels and what is said where there is no camera.
+//! Not tested with a camera: the test machines have none. The tests cover the layout of the kernel's structures, the
+//! pixel conversion and the errors without a camera.
 
 mod kernel;
 
@@ -31,19 +31,19 @@ use crate::yuv422::{Yuv422, rgb_from_yuv422};
 const YUYV: u32 = u32::from_le_bytes(*b"YUYV");
 const MJPEG: u32 = u32::from_le_bytes(*b"MJPG");
 
-/// Frames that the driver may fill while one is read.
+/// Buffers that the driver may fill while a frame is read.
 const BUFFERS: u32 = 4;
 
-/// A camera that is silent for longer has failed.
-const PATIENCE: Duration = Duration::from_secs(5);
+/// Longest wait for a frame; after it the camera counts as failed.
+const FRAME_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// How long an interruption may take to be seen, milliseconds.
+/// Longest delay until an interruption takes effect, in milliseconds.
 const POLL_MS: libc::c_int = 100;
 
-/// Damaged frames in a row that are passed over; the first ones of a stream often are.
+/// Damaged frames in a row that are skipped; the first frames of a stream are often damaged.
 const MAX_DAMAGED: u32 = 30;
 
-/// A camera that streams; dropping it stops the stream.
+/// A streaming camera; dropping it stops the stream.
 #[derive(Debug)]
 pub(crate) struct Camera {
     file: File,
@@ -61,11 +61,11 @@ pub(crate) struct Camera {
 }
 
 impl Camera {
-    /// Opens the camera at `path` and starts it.
+    /// Opens the camera at `path` and starts its stream.
     ///
     /// # Errors
-    /// `NotFound` when there is no such device (those that are there are named), `Io` when it may not be opened,
-    /// `Device` when it is no camera or fails, `Unsupported` when it gives neither YUYV nor MJPEG.
+    /// `NotFound` when there is no such device (the message lists the devices that exist), `Io` when access is
+    /// denied, `Device` when it is not a camera or fails, `Unsupported` when it offers neither YUYV nor MJPEG.
     pub(crate) fn open(path: &Path, options: &SourceOptions) -> Result<Self> {
         let file = OpenOptions::new()
             .read(true)
@@ -84,12 +84,12 @@ impl Camera {
         let samples = picture.width as u64 * picture.height as u64 * 3;
         if samples == 0 || samples > options.decoder.max_samples {
             return Err(Error::device(format!(
-                "frames of {width}x{height} pixels, over the limit of {} samples; set a smaller size",
+                "frames of {width}x{height} pixels exceed the limit of {} samples; set a smaller camera size",
                 options.decoder.max_samples
             )));
         }
         let mut camera = Self {
-            info: Arc::new(VideoInfo { rate: rate_of(&file), frames: None, duration_s: None }),
+            info: Arc::new(VideoInfo { frame_rate: rate_of(&file), frames: None, duration_s: None }),
             mappings: Vec::new(),
             pixel_format: picture.pixel_format,
             decoder: options.decoder,
@@ -102,7 +102,7 @@ impl Camera {
             height,
             stride,
         };
-        camera.start_stream().map_err(|error| failed("it does not start to stream", error))?;
+        camera.start_stream().map_err(|error| failed("cannot start the stream", error))?;
         Ok(camera)
     }
 
@@ -119,7 +119,7 @@ impl Camera {
         ioctl(&self.file, STREAM_ON, &mut { CAPTURE })
     }
 
-    /// The next frame that is whole; `None` when interrupted.
+    /// Returns the next complete frame; `None` after an interruption.
     fn read(&mut self) -> Result<Option<Frame>> {
         let mut damaged = 0;
         loop {
@@ -128,20 +128,21 @@ impl Camera {
             self.given += 1;
             let image = self.picture(&buffer);
             ioctl(&self.file, ENQUEUE, &mut capture_buffer(buffer.index))
-                .map_err(|error| failed("it broke off", error))?;
+                .map_err(|error| failed("the stream failed", error))?;
             match image {
                 Ok(mut image) => {
                     image.header.stamp_ns = Some(stamp_ns(&buffer));
                     let path = Arc::clone(&self.path);
                     let video = Some(Arc::clone(&self.info));
-                    return Ok(Some(Frame { image, path, index: 0, number, video }));
+                    return Ok(Some(Frame { image, path, item_index: 0, frame_index: number, video }));
                 }
                 Err(error) => {
                     damaged += 1;
                     if damaged > MAX_DAMAGED {
-                        return Err(
-                            Error::device(format!("{damaged} damaged frames in a row")).with_source(error)
-                        );
+                        return Err(Error::device(format!(
+                            "received {damaged} damaged frames in a row; check the cable and the driver"
+                        ))
+                        .with_source(error));
                     }
                 }
             }
@@ -151,17 +152,19 @@ impl Camera {
     fn dequeue(&self) -> Result<Option<Buffer>> {
         let start = Instant::now();
         while !self.interrupted.load(Ordering::SeqCst) {
-            wait_for_frame(self.file.as_raw_fd()).map_err(|error| failed("it broke off", error))?;
+            wait_for_frame(self.file.as_raw_fd()).map_err(|error| failed("the stream failed", error))?;
             let mut buffer = capture_buffer(0);
             match ioctl(&self.file, DEQUEUE, &mut buffer) {
                 Ok(()) => return Ok(Some(buffer)),
                 Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
-                Err(error) => return Err(failed("it broke off; is it still plugged in?", error)),
+                Err(error) => {
+                    return Err(failed("the stream failed; check that the camera is still connected", error));
+                }
             }
-            if start.elapsed() > PATIENCE {
+            if start.elapsed() > FRAME_TIMEOUT {
                 return Err(Error::device(format!(
-                    "no frame for {} seconds; another program may use the camera, or plug it in anew",
-                    PATIENCE.as_secs()
+                    "no frame for {} seconds; close other programs that use the camera, or reconnect it",
+                    FRAME_TIMEOUT.as_secs()
                 )));
             }
         }
@@ -170,7 +173,7 @@ impl Camera {
 
     fn picture(&self, buffer: &Buffer) -> Result<Image> {
         let mapping = self.mappings.get(buffer.index as usize).filter(|_| buffer.flags & BUFFER_DAMAGED == 0);
-        let mapping = mapping.ok_or_else(|| Error::device("a damaged frame"))?;
+        let mapping = mapping.ok_or_else(|| Error::device("the driver returned an invalid buffer"))?;
         let bytes = mapping.bytes(buffer.bytes_used as usize);
         if self.pixel_format == MJPEG {
             return self.decoder.decode(&jpeg_from_mjpeg(bytes));
@@ -202,30 +205,30 @@ impl FrameReader for Camera {
 
 impl Drop for Camera {
     fn drop(&mut self) {
-        // It fails only when the camera has gone.
+        // This fails only when the camera is disconnected.
         let _ = ioctl(&self.file, STREAM_OFF, &mut { CAPTURE });
     }
 }
 
 fn check_capabilities(file: &File) -> Result<()> {
     let mut found = Capability::zeroed();
-    ioctl(file, QUERY_CAPABILITY, &mut found).map_err(|error| failed("it is no camera", error))?;
+    ioctl(file, QUERY_CAPABILITY, &mut found).map_err(|error| failed("the device is not a camera", error))?;
     let all = found.capabilities;
     let able = if all & HAS_DEVICE_CAPABILITIES != 0 { found.device_capabilities } else { all };
     if able & CAN_CAPTURE == 0 || able & CAN_STREAM == 0 {
         return Err(Error::device(format!(
-            "it gives no pictures (many cameras have a second device for other data); {}",
-            devices_there()
+            "the device captures no images (many cameras have a second device for metadata); {}",
+            list_cameras()
         )));
     }
     Ok(())
 }
 
-/// Sets size and pixel format: uncompressed for small pictures, MJPEG for those that are too much for a USB cable.
+/// Sets size and pixel format: uncompressed up to 640x480 pixels, MJPEG above, because of the bandwidth of USB.
 fn choose_format(file: &File, size: Option<[u32; 2]>) -> Result<PictureFormat> {
     let mut format = Format::zeroed();
     format.kind = CAPTURE;
-    ioctl(file, GET_FORMAT, &mut format).map_err(|error| failed("it has no picture format", error))?;
+    ioctl(file, GET_FORMAT, &mut format).map_err(|error| failed("cannot read its image format", error))?;
     if let Some([width, height]) = size {
         (format.picture.width, format.picture.height) = (width, height);
     }
@@ -236,16 +239,16 @@ fn choose_format(file: &File, size: Option<[u32; 2]>) -> Result<PictureFormat> {
         let names: Vec<String> =
             offered.iter().map(|code| String::from_utf8_lossy(&code.to_le_bytes()).into_owned()).collect();
         return Err(Error::unsupported(format!(
-            "it gives {}, and YUYV and MJPG are read; convert its stream, or use another camera",
+            "it offers the formats {}; supported are YUYV and MJPG: convert its stream or use another camera",
             names.join(", ")
         )));
     };
     format.picture.pixel_format = chosen;
     format.picture.field = 0;
     ioctl(file, SET_FORMAT, &mut format)
-        .map_err(|error| failed("it is busy or refuses the format", error))?;
+        .map_err(|error| failed("the camera is busy or rejects the format", error))?;
     if format.picture.pixel_format != chosen {
-        return Err(Error::device("it offers a format and then refuses it"));
+        return Err(Error::device("the camera rejects a format that it offers"));
     }
     Ok(format.picture)
 }
@@ -257,7 +260,7 @@ fn pixel_format(file: &File, index: u32) -> Option<u32> {
     Some(description.pixel_format)
 }
 
-/// Frames a second that the camera is set to; 30 where it does not tell.
+/// Returns the camera's frame rate in frames per second; 30 where the camera does not report it.
 fn rate_of(file: &File) -> f64 {
     let mut parameters = StreamParameters::zeroed();
     parameters.kind = CAPTURE;
@@ -274,27 +277,27 @@ fn capture_buffer(index: u32) -> Buffer {
 
 fn wait_for_frame(descriptor: RawFd) -> io::Result<()> {
     let mut waited = libc::pollfd { fd: descriptor, events: libc::POLLIN, revents: 0 };
-    // SAFETY: one valid structure, and its number.
+    // SAFETY: one valid structure, and a count of one.
     let status = unsafe { libc::poll(&raw mut waited, 1, POLL_MS) };
     let error = io::Error::last_os_error();
     if status < 0 && error.kind() != io::ErrorKind::Interrupted { Err(error) } else { Ok(()) }
 }
 
-/// Time of taking, nanoseconds since the Unix epoch.
+/// Returns the capture time in nanoseconds since the Unix epoch.
 fn stamp_ns(buffer: &Buffer) -> i64 {
     let now_ns = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as i64);
     if buffer.flags & STAMP_KIND != STAMP_MONOTONIC {
         return now_ns;
     }
     let mut monotonic = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-    // SAFETY: a valid place for the answer.
+    // SAFETY: the pointer is valid for writes.
     if unsafe { libc::clock_gettime(libc::CLOCK_MONOTONIC, &raw mut monotonic) } != 0 {
         return now_ns;
     }
     let taken_ns =
         buffer.seconds.saturating_mul(1_000_000_000).saturating_add(buffer.microseconds.saturating_mul(1000));
     let age_ns = (monotonic.tv_sec * 1_000_000_000 + monotonic.tv_nsec).saturating_sub(taken_ns);
-    now_ns - age_ns.clamp(0, PATIENCE.as_nanos() as i64)
+    now_ns - age_ns.clamp(0, FRAME_TIMEOUT.as_nanos() as i64)
 }
 
 fn failed(what: &str, error: io::Error) -> Error {
@@ -304,10 +307,10 @@ fn failed(what: &str, error: io::Error) -> Error {
 fn cannot_open(path: &Path, error: &io::Error) -> Error {
     match error.kind() {
         io::ErrorKind::NotFound => {
-            Error::not_found(format!("no camera {}; {}", path.display(), devices_there()))
+            Error::not_found(format!("no camera {}; {}", path.display(), list_cameras()))
         }
         io::ErrorKind::PermissionDenied => Error::io(format!(
-            "the camera {} may not be opened; add yourself to its group (usermod -aG video USER) and log in anew",
+            "no permission to open the camera {}; add your user to its group (usermod -aG video USER) and log in again",
             path.display()
         )),
         _ => {
@@ -316,8 +319,8 @@ fn cannot_open(path: &Path, error: &io::Error) -> Error {
     }
 }
 
-/// `these are there: /dev/video0, /dev/video2`.
-fn devices_there() -> String {
+/// Lists the cameras: `cameras on this machine: /dev/video0, /dev/video2`.
+fn list_cameras() -> String {
     let mut found: Vec<String> = std::fs::read_dir("/dev")
         .into_iter()
         .flatten()
@@ -328,8 +331,10 @@ fn devices_there() -> String {
         .collect();
     found.sort();
     match found.is_empty() {
-        true => "there is none on this machine; plug one in, or hand the device to the container".to_owned(),
-        false => format!("these are there: {}", found.join(", ")),
+        true => {
+            "there is no camera on this machine; connect one, or pass the device to the container".to_owned()
+        }
+        false => format!("cameras on this machine: {}", found.join(", ")),
     }
 }
 
@@ -338,15 +343,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn missing_camera_names_those_there() {
+    fn missing_camera_lists_existing_ones() {
         let error = Camera::open(Path::new("/dev/video9999"), &SourceOptions::default()).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::NotFound);
         let text = error.to_string();
-        assert!(text.contains("/dev/video9999") && text.contains("there"), "{text}");
+        assert!(text.contains("/dev/video9999") && text.contains("on this machine"), "{text}");
     }
 
     #[test]
-    fn what_is_no_camera_is_refused() {
+    fn non_cameras_are_rejected() {
         let error = Camera::open(Path::new("/dev/null"), &SourceOptions::default()).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::Device, "{error}");
     }

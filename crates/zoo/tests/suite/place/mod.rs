@@ -46,7 +46,7 @@ impl Place {
     }
 }
 
-/// `count` bytes that do not shrink.
+/// `count` incompressible bytes.
 pub fn noise(count: usize) -> Vec<u8> {
     let mut state = 1u32;
     let mut next = || {
@@ -80,7 +80,7 @@ pub fn url(address: &str) -> String {
     format!("[[variants.sources]]\nkind = \"url\"\nfiles = {{ \"model.onnx\" = \"{address}\" }}\n")
 }
 
-/// Remembers what it is told.
+/// Records the progress calls.
 #[derive(Default)]
 pub struct Record {
     pub total: AtomicU64,

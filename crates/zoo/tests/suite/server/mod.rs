@@ -1,4 +1,4 @@
-//! A real HTTP server on this machine that can behave badly on demand.
+//! A local HTTP server with faults on demand.
 
 use std::collections::{HashMap, VecDeque};
 use std::io::{BufRead, BufReader, Write};
@@ -6,10 +6,10 @@ use std::net::{TcpListener, TcpStream};
 use std::sync::{Arc, Condvar, Mutex};
 use std::thread;
 
-/// What goes wrong with one answer.
+/// Fault of one response.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Fault {
-    /// Nothing.
+    /// No fault.
     None,
     /// Only this status.
     Status(u16),
@@ -41,7 +41,7 @@ struct State {
     go_on: Condvar,
 }
 
-/// What was asked for.
+/// A received request.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
     pub path: String,
@@ -76,7 +76,7 @@ impl Server {
         self.state.files.lock().unwrap().insert(path.into(), bytes.to_vec());
     }
 
-    /// The faults of the next answers, in order.
+    /// Sets the faults of the next responses, in order.
     pub fn fail(&self, faults: impl IntoIterator<Item = Fault>) {
         self.state.faults.lock().unwrap().extend(faults);
     }
@@ -85,7 +85,7 @@ impl Server {
         *self.state.etag.lock().unwrap() = etag.into();
     }
 
-    /// What was asked so far; forgets it.
+    /// Returns and clears the requests so far.
     pub fn requests(&self) -> Vec<Request> {
         std::mem::take(&mut self.state.requests.lock().unwrap())
     }

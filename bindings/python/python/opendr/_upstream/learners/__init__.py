@@ -1,1 +1,1 @@
-"""What single learners of OpenDR have beside the methods of all: the parents of their classes."""
+"""Base classes of learners of OpenDR that have further methods."""

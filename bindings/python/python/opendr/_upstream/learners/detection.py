@@ -1,4 +1,4 @@
-"""Detectors, and what thins out their boxes."""
+"""Detectors and non-maximum suppression."""
 
 from __future__ import annotations
 
@@ -15,36 +15,36 @@ if TYPE_CHECKING:
 
 
 class SingleShotDetector(NativeLearner):
-    """SSD, whose boxes a suppression of one's own may choose among."""
+    """SSD, with support for a custom non-maximum suppression."""
 
     threshold: float
 
     def infer(self, image: Any, *, custom_nms: Any = None, **arguments: Any) -> Any:
-        """Predicts as ``infer`` of every learner does; ``custom_nms`` is an object with ``run_nms``, e.g.
-        ``ClusterNMS()``, or what ``suppression`` takes."""
+        """Predicts as ``infer`` of every learner; ``custom_nms`` is an object with ``run_nms``, e.g. ``ClusterNMS()``, or a
+        value of ``suppression``."""
         if not hasattr(custom_nms, "run_nms"):
             given = arguments if custom_nms is None else {**arguments, "custom_nms": custom_nms}
             return super().infer(image, **given)
         if isinstance(image, Iterator):
-            return (self._chosen(one, custom_nms, arguments) for one in image)
+            return (self._suppressed(one, custom_nms, arguments) for one in image)
         if isinstance(image, (list, tuple)):
-            return [self._chosen(one, custom_nms, arguments) for one in image]
-        return self._chosen(image, custom_nms, arguments)
+            return [self._suppressed(one, custom_nms, arguments) for one in image]
+        return self._suppressed(image, custom_nms, arguments)
 
-    def _chosen(self, image: Any, custom_nms: Any, arguments: dict[str, Any]) -> BoundingBoxList:
+    def _suppressed(self, image: Any, custom_nms: Any, arguments: dict[str, Any]) -> BoundingBoxList:
         import numpy as np
 
-        picture = _value(image, "image", "Image")
+        image = _value(image, "image", "Image")
         known = self._known(arguments, stacklevel=6)
-        # Above an overlap of 1 there is none: all boxes are left.
+        # No IoU exceeds 1, so all boxes are kept.
         every = {"iou_threshold": 1.0, "suppression": "hard", "max_detections": known.get("max_candidates", 400)}
-        found: BoundingBoxList = super().infer(picture, **{**known, **every})
+        found: BoundingBoxList = super().infer(image, **{**known, **every})
         corners = np.array([[b.left, b.top, b.left + b.width, b.top + b.height] for b in found.data]).reshape(-1, 4)
         scores = np.zeros((len(found), max(1, len(self.classes))))
         for row, box in enumerate(found.data):
             scores[row, int(box.name)] = box.confidence
         threshold = known.get("threshold", self.threshold)
-        chosen = custom_nms.run_nms(boxes=corners, scores=scores, threshold=threshold, img=picture)
+        chosen = custom_nms.run_nms(boxes=corners, scores=scores, threshold=threshold, img=image)
         boxes = chosen[0] if isinstance(chosen, tuple) else chosen
         named = [_with_class(box, self.classes) for box in boxes.data]
         target = BoundingBoxList(named[: known.get("max_detections")], classes=self.classes)
@@ -53,12 +53,12 @@ class SingleShotDetector(NativeLearner):
 
 
 class Seq2SeqNms(NativeLearner):
-    """Attention that chooses among a detector's boxes, also called as OpenDR calls suppressions."""
+    """Non-maximum suppression by attention, with OpenDR's interface of suppressions."""
 
     def infer(self, *inputs: Any, **arguments: Any) -> Any:
-        """Predicts as ``infer`` of every learner does, from a picture and a detector's boxes."""
+        """Predicts as ``infer`` of every learner, from an image and a detector's boxes."""
         if {"boxes", "scores"} & arguments.keys():
-            raise Unsupported("infer takes a picture and a BoundingBoxList; run_nms takes boxes, scores and img")
+            raise Unsupported("infer takes an image and a BoundingBoxList; run_nms takes boxes, scores and img")
         return super().infer(*inputs, **arguments)
 
     def run_nms(
@@ -71,26 +71,26 @@ class Seq2SeqNms(NativeLearner):
         threshold: float = 0.2,
         map: Any = None,
     ) -> tuple[BoundingBoxList, list[NDArray[Any]]]:
-        """Chooses among boxes.
+        """Suppresses overlapping boxes.
 
         Args:
             boxes: Corners, ``[boxes, 4]``: left, top, right, bottom, in pixels.
             scores: Scores, ``[boxes]`` or ``[boxes, classes]``.
-            boxes_sorted: Whether the scores fall; nothing depends on it.
-            top_k: So many boxes are looked at.
-            img: The picture.
-            threshold: Boxes below this score are dropped.
-            map: Not taken: the picture is looked at itself.
+            boxes_sorted: No effect: whether the boxes are in descending order of score.
+            top_k: Maximum number of boxes that are processed.
+            img: The image.
+            threshold: Score below which boxes are dropped.
+            map: No effect: the edges of the image are computed instead.
 
         Returns:
-            The boxes that are left, and their corners, classes and scores.
+            The remaining boxes, and their corners, classes and scores.
         """
         from opendr._upstream.suppression import candidates
 
         if map is not None:
-            warnings.warn(f"{type(self).__name__}: map has no effect: edges of img are looked at", stacklevel=2)
+            warnings.warn(f"{type(self).__name__}: map has no effect: the edges of img are computed instead", stacklevel=2)
         if img is None:
-            raise TypeError("run_nms wants the picture; give img")
+            raise TypeError("run_nms needs the image; give img")
         corners, labels, values = candidates(boxes, scores)
         given = _list_of(corners, labels, values)
         chosen: BoundingBoxList = self.infer(img, given, threshold=threshold, max_dt_boxes=top_k)
@@ -111,7 +111,7 @@ def _list_of(corners: NDArray[Any], labels: NDArray[Any], scores: NDArray[Any]) 
 
 
 def arrays_of(boxes: BoundingBoxList) -> list[NDArray[Any]]:
-    """Corners, classes and scores of boxes."""
+    """Returns corners, classes and scores of boxes."""
     import numpy as np
 
     corners = [[box.left, box.top, box.left + box.width, box.top + box.height] for box in boxes.data]

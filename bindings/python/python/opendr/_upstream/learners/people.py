@@ -14,16 +14,16 @@ from opendr.engine.datasets import DatasetIterator, ExternalDataset
 from opendr.engine.learners import BaseLearner
 from opendr.engine.target import Category, Pose, PoseList
 
-#: Degrees from the vertical beyond which a part of the body lies; those of OpenDR's rule.
+#: Angles from the vertical, in degrees, beyond which a part of the body counts as lying; those of OpenDR's rule.
 _TORSO, _THIGHS, _CALVES = 45.0, 60.0, 70.0
 _FALLEN, _STANDING, _UNKNOWN = (1, "fallen"), (-1, "standing"), (0, "unknown")
 
 
 class HighResolutionPoses(NativeLearner):
-    """Poses in large pictures, found in two passes."""
+    """Poses in large images, in two passes."""
 
     def infer_adaptive(self, img: Any, upsample_ratio: int = 4, stride: int = 8) -> Any:
-        """Predicts by the method ``adaptive``."""
+        """Predicts with the method ``adaptive``."""
         return self.infer(image=img, upsample_ratio=upsample_ratio, stride=stride, method="adaptive")
 
     def eval_adaptive(
@@ -38,48 +38,48 @@ class HighResolutionPoses(NativeLearner):
         annotations_filename: Optional[str] = None,
         **options: Any,
     ) -> dict[str, Any]:
-        """Measures the method ``adaptive`` as ``eval`` measures."""
+        """Evaluates the method ``adaptive``, as ``eval``."""
         given = {"upsample_ratio": upsample_ratio, "images_folder_name": images_folder_name}
         given["annotations_filename"] = annotations_filename
         subset = {"use_subset": use_subset, "subset_size": subset_size}
-        wanted = {name: value for name, value in {**subset, **given}.items() if value is not None}
+        arguments = {name: value for name, value in {**subset, **given}.items() if value is not None}
         evaluate: Any = self.eval
-        with self._for_now({"method": "adaptive"}):
-            numbers: dict[str, Any] = evaluate(dataset, silent=silent, verbose=verbose, **wanted, **options)
+        with self._temporarily({"method": "adaptive"}):
+            numbers: dict[str, Any] = evaluate(dataset, silent=silent, verbose=verbose, **arguments, **options)
         return numbers
 
 
 class FallDetector(NativeLearner):
-    """Falls, of persons that it finds itself or that a learner of poses finds.
+    """Detection of falls, with its own detection of persons or with the poses of a pose estimator.
 
-    ``FallDetectorLearner(pose_estimator)`` gives a list of pairs, as OpenDR does: a category (1 fallen, -1 standing, 0
-    not known) and the pose that it was told by. So does ``infer`` of poses.
+    ``infer`` of ``FallDetectorLearner(pose_estimator)`` returns a list of pairs, as in OpenDR: a category (1 fallen, -1
+    standing, 0 unknown) and the pose. So does ``infer`` of poses.
     """
 
     def __init__(self, *given: Any, **named: Any) -> None:
-        found = by_name(type(self).__name__, self._places, given, named, stacklevel=3)
+        found = by_name(type(self).__name__, self._positional, given, named, stacklevel=3)
         pose_estimator = found.pop("pose_estimator", None)
         super().__init__(**found)
-        #: The learner that finds the poses; None where the model does.
+        #: The pose estimator; None where the model detects persons itself.
         self.pose_estimator: Optional[BaseLearner] = None
         if pose_estimator is not None:
             self.initialize(pose_estimator)
 
     def initialize(self, pose_estimator: BaseLearner) -> None:
-        """Sets the learner that finds the poses.
+        """Sets the pose estimator.
 
         Raises:
-            TypeError: It is no learner.
+            TypeError: The argument is not a learner.
         """
         if not isinstance(pose_estimator, BaseLearner):
-            raise TypeError(f"pose_estimator should be a learner of poses, not {pose_estimator!r:.100}")
+            raise TypeError(f"pose_estimator should be a pose estimation learner, not {pose_estimator!r:.100}")
         self.pose_estimator = pose_estimator
 
     def infer(self, image: Any, **arguments: Any) -> Any:
-        """Predicts falls in a picture, or of poses.
+        """Predicts falls from an image, or from poses.
 
         Returns:
-            Boxes and poses; pairs of category and pose where there is a pose estimator, or poses are given.
+            Boxes and poses; pairs of category and pose with a pose estimator, or for poses.
         """
         poses = isinstance(image, (list, tuple)) and image and all(isinstance(item, Pose) for item in image)
         if isinstance(image, PoseList) or poses:
@@ -93,12 +93,12 @@ class FallDetector(NativeLearner):
         return [(_posture(pose), pose) for pose in self.pose_estimator.infer(image)]
 
     def eval(self, dataset: Any, **options: Any) -> dict[str, Any]:
-        """Measures the falls of persons; with a pose estimator on OpenDR's data sets: an ``ExternalDataset`` of the
-        type ``ur_fall_dataset`` or ``test``, or any pairs of picture and category.
+        """Evaluates the detection of falls; with a pose estimator on OpenDR's data sets: an ``ExternalDataset`` of the
+        type ``ur_fall_dataset`` or ``test``, or any pairs of image and category.
 
         Returns:
-            With a pose estimator ``accuracy``, ``sensitivity``, ``specificity``, ``detection_accuracy`` (NaN of
-            nothing) and ``no_detections``; else the numbers of the metric.
+            With a pose estimator ``accuracy``, ``sensitivity``, ``specificity``, ``detection_accuracy`` (NaN without
+            samples) and ``no_detections``; else the scalars of the metric.
         """
         if self.pose_estimator is None:
             return super().eval(dataset, **options)
@@ -109,23 +109,23 @@ class FallDetector(NativeLearner):
             raise TypeError(f"dataset should be an ExternalDataset or a DatasetIterator, not {type(dataset).__name__}")
         counts = {(truth, found): 0 for truth in (1, -1) for found in (1, -1, 0)}
         missed = 0
-        for picture, category in samples:
+        for image, category in samples:
             if category.data not in (1, -1):
                 continue
             self.pose_estimator.reset()
-            falls = self.infer(picture if isinstance(picture, Image) else Image.open(picture))
+            falls = self.infer(image if isinstance(image, Image) else Image.open(image))
             if falls:
                 counts[category.data, falls[0][0].data] += 1
             else:
                 missed += 1
-        right = {truth: counts[truth, truth] for truth in (1, -1)}
-        judged = {truth: counts[truth, 1] + counts[truth, -1] for truth in (1, -1)}
-        everyone = sum(counts.values()) + missed
+        correct = {truth: counts[truth, truth] for truth in (1, -1)}
+        decided = {truth: counts[truth, 1] + counts[truth, -1] for truth in (1, -1)}
+        total = sum(counts.values()) + missed
         return {
-            "accuracy": _share(sum(right.values()), sum(judged.values())),
-            "sensitivity": _share(right[1], judged[1]),
-            "specificity": _share(right[-1], judged[-1]),
-            "detection_accuracy": _share(sum(judged.values()), everyone),
+            "accuracy": _share(sum(correct.values()), sum(decided.values())),
+            "sensitivity": _share(correct[1], decided[1]),
+            "specificity": _share(correct[-1], decided[-1]),
+            "detection_accuracy": _share(sum(decided.values()), total),
             "no_detections": missed,
         }
 
@@ -135,7 +135,7 @@ def _share(part: int, whole: int) -> float:
 
 
 def _posture(pose: Pose) -> Category:
-    """The posture of a person, by the rule of the native half."""
+    """Returns the posture of a person, by the same rule as the native learner."""
     joints = {name: point for name, point in zip(pose.joints, pose.data.tolist()) if min(point) >= 0}
 
     def middle(*names: str) -> Optional[tuple[float, float]]:
@@ -147,10 +147,10 @@ def _posture(pose: Pose) -> Category:
     hips, knees = middle("r_hip", "l_hip"), middle("r_knee", "l_knee")
     torso = _lies(middle("neck") or middle("r_sho", "l_sho"), hips, _TORSO)
     parts = [torso, _lies(hips, knees, _THIGHS), _lies(knees, middle("r_ank", "l_ank"), _CALVES)]
-    seen = [part for part in parts if part is not None]
-    if not seen:
+    visible = [part for part in parts if part is not None]
+    if not visible:
         return Category(*_UNKNOWN)
-    return Category(*(_FALLEN if torso is not False and 2 * sum(seen) > len(seen) else _STANDING))
+    return Category(*(_FALLEN if torso is not False and 2 * sum(visible) > len(visible) else _STANDING))
 
 
 def _lies(upper: Optional[tuple[float, float]], lower: Optional[tuple[float, float]], limit: float) -> Optional[bool]:
@@ -161,7 +161,7 @@ def _lies(upper: Optional[tuple[float, float]], lower: Optional[tuple[float, flo
 
 
 class FacialEmotion(NativeLearner):
-    """Emotions of faces."""
+    """Recognition of emotions of faces."""
 
     _LOAD = arguments_of(
         "ensemble_size!model path_to_saved_network>path file_name_base_network!whole file_name_conv_branch!whole"
@@ -169,7 +169,7 @@ class FacialEmotion(NativeLearner):
     )
 
     def load(self, *given: Any, **named: Any) -> bool:
-        """Loads a model, by its path alone as for every learner, or in OpenDR's order: ``ensemble_size``, then
+        """Loads a model from its path, as every learner, or with OpenDR's arguments: ``ensemble_size``, then
         ``path_to_saved_network``."""
         if given and isinstance(given[0], (str, os.PathLike)):
             return super().load(*given, **named)

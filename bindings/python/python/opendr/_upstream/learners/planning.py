@@ -1,4 +1,4 @@
-"""Policies that plan."""
+"""Planning policies."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from opendr._upstream.arguments import by_name
 
 
 class Planner(NativeLearnerRL):
-    """A policy that keeps the environment that its constructor was given."""
+    """A policy whose constructor has an argument for the environment."""
 
     def __init__(self, *given: Any, **named: Any) -> None:
-        found = by_name(type(self).__name__, self._places, given, named, stacklevel=3)
-        #: Where it acts, unless ``fit`` and ``eval`` are given another environment.
+        found = by_name(type(self).__name__, self._positional, given, named, stacklevel=3)
+        #: The environment of ``fit`` and ``eval`` unless another is given.
         self.env: Any = found.pop("env", None)
         super().__init__(**found)
 
@@ -27,9 +27,9 @@ class Planner(NativeLearnerRL):
         verbose: bool = True,
         **options: Any,
     ) -> dict[str, Any]:
-        """Trains as ``fit`` of every policy does, in the environment of the constructor where none is given."""
+        """Trains as ``fit`` of every policy, by default in the environment of the constructor."""
         return super().fit(self.env if env is None else env, val_env, logging_path, silent, verbose, **options)
 
     def eval(self, env: Any = None, **options: Any) -> dict[str, Any]:
-        """Measures as ``eval`` of every policy does, in the environment of the constructor where none is given."""
+        """Evaluates as ``eval`` of every policy, by default in the environment of the constructor."""
         return super().eval(self.env if env is None else env, **options)

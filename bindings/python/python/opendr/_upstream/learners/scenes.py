@@ -1,4 +1,4 @@
-"""Whole pictures."""
+"""Segmentation of images."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from opendr.engine.target import BoundingBoxList, Heatmap
 
 
 class HighResolution(NativeLearner):
-    """Patches of large pictures, also cut out of pictures with boxes."""
+    """Classification of patches of large images, which may be taken from images with boxes."""
 
     def fit(
         self,
@@ -23,11 +23,11 @@ class HighResolution(NativeLearner):
         verbose: bool = True,
         **options: Any,
     ) -> dict[str, Any]:
-        """Trains as ``fit`` of every learner does; of an ``ExternalDataset`` with boxes it takes patches."""
+        """Trains as ``fit`` of every learner; an ``ExternalDataset`` with boxes is divided into patches."""
         return super().fit(_with_boxes(dataset), val_dataset, logging_path, silent, verbose, **options)
 
     def eval(self, dataset: Any, **options: Any) -> dict[str, Any]:
-        """Measures as ``eval`` of every learner does, on the patches of an ``ExternalDataset`` with boxes."""
+        """Evaluates as ``eval`` of every learner, on the patches of an ``ExternalDataset`` with boxes."""
         from opendr._upstream.segmentation_datasets import HighResolutionDataset
 
         boxes = _with_boxes(dataset)
@@ -35,11 +35,11 @@ class HighResolution(NativeLearner):
 
 
 def _with_boxes(dataset: Any) -> Any:
-    """A data set whose format has boxes, opened to give them; any other as it is."""
+    """Opens a data set with boxes as targets if its format has them, else returns it unchanged."""
     if not isinstance(dataset, ExternalDataset):
         return dataset
-    wanted = dataset.dataset_type.lower()
-    found = (table for table in formats() if wanted in (table["name"], *table["aliases"]))
+    name = dataset.dataset_type.lower()
+    found = (table for table in formats() if name in (table["name"], *table["aliases"]))
     return (
         dataset.open(target=BoundingBoxList)
         if any("BoundingBoxList" in table["targets"] for table in found)
@@ -48,7 +48,7 @@ def _with_boxes(dataset: Any) -> Any:
 
 
 class PanopticPictures(NativeLearner):
-    """Classes and objects of pictures."""
+    """Panoptic segmentation of images."""
 
     @staticmethod
     def visualize(
@@ -60,32 +60,32 @@ class PanopticPictures(NativeLearner):
         figure_size: tuple[float, float] = (15, 10),
         detailed: bool = False,
     ) -> Image:
-        """Draws classes over a picture.
+        """Draws the class map over an image.
 
         Args:
-            image: The picture.
-            prediction: The maps of objects and of classes, as ``infer`` gives them.
-            show_figure: Whether to show it in a window; without a display a file is written and its path printed.
+            image: The image.
+            prediction: The maps of instances and of classes, the result of ``infer``.
+            show_figure: Whether to show the drawing in a window; without a display a file is written and its path printed.
             save_figure: Whether to write it to ``figure_filename``.
             figure_filename: The file.
-            figure_size: The drawing has the size of the picture.
-            detailed: Draws the objects instead of the classes.
+            figure_size: No effect: the drawing has the size of the image.
+            detailed: Whether to draw the instances instead of the classes.
 
         Returns:
             The drawing.
 
         Raises:
-            ValueError: There is no name for the file.
+            ValueError: ``figure_filename`` is missing.
         """
         from opendr._drawing import draw_target
-        from opendr._show import show_picture
+        from opendr._show import show_image
 
         if save_figure and figure_filename is None:
-            raise ValueError("save_figure wants the file; give figure_filename")
+            raise ValueError("save_figure needs a file; give figure_filename")
         instance, semantic = prediction
         drawn = draw_target(image, instance if detailed else semantic)
         if save_figure and figure_filename is not None:
             drawn.save(figure_filename)
         if show_figure:
-            show_picture(drawn)
+            show_image(drawn)
         return drawn

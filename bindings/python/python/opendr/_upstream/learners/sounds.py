@@ -1,4 +1,4 @@
-"""Sounds."""
+"""Learners of audio."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ PathLike = Union[str, "os.PathLike[str]"]
 
 
 class Words(NativeLearner):
-    """Spoken words."""
+    """Recognition of spoken words."""
 
     def download_pretrained(self, path: PathLike = ".") -> str:
-        """Gets the pretrained model, as ``download`` does.
+        """Downloads the pretrained model, as ``download``.
 
         Returns:
-            What ``load`` takes.
+            The path for ``load``.
         """
         return self.download(path=path)
 
 
 class Transcription(NativeLearner):
-    """What was said."""
+    """Transcription of speech."""
 
     _LOAD = arguments_of("name model_path>path download_dir in_memory!whole")
 
     def load(self, *given: Any, **named: Any) -> bool:
-        """Loads a model, by its path as for every learner, or in OpenDR's order: ``name``, ``model_path``,
-        ``download_dir``, ``in_memory``. A name is one of OpenDR's models, in whose place the model here comes."""
+        """Loads a model from its path, as every learner, or with OpenDR's arguments: ``name``, ``model_path``,
+        ``download_dir``, ``in_memory``. For a name of one of OpenDR's models, the model of this package is loaded."""
         names = self._row.models.split()
         if not {"name", "model_path", "download_dir", "in_memory"} & named.keys() and not (given and given[0] in names):
             return super().load(*given, **named)
@@ -46,16 +46,16 @@ class Transcription(NativeLearner):
 
 
 class AudiovisualEmotion(NativeLearner):
-    """Emotions by voice and face."""
+    """Recognition of emotions from voice and face."""
 
     def load_inference_data(self, audio: PathLike, video: PathLike) -> tuple[Audio, Video]:
-        """Opens a sound (WAVE) and a clip.
+        """Reads audio (WAVE) and a video clip.
 
         Returns:
-            What ``infer`` takes.
+            The arguments of ``infer``.
         """
         return _value(audio, "audio", "Audio"), _value(video, "video", "Video")
 
     def pred_to_label(self, prediction: Category) -> str:
-        """Returns what a prediction means."""
+        """Returns the class name of a prediction."""
         return prediction.description or self.classes[prediction.data]

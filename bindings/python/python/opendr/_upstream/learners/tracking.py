@@ -24,22 +24,21 @@ from opendr.engine.target import (
 
 
 class NumberedFrames(NativeLearner):
-    """A tracker that can be told the numbers of its frames."""
+    """A tracker with an argument for the indices of the frames."""
 
     def infer(self, image: Any, frame_ids: Any = None, **arguments: Any) -> Any:
-        """Predicts as ``infer`` of every learner does; ``frame_ids`` are the numbers of the frames, one for a picture,
-        or a list."""
+        """Predicts as ``infer`` of every learner; ``frame_ids`` is the index of the frame, or a list of indices."""
         return _numbered(super().infer(image, **arguments), frame_ids)
 
 
 class DeepSort(NativeLearner):
-    """DeepSORT, of pictures with their boxes in one or in two inputs."""
+    """DeepSORT, with image and boxes as one input or as two."""
 
     _JOINED = arguments_of("batch>image frame_ids swap_left_top!swap")
 
     def infer(self, *inputs: Any, **arguments: Any) -> Any:
-        """Predicts tracks, of a picture and a detector's boxes as ``infer`` of every learner does, or as OpenDR: of an
-        ``ImageWithDetections``, or a list of them, and the numbers of the frames (``frame_ids``)."""
+        """Predicts tracks from an image and a detector's boxes, as ``infer`` of every learner, or as in OpenDR: from an
+        ``ImageWithDetections``, or a list of them, and the indices of the frames (``frame_ids``)."""
         first = inputs[0] if inputs else arguments.get("batch", arguments.get("image"))
         several = isinstance(first, (list, tuple))
         items: list[Any] = list(first) if isinstance(first, (list, tuple)) else [first]
@@ -49,19 +48,18 @@ class DeepSort(NativeLearner):
         found = by_name(owner, self._JOINED, inputs, arguments, stacklevel=3)
         frame_ids = found.pop("frame_ids", None)
         if isinstance(frame_ids, BoundingBoxList):
-            raise TypeError(f"{owner}: an ImageWithDetections has its boxes; frame_ids are numbers of frames")
+            raise TypeError(f"{owner}: an ImageWithDetections has its boxes; frame_ids are indices of frames")
         del found["image"]
         tracks = [super(DeepSort, self).infer(item, item.boxes, **found) for item in items]
         return _numbered(tracks if several else tracks[0], frame_ids)
 
     def eval(self, dataset: Any, **options: Any) -> dict[str, Any]:
-        """Measures as ``eval`` of every learner does; samples may be pairs of ``ImageWithDetections`` and
-        annotations."""
-        return super().eval(_Apart(dataset) if isinstance(dataset, DatasetIterator) else dataset, **options)
+        """Evaluates as ``eval`` of every learner; samples may be pairs of ``ImageWithDetections`` and annotations."""
+        return super().eval(_WithSeparateBoxes(dataset) if isinstance(dataset, DatasetIterator) else dataset, **options)
 
 
-class _Apart(DatasetIterator):
-    """A data set whose pictures and boxes are two data."""
+class _WithSeparateBoxes(DatasetIterator):
+    """A data set with each ``ImageWithDetections`` converted to a pair of image and boxes."""
 
     def __init__(self, dataset: DatasetIterator) -> None:
         self._dataset = dataset
@@ -76,29 +74,29 @@ class _Apart(DatasetIterator):
 
 
 def _numbered(tracks: Any, frame_ids: Any) -> Any:
-    """Tracks with the numbers of their frames."""
+    """Sets the frame indices of tracks."""
     if frame_ids is None or isinstance(tracks, Iterator):
         return tracks
-    answers = tracks if isinstance(tracks, list) else [tracks]
-    numbers = list(frame_ids) if hasattr(frame_ids, "__iter__") else [frame_ids]
-    if len(numbers) != len(answers):
-        raise ValueError(f"{len(answers)} frames have {len(numbers)} numbers in frame_ids; give one for each")
-    for answer, number in zip(answers, numbers):
-        for track in answer.data:
-            track.frame = whole(number, "frame_ids")
+    lists = tracks if isinstance(tracks, list) else [tracks]
+    indices = list(frame_ids) if hasattr(frame_ids, "__iter__") else [frame_ids]
+    if len(indices) != len(lists):
+        raise ValueError(f"{len(lists)} frames have {len(indices)} indices in frame_ids; give one for each")
+    for one, index in zip(lists, indices):
+        for track in one.data:
+            track.frame = whole(index, "frame_ids")
     return tracks
 
 
 class BoxesInSpace(NativeLearner):
-    """A tracker of boxes in space, which has no weights to load."""
+    """A tracker of 3D boxes, which has no weights and is loaded on first use."""
 
     def infer(self, *inputs: Any, **arguments: Any) -> Any:
-        """Predicts as ``infer`` of every learner does."""
+        """Predicts as ``infer`` of every learner."""
         self._make_ready()
         return super().infer(*inputs, **arguments)
 
     def eval(self, dataset: Any, **options: Any) -> dict[str, Any]:
-        """Measures as ``eval`` of every learner does."""
+        """Evaluates as ``eval`` of every learner."""
         self._make_ready()
         return super().eval(dataset, **options)
 
@@ -108,10 +106,10 @@ class BoxesInSpace(NativeLearner):
 
 
 class SingleObject(NativeLearner):
-    """A tracker of one object.
+    """A tracker of a single object.
 
-    A stream that begins with a single box (``BoundingBox``, ``TrackingAnnotation``) gives a single annotation a frame,
-    as OpenDR does; one that begins with a list gives lists.
+    In a stream that begins with a single box (``BoundingBox``, ``TrackingAnnotation``), predictions are single
+    annotations, as in OpenDR; in a stream that begins with a list they are lists.
     """
 
     _single = False
@@ -122,22 +120,22 @@ class SingleObject(NativeLearner):
         init_box: Union[BoundingBoxList, BoundingBox, TrackingAnnotation, None] = None,
         **arguments: Any,
     ) -> Any:
-        """Predicts where the object of ``init_box`` is; ``init_box`` comes with the first picture of a stream."""
+        """Predicts the box of the object; ``init_box`` is given with the first image of a stream."""
         if isinstance(init_box, TrackingAnnotation):
             init_box = init_box.bounding_box()
         if init_box is not None:
             self._single = isinstance(init_box, BoundingBox)
         first = BoundingBoxList([init_box]) if isinstance(init_box, BoundingBox) else init_box
         given = {} if first is None else {"init_box": first}
-        answer = super().infer(image, **given, **arguments)
+        predicted = super().infer(image, **given, **arguments)
         if not self._single:
-            return answer
-        if isinstance(answer, Iterator):
-            return map(_only, answer)
-        return [_only(tracks) for tracks in answer] if isinstance(answer, list) else _only(answer)
+            return predicted
+        if isinstance(predicted, Iterator):
+            return map(_only, predicted)
+        return [_only(tracks) for tracks in predicted] if isinstance(predicted, list) else _only(predicted)
 
     def reset(self) -> None:
-        """Forgets what was seen: the next picture begins anew."""
+        """Resets the state: the next image begins a new stream."""
         self._single = False
         super().reset()
 
@@ -147,7 +145,7 @@ def _only(tracks: TrackingAnnotationList) -> Optional[TrackingAnnotation]:
 
 
 class Vpit(NativeLearner):
-    """A tracker of one object in the scans of a lidar."""
+    """A tracker of a single object in lidar scans."""
 
     def init(
         self,
@@ -161,8 +159,8 @@ class Vpit(NativeLearner):
         Args:
             point_cloud: The scan.
             label_lidar: The box, a ``BoundingBox3D`` or a ``TrackingAnnotation3D``.
-            draw: Nothing is drawn.
-            clear_metrics: Nothing is counted.
+            draw: No effect: nothing is drawn.
+            clear_metrics: No effect: no metrics are kept.
         """
         box = label_lidar.bounding_box_3d() if isinstance(label_lidar, TrackingAnnotation3D) else label_lidar
         self.reset()
@@ -178,10 +176,10 @@ class Vpit(NativeLearner):
         init_box: Any = None,
         **arguments: Any,
     ) -> Any:
-        """Predicts where the object is; ``init_box`` comes with the first scan of a stream, ``frame`` and ``id`` are
-        those of the annotations."""
+        """Predicts the box of the object; ``init_box`` is given with the first scan of a stream, ``frame`` and ``id`` are
+        set in the predictions."""
         if isinstance(frame, BoundingBox3DList):
-            raise TypeError("frame should be an int; give the box of the first scan by name, as init_box")
+            raise TypeError("frame should be an int; give the box of the first scan as the keyword argument init_box")
         given = {} if init_box is None else {"init_box": init_box}
         found = super().infer(point_cloud, **given, **arguments)
         if frame is None and id is None or not isinstance(found, TrackingAnnotation3DList):

@@ -1,1 +1,1 @@
-"""The table, a module for each of OpenDR's packages: ``MODULES`` (module paths, names, homes) and ``LEARNERS``."""
+"""The table, with a module for each of OpenDR's packages: ``MODULES`` (module paths, names, homes) and ``LEARNERS``."""

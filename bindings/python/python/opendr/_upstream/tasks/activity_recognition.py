@@ -15,7 +15,7 @@ MODULES: dict[str, dict[str, Home]] = {
     "cox3d.cox3d_learner": {"CoX3DLearner": HERE},
     "datasets.dummy_timeseries_dataset": {"DummyTimeseriesDataset": _TIMESERIES},
     "datasets.kinetics": {
-        "CLASSES": Absent("`classes` of the loaded learner names what it tells"),
+        "CLASSES": Absent("`classes` of the loaded learner has the class names"),
         "KineticsDataset": "opendr._upstream.video_datasets",
     },
     "x3d.x3d_learner": {"X3DLearner": HERE},
@@ -39,7 +39,7 @@ LEARNERS = {
         folder="x3d_{model_names=s}.pyth",
         demos="online_recognition",
         differs=(
-            "`infer` gives one `Category` for one clip, with the scores of all classes in `probabilities`",
+            "`infer` returns one `Category` per clip, with the scores of all classes in `probabilities`",
             "trained on stick figures of JHMDB's actions, not on Kinetics",
         ),
     ),
@@ -53,6 +53,6 @@ LEARNERS = {
         models="xs s m l",
         folder="x3d_{model_names=s}.pyth",
         demos="online_recognition",
-        differs=("as X3DLearner; pictures are given as they are, not normalised",),
+        differs=("as X3DLearner; images are not normalised before `infer`",),
     ),
 }

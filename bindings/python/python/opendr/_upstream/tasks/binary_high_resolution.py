@@ -20,6 +20,6 @@ LEARNERS = {
         optimize="do_constant_folding!onnx",
         mixin="opendr._upstream.learners.scenes:HighResolution",
         demos="train_eval, inference",
-        differs=("`infer` gives the map and a `Category` for the whole picture; `download` has no demo data",),
+        differs=("`infer` returns the map and a `Category` for the whole image; `download` has no demo data",),
     ),
 }

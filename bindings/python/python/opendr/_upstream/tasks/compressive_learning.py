@@ -18,7 +18,7 @@ LEARNERS = {
         eval="dataset silent verbose",
         methods={
             "get_sensing_parameters": "save() writes them into the container",
-            "infer_from_compressed_measurement": "infer senses and tells in one step",
+            "infer_from_compressed_measurement": "infer measures and classifies in one step",
         },
         instead={
             "backbone": "cifar_allcnn cifar_vgg11 cifar_vgg13 cifar_vgg16 cifar_vgg19 cifar_resnet20 cifar_resnet32"

@@ -22,8 +22,8 @@ LEARNERS = {
         folder="end_to_end_planning_tr",
         demos="–",
         differs=(
-            "`infer` gives an `RlTarget`, whose `data` are the action",
-            "`eval` measures 100 episodes and gives `mean_return`, not `rewards_collected`",
+            "`infer` returns an `RlTarget`, whose `data` are the action",
+            "`eval` runs 100 episodes and returns `mean_return`, not `rewards_collected`",
         ),
     ),
 }

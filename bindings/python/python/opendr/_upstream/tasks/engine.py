@@ -22,7 +22,7 @@ MODULES: dict[str, dict[str, Home]] = {
     "constants": _of("constants", "OPENDR_SERVER_URL"),
     "data": _of("data", _DATA),
     "datasets": _of("datasets", _DATASETS),
-    "example_learner": {"ExampleLearner": Absent("docs/python.md has a learner of one's own")},
+    "example_learner": {"ExampleLearner": Absent("docs/python.md has an example of a learner in Python")},
     "helper.io": _of("helper.io", "bump_version"),
     "learners": _of("learners", _LEARNERS),
     "target": _of("target", _TARGETS),

@@ -19,7 +19,7 @@ LEARNERS = {
         infer="img>image",
         eval="dataset num_pairs>limit silent verbose",
         optimize="do_constant_folding!onnx",
-        methods={"align": "infer finds and aligns the faces of any picture"},
+        methods={"align": "infer detects and aligns the faces of any image"},
         same={"mode": {"backbone_only": "reference", "finetune": "full"}},
         without={"mode": {"head_only": 'give mode="full" to train the head'}},
         # It is measured where fit is given val_dataset.
@@ -27,8 +27,8 @@ LEARNERS = {
         folder="",
         demos="inference, eval",
         differs=(
-            "`infer` gives a box for each face, with the person as `class_name`; `download` has no test data",
-            "`eval` counts persons that were made known, and makes no pairs",
+            "`infer` returns a box for each face, with the person as `class_name`; `download` has no test data",
+            "`eval` measures the recognition of enrolled persons, not of pairs",
             "one backbone, MobileFaceNet",
         ),
     ),

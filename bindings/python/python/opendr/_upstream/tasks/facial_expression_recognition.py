@@ -6,13 +6,13 @@ from opendr._upstream.rows import HERE, Absent, Home, Learner
 
 _IMAGES = "image_based_facial_emotion_estimation"
 _LANDMARKS = "landmark_based_facial_expression_recognition"
-_POINTS = Absent("FaceMeshLearner of facial_landmarks finds the points of faces")
+_POINTS = Absent("use FaceMeshLearner of facial_landmarks for the landmarks of faces")
 _EMOTIONS = Absent('use ExternalDataset(path, "imagefolder"), a folder for each emotion')
 
 MODULES: dict[str, dict[str, Home]] = {
     f"{_IMAGES}.algorithm.utils.datasets": {"AffectNetCategorical": _EMOTIONS, "AffectNetDimensional": _EMOTIONS},
     f"{_IMAGES}.algorithm.utils.image_processing": {
-        "detect_face": Absent("FacialEmotionLearner finds the face itself (`picture`)"),
+        "detect_face": Absent("FacialEmotionLearner detects the face itself (`picture`)"),
     },
     f"{_IMAGES}.facial_emotion_learner": {"FacialEmotionLearner": HERE},
     f"{_LANDMARKS}.algorithm.datasets.AFEW_data_gen": {"data_normalization": _POINTS},
@@ -20,7 +20,7 @@ MODULES: dict[str, dict[str, Home]] = {
     f"{_LANDMARKS}.algorithm.datasets.landmark_extractor": {"landmark_extractor": _POINTS},
     f"{_LANDMARKS}.progressive_spatio_temporal_bln_learner": {"ProgressiveSpatioTemporalBLNLearner": HERE},
     # The names that OpenDR's package and documentation also use.
-    "image_processing": {"detect_face": Absent("FacialEmotionLearner finds the face itself (`picture`)")},
+    "image_processing": {"detect_face": Absent("FacialEmotionLearner detects the face itself (`picture`)")},
     "datasets": {"AffectNetCategorical": _EMOTIONS, "AffectNetDimensional": _EMOTIONS},
 }
 
@@ -34,8 +34,8 @@ LEARNERS = {
         mixin="opendr._upstream.learners.people:FacialEmotion",
         demos="inference",
         differs=(
-            "`infer` gives one `Category` with the scores of all emotions; there are no valence and arousal",
-            "it does not train; `eval` takes a data set; `image_processing` has no functions: `opendr.Source` reads "
+            "`infer` returns one `Category` with the scores of all emotions, without valence and arousal",
+            "it cannot be trained; `eval` takes a data set; `image_processing` has no functions: `opendr.Source` reads "
             "cameras",
         ),
     ),
@@ -55,6 +55,6 @@ LEARNERS = {
         load="path model_name verbose",
         methods={"network_builder": "give `topology` to the constructor, and fit"},
         demos="–",
-        differs=("the network does not grow: `topology` says it; there is no pretrained model",),
+        differs=("the network does not grow: `topology` defines it; there is no pretrained model",),
     ),
 }

@@ -20,9 +20,9 @@ LEARNERS = {
         mixin="opendr._upstream.learners.people:FallDetector",
         demos="inference, eval",
         differs=(
-            "without a pose estimator, it finds the persons itself and gives boxes of classes `unknown`, `fallen`, "
+            "without a pose estimator, it detects persons itself and returns boxes of the classes `unknown`, `fallen`, "
             "`standing`, and poses",
-            "with one, a leg alone does not make a fall when the torso stands",
+            "with one, a lying leg alone is not a fall when the torso is upright",
             "there is no `test_data`; `eval` of an estimator's falls takes URFallDatasetIterator",
         ),
     ),

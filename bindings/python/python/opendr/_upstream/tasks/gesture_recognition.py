@@ -7,7 +7,7 @@ from opendr._upstream.rows import Absent, Home
 MODULES: dict[str, dict[str, Home]] = {
     "gesture_recognition_learner": {
         "GestureRecognitionLearner": Absent(
-            "use HandGestureLearner, which finds hands and tells their gestures, or train NanodetLearner on HaGRID"
+            "use HandGestureLearner, which detects hands and classifies their gestures, or train NanodetLearner on HaGRID"
         )
     },
 }

@@ -29,7 +29,7 @@ _ENDS = (
 )
 _DIFFERS = (
     "series are `[time, channels]`, as Timeseries says",
-    "trained on the beats of ECG5000 (140 samples, two classes); `download` loads the model, whatever `fold_idx`",
+    "trained on the beats of ECG5000 (140 samples, two classes); `download` loads the same model for every `fold_idx`",
 )
 
 LEARNERS = {

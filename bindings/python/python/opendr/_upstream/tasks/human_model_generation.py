@@ -7,7 +7,7 @@ from opendr._upstream.rows import Absent, Home
 MODULES: dict[str, dict[str, Home]] = {
     "pifu_generator_learner": {
         "PIFuGeneratorLearner": Absent(
-            "there is no learner of bodies in space; BlazePoseLearner gives joints in a picture"
+            "there is no learner of 3D body models; BlazePoseLearner predicts joints in an image"
         )
     },
 }

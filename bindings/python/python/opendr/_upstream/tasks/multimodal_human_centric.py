@@ -14,11 +14,11 @@ MODULES: dict[str, dict[str, Home]] = {
     f"{_AV}.algorithm.data": {"RavdessDataset": _CLIPS, "get_audiovisual_emotion_dataset": _CLIPS},
     f"{_AV}.avlearner": {"AudiovisualEmotionLearner": HERE},
     "intent_recognition_learner.algorithm.data.mm_pre": {
-        "MIntRecDataset": Absent("there is no learner of intents yet; AudiovisualEmotionLearner takes sound and video"),
+        "MIntRecDataset": Absent("there is no learner of intents yet; AudiovisualEmotionLearner takes audio and video"),
     },
     "intent_recognition_learner.intent_recognition_learner": {
         "IntentRecognitionLearner": Absent(
-            "AudiovisualEmotionLearner takes sound and video, WhisperLearner gives the words"
+            "AudiovisualEmotionLearner takes audio and video, WhisperLearner transcribes speech"
         )
     },
     f"{_GESTURES}.algorithm.data": {"RgbdDataset": _HANDS, "get_hand_gesture_dataset": _HANDS},
@@ -43,8 +43,8 @@ LEARNERS = {
         folder="",
         demos="gesture_recognition",
         differs=(
-            "`infer` takes the picture and its depth, not four channels in one; they are not normalised before",
-            "one network, `small`, without a pretrained model; it trains",
+            "`infer` takes image and depth as two inputs, not four channels in one; they are not normalised before",
+            "one network, `small`, without a pretrained model; it can be trained",
         ),
     ),
     "AudiovisualEmotionLearner": Learner(
@@ -57,6 +57,6 @@ LEARNERS = {
         mixin="opendr._upstream.learners.sounds:AudiovisualEmotion",
         folder="",
         demos="audiovisual_emotion_recognition",
-        differs=("there is no pretrained model; it trains",),
+        differs=("there is no pretrained model; it can be trained",),
     ),
 }

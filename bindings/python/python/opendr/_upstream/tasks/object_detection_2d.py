@@ -36,14 +36,14 @@ MODULES: dict[str, dict[str, Home]] = {
     "detectron2.detectron2_learner": {
         "Detectron2Learner": Absent("use CenterNetDetectorLearner for boxes, BodyPixLearner for masks of persons")
     },
-    "detr.detr_learner": {"DetrLearner": Absent("use CenterNetDetectorLearner, which finds the same classes of COCO")},
+    "detr.detr_learner": {"DetrLearner": Absent("use CenterNetDetectorLearner, which detects the same classes of COCO")},
     "gem.algorithm.util.draw": {"draw": _DRAWING},
     "gem.gem_learner": {"GemLearner": HERE},
     "nanodet.nanodet_learner": {"NanodetLearner": HERE},
     "nms.cluster_nms.cluster_nms": {"ClusterNMS": _NMS},
     "nms.fast_nms.fast_nms": {"FastNMS": _NMS},
     "nms.fseq2_nms.fseq2_nms_learner": {
-        "FSeq2NMSLearner": Absent("use Seq2SeqNMSLearner, which looks at edges instead of the detector's maps")
+        "FSeq2NMSLearner": Absent("use Seq2SeqNMSLearner, which uses image edges instead of the detector's feature maps")
     },
     "nms.seq2seq_nms.seq2seq_nms_learner": {"Seq2SeqNMSLearner": HERE},
     "nms.soft_nms.soft_nms": {"SoftNMS": _NMS},
@@ -76,9 +76,9 @@ LEARNERS = {
         picture="people.jpg",
         demos="inference, train, eval; nms: cluster, soft, seq2seq inference",
         differs=(
-            "pretrained on persons alone, by 281 pictures; `mobilenet0.75` is the backbone",
-            "`extract_maps=True` gives boxes without maps",
-            "`optimize` writes a smaller model",
+            "pretrained only on persons, with 281 images; the backbone is `mobilenet0.75`",
+            "`extract_maps=True` returns boxes without maps",
+            "`optimize` writes a quantised or FP16 model",
         ),
     ),
     "CenterNetDetectorLearner": Learner(
@@ -90,7 +90,7 @@ LEARNERS = {
         folder="centernet_default",
         picture="bicycles.jpg",
         demos="inference, train, eval",
-        differs=("it does not train; SingleShotDetectorLearner and NanodetLearner do",),
+        differs=("it cannot be trained; SingleShotDetectorLearner and NanodetLearner can",),
     ),
     "NanodetLearner": Learner(
         init="model_to_use iters lr batch_size checkpoint_after_iter checkpoint_load_iter temp_path device weight_decay"
@@ -100,14 +100,14 @@ LEARNERS = {
         eval="dataset verbose logging!log local_rank!rank",
         optimize="export_path>out verbose optimization!onnx conf_threshold!live iou_threshold!live nms_max_num!live"
         " hf!half dynamic!size ch_l!layout lazy_load!onnx",
-        methods={"optimize_c_model": "the container that save() writes is what C loads"},
+        methods={"optimize_c_model": "C loads the container that save() writes"},
         folder="nanodet_{model_to_use=m}",
         picture="000000000036.jpg",
         demos="inference, train, eval",
         differs=(
             "one network, NanoDet-m at 416 pixels, whatever `model_to_use`",
-            '`optimize` makes the model smaller (`calibration=`, or `precision="fp16"`); there is no TorchScript',
-            "boxes are sorted by falling confidence",
+            '`optimize` quantises the model (`calibration=`) or converts it to FP16 (`precision="fp16"`); there is no TorchScript',
+            "boxes are in descending order of confidence",
         ),
     ),
     "GemLearner": Learner(
@@ -124,9 +124,9 @@ LEARNERS = {
         instead={"backbone": "resnet50 mobilenetv2"},
         demos="inference",
         differs=(
-            "`infer` gives boxes and one `Category`, whose `probabilities` are the weights of the two sensors",
-            "one data set in the format `coco_infrared` holds the pictures of both cameras",
-            "there is no pretrained model; it trains",
+            "`infer` returns boxes and one `Category`, whose `probabilities` are the weights of the two sensors",
+            "one data set in the format `coco_infrared` has the images of both cameras",
+            "there is no pretrained model; it can be trained",
         ),
     ),
     "Seq2SeqNMSLearner": Learner(
@@ -143,8 +143,8 @@ LEARNERS = {
         folder="{model_name=seq2seq_pets_ssd_pets_fmod}",
         demos="inference",
         differs=(
-            "`infer` takes a picture and a detector's boxes; `run_nms` takes arrays",
-            "one model, trained on NanoDet's boxes of persons, whatever `model_name`",
+            "`infer` takes an image and a detector's boxes; `run_nms` takes arrays",
+            "one model, trained on NanoDet's boxes of persons, for every `model_name`",
         ),
     ),
 }

@@ -29,7 +29,7 @@ LEARNERS = {
         demos="voxel_object_detection_3d",
         differs=(
             "one network, PointPillars, trained on cars of simulated streets; the other classes have to be trained",
-            "`eval` gives the numbers of the metric `kitti_detection` by name",
+            "`eval` returns the scalars of the metric `kitti_detection` by name",
         ),
     ),
 }

@@ -14,7 +14,7 @@ MODULES: dict[str, dict[str, Home]] = {
         "RawMotDatasetIterator": _DATASETS,
         "RawMotWithDetectionsDatasetIterator": _DATASETS,
     },
-    "datasets.otb_dataset": {"OTBTrainDataset": Absent("SiamRPNLearner follows any object without training")},
+    "datasets.otb_dataset": {"OTBTrainDataset": Absent("SiamRPNLearner tracks any object without training")},
     "deep_sort.object_tracking_2d_deep_sort_learner": {"ObjectTracking2DDeepSortLearner": HERE},
     "fair_mot.object_tracking_2d_fair_mot_learner": {"ObjectTracking2DFairMotLearner": HERE},
     "siamrpn.siamrpn_learner": {"SiamRPNLearner": HERE},
@@ -37,7 +37,7 @@ LEARNERS = {
         models="crowdhuman_dla34 fairmot_dla34",
         folder="{model_name=fairmot_dla34}",
         demos="benchmark_fair_mot",
-        differs=("NanoDet and ByteTrack are behind it, whatever `model_name`; it does not train",),
+        differs=("it uses NanoDet and ByteTrack for every `model_name`; it cannot be trained",),
     ),
     "ObjectTracking2DDeepSortLearner": Learner(
         init="lr iters batch_size optimizer checkpoint_after_iter checkpoint_load_iter temp_path device max_dist"
@@ -51,7 +51,7 @@ LEARNERS = {
         models="deep_sort",
         folder="{model_name=deep_sort}",
         demos="benchmark_deep_sort",
-        differs=("an `ImageWithDetections` is one input, a picture and its boxes are two; it does not train",),
+        differs=("an `ImageWithDetections` is one input, an image and its boxes are two; it cannot be trained",),
     ),
     "SiamRPNLearner": Learner(
         init="device n_epochs num_workers warmup_epochs lr weight_decay momentum cls_weight loc_weight batch_size"
@@ -63,8 +63,8 @@ LEARNERS = {
         folder="siamrpn_opendr",
         demos="inference, eval",
         differs=(
-            "coordinates are floats: OpenCV wants `int(box.left)`",
-            "a stream that begins with one box gives one annotation a frame, else a list; it does not train",
+            "coordinates are floats: OpenCV needs `int(box.left)`",
+            "a stream that begins with one box returns one annotation per frame, else a list; it cannot be trained",
             "`download` has no videos; there is no format of OTB",
         ),
     ),

@@ -33,7 +33,7 @@ LEARNERS = {
         modes={"model": "pretrained"},
         demos="example_usage",
         differs=(
-            "DeepLab and BodyPix are fused behind it, with COCO's classes; it does not train",
+            "it fuses DeepLab and BodyPix, with COCO's classes; it cannot be trained",
             '`eval` takes an ExternalDataset(path, "coco_panoptic")',
         ),
     ),
@@ -49,7 +49,7 @@ LEARNERS = {
         modes={"model": "pretrained"},
         demos="example_usage",
         differs=(
-            "trained on simulated streets; SemanticKittiDataset gives scans with classes, `eval` does not take it",
+            "trained on simulated streets; SemanticKittiDataset has scans with classes, but `eval` does not take it",
         ),
     ),
 }

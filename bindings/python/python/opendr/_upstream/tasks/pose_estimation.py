@@ -20,7 +20,7 @@ MODULES: dict[str, dict[str, Home]] = {
     "lightweight_open_pose.utilities": {
         "draw": _DRAWING,
         "get_bbox": _DRAWING,
-        "track_poses": Absent("infer(img, track=True) of LightweightOpenPoseLearner gives poses their identities"),
+        "track_poses": Absent("infer(img, track=True) of LightweightOpenPoseLearner assigns identities to poses"),
     },
 }
 
@@ -45,8 +45,8 @@ LEARNERS = {
         folder="openpose_default",
         demos="inference, eval",
         differs=(
-            "`download(mode=\"test_data\")` is not there: COCO's pictures have to be had from COCO, in COCO's folders",
-            "`eval` gives `map`, `map50`, ... by name; `confidence` of a pose is between 0 and 1",
+            "`download(mode=\"test_data\")` is not available: get COCO's images from COCO, in COCO's folders",
+            "`eval` returns `map`, `map50`, ... by name; `confidence` of a pose is between 0 and 1",
             "one backbone, MobileNetV1 0.5 by default",
         ),
     ),
@@ -65,6 +65,6 @@ LEARNERS = {
         mixin="opendr._upstream.learners.people:HighResolutionPoses",
         folder="openpose_default",
         demos="inference, eval",
-        differs=("`infer` gives poses alone, without heat map and bounds",),
+        differs=("`infer` returns only poses, without heatmap and bounds",),
     ),
 }

@@ -26,8 +26,8 @@ LEARNERS = {
         picture="test1.png",
         demos="inference, train, eval",
         differs=(
-            "trained on drawn streets; `infer` gives the map in the size of the picture with `full_size`",
-            "CamVid has to be had from whoever publishes it",
+            "trained on drawn streets; with `full_size`, `infer` returns the map in the size of the image",
+            "CamVid is available from its publisher only",
         ),
     ),
 }

@@ -6,7 +6,7 @@ from opendr._upstream.rows import Absent, Home
 
 _NAMES: dict[str, Home] = {
     "SingleDemoGraspLearner": Absent(
-        "use GrConvNetLearner of perception.grasp_detection, which finds grasps of any object"
+        "use GrConvNetLearner of perception.grasp_detection, which predicts grasps of any object"
     )
 }
 

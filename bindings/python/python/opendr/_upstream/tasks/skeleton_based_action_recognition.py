@@ -14,7 +14,7 @@ MODULES: dict[str, dict[str, Home]] = {
     "algorithm.models.tagcn": {"TAGCN": _NETWORKS},
     "continual_stgcn_learner": {"CoSTGCNLearner": HERE},
     "progressive_spatio_temporal_gcn_learner": {
-        "ProgressiveSpatioTemporalGCNLearner": Absent("use SpatioTemporalGCNLearner, whose `channels` say its size")
+        "ProgressiveSpatioTemporalGCNLearner": Absent("use SpatioTemporalGCNLearner, whose `channels` define its size")
     },
     "spatio_temporal_gcn_learner": {"SpatioTemporalGCNLearner": HERE},
 }
@@ -34,18 +34,18 @@ LEARNERS = {
         optimize="do_constant_folding!onnx",
         download="path method_name mode verbose url file_name",
         load="path model_name verbose",
-        methods={"multi_stream_eval": "add up the `probabilities` of two learners, and score them with opendr.metrics"},
+        methods={"multi_stream_eval": "add the `probabilities` of two learners and evaluate them with opendr.metrics"},
         without={
             "method_name": {
-                "tagcn": 'TAGCN is not here yet; give method_name="stgcn"',
-                "stbln": 'ST-BLN is not here yet; give method_name="stgcn"',
+                "tagcn": 'TAGCN is not available yet; give method_name="stgcn"',
+                "stbln": 'ST-BLN is not available yet; give method_name="stgcn"',
             }
         },
         models="stgcn_nturgbd stgcn_kinetics",
         folder="{file_name=stgcn_nturgbd}",
         demos="–",
         differs=(
-            "trained on JHMDB's skeletons; data lie in PART_data.npy and PART_label.npy",
+            "trained on JHMDB's skeletons; data are in SPLIT_data.npy and SPLIT_label.npy",
             "one network, ST-GCN",
         ),
     ),
@@ -58,10 +58,10 @@ LEARNERS = {
         eval="dataset steps>limit",
         optimize="do_constant_folding!onnx",
         download="path method_name mode verbose url file_name",
-        without={"backbone": {name: 'it is not here yet; give backbone="costgcn"' for name in ("costr", "coagcn")}},
+        without={"backbone": {name: 'it is not available yet; give backbone="costgcn"' for name in ("costr", "coagcn")}},
         models="costgcn_ntu60_xview_joint.ckpt",
         folder="{file_name=costgcn_ntu60_xview_joint.ckpt}",
         demos="costgcn_usage_demo",
-        differs=("`infer` gives one `Category` for one frame; trained on JHMDB's skeletons; no data are downloaded",),
+        differs=("`infer` returns one `Category` per frame; trained on JHMDB's skeletons; no data are downloaded",),
     ),
 }

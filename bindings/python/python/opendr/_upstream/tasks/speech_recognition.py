@@ -12,7 +12,7 @@ MODULES: dict[str, dict[str, Home]] = {
 
 _INIT = "lr iters batch_size optimizer checkpoint_after_iter checkpoint_load_iter temp_path device"
 _ENDS = "output_classes_n momentum preprocess_to_mfcc sample_rate"
-_DIFFERS = ("trained on twelve classes of Speech Commands", "`reset` forgets the sound, not the weights")
+_DIFFERS = ("trained on twelve classes of Speech Commands", "`reset` clears the audio buffer, not the weights")
 
 LEARNERS = {
     "MatchboxNetLearner": Learner(

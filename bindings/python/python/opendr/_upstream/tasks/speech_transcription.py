@@ -5,7 +5,7 @@ from __future__ import annotations
 from opendr._upstream.rows import HERE, Absent, Home, Learner
 
 MODULES: dict[str, dict[str, Home]] = {
-    "vosk.vosk_learner": {"VoskLearner": Absent("use WhisperLearner, whose push() takes pieces of sound")},
+    "vosk.vosk_learner": {"VoskLearner": Absent("use WhisperLearner, whose push() takes audio in chunks")},
     "whisper.whisper_learner": {"WhisperLearner": HERE},
 }
 
@@ -23,8 +23,8 @@ LEARNERS = {
         folder="whisper_{name=tiny.en}",
         demos="demo",
         differs=(
-            "one model, tiny.en, whatever `name`; others are imported by `opendr import`",
-            "no times of single words",
+            "one model, tiny.en, for every `name`; `opendr import` converts others",
+            "there are no word timestamps",
         ),
     ),
 }

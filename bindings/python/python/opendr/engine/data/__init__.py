@@ -1,7 +1,7 @@
-"""What learners are given: pictures, clouds, sound, series. One file per type.
+"""Data types, the inputs of learners: images, point clouds, audio, time series. One file per type.
 
-``str(datum)`` is OpenDR's text. Every datum has ``timestamp`` (nanoseconds, or None) and ``frame_id``; they travel
-to the targets that are made of it.
+``str(datum)`` is OpenDR's text. Every datum has ``timestamp`` (nanoseconds, or None) and ``frame_id``; predictions
+inherit them.
 """
 
 from opendr.engine.data.audio import Audio

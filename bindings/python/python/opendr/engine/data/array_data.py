@@ -14,19 +14,19 @@ if TYPE_CHECKING:
 class ArrayData(Data):
     """Data that are one array, float32 unless the class says otherwise.
 
-    An array of the right type is kept as it is, without a copy: later changes of it are seen. ``data`` is this
-    array, ``numpy()`` a copy; ``numpy.asarray(datum)`` and ``numpy.from_dlpack(datum)`` copy nothing.
+    An array of the right type is referenced, not copied: later changes of it take effect. ``data`` is this array,
+    ``numpy()`` a copy; ``numpy.asarray(datum)`` and ``numpy.from_dlpack(datum)`` do not copy.
 
     Args:
-        data: Numbers of as many axes as the class has; None leaves it empty until ``data`` is set.
+        data: Numbers with the axes of the class; None leaves it empty until ``data`` is set.
 
     Raises:
-        TypeError: The data are no numbers.
-        ValueError: There are other axes, or no number.
+        TypeError: The data are not numbers.
+        ValueError: The axes are others, or there is no element.
     """
 
     _axes: ClassVar[tuple[str, ...]] = ()
-    #: OpenDR's name of the class in messages, where it is another.
+    #: OpenDR's name of the class in messages, where it differs.
     _title: ClassVar[str] = ""
     _fields: ClassVar[tuple[str, ...]] = ("data",)
 
@@ -40,7 +40,7 @@ class ArrayData(Data):
         """The array itself, in OpenDR's layout.
 
         Raises:
-            ValueError: There is none yet.
+            ValueError: No data are set.
         """
         if self._data is None:
             raise ValueError(f"{self._title or type(self).__name__} is empty")
@@ -52,7 +52,7 @@ class ArrayData(Data):
         self._data = self._checked(data)
 
     def numpy(self) -> NDArray[Any]:
-        """A copy of the array, its last axis contiguous."""
+        """Returns a row-major copy of the array."""
         return self.data.copy("C")
 
     def __str__(self) -> str:
@@ -62,7 +62,7 @@ class ArrayData(Data):
         try:
             return super()._field(name)
         except ValueError:
-            # An empty one is compared and shown, although it cannot be read.
+            # An empty datum can be compared and printed, although its data cannot be read.
             return None
 
     def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> NDArray[Any]:

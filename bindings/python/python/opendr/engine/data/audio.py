@@ -1,4 +1,4 @@
-"""Sound."""
+"""Audio."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ if TYPE_CHECKING:
 
 
 class Audio(ArrayData):
-    """Sound ``[time, channels]``, float32, each sample in [-1, 1]. ``len`` and ``[]`` go by time.
+    """Audio ``[time, channels]``, float32, each sample in [-1, 1]. ``len`` and ``[]`` refer to time.
 
     Args:
         data: Samples ``[time, channels]``, or ``[time]`` of one channel. PCM of int16 or uint8 is scaled to [-1, 1].
-        sample_rate: Instants a second.
+        sample_rate: Sample rate in hertz.
 
     Raises:
-        TypeError: The samples are no numbers, or whole numbers that are no PCM.
-        ValueError: There are other axes, no sample, or no rate.
+        TypeError: The samples are not numbers, or integers of another type than PCM's.
+        ValueError: The axes are others, there is no sample, or the rate is below 1.
     """
 
     _axes: ClassVar[tuple[str, ...]] = ("time", "channels")
@@ -31,13 +31,13 @@ class Audio(ArrayData):
     def __init__(self, data: ArrayLike, sample_rate: SupportsIndex) -> None:
         self.sample_rate: int = whole(sample_rate, "sample_rate")
         if self.sample_rate < 1:
-            raise ValueError(f"sample_rate is {self.sample_rate}; give the instants a second, e.g. 16000")
+            raise ValueError(f"sample_rate is {self.sample_rate}; give samples per second, e.g. 16000")
         super().__init__()
         self.data = data
 
     @property
     def channels(self) -> int:
-        """Channels."""
+        """Number of channels."""
         return int(self.data.shape[1])
 
     @property
@@ -46,7 +46,7 @@ class Audio(ArrayData):
         return len(self) / self.sample_rate
 
     def mono(self) -> NDArray[np.float32]:
-        """The mean of the channels, ``[time]``."""
+        """Returns the mean of the channels, ``[time]``."""
         mean: NDArray[np.float32] = self.data.mean(axis=1)
         return mean
 
@@ -63,5 +63,5 @@ class Audio(ArrayData):
         elif samples.dtype == "uint8":
             samples = (samples.astype("float32") - 128.0) / 128.0
         elif samples.dtype.kind != "f":
-            raise TypeError(f"samples of {samples.dtype} are no PCM; give int16, uint8, or floats in [-1, 1]")
+            raise TypeError(f"samples of {samples.dtype} are not PCM; give int16, uint8, or floats in [-1, 1]")
         return super()._checked(samples[:, None] if samples.ndim == 1 else samples)

@@ -1,4 +1,4 @@
-"""How lidar and camera stand to each other, as KITTI writes it."""
+"""Calibration of a lidar and a camera in KITTI's form."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ if TYPE_CHECKING:
 
 
 class Calibration(Data):
-    """The calibration of a lidar and a camera: from the lidar to the camera's frame, and from there to pixels.
+    """The calibration of a lidar and a camera: transformation from lidar to camera frame, and projection to pixels.
 
     Args:
-        p2: ``[3, 4]``, projection of the rectified camera frame into the left colour picture (KITTI's ``P2``).
+        p2: ``[3, 4]``, projection of the rectified camera frame into the left colour image (KITTI's ``P2``).
         r0_rect: ``[3, 3]``, rectifying rotation (``R0_rect``).
-        tr_velo_to_cam: ``[3, 4]``, from the lidar's frame to the camera's, metres (``Tr_velo_to_cam``).
+        tr_velo_to_cam: ``[3, 4]``, from lidar to camera frame, metres (``Tr_velo_to_cam``).
 
-    Matrices of 4 rows or columns whose last ones are those of the unit matrix are taken too; all are float64.
+    Matrices of 4 rows or columns whose last ones are those of the identity are accepted too; all are float64.
 
     Raises:
-        TypeError: A matrix has something else than numbers.
+        TypeError: A matrix has elements that are not numbers.
         ValueError: A matrix has another shape, or a number is not finite.
     """
 
@@ -45,7 +45,7 @@ class Calibration(Data):
         """
         missing = [name for name in ("P2", "R0_rect", "Tr_velo_to_cam") if name not in matrices]
         if missing:
-            raise ValueError(f"no {', '.join(missing)} among {', '.join(matrices)}; give KITTI's three matrices")
+            raise ValueError(f"{', '.join(missing)} is missing among {', '.join(matrices)}; give KITTI's three matrices")
         return cls(matrices["P2"], matrices["R0_rect"], matrices["Tr_velo_to_cam"])
 
     @property
@@ -59,7 +59,7 @@ class Calibration(Data):
         self.p2, self.r0_rect, self.tr_velo_to_cam = read.p2, read.r0_rect, read.tr_velo_to_cam
 
     def numpy(self) -> NDArray[np.float64]:
-        """From points of the lidar's frame, ``[x, y, z, 1]`` in metres, to pixels times depth: a matrix ``[3, 4]``."""
+        """Returns the matrix ``[3, 4]`` from points in the lidar frame, ``[x, y, z, 1]`` in metres, to pixels times depth."""
         import numpy as np
 
         rect, velo = np.eye(4), np.eye(4)
@@ -81,4 +81,4 @@ def _matrix(values: ArrayLike, columns: int, name: str) -> NDArray[np.float64]:
         fits = np.array_equal(extra_rows, unit[3 : matrix.shape[0], : matrix.shape[1]])
         if fits and not extra_columns.any() and np.isfinite(matrix).all():
             return matrix[:3, :columns]
-    raise ValueError(f"{name} of shape {matrix.shape} should be 3 rows of {columns} finite numbers; mend the matrix")
+    raise ValueError(f"{name} of shape {matrix.shape} should be 3 rows of {columns} finite numbers")

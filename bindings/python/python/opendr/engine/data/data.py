@@ -1,4 +1,4 @@
-"""The root of all data."""
+"""The base class of data."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
 
 class Data(Datum, ABC):
-    """Whatever can be handed to a learner.
+    """Base class of the inputs of learners.
 
-    ``timestamp`` (nanoseconds, or None) and ``frame_id`` travel to every target that is made of it.
+    Predictions inherit ``timestamp`` (nanoseconds, or None) and ``frame_id``.
     """
 
     _data: Any
@@ -33,7 +33,7 @@ class Data(Datum, ABC):
 
     @abstractmethod
     def numpy(self) -> NDArray[Any]:
-        """A copy of the data as a NumPy array."""
+        """Returns a copy of the data as a NumPy array."""
 
     @abstractmethod
     def __str__(self) -> str:

@@ -1,4 +1,4 @@
-"""Pictures."""
+"""Images."""
 
 from __future__ import annotations
 
@@ -17,36 +17,36 @@ _DTYPES = ("uint8", "uint16", "float32")
 
 
 class Image(ArrayData):
-    """A picture ``[channels, height, width]``: grey, RGB or RGBA.
+    """An image ``[channels, height, width]``: greyscale, RGB or RGBA.
 
     Samples are uint8 in [0, 255]; with ``dtype``, uint16 (depth in millimetres, thermal counts) or float32 (depth in
     metres, or colours in the range of their source).
 
-    An array of the right type is kept without a copy, whatever its layout: later changes of it are seen. ``data`` is
+    An array of the right type is referenced, not copied, in any layout: later changes of it take effect. ``data`` is
     this array, ``numpy()`` a copy.
 
-    With ``guess_format``, the layout is guessed from the shape alone, by OpenDR's rule:
+    With ``guess_format``, the layout is guessed from the shape by OpenDR's rule:
 
     * last axis 3: ``[height, width, 3]`` in OpenCV's order **BGR**,
     * last axis smaller than both others: ``[height, width, channels]``, the channels in order,
     * everything else: ``[channels, height, width]``, RGB.
 
-    So a ``[3, height, 3]`` array, a picture three pixels wide, is taken for OpenCV's; say ``guess_format=False``.
+    A ``[3, height, 3]`` array, an image three pixels wide, is therefore taken for OpenCV's; pass ``guess_format=False``.
 
     Args:
         data: An array of 3 axes, or another :class:`Image`.
         dtype: uint8, uint16 or float32. Numbers of another type are converted when they are in range.
-        guess_format: Whether to guess the layout; else it is ``[channels, height, width]``, RGB.
+        guess_format: Whether to guess the layout; otherwise it is ``[channels, height, width]``, RGB.
 
     Raises:
-        TypeError: The data are no numbers.
-        ValueError: They are None, have other axes, no pixel or other than 1, 3 or 4 channels, or do not fit the type.
+        TypeError: The data are not numbers.
+        ValueError: The data are None, have other axes, no pixel or not 1, 3 or 4 channels, or do not fit the type.
     """
 
-    #: The picture in native memory, for as long as nobody has set other data.
+    #: The image in native memory, until other data are set.
     _pixels: Any = None
-    #: The type that new data are converted to; empty: that of the present data.
-    _wanted: str = ""
+    #: The type that new data are converted to; empty: that of the current data.
+    _target_dtype: str = ""
 
     def __init__(
         self,
@@ -60,18 +60,18 @@ class Image(ArrayData):
         if given is not None:
             data, guess_format = given.data, False
             self.timestamp, self.frame_id = given.timestamp, given.frame_id
-        self._wanted = _dtype(given.dtype if given is not None and dtype is None else dtype)
+        self._target_dtype = _dtype(given.dtype if given is not None and dtype is None else dtype)
         super().__init__()
         self.data = _chw_from_guess(data) if guess_format else data
 
     @classmethod
     def open(cls, filename: Union[str, os.PathLike[str]]) -> Image:
-        """Reads a picture file (JPEG, PNG, BMP, WebP), turned upright as its EXIF data say. It is read-only; change a
-        copy: ``Image(image.numpy(), guess_format=False)``.
+        """Reads an image file (JPEG, PNG, BMP, WebP) and rotates it as its EXIF data require. The image is read-only; to
+        change it, copy it: ``Image(image.numpy(), guess_format=False)``.
 
         Raises:
-            FileNotFoundError: There is none.
-            ValueError: It is no picture.
+            FileNotFoundError: The file does not exist.
+            ValueError: The file is not an image.
         """
         path = os.fspath(filename)
         if not os.path.exists(path):
@@ -81,7 +81,7 @@ class Image(ArrayData):
 
     @classmethod
     def from_pil(cls, picture: PIL.Image.Image) -> Image:
-        """Takes a picture of Pillow; other modes than L, RGB and RGBA become RGB."""
+        """Converts an image of Pillow; other modes than L, RGB and RGBA become RGB."""
         import numpy as np
 
         picture = picture if picture.mode in ("L", "RGB", "RGBA") else picture.convert("RGB")
@@ -92,7 +92,7 @@ class Image(ArrayData):
     def data(self) -> NDArray[Any]:
         """The array itself, ``[channels, height, width]``.
 
-        That of a picture which OpenDR itself opened, took or drew lies in native memory and is read-only.
+        The array of an image that OpenDR itself read, captured or drew is in native memory and read-only.
         """
         if self._data is None and self._pixels is not None:
             import numpy as np
@@ -114,29 +114,29 @@ class Image(ArrayData):
 
     @property
     def channels(self) -> int:
-        """1 (grey), 3 (RGB) or 4 (RGBA)."""
+        """Number of channels: 1 (greyscale), 3 (RGB) or 4 (RGBA)."""
         return int(self.data.shape[0])
 
     @property
     def height(self) -> int:
-        """Rows."""
+        """Height in pixels."""
         return int(self.data.shape[1])
 
     @property
     def width(self) -> int:
-        """Pixels a row."""
+        """Width in pixels."""
         return int(self.data.shape[2])
 
     def convert(self, format: str = "channels_first", channel_order: str = "rgb") -> NDArray[Any]:
-        """A copy of the picture in another layout.
+        """Returns a copy of the image in another layout.
 
         Args:
             format: ``"channels_first"`` gives ``[channels, height, width]``, ``"channels_last"``
                 ``[height, width, channels]``.
-            channel_order: ``"rgb"`` or ``"bgr"``; the fourth channel stays the last, grey stays grey.
+            channel_order: ``"rgb"`` or ``"bgr"``; the fourth channel stays last, greyscale stays greyscale.
 
         Raises:
-            ValueError: It is another word.
+            ValueError: An argument has another value.
         """
         if format not in ("channels_first", "channels_last"):
             raise ValueError(f"format should be 'channels_first' or 'channels_last', not {format!r}")
@@ -150,20 +150,20 @@ class Image(ArrayData):
         return array.copy("C")
 
     def opencv(self) -> NDArray[Any]:
-        """A copy as OpenCV has it: ``[height, width, channels]``, BGR (BGRA; one channel for grey)."""
+        """Returns a copy in OpenCV's layout: ``[height, width, channels]``, BGR (BGRA; one channel for greyscale)."""
         return self.convert("channels_last", "bgr")
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Writes the picture; the ending of the name says how (``.jpg``, ``.png``, ...).
+        """Writes the image in the format of the file's extension (``.jpg``, ``.png``, ...).
 
         Raises:
-            opendr.Unsupported: Nothing writes this ending, or these samples.
+            opendr.Unsupported: The extension, or the sample type in this format, is not supported.
             OSError: The file cannot be written.
         """
         _opendr.save_image(self, os.fspath(path))
 
     def to_pil(self) -> PIL.Image.Image:
-        """The picture for Pillow; the samples must be uint8.
+        """Returns the image as one of Pillow; the samples must be uint8.
 
         Raises:
             ImportError: Pillow is not installed.
@@ -174,7 +174,7 @@ class Image(ArrayData):
         except ImportError as error:
             raise ImportError(f"to_pil() needs the package Pillow ({error}): pip install pillow") from error
         if self.dtype != "uint8":
-            raise ValueError(f"Pillow takes pictures of uint8, not of {self.dtype}; scale the samples to [0, 255]")
+            raise ValueError(f"Pillow takes images of uint8, not of {self.dtype}; scale the samples to [0, 255]")
         pixels = self.convert("channels_last")
         return PIL.Image.fromarray(pixels[:, :, 0] if self.channels == 1 else pixels)
 
@@ -189,7 +189,7 @@ class Image(ArrayData):
                 f"an image of shape {array.shape} should be [channels, height, width] with 1, 3 or 4 channels and at "
                 "least one pixel; transpose it, or let guess_format do so"
             )
-        return _converted(array, self._wanted or self.dtype.name)
+        return _converted(array, self._target_dtype or self.dtype.name)
 
 
 def _dtype(dtype: Optional[DTypeLike]) -> str:
@@ -197,7 +197,7 @@ def _dtype(dtype: Optional[DTypeLike]) -> str:
 
     name = "uint8" if dtype is None else np.dtype(dtype).name
     if name not in _DTYPES:
-        raise ValueError(f"an Image of {name}; give {', '.join(_DTYPES)}")
+        raise ValueError(f"an Image cannot have samples of {name}; give {', '.join(_DTYPES)}")
     return name
 
 
@@ -217,6 +217,6 @@ def _converted(array: NDArray[Any], dtype: str) -> NDArray[Any]:
         low, high, limit = array.min(), array.max(), 255 if dtype == "uint8" else 65535
         if not (low >= 0 and high <= limit):
             raise ValueError(
-                f"samples from {low} to {high} do not fit {dtype}; scale them to [0, {limit}], or say dtype='float32'"
+                f"samples from {low} to {high} do not fit {dtype}; scale them to [0, {limit}], or pass dtype='float32'"
             )
     return array.astype(dtype)

@@ -1,4 +1,4 @@
-"""A picture with boxes found before, for learners that look at these again."""
+"""An image with detections, for learners that process these further."""
 
 from __future__ import annotations
 
@@ -12,17 +12,16 @@ if TYPE_CHECKING:
 
 
 class ImageWithDetections(Image):
-    """A picture with boxes in it.
+    """An image with detected boxes.
 
     Args:
-        image: The picture, or an array as :class:`Image` takes it. Of an :class:`Image`, the time stamp and frame
-            are kept.
+        image: The image, or an array as for :class:`Image`. The time stamp and frame id of an :class:`Image` are kept.
         boundingBoxList: The boxes.
         *args: Further arguments of :class:`Image`.
         **kwargs: Further arguments of :class:`Image`.
 
     Raises:
-        TypeError: The boxes are no :class:`BoundingBoxList`.
+        TypeError: The boxes are not a :class:`BoundingBoxList`.
     """
 
     _fields: ClassVar[tuple[str, ...]] = ("data", "boundingBoxList")

@@ -1,4 +1,4 @@
-"""What a policy sees."""
+"""Observations, the inputs of policies."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ if TYPE_CHECKING:
 
 
 class Observation(Data):
-    """What an agent sees of its world: numbers in a row, with names and shapes for its parts where it has several.
+    """An observation of an environment: a flat array, or several named arrays.
 
     Args:
-        data: Numbers, or a dictionary of named arrays (Gymnasium's ``Dict`` space). All become float32; numbers of
-            several axes are put in a row.
+        data: Numbers, or a dictionary of named arrays (Gymnasium's ``Dict`` space). All become float32; an array of
+            several axes is flattened.
 
     Raises:
-        TypeError: They are no numbers, or a name is no text.
-        ValueError: There is no number.
+        TypeError: A value is not a number, or a name is not a str.
+        ValueError: There is no element.
     """
 
     _fields: ClassVar[tuple[str, ...]] = ("data",)
@@ -33,7 +33,7 @@ class Observation(Data):
 
     @property
     def data(self) -> Union[NDArray[np.float32], dict[str, NDArray[np.float32]]]:
-        """The numbers in a row, or the dictionary of parts."""
+        """The flat array, or the dictionary of parts."""
         data: Union[NDArray[np.float32], dict[str, NDArray[np.float32]]] = self._data
         return data
 
@@ -41,15 +41,15 @@ class Observation(Data):
     def data(self, data: Union[ArrayLike, Mapping[str, ArrayLike]]) -> None:
         if isinstance(data, Mapping):
             if not all(isinstance(name, str) for name in data):
-                raise TypeError(f"the parts of an Observation are named by texts, not by {list(data)}")
-            seen: Any = {name: array_of(part, "float32", f"the part {name!r}") for name, part in data.items()}
-            empty = sum(part.size for part in seen.values()) == 0
+                raise TypeError(f"the parts of an Observation are named by str, not by {list(data)}")
+            checked: Any = {name: array_of(part, "float32", f"the part {name!r}") for name, part in data.items()}
+            empty = sum(part.size for part in checked.values()) == 0
         else:
-            seen = array_of(data, "float32", "an Observation").reshape(-1)
-            empty = seen.size == 0
+            checked = array_of(data, "float32", "an Observation").reshape(-1)
+            empty = checked.size == 0
         if empty:
             raise ValueError("Observation is empty")
-        self._data = seen
+        self._data = checked
 
     @property
     def parts(self) -> dict[str, NDArray[np.float32]]:
@@ -57,7 +57,7 @@ class Observation(Data):
         return self._data if isinstance(self._data, dict) else {}
 
     def numpy(self) -> NDArray[np.float32]:
-        """A copy of all numbers in a row: what a policy network takes."""
+        """Returns a flat copy of all numbers, the input of a policy network."""
         import numpy as np
 
         if not isinstance(self._data, dict):

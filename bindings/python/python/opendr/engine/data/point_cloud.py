@@ -1,4 +1,4 @@
-"""Points in space."""
+"""Point clouds."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ if TYPE_CHECKING:
 
 
 class PointCloud(ArrayData):
-    """Points ``[points, channels]``, float32: x, y, z in metres, then reflectance, then colours, as far as they are
-    there. A cloud without points is a cloud: a lidar may see nothing. ``len`` and ``[]`` go by point."""
+    """A point cloud ``[points, channels]``, float32: x, y, z in metres, then optionally reflectance and colours. A cloud
+    may have no points. ``len`` and ``[]`` refer to points."""
 
     _axes: ClassVar[tuple[str, ...]] = ("points", "channels")
     _title: ClassVar[str] = "Point Cloud"

@@ -1,4 +1,4 @@
-"""Points in space beside a camera."""
+"""A point cloud with the calibration of lidar and camera."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ class PointCloudWithCalibration(PointCloud):
 
     Args:
         data: ``[points, channels]`` as for :class:`PointCloud`.
-        calib: KITTI's dictionary of ``P2``, ``R0_rect``, ``Tr_velo_to_cam`` and whatever else, or a
+        calib: KITTI's dictionary of ``P2``, ``R0_rect``, ``Tr_velo_to_cam`` and other matrices, or a
             :class:`Calibration`.
-        image_shape: ``[height, width]`` of the camera's picture, pixels.
+        image_shape: ``[height, width]`` of the camera's image, pixels.
 
     Raises:
-        TypeError: Something is of another type.
+        TypeError: An argument is of another type.
         ValueError: A shape does not fit.
     """
 
@@ -40,11 +40,11 @@ class PointCloudWithCalibration(PointCloud):
         super().__init__(data)
         if calib is not None and not isinstance(calib, (Mapping, Calibration)):
             raise TypeError(f"calib should be KITTI's dictionary or a Calibration, not {calib!r:.200}")
-        #: KITTI's dictionary, as it was given.
+        #: KITTI's dictionary.
         self.calib: Optional[dict[str, Any]] = None
         if calib is not None:
             self.calib = calib.data if isinstance(calib, Calibration) else dict(calib)
-        #: ``(height, width)`` of the camera's picture, pixels.
+        #: ``(height, width)`` of the camera's image, pixels.
         self.image_shape: Optional[tuple[int, int]] = None
         if image_shape is not None:
             height, width = (whole(side, "image_shape") for side in image_shape)
@@ -55,7 +55,7 @@ class PointCloudWithCalibration(PointCloud):
         """The three matrices of ``calib``; None without a calibration.
 
         Raises:
-            ValueError: One is missing, or has another shape.
+            ValueError: A matrix is missing, or has another shape.
         """
         return None if self.calib is None else Calibration.from_dict(self.calib)
 

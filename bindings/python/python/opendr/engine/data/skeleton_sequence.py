@@ -1,4 +1,4 @@
-"""Moving skeletons, for activity recognition."""
+"""Skeletons over time, for action recognition."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from opendr.engine.data.array_data import ArrayData
 
 
 class SkeletonSequence(ArrayData):
-    """Joints of persons through time, ``[samples, channels, frames, joints, persons]``, float32.
+    """Joints of persons over time, ``[samples, channels, frames, joints, persons]``, float32.
 
     The channels are x, y and score (pixels) or x, y, z (metres).
     """

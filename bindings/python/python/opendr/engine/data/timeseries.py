@@ -1,4 +1,4 @@
-"""Measurements in the order of time."""
+"""Time series."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class Timeseries(ArrayData):
-    """Measurements ``[time, features]``, float32. ``len`` and ``[]`` go by time."""
+    """A time series ``[time, features]``, float32. ``len`` and ``[]`` refer to time."""
 
     _axes: ClassVar[tuple[str, ...]] = ("time", "features")
 

@@ -1,4 +1,4 @@
-"""Features in a row."""
+"""Vectors."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from opendr.engine.data.array_data import ArrayData
 
 
 class Vector(ArrayData):
-    """Numbers in a row ``[features]``, float32: features, a state, an embedding."""
+    """A vector ``[features]``, float32: features, a state, an embedding."""
 
     _axes: ClassVar[tuple[str, ...]] = ("features",)
 

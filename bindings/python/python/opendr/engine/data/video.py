@@ -1,4 +1,4 @@
-"""Clips for learners that look at many pictures at once."""
+"""Video clips, for learners that process several frames at once."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from opendr.engine.data.array_data import ArrayData
 class Video(ArrayData):
     """A clip ``[channels, time, height, width]``, float32, channels in the order RGB.
 
-    A learner that looks at one picture after the other takes :class:`Image` objects instead.
+    A learner that processes one frame at a time takes :class:`Image` objects instead.
     """
 
     _axes: ClassVar[tuple[str, ...]] = ("channels", "time", "height", "width")

@@ -9,16 +9,16 @@ from typing import Union
 
 
 def bump_version(path: Union[str, os.PathLike[str]]) -> Path:
-    """Returns a name under which there is no file: ``path`` itself, or the next number in its place.
+    """Returns an unused path: ``path`` itself, or ``path`` with the next free number.
 
-    ``model.json`` becomes ``model_1.json``, ``model_1.json`` becomes ``model_2.json`` where it is there.
+    If they exist, ``model.json`` becomes ``model_1.json``, and ``model_1.json`` becomes ``model_2.json``.
     """
-    wanted = Path(path)
-    if not wanted.exists():
-        return wanted
-    numbered = re.fullmatch(r"(.*)_(\d+)", wanted.stem)
-    stem, number = (numbered[1], int(numbered[2])) if numbered else (wanted.stem, 0)
-    while wanted.exists():
+    unused = Path(path)
+    if not unused.exists():
+        return unused
+    numbered = re.fullmatch(r"(.*)_(\d+)", unused.stem)
+    stem, number = (numbered[1], int(numbered[2])) if numbered else (unused.stem, 0)
+    while unused.exists():
         number += 1
-        wanted = wanted.with_name(f"{stem}_{number}{wanted.suffix}")
-    return wanted
+        unused = unused.with_name(f"{stem}_{number}{unused.suffix}")
+    return unused

@@ -1,7 +1,7 @@
-"""What learners answer and annotations say. One file per type.
+"""Target types, of predictions and annotations. One file per type.
 
 ``str(target)`` is OpenDR's text, ``target.to_json()`` the JSON of ``docs/json.md``. Every target has ``timestamp``
-(nanoseconds, or None) and ``frame_id`` of its datum, and ``action``: how the robot should move to see better.
+(nanoseconds, or None) and ``frame_id`` of its datum, and ``action``: the movement to a better view (active perception).
 """
 
 from opendr.engine.target.action import Action, ActionBase

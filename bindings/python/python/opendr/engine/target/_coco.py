@@ -1,4 +1,4 @@
-"""COCO's entries as OpenDR writes and reads them."""
+"""COCO entries in OpenDR's form."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ _READ: dict[str, Callable[[Any], Any]] = {
 
 
 def entries_from_boxes(boxes: BaseTarget, with_confidence: bool) -> list[dict[str, Any]]:
-    """An entry per box; the score is called ``confidence``, as OpenDR calls it, not ``score``."""
+    """Returns an entry per box; the score is ``confidence``, OpenDR's name, not ``score``."""
     entries = _opendr.coco(boxes, with_confidence)
     return [{_opendr_name(key): value for key, value in entry.items()} for entry in entries]
 
 
 def boxes_from_entries(entries: Iterable[Mapping[str, Any]], image_id: int) -> BoundingBoxList:
-    """The boxes of entries, whose numbers may be NumPy's; other keys are ignored.
+    """Returns the boxes of entries, whose numbers may be NumPy's; other keys are ignored.
 
     Raises:
-        TypeError: Something is of another type.
+        TypeError: An argument is of another type.
         ValueError: A key is missing, or a number not finite.
     """
     plain = []

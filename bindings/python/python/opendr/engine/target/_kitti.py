@@ -1,4 +1,4 @@
-"""OpenDR's dictionary of arrays of boxes in space, to and from plain lists."""
+"""Conversion between OpenDR's dictionary of arrays of 3D boxes and plain lists."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _WIDTHS = {"bbox": 4, "dimensions": 3, "location": 3}
 
 
 def arrays_from_columns(columns: Mapping[str, Sequence[Any]]) -> dict[str, NDArray[Any]]:
-    """An array per column: floats are float64, ``index`` and ``group_ids`` int32, other whole numbers int64."""
+    """Returns an array per column: floats are float64, ``index`` and ``group_ids`` int32, other integers int64."""
     import numpy as np
 
     arrays = {}
@@ -32,7 +32,7 @@ def arrays_from_columns(columns: Mapping[str, Sequence[Any]]) -> dict[str, NDArr
 
 
 def columns_from_arrays(arrays: Mapping[str, ArrayLike]) -> dict[str, list[Any]]:
-    """A list per array; arrays that boxes do not need are left out.
+    """Returns a list per array; arrays that are not fields of boxes are ignored.
 
     Raises:
         ValueError: An array is missing.
@@ -41,7 +41,7 @@ def columns_from_arrays(arrays: Mapping[str, ArrayLike]) -> dict[str, list[Any]]
 
     missing = [name for name in _COLUMNS if name not in arrays]
     if missing:
-        raise ValueError(f"no {', '.join(missing)} among {', '.join(arrays)}; give an array per field of the boxes")
+        raise ValueError(f"{', '.join(missing)} is missing among {', '.join(arrays)}; give an array per field of the boxes")
     columns: dict[str, list[Any]] = {name: np.asarray(arrays[name]).tolist() for name in _COLUMNS}
     columns["occluded"] = [int(level) for level in columns["occluded"]]
     return columns

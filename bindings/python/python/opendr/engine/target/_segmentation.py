@@ -1,4 +1,4 @@
-"""The outline of an object."""
+"""The mask of an object."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ Segmentation = Union[list[list[float]], dict[str, Any]]
 
 
 def segmentation_of(value: Union[Segmentation, Sequence[Sequence[Real]]]) -> Segmentation:
-    """``value`` in plain Python: lists of floats, or a dictionary whose ``counts`` are text or a list of ints.
+    """Returns ``value`` as plain Python objects: lists of floats, or a dictionary whose ``counts`` are a str or a list of ints.
 
     Raises:
-        TypeError: It is no segmentation.
+        TypeError: The value is not a segmentation.
         ValueError: A number is not finite, or the dictionary lacks a key.
     """
     if isinstance(value, dict):

@@ -1,4 +1,4 @@
-"""Boxes for the package supervision."""
+"""Conversion of boxes to the package supervision."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 def detections(
     boxes: Sequence[Union[BoundingBox, TrackingAnnotation]], classes: Sequence[str]
 ) -> supervision.Detections:
-    """The boxes as ``supervision.Detections``: ``xyxy`` in pixels, ``confidence``, ``class_id``, ``tracker_id`` for
-    tracks, and ``data["class_name"]``. A label that is not among ``classes`` is class -1.
+    """Returns the boxes as ``supervision.Detections``: ``xyxy`` in pixels, ``confidence``, ``class_id``, ``tracker_id`` for
+    tracks, and ``data["class_name"]``. A label that is not in ``classes`` has class -1.
 
     Raises:
         ImportError: The package is not installed.

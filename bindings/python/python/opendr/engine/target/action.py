@@ -1,4 +1,4 @@
-"""The paper's active-perception contract: how the robot should move to see better."""
+"""Actions of active perception: the movement of the robot to a better view."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from opendr.engine._checks import Real, real
 
 
 class ActionBase(ABC):
-    """Anything that can stand as the action of a target."""
+    """Base class of the actions of targets."""
 
     @property
     @abstractmethod
@@ -18,17 +18,17 @@ class ActionBase(ABC):
 
 
 class Action(ActionBase):
-    """A movement on a sphere around what is looked at.
+    """A movement on a sphere around the observed object.
 
-    Axis 0 is azimuth, 1 elevation, 2 distance (positive is closer), 3 roll or zoom. Movements are relative; full
-    deflection is the step that the rig states.
+    Axis 0 is azimuth, 1 elevation, 2 distance (positive is closer), 3 roll or zoom. Movements are relative; 1 is the full
+    step of the rig.
 
     Args:
         axes: 1 to 4 numbers, each in [-1, 1].
 
     Raises:
-        TypeError: They are no numbers.
-        ValueError: There are none or more than 4, or one is out of range or NaN.
+        TypeError: An axis is not a number.
+        ValueError: There are no axes or more than 4, or one is out of range or NaN.
     """
 
     def __init__(self, axes: Sequence[Real]) -> None:

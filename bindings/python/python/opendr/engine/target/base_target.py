@@ -1,4 +1,4 @@
-"""The roots of all targets."""
+"""Base classes of targets."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ T = TypeVar("T", bound="BaseTarget")
 
 
 class BaseTarget(Datum):
-    """Whatever can stand beside a datum, as an annotation or as an answer.
+    """Base class of annotations and predictions.
 
-    Types that only annotate inherit from this class and not from :class:`Target`.
+    Types that are only annotations inherit from this class and not from :class:`Target`.
     """
 
     def __str__(self) -> str:
@@ -24,47 +24,47 @@ class BaseTarget(Datum):
         return _opendr.text(self)
 
     def to_json(self) -> str:
-        """The target as one JSON object (``docs/json.md``), the same on every surface.
+        """Returns the target as one JSON object (``docs/json.md``), the same on every surface.
 
-        A single box, track or pose is written as the list that holds only it.
+        A single box, track or pose is written as a list of one.
         """
         return _opendr.json(self._as_value())
 
     @classmethod
     def from_json(cls: type[Self], text: Union[str, bytes]) -> Self:
-        """Reads what :meth:`to_json` writes.
+        """Reads a target from the JSON of :meth:`to_json`.
 
         Raises:
-            ValueError: The text is no JSON of a target.
-            TypeError: It is a target of another class.
+            ValueError: The text is not the JSON of a target.
+            TypeError: The target is of another class.
         """
         value = cls._from_value(_opendr.value_from_json(text.decode() if isinstance(text, bytes) else text))
         if not isinstance(value, cls):
             raise TypeError(f"the JSON is of a {type(value).__name__}, not of a {cls.__name__}; read it as that")
         return value
 
-    #: The list in which a single item is written.
+    #: The list class in which a single item is written.
     _list: ClassVar[Optional[type[Any]]] = None
 
     def _as_value(self) -> BaseTarget:
-        """The target that has a JSON form: this one, or a list of only it."""
+        """Returns the target that can be written as JSON: this one, or a list of only it."""
         return self if self._list is None else self._with_header_in(self._list([self]))
 
     @classmethod
     def _from_value(cls, value: Any) -> Any:
-        """The inverse of :meth:`_as_value`."""
+        """Inverts :meth:`_as_value`."""
         is_item = cls._list is not None and type(value) is cls._list and len(value) == 1
         return value._with_header_in(value[0]) if is_item else value
 
     def _with_header_in(self, other: T) -> T:
-        """``other`` with this one's time stamp, frame and action."""
+        """Returns ``other`` with this target's time stamp, frame id and action."""
         for name in self._header:
             setattr(other, name, getattr(self, name, None))
         return other
 
 
 class Target(BaseTarget):
-    """What can be both an annotation and the answer of a learner."""
+    """Base class of types that are both annotations and predictions."""
 
     _data: Any = None
     _confidence: Any = None
@@ -73,7 +73,7 @@ class Target(BaseTarget):
 
     @property
     def data(self) -> Any:
-        """What was found; its type is that of the class."""
+        """Content of the target; its type depends on the class."""
         return self._data
 
     @data.setter
@@ -82,7 +82,7 @@ class Target(BaseTarget):
 
     @property
     def confidence(self) -> Any:
-        """Score in [0, 1]; None where there is none."""
+        """Score in [0, 1], or None."""
         return self._confidence
 
     @confidence.setter
@@ -91,7 +91,7 @@ class Target(BaseTarget):
 
     @property
     def action(self) -> Optional[ActionBase]:
-        """How the robot should move to see better; None where the learner does not tell."""
+        """Movement of the robot to a better view; None where the learner predicts none."""
         return self._action
 
     @action.setter

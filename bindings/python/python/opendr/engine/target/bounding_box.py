@@ -1,4 +1,4 @@
-"""Boxes in a picture."""
+"""Bounding boxes in an image."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class BoundingBox(Target):
-    """A box in a picture: left-top corner and size in pixels.
+    """A box in an image: top-left corner and size in pixels.
 
     Args:
         name: Class index, or label.
@@ -27,12 +27,12 @@ class BoundingBox(Target):
         width: Pixels to the right edge.
         height: Pixels to the lower edge.
         score: Confidence in [0, 1].
-        class_name: The label of a class index, where the learner knows it. It is for reading; lists carry the
-            labels of all their boxes in ``classes``.
-        landmarks: Points that belong to the box (eyes, nose, corners of the mouth of a face), ``[x, y]`` in pixels.
+        class_name: Name of the class index, for reading, where the learner has one; ``classes`` of lists has the names
+            of all class indices.
+        landmarks: Points of the object (eyes, nose, corners of the mouth of a face), ``[x, y]`` in pixels.
 
     Raises:
-        TypeError: A coordinate is no number, or the name neither int nor str.
+        TypeError: A coordinate is not a number, or the name neither int nor str.
         ValueError: A number is NaN or infinite.
     """
 
@@ -63,27 +63,27 @@ class BoundingBox(Target):
         self.landmarks: list[tuple[float, ...]] = [reals(point, 2, "a landmark") for point in landmarks]
 
     def mot(self, with_confidence: bool = True, frame: int = -1) -> NDArray[np.float32]:
-        """``[frame, left, top, width, height, confidence]``, float32; ``confidence`` only when asked for."""
+        """Returns ``[frame, left, top, width, height, confidence]``, float32; ``confidence`` only ``with_confidence``."""
         import numpy as np
 
         return np.array(_opendr.mot(self, with_confidence, frame)[0], dtype=np.float32)
 
     def coco(self, with_confidence: bool = True) -> dict[str, Any]:
-        """The box as an entry of a COCO file: ``bbox``, ``category_id``, ``area`` in square pixels, and ``confidence``
-        when asked for."""
+        """Returns the box as an entry of a COCO file: ``bbox``, ``category_id``, ``area`` in square pixels, and, only
+        ``with_confidence``, ``confidence``."""
         return entries_from_boxes(self, with_confidence)[0]
 
 
 class BoundingBoxList(NamedTargetList[BoundingBox]):
-    """The boxes found in one picture, best first.
+    """The boxes of one image, in descending order of score.
 
     Args:
         boxes: The boxes.
-        image_id: The picture's number in its data set; -1 when it has none.
-        classes: What class indices mean: ``classes[0]`` is class 0.
+        image_id: The image's id in its data set; -1 when it has none.
+        classes: Names of the class indices: ``classes[0]`` is class 0.
 
     Raises:
-        TypeError: Something else than a :class:`BoundingBox` is among the boxes.
+        TypeError: An item is not a :class:`BoundingBox`.
     """
 
     _item = BoundingBox
@@ -103,37 +103,37 @@ class BoundingBoxList(NamedTargetList[BoundingBox]):
         """Adds a box at the end.
 
         Raises:
-            TypeError: It is no :class:`BoundingBox`.
+            TypeError: The item is not a :class:`BoundingBox`.
         """
         self.append(box)
 
     def mot(self, with_confidence: bool = True, frame: int = -1) -> NDArray[np.float32]:
-        """``[boxes, 6]`` (``[boxes, 5]`` without confidence), float32; rows as :meth:`BoundingBox.mot`."""
+        """Returns ``[boxes, 6]`` (``[boxes, 5]`` without confidence), float32; rows as of :meth:`BoundingBox.mot`."""
         import numpy as np
 
         rows = _opendr.mot(self, with_confidence, frame)
         return np.array(rows, dtype=np.float32).reshape(-1, 6 if with_confidence else 5)
 
     def coco(self, with_confidence: bool = True) -> list[dict[str, Any]]:
-        """An entry of a COCO file per box, each with ``image_id`` where the list has one."""
+        """Returns an entry of a COCO file per box, each with ``image_id`` where the list has one."""
         return entries_from_boxes(self, with_confidence)
 
     @staticmethod
     def from_coco(boxes_coco: Iterable[dict[str, Any]], image_id: SupportsIndex = 0) -> BoundingBoxList:
-        """The boxes of the entries of a COCO file; entries with an outline become ``CocoBoundingBox``.
+        """Returns the boxes of entries of a COCO file; entries with a segmentation become ``CocoBoundingBox``.
 
         Args:
             boxes_coco: Dictionaries with ``bbox``, ``category_id`` and, optionally, ``area``, ``segmentation``,
                 ``iscrowd`` and ``confidence`` (or ``score``).
-            image_id: The picture's number.
+            image_id: The image's id.
 
         Raises:
-            ValueError: A dictionary is no such entry.
+            ValueError: A dictionary is not a COCO entry.
         """
         return boxes_from_entries(boxes_coco, whole(image_id, "image_id"))
 
     def to_supervision(self) -> supervision.Detections:
-        """The boxes as ``supervision.Detections``.
+        """Returns the boxes as ``supervision.Detections``.
 
         Raises:
             ImportError: The package supervision is not installed.

@@ -1,4 +1,4 @@
-"""Boxes in space."""
+"""3D bounding boxes."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ if TYPE_CHECKING:
 
 
 class BoundingBox3D(Target):
-    """A box in space, in the camera frame of KITTI: x right, y down, z ahead.
+    """A 3D box in the camera frame of KITTI: x right, y down, z forward.
 
     Args:
         name: Class index, or label.
-        truncated: How much of the object lies outside the picture, 0 to 1; -1 when it is not known.
-        occluded: 0 visible, 1 partly hidden, 2 mostly hidden, 3 or -1 not known.
-        alpha: Angle under which the object is seen, radians in [-pi, pi].
-        bbox2d: The object in the picture, corners ``[x0, y0, x1, y1]`` in pixels.
+        truncated: Fraction of the object outside the image, 0 to 1; -1 when unknown.
+        occluded: 0 visible, 1 partly occluded, 2 largely occluded, 3 or -1 unknown.
+        alpha: Observation angle of the object, radians in [-pi, pi].
+        bbox2d: The object in the image, corners ``[x0, y0, x1, y1]`` in pixels.
         dimensions: Length, height and width in metres: OpenDR's order, not that of KITTI's files.
-        location: x, y, z of the middle of its floor, metres.
-        rotation_y: Turn about the vertical axis, radians in [-pi, pi]; 0 looks along x.
+        location: x, y, z of the centre of the bottom face, metres.
+        rotation_y: Rotation about the vertical axis, radians in [-pi, pi]; 0 faces along x.
         score: Confidence.
-        class_name: The label of a class index, where the learner knows it.
+        class_name: Name of the class index, where the learner has one.
 
     Raises:
-        TypeError: Something is of another type.
-        ValueError: A number is not finite, or there are too many or too few.
+        TypeError: An argument is of another type.
+        ValueError: A number is not finite, or an array has another length.
     """
 
     _fields: ClassVar[tuple[str, ...]] = (
@@ -76,22 +76,22 @@ class BoundingBox3D(Target):
 
     @property
     def truncated(self) -> float:
-        """How much of the object lies outside the picture, 0 to 1; -1 when it is not known."""
+        """Fraction of the object outside the image, 0 to 1; -1 when unknown."""
         return float(self._data["truncated"])
 
     @property
     def occluded(self) -> int:
-        """0 visible, 1 partly hidden, 2 mostly hidden, 3 or -1 not known."""
+        """0 visible, 1 partly occluded, 2 largely occluded, 3 or -1 unknown."""
         return int(self._data["occluded"])
 
     @property
     def alpha(self) -> float:
-        """Angle under which the object is seen, radians."""
+        """Observation angle of the object, radians."""
         return float(self._data["alpha"])
 
     @property
     def bbox2d(self) -> NDArray[np.float64]:
-        """Corners ``[x0, y0, x1, y1]`` in the picture, pixels."""
+        """Corners ``[x0, y0, x1, y1]`` in the image, pixels."""
         bbox2d: NDArray[np.float64] = self._data["bbox2d"]
         return bbox2d
 
@@ -103,30 +103,30 @@ class BoundingBox3D(Target):
 
     @property
     def location(self) -> NDArray[np.float64]:
-        """x, y, z of the middle of its floor, metres."""
+        """x, y, z of the centre of the bottom face, metres."""
         location: NDArray[np.float64] = self._data["location"]
         return location
 
     @property
     def rotation_y(self) -> float:
-        """Turn about the vertical axis, radians."""
+        """Rotation about the vertical axis, radians."""
         return float(self._data["rotation_y"])
 
     def kitti(self) -> dict[str, NDArray[Any]]:
-        """The box as arrays of one element: ``name``, ``truncated``, ``occluded``, ``alpha``, ``bbox`` ``[1, 4]``,
+        """Returns the box as arrays of one element: ``name``, ``truncated``, ``occluded``, ``alpha``, ``bbox`` ``[1, 4]``,
         ``dimensions`` ``[1, 3]``, ``location`` ``[1, 3]``, ``rotation_y``, ``score``, ``index``, ``group_ids``."""
         return arrays_from_columns(_opendr.kitti(self, False))
 
 
 class BoundingBox3DList(NamedTargetList[BoundingBox3D]):
-    """The boxes found in one cloud or picture.
+    """The 3D boxes of one point cloud or image.
 
     Args:
         bounding_boxes_3d: The boxes.
-        classes: What class indices mean: ``classes[0]`` is class 0.
+        classes: Names of the class indices: ``classes[0]`` is class 0.
 
     Raises:
-        TypeError: Something else than a :class:`BoundingBox3D` is among them.
+        TypeError: An item is not a :class:`BoundingBox3D`.
     """
 
     _item = BoundingBox3D
@@ -140,31 +140,31 @@ class BoundingBox3DList(NamedTargetList[BoundingBox3D]):
         """Adds a box at the end.
 
         Raises:
-            TypeError: It is no :class:`BoundingBox3D`.
+            TypeError: The item is not a :class:`BoundingBox3D`.
         """
         self.append(box)
 
     def kitti(self) -> dict[str, NDArray[Any]]:
-        """The boxes, one array per field, as :meth:`BoundingBox3D.kitti`.
+        """Returns the boxes as one array per field, those of :meth:`BoundingBox3D.kitti`.
 
-        ``index`` counts the boxes that are not ``DontCare`` and ends with a -1 for each that is; it and
+        ``index`` numbers the boxes that are not ``DontCare`` and ends with a -1 for each box that is; it and
         ``group_ids`` are int32.
         """
         return arrays_from_columns(_opendr.kitti(self, False))
 
     @staticmethod
     def from_kitti(boxes_kitti: Mapping[str, ArrayLike]) -> BoundingBox3DList:
-        """Reads what :meth:`kitti` gives.
+        """Returns the boxes of the arrays of :meth:`kitti`.
 
         Raises:
-            ValueError: An array is missing, or they differ in length.
+            ValueError: An array is missing, or their lengths differ.
         """
         boxes: BoundingBox3DList = _opendr.from_kitti(columns_from_arrays(boxes_kitti), None, None)
         return boxes
 
 
 def _level(occluded: Union[SupportsIndex, float]) -> int:
-    # OpenDR's reader gives whole numbers, some data sets write them as floats.
+    # OpenDR's reader returns integers; some data sets write them as floats.
     if isinstance(occluded, float) and occluded.is_integer():
         return int(occluded)
     return whole(occluded, "occluded")  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""One of several classes."""
+"""The class of a whole input."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ if TYPE_CHECKING:
 
 
 class Category(Target):
-    """The class that a datum belongs to; ``data`` is its index.
+    """The predicted or annotated class of a datum; ``data`` is its index.
 
     Args:
         prediction: Class index.
-        description: What the class means.
+        description: Name of the class.
         confidence: Score of the class in [0, 1], or a vector of the scores of all classes.
         probabilities: Scores of all classes, ``[classes]``, besides a single ``confidence``.
 
     Raises:
-        TypeError: The description is no text, or the confidence no number.
-        ValueError: The prediction is no whole number, or a score is not finite.
+        TypeError: The description is not a str, or the confidence is not a number.
+        ValueError: The prediction is not an integer, or a score is not finite.
     """
 
     _fields: ClassVar[tuple[str, ...]] = ("data", "description", "confidence", "probabilities")
@@ -56,7 +56,7 @@ class Category(Target):
 
     @property
     def confidence(self) -> Union[float, NDArray[np.float32], None]:
-        """Score of the class; the scores of all classes when only these are known; else None."""
+        """Score of the class; the scores of all classes when only these are given; else None."""
         return self.probabilities if self._confidence is None else float(self._confidence)
 
     @confidence.setter
@@ -72,5 +72,5 @@ def _scores(values: ArrayLike) -> NDArray[np.float32]:
 
     scores = array_of(values, "float32", "the scores of a Category")
     if scores.ndim != 1 or not np.isfinite(scores).all():
-        raise ValueError(f"scores of shape {scores.shape} should be finite numbers in a row, one a class")
+        raise ValueError(f"scores of shape {scores.shape} should be a vector of finite numbers, one per class")
     return scores

@@ -1,4 +1,4 @@
-"""Boxes with the outline of their object."""
+"""Bounding boxes with a mask."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from opendr.engine.target.bounding_box import BoundingBox
 
 
 class CocoBoundingBox(BoundingBox):
-    """A box with the outline of its object, as COCO writes it.
+    """A box with the mask of its object, in COCO's form.
 
     Args:
         name: Class index, or label.
@@ -20,13 +20,13 @@ class CocoBoundingBox(BoundingBox):
         width: Pixels to the right edge.
         height: Pixels to the lower edge.
         segmentation: Polygons ``[x0, y0, x1, y1, ...]`` in pixels, or run lengths
-            ``{"size": [height, width], "counts": ...}`` (packed text or a list of runs).
-        area: Square pixels of the object.
-        iscrowd: 1 for a crowd: detections inside count neither as right nor as wrong.
+            ``{"size": [height, width], "counts": ...}`` (compressed str or a list of runs).
+        area: Area of the object in square pixels.
+        iscrowd: 1 for a crowd: detections inside are neither true nor false positives.
         score: Confidence in [0, 1].
 
     Raises:
-        TypeError: Something is of another type.
+        TypeError: An argument is of another type.
         ValueError: A number is NaN or infinite.
     """
 

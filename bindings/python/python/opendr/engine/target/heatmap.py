@@ -1,4 +1,4 @@
-"""A class or a score for every place."""
+"""Maps of class indices or scores."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ if TYPE_CHECKING:
 
 
 class Heatmap(Target):
-    """A map of class numbers (``[height, width]``) or of scores (any shape, e.g. ``[classes, height, width]``).
+    """A map of class indices (``[height, width]``) or of scores (any shape, e.g. ``[classes, height, width]``).
 
     Args:
-        data: An array of 1 to 8 axes. Whole numbers (none below 0) are classes or instances and are kept as they
-            are; floats are scores and are kept as they are.
-        class_names: What class numbers mean.
+        data: An array of 1 to 8 axes: non-negative integers are class or instance indices, floats are scores. The type
+            is kept.
+        class_names: Names of the class indices.
 
     Raises:
-        TypeError: ``data`` is no NumPy array of numbers, or ``class_names`` no dictionary of texts.
-        ValueError: It has no axis or more than 8, or a class number is below 0.
+        TypeError: ``data`` is not a NumPy array of numbers, or ``class_names`` is not a dictionary of str.
+        ValueError: ``data`` has no axis or more than 8, or a class index is below 0.
     """
 
     _fields: ClassVar[tuple[str, ...]] = ("data", "class_names")
@@ -41,16 +41,16 @@ class Heatmap(Target):
     @data.setter
     def data(self, data: NDArray[Any]) -> None:
         if not is_array(data) or data.dtype.kind not in "biuf":
-            raise TypeError(f"a Heatmap is made of a NumPy array of numbers, not {data!r:.200}")
+            raise TypeError(f"a Heatmap needs a NumPy array of numbers, not {data!r:.200}")
         if not 1 <= data.ndim <= 8:
-            raise ValueError(f"a Heatmap of {data.ndim} axes; give 1 to 8")
+            raise ValueError(f"the Heatmap has {data.ndim} axes; give 1 to 8")
         if data.dtype.kind == "i" and data.size and int(data.min()) < 0:
-            raise ValueError(f"a Heatmap of class numbers down to {data.min()}; give none below 0, or scores as floats")
+            raise ValueError(f"the Heatmap has the class index {data.min()}; give indices from 0, or scores as floats")
         self._data = data
 
     @property
     def class_names(self) -> Optional[dict[Any, str]]:
-        """What class numbers mean; None when they have no names."""
+        """Names of the class indices; None when they have no names."""
         return self._class_names
 
     @class_names.setter
@@ -63,15 +63,15 @@ class Heatmap(Target):
         self._class_names = class_names
 
     def numpy(self) -> NDArray[Any]:
-        """A copy of the array."""
+        """Returns a copy of the array."""
         return self.data.copy()
 
     def opencv(self) -> NDArray[Any]:
-        """A copy of the array: OpenCV takes maps as they are."""
+        """Returns a copy of the array, whose layout is also OpenCV's."""
         return self.data.copy()
 
     def shape(self) -> tuple[int, ...]:
-        """Size of each axis."""
+        """Returns the length of each axis."""
         return self.data.shape
 
     def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> NDArray[Any]:

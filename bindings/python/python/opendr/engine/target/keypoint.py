@@ -1,4 +1,4 @@
-"""A point found in a picture."""
+"""Keypoints in an image."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Keypoint(Target):
-    """A point in a picture: ``x`` and ``y`` in pixels from the left-top corner; (-1, -1) means not found.
+    """A point in an image: ``x`` and ``y`` in pixels from the top-left corner; (-1, -1) means not detected.
 
     ``point.x``, ``point[0]`` and ``point["x"]`` are the same; ``x, y = point`` works too.
 
@@ -24,8 +24,8 @@ class Keypoint(Target):
         confidence: Score in [0, 1], or None.
 
     Raises:
-        TypeError: They are no numbers.
-        ValueError: There are not two, or one is not finite.
+        TypeError: A coordinate is not a number.
+        ValueError: There are not two coordinates, or one is not finite.
     """
 
     _fields: ClassVar[tuple[str, ...]] = ("data", "confidence")
@@ -54,9 +54,9 @@ class Keypoint(Target):
             return self.x if key == "x" else self.y
         if isinstance(key, int) and -2 <= key < 2:
             return (self.x, self.y)[key]
-        # Python ends `for` and unpacking at an IndexError.
+        # `for` loops and unpacking end at an IndexError.
         error = IndexError if isinstance(key, int) else ValueError
-        raise error(f"a keypoint has 0, 1, 'x' and 'y', not {key!r}")
+        raise error(f"a keypoint has the keys 0, 1, 'x' and 'y', not {key!r}")
 
     def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> NDArray[Any]:
         import numpy as np
@@ -67,15 +67,15 @@ class Keypoint(Target):
         return str(self.data)
 
     def to_json(self) -> str:
-        """The point as it stands in the JSON of a pose (``docs/json.md``); without a confidence it is 0."""
+        """Returns the JSON of the point in a pose (``docs/json.md``); a missing confidence becomes 0."""
         return json.dumps({"x": self.x, "y": self.y, "confidence": self.confidence or 0.0}, separators=(",", ":"))
 
     @classmethod
     def from_json(cls, text: Union[str, bytes]) -> Keypoint:
-        """Reads what :meth:`to_json` writes.
+        """Reads a point from the JSON of :meth:`to_json`.
 
         Raises:
-            ValueError: The text is no JSON of a point.
+            ValueError: The text is not the JSON of a point.
         """
         fields = json.loads(text)
         if not isinstance(fields, dict) or not {"x", "y"} <= fields.keys():
@@ -83,7 +83,7 @@ class Keypoint(Target):
         return cls([fields["x"], fields["y"]], fields.get("confidence"))
 
     def numpy(self) -> NDArray[np.float32]:
-        """``[x, y]`` as a float32 array."""
+        """Returns ``[x, y]`` as a float32 array."""
         import numpy as np
 
         return np.array([self.x, self.y], dtype=np.float32)

@@ -1,4 +1,4 @@
-"""Persons by their joints."""
+"""Poses: the keypoints of persons and hands."""
 
 from __future__ import annotations
 
@@ -18,26 +18,25 @@ if TYPE_CHECKING:
 
 
 class Pose(Target):
-    """One person (or hand, or animal): its joints in a picture, in pixels, in the order of its skeleton.
+    """The keypoints of one person (or hand, or animal) in an image, in pixels, in the order of its skeleton.
 
     ``pose["l_wri"]`` and ``pose[7]`` are :class:`Keypoint` objects.
 
     Args:
-        keypoints: ``[joints, 2]``, x and y in pixels; (-1, -1) means not found. An array, a list of pairs, or a
+        keypoints: ``[joints, 2]``, x and y in pixels; (-1, -1) means not detected. An array, a list of pairs, or a
             list of :class:`Keypoint`, whose scores are kept.
-        confidence: Score of the whole, in [0, 1].
-        id: The person's track.
-        skeleton: What the joints are, e.g. ``"opendr18"`` or ``"left_hand21"``; guessed from their number when left out.
-        keypoint_confidences: Score of each joint, in [0, 1]; 0 when left out.
-        region: The person's box, where it is known: a ``CocoBoundingBox`` tells size and crowd, as COCO annotates
-            persons.
+        confidence: Score of the pose, in [0, 1].
+        id: Id of the person's track.
+        skeleton: Names of the joints, e.g. ``"opendr18"`` or ``"left_hand21"``; by default guessed from their count.
+        keypoint_confidences: Score of each joint, in [0, 1]; 0 by default.
+        region: The person's box, if known: a ``CocoBoundingBox`` has area and crowd flag, as annotations of COCO do.
 
     Raises:
-        TypeError: Something is no number, or ``region`` no box.
-        ValueError: The shape is another, a number is not finite, or there is no such skeleton.
+        TypeError: A value is not a number, or ``region`` is not a box.
+        ValueError: The shape is another, a number is not finite, or the skeleton is unknown.
     """
 
-    #: OpenDR's names of its 18 joints; those of this pose are ``joints``.
+    #: OpenDR's names of its 18 joints; those of a pose are its ``joints``.
     kpt_names: ClassVar[list[str]] = list(JOINTS["opendr18"])
     num_kpts: ClassVar[int] = 18
     _fields: ClassVar[tuple[str, ...]] = ("data", "confidence", "id", "skeleton", "keypoint_confidences", "region")
@@ -96,7 +95,7 @@ class Pose(Target):
         scores = array_of(confidences, "float32", "keypoint_confidences")
         if scores.shape != (len(self.data),) or not np.isfinite(scores).all():
             raise ValueError(
-                f"keypoint_confidences of shape {scores.shape} should be {len(self.data)} finite numbers, one a joint"
+                f"keypoint_confidences of shape {scores.shape} should be {len(self.data)} finite numbers, one per joint"
             )
         self._keypoint_confidences: NDArray[Any] = scores
 
@@ -117,27 +116,27 @@ class Pose(Target):
         return (self[index] for index in range(len(self)))
 
     def __getitem__(self, key: Union[SupportsIndex, str]) -> Keypoint:
-        """The joint of that number or name.
+        """Returns the joint of an index or name.
 
         Raises:
-            ValueError: There is none.
+            ValueError: The joint does not exist.
         """
         if isinstance(key, str):
             if key not in self.joints[: len(self)]:
-                raise ValueError(f"no keypoint {key!r}; there are {', '.join(self.joints[: len(self)])}")
+                raise ValueError(f"no keypoint {key!r}; the keypoints are {', '.join(self.joints[: len(self)])}")
             index = self.joints.index(key)
         else:
-            index = whole(key, "the number of a keypoint")
+            index = whole(key, "the index of a keypoint")
         if not 0 <= index < len(self):
-            raise ValueError(f"no keypoint {index}; there are 0 to {len(self) - 1}")
+            raise ValueError(f"no keypoint {index}; the indices are 0 to {len(self) - 1}")
         return Keypoint(self.data[index].tolist(), self._keypoint_confidences[index])
 
 
 class PoseList(TargetList[Pose]):
-    """The persons found in one picture, best first.
+    """The poses of one image, in descending order of score.
 
     Args:
-        poses: The persons.
+        poses: The poses.
     """
 
     _item = Pose
@@ -147,5 +146,5 @@ class PoseList(TargetList[Pose]):
 
     @property
     def poses(self) -> list[Pose]:
-        """The persons; the same list as ``data``."""
+        """The poses; the same list as ``data``."""
         return self.data

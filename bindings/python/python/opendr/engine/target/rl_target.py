@@ -1,4 +1,4 @@
-"""What a policy does."""
+"""Actions of policies."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ if TYPE_CHECKING:
 
 
 class RlTarget(Target):
-    """The answer of a policy: an element of its action space; ``data`` is its numbers in a row, float32.
+    """The action of a policy: an element of its action space; ``data`` is a flat array, float32.
 
-    It is an array for NumPy, and a number where it has only one: ``env.step(int(target))`` for a choice.
+    It converts to an array of NumPy, and to a number where it has only one: ``env.step(int(target))`` for ``Discrete``.
 
     Args:
         values: The numbers, in the order of the action space.
 
     Raises:
-        TypeError: Something is no number.
+        TypeError: A value is not a number.
     """
 
     _fields: ClassVar[tuple[str, ...]] = ("data",)

@@ -13,10 +13,9 @@ _FACE = (
     *(f"{side}_iris{point}" for side in "rl" for point in ("", "_a", "_b", "_c", "_d")),
 )
 
-#: The joints of each kind of body, in order. ``"opendr18"`` is OpenDR's (and OpenPose's) person, ``"coco17"`` COCO's,
-#: ``"blazepose33"`` BlazePose's, ``"left_hand21"`` and ``"right_hand21"`` are MediaPipe's
-#: hands, ``"face478"`` is its face; ``"jhmdb15"`` is JHMDB's person ``"ntu25"`` Kinect v2's;
-#: ``"grasp2"`` are the jaws of a gripper.
+#: The joints of each skeleton, in order. Persons: ``"opendr18"`` of OpenDR and OpenPose, ``"coco17"`` of COCO,
+#: ``"blazepose33"`` of BlazePose, ``"jhmdb15"`` of JHMDB, ``"ntu25"`` of Kinect v2. MediaPipe's hands and face:
+#: ``"left_hand21"``, ``"right_hand21"``, ``"face478"``. The jaws of a gripper: ``"grasp2"``.
 JOINTS: dict[str, tuple[str, ...]] = {
     "opendr18": (
         *("nose", "neck", "r_sho", "r_elb", "r_wri", "l_sho", "l_elb", "l_wri", "r_hip", "r_knee"),
@@ -49,13 +48,13 @@ JOINTS: dict[str, tuple[str, ...]] = {
 
 
 def skeleton_of(name: str | None, joints: int) -> str:
-    """``name`` when it is a skeleton; without one, that which has as many joints (``"opendr18"`` when none has).
+    """Returns ``name`` if it is a skeleton; without one, the first with this number of joints (``"opendr18"`` if none).
 
     Raises:
-        ValueError: There is no such skeleton.
+        ValueError: The skeleton is unknown.
     """
     if name is None:
         return next((known for known, names in JOINTS.items() if len(names) == joints), "opendr18")
     if name not in JOINTS:
-        raise ValueError(f"no skeleton {name!r}; there are {', '.join(JOINTS)}")
+        raise ValueError(f"unknown skeleton {name!r}; the skeletons are {', '.join(JOINTS)}")
     return name

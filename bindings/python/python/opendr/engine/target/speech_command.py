@@ -1,4 +1,4 @@
-"""A spoken command."""
+"""Spoken commands."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from opendr.engine.target.base_target import Target
 
 
 class SpeechCommand(Target):
-    """A command that was heard; ``data`` is the same as ``command``.
+    """A recognised spoken command; ``data`` is the same as ``command``.
 
     Args:
         command: Class index, or word.
         confidence: Score in [0, 1].
-        span_s: Begin and end within the sound, seconds; None when they are not known.
+        span_s: Start and end within the audio, seconds; None when unknown.
 
     Raises:
-        TypeError: The command is neither int nor str, or something is no number.
+        TypeError: The command is neither int nor str, or a value is not a number.
         ValueError: A number is not finite.
     """
 

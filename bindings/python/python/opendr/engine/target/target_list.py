@@ -1,4 +1,4 @@
-"""What the lists of targets have in common."""
+"""Base classes of lists of targets."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ T = TypeVar("T", bound=Target)
 
 
 class TargetList(Target, Generic[T]):
-    """Targets of one datum, in a list that may be changed: ``data`` is the list itself.
+    """The targets of one datum, in a mutable list: ``data`` is the list itself.
 
-    ``timestamp`` and ``frame_id`` are those of the datum. ``classes`` names the class numbers: ``classes[0]`` is
-    class 0; it is empty where they have no names.
+    ``timestamp`` and ``frame_id`` are those of the datum. ``classes`` names the class indices: ``classes[0]`` is
+    class 0; it is empty where classes have no names.
     """
 
     _item: ClassVar[type[Any]] = Target
@@ -37,7 +37,7 @@ class TargetList(Target, Generic[T]):
 
     @data.setter
     def data(self, data: Iterable[T]) -> None:
-        # A list stays the caller's own, as with OpenDR.
+        # A list is referenced, not copied, as in OpenDR.
         items = data if isinstance(data, list) else list(self._iterable(data))
         for item in items:
             self._check(item)
@@ -45,13 +45,13 @@ class TargetList(Target, Generic[T]):
 
     @property
     def confidence(self) -> float:
-        """Mean of the items' scores as they are now; 0 for an empty list."""
+        """Mean of the items' current scores; 0 for an empty list."""
         scores = [float(item.confidence) for item in self.data]
         return sum(scores) / max(len(scores), 1)
 
     @confidence.setter
     def confidence(self, confidence: object) -> NoReturn:
-        raise AttributeError("the confidence of a list is the mean of its items'; set theirs")
+        raise AttributeError("the confidence of a list is the mean of its items' and cannot be set; set that of the items")
 
     def __len__(self) -> int:
         return len(self.data)
@@ -70,23 +70,23 @@ class TargetList(Target, Generic[T]):
         """Adds an item at the end.
 
         Raises:
-            TypeError: It is of another class.
+            TypeError: The item is of another class.
         """
         self._check(item)
         self.data.append(item)
 
     def _check(self, item: object) -> None:
         if not isinstance(item, self._item):
-            raise TypeError(f"a {type(self).__name__} holds {self._item.__name__} objects, not {item!r}")
+            raise TypeError(f"a {type(self).__name__} contains {self._item.__name__} objects, not {item!r}")
 
     def _iterable(self, items: Iterable[T]) -> Iterable[T]:
         if isinstance(items, (str, bytes)) or not isinstance(items, Iterable):
-            raise TypeError(f"a {type(self).__name__} is made of a list of {self._item.__name__}, not {items!r}")
+            raise TypeError(f"a {type(self).__name__} needs a list of {self._item.__name__}, not {items!r}")
         return items
 
 
 class NamedTargetList(TargetList[T]):
-    """A list whose items have classes."""
+    """A list of targets with classes."""
 
     _fields: ClassVar[tuple[str, ...]] = ("data", "classes")
 

@@ -1,4 +1,4 @@
-"""Boxes with an identity."""
+"""Tracks: bounding boxes with an identity."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class TrackingAnnotation(Target):
-    """A box of one object that is followed through a video: left-top corner and size in pixels.
+    """The box of a tracked object in one frame: top-left corner and size in pixels.
 
     Args:
         name: Class index, or label.
@@ -28,17 +28,17 @@ class TrackingAnnotation(Target):
         top: Upper edge, pixels.
         width: Pixels to the right edge.
         height: Pixels to the lower edge.
-        id: The object's number, the same in every picture; -1 when it is not known.
+        id: Identity of the object, the same in every frame; -1 when unknown.
         score: Confidence in [0, 1].
-        frame: Number of the picture in its video; -1 when it has none.
-        class_name: The label of a class index, where the learner knows it.
-        landmarks: Points that belong to the box, ``[x, y]`` in pixels.
-        segmentation: Outline of the object as in :class:`CocoBoundingBox`; None when it is not known.
-        area: Square pixels of the object.
+        frame: Index of the frame in its video; -1 when it has none.
+        class_name: Name of the class index, where the learner has one.
+        landmarks: Points of the object, ``[x, y]`` in pixels.
+        segmentation: Mask of the object as in :class:`CocoBoundingBox`; None when unknown.
+        area: Area of the object in square pixels.
         iscrowd: 1 for a crowd.
 
     Raises:
-        TypeError: A coordinate is no number, an id no int, or the name neither int nor str.
+        TypeError: A coordinate is not a number, an id is not an int, or the name is neither int nor str.
         ValueError: A number is NaN or infinite.
     """
 
@@ -79,14 +79,15 @@ class TrackingAnnotation(Target):
         self.iscrowd: int = whole(iscrowd, "iscrowd")
 
     def mot(self, with_confidence: bool = True) -> NDArray[np.float32]:
-        """``[frame, id, left, top, width, height, confidence]``, float32; ``confidence`` only when asked for."""
+        """Returns ``[frame, id, left, top, width, height, confidence]``, float32; ``confidence`` only
+        ``with_confidence``."""
         import numpy as np
 
         return np.array(_opendr.mot(self, with_confidence, self.frame)[0], dtype=np.float32)
 
     @staticmethod
     def from_mot(data: Sequence[Real]) -> TrackingAnnotation:
-        """Reads ``[frame, id, left, top, width, height]``, with or without a confidence (1 when it is left out).
+        """Reads ``[frame, id, left, top, width, height]``, optionally with a confidence (1 by default).
 
         The class is 0.
 
@@ -96,7 +97,7 @@ class TrackingAnnotation(Target):
         return TrackingAnnotationList.from_mot([data])[0]
 
     def bounding_box(self) -> BoundingBox:
-        """The box without its identity; a :class:`CocoBoundingBox` when there is an outline."""
+        """Returns the box without its identity; a :class:`CocoBoundingBox` when it has a mask."""
         place = (self.name, self.left, self.top, self.width, self.height)
         box: BoundingBox
         if self.segmentation is None:
@@ -108,14 +109,14 @@ class TrackingAnnotation(Target):
 
 
 class TrackingAnnotationList(NamedTargetList[TrackingAnnotation]):
-    """The followed objects of one picture, or of a whole video.
+    """The tracked objects of one frame, or of a whole video.
 
     Args:
         annotations: The objects.
-        classes: What class indices mean: ``classes[0]`` is class 0.
+        classes: Names of the class indices: ``classes[0]`` is class 0.
 
     Raises:
-        TypeError: Something else than a :class:`TrackingAnnotation` is among them.
+        TypeError: An item is not a :class:`TrackingAnnotation`.
     """
 
     _item = TrackingAnnotation
@@ -129,12 +130,13 @@ class TrackingAnnotationList(NamedTargetList[TrackingAnnotation]):
         """Adds an object at the end.
 
         Raises:
-            TypeError: It is no :class:`TrackingAnnotation`.
+            TypeError: The item is not a :class:`TrackingAnnotation`.
         """
         self.append(annotation)
 
     def mot(self, with_confidence: bool = True) -> NDArray[np.float32]:
-        """``[objects, 7]`` (``[objects, 6]`` without confidence), float32; rows as :meth:`TrackingAnnotation.mot`."""
+        """Returns ``[objects, 7]`` (``[objects, 6]`` without confidence), float32; rows as of
+        :meth:`TrackingAnnotation.mot`."""
         import numpy as np
 
         rows = _opendr.mot(self, with_confidence, -1)
@@ -142,23 +144,23 @@ class TrackingAnnotationList(NamedTargetList[TrackingAnnotation]):
 
     @staticmethod
     def from_mot(data: Iterable[Sequence[Real]]) -> TrackingAnnotationList:
-        """Reads rows as :meth:`TrackingAnnotation.from_mot`, e.g. an array ``[objects, 7]``.
+        """Reads rows in the form of :meth:`TrackingAnnotation.from_mot`, e.g. an array ``[objects, 7]``.
 
         Raises:
-            TypeError: A row has something else than numbers.
-            ValueError: A row is none.
+            TypeError: A row has values that are not numbers.
+            ValueError: A row has another length, or a number that is not finite.
         """
         rows = [[real(number, "a number of a MOT row") for number in row] for row in data]
         tracks: TrackingAnnotationList = _opendr.from_mot(rows)
         return tracks
 
     def bounding_box_list(self) -> BoundingBoxList:
-        """The boxes without their identities."""
+        """Returns the boxes without their identities."""
         boxes = BoundingBoxList([track.bounding_box() for track in self.data], classes=self.classes)
         return self._with_header_in(boxes)
 
     def to_supervision(self) -> supervision.Detections:
-        """The objects as ``supervision.Detections`` with ``tracker_id``.
+        """Returns the objects as ``supervision.Detections`` with ``tracker_id``.
 
         Raises:
             ImportError: The package supervision is not installed.

@@ -1,4 +1,4 @@
-"""Boxes in space with an identity."""
+"""3D tracks: 3D bounding boxes with an identity."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ if TYPE_CHECKING:
 
 
 class TrackingAnnotation3D(BoundingBox3D):
-    """A box of one object that is followed through space, in the camera frame of KITTI.
+    """The 3D box of a tracked object at one time, in the camera frame of KITTI.
 
     Args:
         name: Class index, or label.
-        truncated: How much of the object lies outside the picture, 0 to 1; -1 when it is not known.
-        occluded: 0 visible, 1 partly hidden, 2 mostly hidden, 3 or -1 not known.
-        alpha: Angle under which the object is seen, radians in [-pi, pi].
-        bbox2d: The object in the picture, corners ``[x0, y0, x1, y1]`` in pixels.
+        truncated: Fraction of the object outside the image, 0 to 1; -1 when unknown.
+        occluded: 0 visible, 1 partly occluded, 2 largely occluded, 3 or -1 unknown.
+        alpha: Observation angle of the object, radians in [-pi, pi].
+        bbox2d: The object in the image, corners ``[x0, y0, x1, y1]`` in pixels.
         dimensions: Length, height and width in metres.
-        location: x, y, z of the middle of its floor, metres.
-        rotation_y: Turn about the vertical axis, radians in [-pi, pi].
-        id: The object's number, the same at every time; -1 when it is not known.
+        location: x, y, z of the centre of the bottom face, metres.
+        rotation_y: Rotation about the vertical axis, radians in [-pi, pi].
+        id: Identity of the object, the same at every time; -1 when unknown.
         score: Confidence.
-        frame: Number of the cloud in its recording; -1 when it has none.
-        class_name: The label of a class index, where the learner knows it.
+        frame: Index of the cloud in its recording; -1 when it has none.
+        class_name: Name of the class index, where the learner has one.
 
     Raises:
-        TypeError: Something is of another type.
-        ValueError: A number is not finite, or there are too many or too few.
+        TypeError: An argument is of another type.
+        ValueError: A number is not finite, or an array has another length.
     """
 
     _fields: ClassVar[tuple[str, ...]] = (*BoundingBox3D._fields, "id", "frame")
@@ -63,16 +63,17 @@ class TrackingAnnotation3D(BoundingBox3D):
 
     @property
     def id(self) -> int:
-        """The object's number."""
+        """Identity of the object."""
         return int(self._data["id"])
 
     @property
     def frame(self) -> int:
-        """Number of the cloud in its recording; -1 when it has none."""
+        """Index of the cloud in its recording; -1 when it has none."""
         return int(self._data["frame"])
 
     def kitti(self, with_tracking_info: bool = True) -> dict[str, NDArray[Any]]:
-        """The object as arrays of one element, as :meth:`BoundingBox3D.kitti` without ``index`` and ``group_ids``.
+        """Returns the object as arrays of one element, those of :meth:`BoundingBox3D.kitti` without ``index`` and
+        ``group_ids``.
 
         Args:
             with_tracking_info: Adds ``id`` and ``frame``.
@@ -80,20 +81,20 @@ class TrackingAnnotation3D(BoundingBox3D):
         return arrays_from_columns(_opendr.kitti(self, with_tracking_info))
 
     def bounding_box_3d(self) -> BoundingBox3D:
-        """The box without its identity."""
+        """Returns the box without its identity."""
         fields = {name: value for name, value in self._data.items() if name not in ("id", "frame")}
         return self._with_header_in(BoundingBox3D(**fields, score=self.confidence, class_name=self.class_name))
 
 
 class TrackingAnnotation3DList(NamedTargetList[TrackingAnnotation3D]):
-    """The followed objects of one cloud, or of a whole recording.
+    """The tracked objects of one point cloud, or of a whole recording.
 
     Args:
         annotations_3d: The objects.
-        classes: What class indices mean: ``classes[0]`` is class 0.
+        classes: Names of the class indices: ``classes[0]`` is class 0.
 
     Raises:
-        TypeError: Something else than a :class:`TrackingAnnotation3D` is among them.
+        TypeError: An item is not a :class:`TrackingAnnotation3D`.
     """
 
     _item = TrackingAnnotation3D
@@ -107,12 +108,12 @@ class TrackingAnnotation3DList(NamedTargetList[TrackingAnnotation3D]):
         """Adds an object at the end.
 
         Raises:
-            TypeError: It is no :class:`TrackingAnnotation3D`.
+            TypeError: The item is not a :class:`TrackingAnnotation3D`.
         """
         self.append(annotation)
 
     def kitti(self, with_tracking_info: bool = True) -> dict[str, NDArray[Any]]:
-        """The objects, one array per field, as :meth:`TrackingAnnotation3D.kitti`."""
+        """Returns the objects as one array per field, those of :meth:`TrackingAnnotation3D.kitti`."""
         return arrays_from_columns(_opendr.kitti(self, with_tracking_info))
 
     @staticmethod
@@ -121,15 +122,15 @@ class TrackingAnnotation3DList(NamedTargetList[TrackingAnnotation3D]):
         ids: Iterable[SupportsIndex],
         frames: Optional[Iterable[SupportsIndex]] = None,
     ) -> TrackingAnnotation3DList:
-        """Reads what :meth:`kitti` gives.
+        """Returns the objects of the arrays of :meth:`kitti`.
 
         Args:
             boxes_kitti: An array per field.
-            ids: The object's number of each box.
-            frames: The cloud's number of each box; none has one when it is left out.
+            ids: Identity of each object.
+            frames: Index of the cloud of each object; by default none has one.
 
         Raises:
-            ValueError: An array is missing, or they differ in length.
+            ValueError: An array is missing, or their lengths differ.
         """
         id_list = [whole(id, "an id") for id in ids]
         frame_list = None if frames is None else [whole(frame, "a frame") for frame in frames]
@@ -137,6 +138,6 @@ class TrackingAnnotation3DList(NamedTargetList[TrackingAnnotation3D]):
         return tracks
 
     def bounding_box_3d_list(self) -> BoundingBox3DList:
-        """The boxes without their identities."""
+        """Returns the boxes without their identities."""
         boxes = BoundingBox3DList([track.bounding_box_3d() for track in self.data], classes=self.classes)
         return self._with_header_in(boxes)

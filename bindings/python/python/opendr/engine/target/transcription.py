@@ -1,4 +1,4 @@
-"""What was said."""
+"""Transcriptions of speech."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from opendr.engine.target.base_target import Target
 
 
 class BaseTranscription(Target):
-    """What was said; ``data`` is the same as ``text``.
+    """A transcription of speech; ``data`` is the same as ``text``.
 
     Args:
-        text: The words.
+        text: The text.
 
     Raises:
-        TypeError: It is no ``str``.
+        TypeError: The text is not a ``str``.
     """
 
     _fields: ClassVar[tuple[str, ...]] = ("text",)
@@ -26,7 +26,7 @@ class BaseTranscription(Target):
 
     @property
     def data(self) -> str:
-        """The words."""
+        """The text."""
         return str(self._data)
 
     @data.setter
@@ -35,21 +35,21 @@ class BaseTranscription(Target):
 
     @property
     def text(self) -> str:
-        """The words."""
+        """The text."""
         return self.data
 
 
 class WhisperTranscription(BaseTranscription):
-    """What was said, with its parts.
+    """A transcription with its segments.
 
     Args:
-        text: The words.
-        segments: The parts in the order of time. Each is a dictionary of ``id``, ``seek``, ``start`` and ``end``
+        text: The text.
+        segments: The segments in order of time. Each is a dictionary of ``id``, ``seek``, ``start`` and ``end``
             (seconds), ``text``, ``tokens``, ``temperature``, ``avg_logprob``, ``compression_ratio`` and
-            ``no_speech_prob``, as Whisper gives it; all may be left out.
+            ``no_speech_prob``, as of Whisper; all are optional.
 
     Raises:
-        TypeError: The text is no ``str``, or a part no dictionary.
+        TypeError: The text is not a ``str``, or a segment is not a dictionary.
     """
 
     _fields: ClassVar[tuple[str, ...]] = ("text", "segments")
@@ -63,14 +63,14 @@ class WhisperTranscription(BaseTranscription):
 
 
 class VoskTranscription(BaseTranscription):
-    """What was said, as a streaming recogniser tells it.
+    """An intermediate or final transcription of a streaming recogniser.
 
     Args:
-        text: The words so far.
-        accept_waveform: Whether the phrase is finished: the words will not change any more.
+        text: The text so far.
+        accept_waveform: Whether the phrase is final: its text will not change any more.
 
     Raises:
-        TypeError: The text is no ``str``.
+        TypeError: The text is not a ``str``.
     """
 
     _fields: ClassVar[tuple[str, ...]] = ("text", "accept_waveform")

@@ -1,4 +1,4 @@
-"""Whether a map of values leaves a doubt where its best place is."""
+"""Ambiguity of the best position in a map of values."""
 
 from __future__ import annotations
 

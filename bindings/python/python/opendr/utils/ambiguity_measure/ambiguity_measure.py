@@ -1,4 +1,4 @@
-"""OpenDR's call for `AmbiguityMeasureLearner`."""
+"""OpenDR's interface to `AmbiguityMeasureLearner`."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from opendr.perception.ambiguity_measure import AmbiguityMeasureLearner
 
 
 class AmbiguityMeasure:
-    """Measures the ambiguity of maps, such as those by which Transporter Nets choose where to grasp.
+    """Measures the ambiguity of maps, such as the grasp maps of Transporter Nets.
 
-    A map is ambiguous where what is left beside its best peak has at least the probability `threshold`. (In OpenDR 3.0 it was
-    where the best peak was certain.) A higher `temperature` of the softmax over the peaks makes maps more ambiguous.
+    A map is ambiguous if the peaks other than the best one have together at least the probability `threshold`. (OpenDR 3.0
+    reported the opposite.) A higher `temperature` of the softmax over the peaks makes maps more ambiguous.
     """
 
     def __init__(self, threshold: float = 0.5, temperature: float = 1.0) -> None:
@@ -24,8 +24,8 @@ class AmbiguityMeasure:
     def get_ambiguity_measure(
         self, heatmap: np.ndarray[Any, Any]
     ) -> tuple[bool, np.ndarray[Any, Any], np.ndarray[Any, Any], np.ndarray[Any, Any]]:
-        """Whether a map `[height, width]` is ambiguous; its peaks, most persistent first: `[peaks, 2]` rows and columns,
-        `[peaks]` values and `[peaks]` probabilities.
+        """Returns whether a map `[height, width]` is ambiguous, and its peaks, most persistent first: `[peaks, 2]` rows and
+        columns, `[peaks]` values and `[peaks]` probabilities.
 
         Raises ValueError for maps of another shape and for values that are not finite.
         """

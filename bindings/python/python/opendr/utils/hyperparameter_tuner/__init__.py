@@ -1,4 +1,4 @@
-"""Search of hyper-parameters, for every learner.
+"""Hyperparameter search for every learner.
 
     from opendr.utils.hyperparameter_tuner import HyperparameterTuner
 

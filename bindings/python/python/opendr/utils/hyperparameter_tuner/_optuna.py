@@ -1,4 +1,4 @@
-"""A study of Optuna's where ours is expected."""
+"""Adapter for studies of Optuna."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any, Optional
 
 
 class OptunaStudy:
-    """Optuna's study, as the tuner asks it."""
+    """A study of Optuna with the interface of :class:`AnyStudy`."""
 
     def __init__(self, study: Any) -> None:
         self._study = study
@@ -47,7 +47,7 @@ class OptunaStudy:
 
 
 def _suggestion(trial: Any, entry: dict[str, Any]) -> Any:
-    """What the trial suggests for OpenDR's dictionary; the three old types are floats."""
+    """Returns the trial's suggestion for OpenDR's dictionary; the three older types are floats."""
     kind = entry["type"].lower()
     options = {key: value for key, value in entry.items() if key not in ("type", "name", "q")}
     if kind == "categorical":

@@ -9,40 +9,40 @@ from typing import Any, Optional, Union
 from opendr import Unsupported
 from opendr.utils.hyperparameter_tuner.trial import Job
 
-#: Seconds between two looks at what running trials have reported.
-_PATIENCE = 0.2
+#: Seconds between two reads of the reports of running trials.
+_POLL_S = 0.2
 
 
 class Mailbox:
-    """Where trials on other machines leave what they measured, and find whether they are to stop."""
+    """Ray actor that collects the reports of trials and their stop requests."""
 
     def __init__(self) -> None:
         self._reports: list[tuple[int, int, float]] = []
         self._stopped: set[int] = set()
 
     def report(self, number: int, step: int, value: float) -> bool:
-        """Leaves a measurement; whether those before have stopped the trial."""
+        """Adds a report; returns whether the trial is to stop."""
         self._reports.append((number, step, value))
         return number in self._stopped
 
     def collect(self) -> list[tuple[int, int, float]]:
-        """What was left since the last time."""
+        """Returns the reports since the last call."""
         reports, self._reports = self._reports, []
         return reports
 
     def stop(self, number: int) -> None:
-        """Has a trial stop at its next report."""
+        """Requests that a trial stops at its next report."""
         self._stopped.add(number)
 
 
-def _carry_out(job: Job, number: int, params: dict[str, Any], mailbox: Any) -> Optional[float]:
+def _run(job: Job, number: int, params: dict[str, Any], mailbox: Any) -> Optional[float]:
     import ray  # type: ignore[import-not-found,unused-ignore]
 
-    return job.carry_out(params, lambda step, value: ray.get(mailbox.report.remote(number, step, value)))
+    return job.run(params, lambda step, value: ray.get(mailbox.report.remote(number, step, value)))
 
 
 class RayTrials:
-    """Runs trials on the cluster at an address, or, for True, on one that is begun here where there is none."""
+    """Runs trials on the cluster at an address, or, for True, on the connected one or a new one on this machine."""
 
     def __init__(
         self, job: Job, slots: int, where: Union[bool, str], resources: Optional[dict[str, Any]] = None
@@ -50,38 +50,38 @@ class RayTrials:
         try:
             import ray as library  # type: ignore[import-not-found,unused-ignore]
         except ImportError as error:
-            raise Unsupported("trials on Ray take the package ray: pip install ray") from error
-        # What it makes of functions and classes is beyond its annotations.
+            raise Unsupported("trials on Ray need the package ray: pip install ray") from error
+        # Ray's annotations do not cover remote functions and classes.
         ray: Any = library
         self._ray = ray
-        self._begun = not ray.is_initialized()
-        if self._begun:
+        self._owns_cluster = not ray.is_initialized()
+        if self._owns_cluster:
             ray.init(address=where if isinstance(where, str) else None, log_to_driver=False)
-        # A worker that dies takes its trial with it, and no other: the study knows what to try next.
+        # No retries: a trial whose worker dies has failed, and the study suggests the next one.
         options = {"max_retries": 0, **(resources or {})}
-        self._task = ray.remote(_carry_out).options(**options)
+        self._task = ray.remote(_run).options(**options)
         self._job = ray.put(job)
         self._mailbox = ray.remote(Mailbox).options(num_cpus=0).remote()
         self._running: dict[Any, int] = {}
-        #: So many trials at a time.
+        #: Number of trials that run at a time.
         self.slots = max(1, slots if slots != -1 else int(ray.cluster_resources().get("CPU", 1)))
 
     def begin(self, number: int, params: dict[str, Any]) -> None:
-        """Begins a trial somewhere."""
+        """Starts a trial on the cluster."""
         self._running[self._task.remote(self._job, number, params, self._mailbox)] = number
 
     def reports(self) -> list[tuple[int, int, float]]:
-        """What trials have reported since the last time: number, step and value."""
+        """Returns the reports since the last call: number, step and value."""
         reports: list[tuple[int, int, float]] = self._ray.get(self._mailbox.collect.remote())
         return reports
 
     def stop(self, number: int) -> None:
-        """Has a trial stop at its next report."""
+        """Requests that a trial stops at its next report."""
         self._mailbox.stop.remote(number)
 
     def ended(self) -> Iterator[tuple[int, Optional[float], Optional[Exception]]]:
-        """The trials that have ended, each with its value, None when pruned, or with what was raised."""
-        done, _ = self._ray.wait(list(self._running), num_returns=1, timeout=_PATIENCE) if self._running else ([], [])
+        """Yields the trials that have ended, each with its value (None when pruned) or its exception."""
+        done, _ = self._ray.wait(list(self._running), num_returns=1, timeout=_POLL_S) if self._running else ([], [])
         for reference in done:
             number = self._running.pop(reference)
             try:
@@ -92,12 +92,12 @@ class RayTrials:
                 yield number, None, error
 
     def close(self) -> list[int]:
-        """Ends what still runs; the numbers of those trials."""
+        """Cancels the running trials and returns their numbers."""
         for reference in self._running:
             with contextlib.suppress(Exception):
                 self._ray.cancel(reference, force=True)
         numbers, self._running = list(self._running.values()), {}
         self._ray.kill(self._mailbox)
-        if self._begun:
+        if self._owns_cluster:
             self._ray.shutdown()
         return numbers

@@ -1,4 +1,4 @@
-"""A study: which parameters come next, and what came of those before."""
+"""Studies: the trials of a hyperparameter search."""
 
 from __future__ import annotations
 
@@ -10,44 +10,44 @@ from opendr import InvalidParam, _opendr
 
 
 class AnyStudy(Protocol):
-    """What the tuner asks of a study."""
+    """The interface of studies that the tuner uses."""
 
     def ask(self, hyperparameters: list[dict[str, Any]]) -> tuple[int, dict[str, Any]]:
-        """The next trial: its number and its parameters."""
+        """Suggests the next trial. Returns its number and its parameters."""
         ...
 
     def report(self, number: int, step: int, value: float) -> bool:
-        """Notes what a trial measured; whether it is to stop."""
+        """Reports an intermediate value of a trial. Returns whether it is to stop."""
         ...
 
     def tell(self, number: int, value: Optional[float] = None, failed: Optional[str] = None) -> None:
-        """Ends a trial: with its value, without one as pruned, or with the reason why it failed."""
+        """Finishes a trial: with its value, as pruned without one, or as failed with the reason."""
         ...
 
     def best(self) -> Optional[dict[str, Any]]:
-        """The best complete trial: ``number``, ``value`` and ``params``."""
+        """Returns the best complete trial: ``number``, ``value`` and ``params``."""
         ...
 
     def table(self, rows: int = 10) -> str:
-        """The newest trials, for the terminal."""
+        """Returns a table of the newest trials, for the terminal."""
         ...
 
 
 class Study:
-    """A search, in memory or in a file that Optuna reads and goes on with.
+    """A hyperparameter search, in memory or in a journal file that Optuna reads and can continue.
 
     Args:
-        name: Its name; no other study of the file has it.
+        name: Name of the study, unique in its file.
         direction: ``"minimize"`` or ``"maximize"`` the objective.
-        storage: The file, Optuna's journal. Several processes may work on it at a time, and any may be killed; a study
-            that is in it goes on.
+        storage: Path of the file, in Optuna's journal format. Several processes may share it, and any may be killed; an
+            existing study is continued.
         sampler: ``"tpe"``, ``"random"``, ``"quasi_random"`` or ``"cma_es"``.
-        seed: What fixes everything random.
+        seed: Seed of the sampler.
         pruner: None, ``"median"``, or a dictionary: ``{"name": "median", "startup_trials", "warmup_steps"}``,
             ``{"name": "asha", "first", "factor"}`` or ``{"name": "hyperband", "first", "last", "factor"}``.
 
     Raises:
-        ValueError: A word is none of these, or the study in the file has another direction.
+        ValueError: An argument has another value, or the study in the file has another direction.
         OSError: The file cannot be read or written.
     """
 
@@ -61,7 +61,7 @@ class Study:
         pruner: Optional[Union[str, dict[str, Any]]] = None,
     ) -> None:
         if direction not in ("minimize", "maximize"):
-            raise InvalidParam(f'direction {direction!r}: give "minimize" or "maximize"')
+            raise InvalidParam(f'unknown direction {direction!r}; give "minimize" or "maximize"')
         if isinstance(pruner, str):
             pruner = {"name": pruner}
         if pruner is not None and pruner.get("name") == "median":
@@ -78,58 +78,58 @@ class Study:
         self.direction = direction
 
     def ask(self, hyperparameters: list[dict[str, Any]]) -> tuple[int, dict[str, Any]]:
-        """The next trial: its number and its parameters.
+        """Suggests the next trial. Returns its number and its parameters.
 
         Args:
-            hyperparameters: OpenDR's dictionaries, as of ``HyperparameterTuner.optimize``.
+            hyperparameters: OpenDR's dictionaries, those of ``HyperparameterTuner.optimize``.
 
         Raises:
-            ValueError: A dictionary is wrong, or does not fit what earlier trials had.
+            ValueError: A dictionary is invalid, or does not match the search space of earlier trials.
         """
         try:
             text = json.dumps(hyperparameters, allow_nan=False)
         except (TypeError, ValueError) as error:
-            raise InvalidParam(f"hyperparameters hold numbers, text, bool, None and lists of them: {error}") from error
+            raise InvalidParam(f"hyperparameters must be numbers, str, bool, None and lists of these: {error}") from error
         number, params = self._study.ask(text)
         return number, json.loads(params)
 
     def enqueue(self, params: dict[str, Any]) -> None:
-        """Has these parameters tried next; those that are missing are chosen."""
+        """Enqueues these parameters for the next trial; the sampler suggests missing ones."""
         self._study.enqueue(json.dumps(params))
 
     def report(self, number: int, step: int, value: float) -> bool:
-        """Notes what a trial measured; whether it is to stop.
+        """Reports an intermediate value of a trial. Returns whether it is to stop.
 
-        Learners of Python cannot be paused: what could go on later is stopped.
+        Learners of Python cannot be paused: a trial that the pruner pauses is stopped.
         """
         return self._study.report(number, step, value) != "continue"
 
     def note(self, number: int, key: str, value: Any) -> None:
-        """Notes something that JSON has about a running trial."""
+        """Sets a user attribute of a running trial; the value must be serialisable as JSON."""
         self._study.note(number, key, json.dumps(value))
 
     def tell(self, number: int, value: Optional[float] = None, failed: Optional[str] = None) -> None:
-        """Ends a trial: with its value, without one as pruned, or with the reason why it failed."""
+        """Finishes a trial: with its value, as pruned without one, or as failed with the reason."""
         self._study.tell(number, value, failed)
 
     def refresh(self) -> None:
-        """Reads what other processes have written."""
+        """Reads the entries that other processes have written."""
         self._study.refresh()
 
     def trials(self) -> list[dict[str, Any]]:
-        """All trials: ``number``, ``state``, ``params``, ``value``, ``reports``, ``notes``, ``fail_reason``."""
+        """Returns all trials: ``number``, ``state``, ``params``, ``value``, ``reports``, ``notes``, ``fail_reason``."""
         trials: list[dict[str, Any]] = json.loads(self._study.trials())
         return trials
 
     def best(self) -> Optional[dict[str, Any]]:
-        """The best complete trial."""
+        """Returns the best complete trial."""
         best = self._study.best()
         return None if best is None else json.loads(best)
 
     def table(self, rows: int = 10) -> str:
-        """How many trials there are, the best, and the newest, for the terminal."""
+        """Returns the number of trials, the best and the newest ones as a table for the terminal."""
         return self._study.table(rows)
 
     def importance(self) -> dict[str, float]:
-        """How much each parameter had to do with good values (PED-ANOVA), the most important first."""
+        """Returns the importance of each parameter (PED-ANOVA), the most important first."""
         return dict(self._study.importance())

@@ -1,4 +1,4 @@
-"""One trial: a learner is made, trained and measured."""
+"""Trials: the creation, training and evaluation of a learner."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from opendr import InvalidInput
 
 
 class TrialPruned(Exception):
-    """Raised inside ``fit`` by ``report`` when the trial is not worth going on."""
+    """Raised by ``report`` within ``fit`` when the pruner stops the trial."""
 
 
 @dataclass(frozen=True)
 class Job:
-    """What every trial of a tuning has in common. It crosses to other processes whole."""
+    """The common arguments of all trials of a tuning; it can be pickled for other processes."""
 
     learner_class: Any
     objective_function: Callable[[Any], float]
@@ -26,12 +26,12 @@ class Job:
     eval_arguments: dict[str, Any] = field(default_factory=dict)
     seeds: tuple[int, ...] = ()
 
-    def carry_out(self, params: dict[str, Any], report: Callable[[int, float], bool]) -> Optional[float]:
-        """The value of these parameters, the mean over the seeds; None when the trial was pruned."""
+    def run(self, params: dict[str, Any], report: Callable[[int, float], bool]) -> Optional[float]:
+        """Returns the value of these parameters, the mean over the seeds; None when the trial is pruned."""
         values: list[float] = []
         for number, seed in enumerate(self.seeds or (None,), 1):
             try:
-                # The mean over seeds is what counts; of the first alone more can be said on the way.
+                # Only the training with the first seed reports; then the running mean over the seeds is reported.
                 values.append(self._train(params, seed, report if number == 1 else None))
             except TrialPruned:
                 return None
@@ -42,7 +42,7 @@ class Job:
 
     @property
     def _reports(self) -> bool:
-        """Whether the learner tells how it stands while it trains."""
+        """Whether the learner reports intermediate values during the training."""
         return _takes(self.learner_class.fit, "report")
 
     def _train(
@@ -52,12 +52,12 @@ class Job:
         if seed is not None:
             (init if _takes(self.learner_class, "seed") else fit)["seed"] = seed
 
-        def tell(step: int, results: Any) -> None:
+        def report_results(step: int, results: Any) -> None:
             if report is not None and report(int(step), self._value(results)):
                 raise TrialPruned
 
         if self._reports:
-            fit["report"] = tell
+            fit["report"] = report_results
         learner = self.learner_class(**init)
         learner.fit(**fit)
         return self._value(learner.eval(**self.eval_arguments))
@@ -70,12 +70,12 @@ class Job:
 
 
 def takes_seed(learner_class: type) -> bool:
-    """Whether a learner's training can be repeated with another seed."""
+    """Returns whether a learner's training has a seed."""
     return _takes(learner_class, "seed") or _takes(getattr(learner_class, "fit", None), "seed")
 
 
 def _takes(function: Any, name: str) -> bool:
-    """Whether a function has an argument of this name, said by name and not by ``**``."""
+    """Returns whether a function has an argument of this name, apart from ``**`` arguments."""
     try:
         return name in inspect.signature(function).parameters
     except (TypeError, ValueError):

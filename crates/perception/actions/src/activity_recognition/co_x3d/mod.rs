@@ -1,14 +1,14 @@
-//! CoX3D: [`X3d`](super::X3d), one picture at a time.
+//! CoX3D: [`X3d`](super::X3d) on one image at a time.
 //!
-//! Hedegaard and Iosifidis, Continual 3D Convolutional Neural Networks for Real-time Processing of Videos, ECCV 2022. Every convolution
-//! through time keeps what the next frames need of this one, so that a frame is computed once and not once for each clip that
-//! it is in.
+//! Hedegaard and Iosifidis, Continual 3D Convolutional Neural Networks for Real-time Processing of Videos, ECCV 2022. Every
+//! convolution through time keeps the features that later frames need, so each frame is computed once and not once for every
+//! clip that contains it.
 //!
 //! # Delay and padding
 //!
-//! Convolutions look back only, here as clip-wise, so nothing is delayed; before its first frame, a stream stands still.
-//! After as many frames as a clip has, the answer is that of [`X3d`](super::X3d) to the clip of these frames. Later, frames
-//! before the clip still count, where clip-wise they never were: what the network sees then is a real past.
+//! Convolutions are causal, here and in [`X3d`](super::X3d), so there is no delay; the first frame is repeated for the time
+//! before it. After as many frames as a clip has, the prediction equals that of [`X3d`](super::X3d) for the clip of these
+//! frames. Later predictions also depend on frames before the clip, in place of repeated first frames.
 
 #[cfg(feature = "training")]
 mod fit;
@@ -29,24 +29,24 @@ use opendr_perception_common::clip_frames::ClipFrames;
 use super::x3d::check_classes;
 use super::{Backbone, Sizes};
 
-/// What a user may set. Sizes are those of the network that is trained; a loaded model has its own.
+/// Parameters of [`CoX3d`]. The sizes apply to the network that is trained; a loaded model has its own.
 #[derive(Debug, Clone, Params)]
 pub struct CoX3dParams {
-    /// Frames of a clip, pixels of a frame and depth of the network, where nothing else is given.
+    /// Default frames of a clip, side of a frame and depth of the network.
     pub backbone: Backbone,
-    /// Classes. None: as many as the data name.
+    /// Number of classes. None: the number of classes in the data set.
     #[param(range = 2..=10_000)]
     pub num_classes: Option<usize>,
-    /// Frames that an answer is averaged over. None: as the backbone has.
+    /// Number of frames over which the features are averaged. None: that of the backbone.
     #[param(range = 1..=256)]
     pub temporal_window_size: Option<usize>,
-    /// Pixels of a side of a frame. None: as the backbone has.
+    /// Side of a frame in pixels. None: that of the backbone.
     #[param(range = 32..=1024, unit = "px")]
     pub side: Option<usize>,
-    /// Factor on the channels.
+    /// Factor on the number of channels.
     #[param(default = 1.0, range = 0.1..=8.0)]
     pub width: f64,
-    /// Factor on the number of blocks. None: as the backbone has.
+    /// Factor on the number of blocks. None: that of the backbone.
     #[param(range = 0.1..=8.0)]
     pub depth: Option<f64>,
 }
@@ -64,33 +64,33 @@ pub struct CoX3d {
     frames: ClipFrames,
     session: Session,
     side: usize,
-    /// Numbers of a state.
+    /// Length of the state vector.
     state: usize,
 }
 
-/// What a stream remembers: what its convolutions still need.
+/// State of a stream: the features that the convolutions need for the next frame.
 #[derive(Debug, Default)]
 pub struct CoX3dState {
     input: Vec<f32>,
-    /// Whether there was a picture.
+    /// Whether the stream has had a frame.
     has_begun: bool,
     kept: Vec<f32>,
     next: Vec<f32>,
 }
 
-/// The network in every container: `frame` `[1, 3, side, side]`, `state` `[1, numbers]` and `is_first` `[1, 1]` to
-/// `logits` `[1, classes]` and `next_state` `[1, numbers]`.
+/// File of the network in every container. Inputs: `frame` `[1, 3, side, side]`, `state` `[1, numbers]`, `is_first` `[1, 1]`;
+/// outputs: `logits` `[1, classes]`, `next_state` `[1, numbers]`.
 const FILE: &str = "model.onnx";
 
 impl Learner for CoX3d {
     const SPEC: Spec = Spec::new("co_x3d", Task::ActivityRecognition)
         .class("CoX3DLearner")
-        .about("CoX3D tells after every picture of a video what persons do; it trains.")
+        .about("CoX3D classifies the activity in a video, updated with every frame; trainable.")
         .without_effect(&[
-            ("network_head", "it classifies"),
-            ("loss", "it is the cross-entropy"),
-            ("drop_last", "a last batch that is not full is always left out"),
-            ("pin_memory", "there is no such memory"),
+            ("network_head", "only classification is supported"),
+            ("loss", "always cross-entropy"),
+            ("drop_last", "an incomplete last batch is always dropped"),
+            ("pin_memory", "page-locked memory is not used"),
         ]);
     type Params = CoX3dParams;
     type Input<'a> = &'a Image;
@@ -100,18 +100,22 @@ impl Learner for CoX3d {
     fn load(model: &Model, params: CoX3dParams, device: Device) -> Result<Self> {
         let session = Session::open(&model.file(FILE)?, device)?;
         let ([frame, state, _], [logits, next]) = (session.inputs(), session.outputs()) else {
-            return Err(Error::format(format!("{FILE} has not three inputs and two outputs")));
+            return Err(Error::format(format!("{FILE} does not have three inputs and two outputs")));
         };
         let (&[Some(1), Some(numbers)], &[_, Some(classes)]) = (&state.dims[..], &logits.dims[..]) else {
-            return Err(Error::format(format!("{FILE} takes {state} and gives {logits}, which is no step")));
+            return Err(Error::format(format!(
+                "{FILE} takes {state} and returns {logits}; expected a network of one time step"
+            )));
         };
         if next.dims != state.dims {
-            return Err(Error::format(format!("{FILE} makes {next} of {state}, which is no next state")));
+            return Err(Error::format(format!(
+                "{FILE} returns {next} as the next state of {state}; the shapes must be equal"
+            )));
         }
         let Sizes { side, frames, .. } = params.sizes()?;
         if frame.dims != [Some(1), Some(3), Some(side), Some(side)] {
             return Err(Error::invalid_param(format!(
-                "{FILE} takes {frame}; backbone and side make [1, 3, {side}, {side}]: leave them out"
+                "{FILE} takes {frame}, but backbone and side specify [1, 3, {side}, {side}]; omit these parameters"
             )));
         }
         check_classes(params.num_classes, classes)?;
@@ -139,7 +143,7 @@ impl Learner for CoX3d {
 
     fn infer_into(&self, state: &mut CoX3dState, image: &Image, category: &mut Category) -> Result<()> {
         let CoX3dState { input, has_begun, kept, next } = state;
-        self.frames.picture_into(image, input)?;
+        self.frames.image_into(image, input)?;
         let is_first = [if *has_begun { 0.0 } else { 1.0 }];
         kept.resize(self.state, 0.0);
         let inputs = [
@@ -149,7 +153,7 @@ impl Learner for CoX3d {
         ];
         self.session.run(&inputs, |outputs| {
             let [logits, left] = outputs else {
-                return Err(Error::internal("a step gave not two outputs"));
+                return Err(Error::internal("the network did not return two outputs"));
             };
             next.clear();
             next.extend_from_slice(left.values()?);

@@ -1,14 +1,11 @@
-//! X3D: a small network over clips, grown along time, space, width and depth.
+//! X3D: a small network for clips, expanded along time, space, width and depth.
 //!
-//! Feichtenhofer, X3D: Expanding Architectures for Efficient Video Recognition, CVPR 2020. Different from the paper, convolutions through
-//! time look back only and excitation is of each frame, so that [`CoX3d`](super::CoX3d) can give the same answers frame by frame.
-//! Weights of the paper's networks therefore do not fit.
+//! Feichtenhofer, X3D: Expanding Architectures for Efficient Video Recognition, CVPR 2020. Different from the paper,
+//! convolutions through time are causal and excitation covers single frames, so that [`CoX3d`](super::CoX3d) computes the same
+//! predictions frame by frame. Weights of the paper's networks therefore do not fit.
 
 #[cfg(feature = "training")]
 mod fit;
-
-#[cfg(feature = "training")]
-pub use fit::X3dFitParams;
 
 use opendr_engine::data::Video;
 use opendr_engine::learner::{Learner, Spec};
@@ -22,24 +19,24 @@ use opendr_perception_common::clip_frames::ClipFrames;
 
 use super::{Backbone, Sizes};
 
-/// What a user may set. Sizes are those of the network that is trained; a loaded model has its own.
+/// Parameters of [`X3d`]. The sizes apply to the network that is trained; a loaded model has its own.
 #[derive(Debug, Clone, Params)]
 pub struct X3dParams {
-    /// Frames of a clip, pixels of a frame and depth of the network, where nothing else is given.
+    /// Default frames of a clip, side of a frame and depth of the network.
     pub backbone: Backbone,
-    /// Classes. None: as many as the data name.
+    /// Number of classes. None: the number of classes in the data set.
     #[param(range = 2..=10_000)]
     pub num_classes: Option<usize>,
-    /// Frames of a clip, taken evenly from it. None: as the backbone has.
+    /// Number of frames of a clip, sampled evenly. None: that of the backbone.
     #[param(range = 1..=256)]
     pub num_frames: Option<usize>,
-    /// Pixels of a side of a frame. None: as the backbone has.
+    /// Side of a frame in pixels. None: that of the backbone.
     #[param(range = 32..=1024, unit = "px")]
     pub side: Option<usize>,
-    /// Factor on the channels.
+    /// Factor on the number of channels.
     #[param(default = 1.0, range = 0.1..=8.0)]
     pub width: f64,
-    /// Factor on the number of blocks. None: as the backbone has.
+    /// Factor on the number of blocks. None: that of the backbone.
     #[param(range = 0.1..=8.0)]
     pub depth: Option<f64>,
 }
@@ -60,18 +57,18 @@ pub struct X3d {
     inputs: Pool<Vec<f32>>,
 }
 
-/// The network in every container: `clip` `[frames, 3, side, side]` to `logits` `[1, classes]`.
+/// File of the network in every container: `clip` `[frames, 3, side, side]` to `logits` `[1, classes]`.
 const FILE: &str = "model.onnx";
 
 impl Learner for X3d {
     const SPEC: Spec = Spec::new("x3d", Task::ActivityRecognition)
         .class("X3DLearner")
-        .about("X3D tells what persons do in a clip; it trains.")
+        .about("X3D classifies the activity in a video clip; trainable.")
         .without_effect(&[
-            ("network_head", "it classifies"),
-            ("loss", "it is the cross-entropy"),
-            ("drop_last", "a last batch that is not full is always left out"),
-            ("pin_memory", "there is no such memory"),
+            ("network_head", "only classification is supported"),
+            ("loss", "always cross-entropy"),
+            ("drop_last", "an incomplete last batch is always dropped"),
+            ("pin_memory", "page-locked memory is not used"),
         ]);
     type Params = X3dParams;
     type Input<'a> = &'a Video;
@@ -81,15 +78,15 @@ impl Learner for X3d {
     fn load(model: &Model, params: X3dParams, device: Device) -> Result<Self> {
         let session = Session::open(&model.file(FILE)?, device)?;
         let ([input], [output]) = (session.inputs(), session.outputs()) else {
-            return Err(Error::format(format!("{FILE} has not one input and one output")));
+            return Err(Error::format(format!("{FILE} does not have exactly one input and one output")));
         };
         let &[_, Some(classes)] = &output.dims[..] else {
-            return Err(Error::format(format!("{FILE} gives {output}, which are no scores")));
+            return Err(Error::format(format!("{FILE} returns {output}; expected scores [1, classes]")));
         };
         let sizes = params.sizes()?;
         if input.dims != [Some(sizes.frames), Some(3), Some(sizes.side), Some(sizes.side)] {
             return Err(Error::invalid_param(format!(
-                "{FILE} takes {input}; backbone, num_frames and side make [{}, 3, {}, {}]: leave them out",
+                "{FILE} takes {input}, but backbone, num_frames and side specify [{}, 3, {}, {}]; omit these parameters",
                 sizes.frames, sizes.side, sizes.side
             )));
         }
@@ -128,11 +125,11 @@ impl Learner for X3d {
     }
 }
 
-/// Refuses another number of classes than the model has.
+/// Checks the number of classes that the user gave, where there is one, against the model.
 pub(super) fn check_classes(wanted: Option<usize>, there: usize) -> Result<()> {
     match wanted {
         Some(wanted) if wanted != there => Err(Error::invalid_param(format!(
-            "num_classes = {wanted}, but the model's is {there}; leave it out, or load a model that fits"
+            "num_classes = {wanted}, but the model has {there} classes; omit num_classes or load another model"
         ))),
         _ => Ok(()),
     }

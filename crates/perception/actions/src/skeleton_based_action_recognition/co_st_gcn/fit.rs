@@ -1,5 +1,5 @@
-//! How it trains: clip by clip, as [`SpatioTemporalGcn`](crate::skeleton_based_action_recognition::SpatioTemporalGcn); what is
-//! exported is one step.
+//! Training of CoST-GCN: on clips, as [`SpatioTemporalGcn`](crate::skeleton_based_action_recognition::SpatioTemporalGcn); one
+//! time step is exported.
 
 use opendr_engine::dataset::DatasetRef;
 use opendr_engine::learner::{Fit, FitJob, Learner};
@@ -9,7 +9,7 @@ use opendr_engine::{Result, ResultExt, Statistics};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::network_from_base;
 use opendr_training::{
-    Container, Objective, OptimizerKind, TrainingParams, begin, fit_learner, open_for_training,
+    Container, Objective, OptimizerKind, TrainingParams, fit_learner, open_for_training, seeded_device,
     training_device,
 };
 
@@ -18,10 +18,10 @@ use crate::skeleton_based_action_recognition::network::ActionNetwork;
 use crate::skeleton_based_action_recognition::objective::{ActionObjective, Form};
 use crate::skeleton_based_action_recognition::{SpatioTemporalGcn, SpatioTemporalGcnParams};
 
-/// How a user may train it.
+/// Training parameters of [`CoStGcn`].
 #[derive(Debug, Clone, Params)]
 pub struct CoStGcnFitParams {
-    /// What every training takes.
+    /// Parameters common to all trainings.
     #[param(
         flatten,
         epochs = 10,
@@ -32,13 +32,13 @@ pub struct CoStGcnFitParams {
         seed = 123
     )]
     pub training: TrainingParams,
-    /// Share of values between layers that are left out at random in each training step.
+    /// Dropout probability between layers.
     #[param(default = 0.0, range = 0.0..=0.99)]
     pub dropout: f64,
-    /// Share of the other classes, all alike, in what the network is to say of a clip.
+    /// Label smoothing: weight of the uniform distribution over the classes in the target.
     #[param(default = 0.0, range = 0.0..=0.9)]
     pub label_smoothing: f32,
-    /// Whether skeletons are mirrored, leant, stretched, cut in time and played slower or faster, at random.
+    /// Whether skeletons are mirrored, rotated, stretched, cut in time and changed in speed at random.
     #[param(default = true)]
     pub augment: bool,
 }
@@ -58,7 +58,7 @@ impl Fit for CoStGcn {
         let dataset = open_for_training::<Self>(dataset, job)?;
         let classes = classes_to_train(&*dataset, params.num_classes, "num_classes")?;
         joints_of(params.graph_type, params.num_point)?;
-        let (sizes, device) = (params.sizes(), begin(job, training)?);
+        let (sizes, device) = (params.sizes(), seeded_device(job, training)?);
         let network = ActionNetwork::new(&sizes, classes.len(), fit_params.dropout, &device)?;
         let network = network_from_base(network, base)?;
         let objective = ActionObjective {
@@ -73,14 +73,14 @@ impl Fit for CoStGcn {
     }
 }
 
-/// The container of a [`CoStGcn`] with the weights of a [`SpatioTemporalGcn`] that was trained here.
+/// Returns the container of a [`CoStGcn`] with the weights of a [`SpatioTemporalGcn`] that was trained by this crate.
 ///
 /// # Errors
-/// `Format` when `model` is another learner's, or holds no weights to go on from.
+/// `Format` when `model` is of another learner or has no trainable weights.
 pub fn co_st_gcn_from(model: &Model) -> Result<Container> {
-    let named = || format!("making a CoST-GCN of {}", model.path().display());
-    model.check_learner(SpatioTemporalGcn::SPEC.name).context(named)?;
-    let clip_wise = SpatioTemporalGcnParams::from_map(model.params()).context(named)?;
+    let context = || format!("converting {} to CoST-GCN", model.path().display());
+    model.check_learner(SpatioTemporalGcn::SPEC.name).context(context)?;
+    let clip_wise = SpatioTemporalGcnParams::from_map(model.params()).context(context)?;
     let params = CoStGcnParams {
         num_classes: clip_wise.num_class,
         num_point: clip_wise.num_point,
@@ -95,7 +95,7 @@ pub fn co_st_gcn_from(model: &Model) -> Result<Container> {
     let classes = model.manifest().classes.clone();
     let (sizes, device) = (params.sizes(), training_device(opendr_engine::Device::Cpu)?);
     let network = ActionNetwork::new(&sizes, classes.len(), 0.0, &device)?;
-    let network = network_from_base(network, Some(model)).context(named)?;
+    let network = network_from_base(network, Some(model)).context(context)?;
     let (params, form) = (params.to_map(), Form::Step);
     let objective = ActionObjective { sizes, form, params, classes, smoothing: 0.0, augment: false };
     objective.container(&network)

@@ -1,16 +1,15 @@
-//! CoST-GCN: the spatial-temporal graph convolutions of [`SpatioTemporalGcn`](super::SpatioTemporalGcn), one frame at a time.
+//! CoST-GCN: the spatio-temporal graph convolutions of [`SpatioTemporalGcn`](super::SpatioTemporalGcn), one frame at a time.
 //!
-//! Hedegaard, Heidari and Iosifidis, Continual Spatio-Temporal Graph Convolutional Networks, 2022. Every convolution through time keeps
-//! the frames that it still needs, so that a frame is computed once and not once for each clip that it is in: with
-//! clips of 40 frames, a twentieth of the arithmetic per answer.
+//! Hedegaard, Heidari and Iosifidis, Continual Spatio-Temporal Graph Convolutional Networks, 2022. Every convolution through
+//! time keeps the frames that it still needs, so each frame is computed once and not once for every clip that contains it: with
+//! clips of 40 frames, a twentieth of the arithmetic per prediction.
 //!
 //! # Delay and padding
 //!
-//! Nothing is padded in time, neither here nor clip-wise, and no block strides; so the answer after a frame is the one of
-//! [`SpatioTemporalGcn`](super::SpatioTemporalGcn) to the clip that ends with that frame, but for the order in which numbers are
-//! added up. It speaks of `sequence_len` frames; each block looks from the middle of its frames, half of
-//! `temporal_kernel` ago. There is no warm-up either: before its first frame, a person stands still, there as here, so
-//! that the first answer comes with the first frame (which alone takes `sequence_len` steps).
+//! Neither this learner nor [`SpatioTemporalGcn`](super::SpatioTemporalGcn) pads in time or strides, so the prediction after a
+//! frame equals that of the clip ending with the frame, except for rounding. A prediction covers `sequence_len` frames; the
+//! residual connection of each block is delayed by half of `temporal_kernel`. There is no warm-up: the first frame of a person
+//! is repeated for the time before it, so the first frame already yields a prediction (and takes `sequence_len` steps).
 
 #[cfg(feature = "training")]
 mod fit;
@@ -25,46 +24,46 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Result, Task};
 use opendr_inference::{Session, TensorView};
-use opendr_perception_common::frame_features::{FrameFeatures, KINDS, LastFrame};
+use opendr_perception_common::frame_features::{FEATURES_PER_COORDINATE, FrameFeatures, LastFrame};
 
 use super::GraphType;
 use super::sizes::NetworkSizes;
 use super::spatio_temporal_gcn::{add_to, check_classes, joints_of, mean_category};
 
 opendr_engine::choices! {
-    /// Which network looks at the skeletons.
+    /// Network architecture.
     pub enum Backbone {
         /// Continual spatial-temporal graph convolutions (Hedegaard et al., 2022).
         CoStGcn = "costgcn",
     }
 }
 
-/// What a user may set. Sizes are those of the network that is trained; a loaded model has its own.
+/// Parameters of [`CoStGcn`]. The sizes apply to the network that is trained; a loaded model has its own.
 #[derive(Debug, Clone, Params)]
 pub struct CoStGcnParams {
-    /// Classes. None: as many as the data name.
+    /// Number of classes. None: the number of classes in the data set.
     #[param(range = 2..=10_000)]
     pub num_classes: Option<usize>,
-    /// Joints. None: as many as the graph has.
+    /// Number of joints. None: that of the graph.
     #[param(range = 2..=1000)]
     pub num_point: Option<usize>,
-    /// Persons of a recording that are looked at, the first ones; the answer is the mean over those seen so far.
+    /// Maximum number of persons, the first ones of a recording; the prediction is the mean over those present so far.
     #[param(default = 2, range = 1..=64)]
     pub num_person: usize,
-    /// Coordinates of a joint: 2 (a third channel, where there is one, holds scores) or 3.
+    /// Number of coordinates of a joint: 2 (a third channel of the input holds scores) or 3.
     #[param(default = 3, range = 2..=3)]
     pub in_channels: usize,
-    /// Joints and bones.
+    /// Skeleton: joints and bones.
     pub graph_type: GraphType,
-    /// The network.
+    /// Network architecture.
     pub backbone: Backbone,
-    /// Frames that an answer speaks of.
+    /// Number of frames that a prediction covers.
     #[param(default = 300, range = 1..=10_000)]
     pub sequence_len: usize,
-    /// Channels of each block.
+    /// Output channels of each block.
     #[param(default = vec![64, 64, 64, 64, 128, 128, 128, 256, 256, 256], range = 1..=4096)]
     pub channels: Vec<usize>,
-    /// Frames that a block sees; odd.
+    /// Kernel size in time of each block; odd.
     #[param(default = 9, range = 3..=101)]
     pub temporal_kernel: usize,
 }
@@ -87,11 +86,11 @@ pub struct CoStGcn {
     classes: Classes,
     features: FrameFeatures,
     session: Session,
-    /// Numbers of a person's state.
+    /// Length of a person's state vector.
     state: usize,
 }
 
-/// What a stream remembers: for every person what its convolutions still need.
+/// State of a stream: for every person, the features that the convolutions need for the next frame.
 #[derive(Debug, Default)]
 pub struct CoStGcnState {
     persons: Vec<Person>,
@@ -107,19 +106,19 @@ struct Person {
     logits: Vec<f32>,
 }
 
-/// The network in every container: `frame` `[1, features, 1, joints]` and `state` `[1, numbers]` to `logits`
-/// `[1, classes]` and `next_state` `[1, numbers]`.
+/// File of the network in every container. Inputs: `frame` `[1, features, 1, joints]`, `state` `[1, numbers]`; outputs:
+/// `logits` `[1, classes]`, `next_state` `[1, numbers]`.
 const FILE: &str = "model.onnx";
 
 impl Learner for CoStGcn {
     const SPEC: Spec = Spec::new("co_st_gcn", Task::SkeletonBasedActionRecognition)
         .class("CoSTGCNLearner")
-        .about("CoST-GCN tells after every frame what a person does by its moving skeleton; it trains.")
+        .about("CoST-GCN classifies the action of a moving skeleton, updated with every frame; trainable.")
         .without_effect(&[
-            ("network_head", "it classifies"),
-            ("loss", "it is the cross-entropy"),
-            ("drop_last", "a last batch that is not full is always left out"),
-            ("pin_memory", "there is no such memory"),
+            ("network_head", "only classification is supported"),
+            ("loss", "always cross-entropy"),
+            ("drop_last", "an incomplete last batch is always dropped"),
+            ("pin_memory", "page-locked memory is not used"),
         ]);
     type Params = CoStGcnParams;
     type Input<'a> = &'a SkeletonSequence;
@@ -129,25 +128,30 @@ impl Learner for CoStGcn {
     fn load(model: &Model, params: CoStGcnParams, device: Device) -> Result<Self> {
         let session = Session::open(&model.file(FILE)?, device)?;
         let ([frame, state], [logits, next]) = (session.inputs(), session.outputs()) else {
-            return Err(Error::format(format!("{FILE} has not two inputs and two outputs")));
+            return Err(Error::format(format!("{FILE} does not have two inputs and two outputs")));
         };
-        let rows = KINDS * params.in_channels;
+        let rows = FEATURES_PER_COORDINATE * params.in_channels;
         let joints = joints_of(params.graph_type, params.num_point)?;
         let (&[Some(1), Some(numbers)], &[_, Some(classes)]) = (&state.dims[..], &logits.dims[..]) else {
-            return Err(Error::format(format!("{FILE} takes {state} and gives {logits}, which is no step")));
+            return Err(Error::format(format!(
+                "{FILE} takes {state} and returns {logits}; expected a network of one time step"
+            )));
         };
         if next.dims != state.dims {
-            return Err(Error::format(format!("{FILE} makes {next} of {state}, which is no next state")));
+            return Err(Error::format(format!(
+                "{FILE} returns {next} as the next state of {state}; the shapes must be equal"
+            )));
         }
         if frame.dims != [Some(1), Some(rows), Some(1), Some(joints)] {
             return Err(Error::invalid_param(format!(
-                "{FILE} takes {frame}; in_channels and graph_type make [1, {rows}, 1, {joints}]: leave them out"
+                "{FILE} takes {frame}, but in_channels and graph_type specify [1, {rows}, 1, {joints}]; omit these parameters"
             )));
         }
         let wanted = params.sizes().state()?;
         if numbers != wanted {
             return Err(Error::invalid_param(format!(
-                "{FILE} keeps {numbers} numbers; sequence_len, channels and temporal_kernel make {wanted}: leave them out"
+                "{FILE} has a state of {numbers} values, but sequence_len, channels and temporal_kernel specify {wanted}; \
+                 omit these parameters"
             )));
         }
         check_classes("num_classes", params.num_classes, classes)?;
@@ -172,7 +176,7 @@ impl Learner for CoStGcn {
         self.classes.clone()
     }
 
-    /// Takes the frames of a sequence, one or many, and answers for the last.
+    /// Processes one or more frames of a sequence and writes the prediction after the last of them.
     fn infer_into(
         &self,
         state: &mut CoStGcnState,
@@ -189,7 +193,7 @@ impl Learner for CoStGcn {
             }
             for frame in 0..frames {
                 let one = &mut known[person];
-                let first = !one.last.is_seen();
+                let first = !one.last.is_observed();
                 if !self.features.write(sequence, frame, person, &mut one.last, features) {
                     continue;
                 }
@@ -205,7 +209,7 @@ impl Learner for CoStGcn {
         }
         sum.clear();
         let mut count = 0;
-        for person in known.iter().take(persons).filter(|person| person.last.is_seen()) {
+        for person in known.iter().take(persons).filter(|person| person.last.is_observed()) {
             add_to(sum, &person.logits);
             count += 1;
         }
@@ -214,14 +218,15 @@ impl Learner for CoStGcn {
 }
 
 impl CoStGcn {
-    /// Takes the features of one frame in.
+    /// Processes the features of one frame.
     fn step(&self, features: &[f32], person: &mut Person) -> Result<()> {
-        let shape = [1, KINDS * self.params.in_channels, 1, self.params.graph_type.joints()];
+        let shape =
+            [1, FEATURES_PER_COORDINATE * self.params.in_channels, 1, self.params.graph_type.joints()];
         let Person { state, next, logits, .. } = person;
         let inputs = [TensorView::new(&shape, features)?, TensorView::new(&[1, self.state], &state[..])?];
         self.session.run(&inputs, |outputs| {
             let [scores, kept] = outputs else {
-                return Err(Error::internal("a step gave not two outputs"));
+                return Err(Error::internal("the network did not return two outputs"));
             };
             logits.clear();
             logits.extend_from_slice(scores.values()?);

@@ -1,4 +1,4 @@
-//! How it trains.
+//! Training of ST-GCN.
 
 use opendr_engine::dataset::DatasetRef;
 use opendr_engine::learner::{Fit, FitJob};
@@ -7,17 +7,19 @@ use opendr_engine::params::Params;
 use opendr_engine::{Result, Statistics};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{
+    OptimizerKind, ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device,
+};
 
 use super::{SpatioTemporalGcn, SpatioTemporalGcnParams, joints_of};
 use crate::skeleton_based_action_recognition::network::ActionNetwork;
 use crate::skeleton_based_action_recognition::objective::{ActionObjective, Form};
 use crate::skeleton_based_action_recognition::sizes::NetworkSizes;
 
-/// How a user may train it.
+/// Training parameters of [`SpatioTemporalGcn`].
 #[derive(Debug, Clone, Params)]
 pub struct SpatioTemporalGcnFitParams {
-    /// What every training takes.
+    /// Parameters common to all trainings.
     #[param(
         flatten,
         epochs = 50,
@@ -29,13 +31,13 @@ pub struct SpatioTemporalGcnFitParams {
         weight_decay = 0.0001
     )]
     pub training: TrainingParams,
-    /// Share of values between layers that are left out at random in each training step.
+    /// Dropout probability between layers.
     #[param(default = 0.0, range = 0.0..=0.99)]
     pub dropout: f64,
-    /// Share of the other classes, all alike, in what the network is to say of a clip.
+    /// Label smoothing: weight of the uniform distribution over the classes in the target.
     #[param(default = 0.0, range = 0.0..=0.9)]
     pub label_smoothing: f32,
-    /// Whether skeletons are mirrored, leant, stretched, cut in time and played slower or faster, at random.
+    /// Whether skeletons are mirrored, rotated, stretched, cut in time and changed in speed at random.
     #[param(default = true)]
     pub augment: bool,
 }
@@ -62,7 +64,7 @@ impl Fit for SpatioTemporalGcn {
             channels: params.channels.clone(),
             kernel: params.temporal_kernel,
         };
-        let device = begin(job, training)?;
+        let device = seeded_device(job, training)?;
         let network = ActionNetwork::new(&sizes, classes.len(), fit_params.dropout, &device)?;
         let network = network_from_base(network, base)?;
         let objective = ActionObjective {

@@ -1,9 +1,8 @@
-//! ST-GCN: convolutions over the graph of joints and bones, and through time, over a clip.
+//! ST-GCN: graph convolutions over joints and bones, and convolutions through time, on clips.
 //!
-//! Yan, Xiong and Lin, Spatial Temporal Graph Convolutional Networks for Skeleton-Based Action Recognition, AAAI 2018; partitions by
-//! distance from the middle of the body, learnt importance of the connections. Take it for recordings that are there
-//! as a whole; [`CoStGcn`](super::CoStGcn) answers every frame of a stream with the same weights, at a fraction of the
-//! arithmetic.
+//! Yan, Xiong and Lin, Spatial Temporal Graph Convolutional Networks for Skeleton-Based Action Recognition, AAAI 2018;
+//! partitions by distance from the centre of the body, learnt edge weights. For complete recordings;
+//! [`CoStGcn`](super::CoStGcn) classifies every frame of a stream with the same weights, at a fraction of the arithmetic.
 
 #[cfg(feature = "training")]
 mod fit;
@@ -19,44 +18,44 @@ use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
 use opendr_perception_common::category_scores::category_from_logits;
-use opendr_perception_common::frame_features::{ClipWork, FrameFeatures, KINDS};
+use opendr_perception_common::frame_features::{ClipScratch, FEATURES_PER_COORDINATE, FrameFeatures};
 
 use super::GraphType;
 
 opendr_engine::choices! {
-    /// Which network looks at the skeletons.
+    /// Network architecture.
     pub enum Method {
         /// Spatial-temporal graph convolutions (Yan et al., 2018).
         StGcn = "stgcn",
     }
 }
 
-/// What a user may set. Sizes are those of the network that is trained; a loaded model has its own.
+/// Parameters of [`SpatioTemporalGcn`]. The sizes apply to the network that is trained; a loaded model has its own.
 #[derive(Debug, Clone, Params)]
 pub struct SpatioTemporalGcnParams {
-    /// Classes. None: as many as the data name.
+    /// Number of classes. None: the number of classes in the data set.
     #[param(range = 2..=10_000)]
     pub num_class: Option<usize>,
-    /// Joints. None: as many as the graph has.
+    /// Number of joints. None: that of the graph.
     #[param(range = 2..=1000)]
     pub num_point: Option<usize>,
-    /// Persons of a recording that are looked at, the first ones; the answer is the mean over those that are there.
+    /// Maximum number of persons, the first ones of a recording; the prediction is the mean over those present.
     #[param(default = 2, range = 1..=64)]
     pub num_person: usize,
-    /// Coordinates of a joint: 2 (a third channel, where there is one, holds scores) or 3.
+    /// Number of coordinates of a joint: 2 (a third channel of the input holds scores) or 3.
     #[param(default = 3, range = 2..=3)]
     pub in_channels: usize,
-    /// Joints and bones.
+    /// Skeleton: joints and bones.
     pub graph_type: GraphType,
-    /// The network.
+    /// Network architecture.
     pub method_name: Method,
-    /// Frames of a clip: the last of a longer recording; in a shorter one, the person stands still before it.
+    /// Number of frames of a clip: the last ones of a longer recording; a shorter one is preceded by its repeated first frame.
     #[param(default = 300, range = 1..=10_000)]
     pub num_frames: usize,
-    /// Channels of each block.
+    /// Output channels of each block.
     #[param(default = vec![64, 64, 64, 64, 128, 128, 128, 256, 256, 256], range = 1..=4096)]
     pub channels: Vec<usize>,
-    /// Frames that a block sees; odd.
+    /// Kernel size in time of each block; odd.
     #[param(default = 9, range = 3..=101)]
     pub temporal_kernel: usize,
 }
@@ -72,25 +71,25 @@ pub struct SpatioTemporalGcn {
 
 #[derive(Default)]
 struct Work {
-    clip: ClipWork,
+    clip: ClipScratch,
     sum: Vec<f32>,
 }
 
-/// The network in every container: `clip` `[1, features, frames, joints]` to `logits` `[1, classes]`.
+/// File of the network in every container: `clip` `[1, features, frames, joints]` to `logits` `[1, classes]`.
 const FILE: &str = "model.onnx";
 
 impl Learner for SpatioTemporalGcn {
     const SPEC: Spec = Spec::new("spatio_temporal_gcn", Task::SkeletonBasedActionRecognition)
         .class("SpatioTemporalGCNLearner")
-        .about("ST-GCN tells what a person does from a clip of its moving skeleton; it trains.")
+        .about("ST-GCN classifies the action in a clip of a moving skeleton; trainable.")
         .without_effect(&[
-            ("experiment_name", "the folder of a training says it"),
-            ("device_ind", "`device` says it"),
-            ("val_batch_size", "validation asks the learner, clip by clip"),
-            ("start_epoch", "`resume` of `fit` goes on where a training was"),
-            ("dataset_name", "the data set says it"),
-            ("stbln_symmetric", "there is no bilinear network"),
-            ("num_subframes", "only networks with temporal attention choose frames"),
+            ("experiment_name", "the output folder names the run"),
+            ("device_ind", "use `device`"),
+            ("val_batch_size", "validation runs the learner on one clip at a time"),
+            ("start_epoch", "use `resume` of `fit`"),
+            ("dataset_name", "the data set has a name"),
+            ("stbln_symmetric", "the bilinear network is not included"),
+            ("num_subframes", "only networks with temporal attention select frames"),
         ]);
     type Params = SpatioTemporalGcnParams;
     type Input<'a> = &'a SkeletonSequence;
@@ -100,17 +99,17 @@ impl Learner for SpatioTemporalGcn {
     fn load(model: &Model, params: SpatioTemporalGcnParams, device: Device) -> Result<Self> {
         let session = Session::open(&model.file(FILE)?, device)?;
         let ([input], [output]) = (session.inputs(), session.outputs()) else {
-            return Err(Error::format(format!("{FILE} has not one input and one output")));
+            return Err(Error::format(format!("{FILE} does not have exactly one input and one output")));
         };
-        let rows = KINDS * params.in_channels;
+        let rows = FEATURES_PER_COORDINATE * params.in_channels;
         let joints = joints_of(params.graph_type, params.num_point)?;
         let fits = input.dims == [Some(1), Some(rows), Some(params.num_frames), Some(joints)];
         let &[_, Some(classes)] = &output.dims[..] else {
-            return Err(Error::format(format!("{FILE} gives {output}, which are no scores")));
+            return Err(Error::format(format!("{FILE} returns {output}; expected scores [1, classes]")));
         };
         if !fits {
             return Err(Error::invalid_param(format!(
-                "{FILE} takes {input}; in_channels, num_frames and graph_type make [1, {rows}, {}, {joints}]: leave them out",
+                "{FILE} takes {input}, but in_channels, num_frames and graph_type specify [1, {rows}, {}, {joints}]; omit these parameters",
                 params.num_frames
             )));
         }
@@ -141,33 +140,35 @@ impl Learner for SpatioTemporalGcn {
         let Work { clip, sum } = &mut *self.work.take();
         sum.clear();
         let (frames, joints) = (self.params.num_frames, sequence.shape()[3]);
-        let mut there = 0;
+        let mut present = 0;
         for person in 0..sequence.shape()[4].min(self.params.num_person) {
             if !self.features.clip_into(sequence, person, frames, clip) {
                 continue;
             }
-            there += 1;
-            let input =
-                TensorView::new(&[1, KINDS * self.params.in_channels, frames, joints], &clip.clip[..])?;
+            present += 1;
+            let input = TensorView::new(
+                &[1, FEATURES_PER_COORDINATE * self.params.in_channels, frames, joints],
+                &clip.clip[..],
+            )?;
             self.session.run(&[input], |outputs| {
                 add_to(sum, outputs.first().map_or(Ok(&[][..]), TensorView::values)?);
                 Ok(())
             })?;
         }
-        mean_category(category, sum, there, &self.classes)
+        mean_category(category, sum, present, &self.classes)
     }
 }
 
-/// Adds the logits of one more person.
+/// Adds the logits of one person to `sum`.
 pub(super) fn add_to(sum: &mut Vec<f32>, logits: &[f32]) {
     sum.resize(logits.len(), 0.0);
     sum.iter_mut().zip(logits).for_each(|(sum, logit)| *sum += logit);
 }
 
-/// The category of the mean logits of `persons`.
+/// Writes the category of the mean logits of `persons` into `category`; `sum` is their sum.
 ///
 /// # Errors
-/// `InvalidInput` when nobody is there.
+/// `InvalidInput` when `persons` is zero.
 pub(super) fn mean_category(
     category: &mut Category,
     sum: &mut [f32],
@@ -176,21 +177,21 @@ pub(super) fn mean_category(
 ) -> Result<()> {
     if persons == 0 {
         return Err(Error::invalid_input(
-            "nobody is in the recording: all joints are missing; leave such frames out",
+            "the recording has no person: all joints are missing; skip such recordings",
         ));
     }
     sum.iter_mut().for_each(|logit| *logit /= persons as f32);
     category_from_logits(category, sum, classes)
 }
 
-/// The joints of a graph.
+/// Returns the number of joints of a graph.
 ///
 /// # Errors
-/// `InvalidParam` when the user gave another number.
+/// `InvalidParam` when the given number differs.
 pub(super) fn joints_of(graph: GraphType, given: Option<usize>) -> Result<usize> {
     match given {
         Some(given) if given != graph.joints() => Err(Error::invalid_param(format!(
-            "num_point = {given}, but graph_type {} has {}; leave num_point out, or choose another graph_type",
+            "num_point = {given}, but graph_type {} has {}; omit num_point or choose another graph_type",
             graph.name(),
             graph.joints()
         ))),
@@ -198,11 +199,11 @@ pub(super) fn joints_of(graph: GraphType, given: Option<usize>) -> Result<usize>
     }
 }
 
-/// Refuses another number of classes than the model has.
-pub(super) fn check_classes(name: &str, wanted: Option<usize>, there: usize) -> Result<()> {
+/// Checks the number of classes that the user gave, where there is one, against the model.
+pub(super) fn check_classes(name: &str, wanted: Option<usize>, present: usize) -> Result<()> {
     match wanted {
-        Some(wanted) if wanted != there => Err(Error::invalid_param(format!(
-            "{name} = {wanted}, but the model's is {there}; leave it out, or load a model that fits"
+        Some(wanted) if wanted != present => Err(Error::invalid_param(format!(
+            "{name} = {wanted}, but the model has {present} classes; omit {name} or load another model"
         ))),
         _ => Ok(()),
     }

@@ -1,4 +1,4 @@
-//! Training.
+//! Training of multilinear compressive learning.
 
 use opendr_engine::dataset::DatasetRef;
 use opendr_engine::learner::{Fit, FitJob};
@@ -7,16 +7,18 @@ use opendr_engine::params::Params;
 use opendr_engine::{Error, Result, Statistics};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{
+    OptimizerKind, ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device,
+};
 
 use super::network::MultilinearCompressiveNetwork;
 use super::objective::CompressiveObjective;
 use super::{MultilinearCompressive, MultilinearCompressiveParams};
 
-/// How it is trained.
+/// Training parameters of [`MultilinearCompressive`].
 #[derive(Debug, Clone, Params)]
 pub struct MultilinearCompressiveFitParams {
-    /// What every training has.
+    /// Parameters common to all trainings.
     #[param(
         flatten,
         epochs = 300,
@@ -31,10 +33,10 @@ pub struct MultilinearCompressiveFitParams {
     /// Channels of the classifier's first block; the others have up to twice as many.
     #[param(default = 32, range = 4..=1024)]
     pub width: usize,
-    /// Share of the features that are left out at random.
+    /// Dropout probability.
     #[param(default = 0.1, range = 0.0..=0.9)]
     pub dropout: f64,
-    /// How often a picture is mirrored.
+    /// Probability of a horizontal flip.
     #[param(default = 0.5, range = 0.0..=1.0)]
     pub flip: f32,
 }
@@ -56,15 +58,15 @@ impl Fit for MultilinearCompressive {
         let smaller = measured.iter().zip(&pictures).all(|(measured, picture)| measured <= picture);
         if pictures[0] != 3 || !smaller {
             return Err(Error::invalid_param(format!(
-                "input_shape {:?} measured as {:?}; give pictures with 3 channels, and no more rows, columns and channels \
-                 of the measurement than of them",
+                "input_shape {:?} and compressed_shape {:?} are invalid; images need 3 channels, and the measurement at most as \
+                 many rows, columns and channels",
                 params.input_shape, params.compressed_shape
             )));
         }
         let dataset = open_for_training::<Self>(dataset, job)?;
         let classes = classes_to_train(&dataset, params.n_class, "n_class")?;
         let classifier = (*width, *dropout);
-        let device = begin(job, training)?;
+        let device = seeded_device(job, training)?;
         let network =
             MultilinearCompressiveNetwork::new(pictures, measured, classes.len(), classifier, &device);
         let network = network_from_base(network, base)?;
@@ -73,12 +75,12 @@ impl Fit for MultilinearCompressive {
     }
 }
 
-/// `[channels, height, width]` of the user's height, width and channels.
+/// Returns `[channels, height, width]` of the user's height, width and channels.
 fn shape(numbers: &[usize], name: &str) -> Result<[usize; 3]> {
     match numbers {
         &[height, width, channels] => Ok([channels, height, width]),
         _ => Err(Error::invalid_param(format!(
-            "{name} has {} numbers; give height, width and channels",
+            "{name} has {} values; it needs height, width and channels",
             numbers.len()
         ))),
     }

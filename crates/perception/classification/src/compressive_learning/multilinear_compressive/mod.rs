@@ -1,10 +1,10 @@
-//! Multilinear compressive learning: a picture is measured with few numbers, and its class is told by those alone.
+//! Multilinear compressive learning: classification of a small linear measurement of an image.
 //!
 //! Tran, Yamaç, Degerli, Gabbouj and Iosifidis, Multilinear Compressive Learning, IEEE Transactions on Neural Networks and
-//! Learning Systems, 2020. Sensing multiplies rows, columns and colours by a matrix each, which a camera could do; a
-//! synthesis brings the measurement back to the picture's size for the classifier. All are learnt together. In place of
-//! OpenDR's `n_init_iters` the matrices begin with the lowest frequencies of a cosine transform, by which no linear measurement
-//! of pictures is much surpassed.
+//! Learning Systems, 2020. Sensing multiplies rows, columns and colours by a matrix each, which a camera could do; a synthesis
+//! maps the measurement back to the image's size for the classifier. All are trained jointly. In place of OpenDR's
+//! `n_init_iters` the matrices are initialised with the lowest frequencies of a cosine transform, which is close to the best
+//! linear measurement of images.
 
 #[cfg(feature = "training")]
 mod fit;
@@ -21,33 +21,33 @@ use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
 use opendr_perception_common::category_scores::category_from_logits;
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_vision::Preprocess;
 
 #[cfg(feature = "training")]
 pub use fit::MultilinearCompressiveFitParams;
 
 opendr_engine::choices! {
-    /// What tells the class.
+    /// Network architecture of the classifier.
     pub enum CompressiveBackbone {
-        /// Four convolutions, as the image classifier has them.
+        /// Four convolutions, as in the image classifier.
         Small = "small",
     }
 }
 
-/// What a user may set. Sizes are those of the network that is trained; a loaded model has its own.
+/// Parameters of [`MultilinearCompressive`]. The sizes apply to the network that is trained; a loaded model has its own.
 #[derive(Debug, Clone, PartialEq, Params)]
 pub struct MultilinearCompressiveParams {
-    /// Height, width and channels (3) of the pictures that are measured; others are stretched to it.
+    /// Height, width and channels (3) of the measured images; other images are stretched.
     #[param(default = vec![32, 32, 3], range = 1..=4096)]
     pub input_shape: Vec<usize>,
     /// Height, width and channels of the measurement.
     #[param(default = vec![16, 16, 1], range = 1..=4096)]
     pub compressed_shape: Vec<usize>,
-    /// What tells the class.
+    /// Network architecture of the classifier.
     #[param(default = CompressiveBackbone::Small)]
     pub backbone: CompressiveBackbone,
-    /// Classes. None: as many as the data name.
+    /// Number of classes. None: the number of classes in the data set.
     #[param(range = 2..=10_000)]
     pub n_class: Option<usize>,
 }
@@ -56,32 +56,32 @@ pub struct MultilinearCompressiveParams {
 pub struct MultilinearCompressive {
     params: MultilinearCompressiveParams,
     classes: Classes,
-    sensing: PictureNetwork,
-    /// `[1, channels, height, width]` of a measurement.
+    sensing: ImageNetwork,
+    /// Shape of a measurement, `[1, channels, height, width]`.
     measured: [usize; 4],
     classifier: Session,
     measurements: Pool<Vec<f32>>,
 }
 
-/// `measurement` `[1, channels, height, width]` to `scores` `[1, classes]`. The file `model.onnx` measures: `image`
-/// `[1, 3, height, width]` to `measurement`.
+/// File of the classifier: `measurement` `[1, channels, height, width]` to `scores` `[1, classes]`. The file `model.onnx` is
+/// the sensing: `image` `[1, 3, height, width]` to `measurement`.
 const CLASSIFIER: &str = "classifier.onnx";
-/// Levels 0..=255 become -1..=1.
+/// Mean and divisor that map levels 0..=255 to -1..=1.
 const MEAN: [f32; 3] = [127.5; 3];
 
-/// Pictures as the network wants them: RGB, -1..=1.
+/// Preprocessing of images to RGB in -1..=1.
 fn preprocess([height, width]: [usize; 2]) -> Preprocess {
     Preprocess::new(width, height).normalise(MEAN, MEAN)
 }
 
 impl MultilinearCompressive {
-    /// `[channels, height, width]` of a measurement.
+    /// Returns the shape of a measurement, `[channels, height, width]`.
     pub fn measured(&self) -> [usize; 3] {
         let [_, channels, height, width] = self.measured;
         [channels, height, width]
     }
 
-    /// Replaces `measurement` by that of a picture, `[channels, height, width]`.
+    /// Replaces `measurement` by that of an image, `[channels, height, width]`.
     ///
     /// # Errors
     /// As [`Learner::infer_into`].
@@ -93,14 +93,14 @@ impl MultilinearCompressive {
         })
     }
 
-    /// Tells the class by a measurement alone (OpenDR's `infer_from_compressed_measurement`).
+    /// Classifies a measurement (OpenDR's `infer_from_compressed_measurement`).
     ///
     /// # Errors
-    /// `InvalidInput` when it has not as many numbers as [`MultilinearCompressive::measured`] says, or one is not finite.
+    /// `InvalidInput` when its length differs from [`MultilinearCompressive::measured`], or a value is not finite.
     pub fn infer_from_measurement(&self, measurement: &[f32], category: &mut Category) -> Result<()> {
         if let Some(at) = measurement.iter().position(|number| !number.is_finite()) {
             return Err(Error::invalid_input(format!(
-                "number {at} of the measurement is not finite; measure again"
+                "value {at} of the measurement is not finite; measure again"
             )));
         }
         self.classifier.run(&[TensorView::new(&self.measured, measurement)?], |outputs| {
@@ -113,12 +113,12 @@ impl MultilinearCompressive {
 impl Learner for MultilinearCompressive {
     const SPEC: Spec = Spec::new("multilinear_compressive", Task::CompressiveLearning)
         .class("MultilinearCompressiveLearner")
-        .about("Tells the class of a picture by few numbers that were measured of it.")
+        .about("Classifies an image from a small multilinear measurement of it; trainable.")
         .without_effect(&[
-            ("pretrained_backbone", "there are no weights of others for its backbone"),
-            ("init_backbone", "there are no weights of others for its backbone"),
-            ("n_init_iters", "sensing begins with a cosine transform, which needs no training"),
-            ("test_mode", "it made OpenDR's own tests short"),
+            ("pretrained_backbone", "there are no pretrained weights for the backbone"),
+            ("init_backbone", "there are no pretrained weights for the backbone"),
+            ("n_init_iters", "sensing is initialised with a cosine transform, without training"),
+            ("test_mode", "OpenDR used it to shorten its own tests"),
         ]);
     type Params = MultilinearCompressiveParams;
     type Input<'a> = &'a Image;
@@ -127,7 +127,7 @@ impl Learner for MultilinearCompressive {
 
     fn load(model: &Model, params: MultilinearCompressiveParams, device: Device) -> Result<Self> {
         let mut size = [0; 2];
-        let sensing = PictureNetwork::open(model, device, |input| {
+        let sensing = ImageNetwork::open(model, device, |input| {
             if let [_, _, Some(height), Some(width)] = input.dims[..] {
                 size = [height, width];
             }
@@ -135,11 +135,13 @@ impl Learner for MultilinearCompressive {
         })?;
         let classifier = Session::open(&model.file(CLASSIFIER)?, device)?;
         let ([input], [output]) = (classifier.inputs(), classifier.outputs()) else {
-            return Err(Error::format(format!("{CLASSIFIER} has not one input and one output")));
+            return Err(Error::format(format!(
+                "{CLASSIFIER} does not have exactly one input and one output"
+            )));
         };
         let &[_, Some(channels), Some(height), Some(width)] = &input.dims[..] else {
             return Err(Error::format(format!(
-                "{CLASSIFIER} takes {input}, which is no measurement of fixed size"
+                "{CLASSIFIER} takes {input}; expected a measurement of fixed size"
             )));
         };
         let measured = [1, channels, height, width];
@@ -147,14 +149,14 @@ impl Learner for MultilinearCompressive {
         if size.contains(&0) || gives.len() != 4 || gives[1..] != [Some(channels), Some(height), Some(width)]
         {
             return Err(Error::format(format!(
-                "model.onnx does not measure what {CLASSIFIER} takes, {input}"
+                "model.onnx does not return the input of {CLASSIFIER}, {input}"
             )));
         }
         if let (Some(wanted), &[_, Some(there)]) = (params.n_class, &output.dims[..])
             && wanted != there
         {
             return Err(Error::invalid_param(format!(
-                "n_class = {wanted}, but the model's is {there}; leave it out, or load a model that fits"
+                "n_class = {wanted}, but the model has {there} classes; omit n_class or load another model"
             )));
         }
         let classes = model.classes().clone();

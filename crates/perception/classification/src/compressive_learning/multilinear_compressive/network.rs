@@ -1,4 +1,4 @@
-//! The network as it is trained.
+//! The trained network.
 
 use std::f64::consts::PI;
 
@@ -6,7 +6,7 @@ use burn::module::{Module, Param};
 use burn::tensor::{Device, Tensor, TensorData};
 use opendr_perception_common::small_classifier::SmallClassifier;
 
-/// Pictures `[batch, 3, height, width]` to scores `[batch, classes]`, by way of a measurement.
+/// Network from images `[batch, 3, height, width]` through a measurement to scores `[batch, classes]`.
 #[derive(Module, Debug)]
 pub struct MultilinearCompressiveNetwork {
     sensing: Multilinear,
@@ -14,7 +14,7 @@ pub struct MultilinearCompressiveNetwork {
     classifier: SmallClassifier,
 }
 
-/// Channels, rows and columns, each multiplied by a matrix.
+/// Multiplication of channels, rows and columns by a matrix each.
 #[derive(Module, Debug)]
 struct Multilinear {
     channels: Param<Tensor<2>>,
@@ -23,8 +23,8 @@ struct Multilinear {
 }
 
 impl MultilinearCompressiveNetwork {
-    /// A network from `[channels, height, width]` of pictures by way of those of measurements to `classes`, with weights as
-    /// training begins with.
+    /// Returns a network with initial weights; `pictures` and `measured` are the shapes `[channels, height, width]` of images
+    /// and measurements.
     pub fn new(
         pictures: [usize; 3],
         measured: [usize; 3],
@@ -39,12 +39,12 @@ impl MultilinearCompressiveNetwork {
         }
     }
 
-    /// The measurement `[batch, channels, height, width]` of pictures.
+    /// Returns the measurements `[batch, channels, height, width]` of images.
     pub fn measure(&self, pictures: Tensor<4>) -> Tensor<4> {
         self.sensing.forward(pictures)
     }
 
-    /// Scores `[batch, classes]` of measurements.
+    /// Returns scores `[batch, classes]` of measurements.
     pub fn classify(&self, measurements: Tensor<4>) -> Tensor<2> {
         self.classifier.forward(self.synthesis.forward(measurements))
     }
@@ -70,7 +70,7 @@ impl Multilinear {
     }
 }
 
-/// The lowest frequencies of a cosine transform, orthonormal, `[to, from]`; from few to many, its inverse.
+/// Returns the lowest frequencies of a cosine transform, orthonormal, `[to, from]`; its inverse for `to` above `from`.
 fn cosines(to: usize, from: usize) -> Vec<f32> {
     let long = to.max(from) as f64;
     let cosine = |frequency: usize, place: usize| {
@@ -89,7 +89,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_measured_whole_is_synthesised_whole() {
+    fn synthesis_inverts_a_complete_measurement() {
         let product = |a: &[f32], b: &[f32], size: usize, inner: usize| -> Vec<f32> {
             let entry = |index: usize| {
                 let (row, column) = (index / size, index % size);

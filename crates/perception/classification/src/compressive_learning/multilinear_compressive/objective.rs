@@ -1,4 +1,4 @@
-//! What it is trained on and by: pictures with classes, cross entropy.
+//! Batches, loss and container.
 
 use burn::tensor::Device;
 use opendr_datasets::augment::{Flip, Pipeline};
@@ -15,11 +15,11 @@ use super::network::MultilinearCompressiveNetwork;
 use super::{CLASSIFIER, MultilinearCompressive, MultilinearCompressiveParams, preprocess};
 use crate::labelled_pictures::{LabelledPictures, PictureCollator};
 
-/// Pictures with classes, cross entropy.
+/// Training objective: cross-entropy.
 pub(super) struct CompressiveObjective<'a> {
     pub params: &'a MultilinearCompressiveParams,
     pub classes: Classes,
-    /// `[channels, height, width]`.
+    /// Shapes `[channels, height, width]` of images and measurements.
     pub pictures: [usize; 3],
     pub measured: [usize; 3],
     pub flip: f32,

@@ -22,7 +22,7 @@ fn params() -> MultilinearCompressiveParams {
     }
 }
 
-/// Stripes of three kinds.
+/// Stripes of three orientations.
 struct Stripes;
 
 impl Dataset for Stripes {}
@@ -69,14 +69,14 @@ fn network(device: &Trainer) -> MultilinearCompressiveNetwork {
 }
 
 #[test]
-fn learns_one_batch_by_heart() {
+fn overfits_one_batch() {
     let samples = (0..Stripes.len()).map(|index| Stripes.get(index).unwrap()).collect();
     let [before, after] = losses_on_one_batch(&objective(&params()), network, samples, 0.005);
     assert!(after < 0.05 * before, "{before} {after}");
 }
 
 #[test]
-fn infers_what_the_trainer_computes() {
+fn inference_equals_the_training_network() {
     let device = Trainer::flex();
     device.seed(5);
     let network = network(&device);
@@ -108,7 +108,7 @@ fn infers_what_the_trainer_computes() {
 }
 
 #[test]
-fn fit_makes_what_infer_loads_and_refuses_shapes_that_do_not_fit() {
+fn infer_loads_the_model_of_fit_and_fit_refuses_invalid_shapes() {
     let output = std::env::temp_dir().join(format!("opendr-compressive-fit-{}", std::process::id()));
     std::fs::remove_dir_all(&output).ok();
     let mut fit_params = MultilinearCompressiveFitParams { width: 8, ..Default::default() };

@@ -1,4 +1,4 @@
-//! Training.
+//! Training of the image classifier.
 
 use opendr_engine::dataset::DatasetRef;
 use opendr_engine::learner::{Fit, FitJob};
@@ -8,33 +8,33 @@ use opendr_engine::{Result, Statistics};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::small_classifier::SmallClassifier;
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{TrainingParams, fit_learner, open_for_training, seeded_device};
 
 use super::objective::Classify;
 use super::{ImageClassifier, ImageClassifierParams};
 
-/// How it is trained.
+/// Training parameters of [`ImageClassifier`].
 #[derive(Debug, Clone, Params)]
 pub struct ImageClassifierFitParams {
-    /// Side of the network's input; pictures are stretched to it.
+    /// Side of the network's input; images are stretched to it.
     #[param(default = 64, range = 8..=1024, unit = "px")]
     pub side: usize,
     /// Channels of the first block; the others have up to twice as many.
     #[param(default = 32, range = 4..=1024)]
     pub width: usize,
-    /// Share of the features that are left out at random.
+    /// Dropout probability.
     #[param(default = 0.1, range = 0.0..=0.9)]
     pub dropout: f64,
-    /// The least share of a picture that a random crop shows; 1 for no crops.
+    /// Minimum share of an image in a random crop; 1 for no crops.
     #[param(default = 0.6, range = 0.05..=1.0)]
     pub crop: f32,
-    /// How often a picture is mirrored.
+    /// Probability of a horizontal flip.
     #[param(default = 0.5, range = 0.0..=1.0)]
     pub flip: f32,
-    /// Share of the probability that is spread over all classes.
+    /// Label smoothing: weight of the uniform distribution over the classes in the target.
     #[param(default = 0.0, range = 0.0..=0.5)]
     pub label_smoothing: f64,
-    /// What every training has.
+    /// Parameters common to all trainings.
     #[param(flatten, epochs = 20, batch_size = 64, lr = 0.002, lr_schedule = opendr_training::ScheduleKind::Cosine)]
     pub training: TrainingParams,
 }
@@ -53,7 +53,7 @@ impl Fit for ImageClassifier {
         let training = &fit_params.training;
         let dataset = open_for_training::<Self>(dataset, job)?;
         let classes = classes_to_train(&dataset, None, "classes")?;
-        let device = begin(job, training)?;
+        let device = seeded_device(job, training)?;
         let network = SmallClassifier::new(3, classes.len(), fit_params.width, fit_params.dropout, &device);
         let network = network_from_base(network, base)?;
         let ImageClassifierFitParams { side, crop, flip, label_smoothing, .. } = *fit_params;

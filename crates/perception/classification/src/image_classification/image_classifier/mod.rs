@@ -1,6 +1,6 @@
-//! Image classifier: a small convolutional network that is trained on the user's own pictures.
+//! Image classifier: a small convolutional network to be trained on the user's own images.
 //!
-//! It also shows how a learner that trains is made: inference here, what it is trained on and by, and `fit` in a file each.
+//! It is also an example of a learner that trains: inference, objective and `fit` in a file each.
 
 #[cfg(feature = "training")]
 mod fit;
@@ -14,21 +14,21 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Result, Task};
 use opendr_perception_common::category_scores::{category_from_logits, category_from_probabilities};
-use opendr_perception_common::described_input::described_input;
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
+use opendr_perception_common::manifest_preprocess::preprocess_from_manifest;
 #[cfg(feature = "training")]
 use opendr_vision::Preprocess;
 
 #[cfg(feature = "training")]
 pub use fit::ImageClassifierFitParams;
 
-/// What a user may set.
+/// Parameters of [`ImageClassifier`].
 #[derive(Debug, Clone, Params)]
 pub struct ImageClassifierParams {
-    /// Whether the answer has the score of every class.
+    /// Whether the prediction has the score of every class.
     #[param(default = true, live)]
     pub probabilities: bool,
-    /// Whether the network's answer is turned into probabilities by a softmax; false for one that ends in its own.
+    /// Whether a softmax is applied to the network's output; false for a network that ends in its own.
     #[param(default = true)]
     pub softmax: bool,
 }
@@ -37,16 +37,16 @@ pub struct ImageClassifierParams {
 pub struct ImageClassifier {
     params: ImageClassifierParams,
     classes: Classes,
-    network: PictureNetwork,
+    network: ImageNetwork,
     scores: usize,
 }
 
-/// The network's output, `[1, classes]`.
+/// Output of the network, `[1, classes]`.
 const SCORES: &str = "scores";
-/// Levels 0..=255 become -1..=1 where the model says nothing else.
+/// Default divisor, which maps levels 0..=255 to -1..=1.
 const LEVEL: f32 = 127.5;
 
-/// The pictures as networks that were trained here want them: `side` x `side`, RGB, -1..=1.
+/// Preprocessing of networks that were trained by this crate: `side` x `side`, RGB, -1..=1.
 #[cfg(feature = "training")]
 fn preprocess(side: usize) -> Preprocess {
     Preprocess::new(side, side).normalise([LEVEL; 3], [LEVEL; 3])
@@ -55,15 +55,15 @@ fn preprocess(side: usize) -> Preprocess {
 impl Learner for ImageClassifier {
     const SPEC: Spec = Spec::new("image_classifier", Task::ImageClassification)
         .class("ImageClassifierLearner")
-        .about("Tells the class of a picture; learns the classes of a user's own pictures in minutes.");
+        .about("A small image classifier; trainable on your own images in minutes.");
     type Params = ImageClassifierParams;
     type Input<'a> = &'a Image;
     type Target = Category;
     type State = ();
 
     fn load(model: &Model, params: ImageClassifierParams, device: Device) -> Result<Self> {
-        let network = PictureNetwork::open_file(model, "model.onnx", device, |input| {
-            described_input(model, input, LEVEL)
+        let network = ImageNetwork::open_file(model, "model.onnx", device, |input| {
+            preprocess_from_manifest(model, input, LEVEL)
         })?;
         let scores = match network.outputs() {
             [_] => 0,

@@ -1,4 +1,4 @@
-//! What it is trained on and by: pictures with classes, cross entropy.
+//! Batches, loss and container.
 
 use burn::tensor::Device;
 use opendr_datasets::augment::{Flip, Pipeline, RandomResizedCrop};
@@ -13,7 +13,7 @@ use opendr_training::{Container, Loss, Objective};
 use super::{SCORES, preprocess};
 use crate::labelled_pictures::{LabelledPictures, PictureCollator};
 
-/// Pictures with classes, cross entropy.
+/// Training objective: cross-entropy with label smoothing.
 pub struct Classify {
     pub classes: Classes,
     pub side: usize,

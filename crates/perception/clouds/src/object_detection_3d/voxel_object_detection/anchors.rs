@@ -1,57 +1,57 @@
-//! Anchors in space: the boxes that a detector starts from (Lang et al., PointPillars, CVPR 2019, section 4.1).
+//! Anchors of 3D boxes (Lang et al., PointPillars, CVPR 2019, section 4.1).
 
 use opendr_engine::target::LidarBox;
 use opendr_engine::{Error, Result};
 use serde::{Deserialize, Serialize};
 
-/// The same box in the middle of every cell.
+/// An anchor that is repeated at the centre of every cell.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AnchorKind {
-    /// The number of its class.
+    /// Class index.
     pub class: usize,
-    /// Length, width and height, metres.
+    /// Length, width and height in metres.
     pub size: [f32; 3],
-    /// Height of its floor in the lidar's frame, metres.
+    /// Height of the box's floor in the lidar's frame, in metres.
     pub z: f32,
-    /// Where its front looks, radians.
+    /// Yaw in radians.
     pub yaw: f32,
 }
 
-/// Names, sizes and floors of KITTI's classes: length, width, height, and height of the floor, metres.
+/// Names, sizes (length, width, height) and floor heights of KITTI's classes, in metres.
 const CLASSES: [(&str, [f32; 3], f32); 3] = [
     ("Car", [3.9, 1.6, 1.56], -1.7),
     ("Pedestrian", [0.8, 0.6, 1.73], -1.7),
     ("Cyclist", [1.76, 0.6, 1.73], -1.7),
 ];
 
-/// Most kinds, and metres of a side, that a container may ask for.
+/// Maximum number of anchors per cell, and maximum side in metres, in a container.
 const MOST_KINDS: usize = 64;
 const LARGEST: f32 = 1000.0;
 
 impl AnchorKind {
-    /// Two kinds of a class of KITTI's, one along each axis; `class` is its number.
+    /// Returns two anchors of a KITTI class, one along each axis; `class` is the class index.
     ///
     /// # Errors
-    /// `InvalidParam` for a name that is none of `Car`, `Pedestrian` and `Cyclist`.
+    /// `InvalidParam` for a name other than `Car`, `Pedestrian` and `Cyclist`.
     pub fn of_class(name: &str, class: usize) -> Result<[Self; 2]> {
         let Some((_, size, z)) = CLASSES.iter().find(|(label, ..)| label.eq_ignore_ascii_case(name)) else {
             return Err(Error::invalid_param(format!(
-                "there are anchors for Car, Pedestrian and Cyclist, none for {name:.40?}"
+                "no anchors for {name:.40?}; supported are Car, Pedestrian and Cyclist"
             )));
         };
         Ok([0.0, std::f32::consts::FRAC_PI_2].map(|yaw| Self { class, size: *size, z: *z, yaw }))
     }
 
-    /// The anchor about a place on the ground.
+    /// Returns the anchor at a position on the ground.
     pub fn at(&self, [x, y]: [f32; 2]) -> LidarBox {
         let center = [x, y, self.z].map(f64::from);
         LidarBox { center, size: self.size.map(f64::from), yaw: f64::from(self.yaw) }
     }
 
-    /// Checks what a container says.
+    /// Checks the anchors of a container.
     ///
     /// # Errors
-    /// `Format` when there is no kind or far too many, or a number makes no sense.
+    /// `Format` for no anchor, too many of them, or an invalid value.
     pub fn check(kinds: &[Self], classes: usize) -> Result<()> {
         let sane = |kind: &Self| {
             kind.class < classes
@@ -63,8 +63,8 @@ impl AnchorKind {
             return Ok(());
         }
         Err(Error::format(format!(
-            "anchors are 1 to {MOST_KINDS} boxes of {classes} classes with sides within 0 and {LARGEST} metres; the model \
-             says {kinds:?}"
+            "a model must have 1 to {MOST_KINDS} anchors of {classes} classes with sides within 0 and {LARGEST} metres; this \
+             one has {kinds:?}"
         )))
     }
 }

@@ -1,18 +1,19 @@
-//! How a box is told relative to an anchor (Y. Yan et al., SECOND, Sensors 2018, section 3.2), with the direction apart.
+//! Encoding of boxes relative to anchors (Y. Yan et al., SECOND, Sensors 2018, section 3.2), with a separate direction.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use opendr_engine::target::LidarBox;
 
-/// Numbers of a box: middle, sides (logarithms), turn.
+/// Number of values of an encoded box: centre, sides (logarithms), yaw.
 pub const NUMBERS: usize = 7;
 
-/// Sides beyond e^3 = 20 anchors are no better answer.
+/// Maximum logarithm of a side relative to its anchor; e^3 = 20 anchors.
 const MOST_LOG: f64 = 3.0;
 
-/// `[dx, dy, dz, log(dl), log(dw), log(dh), turn]` of a box relative to `anchor`, and whether it looks back (1) or not (0).
+/// Returns `[dx, dy, dz, log(dl), log(dw), log(dh), yaw]` of a box relative to `anchor`, and its direction: 1 for backward, 0
+/// for forward.
 ///
-/// The turn is within a quarter either way: front and rear are told by the direction alone.
+/// The yaw is within a quarter turn either way; only the direction distinguishes front and rear.
 pub fn offsets_from_box(found: &LidarBox, anchor: &LidarBox) -> ([f32; NUMBERS], f32) {
     let [length, width, height] = anchor.size;
     let diagonal = length.hypot(width);
@@ -30,13 +31,13 @@ pub fn offsets_from_box(found: &LidarBox, anchor: &LidarBox) -> ([f32; NUMBERS],
     (offsets.map(|offset| offset as f32), back)
 }
 
-/// The box that lies `offsets` from `anchor`; `back` is above 0 where it looks back. The yaw is in -pi..=pi.
+/// Returns the box at `offsets` from `anchor`; `back` is a logit, above 0 for backward. The yaw is in -pi..=pi.
 pub fn box_from_offsets(offsets: [f32; NUMBERS], back: f32, anchor: &LidarBox) -> LidarBox {
     let [length, width, height] = anchor.size;
     let diagonal = length.hypot(width);
     let [x, y, z, longer, wider, higher, turn] = offsets.map(f64::from);
     let side = |log: f64| log.clamp(-MOST_LOG, MOST_LOG).exp();
-    // A half turn begins at 45 degrees, where neither cars along the road nor across it are.
+    // The half turn is cut at 45 degrees, far from cars along and across the road.
     let yaw = (anchor.yaw + turn - FRAC_PI_4).rem_euclid(PI) + FRAC_PI_4 + if back > 0.0 { PI } else { 0.0 };
     LidarBox {
         center: [
@@ -49,7 +50,8 @@ pub fn box_from_offsets(offsets: [f32; NUMBERS], back: f32, anchor: &LidarBox) -
     }
 }
 
-/// Sides along x and y of the upright rectangle that a turned one is nearest to: as it is, or a quarter turned.
+/// Returns the sides along x and y of the axis-aligned rectangle nearest to a rotated one: as it is, or rotated by a quarter
+/// turn.
 pub fn nearest_upright(found: &LidarBox) -> [f64; 2] {
     let [length, width, _] = found.size;
     let quarter = (found.yaw / FRAC_PI_2).round() as i64;
@@ -65,13 +67,13 @@ mod tests {
     const ANCHOR: LidarBox = LidarBox { center: [10.0, 2.0, -1.7], size: [3.9, 1.6, 1.56], yaw: FRAC_PI_2 };
 
     #[test]
-    fn whatever_a_network_answers_is_a_box() {
+    fn any_offsets_decode_to_a_box() {
         let found = box_from_offsets([0.0, 0.0, 0.0, 1e30, -1e30, f32::INFINITY, 1e9], 1.0, &ANCHOR);
         assert!(found.size.iter().all(|side| side.is_finite() && *side > 0.0) && found.yaw.abs() <= PI);
     }
 
     #[test]
-    fn upright_is_the_nearer_of_two() {
+    fn nearest_upright_is_the_nearer_of_two() {
         let turned = |yaw| nearest_upright(&LidarBox { yaw, ..ANCHOR });
         assert_eq!((turned(0.7), turned(0.8)), ([3.9, 1.6], [1.6, 3.9]));
         assert_eq!((turned(-3.0), turned(-1.6)), ([3.9, 1.6], [1.6, 3.9]));
@@ -91,7 +93,7 @@ mod tests {
             for (a, b) in pairs {
                 prop_assert!((a - b).abs() < 1e-4, "{again:?}");
             }
-            // On the edge of a half turn rounding may tell front for rear.
+            // At the edge of a half turn, rounding may exchange front and rear.
             let edge = ((yaw - FRAC_PI_4).rem_euclid(PI) / PI - 0.5).abs() > 0.499;
             let apart = (car.yaw - again.yaw).sin().abs() + if edge { 0.0 } else { 1.0 - (car.yaw - again.yaw).cos() };
             prop_assert!(apart < 1e-4, "{car:?} {again:?}");

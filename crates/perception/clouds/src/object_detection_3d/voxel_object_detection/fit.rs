@@ -1,4 +1,4 @@
-//! How it trains.
+//! Training of PointPillars.
 
 use opendr_engine::dataset::DatasetRef;
 use opendr_engine::learner::{Fit, FitJob};
@@ -7,7 +7,7 @@ use opendr_engine::params::Params;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, Statistics};
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device};
 
 use super::anchors::AnchorKind;
 use super::layout::PillarLayout;
@@ -16,16 +16,16 @@ use super::objective::PillarObjective;
 use super::{VoxelObjectDetection3d, VoxelObjectDetection3dParams};
 use crate::pillars::PillarGrid;
 
-/// How a user may train it.
+/// Training parameters of [`VoxelObjectDetection3d`].
 #[derive(Debug, Clone, Params)]
 pub struct VoxelObjectDetection3dFitParams {
-    /// The classes to find, of `Car`, `Pedestrian` and `Cyclist`; cars when empty.
+    /// Classes to detect, of `Car`, `Pedestrian` and `Cyclist`; `Car` when empty.
     #[param(default = Vec::new())]
     pub classes: Vec<String>,
-    /// How far it looks ahead.
+    /// Range ahead of the lidar.
     #[param(default = 51.2, range = 4.0..=200.0, unit = "m")]
     pub ahead: f32,
-    /// How far it looks to either side.
+    /// Range to either side of the lidar.
     #[param(default = 25.6, range = 2.0..=100.0, unit = "m")]
     pub aside: f32,
     /// Side of a pillar.
@@ -34,7 +34,7 @@ pub struct VoxelObjectDetection3dFitParams {
     /// Whether scans are mirrored at random.
     #[param(default = true)]
     pub augment: bool,
-    /// What every training takes.
+    /// Parameters common to all trainings.
     #[param(
         flatten,
         lr = 0.002,
@@ -49,9 +49,9 @@ pub struct VoxelObjectDetection3dFitParams {
     pub training: TrainingParams,
 }
 
-/// Heights that count, metres from the lidar.
+/// Range of heights in metres from the lidar.
 const HEIGHTS: [f32; 2] = [-3.0, 1.0];
-/// Stages of the network halve the grid three times.
+/// The stages of the network halve the grid three times.
 const MULTIPLE: usize = 8;
 
 impl Fit for VoxelObjectDetection3d {
@@ -68,7 +68,7 @@ impl Fit for VoxelObjectDetection3d {
         let training = &fit_params.training;
         let dataset = open_for_training::<Self>(dataset, job)?;
         let objective = fit_params.objective(base)?;
-        let network = PillarNetwork::new(objective.layout.anchors.len(), &begin(job, training)?);
+        let network = PillarNetwork::new(objective.layout.anchors.len(), &seeded_device(job, training)?);
         let network = network_from_base(network, base)?;
         fit_learner::<Self, _>(&objective, network, params, training, &*dataset, val_dataset, job)
     }
@@ -87,7 +87,7 @@ impl VoxelObjectDetection3dFitParams {
         let sides = [grid.columns(), grid.rows()];
         if sides.iter().any(|side| !side.is_multiple_of(MULTIPLE)) {
             return Err(Error::invalid_param(format!(
-                "{} m ahead and {} m to either side are {} x {} pillars of {} m; give such that both are multiples of \
+                "{} m ahead and {} m to either side are {} x {} pillars of {} m; choose ranges where both are multiples of \
                  {MULTIPLE}",
                 self.ahead, self.aside, sides[0], sides[1], self.pillar
             )));

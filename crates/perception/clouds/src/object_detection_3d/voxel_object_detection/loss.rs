@@ -1,4 +1,4 @@
-//! What a batch costs: focal loss of the scores, smooth L1 of the offsets, cross-entropy of the directions (Lang et al.,
+//! Training loss: focal loss of the scores, smooth L1 of the offsets, cross-entropy of the directions (Lang et al.,
 //! PointPillars, CVPR 2019, section 3.2).
 
 use burn::tensor::activation::{log_sigmoid, sigmoid};
@@ -8,16 +8,16 @@ use super::coding::NUMBERS;
 use super::network::PillarOutput;
 use super::targets::PillarBatch;
 
-/// The paper's, as those of the focal loss.
+/// Parameters of the focal loss, those of the paper.
 const ALPHA: f64 = 0.25;
 const GAMMA: i32 = 2;
-/// Offsets nearer than this cost their square.
+/// Offset below which the smooth L1 loss is quadratic.
 const BETA: f64 = 1.0 / 9.0;
-/// Weights of offsets and directions.
+/// Weights of the offset and direction losses.
 const OFFSETS: f64 = 2.0;
 const DIRECTIONS: f64 = 0.2;
 
-/// The parts, each for each object, weighted.
+/// Parts of the loss, weighted and divided by the number of objects.
 pub(super) struct PillarLoss {
     pub scores: Tensor<1>,
     pub offsets: Tensor<1>,
@@ -25,7 +25,7 @@ pub(super) struct PillarLoss {
 }
 
 impl PillarLoss {
-    /// What the answers of the network to `batch` cost.
+    /// Computes the loss of the network's `output` for `batch`.
     pub fn new(output: PillarOutput, batch: &PillarBatch, device: &Device) -> Self {
         let [scans, kinds, rows, columns] = output.scores.dims();
         let cells = rows * columns;
@@ -72,7 +72,7 @@ fn background_cost(logits: Tensor<1>) -> Tensor<1> {
     -(log_sigmoid(-logits) * wrong) * (1.0 - ALPHA)
 }
 
-/// The turn costs the sine of what it is wrong by: back for front costs nothing here.
+/// Smooth L1 loss; that of the yaw is of the sine of the difference, so that a half turn costs nothing.
 fn offset_cost(given: Tensor<2>, wanted: Tensor<2>) -> Tensor<1> {
     let last = NUMBERS - 1;
     let difference = given - wanted;
@@ -81,7 +81,7 @@ fn offset_cost(given: Tensor<2>, wanted: Tensor<2>) -> Tensor<1> {
     let rest = difference.slice([0..rows, 0..last]);
     let distance = Tensor::cat(vec![rest, turn], 1).abs();
     let near = distance.clone().clamp_max(BETA);
-    // Half the square up to beta, then the tangent: b * (d - b / 2) / beta with b = min(d, beta).
+    // Quadratic up to beta, then linear: b * (d - b / 2) / beta with b = min(d, beta).
     (near.clone() * (distance - near * 0.5) / BETA).sum()
 }
 
@@ -89,7 +89,7 @@ fn offset_cost(given: Tensor<2>, wanted: Tensor<2>) -> Tensor<1> {
 mod tests {
     use super::*;
 
-    /// One scan, two kinds on maps of 2 x 1.
+    /// One scan, two anchors on maps of 2 x 1.
     fn output(scores: [f32; 4]) -> PillarOutput {
         let device = Device::flex();
         let scores = Tensor::<1>::from_floats(scores, &device).reshape([1, 2, 1, 2]);
@@ -103,14 +103,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_right_costs_nothing() {
+    fn correct_outputs_cost_nothing() {
         let mut batch = PillarBatch { scans: 1, counts: vec![1.0; 4], ..PillarBatch::default() };
         batch.objects = vec![2];
         batch.offsets = vec![0.5; 7];
         batch.backs = vec![1.0];
         let right = [-30.0, -30.0, 30.0, -30.0];
         assert!(costs(right, &batch).iter().all(|cost| *cost < 1e-5));
-        // Back for front.
+        // Opposite direction.
         batch.offsets[6] = 0.5 - std::f32::consts::PI;
         assert!(costs(right, &batch)[1] < 1e-5);
         batch.backs = vec![0.0];

@@ -1,44 +1,44 @@
-//! Which anchors answer for which boxes.
+//! Assignment of ground truth to anchors.
 
-use opendr_engine::overlap::image_overlap;
+use opendr_engine::overlap::box_iou;
 use opendr_engine::target::LidarBox;
 
 use super::coding::nearest_upright;
 use super::layout::PillarLayout;
 
-/// What an anchor is asked for.
+/// Training target of an anchor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Wanted {
-    /// Nothing is there.
+pub enum AnchorTarget {
+    /// Background.
     Background,
-    /// The object of that number.
+    /// The object with this index.
     Object(usize),
-    /// It may answer anything.
-    Anything,
+    /// Ignored in the loss.
+    Ignored,
 }
 
-/// An anchor answers for an object that it overlaps so much, and may answer anything above the second: less than the
-/// paper's 0.6 and 0.45, as cells are coarse and a car is as wide as two of them.
+/// IoU from which an anchor is assigned to an object, and from which it is ignored. Both are below the paper's 0.6 and 0.45, as
+/// cells are coarse: a car is as wide as two of them.
 const OBJECT: f64 = 0.45;
 const ANYTHING: f64 = 0.3;
 
-/// Something annotated.
+/// An annotated object.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Truth {
-    /// Where it is.
+pub struct GroundTruth {
+    /// Position, size and yaw in the lidar's frame.
     pub place: LidarBox,
-    /// Its class, `None` for one that nobody is asked for.
+    /// Class index; `None` for an ignored object.
     pub class: Option<usize>,
 }
 
-/// What each anchor is asked for: kind by kind, row by row.
+/// Returns the training target of each anchor: anchor by anchor, row-major.
 ///
-/// Overlap is that of upright rectangles on the ground, the nearest to turned ones (as SECOND has it); every object has the
-/// anchor that overlaps it most, however little.
-pub fn wanted(layout: &PillarLayout, truths: &[Truth]) -> Vec<Wanted> {
+/// The IoU is that of the nearest axis-aligned rectangles on the ground, as in SECOND; every object is assigned at least the
+/// anchor with the highest IoU.
+pub fn assign_anchors(layout: &PillarLayout, truths: &[GroundTruth]) -> Vec<AnchorTarget> {
     let [columns, rows] = layout.maps();
     let cells = columns * rows;
-    let mut wanted = vec![Wanted::Background; layout.anchors.len() * cells];
+    let mut wanted = vec![AnchorTarget::Background; layout.anchors.len() * cells];
     let mut best = vec![0.0; wanted.len()];
     let mut forced = Vec::new();
     for (number, truth) in truths.iter().enumerate() {
@@ -51,11 +51,11 @@ pub fn wanted(layout: &PillarLayout, truths: &[Truth]) -> Vec<Wanted> {
             let sides = nearest_upright(&anchor.at([0.0; 2]));
             for (column, row) in near(layout, around, sides) {
                 let [x, y] = layout.middle(column, row).map(f64::from);
-                let overlap = image_overlap(around, corners([x, y, 0.0], sides));
+                let overlap = box_iou(around, corners([x, y, 0.0], sides));
                 let at = kind * cells + row * columns + column;
                 if truth.class.is_none() {
-                    if overlap >= ANYTHING && wanted[at] == Wanted::Background {
-                        wanted[at] = Wanted::Anything;
+                    if overlap >= ANYTHING && wanted[at] == AnchorTarget::Background {
+                        wanted[at] = AnchorTarget::Ignored;
                     }
                     continue;
                 }
@@ -64,24 +64,25 @@ pub fn wanted(layout: &PillarLayout, truths: &[Truth]) -> Vec<Wanted> {
                 }
                 if overlap > best[at] && overlap >= ANYTHING {
                     best[at] = overlap;
-                    wanted[at] = if overlap >= OBJECT { Wanted::Object(number) } else { Wanted::Anything };
+                    wanted[at] =
+                        if overlap >= OBJECT { AnchorTarget::Object(number) } else { AnchorTarget::Ignored };
                 }
             }
         }
         forced.extend(own.1.map(|at| (at, number)));
     }
     for (at, number) in forced {
-        wanted[at] = Wanted::Object(number);
+        wanted[at] = AnchorTarget::Object(number);
     }
     wanted
 }
 
-/// `[x0, y0, x1, y1]`.
+/// Returns `[x0, y0, x1, y1]`.
 fn corners([x, y, _]: [f64; 3], [along, across]: [f64; 2]) -> [f64; 4] {
     [x - along / 2.0, y - across / 2.0, x + along / 2.0, y + across / 2.0]
 }
 
-/// Columns and rows whose anchors may overlap.
+/// Returns the columns and rows whose anchors may overlap a box.
 fn near(
     layout: &PillarLayout,
     [x0, y0, x1, y1]: [f64; 4],
@@ -109,28 +110,28 @@ mod tests {
         PillarLayout { grid, stride: 2, anchors: AnchorKind::of_class("Car", 0).unwrap().to_vec() }
     }
 
-    fn car(x: f64, y: f64, yaw: f64, class: Option<usize>) -> Truth {
-        Truth { place: LidarBox { center: [x, y, -1.7], size: [3.9, 1.6, 1.5], yaw }, class }
+    fn car(x: f64, y: f64, yaw: f64, class: Option<usize>) -> GroundTruth {
+        GroundTruth { place: LidarBox { center: [x, y, -1.7], size: [3.9, 1.6, 1.5], yaw }, class }
     }
 
     #[test]
-    fn anchors_about_a_car_answer_for_it() {
+    fn anchors_around_a_car_are_assigned_to_it() {
         // In the middle of column 5, row 8, along x.
-        let wanted = wanted(&layout(), &[car(5.5, 0.5, 3.1, Some(0))]);
-        let objects: Vec<_> = (0..wanted.len()).filter(|at| wanted[*at] == Wanted::Object(0)).collect();
-        // A column aside: 2.9 of 4.9 metres, 0.59; a row aside: 0.6 of 2.6 metres.
+        let wanted = assign_anchors(&layout(), &[car(5.5, 0.5, 3.1, Some(0))]);
+        let objects: Vec<_> = (0..wanted.len()).filter(|at| wanted[*at] == AnchorTarget::Object(0)).collect();
+        // One column aside: 2.9 of 4.9 metres, 0.59; one row aside: 0.6 of 2.6 metres.
         assert_eq!(objects, [8 * 16 + 4, 8 * 16 + 5, 8 * 16 + 6]);
-        assert_eq!(wanted[8 * 16 + 7], Wanted::Anything);
-        assert!(wanted[256..].iter().all(|wanted| *wanted != Wanted::Object(0)));
+        assert_eq!(wanted[8 * 16 + 7], AnchorTarget::Ignored);
+        assert!(wanted[256..].iter().all(|wanted| *wanted != AnchorTarget::Object(0)));
     }
 
     #[test]
-    fn every_object_has_an_anchor_and_what_nobody_is_asked_for_none() {
-        let askew = wanted(&layout(), &[car(5.9, 0.97, 0.7, Some(0))]);
-        assert!(askew.contains(&Wanted::Object(0)));
-        let ignored = wanted(&layout(), &[car(5.5, 0.5, 0.0, None)]);
-        assert!(ignored.contains(&Wanted::Anything) && !ignored.contains(&Wanted::Object(0)));
-        let far = wanted(&layout(), &[car(900.0, -900.0, 0.0, Some(0))]);
-        assert!(far.iter().all(|wanted| *wanted == Wanted::Background));
+    fn every_object_has_an_anchor_and_ignored_objects_have_none() {
+        let askew = assign_anchors(&layout(), &[car(5.9, 0.97, 0.7, Some(0))]);
+        assert!(askew.contains(&AnchorTarget::Object(0)));
+        let ignored = assign_anchors(&layout(), &[car(5.5, 0.5, 0.0, None)]);
+        assert!(ignored.contains(&AnchorTarget::Ignored) && !ignored.contains(&AnchorTarget::Object(0)));
+        let far = assign_anchors(&layout(), &[car(900.0, -900.0, 0.0, Some(0))]);
+        assert!(far.iter().all(|wanted| *wanted == AnchorTarget::Background));
     }
 }

@@ -1,9 +1,9 @@
-//! PointPillars: cars, and whatever else it was trained for, in the scan of a lidar.
+//! PointPillars: 3D object detection in lidar scans.
 //!
 //! A. H. Lang, S. Vora, H. Caesar, L. Zhou, J. Yang, O. Beijbom, "PointPillars: Fast encoders for object detection from point
-//! clouds", CVPR 2019; written from the paper, with a network small enough for a processor. Points are sorted into pillars
-//! ([`crate::pillars`]) and each gets features by one layer; a pillar has the largest of its points, all of them, where the
-//! paper keeps a hundred. Reflectance is not used, so that clouds of x, y and z do.
+//! clouds", CVPR 2019; implemented from the paper, with a network that is small enough for a CPU. Points are sorted into
+//! pillars ([`crate::pillars`]) and one layer computes their features; the features of a pillar are the maximum over all of its
+//! points, where the paper uses at most a hundred. Reflectance is not used, so point clouds of x, y and z suffice.
 
 pub mod anchors;
 pub mod coding;
@@ -33,10 +33,10 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBox3DList, Classes, Name};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
-use opendr_perception_common::suppression::{StandingCandidate, suppress_standing};
+use opendr_perception_common::suppression::{BevCandidate, suppress_bev};
 
 use crate::pillars::{Voxeliser, scatter};
-use decode::{FoundBox, PillarMaps};
+use decode::{DecodedBox, PillarMaps};
 #[cfg(feature = "training")]
 pub use fit::VoxelObjectDetection3dFitParams;
 pub use layout::PillarLayout;
@@ -45,19 +45,19 @@ pub use objective::PillarObjective;
 use point_features::PointFeatures;
 pub use scan::Scan;
 
-/// What a user may set.
+/// Parameters of [`VoxelObjectDetection3d`].
 #[derive(Debug, Clone, Params)]
 pub struct VoxelObjectDetection3dParams {
-    /// Boxes below this score are dropped. OpenDR's default of 0 tells every box that the network thinks of.
+    /// Minimum score of a box. OpenDR's default is 0.
     #[param(default = 0.3, range = 0.0..=1.0, live)]
     pub threshold: f32,
-    /// Boxes of one class whose floors overlap more than this (intersection over union) are one object.
+    /// IoU on the ground above which boxes of one class are suppressed.
     #[param(default = 0.1, range = 0.0..=1.0, live)]
     pub iou_threshold: f32,
-    /// So many of the best boxes are looked at before overlapping ones are thinned out.
+    /// Maximum number of boxes before non-maximum suppression, those with the highest scores.
     #[param(default = 400, range = 1..=10_000, live)]
     pub max_candidates: usize,
-    /// At most this many boxes a scan.
+    /// Maximum number of boxes per scan.
     #[param(default = 100, range = 1..=1000, live)]
     pub max_detections: usize,
 }
@@ -78,38 +78,35 @@ pub struct VoxelObjectDetection3d {
 #[derive(Default)]
 struct Scratch {
     voxeliser: Voxeliser,
-    /// Of the points that wait.
+    /// Points that are not yet processed.
     chunk: point_features::Chunk,
     /// `[pillars, channels]`.
     features: Vec<f32>,
     canvas: Vec<f32>,
-    found: Vec<FoundBox>,
-    candidates: Vec<StandingCandidate>,
+    found: Vec<DecodedBox>,
+    candidates: Vec<BevCandidate>,
     dropped: Vec<bool>,
 }
 
-/// The files of the container: the layer over points, and what takes the picture of pillars.
-const POINT_FILE: &str = "vfe.onnx";
+/// File of the network over pillars in every container.
 const PILLAR_FILE: &str = "rpn.onnx";
-/// Points that the first takes at once.
-const CHUNK: usize = 4096;
-/// Channels of a picture: more are a mistake.
+/// Maximum number of channels of the canvas.
 const MOST_CHANNELS: usize = 1024;
-/// The outputs of the second.
+/// Outputs of the network over pillars.
 const OUTPUTS: [&str; 3] = ["scores", "offsets", "backs"];
 
 impl Learner for VoxelObjectDetection3d {
     const SPEC: Spec = Spec::new("voxel_object_detection_3d", Task::ObjectDetection3d)
         .class("VoxelObjectDetection3DLearner")
-        .about("PointPillars finds boxes in the scan of a lidar; it trains on classes of your own.")
+        .about("PointPillars detects 3D boxes in lidar scans; trainable on your own classes.")
         .without_effect(&[
-            ("model_config_path", "what it needs to know stands in the model"),
-            ("tanet_config_path", "there is one network, PointPillars"),
-            ("backbone", "there is one network, PointPillars"),
-            ("network_head", "there is one head"),
-            ("scale", "the model knows the range of its clouds"),
-            ("temp_path", "what fit writes lies in its output folder"),
-            ("checkpoint_load_iter", "fit goes on from the last checkpoint of its output folder"),
+            ("model_config_path", "the model contains its configuration"),
+            ("tanet_config_path", "PointPillars is the only network"),
+            ("backbone", "PointPillars is the only network"),
+            ("network_head", "the network has a single head"),
+            ("scale", "the model contains the range of its point clouds"),
+            ("temp_path", "fit writes into its output folder"),
+            ("checkpoint_load_iter", "fit resumes from the last checkpoint in its output folder"),
         ]);
     type Params = VoxelObjectDetection3dParams;
     type Input<'a> = Scan<'a>;
@@ -130,8 +127,8 @@ impl Learner for VoxelObjectDetection3d {
         };
         if !(Voxeliser::STATISTICS + 1..=MOST_CHANNELS).contains(&channels) {
             return Err(Error::format(format!(
-                "{PILLAR_FILE} does not take one picture of {rows:?} x {columns:?} pillars as the model's grid has; train \
-                 or get it anew"
+                "{PILLAR_FILE} does not take a canvas of {rows:?} x {columns:?} pillars, the model's grid; train or download \
+                 it again"
             )));
         }
         let points = PointFeatures::open(model, device, channels - Voxeliser::STATISTICS)?;
@@ -162,7 +159,7 @@ impl Learner for VoxelObjectDetection3d {
         self.classes.clone()
     }
 
-    /// Points that are not finite, or outside of the grid, are left out; without points there are no boxes.
+    /// Skips points that are not finite or outside of the grid; without points there are no boxes.
     fn infer_into(&self, _: &mut (), scan: Scan<'_>, boxes: &mut BoundingBox3DList) -> Result<()> {
         let scratch = &mut *self.scratch.take();
         boxes.boxes.clear();
@@ -189,13 +186,13 @@ impl Learner for VoxelObjectDetection3d {
             maps.decode(&self.layout, self.params.threshold, &mut scratch.found);
             Ok(())
         })?;
-        self.thin_out(scratch);
+        self.suppress(scratch);
         for candidate in &scratch.candidates {
-            let Some(FoundBox { place, score, class }) = scratch.found.get(candidate.index as usize) else {
+            let Some(DecodedBox { place, score, class }) = scratch.found.get(candidate.index as usize) else {
                 continue;
             };
             let mut found = place.to_camera(scan.calibration(), scan.image_shape());
-            // As KITTI has it, what the camera cannot see is no answer.
+            // As in KITTI, boxes outside of the camera image are dropped.
             if scan.image_shape().is_some() && found.truncated >= 1.0 {
                 continue;
             }
@@ -214,7 +211,7 @@ impl VoxelObjectDetection3d {
             let output = &outputs[self.outputs[output]];
             if *output.shape() != [1, maps, rows, columns] {
                 return Err(Error::format(format!(
-                    "an output of the model is {:?}, but its grid and anchors ask for {:?}; train or get it anew",
+                    "an output of the model is {:?}, but its grid and anchors require {:?}; train or download it again",
                     output.shape(),
                     [1, maps, rows, columns]
                 )));
@@ -222,11 +219,11 @@ impl VoxelObjectDetection3d {
             output.values::<f32>()
         };
         let offsets = values(1, kinds * coding::NUMBERS)?;
-        Ok(PillarMaps { scores: values(0, kinds)?, offsets, backs: values(2, kinds)? })
+        Ok(PillarMaps { scores: values(0, kinds)?, offsets, directions: values(2, kinds)? })
     }
 
-    /// One box an object, best first.
-    fn thin_out(&self, scratch: &mut Scratch) {
+    /// Non-maximum suppression; boxes are sorted by score.
+    fn suppress(&self, scratch: &mut Scratch) {
         let Scratch { found, candidates, dropped, .. } = scratch;
         let VoxelObjectDetection3dParams { iou_threshold, max_candidates, max_detections, .. } = self.params;
         if found.len() > max_candidates {
@@ -235,9 +232,9 @@ impl VoxelObjectDetection3d {
         }
         candidates.clear();
         candidates.extend((0..).zip(found.iter()).map(|(index, found)| {
-            let floor = found.place.standing_box().floor;
-            StandingCandidate { floor, score: found.score, class: found.class, index }
+            let floor = found.place.upright_box().base;
+            BevCandidate { footprint: floor, score: found.score, class: found.class, index }
         }));
-        suppress_standing(candidates, dropped, iou_threshold, max_detections);
+        suppress_bev(candidates, dropped, iou_threshold, max_detections);
     }
 }

@@ -1,4 +1,4 @@
-//! The network that trains: a layer over points, a small pyramid over the pillars, one head.
+//! The trained network: a layer over points, a small feature pyramid over the pillars, one head.
 
 use burn::module::{Module, Param};
 use burn::nn::conv::{Conv2d, Conv2dConfig};
@@ -13,18 +13,17 @@ use opendr_training::layers::{ConvNormAct, ConvNormActConfig};
 use super::coding::NUMBERS;
 use crate::pillars::{PillarPoint, Voxeliser};
 
-/// Features of a pillar that the network makes of its points; the voxeliser tells more.
+/// Learnt features per pillar; the voxeliser adds its statistics.
 pub const LEARNT: usize = 20;
-/// Channels of the picture of pillars.
+/// Channels of the canvas of pillars.
 pub const CHANNELS: usize = LEARNT + Voxeliser::STATISTICS;
-/// Channels of the stages, and of the features that the head sees.
+/// Channels of the stages, and of the head's input.
 const STAGES: [usize; 3] = [24, 48, 64];
 const FEATURES: usize = 32;
-/// The score that an untrained network gives everything (Lin et al., Focal Loss, ICCV 2017, section 3.3).
+/// Initial score of an untrained network (Lin et al., Focal Loss, ICCV 2017, section 3.3).
 const PRIOR: f32 = 0.01;
 
-/// A trainable PointPillars network (Lang et al., CVPR 2019), small: stages of stride 2, 4 and 8 that are added up at
-/// stride 2.
+/// A small trainable PointPillars network (Lang et al., CVPR 2019): stages of stride 2, 4 and 8 are added at stride 2.
 #[derive(Module, Debug)]
 pub struct PillarNetwork {
     points: Linear,
@@ -36,19 +35,19 @@ pub struct PillarNetwork {
     backs: Conv2d,
 }
 
-/// What the network answers, `[batch, kinds (x 7), rows, columns]` each.
+/// Outputs of the network, `[batch, anchors (x 7), rows, columns]` each.
 #[derive(Debug, Clone)]
 pub struct PillarOutput {
-    /// Logits.
+    /// Score logits.
     pub scores: Tensor<4>,
     /// Offsets.
     pub offsets: Tensor<4>,
-    /// Logits of looking back.
+    /// Direction logits, above 0 for backward.
     pub backs: Tensor<4>,
 }
 
 impl PillarNetwork {
-    /// A network with random weights for `kinds` anchors a cell.
+    /// Creates a network with random weights for `kinds` anchors per cell.
     pub fn new(kinds: usize, device: &Device) -> Self {
         let he = Initializer::KaimingNormal { gain: std::f64::consts::SQRT_2, fan_out_only: false };
         let stage = |from: usize, to: usize, more: usize| {
@@ -67,22 +66,22 @@ impl PillarNetwork {
             ],
             laterals: STAGES.iter().map(|channels| lateral(*channels)).collect(),
             smooth: ConvNormActConfig::new([FEATURES, FEATURES]).init(device),
-            scores: answering(kinds, logit, device),
-            offsets: answering(kinds * NUMBERS, 0.0, device),
-            backs: answering(kinds, 0.0, device),
+            scores: output_layer(kinds, logit, device),
+            offsets: output_layer(kinds * NUMBERS, 0.0, device),
+            backs: output_layer(kinds, 0.0, device),
         }
     }
 
-    /// Features of points, `[points, 4]` to `[points, 20]`, none below 0.
+    /// Returns the features of points, `[points, 4]` to `[points, 20]`, at least 0.
     pub fn features(&self, points: Tensor<2>) -> Tensor<2> {
         relu(self.points.forward(points))
     }
 
-    /// Features of pillars, `[pillars, 20]`: the largest of their points in each channel. `pillars` has the pillar of every
-    /// point, below `count`.
+    /// Returns the features of pillars, `[pillars, 20]`: the maximum over their points in each channel. `pillars` contains the
+    /// pillar index of every point, below `count`.
     ///
     /// # Errors
-    /// `Internal` when features cannot be read, `InvalidInput` for a point of a pillar that there is not.
+    /// `Internal` when the features cannot be read, `InvalidInput` for a pillar index out of range.
     pub fn pooled(&self, points: Tensor<2>, pillars: &[u32], count: usize) -> Result<Tensor<2>> {
         let device = points.device();
         let features = self.features(points);
@@ -91,7 +90,7 @@ impl PillarNetwork {
         Ok(features.gather(0, places))
     }
 
-    /// Pillars `[pillars, channels]` on the cells of pictures, `[batch, channels, rows, columns]`.
+    /// Scatters pillars `[pillars, channels]` to their cells on canvases, `[batch, channels, rows, columns]`.
     pub fn canvas(pillars: Tensor<2>, cells: &[i64], [batch, rows, columns]: [usize; 3]) -> Tensor<4> {
         let device = pillars.device();
         let [count, channels] = pillars.dims();
@@ -102,7 +101,7 @@ impl PillarNetwork {
             .permute([0, 3, 1, 2])
     }
 
-    /// The maps of pictures of pillars.
+    /// Returns the output maps of canvases.
     pub fn forward(&self, canvas: Tensor<4>) -> PillarOutput {
         let mut maps = Vec::with_capacity(self.stages.len());
         let mut x = canvas;
@@ -132,26 +131,28 @@ impl PillarNetwork {
     }
 }
 
-/// The last layer of a head: no activation, and at first `bias` for all outputs, whatever the input.
-fn answering(outputs: usize, bias: f32, device: &Device) -> Conv2d {
+/// Returns the last layer of a head: no activation, zero weights and `bias` initially.
+fn output_layer(outputs: usize, bias: f32, device: &Device) -> Conv2d {
     let small = Initializer::Normal { mean: 0.0, std: 0.01 };
     let mut layer = Conv2dConfig::new([FEATURES, outputs], [1, 1]).with_initializer(small).init(device);
     layer.bias = Some(Param::from_tensor(Tensor::full([outputs], bias, device)));
     layer
 }
 
-/// The points with the largest feature of every pillar and channel: where its gradient goes.
+/// Returns the index of the point with the largest feature for every pillar and channel, which receives the gradient.
 fn largest(features: &Tensor<2>, pillars: &[u32], count: usize) -> Result<Vec<i64>> {
     let values = features.clone().detach().into_data().try_to_vec::<f32>();
-    let values =
-        values.map_err(|error| Error::internal(format!("features of points are no floats: {error:?}")))?;
+    let values = values
+        .map_err(|error| Error::internal(format!("the features of points are not floats: {error:?}")))?;
     let mut places = vec![0; count * LEARNT];
     let mut most = vec![f32::NEG_INFINITY; count * LEARNT];
     for (at, (point, pillar)) in values.chunks_exact(LEARNT).zip(pillars).enumerate() {
         let begin = *pillar as usize * LEARNT;
         let range = begin..begin + LEARNT;
         let (Some(most), Some(places)) = (most.get_mut(range.clone()), places.get_mut(range)) else {
-            return Err(Error::invalid_input(format!("a point is in pillar {pillar}, of {count}")));
+            return Err(Error::invalid_input(format!(
+                "a point has pillar index {pillar}, but there are {count} pillars"
+            )));
         };
         for ((most, place), value) in most.iter_mut().zip(places).zip(point) {
             if value > most {
@@ -167,7 +168,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_largest_feature_of_a_pillar_counts() {
+    fn pillars_have_the_maximum_of_their_points() {
         let device = Device::flex();
         let network = PillarNetwork::new(2, &device);
         let points = Tensor::<2>::from_floats(

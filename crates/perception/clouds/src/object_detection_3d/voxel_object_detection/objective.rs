@@ -1,4 +1,4 @@
-//! What a training of this detector is told.
+//! Training objective of the detector.
 
 use burn::tensor::{Device, Tensor, TensorData};
 use opendr_datasets::augment::{CloudFlip, Pipeline};
@@ -13,16 +13,17 @@ use opendr_training::{Container, Loss, Objective};
 use super::layout::PillarLayout;
 use super::loss::PillarLoss;
 use super::network::{CHANNELS, PillarNetwork};
+use super::point_features::{CHUNK, POINT_FILE};
 use super::targets::{PillarBatch, PillarBatches};
-use super::{CHUNK, OUTPUTS, PILLAR_FILE, POINT_FILE, VoxelObjectDetection3d};
+use super::{OUTPUTS, PILLAR_FILE, VoxelObjectDetection3d};
 use crate::pillars::{PillarPoint, Voxeliser};
 
-/// The training of one detector.
+/// Training objective of PointPillars.
 #[derive(Debug)]
 pub struct PillarObjective {
     /// Grid and anchors.
     pub layout: PillarLayout,
-    /// What the network answers; boxes of other classes are background.
+    /// Classes of the network; boxes of other classes are background.
     pub classes: Classes,
     /// Whether scans are mirrored at random.
     pub augment: bool,

@@ -1,20 +1,24 @@
-//! The layer over points: features of pillars from all of their points.
+//! Features of pillars from all of their points.
 
 use opendr_engine::data::PointCloud;
 use opendr_engine::model::Model;
 use opendr_engine::{Device, Error, Result};
 use opendr_inference::{Session, TensorView};
 
-use super::{CHUNK, POINT_FILE};
 use crate::pillars::{PillarGrid, PillarPoint, Voxeliser};
 
-/// Runs over points, some thousand at a time.
+/// File of the layer over points in every container.
+pub(super) const POINT_FILE: &str = "vfe.onnx";
+/// Points per call of the layer over points.
+pub(super) const CHUNK: usize = 4096;
+
+/// Runs the layer over points in chunks.
 pub(super) struct PointFeatures {
     session: Session,
     learnt: usize,
 }
 
-/// Points that wait for the layer.
+/// Points that are not yet processed.
 #[derive(Default)]
 pub(super) struct Chunk {
     features: Vec<f32>,
@@ -22,24 +26,24 @@ pub(super) struct Chunk {
 }
 
 impl PointFeatures {
-    /// Opens the container's layer, which makes `learnt` features of a point.
+    /// Opens the container's layer, which computes `learnt` features per point.
     pub fn open(model: &Model, device: Device, learnt: usize) -> Result<Self> {
         let session = Session::open(&model.file(POINT_FILE)?, device)?;
         let ([input], [_]) = (session.inputs(), session.outputs()) else {
             return Err(Error::format(format!(
-                "{POINT_FILE} has not one input and one output; train or get it anew"
+                "{POINT_FILE} does not have exactly one input and one output; train or download it again"
             )));
         };
         if input.dims[..] != [Some(CHUNK), Some(PillarPoint::FEATURES)] {
-            let wanted = [CHUNK, PillarPoint::FEATURES];
+            let expected = [CHUNK, PillarPoint::FEATURES];
             return Err(Error::format(format!(
-                "{POINT_FILE} takes {input} instead of {wanted:?}; train or get it anew"
+                "{POINT_FILE} takes {input} instead of {expected:?}; train or download it again"
             )));
         }
         Ok(Self { session, learnt })
     }
 
-    /// Writes the features of all pillars of `cloud`, the layer's and then the voxeliser's, one pillar after the other.
+    /// Writes the features of all pillars of `cloud`, pillar by pillar: those of the layer, then the voxeliser's statistics.
     pub fn run(
         &self,
         cloud: &PointCloud,
@@ -78,14 +82,16 @@ impl PointFeatures {
         self.session.run(&[input], |outputs| {
             let given =
                 outputs.first().filter(|given| *given.shape() == [CHUNK, self.learnt]).ok_or_else(|| {
-                    let wanted = [CHUNK, self.learnt];
-                    Error::format(format!("{POINT_FILE} does not give {wanted:?}; train or get it anew"))
+                    let expected = [CHUNK, self.learnt];
+                    Error::format(format!(
+                        "{POINT_FILE} does not return {expected:?}; train or download it again"
+                    ))
                 })?;
             let given = given.values::<f32>()?;
             for (point, pillar) in given.chunks_exact(self.learnt).zip(&chunk.pillars) {
                 let begin = *pillar as usize * channels;
                 let Some(most) = features.get_mut(begin..begin + self.learnt) else { continue };
-                // Features are not below 0, where a pillar begins.
+                // Features are at least 0, the initial value of a pillar.
                 for (most, value) in most.iter_mut().zip(point) {
                     *most = if value > most { *value } else { *most };
                 }

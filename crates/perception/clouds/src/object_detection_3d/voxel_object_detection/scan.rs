@@ -1,4 +1,4 @@
-//! What the learner takes: points, with or without the calibration of a camera.
+//! Input of the learner: points, with or without the calibration of a camera.
 
 use std::sync::LazyLock;
 
@@ -9,19 +9,19 @@ use opendr_engine::{Header, Result, ValueRef, ValueType};
 /// A scan of a lidar.
 #[derive(Debug, Clone, Copy)]
 pub enum Scan<'a> {
-    /// Points alone: lidar and camera are then taken to be in one place ([`Calibration::nominal`]).
+    /// Points alone, as if lidar and camera were in the same place ([`Calibration::nominal`]).
     Cloud(&'a PointCloud),
-    /// With the calibration of a camera; only what that camera sees is told, where the size of its picture is known.
+    /// Points with the calibration of a camera. Where the image size is known, only boxes in the image are returned.
     Calibrated(&'a PointCloudWithCalibration),
 }
 
-/// The name of the port.
+/// Name of the port.
 const PORT: &str = "point_cloud";
 
 static NOMINAL: LazyLock<Calibration> = LazyLock::new(Calibration::nominal);
 
 impl<'a> Scan<'a> {
-    /// The points.
+    /// Returns the points.
     pub fn cloud(&self) -> &'a PointCloud {
         match self {
             Self::Cloud(cloud) => cloud,
@@ -29,7 +29,7 @@ impl<'a> Scan<'a> {
         }
     }
 
-    /// How the camera stands to the lidar.
+    /// Returns the calibration between lidar and camera.
     pub fn calibration(&self) -> &'a Calibration {
         match self {
             Self::Cloud(_) => &NOMINAL,
@@ -37,7 +37,7 @@ impl<'a> Scan<'a> {
         }
     }
 
-    /// Height and width of the camera's picture.
+    /// Returns height and width of the camera's image.
     pub fn image_shape(&self) -> Option<[usize; 2]> {
         match self {
             Self::Cloud(_) => None,
@@ -49,7 +49,7 @@ impl<'a> Scan<'a> {
 impl<'a> Inputs<'a> for Scan<'a> {
     const PORTS: &'static [Port] = &[Port {
         name: PORT,
-        doc: "What the lidar saw; a PointCloudWithCalibration places the boxes in its camera's frame and picture.",
+        doc: "Scan of a lidar; with a PointCloudWithCalibration, the boxes are in its camera's frame and image.",
         value_type: ValueType::PointCloud,
         optional: false,
         init: false,

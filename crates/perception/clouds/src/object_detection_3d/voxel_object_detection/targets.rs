@@ -1,4 +1,4 @@
-//! Scans with boxes as a batch.
+//! Batches of scans with boxes.
 
 use opendr_datasets::loader::Collate;
 use opendr_engine::dataset::Sample;
@@ -7,47 +7,47 @@ use opendr_engine::{Error, Result, Value};
 
 use super::coding::offsets_from_box;
 use super::layout::PillarLayout;
-use super::matching::{Truth, Wanted, wanted};
+use super::matching::{AnchorTarget, GroundTruth, assign_anchors};
 use super::scan::Scan;
 use crate::pillars::Voxeliser;
 
-/// Makes batches.
+/// Collates [`PillarBatch`].
 #[derive(Debug)]
 pub struct PillarBatches {
     /// Grid and anchors.
     pub layout: PillarLayout,
-    /// What the network answers.
+    /// Classes of the network.
     pub classes: Classes,
 }
 
-/// Scans, and what anchors are asked for; anchors are counted through the batch.
+/// Scans with the training targets of their anchors; anchors are indexed over the batch.
 #[derive(Debug, Default)]
 pub struct PillarBatch {
-    /// Scans.
+    /// Number of scans.
     pub scans: usize,
     /// Features of all points.
     pub points: Vec<f32>,
-    /// The pillar of every point.
+    /// Pillar index of every point.
     pub pillars: Vec<u32>,
-    /// The cell of every pillar, counted through the batch.
+    /// Cell of every pillar, indexed over the batch.
     pub cells: Vec<i64>,
-    /// What the voxeliser tells of every pillar.
+    /// Statistics of every pillar, from the voxeliser.
     pub statistics: Vec<f32>,
-    /// The anchors that show an object.
+    /// Anchors with an object.
     pub objects: Vec<i64>,
-    /// Their offsets, seven each.
+    /// Offsets of these anchors, seven each.
     pub offsets: Vec<f32>,
-    /// Whether they look back, 1 or 0.
+    /// Directions of these anchors: 1 for backward, 0 for forward.
     pub backs: Vec<f32>,
-    /// Whether each anchor counts, 1 or 0.
+    /// Weight of each anchor in the loss: 1, or 0 for ignored.
     pub counts: Vec<f32>,
 }
 
-/// Hidden so much that nobody knows: what KITTI's rules ask nobody for.
+/// KITTI's occlusion level "unknown"; such objects are ignored.
 const HIDDEN: i32 = 3;
 
 impl PillarBatches {
-    fn truths(&self, list: &BoundingBox3DList, scan: &Scan<'_>) -> Vec<Truth> {
+    fn truths(&self, list: &BoundingBox3DList, scan: &Scan<'_>) -> Vec<GroundTruth> {
         let truths = list.boxes.iter().filter_map(|found| {
             let class = match (list.classes.label(&found.name), &found.name) {
                 (Some(label), _) => self.classes.index(label),
@@ -62,17 +62,17 @@ impl PillarBatches {
             let is_within = (f64::from(grid.x[0])..f64::from(grid.x[1])).contains(&x)
                 && (f64::from(grid.y[0])..f64::from(grid.y[1])).contains(&y);
             let class = (is_within && found.occluded < HIDDEN).then_some(class);
-            is_box.then_some(Truth { place, class })
+            is_box.then_some(GroundTruth { place, class })
         });
         truths.collect()
     }
 
-    fn add_targets(&self, batch: &mut PillarBatch, truths: &[Truth]) {
+    fn add_targets(&self, batch: &mut PillarBatch, truths: &[GroundTruth]) {
         let first = batch.counts.len();
         let [columns, rows] = self.layout.maps();
-        for (at, wanted) in wanted(&self.layout, truths).into_iter().enumerate() {
-            batch.counts.push(if wanted == Wanted::Anything { 0.0 } else { 1.0 });
-            let Wanted::Object(object) = wanted else { continue };
+        for (at, wanted) in assign_anchors(&self.layout, truths).into_iter().enumerate() {
+            batch.counts.push(if wanted == AnchorTarget::Ignored { 0.0 } else { 1.0 });
+            let AnchorTarget::Object(object) = wanted else { continue };
             let (kind, cell) = (at / (columns * rows), at % (columns * rows));
             let middle = self.layout.middle(cell % columns, cell / columns);
             let anchor = self.layout.anchors[kind].at(middle);
@@ -119,6 +119,6 @@ impl Collate for PillarBatches {
 
 fn no_scan() -> Error {
     Error::invalid_input(
-        "a detector in space trains on samples of one point cloud with boxes; open the data set with boxes in space",
+        "the sample has no point cloud with 3D boxes; open the data set with 3D boxes as targets",
     )
 }

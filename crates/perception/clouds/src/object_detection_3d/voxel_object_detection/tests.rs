@@ -1,11 +1,11 @@
-//! The detector as a whole: trained on simulated streets, exported, loaded, checked.
+//! Tests of the whole detector: trained on simulated streets, exported, loaded, checked.
 
 use std::path::PathBuf;
 
 use opendr_engine::data::{PointCloud, PointCloudWithCalibration};
 use opendr_engine::dataset::{DatasetIterator, DatasetRef};
 use opendr_engine::learner::{CheckOptions, Fit, FitJob, Handle, check_learner};
-use opendr_engine::overlap::StandingBox;
+use opendr_engine::overlap::UprightBox3D;
 use opendr_engine::target::BoundingBox3D;
 use opendr_engine::{Device, ErrorKind, Random, Result, Statistics, Value};
 use opendr_simulation::street::StreetScans;
@@ -40,9 +40,9 @@ fn trained(params: &VoxelObjectDetection3dFitParams, job: &FitJob<'_>) -> Result
     VoxelObjectDetection3d::fit(None, &Default::default(), params, dataset, None, job)
 }
 
-fn standing(found: &BoundingBox3D) -> StandingBox {
+fn standing(found: &BoundingBox3D) -> UprightBox3D {
     let (size, place) = (found.dimensions.map(f64::from), found.location.map(f64::from));
-    StandingBox::in_camera(size, place, f64::from(found.rotation_y))
+    UprightBox3D::from_kitti(size, place, f64::from(found.rotation_y))
 }
 
 fn scan_of(value: &Value) -> &PointCloudWithCalibration {
@@ -52,9 +52,9 @@ fn scan_of(value: &Value) -> &PointCloudWithCalibration {
     }
 }
 
-/// A few steps on two streets find their cars again, whatever runtime there is.
+/// A few steps on two streets overfit to their cars, on any runtime.
 #[test]
-fn streets_are_learnt_by_heart_and_found_again() {
+fn overfits_two_streets() {
     let folder = scratch("overfit");
     let job = FitJob { device: Device::Cpu, ..FitJob::new(&folder) };
     let statistics = trained(&fit_params(120), &job).unwrap();
@@ -77,9 +77,9 @@ fn streets_are_learnt_by_heart_and_found_again() {
         };
         for car in truth.boxes.iter().filter(near) {
             asked += 1;
-            hit += usize::from(found.boxes.iter().any(|found| standing(found).overlap(&standing(car)) > 0.5));
+            hit += usize::from(found.boxes.iter().any(|found| standing(found).iou(&standing(car)) > 0.5));
         }
-        // Without a calibration the same cars stand elsewhere, by the offset between lidar and camera.
+        // Without a calibration the same cars are offset by the distance of lidar and camera.
         let bare = learner.infer(Scan::from(&scan_of(&sample.data[0]).cloud)).unwrap();
         assert!(bare.boxes.len() >= found.boxes.len());
     }
@@ -88,7 +88,7 @@ fn streets_are_learnt_by_heart_and_found_again() {
 }
 
 #[test]
-fn a_trained_container_keeps_the_promises_of_a_learner() {
+fn a_trained_container_meets_the_learner_contract() {
     let folder = scratch("promises");
     let job = FitJob { device: Device::Cpu, ..FitJob::new(&folder) };
     trained(&fit_params(1), &job).unwrap();
@@ -103,7 +103,7 @@ fn a_trained_container_keeps_the_promises_of_a_learner() {
     std::fs::remove_dir_all(folder).unwrap();
 }
 
-/// 0, 1 and 5 million points, some of them nowhere: boxes are finite, and without points there are none.
+/// Clouds of 0, 1 and 5 million points, some of them not finite: boxes are finite, and without points there are none.
 #[test]
 fn hostile_clouds_never_panic() {
     let folder = scratch("hostile");
@@ -137,7 +137,7 @@ fn hostile_clouds_never_panic() {
 }
 
 #[test]
-fn what_cannot_be_trained_is_told() {
+fn invalid_trainings_are_refused() {
     let folder = scratch("told");
     let job = FitJob { device: Device::Cpu, ..FitJob::new(&folder) };
     let ahead = VoxelObjectDetection3dFitParams { ahead: 25.0, ..fit_params(1) };

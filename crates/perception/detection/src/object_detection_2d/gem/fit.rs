@@ -1,4 +1,4 @@
-//! How it trains.
+//! Training of GEM.
 
 use opendr_engine::dataset::DatasetRef;
 use opendr_engine::learner::{Fit, FitJob};
@@ -6,43 +6,44 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, Statistics};
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device};
 
 use super::network::GemNetwork;
 use super::objective::GemObjective;
 use super::{Gem, GemParams};
+use crate::object_detection_2d::selected_classes;
 use crate::object_detection_2d::single_shot_detector::network::NetworkConfig;
-use crate::object_detection_2d::single_shot_detector::{Backbone, Fitting, LayoutWish};
-use crate::object_detection_2d::wanted_classes;
+use crate::object_detection_2d::single_shot_detector::{Backbone, LayoutOptions, Resizing};
 
-/// How a user may train it, on samples of two pictures of one view with boxes in pixels of the first.
+/// Training parameters of [`Gem`]. Samples have two images of one view, and boxes in pixels of the first.
 #[derive(Debug, Clone, Params)]
 pub struct GemFitParams {
-    /// The network that sees each sensor, twice: they share no weights.
+    /// Backbone of each sensor; the two share no weights.
     pub backbone: Backbone,
     /// Side of the network's inputs, a multiple of 32.
     #[param(default = 320, range = 96..=1024, unit = "px")]
     pub img_size: usize,
-    /// How pictures are brought to that size.
-    pub fitting: Fitting,
-    /// The classes to find, by their names in the data set; all of it when empty.
+    /// How images are resized to that side.
+    #[param(former = "fitting")]
+    pub resizing: Resizing,
+    /// Names of the classes to detect, of those of the data set; all when empty.
     pub classes: Vec<String>,
-    /// Pixels of the input from one cell of the finest level to the next, 8 or 16.
+    /// Stride of the finest level, 8 or 16.
     #[param(default = 8, range = 8..=16, unit = "px")]
     pub stride: usize,
     /// Aspect ratios (width over height) of the anchors.
     #[param(default = vec![0.4, 1.0, 2.0], range = 0.05..=20.0)]
     pub aspect_ratios: Vec<f32>,
-    /// Sides of the anchors of each level, in its strides.
+    /// Sides of the anchors of each level, in strides of the level.
     #[param(default = vec![3.0, 4.25], range = 0.5..=32.0)]
     pub anchor_scales: Vec<f32>,
-    /// The share of samples of which one sensor, at random, sees nothing, so that either may fail.
+    /// Share of samples in which one random sensor is black, so that the detector works with either sensor alone.
     #[param(default = 0.3, range = 0.0..=1.0)]
     pub drop_sensor: f32,
-    /// Whether pictures are mirrored and moved at random, both alike.
+    /// Whether images are flipped and moved at random, both of a sample alike.
     #[param(default = true)]
     pub augment: bool,
-    /// What every training has.
+    /// Parameters of every training.
     #[param(
         flatten,
         lr = 0.001,
@@ -70,27 +71,22 @@ impl Fit for Gem {
     ) -> Result<Statistics> {
         let training = &fit_params.training;
         let dataset = open_for_training::<Self>(dataset, job)?;
-        let wish = LayoutWish {
+        let options = LayoutOptions {
             img_size: fit_params.img_size,
-            fitting: fit_params.fitting,
+            fitting: fit_params.resizing,
             stride: fit_params.stride,
             anchor_scales: &fit_params.anchor_scales,
             aspect_ratios: &fit_params.aspect_ratios,
         };
         let objective = GemObjective {
-            layout: wish.layout(base)?,
-            classes: wanted_classes(&fit_params.classes, &dataset.classes())?,
+            layout: options.layout(base)?,
+            classes: selected_classes(&fit_params.classes, &dataset.classes())?,
             augment: fit_params.augment,
             drop_sensor: fit_params.drop_sensor,
         };
-        let levels = &objective.layout.anchors.levels;
-        let config = NetworkConfig {
-            width: fit_params.backbone.width(),
-            strides: levels.iter().map(|level| level.stride).collect(),
-            kinds: levels.first().map_or(0, |level| level.sides.len()),
-            classes: objective.classes.len(),
-        };
-        let network = network_from_base(GemNetwork::new(&config, &begin(job, training)?), base)?;
+        let classes = objective.classes.len();
+        let config = NetworkConfig::new(fit_params.backbone.width(), &objective.layout, classes);
+        let network = network_from_base(GemNetwork::new(&config, &seeded_device(job, training)?), base)?;
         fit_learner::<Self, _>(&objective, network, params, training, &*dataset, val_dataset, job)
     }
 }

@@ -1,10 +1,10 @@
-//! GEM: a detector of two sensors that tells which of them to trust.
+//! GEM: a detector for a colour and an infrared camera with gated fusion.
 //!
 //! O. Mazhar, J. Kober, R. Babuska, GEM: Glare or Gloom, I Can Still See You. End-to-End Multimodal Object Detection, IEEE
-//! Robotics and Automation Letters 2021. A backbone sees each sensor; gates weigh their features by what both see, and their
-//! sum goes on. In training sensors fail at random, so that either may fail later, and a loss that GEM has not asks the gates to
-//! trust the other one then. That fusion is GEM's; the detector behind
-//! it is our [SSD](super::single_shot_detector), where GEM has DETR: what it finds, and how surely, is an SSD's.
+//! Robotics and Automation Letters 2021. Each sensor has a backbone; gates compute the sensors' weights from the features
+//! of both, and the detector continues with the weighted sum. In training sensors fail at random, so that either may fail
+//! later, and a loss that the paper does not have gives the weight to the other sensor then. The fusion is GEM's; the
+//! detector is our [SSD](super::single_shot_detector), where the paper has DETR, so its precision is an SSD's.
 
 #[cfg(feature = "training")]
 mod drop_sensor;
@@ -34,16 +34,16 @@ use opendr_vision::Preprocess;
 
 use super::single_shot_detector::{Layout, Levels};
 
-/// What a user may set.
+/// Parameters of [`Gem`].
 #[derive(Debug, Clone, Params)]
 pub struct GemParams {
-    /// Detections below this score are dropped. OpenDR's default of 0.7 is for the scores of DETR.
+    /// Score below which detections are dropped. OpenDR's default of 0.7 is for the scores of DETR.
     #[param(default = 0.3, range = 0.0..=1.0, live)]
     pub threshold: f32,
-    /// Boxes of one class that overlap more than this (intersection over union) are one object.
+    /// IoU above which boxes of one class count as one object.
     #[param(default = 0.45, range = 0.0..=1.0, live)]
     pub iou_threshold: f32,
-    /// At most this many boxes a pair of pictures.
+    /// Maximum number of boxes per pair of images.
     #[param(default = 100, range = 1..=1000, live)]
     pub max_detections: usize,
 }
@@ -51,23 +51,23 @@ pub struct GemParams {
 /// One view by two sensors.
 #[derive(Debug, Clone, Copy, Inputs)]
 pub struct GemInputs<'a> {
-    /// The picture in colour. Boxes are in its pixels.
+    /// Colour image. Boxes are in its pixels.
     pub colour: &'a Image,
-    /// The picture of the infrared sensor (or of another, as in training), of the same view: sizes may differ, what it shows
-    /// at a share of its width and height may not.
+    /// Image of the infrared sensor (or of another, as in training) with the same view. Its size may differ; points
+    /// correspond by their relative positions.
     pub infrared: &'a Image,
 }
 
-/// What is told of a pair of pictures.
+/// Predictions for a pair of images.
 #[derive(Debug, Clone, Default, PartialEq, Targets)]
 pub struct GemTargets {
-    /// The objects, in pixels of the picture in colour.
+    /// Detections, in pixels of the colour image.
     pub boxes: BoundingBoxList,
-    /// How much each sensor counted, of sum one: class 0 is colour, 1 infrared (OpenDR's `weight1` and `weight2`).
+    /// Weights of the sensors, of sum one: class 0 is colour, 1 infrared (OpenDR's `weight1` and `weight2`).
     pub sensors: Category,
 }
 
-/// A loaded network.
+/// A loaded GEM network.
 pub struct Gem {
     params: GemParams,
     classes: Classes,
@@ -87,27 +87,27 @@ struct Scratch {
     marks: Vec<bool>,
 }
 
-/// The network in every container: `colour` and `infrared`, both `[1, 3, height, width]`, to the outputs of an SSD and
-/// [`WEIGHTS`] `[1, 2]`.
+/// File name of the network in a container. Inputs: `colour` and `infrared`, both `[1, 3, height, width]`. Outputs: those
+/// of an SSD and [`WEIGHTS`] `[1, 2]`.
 const FILE: &str = "model.onnx";
-/// The output that says how much each sensor counted.
+/// Name of the output with the weights of the sensors.
 const WEIGHTS: &str = "weights";
-/// So many of the best boxes are looked at.
+/// Number of candidates with the highest scores that enter the suppression.
 const MOST_CANDIDATES: usize = 400;
 
 impl Learner for Gem {
     const SPEC: Spec = Spec::new("gem", Task::ObjectDetection2d)
         .class("GemLearner")
         .about(
-            "Finds objects by a colour and an infrared camera and tells which of them to trust; it trains.",
+            "Detects objects in a colour and an infrared image and predicts the weight of each sensor; trainable.",
         )
         .without_effect(&[
-            ("model_config_path", "what the model is made of are parameters of fit"),
-            ("dataset_config_path", "the data set says it itself"),
-            ("num_classes", "the classes of the data set are trained"),
-            ("panoptic_segmentation", "it finds boxes alone"),
-            ("temp_path", "what fit writes lies in its output folder"),
-            ("checkpoint_load_iter", "fit goes on from the last checkpoint of its output folder"),
+            ("model_config_path", "the parameters of fit describe the model"),
+            ("dataset_config_path", "the data set describes itself"),
+            ("num_classes", "it is the number of classes of the data set"),
+            ("panoptic_segmentation", "it predicts boxes only"),
+            ("temp_path", "fit writes to its output folder"),
+            ("checkpoint_load_iter", "fit resumes from the last checkpoint of its output folder"),
         ]);
     type Params = GemParams;
     type Input<'a> = GemInputs<'a>;
@@ -118,12 +118,14 @@ impl Learner for Gem {
         let Layout { image, anchors } = Layout::from_manifest(model.manifest())?;
         let classes = model.classes().clone();
         if classes.is_empty() {
-            return Err(Error::format("the model names no classes; train or get it anew"));
+            return Err(Error::format("the model names no classes; train or download it again"));
         }
         let session = Session::open(&model.file(FILE)?, device)?;
         let names: Vec<_> = session.inputs().iter().map(|input| input.name.as_str()).collect();
         if names != ["colour", "infrared"] {
-            return Err(Error::format(format!("{FILE} takes {names:?}, not colour and infrared")));
+            return Err(Error::format(format!(
+                "{FILE} has the inputs {names:?} instead of colour and infrared; train or download it again"
+            )));
         }
         let levels = Levels::open(anchors, image.size(), |name| session.output_index(name))?;
         let weights = session.output_index(WEIGHTS)?;
@@ -158,7 +160,7 @@ impl Learner for Gem {
             self.levels.decode(outputs, self.classes.len(), threshold, candidates)?;
             keep_best(candidates, MOST_CANDIDATES);
             let kind = SuppressionKind::Hard;
-            let suppression = Suppression { kind, overlap: iou_threshold, threshold, most: max_detections };
+            let suppression = Suppression { kind, iou_threshold, threshold, max_boxes: max_detections };
             suppression.run(candidates, marks);
             boxes_from_candidates(&mut target.boxes, candidates, &geometry, &self.classes);
             let weights = outputs[self.weights].values::<f32>()?;

@@ -1,4 +1,4 @@
-//! The network that trains: a backbone for each sensor, a gate for each of their levels, one detector behind.
+//! GEM's network for training: a backbone per sensor, a gate per level, and one detector for the fused features.
 
 use burn::module::Module;
 use burn::nn::{Initializer, Linear, LinearConfig};
@@ -7,19 +7,19 @@ use burn::tensor::{Device, Tensor};
 
 use crate::object_detection_2d::single_shot_detector::network::{LevelOutput, Network, NetworkConfig, Trunk};
 
-/// Features that a gate decides by.
+/// Number of hidden features of a gate.
 const FEATURES: usize = 32;
 
-/// A detector of two sensors.
+/// A detector with two sensors as inputs.
 #[derive(Module, Debug)]
 pub struct GemNetwork {
-    /// Sees the colours with its own backbone, and finds objects in what is fused.
+    /// Backbone of the colour image, and detector for the fused features.
     detector: Network,
     infrared: Trunk,
     gates: Vec<Gate>,
 }
 
-/// How much each sensor counts, by what both see of the whole picture.
+/// Weights of the two sensors, computed from the global means of their features.
 #[derive(Module, Debug)]
 struct Gate {
     hidden: Linear,
@@ -27,15 +27,15 @@ struct Gate {
 }
 
 impl GemNetwork {
-    /// A network with weights as training begins with; both sensors count alike.
+    /// Creates a network with random weights; both sensors have equal weights.
     pub fn new(config: &NetworkConfig, device: &Device) -> Self {
         let infrared = config.trunk(device);
         let gates = infrared.channels().into_iter().map(|channels| Gate::new(channels, device)).collect();
         Self { detector: config.init(device), infrared, gates }
     }
 
-    /// The outputs of every level, finest first, and how much each sensor counts, `[batch, 2]` with rows of sum one, for
-    /// pictures `[batch, 3, height, width]` of both.
+    /// Returns the outputs of all levels, finest first, and the weights of the sensors, `[batch, 2]` with rows of sum one,
+    /// for images `[batch, 3, height, width]` of both.
     pub fn forward(&self, colour: Tensor<4>, infrared: Tensor<4>) -> (Vec<LevelOutput>, Tensor<2>) {
         let both = self.detector.trunk(colour).into_iter().zip(self.infrared.forward(infrared));
         let (mut fused, mut weights) = (Vec::new(), Vec::new());
@@ -57,7 +57,7 @@ impl Gate {
         Self { hidden: LinearConfig::new(2 * channels, FEATURES).init(device), logits: zeros.init(device) }
     }
 
-    /// `[batch, 2]`.
+    /// Returns the weights `[batch, 2]`.
     fn forward(&self, colour: Tensor<4>, infrared: Tensor<4>) -> Tensor<2> {
         let [batch, channels, ..] = colour.dims();
         let mean = |features: Tensor<4>| features.mean_dim(2).mean_dim(3).reshape([batch, channels]);

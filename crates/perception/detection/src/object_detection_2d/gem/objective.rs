@@ -1,4 +1,4 @@
-//! What it trains on: pairs of pictures, sensors that fail, the loss of the detector behind.
+//! Training objective of GEM: pairs of images, failing sensors, the loss of the detector.
 
 use burn::tensor::{Device, Tensor, TensorData};
 use opendr_datasets::augment::{Affine, Flip, Pipeline};
@@ -21,16 +21,16 @@ use crate::object_detection_2d::single_shot_detector::matching::Matching;
 use crate::object_detection_2d::single_shot_detector::targets::{DetectionBatch, DetectionBatches};
 use crate::object_detection_2d::single_shot_detector::{Layout, output_names};
 
-/// The training of one detector.
+/// Training objective of GEM.
 #[derive(Debug)]
 pub(super) struct GemObjective {
     /// Input and anchors.
     pub layout: Layout,
-    /// What the network answers; boxes of other classes are background.
+    /// Classes of the network; boxes of other classes are background.
     pub classes: Classes,
-    /// Whether pictures are mirrored and moved at random.
+    /// Whether images are flipped and moved at random.
     pub augment: bool,
-    /// The share of samples of which one sensor fails.
+    /// Share of samples with one failed sensor.
     pub drop_sensor: f32,
 }
 
@@ -40,9 +40,9 @@ impl Objective for GemObjective {
 
     fn collate(&self) -> Result<PairBatches> {
         Ok(PairBatches {
-            // The loader has its threads already.
+            // The loader is parallel already.
             preprocess: self.layout.image.preprocess().threads(1),
-            // A box counts whatever its score: data of pairs have no teacher.
+            // Boxes of all scores count: these data sets are not annotated by a teacher.
             detection: DetectionBatches::new(&self.layout, Matching::default(), self.classes.clone(), 0.0),
         })
     }
@@ -98,19 +98,19 @@ impl Objective for GemObjective {
     }
 }
 
-/// Makes batches of samples of two pictures with boxes.
+/// Collates samples of two images with boxes.
 pub(super) struct PairBatches {
     preprocess: Preprocess,
     detection: DetectionBatches,
 }
 
-/// Pictures of both sensors, and what each anchor should answer.
+/// Images of both sensors, and the targets of the anchors.
 #[derive(Debug, Default)]
 pub(super) struct PairBatch {
     pub colour: DetectionBatch,
-    /// As `colour.images`.
+    /// Values of the infrared images, as `colour.images`.
     pub infrared: Vec<f32>,
-    /// Of each pair, 1 for the sensor that alone sees anything; zeros where both do.
+    /// Per pair, 1 for the only sensor that works; zeros where both do.
     pub working: Vec<f32>,
 }
 
@@ -128,11 +128,12 @@ impl Collate for PairBatches {
     fn add(&self, batch: &mut PairBatch, mut sample: Sample) -> Result<()> {
         let (2, Some(Value::Image(infrared))) = (sample.data.len(), sample.data.pop()) else {
             return Err(Error::invalid_input(
-                "the sample is not of two pictures; give one in colour, one of the infrared, and boxes (coco_infrared)",
+                "the sample does not have two images; give a colour image, an infrared image and boxes (coco_infrared)",
             ));
         };
-        let sees = |value: Option<&Value>| matches!(value, Some(Value::Image(image)) if !is_blank(image));
-        let working = [sees(sample.data.first()), !is_blank(&infrared)];
+        let has_content =
+            |value: Option<&Value>| matches!(value, Some(Value::Image(image)) if !is_blank(image));
+        let working = [has_content(sample.data.first()), !is_blank(&infrared)];
         let start = batch.infrared.len();
         batch.infrared.resize(start + self.preprocess.len(), 0.0);
         let run = self.preprocess.run_into(infrared.view(), &mut batch.infrared[start..]);

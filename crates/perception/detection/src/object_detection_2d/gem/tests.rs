@@ -1,4 +1,4 @@
-//! The detector as a whole: trained on drawn pairs, exported, loaded, checked.
+//! Tests of the whole detector: training on synthetic pairs, export, loading, the learner's contract.
 
 use std::path::PathBuf;
 
@@ -7,14 +7,14 @@ use opendr_engine::learner::{Fit, FitJob, Handle};
 use opendr_engine::target::BoundingBox;
 use opendr_engine::{ErrorKind, Random, Statistics};
 use opendr_perception_common::suppression::iou;
-use opendr_perception_testing::promises::check;
+use opendr_perception_testing::learner_checks::check_trained_learner;
 use opendr_training::{ScheduleKind, TrainingParams};
 
 use super::drop_sensor::blank;
 use super::*;
 use crate::object_detection_2d::single_shot_detector::Backbone;
 
-/// One thing each, on noise: red to the one sensor, bright to the other.
+/// Synthetic pairs with one object on noise: red in the colour image, bright in the infrared one.
 struct Pairs(usize);
 
 const SIDE: usize = 96;
@@ -38,7 +38,7 @@ impl DatasetIterator for Pairs {
 }
 
 fn pair(index: usize) -> (Image, Image, BoundingBox) {
-    let mut random = Random::at([11, index as u64]);
+    let mut random = Random::from_key([11, index as u64]);
     let mut noise = || (0..SIDE * SIDE * 3).map(|_| 30 + random.below(80) as u8).collect::<Vec<_>>();
     let (mut colour, mut infrared) = (noise(), noise());
     let [width, height] = [0, 1].map(|_| 28 + random.below(24));
@@ -96,7 +96,7 @@ fn loaded(job: &FitJob<'_>) -> Handle<Gem> {
 }
 
 #[test]
-fn either_sensor_may_fail_and_counts_less_then() {
+fn a_failed_sensor_gets_a_lower_weight() {
     let folder = scratch("fails");
     let job = FitJob { device: Device::Cpu, ..FitJob::new(&folder) };
     let statistics = trained(None, &fit_params(400, 0.7), &job).unwrap();
@@ -108,15 +108,15 @@ fn either_sensor_may_fail_and_counts_less_then() {
     for index in 0..6 {
         let (colour, infrared, wanted) = pair(index);
         let (no_colour, no_infrared) = (blank(&colour).unwrap(), blank(&infrared).unwrap());
-        let mut look = |colour: &Image, infrared: &Image| {
+        let mut predict = |colour: &Image, infrared: &Image| {
             let GemTargets { boxes, sensors } = learner.infer(GemInputs { colour, infrared }).unwrap();
             let [first, second] = sensors.probabilities[..] else { panic!("{sensors:?}") };
             assert!((first + second - 1.0).abs() < 1e-4 && sensors.class == i64::from(second > first));
             let right = boxes.boxes.first().is_some_and(|best| iou(&best.corners(), &wanted.corners()) > 0.5);
             (first, usize::from(right))
         };
-        let both = look(&colour, &infrared);
-        let [alone, other] = [look(&colour, &no_infrared), look(&no_colour, &infrared)];
+        let both = predict(&colour, &infrared);
+        let [alone, other] = [predict(&colour, &no_infrared), predict(&no_colour, &infrared)];
         assert!(alone.0 > both.0 && both.0 > other.0, "{alone:?} {both:?} {other:?}");
         assert!(alone.0 > 0.5 && other.0 < 0.5, "{alone:?} {other:?}");
         for (found, (_, right)) in found.iter_mut().zip([both, alone, other]) {
@@ -128,16 +128,16 @@ fn either_sensor_may_fail_and_counts_less_then() {
 }
 
 #[test]
-fn a_trained_container_keeps_the_promises_of_a_learner() {
+fn a_trained_container_passes_the_learner_checks() {
     let folder = scratch("promises");
     let [first, second] = ["first", "second"].map(|name| folder.join(name));
     let [first, second] =
         [&first, &second].map(|output| FitJob { device: Device::Cpu, ..FitJob::new(output) });
     trained(None, &fit_params(1, 0.3), &first).unwrap();
     let calls = (0..3).map(|index| Pairs(3).get(index).unwrap().data).collect();
-    check::<Gem>(&first.model(), &folder.join("scratch"), calls);
+    check_trained_learner::<Gem>(&first.model(), &folder.join("scratch"), calls);
 
-    // At a rate of 0 a further training changes nothing.
+    // At a learning rate of 0 a further training changes nothing.
     let mut still = fit_params(1, 0.3);
     still.training.lr = 0.0;
     trained(Some(&Model::open(first.model()).unwrap()), &still, &second).unwrap();
@@ -153,7 +153,7 @@ fn a_trained_container_keeps_the_promises_of_a_learner() {
 }
 
 #[test]
-fn what_cannot_be_trained_is_told() {
+fn invalid_trainings_are_refused() {
     struct Single;
     impl Dataset for Single {}
     impl DatasetIterator for Single {

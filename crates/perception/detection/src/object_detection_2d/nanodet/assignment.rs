@@ -1,32 +1,32 @@
-//! Which cell is to find which box: adaptive training sample selection (Zhang et al., Bridging the gap between
-//! anchor-based and anchor-free detection, CVPR 2020, Algorithm 1).
+//! Assignment of cells to boxes: adaptive training sample selection (Zhang et al., Bridging the gap between anchor-based
+//! and anchor-free detection, CVPR 2020, Algorithm 1).
 
 use std::collections::BTreeMap;
 
-/// Cells of each level that are nearest to a box and may find it.
+/// Number of cells per level, nearest to a box, that are candidates for it.
 const NEAREST: usize = 9;
-/// Side of the square around a cell that stands for what the cell sees, in strides.
+/// Side of the square around a cell that is compared with boxes, in strides.
 const SQUARE: f32 = 8.0;
-/// How far inside a box a cell's point has to lie, pixels.
+/// Minimum distance of a cell's point from the sides of its box, in pixels.
 const INSIDE: f32 = 0.01;
 
-/// A box to find.
+/// A ground truth box.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Wanted {
-    /// Class number.
+pub struct TruthBox {
+    /// Class index.
     pub class: usize,
-    /// `[x0, y0, x1, y1]`, pixels of the network's input.
+    /// Corners `[x0, y0, x1, y1]`, in pixels of the network's input.
     pub corners: [f32; 4],
 }
 
-/// A cell that is to find a box.
+/// A cell that is assigned to a box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Positive {
-    /// Number of the cell: levels one after the other, fine to coarse, rows of cells first.
+    /// Index of the cell: level by level, fine to coarse, row by row.
     pub cell: usize,
-    /// Class of the box.
+    /// Class index of the box.
     pub class: usize,
-    /// From the cell's point to the left, top, right and bottom side, in strides of its level; all above 0.
+    /// Distances from the cell's point to the left, top, right and bottom side, in strides of its level; all above 0.
     pub distances: [f32; 4],
 }
 
@@ -44,7 +44,7 @@ struct GridLevel {
 }
 
 impl Grid {
-    /// Of an input with `side` pixels each way.
+    /// Creates the grids for an input of `side` x `side` pixels.
     pub fn new(side: usize, strides: &[usize]) -> Self {
         let mut first = 0;
         let level = |stride: &usize| {
@@ -55,18 +55,18 @@ impl Grid {
         Self { levels: strides.iter().map(level).collect() }
     }
 
-    /// Cells of all levels.
+    /// Returns the number of cells of all levels.
     pub fn cells(&self) -> usize {
         self.levels.iter().map(|level| level.columns * level.columns).sum()
     }
 
-    /// The cells that are to find `boxes`, in their order. A cell that could find several takes the one that its
-    /// square overlaps most.
-    pub fn positives(&self, boxes: &[Wanted]) -> Vec<Positive> {
+    /// Assigns cells to `boxes` and returns them in the order of their indices. A candidate of several boxes is assigned to
+    /// the one that its square overlaps most.
+    pub fn positives(&self, boxes: &[TruthBox]) -> Vec<Positive> {
         let mut best: BTreeMap<usize, (f32, Positive)> = BTreeMap::new();
-        for wanted in boxes {
+        for truth in boxes {
             let candidates: Vec<Candidate> =
-                self.levels.iter().flat_map(|level| level.nearest(wanted)).collect();
+                self.levels.iter().flat_map(|level| level.nearest(truth)).collect();
             let enough = mean_and_deviation(&candidates);
             for Candidate { overlap, positive, inside, .. } in candidates {
                 let taken = best.get(&positive.cell).is_some_and(|(other, _)| *other >= overlap);
@@ -79,22 +79,22 @@ impl Grid {
     }
 }
 
-/// A cell near a box.
+/// A candidate cell of a box.
 struct Candidate {
-    /// Squared distance between the middles of cell and box.
+    /// Squared distance between the centres of cell and box.
     far: f32,
-    /// Intersection over union of the cell's square and the box.
+    /// IoU of the cell's square and the box.
     overlap: f32,
     inside: bool,
     positive: Positive,
 }
 
 impl GridLevel {
-    /// The [`NEAREST`] cells of this level.
-    fn nearest(self, wanted: &Wanted) -> Vec<Candidate> {
+    /// Returns the [`NEAREST`] cells of this level.
+    fn nearest(self, truth: &TruthBox) -> Vec<Candidate> {
         let reach = NEAREST as f32 / 2.0 + 1.0;
-        let [x0, y0, x1, y1] = wanted.corners;
-        // No cell further away than this can be among the nearest: the window holds more than enough.
+        let [x0, y0, x1, y1] = truth.corners;
+        // The window contains the nearest cells: none further away can be among them.
         let window = |low: f32, high: f32| {
             let middle = (low + high) / (2.0 * self.stride);
             let last = self.columns.saturating_sub(1) as f32;
@@ -105,39 +105,39 @@ impl GridLevel {
         let (columns, rows) = (window(x0, x1), window(y0, y1));
         let cells = rows.flat_map(|row| columns.clone().map(move |column| (row, column)));
         let mut candidates: Vec<Candidate> =
-            cells.map(|(row, column)| self.candidate(row, column, wanted)).collect();
+            cells.map(|(row, column)| self.candidate(row, column, truth)).collect();
         candidates.sort_by(|a, b| a.far.total_cmp(&b.far).then(a.positive.cell.cmp(&b.positive.cell)));
         candidates.truncate(NEAREST);
         candidates
     }
 
-    fn candidate(self, row: usize, column: usize, wanted: &Wanted) -> Candidate {
-        let [x0, y0, x1, y1] = wanted.corners;
+    fn candidate(self, row: usize, column: usize, truth: &TruthBox) -> Candidate {
+        let [x0, y0, x1, y1] = truth.corners;
         let (x, y) = ((column as f32 + 0.5) * self.stride, (row as f32 + 0.5) * self.stride);
         let half = SQUARE * self.stride / 2.0;
         let sides = [x - x0, y - y0, x1 - x, y1 - y];
         let (far_x, far_y) = (x - (x0 + x1) / 2.0, y - (y0 + y1) / 2.0);
         Candidate {
             far: far_x * far_x + far_y * far_y,
-            overlap: overlap([x - half, y - half, x + half, y + half], wanted.corners),
+            overlap: overlap([x - half, y - half, x + half, y + half], truth.corners),
             inside: sides.iter().all(|side| *side > INSIDE),
             positive: Positive {
                 cell: self.first + row * self.columns + column,
-                class: wanted.class,
+                class: truth.class,
                 distances: sides.map(|side| side / self.stride),
             },
         }
     }
 }
 
-/// Intersection over union.
+/// Returns the IoU of two boxes.
 fn overlap(a: [f32; 4], b: [f32; 4]) -> f32 {
     let area = |[x0, y0, x1, y1]: [f32; 4]| (x1 - x0).max(0.0) * (y1 - y0).max(0.0);
     let both = area([a[0].max(b[0]), a[1].max(b[1]), a[2].min(b[2]), a[3].min(b[3])]);
     both / (area(a) + area(b) - both).max(f32::EPSILON)
 }
 
-/// Mean and standard deviation of the overlaps together: what a cell has to reach.
+/// Returns mean plus standard deviation of the overlaps, the threshold of a cell.
 fn mean_and_deviation(candidates: &[Candidate]) -> f32 {
     let count = candidates.len().max(1) as f32;
     let mean = candidates.iter().map(|candidate| candidate.overlap).sum::<f32>() / count;
@@ -154,10 +154,10 @@ mod tests {
     }
 
     #[test]
-    fn a_box_is_found_by_cells_of_its_size_within_it() {
+    fn a_box_is_assigned_to_cells_of_its_size_within_it() {
         for (side, expected_level) in [(60.0, 0), (130.0, 1), (260.0, 2)] {
             let corners = [100.0, 80.0, 100.0 + side, 80.0 + side];
-            let positives = grid().positives(&[Wanted { class: 3, corners }]);
+            let positives = grid().positives(&[TruthBox { class: 3, corners }]);
             assert!(!positives.is_empty() && positives.len() <= 3 * NEAREST);
             let first = [0, 2704, 3380, 3549];
             let at_level = positives
@@ -176,7 +176,7 @@ mod tests {
     fn distances_lead_back_to_the_box() {
         let corners = [100.0, 80.0, 230.0, 190.0];
         for Positive { cell, distances: [left, top, right, bottom], .. } in
-            grid().positives(&[Wanted { class: 0, corners }])
+            grid().positives(&[TruthBox { class: 0, corners }])
         {
             let (stride, columns, first) = match cell {
                 0..2704 => (8.0, 52, 0),
@@ -185,15 +185,15 @@ mod tests {
             };
             let x = ((cell - first) % columns) as f32 * stride + stride / 2.0;
             let y = ((cell - first) / columns) as f32 * stride + stride / 2.0;
-            let found = [x - left * stride, y - top * stride, x + right * stride, y + bottom * stride];
-            assert!(found.iter().zip(corners).all(|(a, b)| (a - b).abs() < 1e-3), "{found:?}");
+            let decoded = [x - left * stride, y - top * stride, x + right * stride, y + bottom * stride];
+            assert!(decoded.iter().zip(corners).all(|(a, b)| (a - b).abs() < 1e-3), "{decoded:?}");
         }
     }
 
     #[test]
     fn a_cell_takes_the_box_that_it_overlaps_most() {
-        let small = Wanted { class: 0, corners: [170.0, 170.0, 240.0, 240.0] };
-        let large = Wanted { class: 1, corners: [100.0, 100.0, 310.0, 310.0] };
+        let small = TruthBox { class: 0, corners: [170.0, 170.0, 240.0, 240.0] };
+        let large = TruthBox { class: 1, corners: [100.0, 100.0, 310.0, 310.0] };
         let alone = grid().positives(&[small]).len();
         let both = grid().positives(&[large, small]);
         assert_eq!(both.iter().filter(|positive| positive.class == 0).count(), alone);
@@ -204,9 +204,9 @@ mod tests {
     }
 
     #[test]
-    fn no_box_and_boxes_outside_need_no_cell() {
+    fn boxes_outside_have_no_cells() {
         assert!(grid().positives(&[]).is_empty());
-        assert!(grid().positives(&[Wanted { class: 0, corners: [900.0, 900.0, 950.0, 980.0] }]).is_empty());
+        assert!(grid().positives(&[TruthBox { class: 0, corners: [900.0, 900.0, 950.0, 980.0] }]).is_empty());
         assert_eq!(grid().cells(), 3549);
     }
 }

@@ -1,4 +1,4 @@
-//! Batches for NanoDet: pictures, and which cells are to find what.
+//! Batches for NanoDet: images, and the assignment of cells to boxes.
 
 use opendr_datasets::loader::{Collate, ImageBatch, ImageBatches};
 use opendr_engine::dataset::Sample;
@@ -6,13 +6,13 @@ use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes, Name};
 use opendr_engine::{Error, Result, Value};
 use opendr_vision::InputGeometry;
 
-use super::assignment::{Grid, Positive, Wanted};
+use super::assignment::{Grid, Positive, TruthBox};
 use super::{STRIDES, preprocess};
 
-/// Boxes with a side below this are not learned, pixels of the network's input.
+/// Side below which boxes are ignored, in pixels of the network's input.
 const SMALLEST: f32 = 2.0;
 
-/// Makes batches of pictures with boxes.
+/// Collates images with boxes.
 pub struct Batches {
     pictures: ImageBatches,
     grid: Grid,
@@ -22,18 +22,18 @@ pub struct Batches {
 /// A batch.
 pub struct Batch {
     pub pictures: ImageBatch,
-    /// With cells numbered through all pictures of the batch.
+    /// Assigned cells, with indices through all images of the batch.
     pub positives: Vec<Positive>,
 }
 
 impl Batches {
-    /// Of pictures with `side` pixels each way.
+    /// Creates a collator for images of `side` x `side` pixels.
     pub fn new(side: usize, classes: Classes) -> Self {
         Self { pictures: ImageBatches::new(preprocess(side)), grid: Grid::new(side, &STRIDES), classes }
     }
 
-    fn wanted(&self, boxes: &BoundingBoxList, geometry: &InputGeometry) -> Result<Vec<Wanted>> {
-        let mut wanted = Vec::with_capacity(boxes.boxes.len());
+    fn truth_boxes(&self, boxes: &BoundingBoxList, geometry: &InputGeometry) -> Result<Vec<TruthBox>> {
+        let mut truth_boxes = Vec::with_capacity(boxes.boxes.len());
         for found in &boxes.boxes {
             if found.segment.as_ref().is_some_and(|segment| segment.iscrowd) {
                 continue;
@@ -43,10 +43,10 @@ impl Batches {
             let ([x0, y0], [x1, y1]) =
                 (geometry.input_from_image([x0, y0]), geometry.input_from_image([x1, y1]));
             if x1 - x0 >= SMALLEST && y1 - y0 >= SMALLEST {
-                wanted.push(Wanted { class, corners: [x0, y0, x1, y1] });
+                truth_boxes.push(TruthBox { class, corners: [x0, y0, x1, y1] });
             }
         }
-        Ok(wanted)
+        Ok(truth_boxes)
     }
 
     fn class(&self, found: &BoundingBox) -> Result<usize> {
@@ -57,7 +57,7 @@ impl Batches {
         let class = index.and_then(|index| usize::try_from(index).ok());
         class.filter(|class| *class < self.classes.len()).ok_or_else(|| {
             Error::invalid_input(format!(
-                "a box of class {} in a data set of {} classes ({}); name all classes of the data set",
+                "a box has class {}, but the data set has {} classes ({}); name all classes of the data set",
                 found.name,
                 self.classes.len(),
                 self.classes.iter().take(5).collect::<Vec<_>>().join(", ")
@@ -76,15 +76,15 @@ impl Collate for Batches {
     fn add(&self, batch: &mut Batch, mut sample: Sample) -> Result<()> {
         let Some(Value::BoundingBoxList(boxes)) = sample.target.take() else {
             return Err(Error::invalid_input(
-                "a sample without boxes; NanoDet learns from pictures with BoundingBoxList targets",
+                "the sample has no boxes; NanoDet trains on images with BoundingBoxList targets",
             ));
         };
-        // A class that is not there has to show before the picture is in.
+        // Unknown classes are refused before the image is added.
         boxes.boxes.iter().try_for_each(|found| self.class(found).map(drop))?;
         let first = batch.pictures.len() * self.grid.cells();
         self.pictures.add(&mut batch.pictures, sample)?;
         let Some(geometry) = batch.pictures.geometries().last() else { return Ok(()) };
-        let positives = self.grid.positives(&self.wanted(&boxes, geometry)?);
+        let positives = self.grid.positives(&self.truth_boxes(&boxes, geometry)?);
         batch.positives.extend(
             positives.into_iter().map(|positive| Positive { cell: first + positive.cell, ..positive }),
         );

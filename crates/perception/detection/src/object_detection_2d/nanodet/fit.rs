@@ -1,4 +1,4 @@
-//! `fit` of NanoDet: fine-tuning of a loaded model, also for other classes.
+//! Training of NanoDet: fine-tuning of a loaded model, also for other classes.
 
 use burn::tensor::Device;
 use opendr_engine::dataset::{DatasetIterator, DatasetRef};
@@ -8,33 +8,33 @@ use opendr_engine::params::Params;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, ResultExt, Statistics};
 use opendr_training::weights::{Rules, WeightTable};
-use opendr_training::{ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device};
 
 use super::network::{DISTANCES, NanodetNetwork};
 use super::objective::NanodetObjective;
 use super::{Nanodet, NanodetParams};
 
 opendr_engine::choices! {
-    /// What does not train.
+    /// Layers that do not train.
     pub enum NanodetFreeze {
-        /// Everything trains.
+        /// All layers train.
         None = "none",
-        /// The backbone stays as it is; no gradient is computed for it.
+        /// The backbone is frozen; no gradient is computed for it.
         Backbone = "backbone",
-        /// Backbone and pyramid stay; only the heads train, in a third of the time.
+        /// Backbone and pyramid are frozen; only the heads train, in a third of the time.
         Features = "features",
     }
 }
 
-/// What a user may set of the training.
+/// Training parameters of [`Nanodet`].
 #[derive(Debug, Clone, Params)]
 pub struct NanodetFitParams {
-    /// What does not train: for few pictures, or little time.
+    /// Layers that do not train, for few images or a short training.
     pub freeze: NanodetFreeze,
-    /// Whether pictures are cropped, mirrored and recoloured at random.
+    /// Whether images are cropped, flipped and recoloured at random.
     #[param(default = true)]
     pub augment: bool,
-    /// What every training takes.
+    /// Parameters of every training.
     #[param(
         flatten,
         epochs = 50,
@@ -64,11 +64,13 @@ impl Fit for Nanodet {
         let NanodetFitParams { freeze, augment, training } = fit_params;
         let dataset = open_for_training::<Self>(dataset, job)?;
         let classes = classes_of(&*dataset, base)?;
-        let device = begin(job, training)?;
+        let device = seeded_device(job, training)?;
         let network = match base {
             Some(base) => NanodetNetwork::from_model(base, &device)?,
             None => {
-                job.progress.note("no model is loaded: NanoDet starts from random weights, which takes long");
+                job.progress.note(
+                    "no model is loaded; NanoDet trains from random weights, which needs a long training",
+                );
                 NanodetNetwork::new(classes.len(), &device)
             }
         };
@@ -85,31 +87,32 @@ impl Fit for Nanodet {
     }
 }
 
-/// The classes to learn: those that the data set names, else those of the model.
+/// Returns the classes to train: those that the data set names, else those of the model.
 fn classes_of(dataset: &dyn DatasetIterator, base: Option<&Model>) -> Result<Classes> {
     let classes = dataset.classes();
     match base.map(|base| &base.manifest().classes) {
         _ if !classes.is_empty() => Ok(classes),
         Some(known) if !known.is_empty() => Ok(known.clone()),
         _ => Err(Error::invalid_input(
-            "the data set does not name its classes; name them, or load a model first",
+            "the data set does not name its classes; name them, or load a model before fit",
         )),
     }
 }
 
 impl NanodetNetwork {
-    /// The network in a container: the zoo's, or one that was trained here.
+    /// Loads the network of a container: the zoo's, or one of a further training.
     ///
     /// # Errors
-    /// `InvalidInput` when its layers are not NanoDet-g's.
+    /// `InvalidInput` when its layers are not those of NanoDet-g.
     pub fn from_model(model: &Model, device: &Device) -> Result<Self> {
-        let what = || format!("{} does not hold NanoDet-g", model.path().display());
+        let what = || format!("{} does not contain NanoDet-g", model.path().display());
         let table = WeightTable::from_bytes(&model.onnx()?)?;
         let head = table.weights().iter().rev().find(|weight| weight.shape().len() == 4);
         let classes = head.and_then(|head| head.shape().first()?.checked_sub(DISTANCES));
         let classes = classes.filter(|classes| *classes > 0);
-        let classes =
-            classes.ok_or_else(|| Error::invalid_input("its last layer is no head")).context(what)?;
+        let classes = classes
+            .ok_or_else(|| Error::invalid_input("its last convolution is not a head"))
+            .context(what)?;
         let network = Self::new(classes, device);
         let (network, report) = table.apply(network, &Rules::by_order()).context(what)?;
         report.complete().context(what)?;

@@ -1,7 +1,7 @@
-//! NanoDet: anchor-free one-stage detector for weak processors (FCOS head, generalised focal loss).
+//! NanoDet: an anchor-free one-stage detector for slow CPUs (FCOS head, generalised focal loss).
 //!
-//! Li et al., Generalized Focal Loss, NeurIPS 2020; architecture by RangiLyu, Apache-2.0. Take it where a
-//! picture has many small things; [`super::CenterNet`] is more precise on large ones and faster.
+//! Li et al., Generalized Focal Loss, NeurIPS 2020; architecture by RangiLyu, Apache-2.0. Suited to images with many small
+//! objects; [`super::CenterNet`] is more precise on large ones and faster.
 
 use opendr_engine::data::Image;
 use opendr_engine::learner::{Learner, Spec};
@@ -10,7 +10,7 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Device, Pool, Result, Task};
 use opendr_perception_common::boxes_from_candidates::boxes_from_candidates;
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
 use opendr_vision::{ChannelOrder, Preprocess};
 
@@ -30,19 +30,19 @@ pub use fit::{NanodetFitParams, NanodetFreeze};
 #[cfg(feature = "training")]
 pub use network::NanodetNetwork;
 
-/// What a user may set.
+/// Parameters of [`Nanodet`].
 #[derive(Debug, Clone, Params)]
 pub struct NanodetParams {
-    /// Detections below this score are dropped.
+    /// Score below which detections are dropped.
     #[param(default = 0.35, range = 0.0..=1.0, live, alias = "conf_threshold")]
     pub threshold: f32,
-    /// Boxes of one class that overlap more than this (intersection over union) are one object.
+    /// IoU above which boxes of one class count as one object.
     #[param(default = 0.6, range = 0.0..=1.0, live)]
     pub iou_threshold: f32,
-    /// At most this many boxes a picture.
+    /// Maximum number of boxes per image.
     #[param(default = 100, range = 1..=1000, live, alias = "nms_max_num")]
     pub max_detections: usize,
-    /// How overlapping boxes are thinned out.
+    /// Method of non-maximum suppression.
     #[param(live)]
     pub suppression: SuppressionKind,
 }
@@ -51,7 +51,7 @@ pub struct NanodetParams {
 pub struct Nanodet {
     params: NanodetParams,
     classes: Classes,
-    network: PictureNetwork,
+    network: ImageNetwork,
     levels: [Level; 3],
     scratch: Pool<Scratch>,
 }
@@ -62,7 +62,7 @@ struct Scratch {
     marks: Vec<bool>,
 }
 
-/// One level of the feature pyramid: where its outputs stand, and how far its cells are apart.
+/// One level of the feature pyramid: indices of its outputs, and its stride.
 #[derive(Clone, Copy)]
 struct Level {
     stride: usize,
@@ -71,19 +71,19 @@ struct Level {
     distances: usize,
 }
 
-/// Side of the network's input, pixels.
+/// Side of the network's input, in pixels.
 const SIDE: usize = 416;
-/// How far the cells of each level are apart, pixels.
+/// Strides of the levels, in pixels.
 const STRIDES: [usize; 3] = [8, 16, 32];
-/// The network's outputs for each level: scores, and logits of distances.
+/// Names of the outputs of each level: scores, and logits of distances.
 const SCORE_OUTPUTS: [&str; 3] = ["Identity", "Identity_1", "Identity_2"];
 const DISTANCE_OUTPUTS: [&str; 3] = ["Identity_3", "Identity_4", "Identity_5"];
-/// Bins of the distribution over each distance (`reg_max` + 1).
+/// Number of bins of the distribution over each distance (`reg_max` + 1).
 const BINS: usize = 11;
 const MEAN_BGR: [f32; 3] = [103.53, 116.28, 123.675];
 const STD_BGR: [f32; 3] = [57.375, 57.12, 58.395];
 
-/// What a network with an input of `side` pixels each way is given.
+/// Returns the pre-processing of a network with an input of `side` x `side` pixels.
 fn preprocess(side: usize) -> Preprocess {
     Preprocess::new(side, side).order(ChannelOrder::Bgr).normalise(MEAN_BGR, STD_BGR)
 }
@@ -91,13 +91,13 @@ fn preprocess(side: usize) -> Preprocess {
 impl Learner for Nanodet {
     const SPEC: Spec = Spec::new("nanodet", Task::ObjectDetection2d)
         .class("NanodetLearner")
-        .about("NanoDet finds the 80 COCO classes; light, good on small things.")
+        .about("NanoDet detects the 80 COCO classes; light, good for small objects.")
         .without_effect(&[
-            ("model_to_use", "the container that is loaded says which network it is"),
+            ("model_to_use", "the loaded container determines the network"),
             ("hf", "the runtime chooses the precision"),
-            ("dynamic", "the network's input has one size"),
+            ("dynamic", "the network's input has a fixed size"),
             ("ch_l", "the runtime chooses the memory layout"),
-            ("lr_schedule_T_max", "the learning rate falls until the last epoch"),
+            ("lr_schedule_T_max", "the schedule ends at the last epoch"),
         ]);
     type Params = NanodetParams;
     type Input<'a> = &'a Image;
@@ -105,7 +105,7 @@ impl Learner for Nanodet {
     type State = ();
 
     fn load(model: &Model, params: NanodetParams, device: Device) -> Result<Self> {
-        let network = PictureNetwork::open(model, device, |_| preprocess(SIDE))?;
+        let network = ImageNetwork::open(model, device, |_| preprocess(SIDE))?;
         let level = |index: usize| -> Result<Level> {
             let scores = network.output(SCORE_OUTPUTS[index])?;
             let distances = network.output(DISTANCE_OUTPUTS[index])?;
@@ -151,12 +151,12 @@ impl Learner for Nanodet {
 impl Nanodet {
     fn suppression(&self) -> Suppression {
         let NanodetParams { threshold, iou_threshold, max_detections, suppression } = self.params;
-        Suppression { kind: suppression, overlap: iou_threshold, threshold, most: max_detections }
+        Suppression { kind: suppression, iou_threshold, threshold, max_boxes: max_detections }
     }
 }
 
 impl Level {
-    /// `scores` is `[cells, classes]`, `distances` `[cells, 4 sides, BINS]`; a cell's point lies in its middle.
+    /// Decodes `scores` `[cells, classes]` and `distances` `[cells, 4 sides, BINS]`; a cell's point is its centre.
     fn decode(&self, scores: &[f32], distances: &[f32], threshold: f32, candidates: &mut Vec<Candidate>) {
         let cells = self.columns * self.columns;
         let classes = scores.len() / cells;
@@ -181,12 +181,12 @@ impl Level {
     }
 }
 
-/// Whether any score reaches the threshold. Most cells are empty, and this runs over all of them.
+/// Returns whether any score reaches the threshold. Most cells are empty, and this runs over all of them.
 fn any_reaches(scores: &[f32], threshold: f32) -> bool {
     scores.iter().fold(false, |any, score| any | (*score >= threshold))
 }
 
-/// The mean of a distribution given by logits: sum of `i * softmax(logits)_i`.
+/// Returns the mean of a distribution given by logits: sum of `i * softmax(logits)_i`.
 fn expectation(logits: &[f32]) -> f32 {
     let most = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let (mut mass, mut mean) = (0.0, 0.0);

@@ -1,7 +1,7 @@
-//! NanoDet-g as a Burn module: a cross-stage partial backbone, sums up and down a pyramid, one head a level.
+//! NanoDet-g as a Burn module: a cross-stage partial backbone, a bidirectional feature pyramid, one head per level.
 //!
-//! Batch norms are folded into the convolutions, as in the zoo's file: what is trained further has no statistics that
-//! a small batch could spoil.
+//! Batch normalisations are folded into the convolutions, as in the zoo's file, so a further training has no statistics
+//! that a small batch could spoil.
 
 use burn::module::{Module, Param};
 use burn::nn::conv::{Conv2d, Conv2dConfig};
@@ -15,11 +15,11 @@ use super::{BINS, STRIDES};
 
 /// Channels of the pyramid.
 const WIDTH: usize = 128;
-/// Logits of the distances to a box's four sides.
+/// Number of logits of the distances to a box's four sides.
 pub const DISTANCES: usize = 4 * BINS;
-/// The slope of every activation for negative numbers.
+/// Slope of every activation for negative values.
 const SLOPE: f64 = 0.1;
-/// How likely an object is in a cell before anything is learned (Lin et al., Focal loss, section 4.1).
+/// Score of an untrained head (Lin et al., Focal loss, section 4.1).
 const PRIOR: f32 = 0.01;
 
 /// The network. Fields are in the order of the zoo's graph.
@@ -31,14 +31,14 @@ pub struct NanodetNetwork {
     heads: Vec<Head>,
 }
 
-/// What halves the picture once more, and its way into the pyramid.
+/// A block that halves the resolution, and its lateral connection to the pyramid.
 #[derive(Module, Debug)]
 struct Level {
     block: CspBlock,
     lateral: Conv2d,
 }
 
-/// Half of the channels pass by the residual blocks (CSPNet, Wang et al., 2020).
+/// A block in which half of the channels bypass the residual blocks (CSPNet, Wang et al., 2020).
 #[derive(Module, Debug)]
 struct CspBlock {
     enter: Conv2d,
@@ -46,7 +46,7 @@ struct CspBlock {
     leave: Conv2d,
 }
 
-/// Two convolutions, the second on top of the first, side by side.
+/// Two convolutions in sequence, whose outputs are concatenated.
 #[derive(Module, Debug)]
 struct Residual {
     first: Conv2d,
@@ -61,7 +61,7 @@ struct Head {
 }
 
 impl NanodetNetwork {
-    /// A network for this many classes with random weights.
+    /// Creates a network for `classes` classes with random weights.
     pub fn new(classes: usize, device: &Device) -> Self {
         let level = |(channels, blocks): (usize, usize)| Level {
             block: CspBlock::new(channels, 2, blocks, device),
@@ -80,12 +80,12 @@ impl NanodetNetwork {
         network.with_classes(classes)
     }
 
-    /// How many classes it tells apart.
+    /// Returns the number of classes.
     pub fn classes(&self) -> usize {
         self.heads.first().map_or(0, |head| head.output.weight.dims()[0].saturating_sub(DISTANCES))
     }
 
-    /// The same for `classes` new classes, of which nothing is known yet; what it knows of boxes stays.
+    /// Returns the network with untrained score outputs for `classes` classes; the weights for boxes stay.
     #[must_use]
     pub fn with_classes(mut self, classes: usize) -> Self {
         for Head { output, .. } in &mut self.heads {
@@ -107,7 +107,7 @@ impl NanodetNetwork {
         self
     }
 
-    /// The same with a backbone that does not train.
+    /// Returns the network with a frozen backbone.
     #[must_use]
     pub fn freeze_backbone(mut self) -> Self {
         self.stem = self.stem.freeze();
@@ -118,7 +118,7 @@ impl NanodetNetwork {
         self
     }
 
-    /// The same with a backbone and a pyramid that do not train: only the heads do.
+    /// Returns the network with a frozen backbone and a frozen pyramid; only the heads train.
     #[must_use]
     pub fn freeze_features(mut self) -> Self {
         self = self.freeze_backbone();
@@ -126,8 +126,8 @@ impl NanodetNetwork {
         self
     }
 
-    /// Logits of each level, fine to coarse: `[pictures, classes + 4 * BINS, height / stride, width / stride]`, of
-    /// pictures `[pictures, 3, height, width]` with sides that are multiples of the coarsest stride.
+    /// Returns the logits of each level, fine to coarse: `[images, classes + 4 * BINS, height / stride, width / stride]`,
+    /// of images `[images, 3, height, width]` with sides that are multiples of the coarsest stride.
     pub fn forward(&self, pictures: Tensor<4>) -> Vec<Tensor<4>> {
         let pool = MaxPoolOptions::new([3, 3]).with_stride([2, 2]).with_padding([1, 1]);
         let mut features = max_pool2d(activated(&self.stem, pictures), pool);
@@ -146,8 +146,8 @@ impl NanodetNetwork {
         self.heads.iter().zip(pyramid).map(|(head, features)| head.forward(features)).collect()
     }
 
-    /// The outputs of the exported network: scores `[pictures, cells, classes]` of each level, then logits of distances
-    /// `[pictures, cells, 4 * BINS]` of each.
+    /// Returns the outputs of the exported network: scores `[images, cells, classes]` of each level, then logits of
+    /// distances `[images, cells, 4 * BINS]` of each.
     pub fn infer(&self, pictures: Tensor<4>) -> Vec<Tensor<3>> {
         let classes = self.classes();
         let rows: Vec<Tensor<3>> = self.forward(pictures).into_iter().map(cells).collect();
@@ -170,7 +170,7 @@ impl CspBlock {
         }
     }
 
-    /// Twice as many channels as come in.
+    /// Returns twice as many channels as the input.
     fn forward(&self, features: Tensor<4>) -> Tensor<4> {
         let entered = activated(&self.enter, features);
         let residual = |features, Residual { first, second }: &Residual| {
@@ -188,7 +188,7 @@ impl Head {
     }
 }
 
-/// One row for each cell of a level, rows of cells first: `[pictures, cells, channels]`.
+/// Returns one row per cell of a level, row by row: `[images, cells, channels]`.
 pub fn cells(level: Tensor<4>) -> Tensor<3> {
     let [pictures, channels, height, width] = level.dims();
     level.reshape([pictures, channels, height * width]).swap_dims(1, 2)
@@ -213,7 +213,7 @@ fn doubled(features: Tensor<4>) -> Tensor<4> {
     interpolate(features, options.with_output_size([2 * height, 2 * width]))
 }
 
-/// Linear resizing to half the size, which is the mean of each four.
+/// Resizes linearly to half the size, which is the mean of each four values.
 fn halved(features: Tensor<4>) -> Tensor<4> {
     avg_pool2d(features, AvgPoolOptions::new([2, 2]))
 }

@@ -1,5 +1,5 @@
-//! What NanoDet minimises: quality focal loss of scores, distribution focal loss of distances (Li et al., Generalized
-//! focal loss, NeurIPS 2020) and generalised IoU of boxes (Rezatofighi et al., CVPR 2019).
+//! Training objective of NanoDet: quality focal loss of scores, distribution focal loss of distances (Li et al.,
+//! Generalized focal loss, NeurIPS 2020) and generalised IoU of boxes (Rezatofighi et al., CVPR 2019).
 
 use burn::tensor::activation::{log_softmax, sigmoid, softmax, softplus};
 use burn::tensor::{Device, IndexingUpdateOp, Int, Tensor, TensorData};
@@ -15,26 +15,26 @@ use super::batch::{Batch, Batches};
 use super::network::{DISTANCES, NanodetNetwork, cells};
 use super::{BINS, DISTANCE_OUTPUTS, SCORE_OUTPUTS, SIDE};
 
-/// Weights of the parts of the loss, as NanoDet-g's configuration has them.
+/// Weights of the parts of the loss, from NanoDet-g's configuration.
 const BOX_WEIGHT: f64 = 2.0;
 const DISTRIBUTION_WEIGHT: f64 = 0.25;
-/// A distance is learned as between two bins, so it has to stay below the last one.
-const FARTHEST: f32 = (BINS - 1) as f32 - 0.1;
+/// Maximum distance in strides: it lies between two bins, so it is below the last one.
+const MAX_DISTANCE: f32 = (BINS - 1) as f32 - 0.1;
 
-/// What a network of these classes learns.
+/// Training objective of NanoDet.
 pub struct NanodetObjective {
-    /// Side of the network's input, pixels; a multiple of 32.
+    /// Side of the network's input, in pixels; a multiple of 32.
     pub side: usize,
-    /// What the class numbers mean.
+    /// Names of the classes.
     pub classes: Classes,
-    /// Whether pictures are cropped, mirrored and recoloured at random.
+    /// Whether images are cropped, flipped and recoloured at random.
     pub augment: bool,
-    /// What the trained container says of itself.
+    /// Manifest of the trained container.
     pub manifest: Manifest,
 }
 
 impl NanodetObjective {
-    /// Of pictures of the size that the learner takes.
+    /// Creates an objective for images of the learner's input size.
     pub fn new(classes: Classes, augment: bool, manifest: Manifest) -> Self {
         Self { side: SIDE, classes, augment, manifest }
     }
@@ -80,7 +80,7 @@ impl Objective for NanodetObjective {
     }
 }
 
-/// The loss of logits `[pictures, cells, classes + 4 * BINS]`.
+/// Returns the loss of logits `[images, cells, classes + 4 * BINS]`.
 fn loss_of_rows(rows: Tensor<3>, positives: &[Positive], device: &Device) -> Loss {
     let [pictures, cells, channels] = rows.dims();
     let classes = channels - DISTANCES;
@@ -97,10 +97,10 @@ fn loss_of_rows(rows: Tensor<3>, positives: &[Positive], device: &Device) -> Los
     let at = indices(|positive, _| positive.cell as i64);
     let logits = rows.narrow(1, classes, DISTANCES).select(0, at.clone());
     let logits = logits.reshape([positives.len() * 4, BINS]);
-    let wanted: Vec<f32> = positives.iter().flat_map(|positive| positive.distances).collect();
-    let boxes = Boxes::new(logits.clone(), &wanted, device);
+    let targets: Vec<f32> = positives.iter().flat_map(|positive| positive.distances).collect();
+    let boxes = Boxes::new(logits.clone(), &targets, device);
 
-    // How well a box fits is what its score is to say.
+    // The target of a score is the IoU of its box.
     let place = indices(|positive, classes| (positive.cell * classes + positive.class) as i64);
     let quality = scores.clone().detach().zeros_like().reshape([pictures * cells * classes]).scatter(
         0,
@@ -111,11 +111,11 @@ fn loss_of_rows(rows: Tensor<3>, positives: &[Positive], device: &Device) -> Los
     let score_loss =
         focal_loss(scores.clone(), quality.reshape([pictures * cells, classes])) / positives.len() as f64;
 
-    // Boxes count as much as their cell's score, so that what is told apart well leads.
+    // Boxes are weighted by their cell's score.
     let weight = sigmoid(scores.detach().select(0, at)).max_dim(1).squeeze_dim::<1>(1);
     let sum = weight.clone().sum().clamp_min(1e-6);
     let box_loss = (boxes.loss * weight.clone()).sum() / sum.clone() * BOX_WEIGHT;
-    let distribution = distribution_loss(logits, &wanted, device);
+    let distribution = distribution_loss(logits, &targets, device);
     let distribution_loss = (distribution * weight).sum() / sum * DISTRIBUTION_WEIGHT;
     Loss {
         total: score_loss.clone() + box_loss.clone() + distribution_loss.clone(),
@@ -127,20 +127,20 @@ fn loss_of_rows(rows: Tensor<3>, positives: &[Positive], device: &Device) -> Los
     }
 }
 
-/// Sum of the quality focal loss (Eq. 5, beta 2): cross-entropy of `sigmoid(logits)` and `quality`, times the square of
-/// how far they are apart.
+/// Returns the sum of the quality focal loss (Eq. 5, beta 2): cross-entropy of `sigmoid(logits)` and `quality`, times their
+/// squared difference.
 fn focal_loss(logits: Tensor<2>, quality: Tensor<2>) -> Tensor<1> {
     let apart = quality.clone() - sigmoid(logits.clone());
     let entropy = softplus(logits.clone(), 1.0) - logits * quality;
     (entropy * apart.square()).sum()
 }
 
-/// Mean over the four sides of the distribution focal loss (Eq. 6), `[positives]`: cross-entropy with the two bins
-/// around the wanted distance, less the least that it can be, so that the best is 0.
-fn distribution_loss(logits: Tensor<2>, wanted: &[f32], device: &Device) -> Tensor<1> {
-    let (mut bins, mut least) = (vec![0.0; wanted.len() * BINS], Vec::with_capacity(wanted.len()));
-    for (bins, distance) in bins.chunks_exact_mut(BINS).zip(wanted) {
-        let distance = distance.clamp(0.0, FARTHEST);
+/// Returns the mean over the four sides of the distribution focal loss (Eq. 6), `[positives]`: cross-entropy with the two
+/// bins around the target distance, minus its minimum, so that the best is 0.
+fn distribution_loss(logits: Tensor<2>, targets: &[f32], device: &Device) -> Tensor<1> {
+    let (mut bins, mut least) = (vec![0.0; targets.len() * BINS], Vec::with_capacity(targets.len()));
+    for (bins, distance) in bins.chunks_exact_mut(BINS).zip(targets) {
+        let distance = distance.clamp(0.0, MAX_DISTANCE);
         let upper = distance.fract();
         bins[distance as usize] = 1.0 - upper;
         bins[distance as usize + 1] = upper;
@@ -148,34 +148,34 @@ fn distribution_loss(logits: Tensor<2>, wanted: &[f32], device: &Device) -> Tens
             [upper, 1.0 - upper].map(|share| -share * share.max(f32::MIN_POSITIVE).ln()).iter().sum::<f32>(),
         );
     }
-    let bins = Tensor::<2>::from_data(TensorData::new(bins, [wanted.len(), BINS]), device);
-    let least = Tensor::<2>::from_data(TensorData::new(least, [wanted.len(), 1]), device);
+    let bins = Tensor::<2>::from_data(TensorData::new(bins, [targets.len(), BINS]), device);
+    let least = Tensor::<2>::from_data(TensorData::new(least, [targets.len(), 1]), device);
     let entropy = (log_softmax(logits, 1) * bins).sum_dim(1).neg() - least;
-    entropy.reshape([wanted.len() / 4, 4]).mean_dim(1).squeeze_dim::<1>(1)
+    entropy.reshape([targets.len() / 4, 4]).mean_dim(1).squeeze_dim::<1>(1)
 }
 
-/// Boxes around the points of their cells, compared with those wanted.
+/// Predicted boxes around the points of their cells, compared with the targets.
 struct Boxes {
-    /// Intersection over union, `[positives]`.
+    /// IoU, `[positives]`.
     overlap: Tensor<1>,
-    /// One minus the generalised one (Eq. 4), `[positives]`.
+    /// One minus the generalised IoU (Eq. 4), `[positives]`.
     loss: Tensor<1>,
 }
 
 impl Boxes {
-    /// Of logits `[4 * positives, BINS]`. All boxes hold the point, so distances say all.
-    fn new(logits: Tensor<2>, wanted: &[f32], device: &Device) -> Self {
-        let count = wanted.len() / 4;
+    /// Compares logits `[4 * positives, BINS]` with the targets. All boxes contain the point, so the distances suffice.
+    fn new(logits: Tensor<2>, targets: &[f32], device: &Device) -> Self {
+        let count = targets.len() / 4;
         let bins = Tensor::<1, Int>::arange(0..BINS as i64, device).float().reshape([1, BINS]);
-        let found = (softmax(logits, 1) * bins).sum_dim(1).reshape([count, 4]);
-        let wanted = Tensor::<2>::from_data(TensorData::new(wanted.to_vec(), [count, 4]), device);
+        let predicted = (softmax(logits, 1) * bins).sum_dim(1).reshape([count, 4]);
+        let targets = Tensor::<2>::from_data(TensorData::new(targets.to_vec(), [count, 4]), device);
         let area = |sides: Tensor<2>| {
             let side = |at| sides.clone().narrow(1, at, 1);
             ((side(0) + side(2)) * (side(1) + side(3))).squeeze_dim::<1>(1)
         };
-        let both = area(found.clone().min_pair(wanted.clone()));
-        let around = area(found.clone().max_pair(wanted.clone())).clamp_min(1e-6);
-        let union = (area(found) + area(wanted) - both.clone()).clamp_min(1e-6);
+        let both = area(predicted.clone().min_pair(targets.clone()));
+        let around = area(predicted.clone().max_pair(targets.clone())).clamp_min(1e-6);
+        let union = (area(predicted) + area(targets) - both.clone()).clamp_min(1e-6);
         let overlap = both / union.clone();
         let gap = (around.clone() - union) / around;
         Self { loss: (overlap.clone() - gap).neg() + 1.0, overlap }

@@ -1,41 +1,41 @@
-//! Pictures with all that a detector takes for objects in them.
+//! Training samples with the unsuppressed detections of a detector.
 
 use std::path::Path;
 use std::sync::OnceLock;
 
-use opendr_datasets::augment::{Augment as _, Colour, Flip, Others, Pipeline, RandomResizedCrop};
+use opendr_datasets::augment::{Augment as _, Colour, Flip, OtherSamples, Pipeline, RandomResizedCrop};
 use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
 use opendr_engine::model::Model;
 use opendr_engine::params::ParamMap;
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Device, Error, Random, Result, Value};
-use opendr_tiling::{PictureLearner, open_picture_learner};
+use opendr_tiling::{ImageLearner, open_image_learner};
 
 use crate::object_detection_2d::DETECTORS;
 
-/// Samples of a picture with boxes become samples of the picture and what the detector finds, with the boxes for a target.
+/// Converts samples of an image with boxes to samples of the image and its detections, with the boxes as annotation.
 pub(super) struct Candidates<'a> {
     dataset: &'a dyn DatasetIterator,
-    detector: Box<dyn PictureLearner<BoundingBoxList>>,
+    detector: Box<dyn ImageLearner<BoundingBoxList>>,
     pipeline: Pipeline,
     versions: usize,
     seed: u64,
-    /// What was found in each sample: the detector costs more than the rest.
+    /// Cached detections of each sample: the detector dominates the time.
     found: Vec<OnceLock<BoundingBoxList>>,
 }
 
-/// Pixels of a side of a version.
+/// Side of an augmented version, in pixels.
 const SIDE: usize = 480;
-/// A detector tells all boxes with scores from here on, none suppressed.
+/// Score above which all boxes of the detector are candidates, without suppression.
 const LEAST_SCORE: f64 = 0.05;
 const MOST_BOXES: i64 = 1000;
 
 impl<'a> Candidates<'a> {
-    /// Opens the container of a detector. Each picture comes as it is and, where `versions` is more than 1, mirrored, cropped
-    /// and recoloured at random.
+    /// Opens the container of a detector. Each image occurs unchanged and in `versions - 1` versions, cropped, flipped and
+    /// recoloured at random.
     ///
     /// # Errors
-    /// As [`open_picture_learner`].
+    /// As [`open_image_learner`].
     pub fn new(
         dataset: &'a dyn DatasetIterator,
         detector: &str,
@@ -43,14 +43,14 @@ impl<'a> Candidates<'a> {
         seed: u64,
         device: Device,
     ) -> Result<Self> {
-        let wishes = ParamMap::from([
+        let overrides = ParamMap::from([
             ("threshold".to_owned(), LEAST_SCORE.into()),
             ("iou_threshold".to_owned(), 1.0.into()),
             ("max_detections".to_owned(), MOST_BOXES.into()),
             ("max_candidates".to_owned(), MOST_BOXES.into()),
         ]);
         let model = Model::open(Path::new(detector))?;
-        let detector = open_picture_learner(&model, DETECTORS, &wishes, device)?;
+        let detector = open_image_learner(&model, DETECTORS, &overrides, device)?;
         let crop = RandomResizedCrop {
             width: SIDE,
             height: SIDE,
@@ -81,12 +81,12 @@ impl DatasetIterator for Candidates<'_> {
         let found = found.ok_or_else(|| Error::not_found(format!("sample {index} of {}", self.len())))?;
         let mut sample = self.dataset.get(index % count)?;
         if index >= count {
-            let mut random = Random::at([self.seed, index as u64]);
-            self.pipeline.apply(&mut sample, &mut random, &Others::none())?;
+            let mut random = Random::from_key([self.seed, index as u64]);
+            self.pipeline.apply(&mut sample, &mut random, &OtherSamples::none())?;
         }
         let [Value::Image(image)] = &sample.data[..] else {
             return Err(Error::invalid_input(
-                "a `detector` finds boxes in samples of one picture; leave it out where samples have boxes already",
+                "`detector` needs samples of one image; omit it for samples that have detections",
             ));
         };
         let list = match found.get() {

@@ -1,4 +1,4 @@
-//! From a picture and its boxes to what the network is given.
+//! Inputs of the network from an image and its boxes.
 
 use opendr_engine::Result;
 use opendr_engine::data::Image;
@@ -10,19 +10,19 @@ use super::moments::{Moments, MomentsScratch};
 use super::relations::Relations;
 
 opendr_engine::choices! {
-    /// How large the network is, and how closely it looks.
+    /// Size of the network and resolution of the boxes' descriptors.
     pub enum NmsVariant {
-        /// 256 and 128 features, 4 units; boxes as 160 x 160 cells in three levels.
+        /// 256 and 128 features, 4 units; boxes of 160 x 160 cells in three levels.
         Medium = "medium",
-        /// 160 and 80 features, 2 units; boxes as 120 x 120 cells in two levels.
+        /// 160 and 80 features, 2 units; boxes of 120 x 120 cells in two levels.
         Light = "light",
-        /// 320 and 160 features, 4 units, and pictures of up to 800 pixels.
+        /// 320 and 160 features, 4 units; images of up to 800 pixels.
         Full = "full",
     }
 }
 
 impl NmsVariant {
-    /// How boxes are described.
+    /// Returns the appearance descriptor of boxes.
     pub(super) fn moments(self) -> Moments {
         match self {
             Self::Light => Moments { side: 120, levels: 2 },
@@ -30,7 +30,7 @@ impl NmsVariant {
         }
     }
 
-    /// Pixels of the longer side of the picture in which edges are looked for.
+    /// Returns the maximum side of the edge map, in pixels.
     fn longest(self) -> usize {
         match self {
             Self::Light => 480,
@@ -40,21 +40,21 @@ impl NmsVariant {
     }
 }
 
-/// Which boxes are looked at.
+/// Selection of the boxes that the network receives.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Choice {
-    /// Of boxes that overlap more the best is taken beforehand.
+    /// IoU above which only the box with the highest score is kept beforehand.
     pub overlap: f32,
-    /// At most so many.
+    /// Maximum number of boxes.
     pub most: usize,
 }
 
-/// Boxes that are less sure or smaller (pixels) are noise, as in OpenDR.
+/// Boxes with lower scores or smaller sides (in pixels) are noise, as in OpenDR.
 const LEAST_SCORE: f32 = 0.05;
 const LEAST_SIDE: f32 = 4.0;
 
 impl Choice {
-    /// Replaces `candidates` by the boxes of `classes` that are looked at, the surest first, each with its place in `list`.
+    /// Replaces `candidates` by the selected boxes of `classes`, highest score first, each with its index in `list`.
     pub fn choose(
         &self,
         list: &BoundingBoxList,
@@ -65,7 +65,7 @@ impl Choice {
         candidates.clear();
         for (index, found) in list.boxes.iter().enumerate() {
             let [x0, y0, x1, y1] = found.corners();
-            // Written so that NaN is left out.
+            // Written so that NaN is dropped.
             let sound = x1 - x0 > LEAST_SIDE && y1 - y0 > LEAST_SIDE && found.confidence <= 1.0;
             if let Some(class) = class_of(list, found, classes).filter(|_| sound) {
                 candidates.push(Candidate {
@@ -78,15 +78,15 @@ impl Choice {
         }
         let suppression = Suppression {
             kind: SuppressionKind::Hard,
-            overlap: self.overlap,
+            iou_threshold: self.overlap,
             threshold: LEAST_SCORE,
-            most: self.most,
+            max_boxes: self.most,
         };
         suppression.run(candidates, marks);
     }
 }
 
-/// The number in `classes` of a box of `list`, if it is one of them. A list without class names has those of the model.
+/// Returns the index in `classes` of the class of a box, if it is one of them. A list without class names has the model's.
 pub(super) fn class_of(list: &BoundingBoxList, found: &BoundingBox, classes: &Classes) -> Option<u32> {
     let index = match (list.label(found), &found.name) {
         (Some(label), _) => classes.index(label)?,
@@ -96,30 +96,30 @@ pub(super) fn class_of(list: &BoundingBoxList, found: &BoundingBox, classes: &Cl
     u32::try_from(index).ok().filter(|index| (*index as usize) < classes.len())
 }
 
-/// Boxes as the network is given them.
+/// Boxes as inputs of the network.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Described {
-    /// How they lie.
+    /// Geometric relations of the boxes.
     pub relations: Relations,
-    /// How they look, `[boxes, Moments::len]`.
+    /// Appearance of the boxes, `[boxes, Moments::len]`.
     pub appearance: Vec<f32>,
     map: EdgeMap,
     moments: MomentsScratch,
 }
 
 impl Described {
-    /// Forgets all boxes.
+    /// Clears all boxes.
     pub fn clear(&mut self) {
         self.relations.clear();
         self.appearance.clear();
     }
 
-    /// Adds the boxes of a picture, the surest first.
+    /// Adds the boxes of an image, sorted by descending score.
     ///
     /// # Errors
-    /// As the pre-processing of pictures.
+    /// As the pre-processing of images.
     pub fn add(&mut self, image: &Image, boxes: &[Candidate], variant: NmsVariant) -> Result<()> {
-        self.map.look(image.view(), variant.longest())?;
+        self.map.compute(image.view(), variant.longest())?;
         self.relations.add(boxes, [image.width(), image.height()].map(|side| side as f32));
         let moments = variant.moments();
         for found in boxes {

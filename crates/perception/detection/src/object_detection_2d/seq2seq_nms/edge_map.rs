@@ -1,11 +1,11 @@
-//! Where a picture has edges.
+//! Binary edge maps of images.
 
 use opendr_engine::Result;
 use opendr_engine::data::ImageView;
 use opendr_vision::{ChannelOrder, Preprocess};
 
-/// The edges of a picture as 0 or 1, summed up so that the share of any rectangle costs four look-ups. Its memory is used
-/// again.
+/// The binary edges of an image as an integral image, so that the share of edges in a rectangle costs four look-ups. Its
+/// memory is reused.
 #[derive(Debug, Clone)]
 pub struct EdgeMap {
     preprocess: Preprocess,
@@ -14,13 +14,13 @@ pub struct EdgeMap {
     grey: Vec<u8>,
     line: Vec<i32>,
     smooth: Vec<i32>,
-    /// Edges left of and above each corner of a pixel, `[height + 1, width + 1]`.
+    /// Number of edge pixels left of and above each pixel corner, `[height + 1, width + 1]`.
     sums: Vec<u32>,
 }
 
-/// Gradients from here on are edges: magnitude of Scharr's filters, each cut at 255, as OpenDR has it.
+/// Threshold of edges: the magnitude of Scharr's filters, each clipped at 255, as in OpenDR.
 const STRONG: i32 = 240;
-/// A gradient is cut here.
+/// Maximum of a gradient.
 const MOST: i32 = 255;
 
 impl Default for EdgeMap {
@@ -38,11 +38,11 @@ impl Default for EdgeMap {
 }
 
 impl EdgeMap {
-    /// Looks at a picture, made so small that its longer side has at most `longest` pixels.
+    /// Computes the edges of an image, resized so that its longer side has at most `longest` pixels.
     ///
     /// # Errors
-    /// As the pre-processing of pictures.
-    pub fn look(&mut self, view: ImageView<'_>, longest: usize) -> Result<()> {
+    /// As the pre-processing of images.
+    pub fn compute(&mut self, view: ImageView<'_>, longest: usize) -> Result<()> {
         let full = [view.width(), view.height()];
         let by = (longest as f32 / full[0].max(full[1]).max(1) as f32).min(1.0);
         let [width, height] = full.map(|side| ((side as f32 * by).round() as usize).max(1));
@@ -56,7 +56,7 @@ impl EdgeMap {
         Ok(())
     }
 
-    /// A 3x3 Gaussian, times 16.
+    /// Applies a 3x3 Gaussian, times 16.
     fn blur(&mut self) {
         let [width, height] = self.size;
         self.line.clear();
@@ -96,8 +96,8 @@ impl EdgeMap {
         }
     }
 
-    /// The share of edges in each of `side` x `side` equal cells of the box `[x0, y0, x1, y1]`, in pixels of the picture;
-    /// what lies outside of it has none.
+    /// Computes the share of edges in each of `side` x `side` equal cells of the box `[x0, y0, x1, y1]`, in image pixels.
+    /// There are no edges outside the image.
     pub fn cells_into(
         &self,
         corners: [f32; 4],
@@ -127,7 +127,7 @@ impl EdgeMap {
         }
     }
 
-    /// Edges left of and above a point, between pixels in proportion.
+    /// Returns the number of edge pixels left of and above a point, interpolated between pixels.
     fn sum_at(&self, x: f32, y: f32) -> f32 {
         let [width, height] = self.size;
         let (x, y) = (x.clamp(0.0, width as f32), y.clamp(0.0, height as f32));
@@ -147,12 +147,12 @@ mod tests {
 
     use super::*;
 
-    /// Dark on the left, bright on the right.
+    /// Returns the edges of an image that is dark on the left and bright on the right.
     fn halves(width: usize) -> EdgeMap {
         let levels =
             (0..width * 40).flat_map(|at| [if at % width < width / 2 { 0 } else { 255 }; 3]).collect();
         let mut map = EdgeMap::default();
-        map.look(Image::from_rgb8(levels, width, 40).unwrap().view(), 80).unwrap();
+        map.compute(Image::from_rgb8(levels, width, 40).unwrap().view(), 80).unwrap();
         map
     }
 
@@ -164,7 +164,7 @@ mod tests {
 
     #[test]
     fn an_edge_is_where_brightness_changes() {
-        // Four columns of pixels see the step through both filters.
+        // Four columns of pixels respond to the step through both filters.
         let shares = cells(&halves(80), [0.0, 0.0, 80.0, 40.0], 4);
         assert_eq!(shares.len(), 16);
         for row in shares.chunks_exact(4) {
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn places_are_those_of_the_picture_however_small_the_map() {
+    fn boxes_are_in_image_pixels_at_any_map_size() {
         let (small, large) = (halves(80), halves(160));
         assert_eq!(large.size, [80, 20]);
         let near = |corners: [f32; 4], map: &EdgeMap| cells(map, corners, 1)[0] > 0.0;

@@ -1,4 +1,4 @@
-//! How it trains.
+//! Training of Seq2Seq-NMS.
 
 use opendr_engine::dataset::{DatasetIterator, DatasetRef};
 use opendr_engine::learner::{Fit, FitJob};
@@ -7,18 +7,18 @@ use opendr_engine::params::Params;
 use opendr_engine::target::Classes;
 use opendr_engine::{Device, Result, Statistics};
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device};
 
 use super::candidates::Candidates;
 use super::network::{NetworkSizes, Seq2SeqNmsNetwork};
 use super::objective::NmsObjective;
 use super::{NmsVariant, Seq2SeqNms, Seq2SeqNmsParams, variant_of};
-use crate::object_detection_2d::wanted_classes;
+use crate::object_detection_2d::selected_classes;
 
-/// How a user may train it: on samples of a picture and what a detector found in it, or on pictures and a `detector`.
+/// Training parameters of [`Seq2SeqNms`]. Samples are images with detections, or images only with a `detector`.
 #[derive(Debug, Clone, Params)]
 pub struct Seq2SeqNmsFitParams {
-    /// What every training has.
+    /// Parameters of every training.
     #[param(
         flatten,
         epochs = 8,
@@ -30,25 +30,25 @@ pub struct Seq2SeqNmsFitParams {
         grad_clip = 10.0
     )]
     pub training: TrainingParams,
-    /// How large the network is; going on from a model, its own.
+    /// Size of the network; a further training keeps the size of its model.
     pub variant: NmsVariant,
-    /// Share of features that are left out at random.
+    /// Dropout probability.
     #[param(default = 0.025, range = 0.0..=0.9)]
     pub dropout: f64,
-    /// The classes whose boxes are suppressed, by their names in the data set; all of it when empty.
+    /// Names of the classes whose boxes are suppressed, of those of the data set; all when empty.
     pub classes: Vec<String>,
-    /// From this intersection over union on, a box can stand for an object.
+    /// Minimum IoU of a box with its object.
     #[param(default = 0.5, range = 0.05..=0.95)]
     pub nms_gt_iou: f32,
-    /// How much a box counts that stands for an object, against one that does not.
+    /// Weight of boxes that match an object, relative to boxes that do not.
     #[param(default = 2.0, range = 0.01..=100.0)]
     pub positive_weight: f32,
-    /// A container of a detector that finds boxes in the pictures, its suppression switched off: NanoDet, CenterNet, SSD, or
-    /// a finder of faces.
+    /// Container of a detector that detects boxes in the images, without suppression: NanoDet, CenterNet, SSD, or a face
+    /// detector.
     pub detector: Option<String>,
-    /// With a detector: so many versions of each picture, all but the first mirrored, cropped and recoloured at random.
-    #[param(default = 1, range = 1..=1000)]
-    pub versions: usize,
+    /// Number of versions of each image, with a detector; all but the first are flipped, cropped and recoloured at random.
+    #[param(default = 1, range = 1..=1000, former = "versions")]
+    pub augmented_versions: usize,
 }
 
 impl Fit for Seq2SeqNms {
@@ -64,16 +64,17 @@ impl Fit for Seq2SeqNms {
     ) -> Result<Statistics> {
         let dataset = open_for_training::<Self>(dataset, job)?;
         let val_dataset = val_dataset.map(|dataset| open_for_training::<Self>(dataset, job)).transpose()?;
-        let classes = wanted_classes(&fit_params.classes, &dataset.classes())?;
+        let classes = selected_classes(&fit_params.classes, &dataset.classes())?;
         let training = Training { base, params, fit_params, classes, job };
         let Some(detector) = &fit_params.detector else {
             return training.run(&*dataset, val_dataset.as_deref());
         };
         let seed = fit_params.training.seed;
-        let found = |dataset, versions| Candidates::new(dataset, detector, versions, seed, Device::Cpu);
-        let val_dataset = val_dataset.as_deref().map(|dataset| found(dataset, 1)).transpose()?;
+        let with_detections =
+            |dataset, versions| Candidates::new(dataset, detector, versions, seed, Device::Cpu);
+        let val_dataset = val_dataset.as_deref().map(|dataset| with_detections(dataset, 1)).transpose()?;
         let val_dataset = val_dataset.as_ref().map(|dataset| dataset as &dyn DatasetIterator);
-        training.run(&found(&*dataset, fit_params.versions)?, val_dataset)
+        training.run(&with_detections(&*dataset, fit_params.augmented_versions)?, val_dataset)
     }
 }
 
@@ -94,7 +95,7 @@ impl Training<'_> {
         let Self { base, params, fit_params, classes, job } = self;
         let variant = base.map_or(Ok(fit_params.variant), |model| variant_of(model.manifest()))?;
         let sizes = NetworkSizes { variant, dropout: fit_params.dropout };
-        let device = begin(job, &fit_params.training)?;
+        let device = seeded_device(job, &fit_params.training)?;
         let network = network_from_base(Seq2SeqNmsNetwork::new(&sizes, &device), base)?;
         let objective = NmsObjective {
             params,

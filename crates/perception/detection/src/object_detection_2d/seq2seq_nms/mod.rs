@@ -1,13 +1,13 @@
-//! Seq2Seq-NMS: a network that tells which of overlapping boxes to keep, by how they lie and how they look.
+//! Seq2Seq-NMS: learned non-maximum suppression by geometry and appearance of boxes.
 //!
 //! C. Symeonidis, I. Mademlis, I. Pitas, N. Nikolaidis, Neural Attention-Driven Non-Maximum Suppression for Person
-//! Detection, IEEE Transactions on Image Processing 2023. It is a post-processing of its own: give it the boxes of any
-//! detector whose suppression is switched off (`iou_threshold` 1), and the picture. Every box asks the boxes that overlap it
-//! (scaled dot-product attention; the less sure ones are nearly masked), and gets a new score: that of the one box that
-//! should stand for an object stays, that of its doubles falls.
+//! Detection, IEEE Transactions on Image Processing 2023. The learner is a post-processing: its inputs are an image and the
+//! boxes of any detector whose suppression is switched off (`iou_threshold` 1). Every box attends to the boxes that overlap
+//! it (scaled dot-product attention, with a mask against boxes of lower scores) and gets a new score: the score of the one
+//! box that matches an object stays, that of its duplicates falls.
 //!
-//! Two things differ from OpenDR: a box asks its 16 nearest instead of all, which costs little memory; and the network says
-//! what is added to the detector's score (in logits), so that one that learned nothing changes nothing.
+//! Two things differ from OpenDR: a box attends to its 16 nearest instead of all, which needs little memory; and the output
+//! of the network is added to the logit of the detector's score, so an untrained network changes nothing.
 
 #[cfg(feature = "training")]
 mod candidates;
@@ -40,26 +40,26 @@ use opendr_perception_common::suppression::Candidate;
 use described::{Choice, Described};
 use relations::{GEOMETRY, NEIGHBOURS};
 
-/// What a user may set.
+/// Parameters of [`Seq2SeqNms`].
 #[derive(Debug, Clone, Params)]
 pub struct Seq2SeqNmsParams {
-    /// Boxes whose new score is below this are dropped.
+    /// New score below which boxes are dropped.
     #[param(default = 0.1, range = 0.0..=1.0, live)]
     pub threshold: f32,
-    /// Of boxes that overlap more than this (intersection over union) only the best is looked at.
+    /// IoU above which only the box with the highest score enters the network.
     #[param(default = 0.8, range = 0.0..=1.0, live)]
     pub iou_filtering: f32,
-    /// So many of the best boxes are looked at.
+    /// Maximum number of boxes that enter the network, highest scores first.
     #[param(default = 400, range = 1..=1000, live, alias = "top_k")]
     pub max_dt_boxes: usize,
 }
 
-/// A picture and all that a detector took for objects in it.
+/// An image and the unsuppressed detections in it.
 #[derive(Debug, Clone, Copy, Inputs)]
 pub struct Seq2SeqNmsInputs<'a> {
-    /// The picture.
+    /// Image.
     pub image: &'a Image,
-    /// Its boxes before suppression; boxes of classes that the model does not know are left out.
+    /// Boxes before suppression; boxes of classes that the model does not have are dropped.
     pub detections: &'a BoundingBoxList,
 }
 
@@ -79,23 +79,25 @@ struct Scratch {
     described: Described,
 }
 
-/// The network in every container. Of `boxes` boxes: `own` `[boxes, 14]`, `pairs` `[boxes, 16, 14]`, `neighbours`
-/// `[boxes, 16]`, `mask` `[boxes, 16]`, `appearance` `[boxes, numbers]`, to `change` `[boxes, 1]`.
+/// File name of the network in a container. Inputs: `own` `[boxes, 14]`, `pairs` `[boxes, 16, 14]`, `neighbours`
+/// `[boxes, 16]`, `mask` `[boxes, 16]`, `appearance` `[boxes, values]`. Output: `change` `[boxes, 1]`.
 const FILE: &str = "model.onnx";
-/// Where a container says its variant.
+/// Key of the variant in the `inputs` of the manifest.
 const VARIANT: &str = "variant";
 
 impl Learner for Seq2SeqNms {
     const SPEC: Spec = Spec::new("seq2seq_nms", Task::ObjectDetection2d)
         .class("Seq2SeqNMSLearner")
-        .about("Tells which of a detector's overlapping boxes to keep, by how they lie and look; it trains.")
+        .about(
+            "Learned non-maximum suppression of a detector's boxes, by geometry and appearance; trainable.",
+        )
         .without_effect(&[
             ("app_feats", "boxes are always described by FMoD"),
-            ("fmod_map_type", "FMoD always looks at edges"),
-            ("fmod_map_bin", "a place has an edge or has none"),
+            ("fmod_map_type", "FMoD always describes edges"),
+            ("fmod_map_bin", "the edge map is always binary"),
             ("app_input_dim", "it follows from the variant"),
-            ("temp_path", "what fit writes lies in its output folder"),
-            ("checkpoint_load_iter", "fit goes on from the last checkpoint of its output folder"),
+            ("temp_path", "fit writes to its output folder"),
+            ("checkpoint_load_iter", "fit resumes from the last checkpoint of its output folder"),
         ]);
     type Params = Seq2SeqNmsParams;
     type Input<'a> = Seq2SeqNmsInputs<'a>;
@@ -106,20 +108,20 @@ impl Learner for Seq2SeqNms {
         let variant = variant_of(model.manifest())?;
         let classes = model.classes().clone();
         if classes.is_empty() {
-            return Err(Error::format("the model names no classes; train or get it anew"));
+            return Err(Error::format("the model names no classes; train or download it again"));
         }
         let session = Session::open(&model.file(FILE)?, device)?;
-        let wanted: [&[usize]; 5] =
+        let expected: [&[usize]; 5] =
             [&[GEOMETRY], &[NEIGHBOURS, GEOMETRY], &[NEIGHBOURS], &[NEIGHBOURS], &[variant.moments().len()]];
-        let fits = session.inputs().len() == wanted.len()
-            && session.inputs().iter().zip(wanted).all(|(input, wanted)| {
+        let fits = session.inputs().len() == expected.len()
+            && session.inputs().iter().zip(expected).all(|(input, expected)| {
                 let dims = input.dims.get(1..).unwrap_or_default();
-                dims.len() == wanted.len()
-                    && dims.iter().zip(wanted).all(|(dim, wanted)| *dim == Some(*wanted))
+                dims.len() == expected.len()
+                    && dims.iter().zip(expected).all(|(dim, expected)| *dim == Some(*expected))
             });
         if !fits || session.outputs().len() != 1 {
             return Err(Error::format(format!(
-                "{FILE} does not take the five inputs of the variant {:?} and give one output; train or get it anew",
+                "{FILE} does not have the five inputs and the output of the variant {:?}; train or download it again",
                 variant.name()
             )));
         }
@@ -161,7 +163,7 @@ impl Learner for Seq2SeqNms {
             let changes = outputs.first().map_or(Ok(&[][..]), TensorView::values::<f32>)?;
             if changes.len() != count {
                 return Err(Error::format(format!(
-                    "{FILE} answers {} numbers to {count} boxes; train or get it anew",
+                    "{FILE} has {} outputs for {count} boxes; train or download it again",
                     changes.len()
                 )));
             }
@@ -182,25 +184,25 @@ impl Learner for Seq2SeqNms {
     }
 }
 
-/// Scores this near to 0 and 1 have the logits of these.
+/// Margin by which scores are kept from 0 and 1.
 const MARGIN: f32 = 1e-4;
 
-/// The logarithm of the odds of a score.
+/// Returns the log-odds of a score.
 fn logit(score: f32) -> f32 {
     let score = score.clamp(MARGIN, 1.0 - MARGIN);
     (score / (1.0 - score)).ln()
 }
 
-/// A score of which the network says the change; 0 where that is no number.
+/// Returns a score whose logit is changed by `change`; 0 when that is NaN.
 fn changed_score(score: f32, change: f32) -> f32 {
     let odds = logit(score) + change;
     if odds.is_nan() { 0.0 } else { 1.0 / (1.0 + (-odds).exp()) }
 }
 
-/// The variant that a container says.
+/// Returns the variant of a container.
 fn variant_of(manifest: &Manifest) -> Result<NmsVariant> {
     let name = manifest.inputs.get(VARIANT).and_then(|name| name.as_str());
     name.and_then(|name| NmsVariant::from_value(&ParamValue::Text(name.to_owned()))).ok_or_else(|| {
-        Error::format(format!("the model's \"inputs\" do not tell its {VARIANT}; train or get it anew"))
+        Error::format(format!("the model's \"inputs\" have no valid {VARIANT}; train or download it again"))
     })
 }

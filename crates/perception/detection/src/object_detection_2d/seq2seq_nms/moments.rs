@@ -1,23 +1,23 @@
-//! FMoD: what a region looks like, by frequencies and moments of its edges.
+//! FMoD: descriptors of regions by frequency moments of their edges.
 //!
-//! Nikitidis et al.'s frame moments descriptor as Symeonidis et al. use it: a pyramid of patches, and of each patch the
-//! statistics of the means of its rows, of the means of its columns, and of all its cells.
+//! Nikitidis et al.'s frame moments descriptor as Symeonidis et al. use it: a pyramid of patches, each with the statistics
+//! of the means of its rows, of the means of its columns, and of all its cells.
 
 use super::edge_map::EdgeMap;
 
-/// Statistics of a patch: mean, deviation, skewness, kurtosis and power of rows, columns and cells.
-const OF_PATCH: usize = 15;
+/// Number of statistics of a patch: mean, deviation, skewness, kurtosis and power of rows, columns and cells.
+const PATCH_STATISTICS: usize = 15;
 
-/// Describes boxes of a picture.
+/// Descriptor of boxes in an image.
 #[derive(Debug, Clone, Copy)]
 pub struct Moments {
-    /// Cells of a box each way.
+    /// Number of cells along each side of a box.
     pub side: usize,
-    /// Levels of the pyramid: 1, 4, 16 patches, and so on.
+    /// Number of levels of the pyramid: 1, 4, 16 patches, and so on.
     pub levels: u32,
 }
 
-/// Work memory.
+/// Work memory of [`Moments::describe`].
 #[derive(Debug, Clone, Default)]
 pub struct MomentsScratch {
     corner_sums: Vec<f32>,
@@ -28,13 +28,13 @@ pub struct MomentsScratch {
 }
 
 impl Moments {
-    /// Numbers that describe a box.
+    /// Returns the number of values per box.
     pub fn len(&self) -> usize {
-        (0..self.levels).map(|level| OF_PATCH << (2 * level)).sum()
+        (0..self.levels).map(|level| PATCH_STATISTICS << (2 * level)).sum()
     }
 
-    /// Appends [`len`](Self::len) numbers for the box `[x0, y0, x1, y1]`, in pixels of the picture. Where nothing differs,
-    /// skewness and kurtosis are 0; both are told by their inverse hyperbolic sine, which keeps outliers near.
+    /// Appends [`len`](Self::len) values for the box `[x0, y0, x1, y1]`, in image pixels. Skewness and kurtosis are 0
+    /// without variance; their inverse hyperbolic sine is stored, which limits outliers.
     pub fn describe(
         &self,
         map: &EdgeMap,
@@ -69,7 +69,7 @@ impl Moments {
     }
 }
 
-/// Mean, standard deviation, skewness, excess kurtosis and power.
+/// Returns mean, standard deviation, skewness, excess kurtosis and power.
 fn statistics(values: &[f32]) -> [f32; 5] {
     let count = values.len().max(1) as f32;
     let mean = values.iter().sum::<f32>() / count;
@@ -83,7 +83,7 @@ fn statistics(values: &[f32]) -> [f32; 5] {
         power += value * value;
     }
     let variance = second / count;
-    // Rounding of equal values is no difference.
+    // Rounding errors of equal values are no variance.
     if variance < 1e-9 {
         return [mean, 0.0, 0.0, 0.0, power / count];
     }
@@ -113,19 +113,19 @@ mod tests {
     }
 
     #[test]
-    fn patches_are_told_apart() {
-        // Stripes in the upper left quarter alone.
+    fn patches_have_their_own_statistics() {
+        // Stripes in the upper left quarter only.
         let level = |at: usize| if at % 64 < 32 && at / 64 < 32 && at % 8 < 4 { 255 } else { 0 };
         let levels = (0..64 * 64).flat_map(|at| [level(at); 3]).collect();
         let mut map = EdgeMap::default();
-        map.look(Image::from_rgb8(levels, 64, 64).unwrap().view(), 64).unwrap();
+        map.compute(Image::from_rgb8(levels, 64, 64).unwrap().view(), 64).unwrap();
         let moments = Moments { side: 16, levels: 2 };
         let mut description = Vec::new();
         moments.describe(&map, [0.0, 0.0, 64.0, 64.0], &mut MomentsScratch::default(), &mut description);
         assert_eq!(description.len(), moments.len());
         assert_eq!(moments.len(), 15 + 60);
         assert!(description.iter().all(|number| number.is_finite()));
-        // The mean over the cells of the four patches.
+        // Means over the cells of the four patches.
         let means: Vec<_> = description[15..].chunks_exact(15).map(|patch| patch[10]).collect();
         assert!(means[0] > 0.5 && means[3] == 0.0 && means[1] < 0.2, "{means:?}");
     }

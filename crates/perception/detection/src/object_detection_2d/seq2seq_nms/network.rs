@@ -1,4 +1,4 @@
-//! The network as it is trained.
+//! Seq2Seq-NMS's network for training.
 
 use burn::module::{Module, Param};
 use burn::nn::{Dropout, DropoutConfig, Initializer, LayerNorm, LayerNormConfig, Linear, LinearConfig};
@@ -8,34 +8,34 @@ use burn::tensor::{Device, Int, Tensor};
 use super::NmsVariant;
 use super::relations::{GEOMETRY, NEIGHBOURS};
 
-/// Heads of the attention.
+/// Number of attention heads.
 const HEADS: usize = 2;
 
-/// What a network is made for.
+/// Sizes of the network.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct NetworkSizes {
-    /// Which network.
+    /// Variant of the network.
     pub variant: NmsVariant,
-    /// Share of features that are left out in training.
+    /// Dropout probability.
     pub dropout: f64,
 }
 
 /// Boxes as tensors.
 #[derive(Debug, Clone)]
 pub(super) struct BoxTensors {
-    /// `[boxes, GEOMETRY]`.
+    /// Geometry of the boxes, `[boxes, GEOMETRY]`.
     pub own: Tensor<2>,
-    /// `[boxes, NEIGHBOURS, GEOMETRY]`.
+    /// Geometry of the neighbours, `[boxes, NEIGHBOURS, GEOMETRY]`.
     pub pairs: Tensor<3>,
-    /// `[boxes, NEIGHBOURS]`.
+    /// Indices of the neighbours, `[boxes, NEIGHBOURS]`.
     pub neighbours: Tensor<2, Int>,
-    /// `[boxes, NEIGHBOURS]`.
+    /// Additive attention mask, `[boxes, NEIGHBOURS]`.
     pub mask: Tensor<2>,
-    /// `[boxes, numbers]`.
+    /// Appearance, `[boxes, values]`.
     pub appearance: Tensor<2>,
 }
 
-/// The network: what boxes are like, what they are to each other, and units in which each asks its neighbours.
+/// The network: encoders of the boxes and of their relations, and units in which each box attends to its neighbours.
 #[derive(Module, Debug)]
 pub struct Seq2SeqNmsNetwork {
     own: Encoder,
@@ -64,7 +64,7 @@ struct Layer {
     dropout: Dropout,
 }
 
-/// A joint processing unit: boxes ask their neighbours, and neighbours learn what was answered to them.
+/// A joint processing unit: boxes attend to their neighbours, and the result updates the neighbours' features.
 #[derive(Module, Debug)]
 struct Unit {
     narrow: Layer,
@@ -80,7 +80,7 @@ struct Unit {
 }
 
 impl Seq2SeqNmsNetwork {
-    /// A network with weights as training begins with; it changes no score.
+    /// Creates a network with random weights; it changes no score.
     pub(super) fn new(sizes: &NetworkSizes, device: &Device) -> Self {
         let (hidden, long, short, units) = match sizes.variant {
             NmsVariant::Light => (96, 160, 80, 2),
@@ -102,15 +102,16 @@ impl Seq2SeqNmsNetwork {
         }
     }
 
-    /// What is added to the logit of each box's score, `[boxes, 1]`.
+    /// Returns the changes of the logits of the boxes' scores, `[boxes, 1]`.
     pub(super) fn forward(&self, boxes: BoxTensors) -> Tensor<2> {
         let BoxTensors { own, pairs, neighbours, mask, appearance } = boxes;
         let [count, _] = own.dims();
         let neighbours = neighbours.reshape([count * NEIGHBOURS]);
         let appearance = self.appearance.forward(appearance);
-        let looks = of_neighbours(appearance.clone(), neighbours.clone());
+        let neighbour_appearance = of_neighbours(appearance.clone(), neighbours.clone());
         let mut queries = self.queries.forward(Tensor::cat(vec![self.own.forward(own), appearance], 1));
-        let mut keys = self.keys.forward(Tensor::cat(vec![self.pairs.forward(pairs), looks], 2));
+        let mut keys =
+            self.keys.forward(Tensor::cat(vec![self.pairs.forward(pairs), neighbour_appearance], 2));
         let mask = mask.reshape([count, 1, 1, NEIGHBOURS]);
         for unit in &self.units {
             (queries, keys) = unit.forward(queries, keys, mask.clone(), neighbours.clone());
@@ -119,7 +120,7 @@ impl Seq2SeqNmsNetwork {
     }
 }
 
-/// `[boxes, features]` of the neighbours of each box, `[boxes, NEIGHBOURS, features]`.
+/// Gathers features `[boxes, features]` of the neighbours of each box: `[boxes, NEIGHBOURS, features]`.
 fn of_neighbours(features: Tensor<2>, neighbours: Tensor<1, Int>) -> Tensor<3> {
     let [count, width] = features.dims();
     features.select(0, neighbours).reshape([count, NEIGHBOURS, width])
@@ -177,27 +178,28 @@ impl Unit {
         mask: Tensor<4>,
         neighbours: Tensor<1, Int>,
     ) -> (Tensor<2>, Tensor<3>) {
-        let asking = self.narrow.forward(queries.clone());
-        let answers = self.attend(
-            self.norm_queries.forward(asking.clone()),
+        let hidden = self.narrow.forward(queries.clone());
+        let attended = self.attend(
+            self.norm_queries.forward(hidden.clone()),
             self.norm_keys.forward(keys.clone()),
             mask,
         );
-        let asking = asking + answers;
-        let told = asking.clone() * self.scale.val().unsqueeze::<2>();
-        (queries + self.widen.forward(asking), keys + of_neighbours(told, neighbours))
+        let hidden = hidden + attended;
+        let update = hidden.clone() * self.scale.val().unsqueeze::<2>();
+        (queries + self.widen.forward(hidden), keys + of_neighbours(update, neighbours))
     }
 
-    /// What the neighbours `[boxes, NEIGHBOURS, features]` answer to each of `asking` `[boxes, features]`.
-    fn attend(&self, asking: Tensor<2>, asked: Tensor<3>, mask: Tensor<4>) -> Tensor<2> {
-        let [count, width] = asking.dims();
+    /// Attends from `hidden` `[boxes, features]` to the neighbours `[boxes, NEIGHBOURS, features]`.
+    fn attend(&self, hidden: Tensor<2>, context: Tensor<3>, mask: Tensor<4>) -> Tensor<2> {
+        let [count, width] = hidden.dims();
         let depth = width / HEADS;
-        let query = self.query.forward(asking).reshape([count, HEADS, 1, depth]);
-        let heads = |asked: Tensor<3>| asked.reshape([count, NEIGHBOURS, HEADS, depth]).permute([0, 2, 1, 3]);
-        let key = heads(self.key.forward(asked.clone())).swap_dims(2, 3);
-        let value = heads(self.value.forward(asked));
+        let query = self.query.forward(hidden).reshape([count, HEADS, 1, depth]);
+        let heads =
+            |context: Tensor<3>| context.reshape([count, NEIGHBOURS, HEADS, depth]).permute([0, 2, 1, 3]);
+        let key = heads(self.key.forward(context.clone())).swap_dims(2, 3);
+        let value = heads(self.value.forward(context));
         let weights = softmax(query.matmul(key) / (depth as f64).sqrt() + mask, 3);
-        let answers = self.dropout.forward(weights).matmul(value).reshape([count, width]);
-        self.dropout.forward(gelu(self.out.forward(answers)))
+        let attended = self.dropout.forward(weights).matmul(value).reshape([count, width]);
+        self.dropout.forward(gelu(self.out.forward(attended)))
     }
 }

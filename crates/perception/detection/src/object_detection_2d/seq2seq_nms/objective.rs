@@ -1,4 +1,4 @@
-//! Batches, loss and container.
+//! Training objective of Seq2Seq-NMS: batches, loss and container.
 
 use burn::tensor::activation::softplus;
 use burn::tensor::{Device, Tensor, TensorData};
@@ -19,20 +19,20 @@ use super::network::{BoxTensors, NetworkSizes, Seq2SeqNmsNetwork};
 use super::relations::{GEOMETRY, NEIGHBOURS};
 use super::{FILE, Seq2SeqNms, Seq2SeqNmsParams, VARIANT, logit};
 
-/// What the training minimises: the weighted cross-entropy of "this is the box of its object".
+/// Training objective of Seq2Seq-NMS: the weighted cross-entropy of "this box matches its object".
 pub(super) struct NmsObjective<'a> {
     pub params: &'a Seq2SeqNmsParams,
     pub classes: Classes,
     pub sizes: NetworkSizes,
-    /// From this intersection over union on, a box can stand for an object.
+    /// Minimum IoU of a box with its object.
     pub least_overlap: f32,
-    /// How much a box counts that stands for an object, against one that does not.
+    /// Weight of boxes that match an object, relative to boxes that do not.
     pub positive_weight: f32,
 }
 
-/// Labels are so far from 0 and 1, as in OpenDR.
+/// Label smoothing, as in OpenDR.
 const SMOOTHING: f32 = 0.02;
-/// Boxes with more of their area in a crowd do not count.
+/// Share of a box's area in a crowd above which it is ignored.
 const IN_CROWD: f32 = 0.5;
 
 impl Objective for NmsObjective<'_> {
@@ -47,7 +47,7 @@ impl Objective for NmsObjective<'_> {
     fn loss(&self, network: &Seq2SeqNmsNetwork, batch: &BoxBatch, device: &Device) -> Result<Loss> {
         let count = batch.described.relations.len();
         if count == 0 {
-            // A batch without boxes teaches nothing, but has to have a gradient.
+            // A batch without boxes has no loss, but needs a gradient.
             return Ok((network.forward(batch.one_empty_box(&self.sizes, device)).sum() * 0.0).into());
         }
         let odds: Vec<f32> = batch
@@ -58,8 +58,8 @@ impl Objective for NmsObjective<'_> {
             .collect();
         let odds = Tensor::<1>::from_data(TensorData::new(odds, [count]), device);
         let scores = network.forward(batch.tensors(&self.sizes, device)).reshape([count]) + odds;
-        let told: Vec<f32> = scores.clone().detach().into_data().iter::<f32>().collect();
-        let (labels, weights) = self.labels(batch, &told);
+        let score_values: Vec<f32> = scores.clone().detach().into_data().iter::<f32>().collect();
+        let (labels, weights) = self.labels(batch, &score_values);
         let sum = weights.iter().sum::<f32>().max(1.0);
         let [labels, weights] = [labels, weights]
             .map(|numbers| Tensor::<1>::from_data(TensorData::new(numbers, [count]), device));
@@ -93,8 +93,8 @@ impl Objective for NmsObjective<'_> {
 }
 
 impl NmsObjective<'_> {
-    /// For each box what its score should be, and how much it counts. The surest by `scores` choose their objects first, as
-    /// they do when precision is measured.
+    /// Returns the label and the weight of each box. Boxes match objects in the order of `scores`, highest first, as in the
+    /// evaluation.
     fn labels(&self, batch: &BoxBatch, scores: &[f32]) -> (Vec<f32>, Vec<f32>) {
         let (mut labels, mut weights) = (Vec::with_capacity(scores.len()), Vec::with_capacity(scores.len()));
         let mut rest = scores;
@@ -116,18 +116,18 @@ impl NmsObjective<'_> {
     }
 }
 
-/// The boxes of a picture and its objects.
+/// The boxes of an image and its objects.
 #[derive(Debug, Default)]
 pub(super) struct PictureBoxes {
     pub boxes: Vec<Candidate>,
-    /// Class and corners of each.
+    /// Class index and corners of each object.
     pub objects: Vec<(u32, [f32; 4])>,
-    /// Groups of objects that nobody counted.
+    /// Corners of crowds.
     pub crowds: Vec<[f32; 4]>,
 }
 
 impl PictureBoxes {
-    /// Which boxes stand for an object, each for another.
+    /// Returns which boxes match an object, each a different one.
     fn matched(&self, scores: &[f32], least_overlap: f32) -> Vec<bool> {
         let mut order: Vec<usize> = (0..self.boxes.len().min(scores.len())).collect();
         order.sort_by(|a, b| scores[*b].total_cmp(&scores[*a]));
@@ -159,7 +159,7 @@ impl PictureBoxes {
     }
 }
 
-/// Boxes of several pictures.
+/// Boxes of several images.
 #[derive(Debug, Default)]
 pub(super) struct BoxBatch {
     pub pictures: Vec<PictureBoxes>,
@@ -194,7 +194,7 @@ impl BoxBatch {
     }
 }
 
-/// Makes batches of samples of a picture and its boxes, with its objects for a target.
+/// Collates samples of an image and its boxes, with its objects as annotation.
 pub(super) struct BoxBatches {
     sizes: NetworkSizes,
     choice: Choice,
@@ -213,8 +213,8 @@ impl Collate for BoxBatches {
             (&sample.data[..], &sample.target)
         else {
             return Err(Error::invalid_input(
-                "the sample is not a picture and what a detector found in it, with boxes of its objects; give such \
-                 samples, or pictures with boxes and a `detector`",
+                "the sample is not an image with detections, annotated with boxes of its objects; give such \
+                 samples, or images with boxes and a `detector`",
             ));
         };
         let mut picture = PictureBoxes::default();

@@ -1,42 +1,42 @@
-//! What boxes have to do with each other, as numbers.
+//! Geometric relations between boxes.
 
 use opendr_perception_common::suppression::{Candidate, iou};
 
-/// Numbers that tell how one box lies to another.
+/// Number of values of the geometry of one box relative to another.
 pub const GEOMETRY: usize = 14;
-/// A box looks at so many: itself, and those that overlap it most.
+/// Number of neighbours of a box: itself, and those that overlap it most.
 pub const NEIGHBOURS: usize = 16;
 
-/// Boxes that overlap less (intersection over union) have nothing to do with each other, as in OpenDR.
+/// Minimum IoU of neighbours, as in OpenDR.
 const LEAST_OVERLAP: f32 = 0.2;
-/// The logarithm of how much a box counts that is less sure than the one that looks at it; OpenDR multiplies with 0.1.
-const LESS_SURE: f32 = -std::f32::consts::LN_10;
-/// What keeps an empty place from being looked at.
-const NOBODY: f32 = -1e4;
-/// Numbers beyond this say no more.
+/// Additive mask against neighbours of a lower score: the logarithm of OpenDR's factor 0.1.
+const LOWER_SCORE_MASK: f32 = -std::f32::consts::LN_10;
+/// Additive mask of padding.
+const PADDING_MASK: f32 = -1e4;
+/// Limit of the values.
 const LARGEST: f32 = 50.0;
 
-/// The boxes of a picture, or of several one after the other.
+/// The boxes of an image, or of several images one after the other.
 #[derive(Debug, Clone, Default)]
 pub struct Relations {
-    /// Each box, told as if it lay to itself, `[boxes, GEOMETRY]`.
+    /// Geometry of each box relative to itself, `[boxes, GEOMETRY]`.
     pub own: Vec<f32>,
-    /// How each neighbour lies to the box, `[boxes, NEIGHBOURS, GEOMETRY]`.
+    /// Geometry of each neighbour relative to the box, `[boxes, NEIGHBOURS, GEOMETRY]`.
     pub pairs: Vec<f32>,
-    /// The number of each neighbour; the box itself first, and again in empty places: `[boxes, NEIGHBOURS]`.
+    /// Index of each neighbour, the box itself first and as padding: `[boxes, NEIGHBOURS]`.
     pub neighbours: Vec<i64>,
-    /// What is added to the attention, `[boxes, NEIGHBOURS]`: 0, less for who is less sure, least for empty places.
+    /// Additive attention mask, `[boxes, NEIGHBOURS]`: 0, less for neighbours of lower scores, least for padding.
     pub mask: Vec<f32>,
     others: Vec<(f32, usize)>,
 }
 
 impl Relations {
-    /// How many boxes there are.
+    /// Returns the number of boxes.
     pub fn len(&self) -> usize {
         self.own.len() / GEOMETRY
     }
 
-    /// Forgets all boxes.
+    /// Clears all boxes.
     pub fn clear(&mut self) {
         self.own.clear();
         self.pairs.clear();
@@ -44,7 +44,7 @@ impl Relations {
         self.mask.clear();
     }
 
-    /// Adds the boxes of a picture of `size` pixels, the surest first.
+    /// Adds the boxes of an image of `size` pixels, sorted by descending score.
     pub fn add(&mut self, boxes: &[Candidate], size: [f32; 2]) {
         let first = self.len() as i64;
         for (at, found) in boxes.iter().enumerate() {
@@ -66,16 +66,16 @@ impl Relations {
                 self.neighbours.push(first + other as i64);
                 self.mask.push(match place {
                     Some(other) if other <= at => 0.0,
-                    Some(_) => LESS_SURE,
-                    None => NOBODY,
+                    Some(_) => LOWER_SCORE_MASK,
+                    None => PADDING_MASK,
                 });
             }
         }
     }
 }
 
-/// How `other` lies to `found` in a picture of `size` pixels: where, how far, its sides, their overlap, its area, its score
-/// and its shape; both by itself and as compared with `found`.
+/// Returns the geometry of `other` relative to `found` in an image of `size` pixels: offset, distance, sides, overlap,
+/// area, score and shape, both absolute and relative to `found`.
 fn geometry(found: &Candidate, other: &Candidate, size: [f32; 2]) -> [f32; GEOMETRY] {
     let sides = |corners: &[f32; 4]| [corners[2] - corners[0], corners[3] - corners[1]];
     let middle = |corners: &[f32; 4]| [(corners[0] + corners[2]) / 2.0, (corners[1] + corners[3]) / 2.0];
@@ -84,7 +84,7 @@ fn geometry(found: &Candidate, other: &Candidate, size: [f32; 2]) -> [f32; GEOME
     let ([x, y], [own_x, own_y]) = (middle(&other.corners), middle(&found.corners));
     let (dx, dy) = (x - own_x, y - own_y);
     let far = (dx * dx + dy * dy) / (unit[0] * unit[0] + unit[1] * unit[1]);
-    // Areas as the sides of squares, so that all numbers are of one order.
+    // Areas as the sides of squares, so that all values have one order of magnitude.
     let square = (width * height).sqrt();
     let numbers = [
         dx / unit[0],
@@ -127,22 +127,22 @@ mod tests {
         relations.add(&boxes, [1000.0, 500.0]);
         assert_eq!(relations.len(), 6);
         let of = |at: usize| &relations.neighbours[at * NEIGHBOURS..(at + 1) * NEIGHBOURS];
-        // 38 of 42 are shared with the third, 30 of 50 with the second; numbers count the first picture's.
+        // The overlap with the third is 38 of 42, with the second 30 of 50; indices include the first image's box.
         assert_eq!(of(1)[..4], [1, 3, 2, 1]);
         assert_eq!(of(0), [0; NEIGHBOURS]);
         assert_eq!(of(4), [4; NEIGHBOURS]);
         assert_eq!(of(5), [5; NEIGHBOURS], "another class");
         let mask = |at: usize| &relations.mask[at * NEIGHBOURS..at * NEIGHBOURS + 4];
-        assert_eq!(mask(1), [0.0, LESS_SURE, LESS_SURE, NOBODY]);
-        assert_eq!(mask(3), [0.0, 0.0, 0.0, NOBODY]);
+        assert_eq!(mask(1), [0.0, LOWER_SCORE_MASK, LOWER_SCORE_MASK, PADDING_MASK]);
+        assert_eq!(mask(3), [0.0, 0.0, 0.0, PADDING_MASK]);
     }
 
     #[test]
     fn geometry_by_hand() {
         let numbers = geometry(&found(0.0, 0.9, 0), &found(10.0, 0.5, 0), [400.0, 200.0]);
-        let wanted = [0.5, 0.0, 0.2, 1.0, 2.0, 1.0, 8.0, 3.0, 1.0, 4.0, 2.5, -2.0, 2.0, 1.0];
-        for (got, wanted) in numbers.iter().zip(wanted) {
-            assert!((got - wanted).abs() < 1e-5, "{numbers:?}");
+        let expected = [0.5, 0.0, 0.2, 1.0, 2.0, 1.0, 8.0, 3.0, 1.0, 4.0, 2.5, -2.0, 2.0, 1.0];
+        for (got, expected) in numbers.iter().zip(expected) {
+            assert!((got - expected).abs() < 1e-5, "{numbers:?}");
         }
     }
 }

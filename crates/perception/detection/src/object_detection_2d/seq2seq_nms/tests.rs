@@ -1,4 +1,4 @@
-//! The network as a whole: trained on drawn pictures, exported, loaded, checked.
+//! Tests of the whole network: training on synthetic images, export, loading, the learner's contract.
 
 use std::path::PathBuf;
 
@@ -7,15 +7,15 @@ use opendr_engine::learner::{Fit, FitJob, Handle};
 use opendr_engine::target::BoundingBox;
 use opendr_engine::{ErrorKind, Random, Statistics, Value};
 use opendr_perception_common::suppression::iou;
+use opendr_perception_testing::learner_checks::check_trained_learner;
 use opendr_perception_testing::overfit::losses_on_one_batch;
-use opendr_perception_testing::promises::check;
 use opendr_training::{ScheduleKind, TrainingParams};
 
 use super::network::{NetworkSizes, Seq2SeqNmsNetwork};
 use super::objective::NmsObjective;
 use super::*;
 
-/// Two striped boards each, found five times over; and two boxes of nothing.
+/// Synthetic images with two striped boards, each detected five times, and two false detections.
 struct Boards(usize);
 
 const WIDTH: usize = 160;
@@ -39,7 +39,7 @@ impl DatasetIterator for Boards {
 }
 
 fn boards(index: usize) -> (Image, BoundingBoxList, BoundingBoxList) {
-    let mut random = Random::at([5, index as u64]);
+    let mut random = Random::from_key([5, index as u64]);
     let mut levels = vec![60u8; WIDTH * HEIGHT * 3];
     let (mut found, mut truth) = (Vec::new(), Vec::new());
     for left in [random.below(20), 80 + random.below(20)] {
@@ -103,7 +103,7 @@ fn loaded(job: &FitJob<'_>, threshold: f32) -> Handle<Seq2SeqNms> {
 }
 
 #[test]
-fn learns_one_batch_by_heart() {
+fn one_batch_is_overfitted() {
     let params = Seq2SeqNmsParams::default();
     let sizes = NetworkSizes { variant: NmsVariant::Light, dropout: 0.0 };
     let classes = Boards(1).classes();
@@ -112,24 +112,24 @@ fn learns_one_batch_by_heart() {
     let samples = (0..4).map(|index| Boards(4).get(index).unwrap()).collect();
     let network = |device: &burn::tensor::Device| Seq2SeqNmsNetwork::new(&sizes, device);
     let [before, after] = losses_on_one_batch(&objective, network, samples, 0.001);
-    // Labels of 0.02 and 0.98 cost 0.098 at best.
+    // Labels of 0.02 and 0.98 have a minimum loss of 0.098.
     assert!(after < 0.3 * before && after < 0.15, "{before} {after}");
 }
 
 #[test]
-fn of_doubles_one_stays_and_what_is_nothing_goes() {
+fn duplicates_and_false_detections_are_suppressed() {
     let folder = scratch("boards");
     let job = FitJob { device: Device::Cpu, ..FitJob::new(&folder) };
     let statistics = trained(None, 24, &fit_params(60, 0.002), &job).unwrap();
     let losses = &statistics.curves["loss"];
     assert!(losses[losses.len() - 1] < 0.5 * losses[0], "{losses:?}");
     let mut learner = loaded(&job, 0.5);
-    // Boards that were not trained on.
-    let (mut right, mut told) = (0, 0);
+    // Boards outside the training set.
+    let (mut right, mut kept) = (0, 0);
     for index in 100..110 {
         let (image, detections, truth) = boards(index);
         let found = learner.infer(Seq2SeqNmsInputs { image: &image, detections: &detections }).unwrap();
-        told += found.boxes.len();
+        kept += found.boxes.len();
         right += truth
             .boxes
             .iter()
@@ -137,14 +137,14 @@ fn of_doubles_one_stays_and_what_is_nothing_goes() {
             .count();
         assert!(found.boxes.windows(2).all(|pair| pair[0].confidence >= pair[1].confidence));
     }
-    assert!(right >= 16 && told <= 24, "{right} of 20 found, {told} told of 120");
+    assert!(right >= 16 && kept <= 24, "{right} of 20 detected, {kept} boxes kept of 120");
     let calls = (0..3).map(|index| Boards(3).get(index).unwrap().data).collect();
-    check::<Seq2SeqNms>(&job.model(), &folder.join("promises"), calls);
+    check_trained_learner::<Seq2SeqNms>(&job.model(), &folder.join("promises"), calls);
     std::fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
-fn what_learned_nothing_changes_nothing_and_training_goes_on() {
+fn an_untrained_network_changes_nothing_and_training_resumes() {
     let folder = scratch("still");
     let [first, second] = ["first", "second"]
         .map(|name| folder.join(name))
@@ -160,7 +160,7 @@ fn what_learned_nothing_changes_nothing_and_training_goes_on() {
         });
         assert!(same, "{found}");
     }
-    // A further training takes the variant of its base.
+    // A further training keeps the variant of its model.
     let base = Model::open(first.model()).unwrap();
     let other = Seq2SeqNmsFitParams { variant: NmsVariant::Full, ..fit_params(1, 0.0) };
     trained(Some(&base), 2, &other, &second).unwrap();
@@ -171,30 +171,30 @@ fn what_learned_nothing_changes_nothing_and_training_goes_on() {
 }
 
 #[test]
-fn whatever_a_detector_says_is_answered() {
+fn invalid_detections_are_handled() {
     let folder = scratch("hostile");
     let job = FitJob { device: Device::Cpu, ..FitJob::new(&folder) };
     trained(None, 2, &fit_params(1, 0.0), &job).unwrap();
     let mut learner = loaded(&job, 0.0);
     let (image, ..) = boards(0);
-    let mut told = |boxes: Vec<BoundingBox>, classes: &[&str]| {
+    let mut kept = |boxes: Vec<BoundingBox>, classes: &[&str]| {
         let classes = classes.iter().copied().collect();
         let detections = BoundingBoxList { classes, ..boxes.into() };
         learner.infer(Seq2SeqNmsInputs { image: &image, detections: &detections }).unwrap().boxes.len()
     };
-    assert_eq!(told(Vec::new(), &[]), 0);
+    assert_eq!(kept(Vec::new(), &[]), 0);
     let nonsense = [f32::NAN, f32::INFINITY, -10.0, 0.0, 1e30]
         .map(|side| BoundingBox::new(0, 1.0, 1.0, side, 20.0, 0.9));
-    assert!(told(nonsense.into(), &[]) <= 1);
+    assert!(kept(nonsense.into(), &[]) <= 1);
     let scores =
         [f32::NAN, f32::INFINITY, -1.0].map(|score| BoundingBox::new(0, 1.0, 1.0, 20.0, 20.0, score));
-    assert_eq!(told(scores.into(), &[]), 0);
+    assert_eq!(kept(scores.into(), &[]), 0);
     let one = |name: i64| vec![BoundingBox::new(name, 1.0, 1.0, 20.0, 20.0, 0.9)];
-    assert_eq!((told(one(0), &[]), told(one(7), &[])), (1, 0));
-    assert_eq!((told(one(0), &["cat", "board"]), told(one(1), &["cat", "board"])), (0, 1));
+    assert_eq!((kept(one(0), &[]), kept(one(7), &[])), (1, 0));
+    assert_eq!((kept(one(0), &["cat", "board"]), kept(one(1), &["cat", "board"])), (0, 1));
     let many = (0..3000)
         .map(|at| BoundingBox::new(0, (at % 60) as f32 * 300.0, (at / 60) as f32 * 50.0, 20.0, 20.0, 0.9));
-    assert_eq!(told(many.collect(), &[]), 400);
+    assert_eq!(kept(many.collect(), &[]), 400);
     let boxes = BoundingBoxList::default();
     let grey = Image::from_rgb8(vec![9; 3], 1, 1).unwrap();
     assert!(learner.infer(Seq2SeqNmsInputs { image: &grey, detections: &boxes }).is_ok());
@@ -202,7 +202,7 @@ fn whatever_a_detector_says_is_answered() {
 }
 
 #[test]
-fn samples_without_candidates_are_told_of() {
+fn samples_without_candidates_are_refused() {
     struct Plain;
     impl Dataset for Plain {}
     impl DatasetIterator for Plain {

@@ -1,17 +1,17 @@
-//! Anchors: the boxes that a single-shot detector starts from (default boxes, Liu et al., SSD, ECCV 2016, section 2.2).
+//! Anchors: the prior boxes of a single-shot detector (default boxes, Liu et al., SSD, ECCV 2016, section 2.2).
 //!
-//! A feature map of a level has a cell every [`AnchorLevel::stride`] pixels, and each cell the same few boxes about its
-//! middle. The network says for each of them which object it shows, and how its edges differ ([`super::coding`]).
+//! The feature map of a level has a cell every [`AnchorLevel::stride`] pixels, and each cell has the same few anchors
+//! around its centre. The network predicts class scores and offsets ([`super::coding`]) for each anchor.
 
 use opendr_engine::{Error, Result};
 use serde::{Deserialize, Serialize};
 
-/// A box by its middle and its sides, in pixels of the network's input.
+/// A box by its centre and its sides, in pixels of the network's input.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Anchor {
-    /// Middle along x.
+    /// Centre along x.
     pub x: f32,
-    /// Middle along y.
+    /// Centre along y.
     pub y: f32,
     /// Width.
     pub width: f32,
@@ -20,7 +20,7 @@ pub struct Anchor {
 }
 
 impl Anchor {
-    /// `[x0, y0, x1, y1]`.
+    /// Returns `[x0, y0, x1, y1]`.
     pub fn corners(&self) -> [f32; 4] {
         let Self { x, y, width, height } = self;
         [x - width / 2.0, y - height / 2.0, x + width / 2.0, y + height / 2.0]
@@ -30,27 +30,27 @@ impl Anchor {
 /// The anchors of one feature map.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AnchorLevel {
-    /// Pixels of the network's input from one cell to the next.
+    /// Pixels of the network's input per cell.
     pub stride: usize,
     /// Width and height of each anchor of a cell, in pixels of the network's input.
     pub sides: Vec<[f32; 2]>,
 }
 
 impl AnchorLevel {
-    /// Anchors of the areas of squares of `sides` pixels, each in all aspect ratios (width over height): Eq. 4 with
-    /// several scales a level.
+    /// Creates anchors with the areas of squares of `sides` pixels, each in all aspect ratios (width over height): Eq. 4
+    /// with several scales per level.
     pub fn new(stride: usize, sides: &[f32], ratios: &[f32]) -> Self {
         let of_side = |side: f32| ratios.iter().map(move |ratio| [side * ratio.sqrt(), side / ratio.sqrt()]);
         Self { stride, sides: sides.iter().copied().flat_map(of_side).collect() }
     }
 
-    /// Cells along one axis of an input of `size` pixels there.
+    /// Returns the number of cells along an axis of `size` pixels.
     pub fn cells(&self, size: usize) -> usize {
         size.div_ceil(self.stride)
     }
 
-    /// The anchors in an input of `[width, height]` pixels, in the order of the network's maps: all of one kind, row by
-    /// row, before the next kind.
+    /// Returns the anchors in an input of `[width, height]` pixels, in the order of the network's maps: all of one kind,
+    /// row by row, before the next kind.
     pub fn anchors(&self, input_size: [usize; 2]) -> impl Iterator<Item = Anchor> {
         let [columns, rows] = input_size.map(|size| self.cells(size));
         self.sides.iter().flat_map(move |sides| {
@@ -58,14 +58,14 @@ impl AnchorLevel {
         })
     }
 
-    /// The anchor of the given sides in a cell.
+    /// Returns the anchor of the given sides in a cell.
     pub fn anchor(&self, [width, height]: [f32; 2], column: usize, row: usize) -> Anchor {
         let middle = |cell: usize| (cell as f32 + 0.5) * self.stride as f32;
         Anchor { x: middle(column), y: middle(row), width, height }
     }
 }
 
-/// Most levels, anchors of a cell, and pixels of a side that a container may ask for.
+/// Limits for a container: number of levels, of anchors per cell, and pixels of a side.
 const MOST_LEVELS: usize = 16;
 const MOST_SIDES: usize = 64;
 const LARGEST: f32 = 65535.0;
@@ -79,7 +79,7 @@ pub struct Anchors {
 }
 
 impl Anchors {
-    /// Levels of the given strides. The squares that anchors have the area of are `scales` strides wide.
+    /// Creates levels of the given strides. Anchors have the areas of squares with sides of `scales` strides.
     pub fn new(strides: &[usize], scales: &[f32], ratios: &[f32]) -> Self {
         let level = |stride: &usize| {
             let sides: Vec<_> = scales.iter().map(|scale| scale * *stride as f32).collect();
@@ -88,15 +88,15 @@ impl Anchors {
         Self { levels: strides.iter().map(level).collect() }
     }
 
-    /// All anchors in an input of `[width, height]` pixels, level after level.
+    /// Returns all anchors in an input of `[width, height]` pixels, level by level.
     pub fn anchors(&self, input_size: [usize; 2]) -> Vec<Anchor> {
         self.levels.iter().flat_map(|level| level.anchors(input_size)).collect()
     }
 
-    /// Checks what a container says.
+    /// Checks the anchors of a container.
     ///
     /// # Errors
-    /// `Format` when there are no levels or far too many, or a stride or side is no number of pixels.
+    /// `Format` when there are no levels or too many, or a stride or side is out of range.
     pub fn check(&self) -> Result<()> {
         let fits = |side: f32| side > 0.0 && side <= LARGEST;
         let sane = |level: &AnchorLevel| {
@@ -108,8 +108,8 @@ impl Anchors {
             return Ok(());
         }
         Err(Error::format(format!(
-            "anchors are 1 to {MOST_LEVELS} levels of a stride and 1 to {MOST_SIDES} sides, all within 0 and {LARGEST} \
-             pixels; the model says {self:?}"
+            "anchors need 1 to {MOST_LEVELS} levels of a stride and 1 to {MOST_SIDES} sides, all between 0 and {LARGEST} \
+             pixels; the model has {self:?}"
         )))
     }
 }

@@ -1,14 +1,14 @@
-//! How a box is told relative to an anchor (Liu et al., SSD, ECCV 2016, Eq. 2).
+//! Encoding of boxes relative to anchors (Liu et al., SSD, ECCV 2016, Eq. 2).
 
 use super::anchors::Anchor;
 
-/// What offsets are divided by, so that they have about unit variance: middles, then logarithms of sides.
+/// Divisors of offsets, for about unit variance: centres, then logarithms of sides.
 pub const VARIANCES: [f32; 2] = [0.1, 0.2];
 
-/// Offsets beyond this give sides of e^(4.6) = 100 anchors; a network that answers more is no more right.
+/// Limit of the logarithm of a side: e^(4.6) = 100 anchors.
 const MOST_LOG: f32 = 4.6;
 
-/// `[dx, dy, log(dw), log(dh)]` of a box `[x0, y0, x1, y1]`, which has an area, relative to `anchor`.
+/// Returns `[dx, dy, log(dw), log(dh)]` of a box `[x0, y0, x1, y1]` of positive area, relative to `anchor`.
 pub fn offsets_from_corners(corners: [f32; 4], anchor: &Anchor) -> [f32; 4] {
     let [x0, y0, x1, y1] = corners;
     [
@@ -19,7 +19,7 @@ pub fn offsets_from_corners(corners: [f32; 4], anchor: &Anchor) -> [f32; 4] {
     ]
 }
 
-/// The box `[x0, y0, x1, y1]` that lies `offsets` from `anchor`.
+/// Returns the box `[x0, y0, x1, y1]` at `offsets` from `anchor`.
 pub fn corners_from_offsets(offsets: [f32; 4], anchor: &Anchor) -> [f32; 4] {
     let side = |log: f32| (log * VARIANCES[1]).min(MOST_LOG).exp();
     Anchor {
@@ -48,7 +48,7 @@ mod tests {
     }
 
     #[test]
-    fn whatever_a_network_answers_is_a_box() {
+    fn any_offsets_give_a_finite_box() {
         let corners = corners_from_offsets([0.0, 0.0, 1e30, f32::INFINITY], &ANCHOR);
         assert!(corners.iter().all(|edge| edge.is_finite()), "{corners:?}");
     }

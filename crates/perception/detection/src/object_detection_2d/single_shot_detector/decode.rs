@@ -1,27 +1,27 @@
-//! From a network's maps to boxes before suppression.
+//! Decoding of a network's outputs to boxes before suppression.
 
 use opendr_perception_common::suppression::Candidate;
 
 use super::anchors::AnchorLevel;
 use super::coding::corners_from_offsets;
 
-/// The maps of one level, each row by row.
+/// The outputs of one level, each row by row.
 #[derive(Debug, Clone, Copy)]
 pub struct LevelMaps<'a> {
-    /// Columns of the maps.
+    /// Number of columns.
     pub columns: usize,
-    /// Rows of the maps.
+    /// Number of rows.
     pub rows: usize,
-    /// For each kind of anchor a map for each class: logits of the scores.
+    /// Logits of the scores: for each kind of anchor a map per class.
     pub scores: &'a [f32],
-    /// For each kind of anchor four maps: its offsets.
+    /// Offsets: for each kind of anchor four maps.
     pub offsets: &'a [f32],
 }
 
 impl LevelMaps<'_> {
     /// Adds the boxes whose score reaches `threshold` to `candidates`, in pixels of the network's input.
     ///
-    /// Scores are compared as logits, so that only what reaches the threshold costs an exponential.
+    /// Scores are compared as logits, so only those that reach the threshold cost an exponential.
     pub fn decode(
         &self,
         level: &AnchorLevel,
@@ -54,7 +54,7 @@ impl LevelMaps<'_> {
     }
 }
 
-/// Whether any score reaches the threshold. Most maps are empty, and this runs over all of them.
+/// Returns whether any score reaches the threshold. Most maps are empty, and this runs over all of them.
 fn any_reaches(scores: &[f32], least: f32) -> bool {
     scores.iter().fold(false, |any, score| any | (*score >= least))
 }

@@ -1,4 +1,4 @@
-//! Training a single-shot detector.
+//! Training of the single-shot detector.
 
 use std::path::Path;
 
@@ -7,34 +7,34 @@ use opendr_engine::learner::{Fit, FitJob};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, ResultExt, Statistics};
-use opendr_perception_common::frozen_layers::{FrozenLayers, is_on_processor};
+use opendr_perception_common::frozen_layers::{FrozenLayers, is_on_cpu};
 use opendr_training::weights::WeightTable;
-use opendr_training::{ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device};
 
-use super::layout::Fitting;
-use super::layout_wish::LayoutWish;
+use super::layout::Resizing;
+use super::layout_options::LayoutOptions;
 use super::matching::Matching;
 use super::network::{BACKBONE_LAYERS, Network, NetworkConfig};
 use super::objective::DetectionObjective;
 use super::{SingleShotDetector, SingleShotDetectorParams};
-use crate::object_detection_2d::wanted_classes;
+use crate::object_detection_2d::selected_classes;
 
 opendr_engine::choices! {
-    /// MobileNetV1 and how many times the paper's channels it has.
+    /// MobileNetV1, by the multiple of the paper's channels.
     pub enum Backbone {
-        /// The width of PoseNet's, whose weights fit.
+        /// 0.75 times the paper's channels, as PoseNet's, whose weights fit.
         MobileNet075 = "mobilenet0.75",
-        /// The paper's width.
+        /// The paper's channels.
         MobileNet100 = "mobilenet1.0",
-        /// Half of it.
+        /// Half of the paper's channels.
         MobileNet050 = "mobilenet0.5",
-        /// A quarter of it.
+        /// A quarter of the paper's channels.
         MobileNet025 = "mobilenet0.25",
     }
 }
 
 impl Backbone {
-    /// How many times the paper's channels it has.
+    /// Returns the multiple of the paper's channels.
     pub fn width(self) -> f64 {
         match self {
             Self::MobileNet025 => 0.25,
@@ -45,40 +45,40 @@ impl Backbone {
     }
 }
 
-/// How it trains.
+/// Training parameters of [`SingleShotDetector`].
 #[derive(Debug, Clone, Params)]
 pub struct SingleShotDetectorFitParams {
-    /// The network that the detector stands on.
+    /// Backbone of the network.
     pub backbone: Backbone,
-    /// Side of the network's input, a multiple of 32; OpenDR's default of 512 costs two and a half times the time.
+    /// Side of the network's input, a multiple of 32; OpenDR's default of 512 takes two and a half times as long.
     #[param(default = 320, range = 96..=1024, unit = "px")]
     pub img_size: usize,
-    /// How a picture is brought to that size.
-    pub fitting: Fitting,
-    /// The classes to find, by their names in the data set; all of it when empty.
+    /// How an image is resized to that side.
+    #[param(former = "fitting")]
+    pub resizing: Resizing,
+    /// Names of the classes to detect, of those of the data set; all when empty.
     pub classes: Vec<String>,
-    /// Pixels of the input from one cell of the finest level to the next, 8 or 16; the coarser ones are for larger
-    /// objects and faster networks.
+    /// Stride of the finest level, 8 or 16. The coarser one suits larger objects and is faster.
     #[param(default = 8, range = 8..=16, unit = "px")]
     pub stride: usize,
     /// Aspect ratios (width over height) of the anchors.
     #[param(default = vec![0.4, 1.0, 2.0], range = 0.05..=20.0)]
     pub aspect_ratios: Vec<f32>,
-    /// Sides of the anchors of each level, in its strides.
+    /// Sides of the anchors of each level, in strides of the level.
     #[param(default = vec![3.0, 4.25], range = 0.5..=32.0)]
     pub anchor_scales: Vec<f32>,
-    /// A container or a file (ONNX, safetensors, PyTorch) whose first layers become the backbone, e.g. PoseNet's.
+    /// Container or file (ONNX, safetensors, PyTorch) whose first layers initialise the backbone, such as PoseNet's.
     pub backbone_weights: Option<String>,
-    /// So many of the backbone's 14 layers, from the input, stay as they are.
+    /// Number of frozen layers, of the backbone's 14, from the input.
     #[param(default = 0, range = 0..=14)]
     pub freeze: usize,
-    /// Boxes with a lower score, which a teacher was not sure of, are neither object nor background.
-    #[param(default = 0.5, range = 0.0..=1.0)]
-    pub least_score: f32,
-    /// Whether pictures are changed at random: mosaic, crop, expansion, flip, colour.
+    /// Score below which boxes, such as those of a teacher, are neither object nor background.
+    #[param(default = 0.5, range = 0.0..=1.0, former = "least_score")]
+    pub min_score: f32,
+    /// Whether images are augmented at random: mosaic, crop, expansion, flip, colour.
     #[param(default = true)]
     pub augment: bool,
-    /// What every training has.
+    /// Parameters of every training.
     #[param(
         flatten,
         lr = 0.001,
@@ -111,7 +111,7 @@ impl Fit for SingleShotDetector {
         let dataset = open_for_training::<Self>(dataset, job)?;
         let mut objective = fit_params.objective(base, &*dataset)?;
         let network = fit_params.network(base, &objective, job)?;
-        if fit_params.freeze >= BACKBONE_LAYERS && is_on_processor(job)? {
+        if fit_params.freeze >= BACKBONE_LAYERS && is_on_cpu(job)? {
             let names = ["fine", "coarse"];
             let backbone = FrozenLayers::new(
                 &network,
@@ -127,18 +127,18 @@ impl Fit for SingleShotDetector {
 
 impl SingleShotDetectorFitParams {
     fn objective(&self, base: Option<&Model>, dataset: &dyn DatasetIterator) -> Result<DetectionObjective> {
-        let wish = LayoutWish {
+        let options = LayoutOptions {
             img_size: self.img_size,
-            fitting: self.fitting,
+            fitting: self.resizing,
             stride: self.stride,
             anchor_scales: &self.anchor_scales,
             aspect_ratios: &self.aspect_ratios,
         };
         Ok(DetectionObjective {
-            layout: wish.layout(base)?,
-            classes: wanted_classes(&self.classes, &dataset.classes())?,
+            layout: options.layout(base)?,
+            classes: selected_classes(&self.classes, &dataset.classes())?,
             matching: Matching::default(),
-            least_score: self.least_score,
+            min_score: self.min_score,
             augment: self.augment,
             frozen: None,
         })
@@ -150,32 +150,30 @@ impl SingleShotDetectorFitParams {
         objective: &DetectionObjective,
         job: &FitJob<'_>,
     ) -> Result<Network> {
-        let levels = &objective.layout.anchors.levels;
-        let config = NetworkConfig {
-            width: self.backbone.width(),
-            strides: levels.iter().map(|level| level.stride).collect(),
-            kinds: levels.first().map_or(0, |level| level.sides.len()),
-            classes: objective.classes.len(),
-        };
-        let network = config.init(&begin(job, &self.training)?);
+        let config = NetworkConfig::new(self.backbone.width(), &objective.layout, objective.classes.len());
+        let network = config.init(&seeded_device(job, &self.training)?);
         let network = match (base, &self.backbone_weights) {
             (Some(model), _) => {
                 let same = model.classes() == &objective.classes;
                 let table = WeightTable::from_bytes(&model.onnx()?)?;
                 network.with_weights(&table, same).context(|| {
-                    format!("going on from {}, a {} is wanted", model.path().display(), self.backbone.name())
+                    format!(
+                        "resuming from {} with the backbone {}",
+                        model.path().display(),
+                        self.backbone.name()
+                    )
                 })?
             }
             (None, Some(path)) => network
                 .with_backbone(&weights_at(Path::new(path))?)
-                .context(|| format!("taking the backbone {} from {path}", self.backbone.name()))?,
+                .context(|| format!("loading the backbone {} from {path}", self.backbone.name()))?,
             (None, None) => network,
         };
         Ok(network.freeze(self.freeze))
     }
 }
 
-/// The weights of a container or of a file.
+/// Loads the weights of a container or of a file.
 fn weights_at(path: &Path) -> Result<WeightTable> {
     let container = path.is_dir() || path.extension().is_some_and(|extension| extension == "zip");
     if container {

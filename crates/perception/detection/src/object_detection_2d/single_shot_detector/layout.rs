@@ -1,18 +1,18 @@
-//! What a container of this learner says of its network: the picture that goes in, and the anchors that come out.
+//! Description of the network in a container: its input image and its anchors.
 
 use opendr_engine::model::Manifest;
 use opendr_engine::{Error, Result};
-use opendr_vision::{Anchor, Preprocess};
+use opendr_vision::{LetterboxAlign, Preprocess};
 use serde::{Deserialize, Serialize};
 
 use super::anchors::Anchors;
 
 opendr_engine::choices! {
-    /// How a picture is brought to the size of the network's input.
-    pub enum Fitting {
-        /// Each axis by itself: every pixel of the input is used, shapes change.
+    /// How an image is resized to the network's input.
+    pub enum Resizing {
+        /// Stretches both axes to the input, which changes the aspect ratio.
         Stretch = "stretch",
-        /// Shapes are kept, and the rest of the input is padding.
+        /// Keeps the aspect ratio and pads the rest.
         Letterbox = "letterbox",
     }
 }
@@ -20,48 +20,48 @@ opendr_engine::choices! {
 /// The network's input, RGB and `[1, 3, height, width]`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ImageLayout {
-    /// Pixels.
+    /// Width in pixels.
     pub width: usize,
-    /// Pixels.
+    /// Height in pixels.
     pub height: usize,
-    /// Whether the picture keeps its shape; the rest of the input is then padding.
+    /// Whether the image keeps its aspect ratio, with padding.
     pub letterbox: bool,
     /// Level of the padding, 0..=255.
     pub pad: f32,
-    /// Subtracted from the levels (0..=255) of red, green and blue.
+    /// Mean of red, green and blue, subtracted from the levels (0..=255).
     pub mean: [f32; 3],
-    /// What the levels are divided by after that.
+    /// Standard deviation of red, green and blue, by which the levels are divided then.
     pub std: [f32; 3],
 }
 
-/// Input and anchors, as they stand in a container's `inputs`.
+/// Input and anchors, as in a container's `inputs`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Layout {
-    /// The picture.
+    /// The image.
     pub image: ImageLayout,
     /// The anchors.
     pub anchors: Anchors,
 }
 
-/// Largest side of an input, pixels.
+/// Maximum side of an input, in pixels.
 const LARGEST: usize = 4096;
 
 impl ImageLayout {
-    /// A square input of `size` pixels with values from -1 to 1.
-    pub fn new(size: usize, fitting: Fitting) -> Self {
-        let letterbox = fitting == Fitting::Letterbox;
+    /// Creates a square input of `size` pixels with values from -1 to 1.
+    pub fn new(size: usize, fitting: Resizing) -> Self {
+        let letterbox = fitting == Resizing::Letterbox;
         Self { width: size, height: size, letterbox, pad: 127.5, mean: [127.5; 3], std: [127.5; 3] }
     }
 
-    /// Width and height.
+    /// Returns width and height.
     pub fn size(&self) -> [usize; 2] {
         [self.width, self.height]
     }
 
-    /// What makes the input of a picture.
+    /// Returns the pre-processing of images.
     pub fn preprocess(&self) -> Preprocess {
         let plain = Preprocess::new(self.width, self.height).normalise(self.mean, self.std);
-        if self.letterbox { plain.letterbox(Anchor::Centre, self.pad) } else { plain }
+        if self.letterbox { plain.letterbox(LetterboxAlign::Centre, self.pad) } else { plain }
     }
 
     fn check(&self) -> Result<()> {
@@ -71,7 +71,7 @@ impl ImageLayout {
             return Ok(());
         }
         Err(Error::format(format!(
-            "an input has sides of 1 to {LARGEST} pixels, finite levels and positive deviations; the model says {self:?}"
+            "an input needs sides of 1 to {LARGEST} pixels, finite levels and positive deviations; the model has {self:?}"
         )))
     }
 }
@@ -80,7 +80,7 @@ impl Layout {
     /// Reads a container's `inputs`.
     ///
     /// # Errors
-    /// `Format` when they are not of this learner, or make no sense.
+    /// `Format` when they are not of this learner, or invalid.
     pub fn from_manifest(manifest: &Manifest) -> Result<Self> {
         let layout: Self = manifest.read_inputs("its image and its anchors")?;
         layout.image.check()?;
@@ -100,16 +100,16 @@ mod tests {
     }
 
     #[test]
-    fn a_container_says_everything() {
-        let image = ImageLayout::new(320, Fitting::Letterbox);
+    fn a_layout_survives_the_manifest() {
+        let image = ImageLayout::new(320, Resizing::Letterbox);
         let layout = Layout { image, anchors: Anchors::new(&[16, 32], &[3.0], &[1.0, 0.5]) };
         assert_eq!(Layout::from_manifest(&manifest(&layout)).unwrap(), layout);
     }
 
     #[test]
-    fn nonsense_is_refused() {
+    fn invalid_layouts_are_refused() {
         let good = Layout {
-            image: ImageLayout::new(320, Fitting::Stretch),
+            image: ImageLayout::new(320, Resizing::Stretch),
             anchors: Anchors::new(&[16], &[3.0], &[1.0]),
         };
         for break_it in [

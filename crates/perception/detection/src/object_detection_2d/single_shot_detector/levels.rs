@@ -1,4 +1,4 @@
-//! The feature maps of a network and the anchors on them.
+//! The feature maps of a network and their anchors.
 
 use opendr_engine::{Error, Result};
 use opendr_inference::TensorView;
@@ -7,7 +7,7 @@ use opendr_perception_common::suppression::Candidate;
 use super::anchors::{AnchorLevel, Anchors};
 use super::decode::LevelMaps;
 
-/// The names of the outputs of a level: logits of the scores, `[1, kinds * classes, rows, columns]`, and offsets,
+/// Returns the names of the outputs of a level: logits of the scores, `[1, kinds * classes, rows, columns]`, and offsets,
 /// `[1, kinds * 4, rows, columns]`.
 pub(crate) fn output_names(level: usize) -> [String; 2] {
     [format!("scores_{level}"), format!("offsets_{level}")]
@@ -16,7 +16,7 @@ pub(crate) fn output_names(level: usize) -> [String; 2] {
 /// All levels of a network.
 pub(crate) struct Levels(Vec<Level>);
 
-/// The anchors of one feature map, and where its outputs stand.
+/// The anchors of one feature map, and the indices of its outputs.
 struct Level {
     anchors: AnchorLevel,
     columns: usize,
@@ -26,7 +26,7 @@ struct Level {
 }
 
 impl Levels {
-    /// The levels of a network for pictures of `size` pixels; `output` says where an output stands.
+    /// Creates the levels of a network with an input of `size` pixels; `output` returns the index of an output.
     ///
     /// # Errors
     /// As `output`.
@@ -43,7 +43,7 @@ impl Levels {
     /// Adds the boxes whose score reaches `threshold` to `candidates`, in pixels of the network's input.
     ///
     /// # Errors
-    /// `Format` when an output is not what its anchors and `classes` ask for.
+    /// `Format` when the shape of an output does not fit its anchors and `classes`.
     pub fn decode(
         &self,
         outputs: &[TensorView<'_>],
@@ -66,8 +66,8 @@ impl Level {
             let shape = outputs[output].shape();
             if *shape != [1, maps, rows, columns] {
                 return Err(Error::format(format!(
-                    "an output of the model is {shape:?}, but its anchors and classes ask for \
-                     {:?}; train or get it anew",
+                    "an output of the model has the shape {shape:?}, but its anchors and classes need \
+                     {:?}; train or download it again",
                     [1, maps, rows, columns]
                 )));
             }

@@ -1,4 +1,4 @@
-//! What a batch costs: focal loss of the scores, smooth L1 of the offsets.
+//! Loss of a batch: focal loss of the scores, smooth L1 of the offsets.
 
 use burn::tensor::activation::{log_sigmoid, sigmoid};
 use burn::tensor::{Device, Int, Tensor, TensorData};
@@ -6,24 +6,24 @@ use burn::tensor::{Device, Int, Tensor, TensorData};
 use super::network::LevelOutput;
 use super::targets::DetectionBatch;
 
-/// How much an object weighs beside background, and how little what is known already (Lin et al., Focal Loss for Dense
-/// Object Detection, ICCV 2017, Eq. 5).
+/// Weight of objects, and exponent that lowers the weight of easy examples (Lin et al., Focal Loss for Dense Object
+/// Detection, ICCV 2017, Eq. 5).
 const ALPHA: f64 = 0.25;
 const GAMMA: i32 = 2;
 
-/// Offsets nearer than this cost their square (Girshick, Fast R-CNN, ICCV 2015, Eq. 3).
+/// Difference of offsets below which the loss is quadratic (Girshick, Fast R-CNN, ICCV 2015, Eq. 3).
 const BETA: f64 = 1.0;
 
-/// Scores and offsets of a batch.
+/// Losses of scores and offsets of a batch.
 pub(crate) struct DetectionLoss {
-    /// Of the scores, for each object.
+    /// Loss of the scores per object.
     pub scores: Tensor<1>,
-    /// Of the offsets, for each object.
+    /// Loss of the offsets per object.
     pub offsets: Tensor<1>,
 }
 
 impl DetectionLoss {
-    /// What the answers of the network to `batch` cost.
+    /// Computes the losses of the network's outputs for `batch`.
     pub fn new(levels: Vec<LevelOutput>, batch: &DetectionBatch, classes: usize, device: &Device) -> Self {
         let (scores, offsets) = levels.into_iter().map(|level| (level.scores, level.offsets)).unzip();
         let scores = anchor_rows(scores, classes);
@@ -36,7 +36,7 @@ impl DetectionLoss {
     }
 }
 
-/// The maps of all levels as one row of `fields` numbers an anchor, `[batch * anchors, fields]`.
+/// Returns the maps of all levels as one row of `fields` values per anchor, `[batch * anchors, fields]`.
 fn anchor_rows(levels: Vec<Tensor<4>>, fields: usize) -> Tensor<2> {
     let rows = levels.into_iter().map(|maps| {
         let [batch, channels, rows, columns] = maps.dims();
@@ -50,7 +50,7 @@ fn anchor_rows(levels: Vec<Tensor<4>>, fields: usize) -> Tensor<2> {
     Tensor::cat(rows.collect(), 1).flatten::<1>(0, 2).reshape([-1, fields as i32])
 }
 
-/// The focal loss: everything as background, corrected where there is an object.
+/// Returns the focal loss: that of background for all anchors, corrected for those with an object.
 fn score_cost(logits: Tensor<2>, batch: &DetectionBatch, classes: usize, device: &Device) -> Tensor<1> {
     let counts = Tensor::<1>::from_floats(&batch.counts[..], device).reshape([-1, 1]);
     let everything = (background_cost(logits.clone()) * counts).sum();
@@ -79,10 +79,10 @@ fn offset_cost(offsets: Tensor<2>, batch: &DetectionBatch, device: &Device) -> T
     }
     let wanted = TensorData::new(batch.object_offsets.clone(), [batch.objects.len(), 4]);
     let wanted = Tensor::<2>::from_data(wanted, device);
-    let given = offsets.select(0, indices(batch.objects.clone(), device));
-    let distance = (given - wanted).abs();
+    let predicted = offsets.select(0, indices(batch.objects.clone(), device));
+    let distance = (predicted - wanted).abs();
     let near = distance.clone().clamp_max(BETA);
-    // Half the square up to beta, then the tangent: b * (d - b / 2) / beta with b = min(d, beta).
+    // Quadratic up to beta, then linear: b * (d - b / 2) / beta with b = min(d, beta).
     (near.clone() * (distance - near * 0.5) / BETA).sum()
 }
 
@@ -95,7 +95,7 @@ fn indices(numbers: Vec<i64>, device: &Device) -> Tensor<1, Int> {
 mod tests {
     use super::*;
 
-    /// Two anchor kinds on maps of 2 x 1, two classes.
+    /// Returns outputs of two anchor kinds on maps of 2 x 1, for two classes.
     fn level(scores: [f32; 8]) -> LevelOutput {
         let device = Device::flex();
         let scores = Tensor::<1>::from_floats(scores, &device).reshape([1, 4, 1, 2]);
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_right_costs_nothing() {
+    fn correct_predictions_have_no_loss() {
         let mut scores = [-30.0; 8];
         // Second kind, class 1, second cell: anchor 3.
         scores[7] = 30.0;
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn anchors_that_do_not_count_cost_nothing() {
+    fn ignored_anchors_have_no_loss() {
         let mut scores = [-30.0; 8];
         scores[0] = 30.0;
         let mut none = batch(Vec::new(), Vec::new());

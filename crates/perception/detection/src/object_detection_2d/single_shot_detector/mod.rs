@@ -1,8 +1,8 @@
-//! SSD: boxes and classes from anchors on feature maps of several scales, in one pass.
+//! SSD: boxes and class labels from anchors on feature maps of several scales, in one pass.
 //!
-//! Liu et al., SSD: Single Shot MultiBox Detector, ECCV 2016; on MobileNetV1 with separable heads (SSDLite, Sandler et
-//! al., CVPR 2018). It is the detector that trains here: take it for classes of your own, and where weights must be small;
-//! [`super::CenterNet`] and [`super::Nanodet`] know the 80 COCO classes better.
+//! Liu et al., SSD: Single Shot MultiBox Detector, ECCV 2016; on MobileNetV1 with separable heads (SSDLite, Sandler et al.,
+//! CVPR 2018). Suited to training on own classes and to small weights; [`super::CenterNet`] and [`super::Nanodet`] are more
+//! precise on the 80 COCO classes.
 
 pub mod anchors;
 pub mod coding;
@@ -11,7 +11,7 @@ pub mod decode;
 mod fit;
 mod layout;
 #[cfg(feature = "training")]
-mod layout_wish;
+mod layout_options;
 mod levels;
 #[cfg(feature = "training")]
 pub(crate) mod loss;
@@ -33,36 +33,36 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_perception_common::boxes_from_candidates::boxes_from_candidates;
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind, keep_best};
 
 #[cfg(feature = "training")]
 pub use fit::{Backbone, SingleShotDetectorFitParams};
-pub use layout::{Fitting, ImageLayout, Layout};
+pub use layout::{ImageLayout, Layout, Resizing};
 #[cfg(feature = "training")]
-pub(crate) use layout_wish::LayoutWish;
+pub(crate) use layout_options::LayoutOptions;
 pub(crate) use levels::Levels;
 #[cfg(feature = "training")]
 pub(crate) use levels::output_names;
 #[cfg(feature = "training")]
 pub use objective::DetectionObjective;
 
-/// What a user may set.
+/// Parameters of [`SingleShotDetector`].
 #[derive(Debug, Clone, Params)]
 pub struct SingleShotDetectorParams {
-    /// Detections below this score are dropped.
+    /// Score below which detections are dropped.
     #[param(default = 0.2, range = 0.0..=1.0, live)]
     pub threshold: f32,
-    /// Boxes of one class that overlap more than this (intersection over union) are one object.
+    /// IoU above which boxes of one class count as one object.
     #[param(default = 0.45, range = 0.0..=1.0, live, alias = "nms_thresh")]
     pub iou_threshold: f32,
-    /// So many of the best boxes are looked at before overlapping ones are thinned out.
+    /// Number of candidates with the highest scores that enter the suppression.
     #[param(default = 400, range = 1..=1000, live, alias = "nms_topk")]
     pub max_candidates: usize,
-    /// At most this many boxes a picture.
+    /// Maximum number of boxes per image.
     #[param(default = 100, range = 1..=1000, live, alias = "post_nms")]
     pub max_detections: usize,
-    /// How overlapping boxes are thinned out.
+    /// Method of non-maximum suppression.
     #[param(live, alias = "custom_nms")]
     pub suppression: SuppressionKind,
 }
@@ -71,7 +71,7 @@ pub struct SingleShotDetectorParams {
 pub struct SingleShotDetector {
     params: SingleShotDetectorParams,
     classes: Classes,
-    network: PictureNetwork,
+    network: ImageNetwork,
     levels: Levels,
     scratch: Pool<Scratch>,
 }
@@ -85,12 +85,12 @@ struct Scratch {
 impl Learner for SingleShotDetector {
     const SPEC: Spec = Spec::new("single_shot_detector", Task::ObjectDetection2d)
         .class("SingleShotDetectorLearner")
-        .about("SSD on MobileNetV1, a small detector that trains on classes of your own.")
+        .about("SSD on MobileNetV1, a small detector, trainable on own classes.")
         .without_effect(&[
-            ("keep_size", "the network's input has one size"),
-            ("extract_maps", "the feature maps stay inside the network"),
-            ("temp_path", "what fit writes lies in its output folder"),
-            ("checkpoint_load_iter", "fit goes on from the last checkpoint of its output folder"),
+            ("keep_size", "the network's input has a fixed size"),
+            ("extract_maps", "feature maps are not an output"),
+            ("temp_path", "fit writes to its output folder"),
+            ("checkpoint_load_iter", "fit resumes from the last checkpoint of its output folder"),
         ]);
     type Params = SingleShotDetectorParams;
     type Input<'a> = &'a Image;
@@ -101,9 +101,9 @@ impl Learner for SingleShotDetector {
         let Layout { image, anchors } = Layout::from_manifest(model.manifest())?;
         let classes = model.manifest().classes.clone();
         if classes.is_empty() {
-            return Err(Error::format("the model names no classes; train or get it anew"));
+            return Err(Error::format("the model names no classes; train or download it again"));
         }
-        let network = PictureNetwork::open(model, device, |_| image.preprocess())?;
+        let network = ImageNetwork::open(model, device, |_| image.preprocess())?;
         let levels = Levels::open(anchors, image.size(), |name| network.output(name))?;
         Ok(Self { params, classes, network, levels, scratch: Pool::default() })
     }
@@ -137,6 +137,6 @@ impl SingleShotDetector {
     fn suppression(&self) -> Suppression {
         let SingleShotDetectorParams { threshold, iou_threshold, max_detections, suppression, .. } =
             self.params;
-        Suppression { kind: suppression, overlap: iou_threshold, threshold, most: max_detections }
+        Suppression { kind: suppression, iou_threshold, threshold, max_boxes: max_detections }
     }
 }

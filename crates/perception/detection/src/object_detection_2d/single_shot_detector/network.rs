@@ -1,4 +1,4 @@
-//! The network that trains: MobileNetV1, a small feature pyramid, and one head for all levels.
+//! The network for training: MobileNetV1, a small feature pyramid, and one head for all levels.
 
 use burn::module::{Module, Param};
 use burn::nn::conv::{Conv2d, Conv2dConfig};
@@ -13,41 +13,43 @@ use opendr_training::layers::{
 };
 use opendr_training::weights::{Rules, WeightTable};
 
+use super::layout::Layout;
+
 /// Channels of the pyramid.
 const CHANNELS: usize = 128;
 
-/// The score that an untrained network gives everything, so that the few objects are not lost in what the background
-/// costs at first (Lin et al., Focal Loss for Dense Object Detection, ICCV 2017, section 3.3).
+/// Score of an untrained network, low so that the loss of the background does not dominate the few objects at first (Lin et
+/// al., Focal Loss for Dense Object Detection, ICCV 2017, section 3.3).
 const PRIOR: f32 = 0.01;
 
-/// What a network is made for.
+/// Configuration of the network.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NetworkConfig {
-    /// The backbone's channels are so many times those of the paper.
+    /// Multiple of the paper's channels in the backbone.
     pub width: f64,
-    /// Strides of the levels: 8 or 16 and powers of two after that.
+    /// Strides of the levels: 8 or 16 and the following powers of two.
     pub strides: Vec<usize>,
-    /// Anchors of a cell.
+    /// Number of anchors per cell.
     pub kinds: usize,
-    /// Classes.
+    /// Number of classes.
     pub classes: usize,
 }
 
-/// A depthwise convolution and one across channels, each with ReLU6. Levels share them and batches are small, so there is
-/// no batch normalisation.
+/// A depthwise and a pointwise convolution, each with ReLU6. Levels share them and batches are small, so there is no batch
+/// normalisation.
 #[derive(Module, Debug)]
 struct Separable {
     depthwise: Conv2d,
     pointwise: Conv2d,
 }
 
-/// Scores and offsets of a level; the same weights serve every level, so that each learns from objects of all sizes
-/// (RetinaNet), on depthwise convolutions (SSDLite).
+/// Scores and offsets of a level. All levels share the weights, so that each learns from objects of all sizes (RetinaNet),
+/// with depthwise convolutions (SSDLite).
 #[derive(Module, Debug)]
 struct Head {
     tower: Separable,
     offsets: Separable,
-    /// Last, so that a network for other classes differs in nothing before its end.
+    /// Last, so that networks for other classes differ only at their end.
     scores: Separable,
 }
 
@@ -61,7 +63,7 @@ pub struct Network {
     head: Head,
 }
 
-/// MobileNetV1 without its head: what sees pictures.
+/// MobileNetV1 without its head: the backbone.
 #[derive(Module, Debug)]
 pub struct Trunk {
     backbone: MobileNetV1,
@@ -75,12 +77,12 @@ struct Finer {
     smooth: Separable,
 }
 
-/// What the network answers for one level.
+/// Outputs of the network for one level.
 #[derive(Debug, Clone)]
 pub struct LevelOutput {
     /// Logits, `[batch, kinds * classes, rows, columns]`.
     pub scores: Tensor<4>,
-    /// `[batch, kinds * 4, rows, columns]`.
+    /// Offsets, `[batch, kinds * 4, rows, columns]`.
     pub offsets: Tensor<4>,
 }
 
@@ -97,8 +99,8 @@ impl Separable {
         }
     }
 
-    /// The last layer of a head: no activation, and at first `bias` for all outputs, whatever the input.
-    fn answering(outputs: usize, bias: f32, device: &Device) -> Self {
+    /// Creates the last layer of a head: no activation, and initially the output `bias` for any input.
+    fn output_layer(outputs: usize, bias: f32, device: &Device) -> Self {
         let small = Initializer::Normal { mean: 0.0, std: 0.01 };
         let mut layer = Self::new([CHANNELS, CHANNELS], 1, device);
         layer.pointwise = pointwise([CHANNELS, outputs], small, device);
@@ -115,14 +117,15 @@ impl Separable {
     }
 }
 
-/// He et al., Delving Deep into Rectifiers, ICCV 2015: signals keep their size through layers with ReLU.
+/// He et al., Delving Deep into Rectifiers, ICCV 2015: the initialisation keeps the variance of signals through ReLU
+/// layers.
 const HE: Initializer = Initializer::KaimingNormal { gain: std::f64::consts::SQRT_2, fan_out_only: false };
 
 fn pointwise(channels: [usize; 2], weights: Initializer, device: &Device) -> Conv2d {
     without_bias(Conv2dConfig::new(channels, [1, 1]), weights, device)
 }
 
-/// A convolution whose bias begins at 0.
+/// Creates a convolution with an initial bias of 0.
 fn without_bias(config: Conv2dConfig, weights: Initializer, device: &Device) -> Conv2d {
     let outputs = config.channels[1];
     let mut layer = config.with_initializer(weights).init(device);
@@ -130,13 +133,24 @@ fn without_bias(config: Conv2dConfig, weights: Initializer, device: &Device) -> 
     layer
 }
 
-/// Blocks of MobileNetV1 that are taken as they are; the last two of the paper's thirteen halve the size.
+/// Number of MobileNetV1's blocks that are used unchanged; the last two of the paper's thirteen halve the resolution.
 const BLOCKS: usize = 11;
-/// Layers of the backbone: a convolution, those blocks, and two more.
+/// Number of layers of the backbone: a convolution, those blocks, and two more.
 pub const BACKBONE_LAYERS: usize = 1 + BLOCKS + 2;
 
 impl NetworkConfig {
-    /// A network with random weights.
+    /// Creates the configuration of a network for a layout; `width` is the multiple of the paper's channels.
+    pub fn new(width: f64, layout: &Layout, classes: usize) -> Self {
+        let levels = &layout.anchors.levels;
+        Self {
+            width,
+            strides: levels.iter().map(|level| level.stride).collect(),
+            kinds: levels.first().map_or(0, |level| level.sides.len()),
+            classes,
+        }
+    }
+
+    /// Creates a network with random weights.
     pub fn init(&self, device: &Device) -> Network {
         let fine = self.strides.contains(&8);
         let trunk = self.trunk(device);
@@ -155,15 +169,15 @@ impl NetworkConfig {
             coarser: coarser.map(|_| Separable::new([CHANNELS; 2], 2, device)).collect(),
             head: Head {
                 tower: Separable::new([CHANNELS; 2], 1, device),
-                offsets: Separable::answering(self.kinds * 4, 0.0, device),
-                scores: Separable::answering(self.kinds * self.classes, logit, device),
+                offsets: Separable::output_layer(self.kinds * 4, 0.0, device),
+                scores: Separable::output_layer(self.kinds * self.classes, logit, device),
             },
         }
     }
 }
 
 impl NetworkConfig {
-    /// What sees pictures, with random weights.
+    /// Creates the backbone with random weights.
     pub fn trunk(&self, device: &Device) -> Trunk {
         let taps = if self.strides.contains(&8) { vec![8, 16] } else { vec![16] };
         let backbone = MobileNetV1Config::new().with_width(self.width).with_output_stride(16);
@@ -175,7 +189,7 @@ impl NetworkConfig {
 }
 
 impl Trunk {
-    /// Stride 8 where there is a level of it, and stride 16, of pictures `[batch, 3, height, width]`.
+    /// Returns the feature maps of stride 8, if there is a level of it, and 16, of images `[batch, 3, height, width]`.
     pub fn forward(&self, images: Tensor<4>) -> Vec<Tensor<4>> {
         let mut taps = self.backbone.features(images);
         let coarse = taps.pop();
@@ -183,7 +197,7 @@ impl Trunk {
         taps
     }
 
-    /// Channels of what [`forward`](Self::forward) answers.
+    /// Returns the channels of the feature maps of [`forward`](Self::forward).
     pub fn channels(&self) -> Vec<usize> {
         self.backbone.feature_channels()
     }
@@ -217,12 +231,12 @@ impl Trunk {
 }
 
 impl Network {
-    /// The outputs of every level, finest first, for pictures `[batch, 3, height, width]`.
+    /// Returns the outputs of all levels, finest first, for images `[batch, 3, height, width]`.
     pub fn forward(&self, images: Tensor<4>) -> Vec<LevelOutput> {
         self.forward_from(self.trunk(images))
     }
 
-    /// The same for what [`Network::trunk`] answered.
+    /// Returns the outputs of all levels for the feature maps of [`Network::trunk`].
     pub fn forward_from(&self, trunk: Vec<Tensor<4>>) -> Vec<LevelOutput> {
         self.features(trunk).into_iter().map(|features| self.head.forward(features)).collect()
     }
@@ -240,13 +254,13 @@ impl Network {
         levels
     }
 
-    /// What the backbone answers: stride 8 where there is a level of it, and stride 16.
+    /// Returns the feature maps of the backbone: stride 8, if there is a level of it, and 16.
     pub fn trunk(&self, images: Tensor<4>) -> Vec<Tensor<4>> {
         self.trunk.forward(images)
     }
 
-    /// The network with the backbone of a file, layer by layer (PoseNet's among them). Its batch normalisations are
-    /// frozen: those that were folded into a file's weights have no statistics to go on from.
+    /// Returns the network with the backbone of a file, layer by layer (such as PoseNet's). Its batch normalisations are
+    /// frozen: those that are folded into a file's weights have no statistics.
     ///
     /// # Errors
     /// `InvalidInput` when the file's first layers are not this backbone.
@@ -257,10 +271,11 @@ impl Network {
         Ok(network.with_frozen_norms())
     }
 
-    /// The network with the weights of an exported one; without `same_classes` the layer that tells classes stays new.
+    /// Returns the network with the weights of an exported one; without `same_classes` the layer of class scores stays
+    /// untrained.
     ///
     /// # Errors
-    /// `InvalidInput` when it is of another configuration.
+    /// `InvalidInput` when it has another configuration.
     pub fn with_weights(self, table: &WeightTable, same_classes: bool) -> Result<Self> {
         let all = Rules::by_order();
         let rules = if same_classes { all } else { all.skip("head.scores.pointwise") };
@@ -274,13 +289,13 @@ impl Network {
         self
     }
 
-    /// How many feature maps the backbone answers.
+    /// Returns the number of feature maps of the backbone.
     pub fn taps(&self) -> usize {
         1 + usize::from(self.finer.is_some())
     }
 
-    /// The network whose first `layers` layers of the backbone stay as they are: its first convolution, then its
-    /// thirteen blocks.
+    /// Returns the network with the first `layers` layers of the backbone frozen: its first convolution, then its thirteen
+    /// blocks.
     pub fn freeze(mut self, layers: usize) -> Self {
         self.trunk = self.trunk.freeze(layers);
         self
@@ -322,7 +337,7 @@ mod tests {
     }
 
     #[test]
-    fn frozen_layers_answer_as_the_network() {
+    fn frozen_layers_equal_the_network() {
         let device = Device::flex();
         let config = NetworkConfig { width: 0.25, strides: vec![8, 16], kinds: 1, classes: 1 };
         let network = config.init(&device).freeze(BACKBONE_LAYERS);
@@ -330,17 +345,17 @@ mod tests {
         let shape = [2, 3, 64, 96];
         let images: Vec<f32> =
             (0..shape.iter().product()).map(|at: usize| (at * 37 % 255) as f32 / 127.5 - 1.0).collect();
-        let answers = frozen.run(&images, shape, &device).unwrap();
-        let wanted = network.trunk(Tensor::from_data(TensorData::new(images, shape), &device));
-        assert_eq!(answers.len(), network.taps());
-        for (answer, wanted) in answers.iter().zip(wanted) {
-            assert_eq!(answer.dims(), wanted.dims());
-            let apart = (answer.clone() - wanted).abs().max().into_scalar::<f32>();
+        let outputs = frozen.run(&images, shape, &device).unwrap();
+        let expected = network.trunk(Tensor::from_data(TensorData::new(images, shape), &device));
+        assert_eq!(outputs.len(), network.taps());
+        for (output, expected) in outputs.iter().zip(expected) {
+            assert_eq!(output.dims(), expected.dims());
+            let apart = (output.clone() - expected).abs().max().into_scalar::<f32>();
             assert!(apart < 1e-4, "{apart}");
         }
     }
 
-    /// On our backbone with PoseNet's weights, PoseNet's last layer gives PoseNet's heat maps.
+    /// With PoseNet's weights in the backbone, PoseNet's last layer has PoseNet's heatmaps as outputs.
     #[test]
     fn posenets_backbone_fits() {
         let Some(data) = std::env::var_os("OPENDR_TEST_DATA") else {
@@ -367,18 +382,18 @@ mod tests {
         let ours = last.forward(trunk).permute([0, 2, 3, 1]).into_data().try_to_vec::<f32>().unwrap();
 
         let session = Session::open(&bytes, Place::Cpu).unwrap();
-        // This file takes its pictures with the channels last.
+        // This file takes images with the channels last.
         let pixels: Vec<f32> =
             (0..3 * side * side).map(|at| picture[at % 3 * side * side + at / 3]).collect();
         let input = TensorView::new(&[1, side, side, 3], &pixels[..]).unwrap();
         let output = session.outputs().iter().position(|output| output.name.contains("heatmap")).unwrap();
         session
             .run(&[input], |outputs| {
-                let wanted = outputs[output].values::<f32>()?;
-                assert_eq!(wanted.len(), ours.len());
-                let most = wanted.iter().fold(0f32, |most, value| most.max(value.abs()));
-                for (wanted, ours) in wanted.iter().zip(&ours) {
-                    assert!((wanted - ours).abs() < 1e-3 * most, "{wanted} {ours}");
+                let expected = outputs[output].values::<f32>()?;
+                assert_eq!(expected.len(), ours.len());
+                let most = expected.iter().fold(0f32, |most, value| most.max(value.abs()));
+                for (expected, ours) in expected.iter().zip(&ours) {
+                    assert!((expected - ours).abs() < 1e-3 * most, "{expected} {ours}");
                 }
                 Ok(())
             })

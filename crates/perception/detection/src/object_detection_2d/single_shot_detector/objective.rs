@@ -1,4 +1,4 @@
-//! What a single-shot detector trains on: augmented pictures, matched anchors, focal loss and smooth L1.
+//! Training objective of the single-shot detector: augmentation, matched anchors, focal loss and smooth L1.
 
 use burn::tensor::{Device, Tensor, TensorData};
 use opendr_datasets::augment::{Affine, Colour, Flip, IouCrop, Mosaic, Pipeline};
@@ -17,20 +17,20 @@ use super::network::Network;
 use super::targets::{DetectionBatch, DetectionBatches};
 use super::{SingleShotDetector, output_names};
 
-/// The training of one detector.
+/// Training objective of the single-shot detector.
 #[derive(Debug)]
 pub struct DetectionObjective {
     /// Input and anchors.
     pub layout: Layout,
-    /// What the network answers; boxes of other classes are background.
+    /// Classes of the network; boxes of other classes are background.
     pub classes: Classes,
-    /// When an anchor answers for an object.
+    /// Thresholds of the matching of anchors and objects.
     pub matching: Matching,
-    /// Boxes below this score are neither object nor background.
-    pub least_score: f32,
-    /// Whether pictures are changed at random.
+    /// Score below which boxes are neither object nor background.
+    pub min_score: f32,
+    /// Whether images are augmented at random.
     pub augment: bool,
-    /// The backbone, when it does not train.
+    /// The backbone, if it is frozen.
     pub(super) frozen: Option<FrozenLayers>,
 }
 
@@ -39,7 +39,7 @@ impl Objective for DetectionObjective {
     type Collate = DetectionBatches;
 
     fn collate(&self) -> Result<DetectionBatches> {
-        Ok(DetectionBatches::new(&self.layout, self.matching, self.classes.clone(), self.least_score))
+        Ok(DetectionBatches::new(&self.layout, self.matching, self.classes.clone(), self.min_score))
     }
 
     fn pipeline(&self) -> Result<Pipeline> {
@@ -50,7 +50,7 @@ impl Objective for DetectionObjective {
         Pipeline::default()
             .sometimes(0.3, Mosaic { width, height, ..Mosaic::default() })?
             .sometimes(0.5, IouCrop::default())?
-            // What the paper calls expansion: objects smaller than any in the data.
+            // The paper's expansion: objects smaller than any in the data.
             .sometimes(0.3, Affine { min_scale: 0.4, max_scale: 1.0, max_shift: 0.2, ..Affine::default() })?
             .sometimes(0.5, Flip::default())?
             .sometimes(0.8, Colour { brightness: 0.3, contrast: 0.3, saturation: 0.4, hue: 0.1 })

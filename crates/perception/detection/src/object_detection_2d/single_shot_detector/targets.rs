@@ -1,4 +1,4 @@
-//! From annotated pictures to batches: pre-processing, matching and encoding, on the loader's threads.
+//! Batches from annotated images: pre-processing, matching and encoding, on the loader's threads.
 
 use opendr_datasets::loader::Collate;
 use opendr_engine::dataset::Sample;
@@ -11,7 +11,7 @@ use super::coding::offsets_from_corners;
 use super::layout::Layout;
 use super::matching::{Match, Matching};
 
-/// Makes [`DetectionBatch`]es of pictures with boxes.
+/// Collates images with boxes into [`DetectionBatch`]es.
 pub struct DetectionBatches {
     preprocess: Preprocess,
     anchors: Vec<Anchor>,
@@ -20,34 +20,34 @@ pub struct DetectionBatches {
     least_score: f32,
 }
 
-/// Pictures, and what each anchor should answer. Anchors are numbered through the batch.
+/// Images, and the targets of the anchors. Indices of anchors count through the batch.
 #[derive(Debug, Default)]
 pub struct DetectionBatch {
-    /// `[pictures, 3, height, width]`.
+    /// Values of the images, `[images, 3, height, width]`.
     pub images: Vec<f32>,
-    /// Width and height of the pictures.
+    /// Width and height of the images.
     pub size: [usize; 2],
-    /// How many pictures there are.
+    /// Number of images.
     pub pictures: usize,
-    /// The anchors that show an object.
+    /// Indices of the anchors that match an object.
     pub objects: Vec<i64>,
-    /// The class of each object.
+    /// Class index of each object.
     pub object_classes: Vec<i64>,
-    /// The offsets of each object from its anchor, four each.
+    /// Offsets of each object from its anchor, four each.
     pub object_offsets: Vec<f32>,
-    /// Whether each anchor counts, 1 or 0.
+    /// Weight of each anchor in the loss, 1 or 0.
     pub counts: Vec<f32>,
 }
 
-/// Objects smaller than this are not asked for: nothing of them is left at the network's size.
+/// Side below which objects are ignored, in pixels of the network's input.
 const LEAST_SIDE: f32 = 2.0;
 
 impl DetectionBatches {
-    /// Batches for a network of `layout` that answers `classes`. Boxes below `least_score` are neither object nor
+    /// Creates a collator for a network of `layout` and `classes`. Boxes below `least_score` are neither object nor
     /// background.
     pub fn new(layout: &Layout, matching: Matching, classes: Classes, least_score: f32) -> Self {
         Self {
-            // The loader has its threads already.
+            // The loader is parallel already.
             preprocess: layout.image.preprocess().threads(1),
             anchors: layout.anchors.anchors(layout.image.size()),
             matching,
@@ -56,7 +56,7 @@ impl DetectionBatches {
         }
     }
 
-    /// The class that a box of a list is of; `None` when the network does not answer it.
+    /// Returns the class index of a box; `None` when the network does not have its class.
     fn class(&self, list: &BoundingBoxList, found: &BoundingBox) -> Option<usize> {
         match (list.label(found), &found.name) {
             (Some(label), _) => usize::try_from(self.classes.index(label)?).ok(),
@@ -76,7 +76,7 @@ impl DetectionBatches {
                 (geometry.input_from_image([x0, y0]), geometry.input_from_image([x1, y1]));
             let corners = [x0, y0, x1, y1];
             let crowd = found.segment.as_ref().is_some_and(|segment| segment.iscrowd);
-            // Written so that NaN is no object.
+            // Written so that NaN is ignored.
             let clear =
                 x1 - x0 >= LEAST_SIDE && y1 - y0 >= LEAST_SIDE && found.confidence >= self.least_score;
             if crowd || !clear {
@@ -115,7 +115,7 @@ impl Collate for DetectionBatches {
         let ([Value::Image(image)], Some(Value::BoundingBoxList(list))) = (&sample.data[..], &sample.target)
         else {
             return Err(Error::invalid_input(
-                "a detector trains on samples of one picture with boxes; open the data set with boxes",
+                "the sample is not one image with boxes; open the data set with boxes",
             ));
         };
         let start = batch.images.len();
@@ -140,12 +140,12 @@ mod tests {
     use opendr_engine::target::{Segment, Segmentation};
 
     use super::super::anchors::{AnchorLevel, Anchors};
-    use super::super::layout::{Fitting, ImageLayout};
+    use super::super::layout::{ImageLayout, Resizing};
     use super::*;
 
     fn batches() -> DetectionBatches {
         let anchors = Anchors { levels: vec![AnchorLevel { stride: 32, sides: vec![[32.0, 32.0]] }] };
-        let layout = Layout { image: ImageLayout::new(64, Fitting::Stretch), anchors };
+        let layout = Layout { image: ImageLayout::new(64, Resizing::Stretch), anchors };
         let classes = ["cat", "person"].into_iter().collect();
         DetectionBatches::new(&layout, Matching::default(), classes, 0.5)
     }
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn what_nobody_is_asked_for_does_not_count() {
+    fn crowds_and_low_scores_are_ignored() {
         let crowd = Segment { segmentation: Segmentation::default(), area: 1.0, iscrowd: true };
         let boxes = vec![
             BoundingBox { segment: Some(Box::new(crowd)), ..BoundingBox::new(0, 0.0, 0.0, 64.0, 64.0, 1.0) },

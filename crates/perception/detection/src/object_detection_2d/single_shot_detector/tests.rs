@@ -1,4 +1,4 @@
-//! The detector as a whole: trained on drawn pictures, exported, loaded, checked.
+//! Tests of the whole detector: training on synthetic images, export, loading, the learner's contract.
 
 use std::path::PathBuf;
 
@@ -14,20 +14,20 @@ use opendr_training::{ScheduleKind, TrainingParams};
 use super::fit::Backbone;
 use super::{SingleShotDetector, SingleShotDetectorFitParams, SingleShotDetectorParams};
 
-/// Pictures of one bright box each, on noise.
-struct Drawn(usize);
+/// Synthetic images of one bright box on noise.
+struct Synthetic(usize);
 
 const SIDE: usize = 96;
 
-impl Dataset for Drawn {}
+impl Dataset for Synthetic {}
 
-impl DatasetIterator for Drawn {
+impl DatasetIterator for Synthetic {
     fn len(&self) -> usize {
         self.0
     }
 
     fn get(&self, index: usize) -> Result<Sample> {
-        let mut random = Random::at([3, index as u64]);
+        let mut random = Random::from_key([3, index as u64]);
         let mut pixels: Vec<u8> = (0..SIDE * SIDE * 3).map(|_| random.below(90) as u8).collect();
         let [width, height] = [0, 1].map(|_| 24 + random.below(32));
         let [left, top] = [random.below(SIDE - width), random.below(SIDE - height)];
@@ -82,13 +82,13 @@ fn trained(
     params: &SingleShotDetectorFitParams,
     job: &FitJob<'_>,
 ) -> Result<Statistics> {
-    let dataset = Drawn(4);
+    let dataset = Synthetic(4);
     let dataset: DatasetRef<'_> = (&dataset as &dyn DatasetIterator).into();
     SingleShotDetector::fit(base, &SingleShotDetectorParams::default(), params, dataset, None, job)
 }
 
 #[test]
-fn a_batch_is_learnt_by_heart_and_found_again() {
+fn an_overfitted_batch_is_detected() {
     let folder = scratch("overfit");
     let job = FitJob { device: Device::Cpu, ..FitJob::new(&folder) };
     let statistics = trained(None, &fit_params(300), &job).unwrap();
@@ -100,27 +100,27 @@ fn a_batch_is_learnt_by_heart_and_found_again() {
     let mut learner = Handle::<SingleShotDetector>::new(params, Device::Cpu).unwrap();
     learner.load(job.model()).unwrap();
     for index in 0..4 {
-        let Sample { data, target } = Drawn(4).get(index).unwrap();
-        let (Value::Image(image), Some(Value::BoundingBoxList(wanted))) = (&data[0], target) else {
+        let Sample { data, target } = Synthetic(4).get(index).unwrap();
+        let (Value::Image(image), Some(Value::BoundingBoxList(expected))) = (&data[0], target) else {
             panic!()
         };
         let found = learner.infer(image).unwrap();
         let [found] = &found.boxes[..] else { panic!("{found:#}") };
-        assert_eq!(found.name, wanted.boxes[0].name);
+        assert_eq!(found.name, expected.boxes[0].name);
         let overlap =
-            opendr_perception_common::suppression::iou(&found.corners(), &wanted.boxes[0].corners());
+            opendr_perception_common::suppression::iou(&found.corners(), &expected.boxes[0].corners());
         assert!(overlap > 0.7, "{found} {overlap}");
     }
     std::fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
-fn a_trained_container_keeps_the_promises_of_a_learner() {
+fn a_trained_container_passes_the_learner_checks() {
     let folder = scratch("promises");
     let job = FitJob { device: Device::Cpu, ..FitJob::new(&folder) };
     trained(None, &fit_params(1), &job).unwrap();
     let calls: Vec<_> =
-        (0..3).map(|index| vec![("image", Drawn(3).get(index).unwrap().data.remove(0))]).collect();
+        (0..3).map(|index| vec![("image", Synthetic(3).get(index).unwrap().data.remove(0))]).collect();
     let registry = opendr_engine::learners![SingleShotDetector];
     let entry = registry.find("single_shot_detector").unwrap();
     let options = CheckOptions { model: &job.model(), scratch: &folder, calls: &calls };
@@ -129,12 +129,12 @@ fn a_trained_container_keeps_the_promises_of_a_learner() {
     std::fs::remove_dir_all(folder).unwrap();
 }
 
-/// The best box of each picture.
+/// Returns the box with the highest score of each image.
 fn best(container: PathBuf) -> Vec<BoundingBox> {
     let params = SingleShotDetectorParams { threshold: 0.0, ..Default::default() };
     let mut learner = Handle::<SingleShotDetector>::new(params, Device::Cpu).unwrap();
     learner.load(container).unwrap();
-    let images = (0..4).map(|index| Drawn(4).get(index).unwrap().data.remove(0));
+    let images = (0..4).map(|index| Synthetic(4).get(index).unwrap().data.remove(0));
     images
         .map(|image| {
             let Value::Image(image) = image else { panic!() };
@@ -144,7 +144,7 @@ fn best(container: PathBuf) -> Vec<BoundingBox> {
 }
 
 #[test]
-fn training_goes_on_from_a_container_with_the_same_or_other_classes() {
+fn training_resumes_from_a_container_with_the_same_or_other_classes() {
     let folder = scratch("base");
     let outputs = ["first", "same", "other", "wider"].map(|name| folder.join(name));
     let [first, same, other, wider] =
@@ -152,7 +152,7 @@ fn training_goes_on_from_a_container_with_the_same_or_other_classes() {
     trained(None, &fit_params(20), &first).unwrap();
     let base = Model::open(first.model()).unwrap();
 
-    // At a rate of 0 nothing is learnt, so the network is as it was.
+    // At a learning rate of 0 the network does not change.
     let mut still = fit_params(1);
     still.training.lr = 0.0;
     trained(Some(&base), &still, &same).unwrap();
@@ -176,7 +176,7 @@ fn training_goes_on_from_a_container_with_the_same_or_other_classes() {
 }
 
 #[test]
-fn what_cannot_be_trained_is_told() {
+fn invalid_trainings_are_refused() {
     let folder = scratch("told");
     let job = FitJob { device: Device::Cpu, ..FitJob::new(&folder) };
     let classes = SingleShotDetectorFitParams { classes: vec!["green".to_owned()], ..fit_params(1) };

@@ -1,4 +1,4 @@
-//! `fit`: pictures of persons become references, or the network learns from them.
+//! `fit` of face recognition: images of persons become references, or train the network.
 
 use std::sync::Arc;
 
@@ -8,10 +8,10 @@ use opendr_engine::model::{Model, ModelWriter};
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Error, Result, Statistics, Unit, Value};
-use opendr_face_detection::face_finder::{FaceInput, largest};
+use opendr_face_detection::face_detector::{FaceInput, largest_face};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::{TRAINABLE, network_from_base};
-use opendr_training::{TrainingParams, begin, fit_network, open_for_training};
+use opendr_training::{TrainingParams, fit_network, open_for_training, seeded_device};
 
 use super::gallery::Gallery;
 use super::network::Network;
@@ -19,43 +19,42 @@ use super::objective::ArcFace;
 use super::{FaceRecognition, FaceRecognitionParams};
 
 opendr_engine::choices! {
-    /// What a training makes of pictures of persons.
+    /// Use of the images of persons in `fit`.
     pub enum FaceRecognitionMode {
-        /// References: the persons are known from then on; the network stays as it is.
+        /// References: `fit` stores the persons in the model and does not change the network.
         Reference = "reference",
-        /// A new network, or a better one where it was trained here; its persons are not known from then on.
+        /// Training of a new network, or of one from a previous training; the model then contains no persons.
         Full = "full",
     }
 }
 
-/// How references are taken, or the network is trained.
+/// Training parameters of [`FaceRecognition`].
 #[derive(Debug, Clone, Params)]
 pub struct FaceRecognitionFitParams {
-    /// What is made of the pictures.
+    /// Use of the images.
     pub mode: FaceRecognitionMode,
-    /// Whether the model forgets the persons that it knows (`reference`).
+    /// Whether the persons of the model are removed before (`reference`).
     #[param(default = true)]
     pub create_new: bool,
-    /// Numbers of an embedding (`full`).
+    /// Length of an embedding (`full`).
     #[param(default = 256, range = 2..=4096, alias = "embedding_size")]
     pub dimension: usize,
-    /// Factor on the network's channels (`full`).
+    /// Factor of the network's channels (`full`).
     #[param(default = 0.5, range = 0.05..=2.0)]
     pub width: f64,
-    /// Added to the angle between a face and the centre of its person's, radians (`full`).
+    /// Margin, added to the angle between a face and its person's centre, in radians (`full`).
     #[param(default = 0.5, range = 0.0..=1.5)]
     pub margin: f64,
-    /// What cosines are multiplied with (`full`).
+    /// Scale of the cosines (`full`).
     #[param(default = 32.0, range = 1.0..=1000.0)]
     pub scale: f64,
-    /// What every training has (`full`).
+    /// Parameters of every training (`full`).
     #[param(flatten, epochs = 30, batch_size = 64, lr = 0.002, lr_schedule = opendr_training::ScheduleKind::Cosine)]
     pub training: TrainingParams,
 }
 
-/// Pictures with the class of the person that each shows. Of several faces in a picture the largest counts; as
-/// references, pictures without one are told and left out. Validation data play no part: measure a network by its
-/// references.
+/// Samples are images with the class of the person. Of several faces in an image the largest counts. With `reference`,
+/// images without a face are reported and skipped. Validation data are not used: evaluate a network by its references.
 impl Fit for FaceRecognition {
     type FitParams = FaceRecognitionFitParams;
 
@@ -69,7 +68,7 @@ impl Fit for FaceRecognition {
     ) -> Result<Statistics> {
         let base = base.ok_or_else(|| {
             Error::invalid_input(
-                "a model finds the faces in the pictures: load one first (the pretrained one will do)",
+                "fit needs a model to detect the faces; load one first, such as the pretrained one",
             )
         })?;
         let dataset = open_for_training::<Self>(dataset, job)?;
@@ -100,13 +99,13 @@ fn train(
         classes,
         margin,
         scale,
-        finder: (params.picture == FaceInput::Frame).then(|| Arc::new(finder)),
+        finder: (params.input_kind == FaceInput::Frame).then(|| Arc::new(finder)),
         manifest,
         parts: parts.collect::<Result<_>>()?,
     };
-    let device = begin(job, &fit_params.training)?;
+    let device = seeded_device(job, &fit_params.training)?;
     let network = Network::new(classes, dimension, width, &device);
-    // The zoo's network is no such one.
+    // A network that was not trained by `fit`, such as the zoo's, is not a base.
     let own = Some(base).filter(|base| base.manifest().files.iter().any(|file| file.name == TRAINABLE));
     fit_network(&objective, network_from_base(network, own)?, &fit_params.training, dataset, None, job)
 }
@@ -123,21 +122,21 @@ fn references(
         true => Gallery::new(learner.gallery.dimension()),
         false => learner.gallery.clone(),
     };
-    job.progress.begin("taking references", Some(dataset.len() as u64), Unit::Items);
-    let taken = take(&learner, dataset, &mut gallery, job);
+    job.progress.begin("storing references", Some(dataset.len() as u64), Unit::Items);
+    let with_face = take(&learner, dataset, &mut gallery, job);
     job.progress.end();
-    let taken = taken?;
+    let with_face = with_face?;
     let mut statistics = Statistics::default();
     statistics.set("persons", gallery.names().len() as f64);
-    statistics.set("pictures", taken as f64);
-    statistics.set("without_face", (dataset.len() - taken) as f64);
+    statistics.set("pictures", with_face as f64);
+    statistics.set("without_face", (dataset.len() - with_face) as f64);
     if !job.progress.stopped() {
         write(base, &gallery, job)?;
     }
     Ok(statistics)
 }
 
-/// Adds the largest face of each picture; how many had one.
+/// Adds the largest face of each image and returns the number of images with a face.
 fn take(
     learner: &FaceRecognition,
     dataset: &dyn DatasetIterator,
@@ -145,14 +144,14 @@ fn take(
     job: &FitJob<'_>,
 ) -> Result<usize> {
     let names = dataset.classes();
-    let (mut faces, mut embedding, mut taken) = (BoundingBoxList::default(), Vec::new(), 0);
+    let (mut faces, mut embedding, mut with_face) = (BoundingBoxList::default(), Vec::new(), 0);
     for index in 0..dataset.len() {
         if job.progress.stopped() {
             break;
         }
         let sample = match dataset.get(index) {
             Err(error) if job.skip_broken => {
-                job.progress.note(&format!("{error}: left out"));
+                job.progress.note(&format!("{error}; skipped"));
                 job.progress.advance(1);
                 continue;
             }
@@ -162,12 +161,12 @@ fn take(
             (sample.data.first(), &sample.target)
         else {
             return Err(Error::invalid_input(format!(
-                "the sample {} is no picture with the class of a person; give a folder of pictures for each person",
+                "the sample {} is not an image with the class of a person; give a folder of images for each person",
                 dataset.name(index)
             )));
         };
         learner.faces(image, &mut faces)?;
-        let has_face = match largest(&faces) {
+        let has_face = match largest_face(&faces) {
             Some(face) => learner.embed(image, face, &mut embedding)?,
             None => false,
         };
@@ -177,35 +176,35 @@ fn take(
             let name = names.name(category.class).map(AsRef::as_ref).or(name).unwrap_or(&numbered);
             if faces.boxes.len() > 1 {
                 let (name, count) = (dataset.name(index), faces.boxes.len());
-                job.progress.note(&format!("{name} shows {count} faces: the largest is taken"));
+                job.progress.note(&format!("{name} has {count} faces; the largest is used"));
             }
             gallery.add(name, &embedding);
-            taken += 1;
+            with_face += 1;
         } else {
-            job.progress.note(&format!("{} shows no face: left out", dataset.name(index)));
+            job.progress.note(&format!("{} has no face; skipped", dataset.name(index)));
         }
         job.progress.advance(1);
     }
     check_persons(&names, gallery, job)?;
-    Ok(taken)
+    Ok(with_face)
 }
 
-/// That everybody has a picture, or the user wants to go on without.
+/// Checks that every person has an image with a face, unless broken samples are skipped.
 fn check_persons(names: &Classes, gallery: &Gallery, job: &FitJob<'_>) -> Result<()> {
     let known = gallery.names();
     let missing: Vec<_> = names.iter().filter(|name| known.index(name).is_none()).collect();
     if job.progress.stopped() || (missing.is_empty() && !known.is_empty()) {
         return Ok(());
     }
-    let text = format!("no picture shows a face of {}", missing.join(", "));
+    let text = format!("no image has a face of {}", missing.join(", "));
     if known.is_empty() || !job.skip_broken {
-        return Err(Error::invalid_input(format!("{text}: give others, or leave broken samples out")));
+        return Err(Error::invalid_input(format!("{text}; give other images, or skip broken samples")));
     }
     job.progress.note(&text);
     Ok(())
 }
 
-/// The model with another gallery.
+/// Writes the model with another gallery.
 fn write(base: &Model, gallery: &Gallery, job: &FitJob<'_>) -> Result<()> {
     let mut manifest = base.manifest().clone();
     manifest.classes = gallery.names();

@@ -1,13 +1,13 @@
-//! The persons that a recogniser knows.
+//! The known persons of a face recogniser.
 
 use opendr_engine::model::Model;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result};
 use serde::{Deserialize, Serialize};
 
-/// How many pictures there are of each class of the container.
+/// File name of the number of images per class.
 const HEADER: &str = "gallery.json";
-/// Their embeddings, one after the other: 32-bit floats, little-endian.
+/// File name of their embeddings, one after the other: 32-bit floats, little-endian.
 const EMBEDDINGS: &str = "gallery.f32";
 
 #[derive(Serialize, Deserialize)]
@@ -16,7 +16,7 @@ struct Header {
     pictures: Vec<usize>,
 }
 
-/// Persons with the embeddings of their pictures.
+/// Persons with the embeddings of their images.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Gallery {
     dimension: usize,
@@ -26,11 +26,11 @@ pub(crate) struct Gallery {
 #[derive(Debug, Clone, Default, PartialEq)]
 struct Person {
     name: String,
-    /// Of length 1, one after the other.
+    /// Embeddings of length 1, one after the other.
     embeddings: Vec<f32>,
 }
 
-/// Scales to length 1; `false`, and all as it was, where it has none.
+/// Scales an embedding to length 1. Returns `false` and leaves it unchanged when its length is 0 or not finite.
 pub(crate) fn normalise(embedding: &mut [f32]) -> bool {
     let length = embedding.iter().map(|value| value * value).sum::<f32>().sqrt();
     let is_direction = length.is_normal();
@@ -41,15 +41,15 @@ pub(crate) fn normalise(embedding: &mut [f32]) -> bool {
 }
 
 impl Gallery {
-    /// Of nobody.
+    /// Creates an empty gallery.
     pub fn new(dimension: usize) -> Self {
         Self { dimension, persons: Vec::new() }
     }
 
-    /// That of a container; of nobody where it has none.
+    /// Reads the gallery of a container; it is empty when the container has none.
     ///
     /// # Errors
-    /// `Format` when its files do not go together, or have embeddings of another network.
+    /// `Format` when its files are inconsistent, or have embeddings of another network.
     pub fn of_model(model: &Model, dimension: usize) -> Result<Self> {
         if !model.manifest().files.iter().any(|file| file.name == HEADER) {
             return Ok(Self::new(dimension));
@@ -59,10 +59,10 @@ impl Gallery {
 
     fn from_bytes(header: &[u8], embeddings: &[u8], names: &Classes, dimension: usize) -> Result<Self> {
         let header: Header = serde_json::from_slice(header)
-            .map_err(|error| Error::format(format!("{HEADER} is no gallery")).with_source(error))?;
+            .map_err(|error| Error::format(format!("{HEADER} is not a valid gallery")).with_source(error))?;
         if header.dimension != dimension {
             return Err(Error::format(format!(
-                "the gallery has embeddings of {} numbers, the network gives {dimension}: take the references again",
+                "the gallery has embeddings of length {}, the network has {dimension}; store the references again with fit",
                 header.dimension
             )));
         }
@@ -70,7 +70,7 @@ impl Gallery {
         let bytes = sum.and_then(|sum| sum.checked_mul(4 * dimension));
         if bytes != Some(embeddings.len()) || header.pictures.len() != names.len() {
             return Err(Error::format(format!(
-                "the gallery has {} bytes of embeddings and {} names for {:?} pictures of {} persons",
+                "the gallery has {} bytes of embeddings and {} names for {:?} images of {} persons; store the references again with fit",
                 embeddings.len(),
                 names.len(),
                 sum,
@@ -82,18 +82,19 @@ impl Gallery {
             let mut embeddings: Vec<f32> = numbers.by_ref().take(count * dimension).collect();
             let sound = embeddings.chunks_exact_mut(dimension.max(1)).all(normalise);
             let error =
-                || Error::format(format!("an embedding of {name:.80?} in the gallery has no direction"));
+                || Error::format(format!("an embedding of {name:.80?} in the gallery is zero or not finite"));
             sound.then(|| Person { name: name.to_owned(), embeddings }).ok_or_else(error)
         });
         Ok(Self { dimension, persons: persons.collect::<Result<_>>()? })
     }
 
-    /// The names, by class number.
+    /// Returns the names by class index.
     pub fn names(&self) -> Classes {
         self.persons.iter().map(|person| person.name.as_str()).collect()
     }
 
-    /// The number of the person with the picture closest to `embedding`, and their cosine; -1 where nobody is known.
+    /// Returns the class index of the person with the embedding closest to `embedding`, and their cosine; -1 without
+    /// persons.
     pub fn nearest(&self, embedding: &[f32]) -> (usize, f32) {
         let mut nearest = (0, -1.0);
         for (at, person) in self.persons.iter().enumerate() {
@@ -108,32 +109,32 @@ impl Gallery {
     }
 }
 
-/// What taking references needs.
+/// Functions for storing references.
 #[cfg(any(feature = "training", test))]
 impl Gallery {
-    /// The files of the container, which names the persons as its classes.
+    /// Returns the files of the container, whose classes are the persons.
     pub fn to_files(&self) -> Result<[(&'static str, Vec<u8>); 2]> {
         let pictures = self.persons.iter().map(|person| person.embeddings.len() / self.dimension.max(1));
         let header = Header { dimension: self.dimension, pictures: pictures.collect() };
         let header = serde_json::to_vec(&header)
-            .map_err(|error| Error::internal("a gallery has no form as JSON").with_source(error))?;
+            .map_err(|error| Error::internal("the gallery cannot be serialised").with_source(error))?;
         let numbers = self.persons.iter().flat_map(|person| &person.embeddings);
         Ok([(HEADER, header), (EMBEDDINGS, numbers.flat_map(|number| number.to_le_bytes()).collect())])
     }
 
-    /// Whether the file of a container is of its gallery.
+    /// Returns whether a file of a container belongs to its gallery.
     #[cfg(feature = "training")]
     pub fn is_file(name: &str) -> bool {
         name == HEADER || name == EMBEDDINGS
     }
 
-    /// Numbers of an embedding.
+    /// Returns the length of an embedding.
     #[cfg(feature = "training")]
     pub fn dimension(&self) -> usize {
         self.dimension
     }
 
-    /// Adds a picture of somebody; an embedding of length 1.
+    /// Adds an embedding of length 1 to a person.
     pub fn add(&mut self, name: &str, embedding: &[f32]) {
         let at = self.persons.iter().position(|person| person.name == name).unwrap_or_else(|| {
             self.persons.push(Person { name: name.to_owned(), embeddings: Vec::new() });
@@ -158,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn the_closest_of_all_pictures_counts() {
+    fn the_closest_of_all_embeddings_counts() {
         let (person, cosine) = gallery().nearest(&[0.8, 0.6]);
         assert_eq!(person, 0);
         assert!((cosine - 0.96).abs() < 1e-6);
@@ -168,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn files_hold_it() {
+    fn a_gallery_survives_its_files() {
         let [(_, header), (_, embeddings)] = gallery().to_files().unwrap();
         let read = |header: &[u8], embeddings: &[u8], names: &[&str], dimension| {
             Gallery::from_bytes(header, embeddings, &names.iter().copied().collect(), dimension)

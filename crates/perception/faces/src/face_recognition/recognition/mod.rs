@@ -1,8 +1,8 @@
-//! Face recognition: faces are found, turned upright by five points, and compared with those of known persons.
+//! Face recognition: faces are detected, aligned by five points, and compared with those of known persons.
 //!
-//! MobileFace gives 256 numbers a face (trained with ArcFace's loss: Deng et al., CVPR 2019); the cosine between two
-//! faces tells whether they are of one person. Persons are made known by `fit`, which takes pictures of each as
-//! references and trains nothing unless asked to: the set is open, and whoever is close to nobody is unknown.
+//! MobileFace computes an embedding of 256 values per face (trained with ArcFace's loss: Deng et al., CVPR 2019); the
+//! cosine of two embeddings decides whether they are of one person. `fit` stores images of each person as references and
+//! trains the network only on request. The set of persons is open: a face that is close to none is unknown.
 
 #[cfg(feature = "training")]
 mod fit;
@@ -20,8 +20,8 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes, Name};
 use opendr_engine::{Device, Error, Pool, Result, Task};
-use opendr_face_detection::face_finder::{FaceFinder, FaceInput, whole_picture};
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_face_detection::face_detector::{FaceDetector, FaceInput, whole_image};
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_vision::{Preprocess, Similarity};
 
 use gallery::{Gallery, normalise};
@@ -29,29 +29,30 @@ use gallery::{Gallery, normalise};
 #[cfg(feature = "training")]
 pub use fit::{FaceRecognitionFitParams, FaceRecognitionMode};
 
-/// What a user may set.
+/// Parameters of [`FaceRecognition`].
 #[derive(Debug, Clone, Params)]
 pub struct FaceRecognitionParams {
-    /// Faces whose cosine with every picture of a known person is below this are unknown.
+    /// Cosine to every image of a known person below which a face is unknown.
     #[param(default = 0.38, range = -1.0..=1.0, live)]
     pub threshold: f32,
-    /// What the detector scores below this is no face.
+    /// Score of the detector below which faces are dropped.
     #[param(default = 0.6, range = 0.0..=1.0)]
     pub face_threshold: f32,
-    /// What pictures show.
-    #[param(live)]
-    pub picture: FaceInput,
+    /// Content of the images.
+    #[param(live, former = "picture")]
+    pub input_kind: FaceInput,
 }
 
 /// A loaded face recogniser.
 ///
-/// It answers a box for every face, best first, with the person's class, or the label `unknown`. A box's confidence is how
-/// sure it is of that answer, 0.5..=1, by a logistic function of the cosine whose middle is the threshold. Its slope
-/// makes 300 labelled pairs of faces most likely (deepface's test set; maximum likelihood, Brier score 0.017).
+/// Its predictions are a box for every face, highest score first, with the person's class or the label `unknown`. The
+/// confidence of a box is the probability of its class, 0.5..=1, a logistic function of the cosine centred at the
+/// threshold. Its slope is the maximum likelihood estimate on 300 labelled pairs of faces (deepface's test set; Brier score
+/// 0.017).
 pub struct FaceRecognition {
     params: FaceRecognitionParams,
-    finder: FaceFinder,
-    network: PictureNetwork,
+    finder: FaceDetector,
+    network: ImageNetwork,
     gallery: Gallery,
     persons: Classes,
     unknown: Name,
@@ -64,28 +65,28 @@ struct Scratch {
     embedding: Vec<f32>,
 }
 
-/// Side of the network's input, pixels.
+/// Side of the network's input, in pixels.
 const SIDE: usize = 112;
-/// Where ArcFace wants eyes, nose and corners of the mouth in it (insightface's `arcface_dst`).
+/// ArcFace's positions of eyes, nose and corners of the mouth in it (insightface's `arcface_dst`).
 const TEMPLATE: [[f32; 2]; 5] =
     [[38.2946, 51.6963], [73.5318, 51.5014], [56.0252, 71.7366], [41.5493, 92.3655], [70.7299, 92.2041]];
-/// Of the confidence as a function of the cosine; `confidence_is_calibrated` fits it.
+/// Slope of the confidence as a function of the cosine; `confidence_is_calibrated` fits it.
 const SLOPE: f32 = 33.5;
 
 impl Learner for FaceRecognition {
     const SPEC: Spec = Spec::new("face_recognition", Task::FaceRecognition)
         .class("FaceRecognitionLearner")
-        .about("MobileFace tells whose faces a frame shows, after a few reference pictures of each person.")
+        .about("MobileFace recognises the persons in an image by their faces, from a few reference images of each.")
         .without_effect(&[
-            ("backbone", "the model says it: MobileFace, or MobileNet where it was trained here"),
+            ("backbone", "the model determines it: MobileFace, or MobileNet after fit"),
             ("network_head", "the network is trained by ArcFace's loss"),
             ("loss", "the network is trained by ArcFace's loss"),
-            ("input_size", "the network says what it takes"),
-            ("rgb_mean", "the network says what it takes"),
-            ("rgb_std", "the network says what it takes"),
-            ("drop_last", "the last batch counts"),
-            ("stages", "`lr_steps` says them"),
-            ("pin_memory", "there is nothing to pin"),
+            ("input_size", "the model defines it"),
+            ("rgb_mean", "the model defines it"),
+            ("rgb_std", "the model defines it"),
+            ("drop_last", "the last batch is always used"),
+            ("stages", "`lr_steps` sets them"),
+            ("pin_memory", "memory is not pinned"),
         ]);
     type Params = FaceRecognitionParams;
     type Input<'a> = &'a Image;
@@ -93,19 +94,23 @@ impl Learner for FaceRecognition {
     type State = ();
 
     fn load(model: &Model, params: FaceRecognitionParams, device: Device) -> Result<Self> {
-        let network = PictureNetwork::open(model, device, |input| {
+        let network = ImageNetwork::open(model, device, |input| {
             let layout = if input.dims.last() == Some(&Some(3)) { Layout::Hwc } else { Layout::Chw };
             Preprocess::new(SIDE, SIDE).layout(layout)
         })?;
         let [output] = network.outputs() else {
-            return Err(Error::format("the network of a face recogniser has one output, the embedding"));
+            return Err(Error::format(
+                "a face recognition network needs one output, the embedding; load another model",
+            ));
         };
         let Some(dimension) = output.dims.last().copied().flatten().filter(|dimension| *dimension > 0) else {
-            return Err(Error::format("the embedding of a face recogniser has a fixed length"));
+            return Err(Error::format(
+                "the embedding of a face recognition network needs a fixed length; load another model",
+            ));
         };
         let gallery = Gallery::of_model(model, dimension)?;
         Ok(Self {
-            finder: FaceFinder::open(model, params.face_threshold, device)?,
+            finder: FaceDetector::open(model, params.face_threshold, device)?,
             persons: gallery.names(),
             unknown: Name::Label(Arc::from("unknown")),
             scratch: Pool::default(),
@@ -127,15 +132,15 @@ impl Learner for FaceRecognition {
         self.persons.clone()
     }
 
-    fn infer_into(&self, _: &mut (), image: &Image, answer: &mut BoundingBoxList) -> Result<()> {
+    fn infer_into(&self, _: &mut (), image: &Image, boxes: &mut BoundingBoxList) -> Result<()> {
         let Scratch { faces, embedding } = &mut *self.scratch.take();
         self.faces(image, faces)?;
-        answer.classes.clone_from(&self.persons);
-        answer.boxes.clear();
+        boxes.classes.clone_from(&self.persons);
+        boxes.boxes.clear();
         for mut face in faces.boxes.drain(..) {
             if self.embed(image, &face, embedding)? {
                 self.name(&mut face, embedding);
-                answer.boxes.push(face);
+                boxes.boxes.push(face);
             }
         }
         Ok(())
@@ -143,8 +148,8 @@ impl Learner for FaceRecognition {
 }
 
 impl FaceRecognition {
-    /// The 256 numbers of each face in `image`, best first, scaled to length 1: the cosine of two is the sum of their
-    /// products.
+    /// Returns the embedding of each face in `image`, highest score first, scaled to length 1: the cosine of two is their
+    /// dot product.
     ///
     /// # Errors
     /// As `infer`.
@@ -161,23 +166,23 @@ impl FaceRecognition {
     }
 
     fn faces(&self, image: &Image, faces: &mut BoundingBoxList) -> Result<()> {
-        if self.params.picture == FaceInput::Frame {
-            return self.finder.find(image, faces);
+        if self.params.input_kind == FaceInput::Frame {
+            return self.finder.detect(image, faces);
         }
         faces.boxes.clear();
         faces.boxes.push(BoundingBox::new(0, 0.0, 0.0, image.width() as f32, image.height() as f32, 1.0));
         Ok(())
     }
 
-    /// The face upright, as the network wants it; `None` where it has no extent.
+    /// Returns the crop of the aligned face; `None` when it has no extent.
     fn crop(&self, image: &Image, face: &BoundingBox) -> Option<Similarity> {
-        match self.params.picture {
+        match self.params.input_kind {
             FaceInput::Frame => Similarity::from_points(&face.landmarks, &TEMPLATE),
-            FaceInput::Face => Some(whole_picture(image, SIDE)),
+            FaceInput::Face => Some(whole_image(image, SIDE)),
         }
     }
 
-    /// Fills `embedding` with what the network gives for a face, length 1; `false` for a face without extent.
+    /// Fills `embedding` with a face's embedding of length 1; returns `false` for a face without extent.
     fn embed(&self, image: &Image, face: &BoundingBox, embedding: &mut Vec<f32>) -> Result<bool> {
         let Some(crop) = self.crop(image, face) else { return Ok(false) };
         self.network.run_warped(

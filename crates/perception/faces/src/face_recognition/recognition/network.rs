@@ -1,4 +1,4 @@
-//! The network that is trained: MobileNetV1 in front of MobileFaceNet's head, and the centres of ArcFace's classes.
+//! The network for training: MobileNetV1 with MobileFaceNet's head, and the centres of ArcFace's classes.
 
 use burn::module::{Module, Param};
 use burn::nn::conv::{Conv2d, Conv2dConfig};
@@ -8,25 +8,25 @@ use opendr_training::layers::{MobileNetV1, MobileNetV1Config};
 
 use super::SIDE;
 
-/// Pixels of the picture per cell of the last features.
+/// Pixels of the image per cell of the last features.
 const STRIDE: usize = 16;
 /// Channels of the last block at width 1.
 const CHANNELS: usize = 1024;
 
-/// From an aligned face to its embedding.
+/// A network from an aligned face to its embedding.
 #[derive(Module, Debug)]
 pub struct Network {
     backbone: MobileNetV1,
-    /// Weighs the cells channel by channel, instead of their mean (MobileFaceNets, Chen et al., 2018).
+    /// Weighted sum over the cells per channel, instead of their mean (MobileFaceNets, Chen et al., 2018).
     spatial: Conv2d,
     head: Linear,
     norm: BatchNorm,
-    /// `[classes, dimension]`; no part of the exported network.
+    /// Centres `[classes, dimension]`; not part of the exported network.
     centres: Param<Tensor<2>>,
 }
 
 impl Network {
-    /// A network with random weights for faces of `classes` persons.
+    /// Creates a network with random weights for faces of `classes` persons.
     pub fn new(classes: usize, dimension: usize, width: f64, device: &Device) -> Self {
         let mobilenet = MobileNetV1Config::new().with_width(width).with_output_stride(STRIDE);
         let channels = mobilenet.scaled(CHANNELS);
@@ -40,20 +40,20 @@ impl Network {
         }
     }
 
-    /// Faces `[batch, 3, 112, 112]`, levels 0..=255, to embeddings `[batch, dimension]`.
+    /// Computes embeddings `[batch, dimension]` of faces `[batch, 3, 112, 112]` with levels 0..=255.
     pub fn embed(&self, faces: Tensor<4>) -> Tensor<2> {
         let features = self.spatial.forward(self.backbone.forward(faces * (1.0 / 127.5) - 1.0));
         let [batch, channels, ..] = features.dims();
         self.norm.forward(self.head.forward(features.reshape([batch, channels])))
     }
 
-    /// Cosines `[batch, classes]` between embeddings and the centres of the classes.
+    /// Returns the cosines `[batch, classes]` between embeddings and the centres of the classes.
     pub fn cosines(&self, embeddings: Tensor<2>) -> Tensor<2> {
         unit(embeddings).matmul(unit(self.centres.val()).transpose())
     }
 }
 
-/// Rows of length 1.
+/// Scales rows to length 1.
 fn unit(rows: Tensor<2>) -> Tensor<2> {
     let length = rows.clone().powf_scalar(2.0).sum_dim(1).add_scalar(1e-12).sqrt();
     rows / length

@@ -1,4 +1,4 @@
-//! What it is trained on and by: aligned faces with the class of their person, ArcFace's loss.
+//! Training objective of face recognition: aligned faces with the class of their person, ArcFace's loss.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use opendr_engine::dataset::Sample;
 use opendr_engine::model::Manifest;
 use opendr_engine::target::BoundingBoxList;
 use opendr_engine::{Error, Result, Value};
-use opendr_face_detection::face_finder::{largest, whole_picture};
+use opendr_face_detection::face_detector::{largest_face, whole_image};
 use opendr_perception_common::labelled::class_of;
 use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{Input, onnx};
@@ -20,29 +20,29 @@ use opendr_vision::Preprocess;
 use super::network::Network;
 use super::{FaceRecognition, SIDE};
 
-/// Faces with the class of their person, ArcFace's loss (Deng et al., CVPR 2019).
+/// Training objective: faces with the class of their person, ArcFace's loss (Deng et al., CVPR 2019).
 pub(super) struct ArcFace {
     pub classes: usize,
-    /// Added to the angle between a face and its class's centre, radians.
+    /// Margin, added to the angle between a face and its class's centre, in radians.
     pub margin: f64,
-    /// What cosines are multiplied with.
+    /// Scale of the cosines.
     pub scale: f64,
-    /// What finds the faces; without, a picture is a face.
+    /// Detector of the faces; without it, an image is a face.
     pub finder: Option<Arc<FaceRecognition>>,
-    /// What the trained container says.
+    /// Manifest of the trained container.
     pub manifest: Manifest,
-    /// The files of its parts.
+    /// Files of its parts.
     pub parts: Vec<(String, Vec<u8>)>,
 }
 
-/// Makes [`AlignedFaces`].
+/// Collates samples into [`AlignedFaces`].
 pub(super) struct Collator {
     preprocess: Preprocess,
     classes: usize,
     finder: Option<Arc<FaceRecognition>>,
 }
 
-/// Faces `[batch, 3, 112, 112]` and the number of the class of each.
+/// Faces `[batch, 3, 112, 112]` and the class index of each.
 pub(super) struct AlignedFaces {
     pixels: Vec<f32>,
     classes: Vec<i64>,
@@ -59,19 +59,19 @@ impl Collate for Collator {
     fn add(&self, batch: &mut AlignedFaces, sample: Sample) -> Result<()> {
         let class = class_of(&sample, self.classes)?;
         let Some(Value::Image(image)) = sample.data.first() else {
-            return Err(Error::invalid_input("the sample has no picture; give one"));
+            return Err(Error::invalid_input("the sample has no image; give one"));
         };
         let crop = match &self.finder {
-            None => Some(whole_picture(image, SIDE)),
+            None => Some(whole_image(image, SIDE)),
             Some(finder) => {
                 let mut faces = BoundingBoxList::default();
                 finder.faces(image, &mut faces)?;
-                largest(&faces).and_then(|face| finder.crop(image, face))
+                largest_face(&faces).and_then(|face| finder.crop(image, face))
             }
         };
         let crop = crop.ok_or_else(|| {
             Error::invalid_input(
-                "the picture shows no face; leave it out, or set input to \"face\" where pictures are faces",
+                "the image has no face; remove it, or set picture to \"face\" when images are cropped faces",
             )
         })?;
         let start = batch.pixels.len();
@@ -104,7 +104,7 @@ impl Objective for ArcFace {
         let cosines = network.cosines(network.embed(Tensor::<4>::from_data(faces, device)));
         let classes = Tensor::<1, Int>::from_data(TensorData::new(batch.classes.clone(), [count]), device);
         let own = classes.clone().one_hot::<2>(self.classes).float();
-        // cos(angle + margin); where that would turn around, a line that goes on falling (the paper's code).
+        // cos(angle + margin); beyond its minimum a line that keeps falling (the paper's code).
         let sines = (cosines.clone().powf_scalar(2.0).neg() + 1.0).clamp_min(1e-6).sqrt();
         let harder = cosines.clone() * self.margin.cos() - sines * self.margin.sin();
         let line = cosines.clone() - self.margin.sin() * self.margin;
@@ -134,7 +134,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_learns_a_batch_by_heart_and_is_written() {
+    fn one_batch_is_overfitted_and_exported() {
         let objective = ArcFace {
             classes: 3,
             margin: 0.5,

@@ -1,4 +1,4 @@
-//! How it trains.
+//! Training of PST-BLN.
 
 use opendr_engine::dataset::{DatasetIterator, DatasetRef};
 use opendr_engine::learner::{Fit, FitJob};
@@ -7,16 +7,18 @@ use opendr_engine::params::Params;
 use opendr_engine::{Error, Result, Statistics};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{
+    OptimizerKind, ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device,
+};
 
 use super::network::{BilinearNetwork, NetworkSizes};
 use super::objective::{ExpressionObjective, sequence_of};
 use super::{KINDS, ProgressiveSpatioTemporalBln, ProgressiveSpatioTemporalBlnParams};
 
-/// How a user may train it.
+/// Training parameters of [`ProgressiveSpatioTemporalBln`].
 #[derive(Debug, Clone, Params)]
 pub struct ProgressiveSpatioTemporalBlnFitParams {
-    /// What every training takes.
+    /// Parameters of every training.
     #[param(
         flatten,
         epochs = 400,
@@ -28,7 +30,7 @@ pub struct ProgressiveSpatioTemporalBlnFitParams {
         weight_decay = 0.0001
     )]
     pub training: TrainingParams,
-    /// Share of values between layers that are left out at random in each training step.
+    /// Dropout probability between layers.
     #[param(default = 0.2, range = 0.0..=0.99)]
     pub dropout: f64,
 }
@@ -49,17 +51,17 @@ impl Fit for ProgressiveSpatioTemporalBln {
         let classes = classes_to_train(&*dataset, params.num_class, "num_class")?;
         let sizes = sizes(params, &*dataset)?;
         let params = ProgressiveSpatioTemporalBlnParams { num_point: Some(sizes.points), ..params.clone() };
-        let network = BilinearNetwork::new(&sizes, classes.len(), *dropout, &begin(job, training)?);
+        let network = BilinearNetwork::new(&sizes, classes.len(), *dropout, &seeded_device(job, training)?);
         let network = network_from_base(network, base)?;
         let objective = ExpressionObjective { params: &params, classes, sizes };
         fit_learner::<Self, _>(&objective, network, &params, training, &*dataset, val_dataset, job)
     }
 }
 
-/// The network's sizes: as many landmarks as the first sample has, where nobody says.
+/// Returns the network's sizes; the number of landmarks defaults to that of the first sample.
 fn sizes(params: &ProgressiveSpatioTemporalBlnParams, dataset: &dyn DatasetIterator) -> Result<NetworkSizes> {
     if dataset.is_empty() {
-        return Err(Error::invalid_input("the data set to train on is empty"));
+        return Err(Error::invalid_input("the data set is empty; give one with samples"));
     }
     let there = sequence_of(&dataset.get(0)?)?.shape()[3];
     Ok(NetworkSizes {

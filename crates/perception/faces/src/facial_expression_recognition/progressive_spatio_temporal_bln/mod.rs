@@ -1,9 +1,9 @@
-//! Expressions by the landmarks of a face through time.
+//! Facial expressions from sequences of landmarks.
 //!
 //! Heidari and Iosifidis, Progressive Spatio-Temporal Bilinear Network with Monte Carlo Dropout for Landmark-based Facial
-//! Expression Recognition with Uncertainty Estimation, 2021: each layer mixes all landmarks by a matrix of its own, learnt and
-//! not drawn from a graph, and the channels by another, then looks through time. In place of the paper's growing of layers,
-//! block by block, `topology` says how large they are; `opendr tune` searches it as any other parameter.
+//! Expression Recognition with Uncertainty Estimation, 2021: each layer mixes all landmarks by a learned matrix instead of
+//! a given graph, and the channels by another one, then convolves over time. The paper grows layers block by block; here
+//! `topology` sets their sizes, and `opendr tune` searches it as any other parameter.
 
 #[cfg(feature = "training")]
 mod fit;
@@ -25,27 +25,27 @@ use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
 use opendr_perception_common::category_scores::category_from_logits;
-use opendr_perception_common::frame_features::{ClipWork, FrameFeatures};
+use opendr_perception_common::frame_features::{ClipScratch, FrameFeatures};
 
-/// What a user may set. Sizes are those of the network that is trained; a loaded model has its own.
+/// Parameters of [`ProgressiveSpatioTemporalBln`]. Sizes are those of a network to train; a loaded model has its own.
 #[derive(Debug, Clone, Params)]
 pub struct ProgressiveSpatioTemporalBlnParams {
-    /// Classes. None: as many as the data name.
+    /// Number of classes; by default that of the data set.
     #[param(range = 2..=10_000)]
     pub num_class: Option<usize>,
-    /// Landmarks of a face. None: as many as the data have.
+    /// Number of landmarks of a face; by default that of the data set.
     #[param(range = 2..=1000)]
     pub num_point: Option<usize>,
-    /// Coordinates of a landmark: 2 (a third channel, where there is one, holds scores) or 3.
+    /// Coordinates of a landmark: 2 (an optional third channel has scores) or 3.
     #[param(default = 2, range = 2..=3)]
     pub in_channels: usize,
-    /// Frames of a clip: the last of a longer recording; in a shorter one, the face stands still before it.
+    /// Frames of a clip: the last ones of a longer recording; a shorter one is extended by its first frame.
     #[param(default = 20, range = 1..=10_000)]
     pub num_frames: usize,
     /// Channels of a block.
     #[param(default = 5, range = 1..=256)]
     pub blocksize: usize,
-    /// Blocks of each layer.
+    /// Number of blocks of each layer.
     #[param(default = vec![2, 2, 4, 4], range = 1..=1000)]
     pub topology: Vec<usize>,
 }
@@ -55,32 +55,33 @@ pub struct ProgressiveSpatioTemporalBln {
     params: ProgressiveSpatioTemporalBlnParams,
     classes: Classes,
     features: FrameFeatures,
-    /// Of the network's input.
+    /// Shape of the network's input.
     shape: [usize; 4],
     session: Session,
-    work: Pool<ClipWork>,
+    work: Pool<ClipScratch>,
 }
 
-/// The network in every container: `clip` `[1, features, frames, landmarks]` to `logits` `[1, classes]`.
+/// File name of the network in a container. Input: `clip` `[1, features, frames, landmarks]`. Output: `logits`
+/// `[1, classes]`.
 const FILE: &str = "model.onnx";
-/// Features of a coordinate: place and motion.
+/// Features per coordinate: position and motion.
 const KINDS: usize = 2;
 
 impl Learner for ProgressiveSpatioTemporalBln {
     const SPEC: Spec = Spec::new("progressive_spatio_temporal_bln", Task::FacialExpressionRecognition)
         .class("ProgressiveSpatioTemporalBLNLearner")
-        .about("PST-BLN tells an expression by the landmarks of a face through time; it trains.")
+        .about("PST-BLN classifies facial expressions from sequences of landmarks; trainable.")
         .without_effect(&[
-            ("experiment_name", "the folder of a training says it"),
-            ("device_indices", "`device` says it"),
-            ("val_batch_size", "validation asks the learner, clip by clip"),
-            ("start_epoch", "`resume` of `fit` goes on where a training was"),
-            ("dataset_name", "the data set says it"),
-            ("num_person", "a recording is of one face, the first that is there"),
-            ("num_blocks", "`topology` says it"),
-            ("num_layers", "`topology` says it"),
-            ("layer_threshold", "layers do not grow: `topology` says their sizes"),
-            ("block_threshold", "layers do not grow: `topology` says their sizes"),
+            ("experiment_name", "the output folder of a training names it"),
+            ("device_indices", "`device` sets it"),
+            ("val_batch_size", "the validation infers clip by clip"),
+            ("start_epoch", "`resume` of `fit` continues a training"),
+            ("dataset_name", "the data set defines it"),
+            ("num_person", "a recording has one face, the first that occurs"),
+            ("num_blocks", "`topology` sets it"),
+            ("num_layers", "`topology` sets it"),
+            ("layer_threshold", "layers do not grow: `topology` sets their sizes"),
+            ("block_threshold", "layers do not grow: `topology` sets their sizes"),
         ]);
     type Params = ProgressiveSpatioTemporalBlnParams;
     type Input<'a> = &'a SkeletonSequence;
@@ -90,21 +91,23 @@ impl Learner for ProgressiveSpatioTemporalBln {
     fn load(model: &Model, params: ProgressiveSpatioTemporalBlnParams, device: Device) -> Result<Self> {
         let session = Session::open(&model.file(FILE)?, device)?;
         let ([input], [output]) = (session.inputs(), session.outputs()) else {
-            return Err(Error::format(format!("{FILE} has not one input and one output")));
+            return Err(Error::format(format!(
+                "{FILE} does not have one input and one output; train or download it again"
+            )));
         };
         let ([_, Some(rows), Some(frames), Some(points)], [_, Some(classes)]) =
             (&input.dims[..], &output.dims[..])
         else {
             return Err(Error::format(format!(
-                "{FILE} turns {input} into {output}, which are no landmarks and scores"
+                "{FILE} has the input {input} and the output {output} instead of landmarks and scores; train or download it again"
             )));
         };
         let shape = [1, *rows, *frames, *points];
         let fits = [1, KINDS * params.in_channels, params.num_frames, params.num_point.unwrap_or(*points)];
         if shape != fits || params.num_class.is_some_and(|wanted| wanted != *classes) {
             return Err(Error::invalid_param(format!(
-                "{FILE} takes {input} and tells {classes} classes, in_channels, num_frames, num_point and num_class make \
-                 {fits:?} and others: leave them out"
+                "{FILE} has the input {input} and {classes} classes, but in_channels, num_frames, num_point and num_class \
+                 give {fits:?} and other classes; omit them"
             )));
         }
         let features = FrameFeatures::without_bones(*points, params.in_channels);
@@ -134,20 +137,18 @@ impl Learner for ProgressiveSpatioTemporalBln {
     }
 }
 
-/// Replaces `work.clip` by the features of the first face that is in a recording.
+/// Replaces `work.clip` by the features of the first face that occurs in a recording.
 ///
 /// # Errors
-/// `InvalidInput` when none is.
+/// `InvalidInput` when there is none.
 fn first_face_into(
     features: &FrameFeatures,
     sequence: &SkeletonSequence,
     frames: usize,
-    work: &mut ClipWork,
+    work: &mut ClipScratch,
 ) -> Result<()> {
     match (0..sequence.shape()[4]).any(|face| features.clip_into(sequence, face, frames, work)) {
         true => Ok(()),
-        false => {
-            Err(Error::invalid_input("no face is in the recording: all landmarks are missing; leave it out"))
-        }
+        false => Err(Error::invalid_input("the recording has no face: all landmarks are missing; remove it")),
     }
 }

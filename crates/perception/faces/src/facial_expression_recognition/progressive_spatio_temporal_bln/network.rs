@@ -1,4 +1,4 @@
-//! The network as it is trained.
+//! PST-BLN's network for training.
 
 use burn::module::{Initializer, Module, Param};
 use burn::nn::conv::{Conv2d, Conv2dConfig};
@@ -6,7 +6,7 @@ use burn::nn::{BatchNorm, BatchNormConfig, Dropout, DropoutConfig, Linear, Linea
 use burn::tensor::activation::relu;
 use burn::tensor::{Device, Tensor};
 
-/// Frames that a layer sees.
+/// Kernel size over time, in frames.
 const KERNEL: usize = 9;
 
 /// Sizes of the network.
@@ -16,13 +16,13 @@ pub(super) struct NetworkSizes {
     pub features: usize,
     /// Frames of a clip.
     pub frames: usize,
-    /// Landmarks.
+    /// Number of landmarks.
     pub points: usize,
     /// Channels of each layer.
     pub channels: Vec<usize>,
 }
 
-/// `[batch, features, frames, landmarks]` to logits `[batch, classes]`.
+/// A network from `[batch, features, frames, landmarks]` to logits `[batch, classes]`.
 #[derive(Module, Debug)]
 pub(super) struct BilinearNetwork {
     scale: BatchNorm,
@@ -31,7 +31,7 @@ pub(super) struct BilinearNetwork {
     classifier: Linear,
 }
 
-/// All landmarks mixed in each frame, a convolution through time at each landmark, and a way past both.
+/// A layer: a mixture of all landmarks in each frame, a convolution over time at each landmark, and a residual connection.
 #[derive(Module, Debug)]
 struct Bilinear {
     landmarks: Param<Tensor<2>>,
@@ -44,7 +44,7 @@ struct Bilinear {
 }
 
 impl BilinearNetwork {
-    /// A network with weights as training begins with.
+    /// Creates a network with random weights.
     pub fn new(sizes: &NetworkSizes, classes: usize, dropout: f64, device: &Device) -> Self {
         let mut inputs = sizes.features;
         let layers = sizes.channels.iter().map(|channels| {
@@ -61,7 +61,7 @@ impl BilinearNetwork {
         }
     }
 
-    /// Logits `[batch, classes]` of clips `[batch, features, frames, landmarks]`.
+    /// Computes logits `[batch, classes]` of clips `[batch, features, frames, landmarks]`.
     pub fn forward(&self, clips: Tensor<4>) -> Tensor<2> {
         let signal = self.scale.forward(clips);
         let signal = self.layers.iter().fold(signal, |signal, layer| layer.forward(signal));
@@ -81,7 +81,7 @@ impl Bilinear {
                 .init(device)
         };
         let norm = || BatchNormConfig::new(outputs).init(device);
-        // Each landmark begins with itself, and a little of all others.
+        // Initially each landmark has itself and a small share of all others.
         let others = Initializer::Constant { value: 0.1 / points as f64 }.init([points, points], device);
         let landmarks = others.map(|others: Tensor<2>| others + Tensor::eye(points, device));
         Self {

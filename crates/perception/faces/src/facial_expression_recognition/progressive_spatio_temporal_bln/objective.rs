@@ -1,4 +1,4 @@
-//! Batches, loss and container.
+//! Training objective of PST-BLN: batches, loss and container.
 
 use burn::tensor::Device;
 use opendr_datasets::loader::Collate;
@@ -9,7 +9,7 @@ use opendr_engine::model::Manifest;
 use opendr_engine::params::Params as _;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, Value};
-use opendr_perception_common::frame_features::{ClipWork, FrameFeatures};
+use opendr_perception_common::frame_features::{ClipScratch, FrameFeatures};
 use opendr_perception_common::labelled::{LabelledBatch, class_of};
 use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{Input, onnx};
@@ -18,7 +18,7 @@ use opendr_training::{Container, Loss, Objective};
 use super::network::{BilinearNetwork, NetworkSizes};
 use super::{FILE, ProgressiveSpatioTemporalBln, ProgressiveSpatioTemporalBlnParams, first_face_into};
 
-/// What the training minimises: the cross-entropy.
+/// Training objective of PST-BLN: the cross-entropy.
 pub(super) struct ExpressionObjective<'a> {
     pub params: &'a ProgressiveSpatioTemporalBlnParams,
     pub classes: Classes,
@@ -60,7 +60,7 @@ impl Objective for ExpressionObjective<'_> {
     }
 }
 
-/// Features of clips of one length.
+/// Collates sequences into features of clips of one length.
 pub(super) struct LandmarkBatches {
     features: FrameFeatures,
     frames: usize,
@@ -77,14 +77,14 @@ impl Collate for LandmarkBatches {
     fn add(&self, batch: &mut LabelledBatch, sample: Sample) -> Result<()> {
         let sequence = sequence_of(&sample)?;
         self.features.check(sequence)?;
-        let mut work = ClipWork::default();
+        let mut work = ClipScratch::default();
         first_face_into(&self.features, sequence, self.frames, &mut work)?;
         batch.push(&work.clip, class_of(&sample, self.classes)?);
         Ok(())
     }
 }
 
-/// The landmarks of a sample.
+/// Returns the landmarks of a sample.
 pub(super) fn sequence_of(sample: &Sample) -> Result<&SkeletonSequence> {
     match sample.data.first() {
         Some(Value::SkeletonSequence(sequence)) => Ok(sequence),

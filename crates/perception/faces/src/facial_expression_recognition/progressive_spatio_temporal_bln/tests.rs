@@ -3,8 +3,8 @@ use std::f32::consts::TAU;
 use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::{ErrorKind, Random};
+use opendr_perception_testing::learner_checks::check_trained_learner;
 use opendr_perception_testing::overfit::losses_on_one_batch;
-use opendr_perception_testing::promises::check;
 
 use super::network::{BilinearNetwork, NetworkSizes};
 use super::objective::ExpressionObjective;
@@ -17,7 +17,7 @@ fn params() -> ProgressiveSpatioTemporalBlnParams {
     ProgressiveSpatioTemporalBlnParams { num_frames: FRAMES, topology: vec![1, 2], ..Default::default() }
 }
 
-/// Points on a circle, of which a third goes outwards: the upper, the lower right or the lower left.
+/// Points on a circle, of which a third moves outwards: the upper, the lower right or the lower left one.
 struct Faces;
 
 impl Dataset for Faces {}
@@ -56,7 +56,7 @@ fn face(index: usize) -> SkeletonSequence {
 }
 
 #[test]
-fn learns_one_batch_by_heart() {
+fn one_batch_is_overfitted() {
     let params = params();
     let sizes = NetworkSizes { features: 4, frames: FRAMES, points: POINTS, channels: vec![5, 10] };
     let objective = ExpressionObjective { params: &params, classes: Faces.classes(), sizes: sizes.clone() };
@@ -67,7 +67,7 @@ fn learns_one_batch_by_heart() {
 }
 
 #[test]
-fn fit_makes_what_infer_loads() {
+fn infer_loads_the_model_of_fit() {
     let output = std::env::temp_dir().join(format!("opendr-pst-bln-{}", std::process::id()));
     std::fs::remove_dir_all(&output).ok();
     let mut fit_params = ProgressiveSpatioTemporalBlnFitParams { dropout: 0.0, ..Default::default() };
@@ -75,7 +75,7 @@ fn fit_makes_what_infer_loads() {
     let job = FitJob { device: Device::Cpu, ..FitJob::new(&output) };
     let mut handle = Handle::<ProgressiveSpatioTemporalBln>::new(params(), Device::Cpu).unwrap();
     handle.fit(&fit_params, DatasetRef::from(&Faces as &dyn DatasetIterator), None, &job).unwrap();
-    // Other faces, elsewhere and of other sizes.
+    // Other faces, at other positions and sizes.
     let right = (100..112).filter(|at| handle.infer(&face(*at)).unwrap().class == *at as i64 % 3).count();
     assert!(right >= 11, "{right} of 12");
     let missing = SkeletonSequence::new(vec![0.0; 2 * POINTS], [1, 2, 1, POINTS, 1]).unwrap();
@@ -83,7 +83,7 @@ fn fit_makes_what_infer_loads() {
     let one = SkeletonSequence::new(vec![1.0, 2.0], [1, 2, 1, 1, 1]).unwrap();
     assert_eq!(handle.infer(&one).unwrap_err().kind(), ErrorKind::InvalidInput);
     let calls = (0..3).map(|index| Faces.get(index).unwrap().data).collect();
-    check::<ProgressiveSpatioTemporalBln>(&job.model(), &output.join("scratch"), calls);
+    check_trained_learner::<ProgressiveSpatioTemporalBln>(&job.model(), &output.join("scratch"), calls);
     let params = ProgressiveSpatioTemporalBlnParams { num_point: Some(68), ..Default::default() };
     let mut other = Handle::<ProgressiveSpatioTemporalBln>::new(params, Device::Cpu).unwrap();
     assert_eq!(other.load(job.model()).unwrap_err().kind(), ErrorKind::InvalidParam);

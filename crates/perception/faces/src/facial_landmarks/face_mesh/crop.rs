@@ -1,29 +1,29 @@
-//! Which part of a picture the networks look at (MediaPipe's face and iris graphs).
+//! Crops of the networks' inputs (MediaPipe's face and iris graphs).
 
 use opendr_engine::target::{BoundingBox, Keypoint};
-use opendr_face_detection::face_finder::{eye_angle, square_around};
+use opendr_face_detection::face_detector::{eye_angle, square_around};
 use opendr_vision::Similarity;
 
-/// Outer and inner corner of the eye on the picture's left, inner and outer one of the other.
+/// Indices of the outer and inner corner of the eye on the image's left, and of the inner and outer one of the other eye.
 pub(super) const EYES: [[usize; 2]; 2] = [[33, 133], [362, 263]];
-/// The outer corners: the line between them tells how the head leans.
+/// Indices of the outer corners, whose line is the roll of the head.
 const CORNERS: [usize; 2] = [33, 263];
-/// Sides of a crop in longer sides of the face.
+/// Side of a crop in longer sides of the face.
 const MARGIN: f32 = 1.5;
-/// Sides of an eye's crop in distances of its corners.
+/// Side of an eye's crop in distances of its corners.
 const EYE_MARGIN: f32 = 2.3;
 
-/// Where the x axis of what lies between two points points.
+/// Returns the angle of the x axis along the line between two points.
 fn angle([from, to]: [[f32; 2]; 2]) -> f32 {
     (to[1] - from[1]).atan2(to[0] - from[0])
 }
 
-/// A found face, upright by its eyes; the detector's first two points are those.
+/// Returns the crop of a detected face, upright by its eyes, which are the detector's first two points.
 pub(super) fn of_found(face: &BoundingBox, side: usize) -> Similarity {
     square_around(face, MARGIN, eye_angle(face), side)
 }
 
-/// The face whose points are known from the frame before; `None` where they are no face's.
+/// Returns the crop of a face with points from the last frame; `None` when they are not a valid face.
 pub(super) fn of_mesh(points: &[Keypoint], side: usize) -> Option<Similarity> {
     let corners = CORNERS.map(|corner| points.get(corner).map(|point| [point.x, point.y]));
     let [Some(left), Some(right)] = corners else { return None };
@@ -44,7 +44,7 @@ pub(super) fn of_mesh(points: &[Keypoint], side: usize) -> Option<Similarity> {
     crop.is_regular().then_some(crop)
 }
 
-/// An eye by its corners.
+/// Returns the crop of an eye by its corners.
 pub(super) fn of_eye(points: &[Keypoint], corners: [usize; 2], side: usize) -> Option<Similarity> {
     let [Some(from), Some(to)] = corners.map(|corner| points.get(corner).map(|point| [point.x, point.y]))
     else {
@@ -56,7 +56,7 @@ pub(super) fn of_eye(points: &[Keypoint], corners: [usize; 2], side: usize) -> O
     crop.is_regular().then_some(crop)
 }
 
-/// Whether the middle of `other` lies in the inner half of `crop`: then both show one face.
+/// Returns whether the centre of `other` is in the inner half of `crop`: then both are of one face.
 pub(super) fn is_same(crop: &Similarity, other: &Similarity, side: usize) -> bool {
     let middle = side as f32 / 2.0;
     let place = crop.crop_from_image(other.image_from_crop([middle, middle]));
@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_leaning_face_is_upright_in_its_crop() {
+    fn a_rolled_face_is_upright_in_its_crop() {
         let lean = 0.5_f32;
         let upright = Similarity::new(1.0, lean, [300.0, 200.0]);
         let mut points = vec![[0.0, 0.0]; 468];

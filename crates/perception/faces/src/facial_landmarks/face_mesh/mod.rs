@@ -1,8 +1,8 @@
-//! Face mesh: 468 points of a face and five of each iris, from whole frames.
+//! Face mesh: 468 points of a face and five of each iris, from whole images.
 //!
 //! MediaPipe's networks (Kartynnik et al., Real-time Facial Surface Geometry from Monocular Video on Mobile GPUs, 2019;
-//! Ablavatski et al., Real-time Pupil Tracking from Monocular Video, 2020; Google, Apache-2.0). The detector finds a face
-//! once; from then on its crop follows from the points of the frame before, as in MediaPipe.
+//! Ablavatski et al., Real-time Pupil Tracking from Monocular Video, 2020; Google, Apache-2.0). The detector detects a face
+//! once; then its crop follows from the points of the last frame, as in MediaPipe.
 
 mod crop;
 
@@ -12,48 +12,48 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Keypoint, Pose, PoseList, Skeleton};
 use opendr_engine::{Device, Error, Pool, Result, Task};
-use opendr_face_detection::face_finder::FaceFinder;
+use opendr_face_detection::face_detector::FaceDetector;
 use opendr_inference::{TensorInfo, default_threads, with_threads};
 use opendr_kernels::WorkerPool;
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_vision::{Preprocess, Similarity};
 
 use crop::EYES;
 
-/// What a user may set.
+/// Parameters of [`FaceMesh`].
 #[derive(Debug, Clone, Params)]
 pub struct FaceMeshParams {
-    /// Faces of which the mesh is surer than this are answered.
+    /// Score of the mesh below which faces are dropped.
     #[param(default = 0.5, range = 0.0..=1.0, live)]
     pub threshold: f32,
-    /// What the detector scores below this is no face.
+    /// Score of the detector below which faces are dropped.
     #[param(default = 0.6, range = 0.0..=1.0)]
     pub face_threshold: f32,
-    /// At most this many faces a picture; the detector runs on frames that show fewer.
+    /// Maximum number of faces per image; the detector runs on frames with fewer.
     #[param(default = 1, range = 1..=50, live)]
     pub max_faces: usize,
-    /// Whether faces are followed from frame to frame; else each frame is looked at anew.
+    /// Whether faces are tracked from frame to frame; otherwise the detector runs on each frame.
     #[param(default = true, live)]
     pub track: bool,
 }
 
-/// Loaded networks of mesh, irises and detector.
+/// The loaded networks of mesh, irises and detector.
 ///
-/// It answers a pose of [`Skeleton::Face478`] for every face, those followed longest first, with their tracks; the
-/// confidence of a point is that of its face.
+/// Its predictions are a pose of [`Skeleton::Face478`] for every face, those tracked longest first, with their identities;
+/// the confidence of a point is that of its face.
 pub struct FaceMesh {
     params: FaceMeshParams,
-    finder: FaceFinder,
-    mesh: PictureNetwork,
-    /// One for each eye: they run side by side on a thread each, for the network is too small for threads to share.
-    irises: [PictureNetwork; 2],
+    finder: FaceDetector,
+    mesh: ImageNetwork,
+    /// Networks of the irises, one per eye and thread: the network is too small to run on several threads.
+    irises: [ImageNetwork; 2],
     eyes: WorkerPool,
     outputs: MeshOutputs,
     iris_at: IrisAt,
     scratch: Pool<Scratch>,
 }
 
-/// The faces that one stream follows.
+/// The tracked faces of one stream.
 #[derive(Debug, Default)]
 pub struct FaceTracks {
     tracks: Vec<Track>,
@@ -72,39 +72,39 @@ struct Scratch {
     tracks: Vec<Track>,
 }
 
-/// Where the mesh's network puts the points and how sure it is.
+/// Indices of the mesh's outputs: points and score.
 #[derive(Debug, Clone, Copy)]
 struct MeshOutputs {
     points: usize,
     presence: usize,
 }
 
-/// Which output has the points of the iris, and where in it they begin.
+/// Index of the output with the points of the iris, and their offset in it.
 #[derive(Debug, Clone, Copy)]
 struct IrisAt {
     output: usize,
     offset: usize,
 }
 
-/// Files of the container.
+/// File names of the networks in a container.
 const FILES: [&str; 2] = ["model.onnx", "iris.onnx"];
-/// Sides of the networks' inputs, pixels.
+/// Sides of the networks' inputs, in pixels.
 const SIDE: usize = 192;
 const EYE_SIDE: usize = 64;
-/// Points of the mesh and of an iris.
+/// Numbers of points of the mesh and of an iris.
 const MESH: usize = 468;
 const IRIS: usize = 5;
-/// Numbers before those of the iris where one output has both: 71 points of the eye's outline.
+/// Number of values before those of the iris in a common output: 71 points of the eye's outline.
 const EYE_OUTLINE: usize = 71 * 3;
 
-/// Levels 0..=1, in the layout of the network.
+/// Returns the pre-processing to values 0..=1, in the layout of the network.
 fn preprocess(input: &TensorInfo, side: usize) -> Preprocess {
     let layout = if input.dims.last() == Some(&Some(3)) { Layout::Hwc } else { Layout::Chw };
     Preprocess::new(side, side).normalise([0.0; 3], [255.0; 3]).layout(layout)
 }
 
-/// The output of `numbers` numbers.
-fn output_of(network: &PictureNetwork, numbers: usize) -> Option<usize> {
+/// Returns the index of the output with `numbers` values.
+fn output_of(network: &ImageNetwork, numbers: usize) -> Option<usize> {
     let size =
         |output: &TensorInfo| output.dims.iter().skip(1).try_fold(1, |size, side| Some(size * (*side)?));
     network.outputs().iter().position(|output| size(output) == Some(numbers))
@@ -113,20 +113,23 @@ fn output_of(network: &PictureNetwork, numbers: usize) -> Option<usize> {
 impl Learner for FaceMesh {
     const SPEC: Spec = Spec::new("face_mesh", Task::FacialLandmarks)
         .class("FaceMeshLearner")
-        .about("MediaPipe's face mesh: 468 points of a face and its irises, followed from frame to frame.");
+        .about("MediaPipe's face mesh: 468 points of a face and its irises, tracked from frame to frame.");
     type Params = FaceMeshParams;
     type Input<'a> = &'a Image;
     type Target = PoseList;
     type State = FaceTracks;
 
     fn load(model: &Model, params: FaceMeshParams, device: Device) -> Result<Self> {
-        let mesh = PictureNetwork::open_file(model, FILES[0], device, |input| Ok(preprocess(input, SIDE)))?;
+        let mesh = ImageNetwork::open_file(model, FILES[0], device, |input| Ok(preprocess(input, SIDE)))?;
         let open_iris =
-            || PictureNetwork::open_file(model, FILES[1], device, |input| Ok(preprocess(input, EYE_SIDE)));
+            || ImageNetwork::open_file(model, FILES[1], device, |input| Ok(preprocess(input, EYE_SIDE)));
         let irises = with_threads(1, || Ok::<_, Error>([open_iris()?, open_iris()?]))?;
         let [iris, _] = &irises;
         let (Some(points), Some(presence)) = (output_of(&mesh, 3 * MESH), output_of(&mesh, 1)) else {
-            return Err(Error::format(format!("{} gives no {MESH} points with a score", FILES[0])));
+            return Err(Error::format(format!(
+                "{} has no outputs of {MESH} points and a score; load another model",
+                FILES[0]
+            )));
         };
         let alone = output_of(iris, 3 * IRIS).map(|output| IrisAt { output, offset: 0 });
         let both = || {
@@ -134,10 +137,13 @@ impl Learner for FaceMesh {
             Some(IrisAt { output, offset: EYE_OUTLINE })
         };
         let Some(iris_at) = alone.or_else(both) else {
-            return Err(Error::format(format!("{} gives no {IRIS} points of an iris", FILES[1])));
+            return Err(Error::format(format!(
+                "{} has no output of {IRIS} points of an iris; load another model",
+                FILES[1]
+            )));
         };
         Ok(Self {
-            finder: FaceFinder::open(model, params.face_threshold, device)?,
+            finder: FaceDetector::open(model, params.face_threshold, device)?,
             outputs: MeshOutputs { points, presence },
             scratch: Pool::default(),
             mesh,
@@ -156,7 +162,7 @@ impl Learner for FaceMesh {
         &mut self.params
     }
 
-    fn infer_into(&self, state: &mut FaceTracks, image: &Image, answer: &mut PoseList) -> Result<()> {
+    fn infer_into(&self, state: &mut FaceTracks, image: &Image, poses: &mut PoseList) -> Result<()> {
         let Scratch { faces, tracks } = &mut *self.scratch.take();
         let most = self.params.max_faces;
         tracks.clear();
@@ -167,39 +173,40 @@ impl Learner for FaceMesh {
         state.tracks.clear();
         let mut found = 0;
         for track in tracks.drain(..) {
-            found += self.answer(track, found, image, state, answer)?;
+            found += self.predict(track, found, image, state, poses)?;
         }
         if found < most {
-            self.finder.find(image, faces)?;
+            self.finder.detect(image, faces)?;
             for face in &faces.boxes {
                 let crop = crop::of_found(face, SIDE);
                 let is_known = state.tracks.iter().any(|track| crop::is_same(&track.crop, &crop, SIDE));
                 if found < most && !is_known && crop.is_regular() {
-                    let count = self.answer(Track { id: state.next, crop }, found, image, state, answer)?;
+                    let count = self.predict(Track { id: state.next, crop }, found, image, state, poses)?;
                     state.next += count as i64;
                     found += count;
                 }
             }
         }
-        answer.poses.truncate(found);
+        poses.poses.truncate(found);
         Ok(())
     }
 }
 
 impl FaceMesh {
-    /// Fills pose number `at` with the face in the crop of `track`, and follows it; 1, or 0 where no face is there.
-    fn answer(
+    /// Fills the pose at index `at` with the face in the crop of `track` and tracks it further. Returns 1, or 0 without a
+    /// face.
+    fn predict(
         &self,
         track: Track,
         at: usize,
         image: &Image,
         state: &mut FaceTracks,
-        answer: &mut PoseList,
+        poses: &mut PoseList,
     ) -> Result<usize> {
-        if answer.poses.len() <= at {
-            answer.poses.push(Pose::default());
+        if poses.poses.len() <= at {
+            poses.poses.push(Pose::default());
         }
-        let Some(pose) = answer.poses.get_mut(at) else { return Ok(0) };
+        let Some(pose) = poses.poses.get_mut(at) else { return Ok(0) };
         self.fill_mesh(image, &track.crop, pose)?;
         let next = crop::of_mesh(&pose.keypoints, SIDE);
         let (Some(crop), true) = (next, pose.confidence >= self.params.threshold) else { return Ok(0) };
@@ -216,7 +223,8 @@ impl FaceMesh {
             |_| {},
             |outputs| {
                 let presence = outputs[self.outputs.presence].values::<f32>()?;
-                // A probability in TensorFlow.js's form of the network; MediaPipe's own gives its logit, far beyond 0..=1.
+                // TensorFlow.js's form of the network has a probability as output; MediaPipe's own has its logit, far
+                // beyond 0..=1.
                 let confidence = presence.first().copied().unwrap_or(0.0).clamp(0.0, 1.0);
                 let points = outputs[self.outputs.points].values::<f32>()?;
                 pose.confidence = confidence;
@@ -242,11 +250,11 @@ impl FaceMesh {
         Ok(())
     }
 
-    /// The points of an iris; the network knows one eye, and is shown the other in a mirror. Where there is no eye to look
-    /// at they are missing.
+    /// Returns the points of an iris. The network is for one eye, so the crop of the other is flipped. The points are
+    /// missing when there is no valid crop.
     fn iris(
         &self,
-        network: &PictureNetwork,
+        network: &ImageNetwork,
         image: &Image,
         corners: [usize; 2],
         is_mirrored: bool,

@@ -1,14 +1,14 @@
-//! The depth channel.
+//! Depth channel of the network's input.
 
 use opendr_engine::data::{Image, PixelFormat, Pixels};
 use opendr_engine::{Error, Result};
 use opendr_vision::Similarity;
 
-/// Fills `out`, `side` x `side`, with the depths in metres that `crop` shows, less their mean, within -1..=1. Where nothing
-/// is known (0, no number, outside of the picture), the mean stands; where nothing is known anywhere, all is 0.
+/// Fills `out`, `side` x `side`, with the depths of `crop` in metres minus their mean, within -1..=1. Unknown depths (0, NaN,
+/// outside of the image) are replaced by the mean; without any known depth, all values are 0.
 ///
 /// # Errors
-/// `InvalidInput` for a picture of more than one channel, or of bytes, which are no lengths.
+/// `InvalidInput` for an image of more than one channel or of 8 bits.
 pub fn depth_square(depth: &Image, crop: &Similarity, side: usize, out: &mut [f32]) -> Result<()> {
     let known = |metres: f32| metres.is_finite() && metres > 0.0;
     let metres: &dyn Fn(usize) -> f32 = match (depth.format(), depth.pixels()) {
@@ -18,7 +18,7 @@ pub fn depth_square(depth: &Image, crop: &Similarity, side: usize, out: &mut [f3
         (PixelFormat::Grey, Pixels::F32(data)) => &move |at| data.get(at).copied().unwrap_or_default(),
         _ => {
             return Err(Error::invalid_input(
-                "a depth has one channel, of 16 bits in millimetres or floats in metres; give the camera's own",
+                "the depth image must have one channel, of 16 bits in millimetres or floats in metres, as the camera returns it",
             ));
         }
     };
@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn holes_are_the_mean_and_millimetres_metres() {
+    fn unknown_depths_are_the_mean_and_millimetres_become_metres() {
         let depth = |pixels: Pixels| Image::new(pixels, 2, 2, PixelFormat::Grey, Layout::Hwc).unwrap();
         let crop = Similarity::rotated_square([1.0, 1.0], 2.0, 0.0, 2);
         let mut out = [9.0; 4];

@@ -1,8 +1,8 @@
-//! From the network's maps to the best places.
+//! Grasps from the network's maps.
 
 use opendr_engine::{Error, Result};
 
-/// Quality, angle and width of a grasp at every pixel, smoothed.
+/// Smoothed maps of grasp quality, angle and width.
 #[derive(Debug, Default)]
 pub struct Maps {
     quality: Vec<f32>,
@@ -11,34 +11,36 @@ pub struct Maps {
     rows: Vec<f32>,
 }
 
-/// A place where quality is highest.
+/// A local maximum of the quality.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Peak {
-    /// Pixel of the map.
+    /// Column on the map.
     pub x: usize,
-    /// Pixel of the map.
+    /// Row on the map.
     pub y: usize,
-    /// About 0..=1.
+    /// Quality, about 0..=1.
     pub quality: f32,
-    /// Against the x axis, counter-clockwise as one looks at the picture, radians, -pi/2..=pi/2.
+    /// Angle to the x axis, counter-clockwise in the image, in radians, -pi/2..=pi/2.
     pub angle: f32,
-    /// About 0..=1.
+    /// Width, about 0..=1.
     pub width: f32,
 }
 
-/// Deviations of the Gaussians that smooth quality and angle, and width, in pixels; cut at four of them.
+/// Standard deviations of the Gaussian filters of quality, angle and width, in pixels; cut at four of them.
 const SIGMAS: [f32; 3] = [2.0, 2.0, 1.0];
 const CUT: f32 = 4.0;
 
 impl Maps {
-    /// Takes the maps quality, cosine and sine of twice the angle, width, `side` x `side` each.
+    /// Reads the maps of quality, cosine and sine of twice the angle, and width, `side` x `side` each.
     ///
     /// # Errors
-    /// `Format` when one has another size.
+    /// `Format` when a map has another size.
     pub fn read(&mut self, maps: [&[f32]; 4], side: usize) -> Result<()> {
         if let Some(wrong) = maps.iter().find(|map| map.len() != side * side) {
             let count = wrong.len();
-            return Err(Error::format(format!("a map of {count} numbers instead of {side}x{side}")));
+            return Err(Error::format(format!(
+                "the network returns a map of {count} values instead of {side}x{side}"
+            )));
         }
         let [quality, cosine, sine, width] = maps;
         let Self { quality: smooth_quality, angle, width: smooth_width, rows } = self;
@@ -54,14 +56,14 @@ impl Maps {
         Ok(())
     }
 
-    /// Writes at most `most` places with the highest quality, best first: each at least `threshold`, the highest within
-    /// `distance` pixels of it, and further than that from those before.
+    /// Writes at most `most` peaks of the quality, sorted by quality: each at least `threshold`, the maximum within `distance`
+    /// pixels, and farther than that from the previous ones.
     pub fn peaks(&self, side: usize, threshold: f32, distance: usize, most: usize, peaks: &mut Vec<Peak>) {
         peaks.clear();
         let candidates = (0..side * side).filter(|&at| {
             let (x, y) = (at % side, at / side);
             let here = self.quality[at];
-            // The same pixel as its neighbours: a plateau has many, of which the first survives below.
+            // Pixels may equal their neighbours: of the many on a plateau, the first survives below.
             here >= threshold && self.neighbours(side, x, y).all(|there| there <= here)
         });
         peaks.extend(candidates.map(|at| Peak {
@@ -90,7 +92,7 @@ impl Maps {
     }
 }
 
-/// Smooths a map by a Gaussian; pixels outside are those at the edge. `rows` is working memory.
+/// Smooths a map with a Gaussian filter; the border is repeated. `rows` is a buffer.
 fn smooth(map: &mut [f32], side: usize, sigma: f32, rows: &mut Vec<f32>) {
     let reach = (CUT * sigma).round() as isize;
     let weight = |offset: isize| (-0.5 * (offset as f32 / sigma).powi(2)).exp();
@@ -137,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn the_highest_places_far_enough_apart() {
+    fn peaks_keep_their_distance() {
         let maps = maps(&[(5, 6, 1.0), (9, 6, 0.9), (25, 20, 0.5)]);
         let mut peaks = Vec::new();
         maps.peaks(SIDE, 0.001, 6, 10, &mut peaks);

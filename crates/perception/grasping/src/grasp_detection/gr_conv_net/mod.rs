@@ -1,8 +1,8 @@
-//! GR-ConvNet: for every pixel, how well a gripper with two jaws would hold there, turned how far and opened how wide.
+//! GR-ConvNet: quality, angle and width of a parallel-jaw grasp at every pixel.
 //!
-//! Kumra, Joshi and Sahin, Antipodal Robotic Grasping using Generative Residual Convolutional Neural Network, IROS 2020
-//! (arXiv 1909.04810). The network sees the middle square of the pictures. Its maps are smoothed as the authors do, and
-//! the highest places of the first, far enough from each other, are the grasps: a pose of two joints, the jaws.
+//! Kumra, Joshi and Sahin, Antipodal Robotic Grasping using Generative Residual Convolutional Neural Network, IROS 2020 (arXiv
+//! 1909.04810). The network takes the central square of the images. Its maps are smoothed as in the authors' code; the peaks of
+//! the quality, at a minimum distance, are the grasps: a pose of two keypoints, the jaws.
 
 mod depth;
 mod maps;
@@ -19,26 +19,26 @@ use opendr_vision::{Preprocess, Similarity};
 use depth::depth_square;
 use maps::{Maps, Peak};
 
-/// What a user may set.
+/// Parameters of [`GrConvNet`].
 #[derive(Debug, Clone, Params)]
 pub struct GrConvNetParams {
-    /// Least quality of a grasp.
+    /// Minimum quality of a grasp.
     #[param(default = 0.2, range = 0.0..=1.0, live)]
     pub threshold: f32,
-    /// Most grasps of a picture.
+    /// Maximum number of grasps per image.
     #[param(default = 5, range = 1..=100, live)]
     pub max_grasps: usize,
-    /// Least distance between two grasps, pixels of the network's map of 224.
+    /// Minimum distance between two grasps, in pixels of the network's map of 224.
     #[param(default = 20, range = 1..=224, unit = "px", live)]
     pub distance: usize,
 }
 
-/// A colour picture and the depth of each of its pixels.
+/// A colour image and its depth.
 #[derive(Inputs)]
 pub struct GrConvNetInputs<'a> {
-    /// In colour.
+    /// The colour image.
     pub image: &'a Image,
-    /// Of the same size and place: one channel, 16 bits in millimetres or floats in metres; 0 where nothing is known.
+    /// Depth of the same view and size: one channel, 16 bits in millimetres or floats in metres; 0 for unknown.
     pub depth: &'a Image,
 }
 
@@ -58,16 +58,16 @@ struct Work {
     peaks: Vec<Peak>,
 }
 
-/// Side of what the network sees, pixels.
+/// Side of the network's input in pixels.
 const SIDE: usize = 224;
 const PIXELS: usize = SIDE * SIDE;
-/// The network's width of 1 are as many of its pixels.
+/// Width in pixels of the network's input that an output of 1 stands for.
 const WIDTH: f32 = 150.0;
 
 impl Learner for GrConvNet {
     const SPEC: Spec = Spec::new("gr_conv_net", Task::GraspDetection)
         .class("GrConvNetLearner")
-        .about("GR-ConvNet finds where a gripper can take hold, in colour and depth.");
+        .about("GR-ConvNet detects grasps of a parallel-jaw gripper in colour and depth.");
     type Params = GrConvNetParams;
     type Input<'a> = GrConvNetInputs<'a>;
     type Target = PoseList;
@@ -78,7 +78,7 @@ impl Learner for GrConvNet {
         let fits = matches!(session.inputs(), [input] if input.dims[..] == [Some(1), Some(4), Some(SIDE), Some(SIDE)]);
         if !fits {
             return Err(Error::format(format!(
-                "GR-ConvNet takes depth, red, green and blue of {SIDE}x{SIDE} pixels; this network does not"
+                "the network does not take depth, red, green and blue of {SIDE}x{SIDE} pixels, so it is not GR-ConvNet"
             )));
         }
         let outputs = ["pos", "cos", "sin", "width"].map(|name| session.output_index(name));
@@ -101,7 +101,7 @@ impl Learner for GrConvNet {
         let size = [image.width(), image.height()];
         if [depth.width(), depth.height()] != size {
             return Err(Error::invalid_input(format!(
-                "a picture of {}x{} pixels and a depth of {}x{}; both are of one size and place",
+                "the image has {}x{} pixels and the depth {}x{}; both must have the same size",
                 size[0],
                 size[1],
                 depth.width(),

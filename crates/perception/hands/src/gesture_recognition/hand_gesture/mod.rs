@@ -1,8 +1,9 @@
-//! Gestures of the hands in a picture: hand pose, then a small network on the joints of each hand, and another on the
-//! path of a finger that points.
+//! Gestures of the hands in an image: hand poses, then a small network on the joints of each hand, and another one on the
+//! path of a pointing finger.
 //!
-//! After Kazuhito Takahashi's hand-gesture-recognition-using-mediapipe (Apache-2.0). A path is told from 16 frames in a row
-//! of a video of 10 to 30 frames a second; until there are as many, and where the path says nothing, a finger just points.
+//! After Kazuhito Takahashi's hand-gesture-recognition-using-mediapipe (Apache-2.0). A path is classified from 16
+//! consecutive frames of a video of 10 to 30 frames per second. With fewer frames, or a path below the threshold, the
+//! gesture is that of the shape.
 
 mod paths;
 #[cfg(test)]
@@ -21,35 +22,36 @@ use super::hand_features::{features_of_hand, features_of_path};
 use super::point_classifier::PointClassifier;
 use crate::hand_pose_estimation::{HandPose, HandPoseParams, HandPoseState};
 
-/// What a user may set.
+/// Parameters of [`HandGesture`].
 #[derive(Debug, Clone, Params)]
 pub struct HandGestureParams {
-    /// Gestures below this score are dropped.
+    /// Score below which gestures are dropped.
     #[param(default = 0.5, range = 0.0..=1.0, live)]
     pub threshold: f32,
-    /// At most this many hands a picture.
+    /// Maximum number of hands per image.
     #[param(default = 2, range = 1..=16)]
     pub max_hands: usize,
-    /// Whether hands are followed from frame to frame. Switch it off for single pictures: paths need it.
+    /// Whether hands are tracked from frame to frame, which paths need; switch it off for single images.
     #[param(default = true)]
     pub track: bool,
 }
 
-/// A loaded recogniser.
+/// A loaded gesture recogniser.
 ///
-/// It answers a box around the joints of each hand, named by its gesture: first the classes of shapes, then those of paths.
+/// Its predictions are a box around the joints of each hand, with its gesture as class: first the classes of shapes, then
+/// those of paths.
 pub struct HandGesture {
     params: HandGestureParams,
     classes: Classes,
     hands: HandPose,
     shapes: Gestures,
     paths: Gestures,
-    /// The shape that has a path.
+    /// Class index of the shape with a path.
     pointer: Option<i64>,
     scratch: Pool<Scratch>,
 }
 
-/// A part that tells gestures by numbers.
+/// A part that classifies gestures from input features.
 struct Gestures {
     network: PointClassifier,
     classes: Classes,
@@ -61,28 +63,28 @@ struct Scratch {
     gesture: Category,
 }
 
-/// What a stream remembers.
+/// State of a stream.
 #[derive(Default)]
 pub struct HandGestureState {
     hands: HandPoseState,
     paths: Paths,
 }
 
-/// Parts of the container: what finds hands, and what tells shapes and paths.
+/// Names of the parts of the container: hand pose, and classifiers of shapes and paths.
 const HAND: &str = "hand";
 const SHAPE: &str = "shape";
 const PATH: &str = "path";
-/// The shape of a hand whose first finger points.
+/// Class name of the pointing shape.
 const POINTER: &str = "pointer";
-/// Joint at the tip of the first finger.
+/// Index of the joint at the tip of the index finger.
 const TIP: usize = 8;
-/// Numbers of a hand.
+/// Number of input features of a hand.
 const HAND_NUMBERS: usize = 42;
 
 impl Learner for HandGesture {
-    const SPEC: Spec = Spec::new("hand_gesture", Task::GestureRecognition)
-        .class("HandGestureLearner")
-        .about("Tells the gestures of the hands in a picture, and in a video those of a pointing finger.");
+    const SPEC: Spec = Spec::new("hand_gesture", Task::GestureRecognition).class("HandGestureLearner").about(
+        "Classifies the gestures of the hands in an image, and in a video those of a pointing finger.",
+    );
     type Params = HandGestureParams;
     type Input<'a> = &'a Image;
     type Target = BoundingBoxList;
@@ -115,27 +117,28 @@ impl Learner for HandGesture {
         &self,
         state: &mut HandGestureState,
         image: &Image,
-        answer: &mut BoundingBoxList,
+        target: &mut BoundingBoxList,
     ) -> Result<()> {
         let Scratch { hands, gesture } = &mut *self.scratch.take();
         self.hands.infer_into(&mut state.hands, image, hands)?;
-        answer.classes.clone_from(&self.classes);
-        answer.boxes.clear();
+        target.classes.clone_from(&self.classes);
+        target.boxes.clear();
         state.paths.begin_frame();
         for hand in &hands.poses {
-            let told = self.gesture(&mut state.paths, hand, [image.width(), image.height()], gesture)?;
-            let (Some((class, score)), Some(place)) = (told, hand.bounding_box()) else { continue };
+            let prediction =
+                self.gesture(&mut state.paths, hand, [image.width(), image.height()], gesture)?;
+            let (Some((class, score)), Some(place)) = (prediction, hand.bounding_box()) else { continue };
             let [left, top, width, height] = place;
-            answer.boxes.push(BoundingBox::new(class, left, top, width, height, score));
+            target.boxes.push(BoundingBox::new(class, left, top, width, height, score));
         }
         state.paths.end_frame();
-        answer.boxes.sort_by(|a, b| b.confidence.total_cmp(&a.confidence));
+        target.boxes.sort_by(|a, b| b.confidence.total_cmp(&a.confidence));
         Ok(())
     }
 }
 
 impl HandGesture {
-    /// Class and score of a hand's gesture; `None` below the threshold, and where the joints say nothing.
+    /// Returns class index and score of a hand's gesture; `None` below the threshold, and for invalid joints.
     fn gesture(
         &self,
         paths: &mut Paths,
@@ -144,7 +147,7 @@ impl HandGesture {
         gesture: &mut Category,
     ) -> Result<Option<(i64, f32)>> {
         let Some(joints) = features_of_hand(hand) else { return Ok(None) };
-        let shape = self.shapes.tell(&joints, gesture)?;
+        let shape = self.shapes.classify(&joints, gesture)?;
         if shape.1 < self.params.threshold {
             return Ok(None);
         }
@@ -157,20 +160,20 @@ impl HandGesture {
         if path.is_none() {
             return Ok(Some(shape));
         }
-        let (class, score) = self.paths.tell(&way, gesture)?;
+        let (class, score) = self.paths.classify(&way, gesture)?;
         let path = (self.shapes.classes.len() as i64 + class, score);
         Ok(Some(if score < self.params.threshold { shape } else { path }))
     }
 }
 
 impl Gestures {
-    /// Opens the part `part`, which takes as many `numbers`.
+    /// Opens the part `part`, which has `numbers` input features.
     fn open(model: &Model, part: &str, numbers: usize, device: Device) -> Result<Self> {
         let model = model.part(part)?;
         let network = PointClassifier::open(&model, "model.onnx", device)?;
         if network.numbers() != numbers || model.classes().is_empty() {
             return Err(Error::format(format!(
-                "the part {part:?} takes {} numbers and names {} classes; put one there that takes {numbers} and has names",
+                "the part {part:?} has {} inputs and {} class names; replace it by one with {numbers} inputs and class names",
                 network.numbers(),
                 model.classes().len()
             )));
@@ -178,8 +181,8 @@ impl Gestures {
         Ok(Self { classes: model.classes().clone(), network })
     }
 
-    /// Class and score.
-    fn tell(&self, numbers: &[f32], gesture: &mut Category) -> Result<(i64, f32)> {
+    /// Returns class index and score.
+    fn classify(&self, numbers: &[f32], gesture: &mut Category) -> Result<(i64, f32)> {
         self.network.run(numbers, |logits| category_from_logits(gesture, logits, &self.classes))?;
         Ok((gesture.class, gesture.confidence.unwrap_or_default()))
     }

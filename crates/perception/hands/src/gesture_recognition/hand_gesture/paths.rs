@@ -1,6 +1,6 @@
-//! The paths of pointing fingers, by the number of the hand.
+//! The paths of pointing fingers, by the identity of the hand.
 
-/// Points of a path.
+/// Number of points of a path.
 pub(super) const POINTS: usize = 16;
 
 /// The paths of a stream's hands.
@@ -18,12 +18,12 @@ struct HandPath {
 }
 
 impl Paths {
-    /// A frame begins: no hand was seen yet.
+    /// Begins a frame without pointing hands.
     pub fn begin_frame(&mut self) {
         self.hands.iter_mut().for_each(|hand| hand.is_seen = false);
     }
 
-    /// The finger tip of hand `id` is at `tip`; its path, oldest point first, once it has [`POINTS`].
+    /// Adds the finger tip of hand `id`, and returns its path, oldest point first, once it has [`POINTS`] points.
     pub fn point(&mut self, id: i64, tip: [f32; 2]) -> Option<[[f32; 2]; POINTS]> {
         let at = self.hands.iter().position(|hand| hand.id == id).unwrap_or_else(|| {
             self.hands.push(HandPath { id, points: [[0.0; 2]; POINTS], count: 0, is_seen: true });
@@ -37,7 +37,7 @@ impl Paths {
         (hand.count == POINTS).then_some(hand.points)
     }
 
-    /// Paths of hands that did not point in this frame are forgotten.
+    /// Drops the paths of hands that did not point in this frame.
     pub fn end_frame(&mut self) {
         self.hands.retain(|hand| hand.is_seen);
     }

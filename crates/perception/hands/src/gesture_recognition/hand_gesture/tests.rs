@@ -1,4 +1,4 @@
-//! With the zoo's networks and rows of joints: what a pointing finger draws.
+//! Tests with the zoo's networks and rows of joints: the path of a pointing finger.
 
 use std::f32::consts::TAU;
 use std::path::Path;
@@ -9,7 +9,7 @@ use opendr_perception_testing::test_models::test_data;
 
 use super::*;
 
-/// A container of the file names and their contents.
+/// Returns a container with the given files and classes.
 fn part(folder: &Path, learner: &str, files: &[(&str, Vec<u8>)], classes: &[&str]) -> Model {
     let mut manifest = Manifest::new(learner, "");
     manifest.classes = classes.iter().copied().collect();
@@ -39,10 +39,10 @@ fn learner() -> Option<HandGesture> {
     Some(learner)
 }
 
-/// A hand of the rows whose shape is that of class `wanted`, at `[x, y]`.
-fn hand(rows: &str, wanted: &str, [x, y]: [f32; 2]) -> Pose {
+/// Returns a hand from the rows, of the shape of class `expected`, at `[x, y]`.
+fn hand(rows: &str, expected: &str, [x, y]: [f32; 2]) -> Pose {
     let row =
-        rows.lines().filter_map(|line| line.split_once(',')).find(|(class, _)| *class == wanted).unwrap().1;
+        rows.lines().filter_map(|line| line.split_once(',')).find(|(class, _)| *class == expected).unwrap().1;
     let numbers: Vec<f32> = row.split(',').map(|number| number.parse().unwrap()).collect();
     let joint = |way: &[f32]| Keypoint { x: x + 150.0 * way[0], y: y + 150.0 * way[1], confidence: 0.9 };
     let keypoints = numbers.chunks_exact(2).map(joint).collect();
@@ -50,18 +50,18 @@ fn hand(rows: &str, wanted: &str, [x, y]: [f32; 2]) -> Pose {
 }
 
 #[test]
-fn a_pointing_finger_draws() {
+fn paths_of_a_pointing_finger_are_classified() {
     let Some(learner) = learner() else { return };
     let rows = test_data("models/hand/gesture_keypoint/keypoint.csv").unwrap();
     let rows = std::fs::read_to_string(rows).unwrap();
-    let told = |shape: &str, place: &dyn Fn(f32) -> [f32; 2]| -> Vec<String> {
+    let predictions = |shape: &str, place: &dyn Fn(f32) -> [f32; 2]| -> Vec<String> {
         let (mut paths, mut gesture) = (Paths::default(), Category::default());
         let mut frame = |at: usize| {
             paths.begin_frame();
             let hand = hand(&rows, shape, place(at as f32));
-            let told = learner.gesture(&mut paths, &hand, [960, 540], &mut gesture).unwrap().unwrap();
+            let predictions = learner.gesture(&mut paths, &hand, [960, 540], &mut gesture).unwrap().unwrap();
             paths.end_frame();
-            learner.classes.name(told.0).unwrap().to_string()
+            learner.classes.name(predictions.0).unwrap().to_string()
         };
         (0..20).map(&mut frame).collect()
     };
@@ -78,10 +78,10 @@ fn a_pointing_finger_draws() {
         (&around(-1.0), "counterclockwise"),
         (&|at| [300.0 + 20.0 * at, 200.0 + 5.0 * at], "move"),
     ];
-    for (place, wanted) in ways {
-        let pointing = told("2", place);
+    for (place, expected) in ways {
+        let pointing = predictions("2", place);
         assert!(pointing[..POINTS - 1].iter().all(|gesture| gesture == "pointer"), "{pointing:?}");
-        assert!(pointing[POINTS..].iter().all(|gesture| gesture == wanted), "{wanted}: {pointing:?}");
-        assert!(told("0", place).iter().all(|gesture| gesture == "open"));
+        assert!(pointing[POINTS..].iter().all(|gesture| gesture == expected), "{expected}: {pointing:?}");
+        assert!(predictions("0", place).iter().all(|gesture| gesture == "open"));
     }
 }

@@ -1,7 +1,8 @@
-//! Gestures by the key points of a hand, or by the path of a finger tip: a network of three layers that trains in seconds.
+//! Gestures from the keypoints of a hand, or from the path of a finger tip: a network of three layers that trains in
+//! seconds.
 //!
-//! After Kazuhito Takahashi's hand-gesture-recognition-using-mediapipe (Apache-2.0), of which the rows are that the zoo's
-//! models were trained on. What the numbers are: [`features_of_hand`](super::features_of_hand) and
+//! After Kazuhito Takahashi's hand-gesture-recognition-using-mediapipe (Apache-2.0), whose rows are the training data of
+//! the zoo's models. The inputs are those of [`features_of_hand`](super::features_of_hand) and
 //! [`features_of_path`](super::features_of_path).
 
 #[cfg(feature = "training")]
@@ -26,13 +27,13 @@ use opendr_perception_common::category_scores::category_from_logits;
 
 use super::point_classifier::{PointClassifier, check_numbers};
 
-/// What a user may set. Sizes are those of the network that is trained; a loaded model has its own.
+/// Parameters of [`KeypointGesture`]. Sizes are those of a network to train; a loaded model has its own.
 #[derive(Debug, Clone, Params)]
 pub struct KeypointGestureParams {
     /// Features of the first layer; the second has half as many.
     #[param(default = 32, range = 2..=1024)]
     pub hidden: usize,
-    /// Share of features that are left out at random in each training step.
+    /// Dropout probability.
     #[param(default = 0.1, range = 0.0..=0.9)]
     pub dropout: f64,
 }
@@ -44,13 +45,13 @@ pub struct KeypointGesture {
     network: PointClassifier,
 }
 
-/// The network in every container: `points` `[1, numbers]` to `logits` `[1, classes]`.
+/// File name of the network in a container. Input: `points` `[1, numbers]`. Output: `logits` `[1, classes]`.
 const FILE: &str = "model.onnx";
 
 impl Learner for KeypointGesture {
     const SPEC: Spec = Spec::new("keypoint_gesture", Task::GestureRecognition)
         .class("KeypointGestureLearner")
-        .about("Tells gestures by the key points of a hand or the path of a finger tip; trains in seconds.");
+        .about("Classifies gestures from the keypoints of a hand or the path of a finger tip; trains in seconds.");
     type Params = KeypointGestureParams;
     type Input<'a> = &'a Vector;
     type Target = Category;

@@ -1,4 +1,4 @@
-//! The network as it is trained.
+//! The network for training.
 
 use burn::module::Module;
 use burn::nn::{Dropout, DropoutConfig, Linear, LinearConfig};
@@ -8,17 +8,17 @@ use burn::tensor::{Device, Tensor};
 /// Sizes of the network.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct NetworkSizes {
-    /// Numbers in a row.
+    /// Number of input features.
     pub numbers: usize,
-    /// Classes.
+    /// Number of classes.
     pub classes: usize,
     /// Features of the first layer.
     pub hidden: usize,
-    /// Share of features that are left out in training.
+    /// Dropout probability.
     pub dropout: f64,
 }
 
-/// `[batch, numbers]` to logits `[batch, classes]`.
+/// A network from `[batch, numbers]` to logits `[batch, classes]`.
 #[derive(Module, Debug)]
 pub struct KeypointGestureNetwork {
     first: Linear,
@@ -28,7 +28,7 @@ pub struct KeypointGestureNetwork {
 }
 
 impl KeypointGestureNetwork {
-    /// A network with weights as training begins with.
+    /// Creates a network with random weights.
     pub(super) fn new(sizes: &NetworkSizes, device: &Device) -> Self {
         let NetworkSizes { numbers, classes, hidden, dropout } = *sizes;
         let half = hidden.div_ceil(2);
@@ -40,7 +40,7 @@ impl KeypointGestureNetwork {
         }
     }
 
-    /// Logits `[batch, classes]` of rows `[batch, numbers]`.
+    /// Computes logits `[batch, classes]` of rows `[batch, numbers]`.
     pub fn forward(&self, points: Tensor<2>) -> Tensor<2> {
         let first = self.dropout.forward(relu(self.first.forward(points)));
         self.classifier.forward(relu(self.second.forward(first)))

@@ -1,4 +1,4 @@
-//! Batches, loss and container.
+//! Training objective of the gesture classifier: batches, loss and container.
 
 use burn::tensor::Device;
 use opendr_datasets::loader::Collate;
@@ -16,7 +16,7 @@ use opendr_training::{Container, Loss, Objective};
 use super::network::{KeypointGestureNetwork, NetworkSizes};
 use super::{FILE, KeypointGesture, KeypointGestureParams, check_numbers};
 
-/// What the training minimises: the cross-entropy.
+/// Training objective: the cross-entropy.
 pub(super) struct GestureObjective<'a> {
     pub sizes: NetworkSizes,
     pub params: &'a KeypointGestureParams,
@@ -50,7 +50,7 @@ impl Objective for GestureObjective<'_> {
     }
 }
 
-/// Rows of one length.
+/// Collates rows of one length.
 pub(super) struct RowBatches {
     numbers: usize,
     classes: usize,
@@ -71,13 +71,11 @@ impl Collate for RowBatches {
     }
 }
 
-/// The numbers of a sample: a vector, or a time series with one feature, as files of rows are read (`ucr`).
+/// Returns the input features of a sample: a vector, or a time series with one feature, as files of rows are read (`ucr`).
 pub(super) fn row_of(sample: &Sample) -> Result<&[f32]> {
     match sample.data.first() {
         Some(Value::Vector(vector)) => Ok(vector.as_slice()),
         Some(Value::Timeseries(series)) => Ok(series.as_slice()),
-        _ => Err(Error::invalid_input(
-            "the sample has no numbers in a row; give a vector, or read rows as ucr",
-        )),
+        _ => Err(Error::invalid_input("the sample has no vector; give one, or read the file of rows as ucr")),
     }
 }

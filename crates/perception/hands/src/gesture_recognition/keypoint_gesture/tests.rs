@@ -11,7 +11,7 @@ use super::network::{KeypointGestureNetwork, NetworkSizes};
 use super::objective::GestureObjective;
 use super::*;
 
-/// Rows of numbers with their class.
+/// Rows of input features with their class.
 struct Rows {
     rows: Vec<(Vec<f32>, i64)>,
     classes: Classes,
@@ -35,7 +35,7 @@ impl DatasetIterator for Rows {
     }
 }
 
-/// The rows of a file of `OPENDR_TEST_DATA`: the class, then the numbers.
+/// Returns the rows of a file of `OPENDR_TEST_DATA`: the class, then the values.
 fn rows(file: &str, classes: &[&str]) -> Option<Rows> {
     let Some(shared) = env::var_os("OPENDR_TEST_DATA").map(PathBuf::from) else {
         println!("skipped: no OPENDR_TEST_DATA");
@@ -49,16 +49,16 @@ fn rows(file: &str, classes: &[&str]) -> Option<Rows> {
     Some(Rows { rows: text.lines().map(row).collect(), classes: classes.iter().copied().collect() })
 }
 
-/// The share of the rows of `kept_apart` that is right.
-fn accuracy(handle: &mut Handle<KeypointGesture>, kept_apart: &Subset<&Rows>) -> f64 {
-    let right = (0..kept_apart.len()).filter(|index| {
-        let sample = kept_apart.get(*index).unwrap();
+/// Returns the accuracy on `held_out`.
+fn accuracy(handle: &mut Handle<KeypointGesture>, held_out: &Subset<&Rows>) -> f64 {
+    let right = (0..held_out.len()).filter(|index| {
+        let sample = held_out.get(*index).unwrap();
         let vector = Vector::from_data(objective::row_of(&sample).unwrap().to_vec()).unwrap();
-        let Some(opendr_engine::Value::Category(wanted)) = sample.target else { panic!() };
-        handle.infer(&vector).unwrap().class == wanted.class
+        let Some(opendr_engine::Value::Category(expected)) = sample.target else { panic!() };
+        handle.infer(&vector).unwrap().class == expected.class
     });
-    let accuracy = right.count() as f64 / kept_apart.len() as f64;
-    println!("{accuracy:.4} of {} rows kept apart", kept_apart.len());
+    let accuracy = right.count() as f64 / held_out.len() as f64;
+    println!("accuracy {accuracy:.4} on {} held out rows", held_out.len());
     accuracy
 }
 
@@ -67,10 +67,10 @@ const PATH: (&str, &str, &[&str]) =
     ("path", "gesture_point_history/point_history.csv", &["stop", "clockwise", "counterclockwise", "move"]);
 
 #[test]
-fn the_zoos_weights_tell_what_was_kept_apart() {
+fn the_zoos_weights_classify_held_out_rows() {
     for (name, file, classes) in [HAND, PATH] {
         let Some(rows) = rows(file, classes) else { return };
-        let [_, kept_apart] = Subset::split(&rows, 0.8, 2024).unwrap();
+        let [_, held_out] = Subset::split(&rows, 0.8, 2024).unwrap();
         let weights = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../models/weights/keypoint_gesture");
         let folder = env::temp_dir().join(format!("opendr-gesture-{name}-{}", std::process::id()));
         let mut manifest = Manifest::new("keypoint_gesture", name);
@@ -80,15 +80,15 @@ fn the_zoos_weights_tell_what_was_kept_apart() {
         let mut handle = Handle::new(KeypointGestureParams::default(), Device::Cpu).unwrap();
         handle.load_model(writer.finish().unwrap()).unwrap();
         std::fs::remove_dir_all(&folder).unwrap();
-        assert!(accuracy(&mut handle, &kept_apart) >= 0.97, "{name}");
+        assert!(accuracy(&mut handle, &held_out) >= 0.97, "{name}");
     }
 }
 
 #[test]
-fn training_makes_what_infer_loads() {
+fn infer_loads_the_model_of_fit() {
     let (_, file, classes) = HAND;
     let Some(rows) = rows(file, classes) else { return };
-    let [training, kept_apart] = Subset::split(&rows, 0.8, 2024).unwrap();
+    let [training, held_out] = Subset::split(&rows, 0.8, 2024).unwrap();
     let output = env::temp_dir().join(format!("opendr-gesture-fit-{}", std::process::id()));
     std::fs::remove_dir_all(&output).ok();
     let job = FitJob { device: Device::Cpu, ..FitJob::new(&output) };
@@ -96,7 +96,7 @@ fn training_makes_what_infer_loads() {
     let mut params = KeypointGestureFitParams::default();
     params.training.epochs = 10;
     handle.fit(&params, (&training as &dyn DatasetIterator).into(), None, &job).unwrap();
-    assert!(accuracy(&mut handle, &kept_apart) >= 0.95);
+    assert!(accuracy(&mut handle, &held_out) >= 0.95);
     let open = Vector::from_data(rows.rows[0].0.clone()).unwrap();
     assert_eq!(handle.infer(&open).unwrap().description.as_deref(), Some("open"));
     let short = Vector::from_data(vec![0.0; 41]).unwrap();
@@ -107,7 +107,7 @@ fn training_makes_what_infer_loads() {
 }
 
 #[test]
-fn learns_one_batch_by_heart() {
+fn one_batch_is_overfitted() {
     let noise = |index: usize| {
         let mut random = opendr_engine::Random::new(index as u64);
         let row = (0..10).map(|_| random.normal() as f32).collect();

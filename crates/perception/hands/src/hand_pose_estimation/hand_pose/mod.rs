@@ -1,11 +1,11 @@
-//! Hand pose: 21 joints of each hand, in the picture's pixels, followed from frame to frame.
+//! Hand pose: 21 joints of each hand in image pixels, tracked from frame to frame.
 //!
-//! Zhang et al., "MediaPipe Hands: On-device Real-time Hand Tracking", 2020, Apache-2.0. A detector finds palms; each
-//! gives a square, turned so that the fingers point upwards, in which a second network finds the joints. They give the
-//! square for the next frame, so that palms are looked for only while fewer hands than `max_hands` are followed.
+//! Zhang et al., "MediaPipe Hands: On-device Real-time Hand Tracking", 2020, Apache-2.0. A detector detects palms; each
+//! gives a square, rotated so that the fingers point upwards, in which a second network detects the joints. The joints
+//! define the square of the next frame, so the palm detector only runs while fewer hands than `max_hands` are tracked.
 //!
-//! Whether a hand is a left or a right one is its skeleton: [`Skeleton::LeftHand21`](opendr_engine::target::Skeleton) or
-//! `RightHand21`. The score of each joint is that of the hand: the network tells no other.
+//! The skeleton distinguishes left and right hands: [`Skeleton::LeftHand21`](opendr_engine::target::Skeleton) or
+//! `RightHand21`. The score of each joint is that of the hand, as the network has no other.
 
 mod landmarks;
 mod palm;
@@ -18,33 +18,33 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Keypoint, Pose, PoseList};
 use opendr_engine::{Device, Error, Pool, Result, Task};
-use opendr_perception_common::picture_network::{PictureNetwork, input_of};
+use opendr_perception_common::image_network::{ImageNetwork, preprocess_from_input};
+use opendr_perception_common::rotated_square::RotatedSquare;
 use opendr_perception_common::suppression::iou;
-use opendr_perception_common::turned_square::TurnedSquare;
-use opendr_vision::{Anchor, Border};
+use opendr_vision::{Border, LetterboxAlign};
 
 use self::landmarks::{Hand, JOINTS};
 use self::palm::{Anchors, PalmScratch};
 
-/// What a user may set.
+/// Parameters of [`HandPose`].
 #[derive(Debug, Clone, Params)]
 pub struct HandPoseParams {
-    /// At most this many hands a picture.
+    /// Maximum number of hands per image.
     #[param(default = 2, range = 1..=16, live)]
     pub max_hands: usize,
-    /// Hands below this score are dropped, and followed no longer.
+    /// Score below which hands are dropped and not tracked further.
     #[param(default = 0.5, range = 0.0..=1.0, live)]
     pub threshold: f32,
-    /// Palms below this score are not looked at. Lower than MediaPipe's 0.5: a closer look drops what is no hand.
+    /// Score below which palms are dropped. Lower than MediaPipe's 0.5, as the second network rejects false palms.
     #[param(default = 0.2, range = 0.0..=1.0, live)]
     pub palm_threshold: f32,
-    /// Palms that overlap more than this (intersection over union) are one palm.
+    /// IoU above which palms count as one.
     #[param(default = 0.3, range = 0.0..=1.0, live)]
     pub iou_threshold: f32,
-    /// Whether hands are followed from frame to frame, each with a number. Switch it off for single pictures.
+    /// Whether hands are tracked from frame to frame, each with an identity; switch it off for single images.
     #[param(default = true, live)]
     pub track: bool,
-    /// Whether pictures are mirrored, as those of a selfie are: what looks like a left hand is a right one then.
+    /// Whether images are mirrored, such as selfies: left and right hands are exchanged then.
     #[param(default = false, live)]
     pub mirrored: bool,
 }
@@ -52,12 +52,12 @@ pub struct HandPoseParams {
 /// A loaded hand pose estimator.
 pub struct HandPose {
     params: HandPoseParams,
-    palms: PictureNetwork,
+    palms: ImageNetwork,
     palm_side: usize,
     anchors: Anchors,
-    hands: PictureNetwork,
+    hands: ImageNetwork,
     hand_side: usize,
-    /// Where the joints, the presence and the handedness stand among the outputs.
+    /// Indices of the outputs: joints, presence and handedness.
     outputs: [usize; 3],
     scratch: Pool<Scratch>,
 }
@@ -66,30 +66,30 @@ pub struct HandPose {
 #[derive(Default)]
 struct Scratch {
     palms: PalmScratch,
-    found: Vec<TurnedSquare>,
-    /// Where to look, and the number of the hand that was there.
-    looked: Vec<(TurnedSquare, Option<i64>)>,
+    found: Vec<RotatedSquare>,
+    /// Squares to process, with the identity of a tracked hand.
+    squares: Vec<(RotatedSquare, Option<i64>)>,
 }
 
-/// What a stream remembers: where its hands were.
+/// State of a stream: the squares of its hands.
 #[derive(Default)]
 pub struct HandPoseState {
     size: [usize; 2],
-    tracks: Vec<(TurnedSquare, i64)>,
+    tracks: Vec<(RotatedSquare, i64)>,
     next_id: i64,
 }
 
-/// Files of the container: palms and joints.
+/// File names of the networks: palms and joints.
 const FILES: [&str; 2] = ["palm.onnx", "landmarks.onnx"];
-/// Outputs of the landmark network: joints, presence, handedness.
+/// Names of the landmark network's outputs: joints, presence, handedness.
 const OUTPUTS: [&str; 3] = ["Identity", "Identity_1", "Identity_2"];
-/// A palm whose square overlaps that of a followed hand more than this belongs to it.
+/// IoU of squares above which a palm belongs to a tracked hand.
 const SAME_SQUARE: f32 = 0.5;
 
 impl Learner for HandPose {
     const SPEC: Spec = Spec::new("hand_pose", Task::HandPoseEstimation)
         .class("HandPoseEstimationLearner")
-        .about("Finds 21 joints of each hand and follows hands through a video.");
+        .about("Detects 21 joints of each hand and tracks hands through a video.");
     type Params = HandPoseParams;
     type Input<'a> = &'a Image;
     type Target = PoseList;
@@ -98,13 +98,16 @@ impl Learner for HandPose {
     fn load(model: &Model, params: HandPoseParams, device: Device) -> Result<Self> {
         let [palm_file, hand_file] = FILES;
         let (mut palm_side, mut hand_side) = (0, 0);
-        let palms = PictureNetwork::open_file(model, palm_file, device, |input| {
-            let preprocess = input_of(input)?.letterbox(Anchor::Centre, 0.0).normalise([0.0; 3], [255.0; 3]);
+        let palms = ImageNetwork::open_file(model, palm_file, device, |input| {
+            let preprocess = preprocess_from_input(input)?
+                .letterbox(LetterboxAlign::Centre, 0.0)
+                .normalise([0.0; 3], [255.0; 3]);
             palm_side = square_side(preprocess.size())?;
             Ok(preprocess)
         })?;
-        let hands = PictureNetwork::open_file(model, hand_file, device, |input| {
-            let preprocess = input_of(input)?.border(Border::Repeat).normalise([0.0; 3], [255.0; 3]);
+        let hands = ImageNetwork::open_file(model, hand_file, device, |input| {
+            let preprocess =
+                preprocess_from_input(input)?.border(Border::Replicate).normalise([0.0; 3], [255.0; 3]);
             hand_side = square_side(preprocess.size())?;
             Ok(preprocess)
         })?;
@@ -130,14 +133,14 @@ impl Learner for HandPose {
             state.size = size;
         }
         let followed = state.tracks.iter().map(|(square, id)| (*square, Some(*id)));
-        scratch.looked.clear();
-        scratch.looked.extend(followed.take(self.params.max_hands));
-        if scratch.looked.len() < self.params.max_hands {
+        scratch.squares.clear();
+        scratch.squares.extend(followed.take(self.params.max_hands));
+        if scratch.squares.len() < self.params.max_hands {
             self.add_palms(image, scratch)?;
         }
         state.tracks.clear();
         let mut count = 0;
-        for (square, id) in &scratch.looked {
+        for (square, id) in &scratch.squares {
             let Some(hand) = self.hand(image, square)? else { continue };
             let Some(next) = hand.next_square().filter(|next| next.is_in(size)) else { continue };
             if poses.poses.iter().take(count).any(|other| is_same_hand(&hand, other, next.side / 2.0)) {
@@ -163,30 +166,33 @@ impl Learner for HandPose {
 }
 
 impl HandPose {
-    /// Looks for palms, and for the hands of those that no followed hand explains.
+    /// Detects palms and adds the squares of those that belong to no tracked hand.
     fn add_palms(&self, image: &Image, scratch: &mut Scratch) -> Result<()> {
-        let Scratch { palms, found, looked } = scratch;
+        let Scratch { palms, found, squares } = scratch;
         let HandPoseParams { palm_threshold, iou_threshold, max_hands, .. } = self.params;
         found.clear();
         self.palms.run(image, |outputs, geometry| {
             let [rows, logits] = outputs else {
-                return Err(Error::format(format!("a palm detector has 2 outputs, not {}", outputs.len())));
+                return Err(Error::format(format!(
+                    "a palm detector needs 2 outputs, not {}; load another model",
+                    outputs.len()
+                )));
             };
             let both = [rows.values::<f32>()?, logits.values::<f32>()?];
             self.anchors.decode(both, self.palm_side, geometry, [palm_threshold, iou_threshold], palms, found)
         })?;
         for square in found.iter().filter(|square| square.is_in([image.width(), image.height()])) {
             let known =
-                |(other, _): &(TurnedSquare, _)| iou(&other.upright(), &square.upright()) > SAME_SQUARE;
-            if looked.len() < max_hands && !looked.iter().any(known) {
-                looked.push((*square, None));
+                |(other, _): &(RotatedSquare, _)| iou(&other.upright(), &square.upright()) > SAME_SQUARE;
+            if squares.len() < max_hands && !squares.iter().any(known) {
+                squares.push((*square, None));
             }
         }
         Ok(())
     }
 
-    /// The hand in a square, where there is one.
-    fn hand(&self, image: &Image, square: &TurnedSquare) -> Result<Option<Hand>> {
+    /// Returns the hand in a square, if there is one.
+    fn hand(&self, image: &Image, square: &RotatedSquare) -> Result<Option<Hand>> {
         let crop = square.crop(self.hand_side);
         let mut hand = None;
         self.hands.run_crop(image, &crop, |outputs| {
@@ -198,7 +204,7 @@ impl HandPose {
     }
 }
 
-/// Memory of `pose` is used again.
+/// Writes a hand into `pose`, whose memory is reused.
 fn write_pose(pose: &mut Pose, hand: &Hand) {
     let confidence = hand.presence;
     pose.keypoints.clear();
@@ -216,5 +222,7 @@ fn square_side([width, height]: [usize; 2]) -> Result<usize> {
     if width == height {
         return Ok(width);
     }
-    Err(Error::format(format!("the networks of hands take square pictures, not {width}x{height}")))
+    Err(Error::format(format!(
+        "the network's input is {width}x{height}; hand pose networks need a square one"
+    )))
 }

@@ -1,18 +1,18 @@
-//! From the palm detector's outputs to squares around hands.
+//! Decoding of the palm detector's outputs to squares around hands.
 
 use opendr_engine::{Error, Result};
+use opendr_perception_common::rotated_square::{RotatedSquare, angle_upwards};
 use opendr_perception_common::suppression::{Candidate, keep_best, merge_overlapping};
-use opendr_perception_common::turned_square::{TurnedSquare, angle_upwards};
 use opendr_vision::InputGeometry;
 
-/// Numbers of a palm: centre, size and seven key points, `x, y` each, in input pixels from the anchor.
+/// Number of values of a palm: centre, size and seven keypoints, `x, y` each, in input pixels relative to the anchor.
 pub(super) const ROW: usize = 18;
-/// Key points at the wrist and where the middle finger begins.
+/// Indices of the keypoints at the wrist and at the base of the middle finger.
 const WRIST: usize = 0;
 const MIDDLE: usize = 2;
-/// Cells of the feature maps a side, and anchors in each cell.
+/// Feature maps: cells along a side, and anchors per cell.
 const MAPS: [(usize, usize); 2] = [(24, 2), (12, 6)];
-/// Palms that are looked at: more are noise.
+/// Number of candidates with the highest scores that are processed; more are noise.
 const CONSIDERED: usize = 100;
 
 /// Centres of the detector's anchors, in shares of the input's side.
@@ -27,7 +27,7 @@ pub(super) struct PalmScratch {
 }
 
 impl Anchors {
-    /// The anchors of an input of 192 pixels: cell by cell, row by row.
+    /// Creates the anchors of an input of 192 pixels: cell by cell, row by row.
     pub fn new() -> Self {
         let map = |(cells, each): (usize, usize)| {
             let centre = move |at: usize| (at as f32 + 0.5) / cells as f32;
@@ -37,13 +37,13 @@ impl Anchors {
         Self(MAPS.into_iter().flat_map(map).collect())
     }
 
-    /// Adds a square around the hand of each palm to `hands`, best first, in pixels of the picture.
+    /// Adds a square around the hand of each palm to `hands`, highest score first, in pixels of the image.
     ///
-    /// `rows` is `[anchors, 18]`, `logits` `[anchors]`, `side` that of the input. Palms that overlap by more than
-    /// `overlap` are blended, weighted by their scores.
+    /// `rows` is `[anchors, 18]`, `logits` `[anchors]`, `side` that of the input. Palms that overlap by more than `overlap`
+    /// are averaged, weighted by their scores.
     ///
     /// # Errors
-    /// `Format` when there are not as many rows as anchors.
+    /// `Format` when the number of rows differs from that of the anchors.
     pub fn decode(
         &self,
         [rows, logits]: [&[f32]; 2],
@@ -51,12 +51,12 @@ impl Anchors {
         geometry: &InputGeometry,
         [threshold, overlap]: [f32; 2],
         scratch: &mut PalmScratch,
-        hands: &mut Vec<TurnedSquare>,
+        hands: &mut Vec<RotatedSquare>,
     ) -> Result<()> {
         let anchors = self.0.len();
         if rows.len() != anchors * ROW || logits.len() != anchors {
             return Err(Error::format(format!(
-                "a palm detector of 192 pixels answers {anchors} rows of {ROW} numbers and as many scores, not {} and {}",
+                "a palm detector of 192 pixels needs {anchors} rows of {ROW} values and as many scores, not {} and {}; load another model",
                 rows.len(),
                 logits.len()
             )));
@@ -95,7 +95,7 @@ impl Anchors {
             let long = (high[0] - low[0]).max(high[1] - low[1]) * geometry.scale[0];
             let angle = angle_upwards(key(WRIST), key(MIDDLE));
             // From the palm to the hand: half its height up, 2.6 times as large (MediaPipe).
-            hands.push(TurnedSquare { centre, side: long, angle }.moved(-0.5, 2.6));
+            hands.push(RotatedSquare { centre, side: long, angle }.moved(-0.5, 2.6));
         });
         Ok(())
     }
@@ -121,12 +121,12 @@ mod tests {
     #[test]
     fn overlapping_palms_are_one_hand() {
         let (mut rows, mut logits) = (vec![0.0; 2016 * ROW], vec![-20.0; 2016]);
-        // Two anchors of one cell see a palm of 20 pixels whose fingers point to the right.
+        // Two anchors of one cell detect a palm of 20 pixels with its fingers to the right.
         for index in [1152, 1153] {
             logits[index] = 3.0;
             rows[index * ROW..][..10].copy_from_slice(&[4.0, 0.0, 20.0, 20.0, 0.0, 0.0, 0.0, 0.0, 10.0, 0.0]);
         }
-        // One that is not finite is none.
+        // Palms that are not finite are dropped.
         logits[5] = 9.0;
         rows[5 * ROW] = f32::NAN;
         logits[6] = f32::NAN;

@@ -1,4 +1,4 @@
-//! With the real networks: hands of FreiHAND, tracks, strange pictures.
+//! Tests with the real networks: hands of FreiHAND, tracks, unusual images.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use opendr_engine::target::Skeleton;
 
 use super::*;
 
-/// `OPENDR_TEST_DATA`.
+/// Returns the folder of `OPENDR_TEST_DATA`.
 fn shared() -> Option<PathBuf> {
     let shared = env::var_os("OPENDR_TEST_DATA").map(PathBuf::from);
     if shared.is_none() {
@@ -40,7 +40,7 @@ fn single() -> HandPoseParams {
     HandPoseParams { track: false, ..HandPoseParams::default() }
 }
 
-/// The annotated hands of FreiHAND: picture, joints, longer side of the box.
+/// Returns the annotated hands of FreiHAND: image, joints, longer side of the box.
 fn freihand(shared: &Path) -> Vec<(Image, Vec<[f32; 2]>, f32)> {
     let folder = shared.join("data/mmpose_samples/freihand");
     let text = std::fs::read_to_string(folder.join("test_freihand.json")).unwrap();
@@ -80,18 +80,18 @@ fn joints_lie_where_freihand_has_them() {
 }
 
 #[test]
-fn streams_do_not_mix_and_reset_forgets() {
+fn streams_are_separate_and_reset_clears() {
     let Some(shared) = shared() else { return };
     let mut handle = handle(&shared, HandPoseParams { max_hands: 1, ..HandPoseParams::default() });
     let hands = freihand(&shared);
-    let seen = |handle: &mut Handle<HandPose>| -> Vec<PoseList> {
+    let predictions = |handle: &mut Handle<HandPose>| -> Vec<PoseList> {
         hands.iter().map(|(image, ..)| handle.infer(image).unwrap()).collect()
     };
-    let first = seen(&mut handle);
+    let first = predictions(&mut handle);
     assert!(first.iter().flat_map(|poses| &poses.poses).all(|pose| pose.id.is_some()));
     handle.reset();
-    assert_eq!(seen(&mut handle), first);
-    // A hand that stays keeps its number, and is found again without looking for palms.
+    assert_eq!(predictions(&mut handle), first);
+    // A hand that stays keeps its identity, and is tracked without palm detection.
     handle.reset();
     let (image, ..) = &hands[0];
     let once = handle.infer(image).unwrap();
@@ -108,7 +108,7 @@ fn streams_do_not_mix_and_reset_forgets() {
 }
 
 #[test]
-fn pictures_without_hands_have_none() {
+fn images_without_hands_have_none() {
     let Some(shared) = shared() else { return };
     let mut handle = handle(&shared, HandPoseParams::default());
     for (width, height) in [(1, 1), (640, 2), (640, 480)] {

@@ -1,11 +1,11 @@
-//! What one series attends of another.
+//! Cross-attention between two sequences.
 
 use burn::module::Module;
 use burn::nn::{Linear, LinearConfig};
 use burn::tensor::activation::softmax;
 use burn::tensor::{Device, Tensor};
 
-/// From a series that asks, `[batch, asking channels, instants]`, and one that is asked, `[batch, asked channels, others]`.
+/// Cross-attention from a target, `[batch, target channels, steps]`, to a source, `[batch, source channels, source steps]`.
 #[derive(Module, Debug)]
 pub(super) struct CrossAttention {
     query: Linear,
@@ -13,35 +13,35 @@ pub(super) struct CrossAttention {
     value: Linear,
 }
 
-/// Features that likeness is computed of.
+/// Number of features of queries and keys.
 const FEATURES: usize = 64;
 
 impl CrossAttention {
-    /// With weights as training begins with.
-    pub fn new([asking, asked]: [usize; 2], device: &Device) -> Self {
+    /// Creates the layer with initial weights.
+    pub fn new([target, source]: [usize; 2], device: &Device) -> Self {
         Self {
-            query: LinearConfig::new(asking, FEATURES).init(device),
-            key: LinearConfig::new(asked, FEATURES).init(device),
-            value: LinearConfig::new(asked, asking).init(device),
+            query: LinearConfig::new(target, FEATURES).init(device),
+            key: LinearConfig::new(source, FEATURES).init(device),
+            value: LinearConfig::new(source, target).init(device),
         }
     }
 
-    /// How much each instant of `asked` counts for those of `asking`, `[batch, 1, others]`; 1 on average.
-    pub fn importance(&self, asking: Tensor<3>, asked: Tensor<3>) -> Tensor<3> {
-        let [.., others] = asked.dims();
-        self.weights(asking, asked).mean_dim(1) * others as f64
+    /// Returns the weight of each step of `source` for `target`, `[batch, 1, source steps]`; 1 on average.
+    pub fn importance(&self, target: Tensor<3>, source: Tensor<3>) -> Tensor<3> {
+        let [.., others] = source.dims();
+        self.weights(target, source).mean_dim(1) * others as f64
     }
 
-    /// What `asking` attends of `asked`, `[batch, asking channels, instants]`.
-    pub fn attended(&self, asking: Tensor<3>, asked: Tensor<3>) -> Tensor<3> {
-        let values = self.value.forward(asked.clone().swap_dims(1, 2));
-        self.weights(asking, asked).matmul(values).swap_dims(1, 2)
+    /// Returns the attended values of `source`, `[batch, target channels, steps]`.
+    pub fn attended(&self, target: Tensor<3>, source: Tensor<3>) -> Tensor<3> {
+        let values = self.value.forward(source.clone().swap_dims(1, 2));
+        self.weights(target, source).matmul(values).swap_dims(1, 2)
     }
 
-    /// `[batch, instants, others]`, each row of sum one.
-    fn weights(&self, asking: Tensor<3>, asked: Tensor<3>) -> Tensor<3> {
-        let query = self.query.forward(asking.swap_dims(1, 2));
-        let key = self.key.forward(asked.swap_dims(1, 2));
+    /// Returns attention weights `[batch, steps, source steps]`; each row sums to one.
+    fn weights(&self, target: Tensor<3>, source: Tensor<3>) -> Tensor<3> {
+        let query = self.query.forward(target.swap_dims(1, 2));
+        let key = self.key.forward(source.swap_dims(1, 2));
         softmax(query.matmul(key.swap_dims(1, 2)) / (FEATURES as f64).sqrt(), 2)
     }
 }

@@ -1,4 +1,4 @@
-//! How it trains.
+//! Training of the audiovisual emotion recognition.
 
 use opendr_engine::dataset::DatasetRef;
 use opendr_engine::learner::{Fit, FitJob};
@@ -7,17 +7,19 @@ use opendr_engine::params::Params;
 use opendr_engine::{Result, Statistics};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{
+    OptimizerKind, ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device,
+};
 
 use super::front_end::Sizes;
 use super::network::AudiovisualNetwork;
 use super::objective::AudiovisualObjective;
 use super::{AudiovisualEmotion, AudiovisualEmotionParams, ModalityDrop};
 
-/// How a user may train it, on samples of two data: the sound and the faces.
+/// Training parameters of [`AudiovisualEmotion`]; samples have two inputs, audio and video of the face.
 #[derive(Debug, Clone, Params)]
 pub struct AudiovisualEmotionFitParams {
-    /// What every training has.
+    /// Parameters common to all trainings.
     #[param(
         flatten,
         epochs = 100,
@@ -29,15 +31,15 @@ pub struct AudiovisualEmotionFitParams {
         optimizer = OptimizerKind::Sgd
     )]
     pub training: TrainingParams,
-    /// What training does so that one sense alone is enough.
+    /// Dropout of modalities, so that one of them suffices.
     pub mod_drop: ModalityDrop,
-    /// Side of the network's faces; frames are stretched to it.
+    /// Side of the network's face images; frames are stretched to it.
     #[param(default = 64, range = 16..=512, unit = "px")]
     pub side: usize,
     /// Channels of the first block for faces; the others have up to twice as many.
     #[param(default = 32, range = 4..=1024)]
     pub width: usize,
-    /// Share of the features that are left out at random.
+    /// Dropout probability.
     #[param(default = 0.2, range = 0.0..=0.9)]
     pub dropout: f64,
 }
@@ -56,7 +58,7 @@ impl Fit for AudiovisualEmotion {
         let AudiovisualEmotionFitParams { training, mod_drop, side, width, dropout } = fit_params;
         let dataset = open_for_training::<Self>(dataset, job)?;
         let classes = classes_to_train(&*dataset, params.num_class, "num_class")?;
-        let (sizes, device) = (Sizes::new(params, *side), begin(job, training)?);
+        let (sizes, device) = (Sizes::new(params, *side), seeded_device(job, training)?);
         let inner = (*width, *dropout);
         let network = AudiovisualNetwork::new(&sizes, params.fusion, classes.len(), inner, &device);
         let network = network_from_base(network, base)?;

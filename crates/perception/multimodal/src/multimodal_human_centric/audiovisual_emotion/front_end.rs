@@ -1,55 +1,55 @@
-//! From sound and faces to what the network is given.
+//! Input of the network from audio and video.
 
 use opendr_engine::data::{Audio, Video};
 use opendr_engine::{Pool, Result};
 use opendr_perception_common::clip_frames::ClipFrames;
 use opendr_sound::mfcc::{Mfcc, MfccOptions};
-use opendr_sound::{Sound, standardise};
+use opendr_sound::{AudioInput, standardise};
 
-use super::AudiovisualEmotionParams;
+use super::params::AudiovisualEmotionParams;
 
-/// Sizes of what the network is given.
+/// Sizes of the network's input.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Sizes {
-    /// Frames of the faces.
+    /// Number of frames of the face.
     pub frames: usize,
-    /// Pixels of a side of a frame.
+    /// Side of a frame in pixels.
     pub side: usize,
-    /// Instants of the cepstra.
+    /// Number of time steps of the cepstra.
     pub instants: usize,
-    /// Samples of the sound a second.
+    /// Sample rate of the audio in Hz.
     pub sample_rate: u32,
-    /// Samples that are looked at.
+    /// Number of samples that are used.
     pub samples: usize,
 }
 
-/// Samples of a window of the cepstra, as librosa has it, and from one to the next.
+/// Window and hop of the cepstra in samples, librosa's defaults.
 const WINDOW: usize = 2048;
 const HOP: usize = 512;
 
 impl Sizes {
-    /// Coefficients of an instant.
+    /// Number of coefficients per time step.
     pub const COEFFICIENTS: usize = 10;
 
-    /// With faces of `side` x `side` pixels.
+    /// Returns the sizes with faces of `side` x `side` pixels.
     pub fn new(params: &AudiovisualEmotionParams, side: usize) -> Self {
         let samples = (params.seconds * f64::from(params.sample_rate)).round() as usize;
         let (frames, sample_rate) = (params.seq_length, params.sample_rate);
         Self { frames, side, instants: 1 + samples / HOP, sample_rate, samples }
     }
 
-    /// Numbers of a sound.
+    /// Returns the number of values of an audio input.
     pub fn audio(&self) -> usize {
         Self::COEFFICIENTS * self.instants
     }
 
-    /// Numbers of the faces.
+    /// Returns the number of values of a video input.
     pub fn video(&self) -> usize {
         self.frames * 3 * self.side * self.side
     }
 }
 
-/// Makes the network's inputs.
+/// Computes the network's inputs.
 pub(super) struct FrontEnd {
     pub sizes: Sizes,
     mfcc: Mfcc,
@@ -58,7 +58,7 @@ pub(super) struct FrontEnd {
 }
 
 impl FrontEnd {
-    /// For a network of these sizes.
+    /// Creates the front end for a network of these sizes.
     ///
     /// # Errors
     /// As [`Mfcc::new`].
@@ -68,13 +68,13 @@ impl FrontEnd {
         Ok(Self { sizes: *sizes, mfcc, frames, cepstra: Pool::default() })
     }
 
-    /// Replaces `input` by cepstra `[coefficients, instants]`, each coefficient of mean zero and deviation one through time;
-    /// silence and what fills up short sound are zeros.
+    /// Replaces `input` by cepstra `[coefficients, time steps]`, each coefficient normalised to zero mean and unit deviation
+    /// over time; silence and padding are zeros.
     ///
     /// # Errors
-    /// `InvalidInput` for sound of another rate, or a sample that is no number.
+    /// `InvalidInput` for audio of another sample rate, or a sample that is NaN.
     pub fn audio_into(&self, audio: &Audio, input: &mut Vec<f32>) -> Result<()> {
-        let samples = Sound::from(audio).samples(self.sizes.sample_rate)?;
+        let samples = AudioInput::from(audio).samples(self.sizes.sample_rate)?;
         let samples = samples.get(..self.sizes.samples).unwrap_or(&samples);
         let cepstra = &mut *self.cepstra.take();
         let count = self.mfcc.run_into(samples, cepstra).min(self.sizes.instants);

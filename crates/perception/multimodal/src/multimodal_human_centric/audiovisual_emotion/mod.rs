@@ -1,10 +1,10 @@
-//! Emotions by voice and face.
+//! Emotion recognition from voice and face.
 //!
-//! Chumachenko, Iosifidis and Gabbouj, Self-attention Fusion for Audiovisual Emotion Recognition with Incomplete Data, ICPR 2022:
-//! a branch of convolutions through time for the cepstra of a voice, one for the frames of a face, and attention between
-//! both. Different from the paper, frames are looked at by a small network that is trained along, not by EfficientFace.
-//! It takes the sound and the faces cut out of a video of the same time; where there is no video, or silence, the other sense
-//! decides.
+//! Chumachenko, Iosifidis and Gabbouj, Self-attention Fusion for Audiovisual Emotion Recognition with Incomplete Data, ICPR
+//! 2022: a branch of temporal convolutions for the cepstra of a voice, one for the frames of a face, and attention between
+//! both. Different from the paper, the features of frames come from a small network that is trained jointly, not from
+//! EfficientFace. The inputs are the audio and the cropped faces of a video of the same time; without a video, or in silence,
+//! the other modality decides.
 
 #[cfg(feature = "training")]
 mod cross_attention;
@@ -15,6 +15,7 @@ mod front_end;
 mod network;
 #[cfg(feature = "training")]
 mod objective;
+mod params;
 #[cfg(test)]
 #[cfg(feature = "training")]
 mod tests;
@@ -24,61 +25,30 @@ pub use fit::AudiovisualEmotionFitParams;
 use opendr_engine::data::{Audio, Video};
 use opendr_engine::learner::{Inputs, Learner, Spec};
 use opendr_engine::model::Model;
-use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
 use opendr_perception_common::category_scores::category_from_logits;
 
 use self::front_end::{FrontEnd, Sizes};
+pub use self::params::{AudiovisualEmotionParams, AudiovisualFusion};
 
 opendr_engine::choices! {
-    /// How the two branches learn of each other.
-    pub enum AudiovisualFusion {
-        /// Between their halves: attention says which instants of the other count.
-        IntermediateAttention = "ia",
-        /// Between their halves: what is attended of the other is added.
-        IntermediateTransformer = "it",
-        /// At their ends: each goes on with what it attends of the other.
-        LateTransformer = "lt",
-    }
-}
-
-opendr_engine::choices! {
-    /// What training does so that one sense alone is enough.
+    /// Dropout of modalities in training.
     pub enum ModalityDrop {
-        /// Each batch is also learnt without its sound, and without its faces.
+        /// Each batch is also trained without its audio, and without its video.
         Zero = "zerodrop",
-        /// Nothing.
+        /// No dropout.
         None = "nodrop",
     }
 }
 
-/// What a user may set. Sizes are those of the network that is trained; a loaded model has its own.
-#[derive(Debug, Clone, Params)]
-pub struct AudiovisualEmotionParams {
-    /// Classes. None: as many as the data name.
-    #[param(range = 2..=10_000)]
-    pub num_class: Option<usize>,
-    /// Frames of the faces, evenly spaced over the video.
-    #[param(default = 15, range = 2..=256)]
-    pub seq_length: usize,
-    /// How the branches learn of each other.
-    pub fusion: AudiovisualFusion,
-    /// Samples of the sound a second.
-    #[param(default = 22_050, range = 8000..=48_000, unit = "Hz")]
-    pub sample_rate: u32,
-    /// Sound that is looked at, from its begin; what is shorter is filled up.
-    #[param(default = 3.6, range = 0.2..=60.0, unit = "s")]
-    pub seconds: f64,
-}
-
-/// What somebody says and what the face does meanwhile.
+/// Audio and video of a speaking person.
 #[derive(Inputs)]
 pub struct AudiovisualInputs<'a> {
     /// The voice, at the learner's sample rate.
     pub audio: &'a Audio,
-    /// The face, cut out, `[3, frames, height, width]`.
+    /// The cropped face, `[3, frames, height, width]`.
     pub video: Option<&'a Video>,
 }
 
@@ -97,18 +67,18 @@ struct Scratch {
     video: Vec<f32>,
 }
 
-/// The network in every container: `audio` `[1, coefficients, instants]` and `video` `[frames, 3, side, side]` to `logits`
-/// `[1, classes]`.
+/// File of the network in every container: `audio` `[1, coefficients, time steps]` and `video` `[frames, 3, side, side]` to
+/// `logits` `[1, classes]`.
 const FILE: &str = "model.onnx";
 
 impl Learner for AudiovisualEmotion {
     const SPEC: Spec = Spec::new("audiovisual_emotion", Task::MultimodalHumanCentric)
         .class("AudiovisualEmotionLearner")
-        .about("Tells an emotion by the voice and the face; it trains.")
+        .about("Recognises the emotion of a person from voice and face; trainable.")
         .without_effect(&[
-            ("pretr_ef", "frames are looked at by a network that is trained along"),
-            ("dampening", Spec::OF_TRAINING),
-            ("n_workers", Spec::OF_TRAINING),
+            ("pretr_ef", "the network for frames is trained jointly"),
+            ("dampening", Spec::TRAINING_ONLY),
+            ("n_workers", Spec::TRAINING_ONLY),
         ]);
     type Params = AudiovisualEmotionParams;
     type Input<'a> = AudiovisualInputs<'a>;
@@ -118,18 +88,17 @@ impl Learner for AudiovisualEmotion {
     fn load(model: &Model, params: AudiovisualEmotionParams, device: Device) -> Result<Self> {
         let session = Session::open(&model.file(FILE)?, device)?;
         let ([audio, video], [output]) = (session.inputs(), session.outputs()) else {
-            return Err(Error::format(format!("{FILE} has not two inputs and one output")));
+            return Err(Error::format(format!("{FILE} does not have two inputs and one output")));
         };
-        let wrong =
-            || Error::format(format!("{FILE} takes {audio} and {video}, which are no sound and faces"));
+        let wrong = || Error::format(format!("{FILE} takes {audio} and {video}; expected audio and faces"));
         let [_, _, _, Some(side)] = video.dims[..] else { return Err(wrong()) };
         let sizes = Sizes::new(&params, side);
         if audio.dims != [1, Sizes::COEFFICIENTS, sizes.instants].map(Some)
             || video.dims != [sizes.frames, 3, side, side].map(Some)
         {
             return Err(Error::invalid_param(format!(
-                "{FILE} takes {audio} and {video}; seq_length, sample_rate and seconds make {} instants and {} frames: \
-                 leave them out",
+                "{FILE} takes {audio} and {video}, but seq_length, sample_rate and seconds specify {} time steps and {} frames; \
+                 omit these parameters",
                 sizes.instants, sizes.frames
             )));
         }
@@ -137,7 +106,7 @@ impl Learner for AudiovisualEmotion {
             && wanted != there
         {
             return Err(Error::invalid_param(format!(
-                "num_class = {wanted}, but the model's is {there}; leave it out, or load a model that fits"
+                "num_class = {wanted}, but the model has {there} classes; omit num_class or load another model"
             )));
         }
         let (classes, front_end) = (model.classes().clone(), FrontEnd::new(&sizes)?);

@@ -1,4 +1,4 @@
-//! The network as it is trained.
+//! The trained network.
 
 use burn::module::Module;
 use burn::nn::conv::{Conv1d, Conv1dConfig};
@@ -11,7 +11,7 @@ use super::AudiovisualFusion;
 use super::cross_attention::CrossAttention;
 use super::front_end::Sizes;
 
-/// Cepstra and faces to logits.
+/// Network from cepstra and faces to logits.
 #[derive(Module, Debug)]
 pub(super) struct AudiovisualNetwork {
     faces: SmallBackbone,
@@ -27,12 +27,12 @@ pub(super) struct AudiovisualNetwork {
     frames: usize,
 }
 
-/// Channels after the halves of a branch.
+/// Channels after the halves of each branch.
 const AUDIO: [usize; 2] = [128, 128];
 const VIDEO: [usize; 2] = [64, 128];
 
 impl AudiovisualNetwork {
-    /// A network with weights as training begins with; `width` channels in the first block for faces.
+    /// Returns a network with initial weights; `width` is the number of channels of the first block for faces.
     pub fn new(
         sizes: &Sizes,
         fusion: AudiovisualFusion,
@@ -62,7 +62,8 @@ impl AudiovisualNetwork {
         }
     }
 
-    /// Logits `[batch, classes]` of cepstra `[batch, coefficients, instants]` and faces `[batch * frames, 3, side, side]`.
+    /// Returns logits `[batch, classes]` of cepstra `[batch, coefficients, time steps]` and faces
+    /// `[batch * frames, 3, side, side]`.
     pub fn forward(&self, cepstra: Tensor<3>, faces: Tensor<4>) -> Tensor<2> {
         let [batch, ..] = cepstra.dims();
         let faces = self.faces.forward(faces);
@@ -101,7 +102,7 @@ fn half(branch: &[TimeBlocks], at: usize, series: Tensor<3>) -> Tensor<3> {
     branch.iter().skip(at).take(1).fold(series, |series, blocks| blocks.forward(series))
 }
 
-/// Two convolutions through time, the second with a stride, `[batch, inputs, instants]` to `[batch, outputs, fewer]`.
+/// Two temporal convolutions, the second with a stride; `[batch, inputs, steps]` to `[batch, outputs, fewer steps]`.
 #[derive(Module, Debug)]
 struct TimeBlocks {
     convolutions: Vec<Conv1d>,

@@ -17,7 +17,7 @@ use super::front_end::{FrontEnd, Sizes};
 use super::network::AudiovisualNetwork;
 use super::{AudiovisualEmotion, AudiovisualEmotionParams, FILE, ModalityDrop, Scratch};
 
-/// What the training minimises: the cross-entropy, of both senses and, with [`ModalityDrop::Zero`], of each alone.
+/// Training objective: cross-entropy with both modalities and, with [`ModalityDrop::Zero`], with each alone.
 pub(super) struct AudiovisualObjective<'a> {
     pub params: &'a AudiovisualEmotionParams,
     pub classes: Classes,
@@ -43,7 +43,7 @@ impl Objective for AudiovisualObjective<'_> {
         if self.mod_drop == ModalityDrop::None {
             return Ok(batch.cross_entropy(network.forward(audio, video), &[], device).into());
         }
-        // One batch, so that the statistics of its normalisations are those of all three, as they are when it infers.
+        // One batch, so that the statistics of batch normalisation cover all three cases, as in inference.
         let audio = Tensor::cat(vec![audio.clone(), audio.zeros_like(), audio], 0);
         let video = Tensor::cat(vec![video.clone(), video.clone(), video.zeros_like()], 0);
         let logits = network.forward(audio, video);
@@ -69,7 +69,7 @@ impl Objective for AudiovisualObjective<'_> {
     }
 }
 
-/// Sound and faces one after the other.
+/// Batches of audio followed by faces.
 pub(super) struct AudiovisualBatches {
     front_end: FrontEnd,
     classes: usize,
@@ -88,7 +88,7 @@ impl Collate for AudiovisualBatches {
             [Value::Audio(audio)] => (audio, None),
             _ => {
                 return Err(Error::invalid_input(
-                    "the sample has no sound with faces; give Audio, and Video where there is one",
+                    "the sample has no audio; its inputs must be Audio and, optionally, Video",
                 ));
             }
         };

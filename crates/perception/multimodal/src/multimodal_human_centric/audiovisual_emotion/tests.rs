@@ -1,8 +1,8 @@
 use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::{ErrorKind, Random};
+use opendr_perception_testing::learner_checks::check_trained_learner;
 use opendr_perception_testing::overfit::losses_on_one_batch;
-use opendr_perception_testing::promises::check;
 use opendr_training::OptimizerKind;
 
 use super::network::AudiovisualNetwork;
@@ -15,7 +15,7 @@ fn params() -> AudiovisualEmotionParams {
     AudiovisualEmotionParams { seq_length: 3, sample_rate: RATE, seconds: 1.0, ..Default::default() }
 }
 
-/// Noise: the voice's trembles, rises or falls, the face is red, green or blue.
+/// Noise with one class in each modality: the voice trembles, rises or falls, the face is red, green or blue.
 struct Persons;
 
 impl Dataset for Persons {}
@@ -58,7 +58,7 @@ fn face(index: usize) -> Video {
 }
 
 #[test]
-fn every_fusion_learns_one_batch_by_heart() {
+fn every_fusion_overfits_one_batch() {
     for fusion in [
         AudiovisualFusion::IntermediateAttention,
         AudiovisualFusion::IntermediateTransformer,
@@ -77,7 +77,7 @@ fn every_fusion_learns_one_batch_by_heart() {
 }
 
 #[test]
-fn one_sense_is_enough_after_training() {
+fn one_modality_suffices_after_training() {
     let output = std::env::temp_dir().join(format!("opendr-audiovisual-{}", std::process::id()));
     std::fs::remove_dir_all(&output).ok();
     let mut fit_params =
@@ -92,20 +92,20 @@ fn one_sense_is_enough_after_training() {
     let mut told = |audio: &Audio, video: Option<&Video>| {
         handle.infer(AudiovisualInputs { audio, video }).map(|category| category.class as usize)
     };
-    let [mut both, mut heard, mut seen] = [0; 3];
+    let [mut both, mut audio_only, mut video_only] = [0; 3];
     for index in 0..9 {
         let (audio, video) = (voice(index), face(index));
         both += usize::from(told(&audio, Some(&video)).unwrap() == index % 3);
-        heard += usize::from(told(&audio, None).unwrap() == index % 3);
-        seen += usize::from(told(&silence, Some(&video)).unwrap() == index % 3);
+        audio_only += usize::from(told(&audio, None).unwrap() == index % 3);
+        video_only += usize::from(told(&silence, Some(&video)).unwrap() == index % 3);
     }
-    assert!(both == 9 && heard >= 8 && seen >= 8, "{both} {heard} {seen}");
+    assert!(both == 9 && audio_only >= 8 && video_only >= 8, "{both} {audio_only} {video_only}");
     assert!(told(&silence, None).unwrap() < 3);
     let other_rate = Audio::new(vec![0.1; 100], 1, 16_000).unwrap();
     assert_eq!(told(&other_rate, None).unwrap_err().kind(), ErrorKind::InvalidInput);
     let grey = Video::new(vec![0.5; 4], [1, 1, 2, 2]).unwrap();
     assert_eq!(told(&silence, Some(&grey)).unwrap_err().kind(), ErrorKind::InvalidInput);
     let calls = (0..3).map(|index| Persons.get(index).unwrap().data).collect();
-    check::<AudiovisualEmotion>(&job.model(), &output.join("scratch"), calls);
+    check_trained_learner::<AudiovisualEmotion>(&job.model(), &output.join("scratch"), calls);
     std::fs::remove_dir_all(&output).ok();
 }

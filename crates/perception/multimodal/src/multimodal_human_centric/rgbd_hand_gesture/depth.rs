@@ -1,34 +1,34 @@
-//! From distances to what a network is given.
+//! Normalisation of depth images.
 
 use opendr_engine::data::{Image, ImageView, Samples};
 use opendr_engine::{Error, Result};
 
-/// Distances as nearness, counted from what is nearest: neither the camera's place nor its unit matter.
+/// Converts depth to nearness relative to the nearest point, independent of the camera's position and unit.
 #[derive(Debug, Clone)]
 pub(super) struct DepthNormaliser {
     side: usize,
 }
 
-/// What lies so far behind the nearest has no nearness, metres.
+/// Distance behind the nearest point, in metres, at which nearness is 0.
 const REACH: f32 = 0.6;
-/// Of the known distances, this share is nearer than what counts as the nearest: sensors have outliers.
+/// Divisor of the number of known pixels: the nearest fiftieth counts as outliers.
 const OUTLIERS: usize = 50;
 
 impl DepthNormaliser {
-    /// To pictures of `side` x `side`.
+    /// Creates a normaliser to images of `side` x `side`.
     pub fn new(side: usize) -> Self {
         Self { side }
     }
 
-    /// Fills `nearness` `[side, side]` with 1 for the nearest, falling to 0 at [`REACH`] behind it; 0 also where the
-    /// distance is not known. Nothing is mixed between pixels, so that edges stay. `depths` is work memory.
+    /// Fills `nearness` `[side, side]` with 1 for the nearest point, falling to 0 at [`REACH`] behind it; 0 also for unknown
+    /// depth. Resizing is by nearest neighbour, so that edges stay sharp. `depths` is a buffer.
     ///
     /// # Errors
     /// `InvalidInput` when `depth` has more than one channel.
     pub fn run_into(&self, depth: &Image, depths: &mut Vec<f32>, nearness: &mut [f32]) -> Result<()> {
         if depth.channels() != 1 {
             return Err(Error::invalid_input(format!(
-                "a depth picture of {} channels; give one channel of distances",
+                "the depth image has {} channels; it must have one",
                 depth.channels()
             )));
         }
@@ -54,12 +54,12 @@ impl DepthNormaliser {
     }
 }
 
-/// The pixel of a line of `from` that is in the middle of pixel `at` of `to`.
+/// Returns the pixel of a line of `from` pixels at the centre of pixel `at` of `to` pixels.
 fn place(at: usize, to: usize, from: usize) -> usize {
     (2 * at + 1) * from / (2 * to)
 }
 
-/// The distance at a pixel; 0 where it is not known.
+/// Returns the depth at a pixel in metres; 0 where it is unknown.
 fn metres(view: &ImageView<'_>, x: usize, y: usize) -> f32 {
     let [row, column, _] = view.strides();
     let at = y * row + x * column;
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn units_and_places_of_cameras_do_not_matter() {
+    fn nearness_is_independent_of_unit_and_camera_position() {
         let metres = vec![0.0f32, 0.5, 0.0, 0.8, 0.0, 9.0, 0.0, f32::NAN];
         let wanted = [1.0, 0.5, 0.0, 0.0];
         let near = |got: Vec<f32>| got.iter().zip(wanted).all(|(got, wanted)| (got - wanted).abs() < 1e-4);

@@ -1,8 +1,8 @@
-//! Gestures of a hand by its colour and its distance.
+//! Hand gesture recognition from colour and depth.
 //!
-//! A convolutional network of four channels, as OpenDR's learner of this name has it: colour and depth are fused in the
-//! first layer. Both pictures show the same view, whatever their sizes; depth may have holes, and where all of it is one,
-//! colour alone decides.
+//! A convolutional network with four input channels, as OpenDR's learner of this name: colour and depth are fused in the first
+//! layer. Both images show the same view and may differ in size; depth may have holes, and if it is unknown everywhere, colour
+//! alone decides.
 
 mod depth;
 #[cfg(feature = "training")]
@@ -28,30 +28,30 @@ use opendr_vision::Preprocess;
 use self::depth::DepthNormaliser;
 
 opendr_engine::choices! {
-    /// Which network looks at the pictures.
+    /// Network architecture.
     pub enum RgbdArchitecture {
-        /// Four convolutions, as the image classifier has them.
+        /// Four convolutions, as in the image classifier.
         Small = "small",
     }
 }
 
-/// What a user may set. Sizes are those of the network that is trained; a loaded model has its own.
+/// Parameters of [`RgbdHandGesture`]. The sizes apply to the network that is trained; a loaded model has its own.
 #[derive(Debug, Clone, Params)]
 pub struct RgbdHandGestureParams {
-    /// Classes. None: as many as the data name.
+    /// Number of classes. None: the number of classes in the data set.
     #[param(range = 2..=10_000)]
     pub n_class: Option<usize>,
-    /// The network.
+    /// Network architecture.
     pub architecture: RgbdArchitecture,
 }
 
-/// A picture and how far away what it shows is.
+/// An image and its depth.
 #[derive(Inputs)]
 pub struct RgbdInputs<'a> {
-    /// The picture.
+    /// The colour image.
     pub image: &'a Image,
-    /// Distances of the same view, one channel: floats in metres, 16 bits in millimetres, 8 bits in centimetres. What is
-    /// not above 0 is not known.
+    /// Depth of the same view, one channel: floats in metres, 16 bits in millimetres, 8 bits in centimetres. Values of at most
+    /// 0 are unknown.
     pub depth: &'a Image,
 }
 
@@ -70,12 +70,12 @@ struct Scratch {
     depths: Vec<f32>,
 }
 
-/// The network in every container: `image` `[1, 4, side, side]` to `logits` `[1, classes]`.
+/// File of the network in every container: `image` `[1, 4, side, side]` to `logits` `[1, classes]`.
 const FILE: &str = "model.onnx";
-/// Colour and depth.
+/// Number of input channels: colour and depth.
 const CHANNELS: usize = 4;
 
-/// Makes of both pictures what the network is given.
+/// Computes the network's input from both images.
 #[derive(Debug, Clone)]
 struct FrontEnd {
     colour: Preprocess,
@@ -83,13 +83,13 @@ struct FrontEnd {
 }
 
 impl FrontEnd {
-    /// For pictures of `side` x `side` pixels.
+    /// Creates the front end for images of `side` x `side` pixels.
     fn new(side: usize) -> Self {
         let colour = Preprocess::new(side, side).normalise([127.5; 3], [127.5; 3]);
         Self { colour, depth: DepthNormaliser::new(side) }
     }
 
-    /// Replaces `scratch.input` by `[4, side, side]`: levels of -1..=1, nearness of 0..=1.
+    /// Replaces `scratch.input` by `[4, side, side]`: colour in -1..=1, nearness in 0..=1.
     fn run(&self, inputs: &RgbdInputs<'_>, scratch: &mut Scratch) -> Result<()> {
         let Scratch { input, depths } = scratch;
         let colour = self.colour.len();
@@ -103,11 +103,11 @@ impl FrontEnd {
 impl Learner for RgbdHandGesture {
     const SPEC: Spec = Spec::new("rgbd_hand_gesture", Task::MultimodalHumanCentric)
         .class("RgbdHandGestureLearner")
-        .about("Tells a hand's gesture by its colour and its distance; it trains.")
+        .about("Recognises hand gestures from colour and depth; trainable.")
         .without_effect(&[
-            ("pretrained", "there are no weights of others for its network"),
-            ("n_workers", Spec::OF_TRAINING),
-            ("test_mode", "it made OpenDR's own tests short"),
+            ("pretrained", "there are no pretrained weights for the network"),
+            ("n_workers", Spec::TRAINING_ONLY),
+            ("test_mode", "OpenDR used it to shorten its own tests"),
         ]);
     type Params = RgbdHandGestureParams;
     type Input<'a> = RgbdInputs<'a>;
@@ -117,19 +117,21 @@ impl Learner for RgbdHandGesture {
     fn load(model: &Model, params: RgbdHandGestureParams, device: Device) -> Result<Self> {
         let session = Session::open(&model.file(FILE)?, device)?;
         let ([input], [output]) = (session.inputs(), session.outputs()) else {
-            return Err(Error::format(format!("{FILE} has not one input and one output")));
+            return Err(Error::format(format!("{FILE} does not have exactly one input and one output")));
         };
         let side = match input.dims[..] {
             [_, Some(CHANNELS), Some(height), Some(width)] if height == width => width,
             _ => {
-                return Err(Error::format(format!("{FILE} takes {input}, which is no square of 4 channels")));
+                return Err(Error::format(format!(
+                    "{FILE} takes {input}; expected a square image of 4 channels"
+                )));
             }
         };
         if let (Some(wanted), Some(there)) = (params.n_class, output.dims.last().copied().flatten())
             && wanted != there
         {
             return Err(Error::invalid_param(format!(
-                "n_class = {wanted}, but the model's is {there}; leave it out, or load a model that fits"
+                "n_class = {wanted}, but the model has {there} classes; omit n_class or load another model"
             )));
         }
         let classes = model.classes().clone();

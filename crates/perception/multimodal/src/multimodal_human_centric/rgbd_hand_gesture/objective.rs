@@ -16,7 +16,7 @@ use opendr_training::{Container, Loss, Objective};
 
 use super::{CHANNELS, FILE, FrontEnd, RgbdHandGesture, RgbdHandGestureParams, RgbdInputs, Scratch};
 
-/// What the training minimises: the cross-entropy.
+/// Training objective: cross-entropy.
 pub(super) struct RgbdObjective<'a> {
     pub params: &'a RgbdHandGestureParams,
     pub classes: Classes,
@@ -40,7 +40,7 @@ impl Objective for RgbdObjective<'_> {
         if !self.drop_depth {
             return Ok(batch.cross_entropy(network.forward(pictures), &[], device).into());
         }
-        // One batch, so that the statistics of its normalisations are those of both, as they are when it infers.
+        // One batch, so that the statistics of batch normalisation cover both cases, as in inference.
         let colour = pictures.clone().narrow(1, 0, CHANNELS - 1);
         let unknown = Tensor::zeros([count, 1, side, side], device);
         let logits = network.forward(Tensor::cat(vec![pictures, Tensor::cat(vec![colour, unknown], 1)], 0));
@@ -63,7 +63,7 @@ impl Objective for RgbdObjective<'_> {
     }
 }
 
-/// Pictures with their depth as the network takes them.
+/// Batches of images with depth in the network's input layout.
 pub(super) struct RgbdBatches {
     front_end: FrontEnd,
     side: usize,
@@ -79,7 +79,9 @@ impl Collate for RgbdBatches {
 
     fn add(&self, batch: &mut LabelledBatch, sample: Sample) -> Result<()> {
         let [Value::Image(image), Value::Image(depth)] = &sample.data[..] else {
-            return Err(Error::invalid_input("the sample has not two data; give a picture and its depth"));
+            return Err(Error::invalid_input(
+                "the sample does not have two inputs; they must be an image and its depth",
+            ));
         };
         let mut scratch = Scratch::default();
         self.front_end.run(&RgbdInputs { image, depth }, &mut scratch)?;

@@ -3,13 +3,13 @@ use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::{ErrorKind, Random};
 use opendr_perception_common::small_classifier::SmallClassifier;
+use opendr_perception_testing::learner_checks::check_trained_learner;
 use opendr_perception_testing::overfit::losses_on_one_batch;
-use opendr_perception_testing::promises::check;
 
 use super::objective::RgbdObjective;
 use super::*;
 
-/// Colours that hardly differ; the depth says the class: what is near is above, below, or nowhere.
+/// Images of almost equal colours; the depth determines the class: the near part is above, below or absent.
 struct Hands;
 
 impl Dataset for Hands {}
@@ -43,7 +43,7 @@ fn pictures(index: usize) -> (Image, Image) {
 }
 
 #[test]
-fn learns_one_batch_by_heart() {
+fn overfits_one_batch() {
     let params = RgbdHandGestureParams::default();
     let objective = RgbdObjective { params: &params, classes: Hands.classes(), side: 16, drop_depth: false };
     let samples = (0..Hands.len()).map(|index| Hands.get(index).unwrap()).collect();
@@ -53,7 +53,7 @@ fn learns_one_batch_by_heart() {
 }
 
 #[test]
-fn fit_makes_what_infer_loads_and_depth_decides() {
+fn infer_loads_the_model_of_fit_and_depth_decides() {
     let output = std::env::temp_dir().join(format!("opendr-rgbd-{}", std::process::id()));
     std::fs::remove_dir_all(&output).ok();
     let mut fit_params =
@@ -66,7 +66,7 @@ fn fit_makes_what_infer_loads_and_depth_decides() {
     let told = |handle: &mut Handle<RgbdHandGesture>, image: &Image, depth: &Image| {
         handle.infer(RgbdInputs { image, depth })
     };
-    // Colours of one, depth of another that was not seen with it.
+    // Colours of one sample, depth of another one that is not paired with it in training.
     let mut right = 0;
     for index in 0..12 {
         let ((image, _), (_, depth)) = (pictures(index + 100), pictures(index));
@@ -81,7 +81,7 @@ fn fit_makes_what_infer_loads_and_depth_decides() {
     let refused = told(&mut handle, &depth, &image).unwrap_err();
     assert_eq!(refused.kind(), ErrorKind::InvalidInput);
     let calls = (0..3).map(|index| Hands.get(index).unwrap().data).collect();
-    check::<RgbdHandGesture>(&job.model(), &output.join("scratch"), calls);
+    check_trained_learner::<RgbdHandGesture>(&job.model(), &output.join("scratch"), calls);
     let params = RgbdHandGestureParams { n_class: Some(16), ..Default::default() };
     let mut other = Handle::<RgbdHandGesture>::new(params, Device::Cpu).unwrap();
     assert_eq!(other.load(job.model()).unwrap_err().kind(), ErrorKind::InvalidParam);

@@ -1,4 +1,4 @@
-//! Training.
+//! Training of EfficientLPS.
 
 use opendr_clouds::range_image::RangeView;
 use opendr_engine::dataset::DatasetRef;
@@ -8,13 +8,15 @@ use opendr_engine::params::Params;
 use opendr_engine::{Error, Result, Statistics};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{
+    OptimizerKind, ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device,
+};
 
 use super::network::{RangeNetwork, STAGES};
 use super::objective::LabelledScans;
 use super::{EfficientLps, EfficientLpsParams, view_of};
 
-/// How it is trained.
+/// Training parameters of [`EfficientLps`].
 #[derive(Debug, Clone, Params)]
 pub struct EfficientLpsFitParams {
     /// Rows of the range image, a multiple of 8.
@@ -23,19 +25,19 @@ pub struct EfficientLpsFitParams {
     /// Columns of the range image, a multiple of 8.
     #[param(default = 512, range = 8..=8192)]
     pub columns: usize,
-    /// Its upper edge above the horizon.
+    /// Angle of the range image's upper edge above the horizon.
     #[param(default = 2.5, range = -90.0..=90.0, unit = "deg")]
     pub fov_up: f32,
-    /// Its lower edge.
+    /// Angle of the range image's lower edge.
     #[param(default = -25.0, range = -90.0..=90.0, unit = "deg")]
     pub fov_down: f32,
-    /// How far it looks to either side; 180 for a full turn.
+    /// Field of view to either side; 180 for a full turn.
     #[param(default = 45.0, range = 1.0..=180.0, unit = "deg")]
     pub half_view: f32,
-    /// Channels of the first layer; the last of the way down has eight times as many.
+    /// Channels of the first layer; the deepest layer has eight times as many.
     #[param(default = 16, range = 2..=128)]
     pub width: usize,
-    /// What every training has.
+    /// Parameters common to all trainings.
     #[param(
         flatten,
         epochs = 40,
@@ -67,11 +69,11 @@ impl Fit for EfficientLps {
         let classes = classes_to_train(&dataset, None, "classes")?;
         if let Some(thing) = params.things.iter().find(|thing| **thing as usize >= classes.len()) {
             return Err(Error::invalid_param(format!(
-                "things has class {thing}; the data have {}, from 0",
+                "things has class {thing}, but the data set has {} classes from 0",
                 classes.len()
             )));
         }
-        let device = begin(job, &fit_params.training)?;
+        let device = seeded_device(job, &fit_params.training)?;
         let network = RangeNetwork::new(classes.len(), fit_params.width, &device);
         let network = network_from_base(network, base)?;
         let objective = LabelledScans { classes, things: params.things.clone(), view };
@@ -84,7 +86,7 @@ impl EfficientLpsFitParams {
         let Self { rows, columns, fov_up, fov_down, half_view, .. } = *self;
         if fov_down >= fov_up || [rows, columns].iter().any(|side| !side.is_multiple_of(1 << STAGES)) {
             return Err(Error::invalid_param(format!(
-                "{rows} rows and {columns} columns from {fov_down} to {fov_up} degrees; give multiples of {} and fov_up above \
+                "{rows} rows and {columns} columns from {fov_down} to {fov_up} degrees are invalid; use multiples of {} and fov_up above \
                  fov_down",
                 1 << STAGES
             )));

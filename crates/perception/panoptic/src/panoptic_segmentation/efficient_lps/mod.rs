@@ -1,9 +1,9 @@
-//! The class and the object of every point of a lidar's scan: panoptic segmentation behind the interface of OpenDR's EfficientLPS.
+//! Panoptic segmentation of lidar scans, with the interface of OpenDR's EfficientLPS.
 //!
-//! It is not EfficientLPS's network (K. Sirohi, R. Mohan, D. Büscher, W. Burgard, A. Valada, IEEE T-RO 2021): a small one tells the
-//! class of each pixel of a range image ([`opendr_clouds::range_image`]), and points of a countable class that lie close together are an
-//! object (I. Bogoslavskyi, C. Stachniss, "Fast range image-based segmentation of sparse 3D laser scans", IROS 2016, by
-//! distance instead of angle).
+//! The network is not that of EfficientLPS (K. Sirohi, R. Mohan, D. Büscher, W. Burgard, A. Valada, IEEE T-RO 2021): a small
+//! one predicts the class of each pixel of a range image ([`opendr_clouds::range_image`]), and points of a thing class that are
+//! close together are one object (I. Bogoslavskyi, C. Stachniss, "Fast range image-based segmentation of sparse 3D laser
+//! scans", IROS 2016, by distance instead of angle).
 
 #[cfg(feature = "training")]
 mod fit;
@@ -29,34 +29,34 @@ use serde::{Deserialize, Serialize};
 
 #[cfg(feature = "training")]
 pub use fit::EfficientLpsFitParams;
-use objects::{ObjectRule, Objects};
+use objects::{LABEL_DIVISOR, ObjectRule, Objects, UNKNOWN};
 
-/// What a user may set.
+/// Parameters of [`EfficientLps`].
 #[derive(Debug, Clone, Params)]
 pub struct EfficientLpsParams {
-    /// The classes whose objects are told apart; a model brings those that it was trained with.
+    /// Thing classes, whose objects are distinguished; a loaded model has its own.
     #[param(default = Vec::new())]
     pub things: Vec<u32>,
-    /// Whether the answers are maps of the range image's size instead of a number for each point.
+    /// Whether the maps have the size of the range image instead of one value per point.
     #[param(default = false, live)]
     pub projected: bool,
-    /// Points of neighbouring pixels farther apart than this are of two objects.
+    /// Maximum distance between points of neighbouring pixels of one object.
     #[param(default = 0.8, range = 0.01..=10.0, unit = "m", live)]
     pub max_gap: f32,
-    /// Objects of fewer pixels are not told.
+    /// Minimum number of pixels of an object.
     #[param(default = 5, range = 1..=100_000, live)]
     pub min_points: u32,
 }
 
-/// What is told of a scan: OpenDR's pair, and its picture of distances.
+/// Prediction for a scan: OpenDR's pair of maps, and the range image.
 #[derive(Default, Targets)]
 pub struct EfficientLpsTargets {
-    /// Of each point (`[points]`) or pixel (`[rows, columns]`): 1000 times the class and the number of the object in its
-    /// class, from 1; 0 where the class is not countable. 255000 where nothing is known.
+    /// Instance of each point (`[points]`) or pixel (`[rows, columns]`): 1000 times the class plus the index of the object
+    /// within its class, from 1; 0 for stuff classes. 255000 for void.
     pub instance: Heatmap,
-    /// The class; 255 where nothing is known.
+    /// Class of each point or pixel; 255 for void.
     pub semantic: Heatmap,
-    /// Metres, `[rows, columns]`, 0 where there is nothing; empty unless `projected`.
+    /// Range in metres, `[rows, columns]`, 0 where there is no point; empty unless `projected`.
     pub depth: Heatmap,
 }
 
@@ -73,27 +73,23 @@ pub struct EfficientLps {
 struct Work {
     image: RangeImage,
     canvas: Vec<f32>,
-    /// Of each pixel.
+    /// Class and score of each pixel.
     classes: Vec<u32>,
     scores: Vec<f32>,
     objects: Objects,
 }
 
-/// The network in every container.
+/// File of the network in every container.
 const FILE: &str = "model.onnx";
-/// What the network sees of a pixel: distance, x, y, z, reflectance.
+/// Channels of the network's input: range, x, y, z, reflectance.
 const CHANNELS: usize = 5;
-/// What these are divided by.
+/// Divisors of these channels.
 const SCALES: [f32; CHANNELS] = [50.0, 50.0, 50.0, 5.0, 1.0];
-/// A label is this times its class, plus the number of the object: Cityscapes' way.
-const LABEL_DIVISOR: u32 = 1000;
-/// The class of what is not known.
-const UNKNOWN: u32 = 255;
 
-/// What stands in a container's `inputs`.
+/// Description of the network's input in a container.
 #[derive(Debug, Serialize, Deserialize)]
 struct Described {
-    /// How its range image looks.
+    /// Field of view of the range image.
     view: RangeView,
 }
 
@@ -103,14 +99,14 @@ fn view_of(manifest: &Manifest) -> Result<RangeView> {
     Ok(view)
 }
 
-/// Writes what the network sees of a scan, `[channels, rows, columns]`.
-fn paint(image: &RangeImage, cloud: &PointCloud, canvas: &mut Vec<f32>) {
+/// Writes the network's input of a scan, `[channels, rows, columns]`.
+fn fill_canvas(image: &RangeImage, cloud: &PointCloud, canvas: &mut Vec<f32>) {
     let (points, channels) = (cloud.as_slice(), cloud.channels());
     let pixels = image.points().len();
     canvas.clear();
     canvas.resize(CHANNELS * pixels, 0.0);
     for (pixel, (point, range)) in image.points().iter().zip(image.ranges()).enumerate() {
-        // No point is as far on as that.
+        // No point is at this distance.
         let Some(point) = points.get((*point as usize).saturating_mul(channels)..) else { continue };
         let [x, y, z] = [point[0], point[1], point[2]];
         let reflectance = if channels > 3 && point[3].is_finite() { point[3].clamp(0.0, 1.0) } else { 0.0 };
@@ -120,7 +116,7 @@ fn paint(image: &RangeImage, cloud: &PointCloud, canvas: &mut Vec<f32>) {
     }
 }
 
-/// Takes the picture of a scan.
+/// Projects a scan to a range image.
 fn project(image: &mut RangeImage, view: &RangeView, cloud: &PointCloud) {
     image.project(view, cloud.points().map(|point| [point[0], point[1], point[2]]));
 }
@@ -128,8 +124,8 @@ fn project(image: &mut RangeImage, view: &RangeView, cloud: &PointCloud) {
 impl Learner for EfficientLps {
     const SPEC: Spec = Spec::new("efficient_lps", Task::PanopticSegmentation)
         .class("EfficientLpsLearner")
-        .about("Tells class and object of every point of a lidar's scan; it trains on labelled scans.")
-        .without_effect(&[("config_file", "what it needs to know stands in the model")]);
+        .about("Predicts class and instance of every point of a lidar scan; trainable on labelled scans.")
+        .without_effect(&[("config_file", "the model contains its configuration")]);
     type Params = EfficientLpsParams;
     type Input<'a> = Scan<'a>;
     type Target = EfficientLpsTargets;
@@ -147,7 +143,7 @@ impl Learner for EfficientLps {
             ([found], [scores]) if found.dims[..] == input && scores.dims[..] == output => {}
             _ => {
                 return Err(Error::format(format!(
-                    "{FILE} does not make {output:?} of {input:?} as the model's view and classes ask for; train or get it anew"
+                    "{FILE} does not map {input:?} to {output:?}, as the model's view and classes require; train or download it again"
                 )));
             }
         }
@@ -166,12 +162,12 @@ impl Learner for EfficientLps {
         self.classes.clone()
     }
 
-    /// Points that are not finite, or outside of the view, are not known.
+    /// Points that are not finite or outside of the view are void.
     fn infer_into(&self, _: &mut (), scan: Scan<'_>, targets: &mut EfficientLpsTargets) -> Result<()> {
         let work = &mut *self.work.take();
         let cloud = scan.cloud();
         project(&mut work.image, &self.view, cloud);
-        paint(&work.image, cloud, &mut work.canvas);
+        fill_canvas(&work.image, cloud, &mut work.canvas);
         let shape = [1, CHANNELS, self.view.rows, self.view.columns];
         self.network.run(&[TensorView::new(&shape, &work.canvas[..])?], |outputs| {
             let found = outputs.first().map_or(Ok(&[][..]), TensorView::values::<f32>)?;
@@ -195,7 +191,7 @@ impl Learner for EfficientLps {
         depth.scores_mut(&[0, 0]);
         let points = instance.labels_mut(&[cloud.len()]).iter_mut().zip(semantic.labels_mut(&[cloud.len()]));
         for (point, (instance, semantic)) in points.enumerate() {
-            (*instance, *semantic) = match image.speaker(point) {
+            (*instance, *semantic) = match image.pixel_for(point) {
                 Some(pixel) => (objects.labels()[pixel], classes[pixel]),
                 None => (UNKNOWN * LABEL_DIVISOR, UNKNOWN),
             };
@@ -204,7 +200,7 @@ impl Learner for EfficientLps {
     }
 }
 
-/// The class with the highest score of each pixel that sees something, of maps one after the other.
+/// Writes the class with the highest score, and the score, of each pixel with a point; `found` contains one map per class.
 fn best_classes(found: &[f32], ranges: &[f32], classes: &mut Vec<u32>, scores: &mut Vec<f32>) {
     classes.clear();
     classes.resize(ranges.len(), UNKNOWN);

@@ -1,4 +1,4 @@
-//! The network as it is trained.
+//! The trained network.
 
 use burn::module::Module;
 use burn::nn::PaddingConfig2d;
@@ -10,7 +10,7 @@ use opendr_training::layers::{BasicBlock, ConvNormAct, ConvNormActConfig};
 
 use super::CHANNELS;
 
-/// Range images to scores of classes: three stages down, three up again, each beside what it came from (O. Ronneberger et al.,
+/// Network from range images to class scores: three stages down and three up with skip connections (O. Ronneberger et al.,
 /// "U-Net", MICCAI 2015).
 #[derive(Module, Debug)]
 pub struct RangeNetwork {
@@ -20,11 +20,11 @@ pub struct RangeNetwork {
     scores: Conv2d,
 }
 
-/// Stages; sides of a range image are multiples of two to their number.
+/// Number of stages; the sides of a range image are multiples of two to this power.
 pub(super) const STAGES: usize = 3;
 
 impl RangeNetwork {
-    /// A network with random weights that tells `classes` apart, `width` channels in its first layer.
+    /// Creates a network with random weights for `classes` classes, with `width` channels in its first layer.
     pub fn new(classes: usize, width: usize, device: &Device) -> Self {
         let channels = |stage: usize| width << stage;
         let beside = |stage: usize| [channels(stage) + channels(stage + 1), channels(stage)];
@@ -40,7 +40,7 @@ impl RangeNetwork {
         }
     }
 
-    /// `[batch, 5, rows, columns]`, sides multiples of 8, to scores `[batch, classes, rows, columns]`.
+    /// Returns scores `[batch, classes, rows, columns]` of `[batch, 5, rows, columns]`, sides multiples of 8.
     pub fn forward(&self, scans: Tensor<4>) -> Tensor<4> {
         let mut x = self.stem.forward(scans);
         let mut finer = Vec::with_capacity(STAGES);

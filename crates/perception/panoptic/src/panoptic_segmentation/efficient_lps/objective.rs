@@ -1,9 +1,9 @@
-//! What it is trained on and by: scans with a label for each point, cross entropy of each pixel.
+//! Batches of labelled scans, and the cross-entropy per pixel.
 
 use burn::tensor::activation::log_softmax;
 use burn::tensor::{Device, Int, Tensor, TensorData};
 use opendr_clouds::object_detection_3d::Scan;
-use opendr_clouds::range_image::{NOWHERE, RangeImage, RangeView};
+use opendr_clouds::range_image::{NONE, RangeImage, RangeView};
 use opendr_datasets::loader::Collate;
 use opendr_engine::dataset::Sample;
 use opendr_engine::learner::Learner as _;
@@ -16,18 +16,17 @@ use opendr_training::export::{Input, onnx};
 use opendr_training::{Container, Loss, Objective};
 
 use super::network::RangeNetwork;
-use super::{
-    CHANNELS, Described, EfficientLps, EfficientLpsParams, FILE, LABEL_DIVISOR, UNKNOWN, paint, project,
-};
+use super::objects::{LABEL_DIVISOR, UNKNOWN};
+use super::{CHANNELS, Described, EfficientLps, EfficientLpsParams, FILE, fill_canvas, project};
 
-/// Scans with labels.
+/// Training objective: weighted cross-entropy per pixel.
 pub(super) struct LabelledScans {
     pub classes: Classes,
     pub things: Vec<u32>,
     pub view: RangeView,
 }
 
-/// Makes [`ScanBatch`].
+/// Collates [`ScanBatch`].
 pub(super) struct ScanCollator {
     view: RangeView,
     classes: usize,
@@ -53,32 +52,41 @@ impl Collate for ScanCollator {
         let scan = match sample.data.first() {
             Some(Value::PointCloud(cloud)) => Scan::from(cloud),
             Some(Value::PointCloudWithCalibration(scan)) => Scan::from(scan),
-            _ => return Err(Error::invalid_input("the sample has no scan to learn from; give it one")),
+            _ => {
+                return Err(Error::invalid_input(
+                    "the sample has no scan; the first input must be a point cloud",
+                ));
+            }
         };
         let labels = match &sample.target {
             Some(Value::Heatmap(map)) => match map.values() {
                 HeatmapValues::Labels(labels) if labels.len() == scan.cloud().len() => labels,
                 _ => {
                     return Err(Error::invalid_input(format!(
-                        "a map of {:?} for {} points; give each a label, 1000 times its class and the number of its object",
+                        "the sample has a map of {:?} for {} points; each point needs a label, 1000 times its class \
+                         plus the index of its object",
                         map.shape(),
                         scan.cloud().len()
                     )));
                 }
             },
-            _ => return Err(Error::invalid_input("the sample has no labels of points; give it some")),
+            _ => {
+                return Err(Error::invalid_input(
+                    "the sample has no point labels; the target must be a Heatmap of labels",
+                ));
+            }
         };
         let (mut image, mut canvas) = (RangeImage::default(), Vec::new());
         project(&mut image, &self.view, scan.cloud());
-        paint(&image, scan.cloud(), &mut canvas);
+        fill_canvas(&image, scan.cloud(), &mut canvas);
         for point in image.points() {
             let class = match *point {
-                NOWHERE => UNKNOWN,
+                NONE => UNKNOWN,
                 point => labels[point as usize] / LABEL_DIVISOR,
             };
             if class != UNKNOWN && class as usize >= self.classes {
                 return Err(Error::invalid_input(format!(
-                    "a point is of class {class}, the network has {}, from 0; mend the data",
+                    "a point has class {class}, but the network has {} classes from 0; correct the data set",
                     self.classes
                 )));
             }
@@ -104,7 +112,7 @@ impl Objective for LabelledScans {
         let images = Tensor::<4>::from_data(TensorData::new(batch.images.clone(), shape), device);
         let (pixels, count) = (batch.classes.len(), self.classes.len());
         let scores = network.forward(images).swap_dims(1, 2).swap_dims(2, 3).reshape([pixels, count]);
-        // What is rare counts more (A. Paszke et al., ENet, 2016): by the logarithm of its share of the batch.
+        // Rare classes weigh more (A. Paszke et al., ENet, 2016): by the logarithm of their share of the batch.
         let mut seen = vec![0.0_f32; count];
         for (class, weight) in batch.classes.iter().zip(&batch.weights) {
             seen[*class as usize] += weight;

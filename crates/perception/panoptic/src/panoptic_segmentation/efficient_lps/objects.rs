@@ -1,36 +1,39 @@
-//! Which points of a class are one object.
+//! Grouping of points of a class into objects.
 
-use opendr_clouds::range_image::{NOWHERE, RangeImage};
+use opendr_clouds::range_image::{NONE, RangeImage};
 use opendr_engine::data::PointCloud;
-use opendr_vision::components::{Components, Touching};
+use opendr_vision::components::{Components, Connectivity};
 
-use super::{LABEL_DIVISOR, UNKNOWN};
+/// A label is this times its class plus the index of the object, as in Cityscapes.
+pub(super) const LABEL_DIVISOR: u32 = 1000;
+/// Class of void.
+pub(super) const UNKNOWN: u32 = 255;
 
-/// What makes an object.
+/// Criteria of an object.
 pub(super) struct ObjectRule<'a> {
-    /// Countable classes.
+    /// Thing classes.
     pub things: &'a [u32],
-    /// Metres between points that belong together at most.
+    /// Maximum distance in metres between neighbouring points of an object.
     pub gap: f32,
-    /// Fewest pixels.
+    /// Minimum number of pixels.
     pub least: u32,
 }
 
-/// Finds objects; memory is used again.
+/// Groups points into objects; buffers are reused.
 #[derive(Debug, Default)]
 pub(super) struct Objects {
     components: Components,
-    /// The point that stands for each pixel: one that lost its ray lets its neighbour's through.
-    stands: Vec<u32>,
-    /// The label of each component.
+    /// Point that represents each pixel: for a pixel without a point, that of a neighbour.
+    representatives: Vec<u32>,
+    /// Label of each component.
     numbers: Vec<u32>,
-    /// Objects of each countable class so far.
+    /// Number of objects of each thing class so far.
     counts: Vec<u32>,
     labels: Vec<u32>,
 }
 
 impl Objects {
-    /// Labels the pixels of a range image of `size`, `[columns, rows]`, whose classes are known.
+    /// Labels the pixels of a range image of `size`, `[columns, rows]`, from their classes.
     pub(super) fn find(
         &mut self,
         image: &RangeImage,
@@ -39,24 +42,24 @@ impl Objects {
         classes: &[u32],
         rule: &ObjectRule<'_>,
     ) {
-        let Self { components, stands, numbers, counts, labels } = self;
+        let Self { components, representatives, numbers, counts, labels } = self;
         let points = image.points();
-        stands.clear();
-        stands.extend((0..points.len()).map(|at| match points[at] {
-            NOWHERE if at % columns > 0 => points[at - 1],
+        representatives.clear();
+        representatives.extend((0..points.len()).map(|at| match points[at] {
+            NONE if at % columns > 0 => points[at - 1],
             own => own,
         }));
-        // What stands for a pixel is of its own pixel's class.
+        // The class is that of the representing point's own pixel.
         let class = |at: usize| match points[at] {
-            NOWHERE => classes[at.saturating_sub(1)],
+            NONE => classes[at.saturating_sub(1)],
             _ => classes[at],
         };
         let (values, channels) = (cloud.as_slice(), cloud.channels());
-        let place = |at: usize| &values[stands[at] as usize * channels..][..3];
+        let place = |at: usize| &values[representatives[at] as usize * channels..][..3];
         let count = components.label(
             size,
-            Touching::Corners,
-            |at| stands[at] != NOWHERE && rule.things.contains(&class(at)),
+            Connectivity::Eight,
+            |at| representatives[at] != NONE && rule.things.contains(&class(at)),
             |one, other| {
                 let apart = place(one).iter().zip(place(other)).map(|(a, b)| (a - b).powi(2)).sum::<f32>();
                 class(one) == class(other) && apart <= rule.gap * rule.gap
@@ -69,7 +72,7 @@ impl Objects {
         labels.clear();
         for (at, component) in components.labels().iter().enumerate() {
             let class = classes[at];
-            if *component == 0 || points[at] == NOWHERE {
+            if *component == 0 || points[at] == NONE {
                 labels.push(class * LABEL_DIVISOR);
                 continue;
             }
@@ -89,7 +92,7 @@ impl Objects {
         }
     }
 
-    /// 1000 times the class and the number of the object, of each pixel.
+    /// Returns 1000 times the class plus the index of the object, for each pixel.
     pub(super) fn labels(&self) -> &[u32] {
         &self.labels
     }
@@ -100,9 +103,9 @@ mod tests {
     use super::*;
     use opendr_clouds::range_image::RangeView;
 
-    /// Two walls of points a metre and a half apart, one ray lost in the first, and a lonely point.
+    /// Two walls of points 1.5 metres apart, one missing point in the first, and a single point.
     #[test]
-    fn what_is_close_is_one_object() {
+    fn close_points_are_one_object() {
         let view = RangeView { rows: 2, columns: 16, top: 0.1, bottom: -0.1, half_view: 0.4 };
         let mut numbers = Vec::new();
         for column in 0..16 {

@@ -3,8 +3,8 @@ use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::target::HeatmapValues;
 use opendr_engine::{ErrorKind, Random, Value};
+use opendr_perception_testing::learner_checks::check_trained_learner;
 use opendr_perception_testing::overfit::losses_on_one_batch;
-use opendr_perception_testing::promises::check;
 use opendr_simulation::street::StreetSegments;
 
 use super::network::RangeNetwork;
@@ -25,7 +25,7 @@ fn labels(map: &Heatmap) -> &[u32] {
     }
 }
 
-/// Boards of two reflectances before the lidar.
+/// Boards of two reflectances in front of the lidar.
 struct Boards;
 
 impl Dataset for Boards {}
@@ -78,7 +78,7 @@ fn fit_params() -> EfficientLpsFitParams {
 }
 
 #[test]
-fn learns_one_batch_by_heart() {
+fn overfits_one_batch() {
     let streets = streets();
     let view = RangeView { rows: 32, columns: 64, top: 0.05, bottom: -0.44, half_view: 0.76 };
     let objective = LabelledScans { classes: streets.classes(), things: vec![0], view };
@@ -89,7 +89,7 @@ fn learns_one_batch_by_heart() {
 }
 
 #[test]
-fn fit_makes_what_infer_loads_and_boards_are_objects() {
+fn infer_loads_the_model_of_fit_and_boards_are_objects() {
     let output = std::env::temp_dir().join(format!("opendr-lps-{}", std::process::id()));
     std::fs::remove_dir_all(&output).ok();
     let job = FitJob { device: Device::Cpu, ..FitJob::new(&output) };
@@ -97,7 +97,7 @@ fn fit_makes_what_infer_loads_and_boards_are_objects() {
     let params = EfficientLpsParams { things: vec![1], ..EfficientLpsParams::default() };
     let mut handle = Handle::<EfficientLps>::new(params.clone(), Device::Cpu).unwrap();
     handle.fit(&fit_params(), boards(), Some(boards()), &job).unwrap();
-    // The container brings what is countable.
+    // The container contains the thing classes.
     let mut handle = Handle::<EfficientLps>::new(EfficientLpsParams::default(), Device::Cpu).unwrap();
     handle.load(job.model()).unwrap();
     let Sample { data, target } = Boards.get(2).unwrap();
@@ -117,7 +117,7 @@ fn fit_makes_what_infer_loads_and_boards_are_objects() {
     let strange = PointCloud::new(vec![f32::NAN, 1.0, 1.0, f32::INFINITY, 0.0, 0.0], [2, 3]).unwrap();
     assert_eq!(labels(&handle.infer(Scan::from(&strange)).unwrap().instance), [255_000; 2]);
     let calls = (0..3).map(|index| Boards.get(index).unwrap().data).collect();
-    check::<EfficientLps>(&job.model(), &output.join("scratch"), calls);
+    check_trained_learner::<EfficientLps>(&job.model(), &output.join("scratch"), calls);
     handle.set("projected", true.into()).unwrap();
     let found = handle.infer(Scan::from(cloud)).unwrap();
     assert_eq!((found.instance.shape(), found.depth.shape()), (&[ROWS, COLUMNS][..], &[ROWS, COLUMNS][..]));
@@ -125,7 +125,7 @@ fn fit_makes_what_infer_loads_and_boards_are_objects() {
 }
 
 #[test]
-fn what_cannot_be_is_refused() {
+fn invalid_parameters_are_refused() {
     let job = FitJob::new(std::path::Path::new("/nowhere"));
     let boards = || DatasetRef::from(&Boards as &dyn DatasetIterator);
     let fit = |params: EfficientLpsParams, fit_params: EfficientLpsFitParams| {

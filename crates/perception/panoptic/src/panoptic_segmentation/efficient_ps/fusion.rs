@@ -1,49 +1,49 @@
-//! How maps of classes, boxes and persons become one map of objects.
+//! Fusion of class maps, boxes and person masks to one panoptic map.
 //!
-//! A pixel of a countable class belongs to the box of that class whose middle is nearest, measured in the box's own size; a
-//! person's pixel to the box of the person whose joints it points at, where there is one. Regions of a countable class outside
-//! of all boxes are objects where they are large, joined by touching ([`Components`]). Boxes of classes that no map knows are
-//! taken whole, smaller ones before larger ones. What is left is what cannot be counted.
+//! A pixel of a thing class is assigned to the box of that class with the nearest centre, relative to the box's size; a pixel
+//! of a person to the box of the person given by the person masks, where there is one. Connected regions of a thing class
+//! outside of all boxes are objects if they are large ([`Components`]). Boxes of classes without a class map are filled
+//! completely, smaller ones over larger ones. The remaining pixels are stuff.
 
 use opendr_segmentation::instance_segmentation::OwnerMap;
-use opendr_vision::components::{Components, Touching};
+use opendr_vision::components::{Components, Connectivity};
 
-/// A label is this times its class, plus the number of the object in its class.
+/// A label is this times its class plus the index of the object within its class.
 pub(super) const LABEL_DIVISOR: u32 = 1000;
-/// Where nothing is known.
+/// Label of void.
 pub(super) const VOID: u32 = 255 * LABEL_DIVISOR;
 
-/// How far beside a box pixels may still be its own, as a share of the picture's longer side: boxes are not exact.
+/// Margin around a box within which pixels may belong to it, as a share of the image's longer side.
 const MARGIN: f32 = 8.0 / 640.0;
-/// Least overlap of a found person's box and the box around the pixels of a person.
+/// Minimum IoU of a detected person's box and the box around a person mask.
 const LEAST_IOU: f32 = 0.3;
-/// What a pixel may belong to at most: numbers beyond are used for no box.
+/// Maximum number of boxes; further boxes are not used.
 const MOST: usize = 999;
 
-/// A box of a class.
+/// A detected object of a thing class.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Thing {
     pub class: u32,
-    /// `[left, top, right, bottom]`, pixels.
+    /// `[left, top, right, bottom]` in pixels.
     pub corners: [f32; 4],
 }
 
-/// What the networks see.
-pub(super) struct Looks<'a> {
-    /// Width and height.
+/// Predictions of the networks.
+pub(super) struct Predictions<'a> {
+    /// Width and height of the image.
     pub size: [usize; 2],
-    /// A class of its own kind for each pixel, and what it is here where it is countable.
+    /// Thing map: a class of its network for each pixel, and the table to the classes of the fusion.
     pub things: &'a [u32],
     pub of_things: &'a [Option<u32>],
-    /// The same for what is not countable.
+    /// Stuff map, and the table to the classes of the fusion.
     pub stuff: &'a [u32],
     pub of_stuff: &'a [Option<u32>],
-    /// Whose pixels they are, and the class of persons.
+    /// Person of each pixel, and the class of persons.
     pub persons: &'a OwnerMap,
     pub person: Option<u32>,
 }
 
-/// What counts; shares as the learner's parameters.
+/// Thresholds; shares as in the learner's parameters.
 pub(super) struct Rules {
     pub box_masks: bool,
     pub min_overlap: f32,
@@ -51,49 +51,55 @@ pub(super) struct Rules {
     pub min_stuff: f32,
 }
 
-/// Working memory.
+/// Buffers of the fusion.
 #[derive(Debug, Default)]
 pub(super) struct Fusion {
-    /// For each pixel the number of its box, from 1 on.
+    /// Index of the box of each pixel, from 1.
     claims: Vec<u16>,
     pixels: Vec<u32>,
-    /// The box of each person of the map of persons.
+    /// Box of each person of the person masks.
     of_persons: Vec<Option<u16>>,
     order: Vec<usize>,
-    /// The label of each box; `None` where it was dropped.
+    /// Label of each box; `None` for a dropped box.
     labels: Vec<Option<u32>>,
-    /// Objects of each class so far.
+    /// Number of objects of each class so far.
     counts: Vec<u32>,
     components: Components,
     of_components: Vec<Option<u32>>,
 }
 
 impl Fusion {
-    /// Writes the label of each pixel. `things` come best first.
-    pub fn run(&mut self, looks: &Looks<'_>, things: &[Thing], rules: &Rules, labels: &mut [u32]) {
+    /// Writes the label of each pixel. `things` are sorted by score.
+    pub fn run(
+        &mut self,
+        predictions: &Predictions<'_>,
+        things: &[Thing],
+        rules: &Rules,
+        labels: &mut [u32],
+    ) {
         let things = &things[..things.len().min(MOST)];
         let total = labels.len() as f32;
         self.counts.clear();
-        self.match_persons(looks, things);
-        self.claim(looks, things);
-        self.number_boxes(looks, things, rules);
+        self.match_persons(predictions, things);
+        self.claim(predictions, things);
+        self.number_boxes(predictions, things, rules);
         for (label, claim) in labels.iter_mut().zip(&self.claims) {
             *label = usize::from(*claim).checked_sub(1).and_then(|at| self.labels[at]).unwrap_or(VOID);
         }
-        self.add_leftovers(looks, rules.min_leftover * total, labels);
+        self.add_leftovers(predictions, rules.min_leftover * total, labels);
         if rules.box_masks {
-            self.fill_boxes(looks, things, labels);
+            self.fill_boxes(predictions, things, labels);
         }
-        self.add_stuff(looks, rules.min_stuff * total, labels);
+        self.add_stuff(predictions, rules.min_stuff * total, labels);
     }
 
-    /// Which box each person of the map of persons has.
-    fn match_persons(&mut self, looks: &Looks<'_>, things: &[Thing]) {
+    /// Assigns a box to each person of the person masks.
+    fn match_persons(&mut self, predictions: &Predictions<'_>, things: &[Thing]) {
         self.of_persons.clear();
         for object in 1..=u8::MAX {
-            let best = looks.persons.corners(object).and_then(|corners| {
+            let best = predictions.persons.corners(object).and_then(|corners| {
                 let persons =
-                    things.iter().enumerate().filter(|(_, thing)| Some(thing.class) == looks.person);
+                    things.iter().enumerate().filter(|(_, thing)| Some(thing.class) == predictions.person);
                 let ranked = persons.map(|(at, thing)| (iou(corners, thing.corners), at as u16));
                 ranked.filter(|(iou, _)| *iou >= LEAST_IOU).max_by(|one, other| one.0.total_cmp(&other.0))
             });
@@ -101,19 +107,19 @@ impl Fusion {
         }
     }
 
-    /// Gives each pixel of a countable class its box.
-    fn claim(&mut self, looks: &Looks<'_>, things: &[Thing]) {
-        let [width, height] = looks.size;
+    /// Assigns a box to each pixel of a thing class.
+    fn claim(&mut self, predictions: &Predictions<'_>, things: &[Thing]) {
+        let [width, height] = predictions.size;
         let margin = MARGIN * width.max(height) as f32;
         self.claims.clear();
-        self.claims.resize(looks.things.len(), 0);
+        self.claims.resize(predictions.things.len(), 0);
         self.pixels.clear();
         self.pixels.resize(things.len(), 0);
         for (at, claim) in self.claims.iter_mut().enumerate() {
-            let Some(class) = looks.thing(at) else { continue };
+            let Some(class) = predictions.thing(at) else { continue };
             let place = [at % width, at / width].map(|at| at as f32 + 0.5);
-            let owner = match Some(class) == looks.person {
-                true => looks.persons.owners().get(at).and_then(|owner| owner.checked_sub(1)),
+            let owner = match Some(class) == predictions.person {
+                true => predictions.persons.owners().get(at).and_then(|owner| owner.checked_sub(1)),
                 false => None,
             };
             let of_person = owner.and_then(|owner| self.of_persons[usize::from(owner)]);
@@ -131,28 +137,28 @@ impl Fusion {
         }
     }
 
-    /// Drops boxes that the map of classes does not confirm, and gives the others their labels.
-    fn number_boxes(&mut self, looks: &Looks<'_>, things: &[Thing], rules: &Rules) {
+    /// Drops boxes that the thing map does not confirm, and labels the others.
+    fn number_boxes(&mut self, predictions: &Predictions<'_>, things: &[Thing], rules: &Rules) {
         self.labels.clear();
         for (thing, pixels) in things.iter().zip(&self.pixels) {
             let [left, top, right, bottom] = thing.corners;
             let area = ((right - left) * (bottom - top)).max(1.0);
             let is_confirmed = *pixels > 0 && *pixels as f32 >= rules.min_overlap * area;
-            let is_known = looks.of_things.contains(&Some(thing.class));
+            let is_known = predictions.of_things.contains(&Some(thing.class));
             let counts = &mut self.counts;
             let label = if is_known && is_confirmed { next_label(counts, thing.class) } else { None };
             self.labels.push(label);
         }
     }
 
-    /// Large regions of countable classes that no box has.
-    fn add_leftovers(&mut self, looks: &Looks<'_>, least: f32, labels: &mut [u32]) {
+    /// Labels large regions of thing classes outside of all boxes.
+    fn add_leftovers(&mut self, predictions: &Predictions<'_>, least: f32, labels: &mut [u32]) {
         let free = &*labels;
         self.components.label(
-            looks.size,
-            Touching::Sides,
-            |at| free[at] == VOID && looks.thing(at).is_some(),
-            |one, other| looks.thing(one) == looks.thing(other),
+            predictions.size,
+            Connectivity::Four,
+            |at| free[at] == VOID && predictions.thing(at).is_some(),
+            |one, other| predictions.thing(one) == predictions.thing(other),
         );
         self.of_components.clear();
         self.of_components.resize(self.components.areas().len(), None);
@@ -163,21 +169,22 @@ impl Fusion {
             }
             let label = &mut self.of_components[number];
             if label.is_none() {
-                *label = looks.thing(at).and_then(|class| next_label(&mut self.counts, class));
+                *label = predictions.thing(at).and_then(|class| next_label(&mut self.counts, class));
             }
             labels[at] = label.unwrap_or(VOID);
         }
     }
 
-    /// Boxes of classes that no map knows, whole, the smaller ones over the larger ones.
-    fn fill_boxes(&mut self, looks: &Looks<'_>, things: &[Thing], labels: &mut [u32]) {
-        let [width, height] = looks.size;
+    /// Fills boxes of classes without a class map, smaller ones over larger ones.
+    fn fill_boxes(&mut self, predictions: &Predictions<'_>, things: &[Thing], labels: &mut [u32]) {
+        let [width, height] = predictions.size;
         let area = |at: &usize| {
             let [left, top, right, bottom] = things[*at].corners;
             (right - left) * (bottom - top)
         };
         self.order.clear();
-        self.order.extend((0..things.len()).filter(|at| !looks.of_things.contains(&Some(things[*at].class))));
+        self.order
+            .extend((0..things.len()).filter(|at| !predictions.of_things.contains(&Some(things[*at].class))));
         self.order.sort_by(|one, other| area(other).total_cmp(&area(one)));
         for at in &self.order {
             let [left, top, right, bottom] = things[*at].corners.map(|edge| edge.round().max(0.0) as usize);
@@ -192,8 +199,9 @@ impl Fusion {
         }
     }
 
-    fn add_stuff(&mut self, looks: &Looks<'_>, least: f32, labels: &mut [u32]) {
-        let class = |at: usize| looks.of_stuff.get(*looks.stuff.get(at)? as usize).copied().flatten();
+    fn add_stuff(&mut self, predictions: &Predictions<'_>, least: f32, labels: &mut [u32]) {
+        let class =
+            |at: usize| predictions.of_stuff.get(*predictions.stuff.get(at)? as usize).copied().flatten();
         self.pixels.clear();
         for (at, _) in labels.iter().enumerate().filter(|(_, label)| **label == VOID) {
             let Some(class) = class(at) else { continue };
@@ -209,14 +217,14 @@ impl Fusion {
     }
 }
 
-impl Looks<'_> {
-    /// The countable class of a pixel.
+impl Predictions<'_> {
+    /// Returns the thing class of a pixel.
     fn thing(&self, at: usize) -> Option<u32> {
         self.of_things.get(*self.things.get(at)? as usize).copied().flatten()
     }
 }
 
-/// The label of one more object of a class; `None` when there are as many as labels can tell.
+/// Returns the label of the next object of a class; `None` when the label range is exhausted.
 fn next_label(counts: &mut Vec<u32>, class: u32) -> Option<u32> {
     let at = class as usize;
     if counts.len() <= at {
@@ -227,7 +235,7 @@ fn next_label(counts: &mut Vec<u32>, class: u32) -> Option<u32> {
     is_free.then_some(class * LABEL_DIVISOR + counts[at])
 }
 
-/// How far a place is from the middle of a box with a margin: 1 at its edge.
+/// Returns the distance from the centre of a box with a margin, in units where 1 is the edge.
 fn off([x, y]: [f32; 2], [left, top, right, bottom]: [f32; 4], margin: f32) -> f32 {
     let along = |at: f32, low: f32, high: f32| {
         (at - (low + high) / 2.0).abs() / ((high - low).max(0.0) / 2.0 + margin)
@@ -235,7 +243,7 @@ fn off([x, y]: [f32; 2], [left, top, right, bottom]: [f32; 4], margin: f32) -> f
     along(x, left, right).max(along(y, top, bottom))
 }
 
-/// Intersection over union.
+/// Returns the intersection over union.
 fn iou(one: [f32; 4], other: [f32; 4]) -> f32 {
     let area = |[left, top, right, bottom]: [f32; 4]| (right - left).max(0.0) * (bottom - top).max(0.0);
     let shared =
@@ -254,7 +262,7 @@ mod tests {
         picture.concat().bytes().map(|byte| u32::from(byte - b'0')).collect()
     }
 
-    /// Things: 1 is class 0 (persons), 2 is class 5. Stuff: 1 is class 90. Class 7 has no map.
+    /// Thing map: 1 is class 0 (persons), 2 is class 5. Stuff map: 1 is class 90. Class 7 has no map.
     fn fuse(things: &[&str], persons: &[&str], found: &[Thing]) -> Vec<u32> {
         let size = [things[0].len(), things.len()];
         let owned = pixels(persons);
@@ -263,7 +271,7 @@ mod tests {
             let owned = &owned[y * size[0]..][..size[0]];
             row.iter_mut().zip(owned).for_each(|(owner, owned)| *owner = *owned as u8);
         });
-        let looks = Looks {
+        let predictions = Predictions {
             size,
             things: &pixels(things),
             of_things: &[None, Some(0), Some(5)],
@@ -273,7 +281,7 @@ mod tests {
             person: Some(0),
         };
         let mut labels = vec![7; size[0] * size[1]];
-        Fusion::default().run(&looks, found, &RULES, &mut labels);
+        Fusion::default().run(&predictions, found, &RULES, &mut labels);
         labels
     }
 
@@ -282,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn persons_whose_boxes_overlap_are_told_apart() {
+    fn persons_with_overlapping_boxes_are_distinguished() {
         let things = ["011110", "011110", "011110"];
         let found = [thing(0, [1.0, 0.0, 4.0, 3.0]), thing(0, [2.0, 0.0, 5.0, 3.0])];
         let by_boxes = fuse(&things, &["000000"; 3], &found);
@@ -292,24 +300,24 @@ mod tests {
     }
 
     #[test]
-    fn boxes_without_pixels_fall_and_regions_without_boxes_stand() {
+    fn boxes_without_pixels_are_dropped_and_regions_without_boxes_are_kept() {
         let things = ["220000", "220000", "000000"];
         let labels = fuse(&things, &["000000"; 3], &[thing(0, [2.0, 0.0, 6.0, 3.0])]);
         assert_eq!(labels[..6], [5001, 5001, 90_000, 90_000, 90_000, 90_000]);
-        // A region of one pixel in 18 is too small, and not what is seen behind it: that is stuff.
+        // A region of one pixel in 18 is too small for an object; the stuff behind it is labelled.
         let labels = fuse(&["200000", "000000", "000000"], &["000000"; 3], &[]);
         assert_eq!(labels, [90_000; 18]);
     }
 
     #[test]
-    fn what_no_map_knows_is_its_box() {
+    fn classes_without_a_map_fill_their_box() {
         let found = [thing(7, [0.0, 0.0, 4.0, 3.0]), thing(7, [1.0, 1.0, 2.0, 2.0])];
         let labels = fuse(&["000000"; 3], &["000000"; 3], &found);
         assert_eq!(labels[6..12], [7001, 7002, 7001, 7001, 90_000, 90_000]);
     }
 
     #[test]
-    fn nonsense_does_no_harm() {
+    fn invalid_predictions_do_not_panic() {
         let corners = [[f32::NAN; 4], [f32::INFINITY; 4], [5.0, 5.0, -5.0, -5.0], [-1e30, -1e30, 1e30, 1e30]];
         let found: Vec<_> = (0..2000).map(|at| thing([0, 5, 7][at % 3], corners[at % 4])).collect();
         let labels = fuse(&["112200", "112200"], &["990011"; 2], &found);

@@ -1,7 +1,7 @@
-//! Maps of classes, boxes and persons in one: panoptic segmentation behind the interface of OpenDR's EfficientPS.
+//! Fusion of networks to panoptic segmentation, with the interface of OpenDR's EfficientPS.
 //!
-//! It is not EfficientPS's network (R. Mohan, A. Valada, IJCV 2021), of which there are no weights that may be used: it fuses the
-//! answers of four small networks. [`fusion`] says how.
+//! The network is not that of EfficientPS (R. Mohan, A. Valada, IJCV 2021), whose weights may not be used: the learner fuses
+//! the predictions of four small networks; [`fusion`] describes the rules.
 
 mod fusion;
 
@@ -15,35 +15,34 @@ use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_segmentation::instance_segmentation::{BodyPix, BodyPixParams};
 use opendr_segmentation::semantic_segmentation::{Deeplab, DeeplabParams};
 
-use fusion::{Fusion, Looks, Rules, Thing};
+use fusion::{Fusion, Predictions, Rules, Thing};
 
-/// What a user may set.
+/// Parameters of [`EfficientPs`].
 #[derive(Debug, Clone, Params)]
 pub struct EfficientPsParams {
-    /// Objects below this score are dropped.
+    /// Minimum score of an object.
     #[param(default = 0.3, range = 0.0..=1.0, live)]
     pub threshold: f32,
-    /// Whether objects of classes that no map of classes knows are the whole of their boxes; else they are left out.
+    /// Whether objects of classes without a class map fill their whole boxes; else they are dropped.
     #[param(default = true, live)]
     pub box_masks: bool,
-    /// Objects are dropped of whose box the map of classes confirms a smaller share.
+    /// Minimum share of a box that the class map confirms.
     #[param(default = 0.1, range = 0.0..=1.0, live)]
     pub min_overlap: f32,
-    /// Regions of a countable class outside of all boxes are objects from this share of the picture on.
+    /// Minimum share of the image of a region of a thing class outside of all boxes that counts as an object.
     #[param(default = 0.1, range = 0.0..=1.0, live)]
     pub min_leftover: f32,
-    /// Regions that are not countable are told from this share of the picture on.
+    /// Minimum share of the image of a stuff region.
     #[param(default = 0.02, range = 0.0..=1.0, live)]
     pub min_stuff: f32,
 }
 
-/// What is told of a picture: OpenDR's pair of maps.
+/// Prediction for an image: OpenDR's pair of maps.
 #[derive(Default, Targets)]
 pub struct EfficientPsTargets {
-    /// 1000 times the class and the number of the object in its class, from 1; 0 where the class is not countable. 255000
-    /// where nothing is known.
+    /// 1000 times the class plus the index of the object within its class, from 1; 0 for stuff classes. 255000 for void.
     pub instance: Heatmap,
-    /// The class of each pixel; 255 where nothing is known.
+    /// Class of each pixel; 255 for void.
     pub semantic: Heatmap,
 }
 
@@ -55,7 +54,7 @@ pub struct EfficientPs {
     things: Deeplab,
     stuff: Deeplab,
     persons: BodyPix,
-    /// The class for each class of the three.
+    /// Class of the fusion for each class of the three networks.
     of_detector: Vec<Option<u32>>,
     of_things: Vec<Option<u32>>,
     of_stuff: Vec<Option<u32>>,
@@ -72,7 +71,7 @@ struct Work {
     fusion: Fusion,
 }
 
-/// What other data sets call COCO's things.
+/// Names of COCO's thing classes in other data sets.
 const THINGS: [(&str, &str); 6] = [
     ("aeroplane", "airplane"),
     ("diningtable", "dining table"),
@@ -81,7 +80,7 @@ const THINGS: [(&str, &str); 6] = [
     ("sofa", "couch"),
     ("tvmonitor", "tv"),
 ];
-/// What Cityscapes calls what COCO does not count. Its things are found better by the others.
+/// Cityscapes' names of COCO's stuff classes. Cityscapes' things are detected better by the other networks.
 const STUFF: [(&str, &str); 8] = [
     ("road", "road"),
     ("sidewalk", "pavement-merged"),
@@ -96,20 +95,20 @@ const STUFF: [(&str, &str); 8] = [
 impl Learner for EfficientPs {
     const SPEC: Spec = Spec::new("efficient_ps", Task::PanopticSegmentation)
         .class("EfficientPsLearner")
-        .about("Tells class and object of every pixel, by fusing DeepLab, CenterNet and BodyPix.")
+        .about("Predicts class and instance of every pixel by fusing DeepLab, CenterNet and BodyPix.")
         .without_effect(&[
-            ("config_file", "there is no network of its own to configure"),
-            ("lr", Spec::OF_TRAINING),
-            ("iters", Spec::OF_TRAINING),
-            ("batch_size", Spec::OF_TRAINING),
-            ("optimizer", Spec::OF_TRAINING),
-            ("lr_schedule", Spec::OF_TRAINING),
-            ("momentum", Spec::OF_TRAINING),
-            ("weight_decay", Spec::OF_TRAINING),
-            ("optimizer_config", Spec::OF_TRAINING),
-            ("checkpoint_after_iter", Spec::OF_TRAINING),
-            ("num_workers", Spec::OF_TRAINING),
-            ("seed", Spec::OF_TRAINING),
+            ("config_file", "the learner has no network of its own"),
+            ("lr", Spec::TRAINING_ONLY),
+            ("iters", Spec::TRAINING_ONLY),
+            ("batch_size", Spec::TRAINING_ONLY),
+            ("optimizer", Spec::TRAINING_ONLY),
+            ("lr_schedule", Spec::TRAINING_ONLY),
+            ("momentum", Spec::TRAINING_ONLY),
+            ("weight_decay", Spec::TRAINING_ONLY),
+            ("optimizer_config", Spec::TRAINING_ONLY),
+            ("checkpoint_after_iter", Spec::TRAINING_ONLY),
+            ("num_workers", Spec::TRAINING_ONLY),
+            ("seed", Spec::TRAINING_ONLY),
         ]);
     type Params = EfficientPsParams;
     type Input<'a> = &'a Image;
@@ -172,8 +171,8 @@ impl Learner for EfficientPs {
         instance.classes.clone_from(&self.classes);
         semantic.classes.clone_from(&self.classes);
         let (things, stuff) = (labels(things)?, labels(stuff)?);
-        self.persons.look(image, |persons, _| {
-            let looks = Looks {
+        self.persons.segment(image, |persons, _| {
+            let predictions = Predictions {
                 size,
                 things,
                 of_things: &self.of_things,
@@ -183,7 +182,7 @@ impl Learner for EfficientPs {
                 person: self.person,
             };
             let rules = Rules { box_masks, min_overlap, min_leftover, min_stuff };
-            fusion.run(&looks, found, &rules, instance.labels_mut(&shape));
+            fusion.run(&predictions, found, &rules, instance.labels_mut(&shape));
         })?;
         let HeatmapValues::Labels(instances) = instance.values() else { return Ok(()) };
         for (class, label) in semantic.labels_mut(&shape).iter_mut().zip(instances.iter()) {
@@ -193,7 +192,7 @@ impl Learner for EfficientPs {
     }
 }
 
-/// What a name is called here, if a table says so.
+/// Returns the name of a class in the fusion, where the table has one.
 fn renamed(table: &[(&str, &'static str)], name: &str) -> Option<&'static str> {
     table.iter().find(|(theirs, _)| *theirs == name).map(|(_, ours)| *ours)
 }
@@ -201,6 +200,6 @@ fn renamed(table: &[(&str, &'static str)], name: &str) -> Option<&'static str> {
 fn labels(map: &Heatmap) -> Result<&[u32]> {
     match map.values() {
         HeatmapValues::Labels(labels) => Ok(labels.as_slice()),
-        HeatmapValues::Scores(_) => Err(Error::format("the part answers scores instead of classes")),
+        HeatmapValues::Scores(_) => Err(Error::format("the part returns scores instead of classes")),
     }
 }

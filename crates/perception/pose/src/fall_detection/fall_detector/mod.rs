@@ -1,46 +1,30 @@
-//! Falls by a rule on poses, over time.
+//! Falls by a rule on poses over time.
 //!
-//! After OpenDR's learner of this name: a person has fallen when the body lies ([`Posture`]). A pose estimator finds and
-//! follows the persons; the first verdict on a person stands at once, and another takes its place when it has held for
-//! `hold` seconds, so that one wrong pose raises no alarm and ends none.
+//! After OpenDR's learner of this name: a person has fallen when the body lies ([`Posture`]). A pose estimator detects and
+//! tracks the persons. The first posture of a person is valid at once; another replaces it after `hold` seconds, so a
+//! single wrong pose neither raises nor ends an alarm.
 
+mod params;
 mod pose_finder;
 mod verdicts;
 
 use opendr_engine::data::Image;
 use opendr_engine::learner::{Learner, Spec, Targets};
 use opendr_engine::model::Model;
-use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes, PoseList};
 use opendr_engine::{Device, Result, Task};
 
+pub use self::params::FallDetectorParams;
 use self::pose_finder::{PoseFinder, PoseFinderState};
 use self::verdicts::Verdicts;
 use super::Posture;
 
-/// What a user may set.
-#[derive(Debug, Clone, Params)]
-pub struct FallDetectorParams {
-    /// A posture takes the place of another when it was seen for so long.
-    #[param(default = 0.5, range = 0.0..=60.0, unit = "s", live)]
-    pub hold: f32,
-    /// Persons below this score are dropped.
-    #[param(default = 0.1, range = 0.0..=1.0, live)]
-    pub threshold: f32,
-    /// Joints below this score are missing.
-    #[param(default = 0.1, range = 0.01..=1.0, live)]
-    pub keypoint_threshold: f32,
-    /// Height of the input of LightweightOpenPose. Larger finds smaller persons; MoveNet has a size of its own.
-    #[param(default = 368, range = 64..=2048, unit = "px", live)]
-    pub base_height: usize,
-}
-
-/// What is told of a picture.
+/// Predictions for an image.
 #[derive(Default, Targets)]
 pub struct FallDetectorTargets {
-    /// A box around each person: class 0 where nothing can be told, 1 for a fall, 2 for none.
+    /// A box around each person: class 0 for an unknown posture, 1 for a fall, 2 for none.
     pub falls: BoundingBoxList,
-    /// The persons, in the order of the boxes.
+    /// Poses of the persons, in the order of the boxes.
     pub poses: PoseList,
 }
 
@@ -51,7 +35,7 @@ pub struct FallDetector {
     classes: Classes,
 }
 
-/// What a stream remembers: its persons and the verdicts on them.
+/// State of a stream: its persons and their postures.
 #[derive(Default)]
 pub struct FallDetectorState {
     poses: PoseFinderState,
@@ -61,8 +45,8 @@ pub struct FallDetectorState {
 impl Learner for FallDetector {
     const SPEC: Spec = Spec::new("fall_detector", Task::FallDetection)
         .class("FallDetectorLearner")
-        .about("Tells which persons have fallen, by a rule on their poses over time.")
-        .without_effect(&[("pose_estimator", "the model carries its own")]);
+        .about("Detects fallen persons by a rule on their poses over time.")
+        .without_effect(&[("pose_estimator", "the model contains its own")]);
     type Params = FallDetectorParams;
     type Input<'a> = &'a Image;
     type Target = FallDetectorTargets;
@@ -99,8 +83,8 @@ impl Learner for FallDetector {
         falls.boxes.clear();
         falls.classes.clone_from(&self.classes);
         for pose in &poses.poses {
-            let seen = Posture::of(pose);
-            let posture = pose.id.map_or(seen, |id| state.verdicts.judge(id, seen, self.params.hold));
+            let observed = Posture::of(pose);
+            let posture = pose.id.map_or(observed, |id| state.verdicts.judge(id, observed, self.params.hold));
             let [left, top, width, height] = pose.bounding_box().unwrap_or_default();
             let person = BoundingBox::new(class_of(posture), left, top, width, height, pose.confidence);
             falls.boxes.push(person);

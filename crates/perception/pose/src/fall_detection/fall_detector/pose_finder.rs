@@ -1,4 +1,4 @@
-//! The networks that find the persons.
+//! The pose estimators of the fall detector.
 
 use opendr_engine::data::Image;
 use opendr_engine::learner::Learner;
@@ -6,16 +6,16 @@ use opendr_engine::model::Model;
 use opendr_engine::target::PoseList;
 use opendr_engine::{Device, Result};
 
-use super::FallDetectorParams;
+use super::params::FallDetectorParams;
 use crate::pose_estimation::{
     LightweightOpenPose, LightweightOpenPoseParams, LightweightOpenPoseState, Movenet, MovenetParams,
     PoseTracks,
 };
 
-/// The part of a model that is a MoveNet; without it the model's own network is that of Lightweight OpenPose.
+/// Name of the part of a model that is a MoveNet; without it the model's own network is a Lightweight OpenPose.
 const MOVENET: &str = "movenet";
 
-/// Finds persons, and follows them.
+/// Detects and tracks persons.
 pub(super) enum PoseFinder {
     LightweightOpenPose(Box<LightweightOpenPose>),
     Movenet(Box<Movenet>),
@@ -38,7 +38,7 @@ impl PoseFinder {
         Ok(Self::LightweightOpenPose(Box::new(open_pose)))
     }
 
-    /// Replaces `poses` by the persons in the picture, each with its number in the stream.
+    /// Replaces `poses` by the persons in the image, each with its identity in the stream.
     pub fn follow(
         &self,
         params: &FallDetectorParams,

@@ -1,11 +1,11 @@
-//! What is held of each person of a stream.
+//! Postures of the persons of a stream over time.
 
 use opendr_engine::Header;
 
 use crate::fall_detection::Posture;
 use crate::frame_clock::FrameClock;
 
-/// The verdicts on the persons of a stream, by their numbers.
+/// The postures of the persons of a stream, by their identities.
 #[derive(Debug, Default)]
 pub(super) struct Verdicts {
     clock: FrameClock,
@@ -17,41 +17,41 @@ pub(super) struct Verdicts {
 struct Verdict {
     id: i64,
     posture: Posture,
-    /// Another posture that was seen since, and for how many seconds.
+    /// A different posture that was observed since, and its duration in seconds.
     other: Option<(Posture, f32)>,
-    /// Seconds since the person was seen.
+    /// Seconds since the last observation.
     away: f32,
 }
 
-/// Seconds after which a person that is away is forgotten.
+/// Seconds without observation after which a person is dropped.
 const PATIENCE: f32 = 5.0;
 
 impl Verdicts {
-    /// A frame begins.
+    /// Begins a frame.
     pub fn begin_frame(&mut self, header: &Header) {
         self.seconds = self.clock.seconds_to(header);
         self.persons.iter_mut().for_each(|person| person.away += self.seconds);
     }
 
-    /// The verdict on person `id`, seen in posture `seen`; a posture that nothing can be told of changes none.
-    pub fn judge(&mut self, id: i64, seen: Posture, hold: f32) -> Posture {
+    /// Returns the posture of person `id`, observed in posture `observed`; an unknown one changes nothing.
+    pub fn judge(&mut self, id: i64, observed: Posture, hold: f32) -> Posture {
         let Some(person) = self.persons.iter_mut().find(|person| person.id == id) else {
-            self.persons.push(Verdict { id, posture: seen, other: None, away: 0.0 });
-            return seen;
+            self.persons.push(Verdict { id, posture: observed, other: None, away: 0.0 });
+            return observed;
         };
         person.away = 0.0;
         person.other = match person.other {
-            _ if seen == person.posture || seen == Posture::Unknown => None,
-            Some((other, for_seconds)) if other == seen => Some((seen, for_seconds + self.seconds)),
-            _ => Some((seen, 0.0)),
+            _ if observed == person.posture || observed == Posture::Unknown => None,
+            Some((other, for_seconds)) if other == observed => Some((observed, for_seconds + self.seconds)),
+            _ => Some((observed, 0.0)),
         };
         if person.other.is_some_and(|(_, seconds)| seconds >= hold) || person.posture == Posture::Unknown {
-            (person.posture, person.other) = (seen, None);
+            (person.posture, person.other) = (observed, None);
         }
         person.posture
     }
 
-    /// Forgets who is away for long.
+    /// Drops persons without recent observation.
     pub fn end_frame(&mut self) {
         self.persons.retain(|person| person.away <= PATIENCE);
     }
@@ -76,25 +76,25 @@ mod tests {
 
     #[test]
     fn one_wrong_pose_changes_nothing() {
-        let seen = [Upright, Upright, Fallen, Upright, Unknown, Upright].map(|posture| (1, posture));
-        assert_eq!(frames(&seen, 0.3), [Upright; 6]);
+        let observed = [Upright, Upright, Fallen, Upright, Unknown, Upright].map(|posture| (1, posture));
+        assert_eq!(frames(&observed, 0.3), [Upright; 6]);
     }
 
     #[test]
-    fn a_fall_is_told_once_it_has_held() {
-        let seen = [Upright, Fallen, Fallen, Fallen, Fallen, Fallen].map(|posture| (1, posture));
-        assert_eq!(frames(&seen, 0.25), [Upright, Upright, Upright, Upright, Fallen, Fallen]);
-        assert_eq!(frames(&seen[1..], 0.25), [Fallen; 5]);
-        assert_eq!(frames(&seen, 0.0)[1..], [Fallen; 5]);
+    fn a_fall_counts_after_the_hold_time() {
+        let observed = [Upright, Fallen, Fallen, Fallen, Fallen, Fallen].map(|posture| (1, posture));
+        assert_eq!(frames(&observed, 0.25), [Upright, Upright, Upright, Upright, Fallen, Fallen]);
+        assert_eq!(frames(&observed[1..], 0.25), [Fallen; 5]);
+        assert_eq!(frames(&observed, 0.0)[1..], [Fallen; 5]);
     }
 
     #[test]
-    fn persons_have_verdicts_of_their_own_and_are_forgotten() {
+    fn persons_have_separate_postures_and_are_dropped() {
         assert_eq!(frames(&[(1, Upright), (2, Fallen), (1, Fallen)], 1.0), [Upright, Fallen, Upright]);
-        let mut seen = vec![(1, Upright)];
-        seen.extend([(2, Fallen); 52]);
-        seen.push((1, Fallen));
-        assert_eq!(frames(&seen, 1.0).last(), Some(&Fallen));
+        let mut observed = vec![(1, Upright)];
+        observed.extend([(2, Fallen); 52]);
+        observed.push((1, Fallen));
+        assert_eq!(frames(&observed, 1.0).last(), Some(&Fallen));
         assert_eq!(frames(&[(1, Unknown), (1, Fallen)], 9.0), [Unknown, Fallen]);
     }
 }

@@ -1,11 +1,12 @@
-//! High-resolution pose estimation: a coarse pass over the whole picture, then a closer look at the parts worth it.
+//! High-resolution pose estimation: a coarse pass over the whole image, then a second pass over selected regions.
 //!
 //! After OpenDR's learner of this name (Manousis et al., "Enabling High-Resolution Pose Estimation in Real Time Using
-//! Active Perception", ICIP 2023), whose network is Lightweight OpenPose's. Persons of 40 pixels in a 4K picture leave no
-//! trace in the coarse heat maps; so regions also come from where the picture has detail, and from where persons were in
-//! the frame before. What does not fit into one frame's share of time is looked at in the next ones, in turn; until then its persons stay
-//! as they were seen.
+//! Active Perception", ICIP 2023), with the network of Lightweight OpenPose. Persons of 40 pixels in a 4K image do not
+//! appear in the coarse heatmaps. Regions are therefore also selected where the image has detail, and where persons were
+//! in the last frame. Regions that exceed the budget of one frame are processed in the next ones, in turn; until then their
+//! persons keep their last poses.
 
+mod params;
 mod search;
 #[cfg(test)]
 mod tests;
@@ -13,71 +14,16 @@ mod tests;
 use opendr_engine::data::Image;
 use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
-use opendr_engine::params::Params;
 use opendr_engine::target::{Pose, PoseList};
 use opendr_engine::{Device, Pool, Result, Task};
 use opendr_perception_common::regions::Region;
 
+pub use self::params::{HighResolutionPoseEstimationParams, RegionMethod};
 use self::search::{Look, Search};
 use crate::pose_estimation::lightweight_open_pose::{LightweightOpenPose, LightweightOpenPoseParams};
 use crate::pose_estimation::pose_tracks::PoseTracks;
 
-opendr_engine::choices! {
-    /// How parts of the picture are chosen.
-    pub enum RegionMethod {
-        /// One part for each group of cells that touch.
-        Adaptive = "adaptive",
-        /// One part around all that the coarse heat maps show.
-        Primary = "primary",
-    }
-}
-
-/// What a user may set.
-#[derive(Debug, Clone, Params)]
-pub struct HighResolutionPoseEstimationParams {
-    /// Height of the network's input for the whole picture.
-    #[param(default = 360, range = 64..=2048, unit = "px", live)]
-    pub first_pass_height: usize,
-    /// Height of the network's input for a part of it, at most; small parts are magnified three times.
-    #[param(default = 540, range = 64..=2048, unit = "px", live)]
-    pub second_pass_height: usize,
-    /// How parts of the picture are chosen.
-    #[param(live)]
-    pub method: RegionMethod,
-    /// What is added around a part on each side, as a share of its longer side.
-    #[param(default = 0.3, range = 0.0..=2.0, live)]
-    pub percentage_around_crop: f32,
-    /// Where the coarse heat maps are above this, a closer look is worth it.
-    #[param(default = 0.1, range = 0.01..=1.0, live)]
-    pub heatmap_threshold: f32,
-    /// Where brightness differs by more than this within 4 pixels of the coarse picture, a closer look is worth it too,
-    /// 0..=255; 256 switches it off.
-    #[param(default = 32.0, range = 1.0..=256.0, live)]
-    pub detail_threshold: f32,
-    /// At most this many parts are looked at in one picture; the others follow in the next frames.
-    #[param(default = 4, range = 1..=64, live)]
-    pub max_regions: usize,
-    /// The parts that are looked at in one picture have at most so many pixels for the network, but for the first of them.
-    #[param(default = 300_000, range = 1..=100_000_000, unit = "px", live)]
-    pub max_pixels: usize,
-    /// Persons below this score are dropped.
-    #[param(default = 0.1, range = 0.0..=1.0, live)]
-    pub threshold: f32,
-    /// Joints below this score are missing.
-    #[param(default = 0.1, range = 0.01..=1.0, live)]
-    pub keypoint_threshold: f32,
-    /// Steps between the cells of the heat maps in which joints are looked for.
-    #[param(default = 4, range = 1..=8, live)]
-    pub upsample_ratio: usize,
-    /// Whether persons keep their identity from frame to frame.
-    #[param(default = true, live)]
-    pub track: bool,
-    /// Whether joints are smoothed over frames; needs `track`.
-    #[param(default = true, live)]
-    pub smooth: bool,
-}
-
-/// A loaded network and how it looks twice.
+/// A loaded network with the selection of regions.
 pub struct HighResolutionPoseEstimation {
     params: HighResolutionPoseEstimationParams,
     network: LightweightOpenPose,
@@ -91,47 +37,47 @@ struct Scratch {
     found: Vec<Pose>,
 }
 
-/// What a stream remembers: its persons, where they were, and whose turn it is to be looked at.
+/// State of a stream: its persons, their regions, and the positions in the rotations.
 #[derive(Default)]
 pub struct HighResolutionPoseEstimationState {
     size: [usize; 2],
     tracks: PoseTracks,
     persons: Vec<Region>,
-    /// Of known persons and of other parts.
+    /// Positions in the rotations of known persons and of other regions.
     turns: [usize; 2],
-    /// Persons that only a closer look shows, as it showed them last.
+    /// Persons of the second pass, with their last poses.
     held: Vec<Held>,
     before: Vec<Held>,
 }
 
 struct Held {
     pose: Pose,
-    /// Frames since.
+    /// Frames since then.
     age: u32,
 }
 
-/// A person is told for so many frames without a closer look.
+/// Number of frames for which a person is kept without a second pass.
 const MOST_HELD: u32 = 10;
-/// Joints nearer to each other than this share of the smaller person's extent are those of one person.
+/// Mean distance of joints, as a share of the smaller person's extent, below which two poses are one person.
 const SAME_PERSON: f32 = 0.25;
 
 impl Learner for HighResolutionPoseEstimation {
     const SPEC: Spec = Spec::new("high_resolution_pose_estimation", Task::PoseEstimation)
         .class("HighResolutionPoseEstimationLearner")
-        .about("Looks at large pictures twice: coarsely, then closer where persons may be.")
+        .about("Pose estimation in large images in two passes: coarse, then finer where persons may be.")
         .without_effect(&[
-            ("base_height", "`first_pass_height` and `second_pass_height` say it"),
-            ("mobilenet_use_stride", "the maps lie at every 8th pixel"),
+            ("base_height", "`first_pass_height` and `second_pass_height` set it"),
+            ("mobilenet_use_stride", "the maps have a stride of 8 pixels"),
             ("shufflenet_groups", "the backbone is MobileNet"),
             ("experiment_name", "it does not train: `lightweight_open_pose` does"),
             ("weights_only", "it does not train: `lightweight_open_pose` does"),
-            ("output_name", "`eval` says where answers are written"),
-            ("multiscale", "parts are looked at larger than the whole"),
-            ("scales", "parts are looked at larger than the whole"),
-            ("visualize", "`draw` shows poses"),
-            ("img_mean", "the network says what it takes"),
-            ("img_scale", "the network says what it takes"),
-            ("pad_value", "the network says what it takes"),
+            ("output_name", "`eval` writes predictions"),
+            ("multiscale", "regions are magnified in the second pass"),
+            ("scales", "regions are magnified in the second pass"),
+            ("visualize", "`draw` draws poses"),
+            ("img_mean", "the model defines it"),
+            ("img_scale", "the model defines it"),
+            ("pad_value", "the model defines it"),
             ("half_precision", "the runtime chooses the precision"),
         ]);
     type Params = HighResolutionPoseEstimationParams;
@@ -171,7 +117,7 @@ impl Learner for HighResolutionPoseEstimation {
             self.network.find_with(&settings, view, params.first_pass_height, &mut poses.poses, |maps| {
                 let input = maps.grid();
                 grid.reset(input.columns, input.rows);
-                grid.mark(|column, row| maps.highest(column, row) > params.heatmap_threshold);
+                grid.mark(|column, row| maps.max_heat(column, row) > params.heatmap_threshold);
             })
         })?;
         let is_all = self.search.choose(params, size, &state.persons, &mut state.turns, looks);
@@ -182,14 +128,14 @@ impl Learner for HighResolutionPoseEstimation {
             found.clear();
             self.network.find_with(&settings, part, look.height, found, |_| {})?;
             for mut pose in found.drain(..) {
-                for joint in pose.keypoints.iter_mut().filter(|joint| joint.is_found()) {
+                for joint in pose.keypoints.iter_mut().filter(|joint| joint.is_detected()) {
                     (joint.x, joint.y) = (joint.x + x as f32, joint.y + y as f32);
                 }
                 add_person(&mut poses.poses, pose);
             }
         }
         if is_all {
-            // Who is not seen now is not there.
+            // Every region was processed, so no person is held.
             state.held.clear();
         }
         state.hold(&mut poses.poses, seen, looks);
@@ -207,8 +153,8 @@ impl Learner for HighResolutionPoseEstimation {
 }
 
 impl HighResolutionPoseEstimationState {
-    /// Adds the persons that were there and that nobody looked for in this frame; of `poses`, the first pass has seen the first
-    /// `seen`.
+    /// Adds the persons whose regions were not processed in this frame. The first `seen` of `poses` are from the first
+    /// pass.
     fn hold(&mut self, poses: &mut Vec<Pose>, seen: usize, looks: &[Look]) {
         std::mem::swap(&mut self.held, &mut self.before);
         self.held.clear();
@@ -216,11 +162,11 @@ impl HighResolutionPoseEstimationState {
         for Held { pose, age } in self.before.drain(..) {
             let Some([left, top, width, height]) = pose.bounding_box() else { continue };
             let (x, y) = (left + width / 2.0, top + height / 2.0);
-            let is_looked_at = looks.iter().any(|look| {
+            let is_processed = looks.iter().any(|look| {
                 let [x0, y0, x1, y1] = look.region.corners();
                 (x0..x1).contains(&x) && (y0..y1).contains(&y)
             });
-            if age < MOST_HELD && !is_looked_at && !poses.iter().any(|other| is_same(other, &pose)) {
+            if age < MOST_HELD && !is_processed && !poses.iter().any(|other| is_same(other, &pose)) {
                 poses.push(pose.clone());
                 self.held.push(Held { pose, age: age + 1 });
             }
@@ -228,7 +174,7 @@ impl HighResolutionPoseEstimationState {
     }
 }
 
-/// What the network is told; the rest it is not asked for.
+/// Returns the parameters of the network; the others are not used.
 fn network_params(params: &HighResolutionPoseEstimationParams) -> LightweightOpenPoseParams {
     LightweightOpenPoseParams {
         threshold: params.threshold,
@@ -238,7 +184,7 @@ fn network_params(params: &HighResolutionPoseEstimationParams) -> LightweightOpe
     }
 }
 
-/// Adds a person, or, where it is one that is there already, keeps the one with the higher score.
+/// Adds a person; of two poses of one person the one with the higher score stays.
 fn add_person(poses: &mut Vec<Pose>, pose: Pose) {
     match poses.iter_mut().find(|other| is_same(other, &pose)) {
         Some(other) if other.confidence < pose.confidence => *other = pose,
@@ -247,11 +193,11 @@ fn add_person(poses: &mut Vec<Pose>, pose: Pose) {
     }
 }
 
-/// Whether two poses are one person, seen twice: the joints that both have lie near each other.
+/// Returns whether two poses are one person: the joints that both have are near each other.
 fn is_same(a: &Pose, b: &Pose) -> bool {
     let extent = |pose: &Pose| pose.bounding_box().map_or(0.0, |[_, _, width, height]| width.max(height));
     let (mut sum, mut shared) = (0.0, 0.0);
-    for (a, b) in a.keypoints.iter().zip(&b.keypoints).filter(|(a, b)| a.is_found() && b.is_found()) {
+    for (a, b) in a.keypoints.iter().zip(&b.keypoints).filter(|(a, b)| a.is_detected() && b.is_detected()) {
         sum += (a.x - b.x).hypot(a.y - b.y);
         shared += 1.0;
     }

@@ -1,19 +1,19 @@
-//! Which parts of a picture get a closer look.
+//! Selection of regions for the second pass.
 
 use opendr_engine::data::ImageView;
 use opendr_engine::{Pool, Result};
-use opendr_perception_common::regions::{CellGrid, CoarsePicture, Region, join_overlapping};
+use opendr_perception_common::regions::{CellBrightness, CellGrid, Region, merge_overlapping};
 
-use super::{HighResolutionPoseEstimationParams, RegionMethod};
+use super::params::{HighResolutionPoseEstimationParams, RegionMethod};
 
-/// A part of a picture, and how many pixels high the network sees it.
+/// A region, and the height of the network's input for it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Look {
     pub region: Region,
     pub height: usize,
 }
 
-/// How the choice is made, with its work memory.
+/// Selection of regions, with its work memory.
 #[derive(Default)]
 pub(super) struct Search {
     scratch: Pool<Scratch>,
@@ -23,23 +23,23 @@ pub(super) struct Search {
 struct Scratch {
     grid: CellGrid,
     detail: CellGrid,
-    coarse: CoarsePicture,
+    coarse: CellBrightness,
     regions: Vec<Region>,
     known: Vec<Look>,
 }
 
-/// Parts are magnified at most so many times: beyond, there is nothing more to see.
+/// Maximum magnification of regions.
 const MOST_MAGNIFIED: usize = 3;
-/// A second pass that magnifies less than this, compared with the first, shows nothing new.
+/// Minimum magnification relative to the first pass.
 const LEAST_GAIN: f32 = 1.2;
-/// Sides of the coarse picture's cells.
+/// Side of the coarse image's cells, in pixels.
 const CELL: usize = 4;
-/// More groups of cells than this are noise.
+/// Maximum number of groups of cells; more are noise.
 const MOST_GROUPS: usize = 256;
 
 impl Search {
-    /// Runs the `first` pass, which marks the cells of its grid where heat maps are high, and lists what is worth a
-    /// closer look: parts with heat before parts with nothing but detail.
+    /// Runs the `first` pass, which marks the cells with high values of heatmaps, and lists the regions for a second pass:
+    /// those of heatmaps before those of detail only.
     pub fn begin(
         &self,
         params: &HighResolutionPoseEstimationParams,
@@ -54,7 +54,7 @@ impl Search {
         first(grid)?;
         regions.clear();
         grid.take_regions(size, MOST_GROUPS, regions);
-        let all = regions.iter().copied().reduce(|a, b| a.joined(&b));
+        let all = regions.iter().copied().reduce(|a, b| a.union(&b));
         if params.method == RegionMethod::Primary {
             regions.clear();
             regions.extend(all);
@@ -67,7 +67,7 @@ impl Search {
         regions.clear();
         detail.take_regions(size, MOST_GROUPS, regions);
         grow(regions, params.percentage_around_crop, size);
-        // Where there is much of it, tiles of it follow, magnified as far as small persons need.
+        // Large regions are followed by their tiles, at the magnification that small persons need.
         let tile = (params.second_pass_height / MOST_MAGNIFIED).max(CELL);
         let tiles = |region: &Region| {
             let is_large = region.width.max(region.height) > 2 * tile;
@@ -80,8 +80,8 @@ impl Search {
         Ok(())
     }
 
-    /// Leaves as many looks as there may be: half of them around the persons of the frame before, and the others; both in turn.
-    /// Says whether that is all of them.
+    /// Selects the regions within the budget: half of them around the persons of the last frame, the others elsewhere; both
+    /// in rotation. Returns whether all regions are selected.
     pub fn choose(
         &self,
         params: &HighResolutionPoseEstimationParams,
@@ -99,7 +99,7 @@ impl Search {
         regions.clear();
         regions.extend(persons.iter().copied());
         grow(regions, params.percentage_around_crop, size);
-        looks.retain(|look| !regions.iter().any(|region| region.joined(&look.region) == *region));
+        looks.retain(|look| !regions.iter().any(|region| region.union(&look.region) == *region));
         known.clear();
         known
             .extend(regions.iter().map(|region| Look { region: *region, height: height_of(region, params) }));
@@ -116,20 +116,20 @@ impl Search {
 }
 
 impl Look {
-    /// How many pixels the network sees.
+    /// Returns the number of pixels of the network's input.
     fn pixels(&self) -> usize {
         self.height * (self.height * self.region.width).div_ceil(self.region.height.max(1))
     }
 }
 
-/// What there is time for.
+/// Budget of an image.
 struct Share {
     looks: usize,
     pixels: usize,
 }
 
 impl Share {
-    /// How many of `looks`, from the first on, there is time for; one at least, if any.
+    /// Returns the number of `looks` within the budget, from the first; at least one, if any.
     fn taken(&self, looks: &[Look]) -> usize {
         let mut pixels = 0;
         let fitting = looks.iter().take(self.looks).take_while(|look| {
@@ -140,7 +140,7 @@ impl Share {
     }
 }
 
-/// Leaves those whose turn it is.
+/// Keeps the regions whose turn it is.
 fn take(looks: &mut Vec<Look>, share: &Share, turn: &mut usize) {
     if looks.is_empty() {
         return;
@@ -151,16 +151,16 @@ fn take(looks: &mut Vec<Look>, share: &Share, turn: &mut usize) {
     *turn = begin + looks.len();
 }
 
-/// Marks the cells of the coarse picture in which brightness differs.
+/// Marks the cells of the coarse image with a high range of brightness.
 fn mark_detail(
     view: ImageView<'_>,
     params: &HighResolutionPoseEstimationParams,
-    coarse: &mut CoarsePicture,
+    coarse: &mut CellBrightness,
     detail: &mut CellGrid,
 ) -> Result<()> {
     let rows = params.first_pass_height.div_ceil(CELL).max(1);
     let columns = (rows * view.width()).div_ceil(view.height().max(1)).clamp(1, 8 * rows);
-    coarse.look(view, columns, rows, CELL)?;
+    coarse.compute(view, columns, rows, CELL)?;
     detail.reset(columns, rows);
     detail.mark(|column, row| f32::from(coarse.range(column, row)) > params.detail_threshold);
     Ok(())
@@ -168,7 +168,7 @@ fn mark_detail(
 
 fn grow(regions: &mut Vec<Region>, share: f32, size: [usize; 2]) {
     regions.iter_mut().for_each(|region| *region = region.grown(share, size));
-    join_overlapping(regions);
+    merge_overlapping(regions);
 }
 
 fn height_of(region: &Region, params: &HighResolutionPoseEstimationParams) -> usize {

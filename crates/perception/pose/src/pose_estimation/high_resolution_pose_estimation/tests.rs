@@ -1,4 +1,4 @@
-//! Persons of 40 pixels in a 4K picture, with the weights that the program carries.
+//! Persons of 40 pixels in a 4K image, with the bundled weights.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ fn handle<L: Learner>(name: &str, params: L::Params) -> Handle<L> {
     handle
 }
 
-/// A person of 40 pixels, cut out of a picture: `[left, top, width, height]` is the person there.
+/// Returns a person of 40 pixels, cropped from an image at `[left, top, width, height]`.
 fn small_person(path: &Path, [left, top, width, height]: [f32; 4]) -> Image {
     let image = opendr_vision::open(path).unwrap();
     let region =
@@ -34,16 +34,16 @@ fn small_person(path: &Path, [left, top, width, height]: [f32; 4]) -> Image {
     let part = image.view().crop(region.x, region.y, region.width, region.height).unwrap();
     let pixels = part.hwc_u8(PixelFormat::Rgb);
     let mut image = Image::from_rgb8(pixels, region.width, region.height).unwrap();
-    let wanted = 40.0 / height;
-    let size = [region.width, region.height].map(|side| (side as f32 * wanted).round() as usize);
-    // Halves are means of four pixels; more at once would leave pixels out.
+    let scale = 40.0 / height;
+    let size = [region.width, region.height].map(|side| (side as f32 * scale).round() as usize);
+    // Halving averages four pixels; a larger factor would skip pixels.
     while image.height() > 2 * size[1] {
         image = resize(&image, image.width() / 2, image.height() / 2).unwrap();
     }
     resize(&image, size[0], size[1]).unwrap()
 }
 
-/// Persons of 40 pixels on a grey 4K canvas, and where they are.
+/// Returns persons of 40 pixels on a grey 4K canvas, and their regions.
 fn canvas(data: &Path) -> (Image, Vec<Region>) {
     let persons = [
         ("000000000785.jpg", [280.79, 44.73, 218.7, 346.68], [2500, 1300]),
@@ -73,7 +73,7 @@ fn data() -> Option<PathBuf> {
     Some(shared?.join("data"))
 }
 
-/// How many of `places` have a person in them.
+/// Returns how many of `places` contain a person.
 fn found(poses: &PoseList, places: &[Region]) -> usize {
     let is_there = |place: &&Region| {
         poses.poses.iter().filter_map(Pose::bounding_box).any(|[left, top, width, height]| {
@@ -86,7 +86,7 @@ fn found(poses: &PoseList, places: &[Region]) -> usize {
 }
 
 #[test]
-fn finds_small_persons_that_a_plain_pass_misses() {
+fn detects_small_persons_that_one_pass_misses() {
     let Some(data) = data() else { return };
     let (image, places) = canvas(&data);
     let mut plain = handle::<LightweightOpenPose>("lightweight_open_pose", Default::default());
@@ -97,7 +97,7 @@ fn finds_small_persons_that_a_plain_pass_misses() {
     let poses = twice.infer(&image).unwrap();
     println!("{poses:#}");
     assert_eq!(found(&poses, &places), 3, "{poses:#}");
-    // One look a frame: they come one after the other, and a fresh stream begins anew.
+    // One region per frame: the persons appear one after the other, and a reset stream restarts.
     twice.set("max_regions", 1.into()).unwrap();
     twice.reset();
     let first = twice.infer(&image).unwrap();
@@ -111,7 +111,7 @@ fn finds_small_persons_that_a_plain_pass_misses() {
 }
 
 #[test]
-fn empty_pictures_have_nobody() {
+fn empty_images_have_no_persons() {
     let params = HighResolutionPoseEstimationParams::default();
     let mut twice = handle::<HighResolutionPoseEstimation>("high_resolution_pose_estimation", params);
     for (width, height) in [(1, 1), (300, 2), (640, 480)] {

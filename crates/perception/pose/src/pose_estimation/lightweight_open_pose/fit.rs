@@ -1,4 +1,4 @@
-//! Training.
+//! Training of Lightweight OpenPose.
 
 use std::path::Path;
 
@@ -8,18 +8,18 @@ use opendr_engine::learner::{Fit, FitJob};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Error, Result, ResultExt, Statistics};
-use opendr_perception_common::frozen_layers::{FrozenLayers, is_on_processor};
+use opendr_perception_common::frozen_layers::{FrozenLayers, is_on_cpu};
 use opendr_training::weights::{Rules, WeightTable};
-use opendr_training::{OptimizerKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{OptimizerKind, TrainingParams, fit_learner, open_for_training, seeded_device};
 
 use super::network::{Network, NetworkConfig};
 use super::objective::{CONFIG, PoseObjective};
 use super::{LightweightOpenPose, LightweightOpenPoseParams, STRIDE};
 
-/// How it trains.
+/// Training parameters of [`LightweightOpenPose`].
 #[derive(Debug, Clone, Params)]
 pub struct LightweightOpenPoseFitParams {
-    /// What every training takes.
+    /// Parameters of every training.
     #[param(
         flatten,
         epochs = 280,
@@ -31,30 +31,30 @@ pub struct LightweightOpenPoseFitParams {
         log_after = 100
     )]
     pub training: TrainingParams,
-    /// Where the backbone begins: `mobilenet`, with random weights; else a container or file of weights whose first layers
+    /// Initial weights of the backbone: `mobilenet` for random ones, else a container or file of weights whose first layers
     /// are a MobileNetV1 of this width, such as PoseNet's (width 0.75, 2 extra blocks).
     #[param(default = "mobilenet")]
     pub backbone: String,
-    /// Whether the backbone keeps its weights.
+    /// Whether the backbone is frozen.
     pub freeze: bool,
-    /// Factor on the channels of the backbone.
+    /// Factor of the channels of the backbone.
     #[param(default = 1.0, range = 0.1..=2.0, alias = "mobilenetv2_width")]
     pub width: f64,
-    /// Blocks of the backbone after those of the paper.
+    /// Number of blocks of the backbone after those of the paper.
     #[param(default = 0, range = 0..=8)]
     pub extra_blocks: usize,
     /// Channels of the stages; fewer make a smaller network.
     #[param(default = 128, range = 4..=1024)]
     pub channels: usize,
-    /// Whether the convolutions of the stages are separable: a seventh of their weights.
+    /// Whether the convolutions of the stages are separable, with a seventh of the weights.
     pub separable: bool,
-    /// Stages that refine the maps of the first.
+    /// Number of stages that refine the maps of the initial one.
     #[param(default = 2, range = 0..=8)]
     pub num_refinement_stages: usize,
-    /// Side of the pictures that are trained on; a multiple of 8.
+    /// Side of the training images; a multiple of 8.
     #[param(default = 368, range = 32..=2048, unit = "px")]
     pub crop_size: usize,
-    /// Whether pictures are cut around persons, turned, scaled, mirrored and recoloured at random.
+    /// Whether images are cropped around persons, rotated, scaled, flipped and recoloured at random.
     #[param(default = true)]
     pub augment: bool,
 }
@@ -70,7 +70,7 @@ impl Fit for LightweightOpenPose {
         val_dataset: Option<DatasetRef<'_>>,
         job: &FitJob<'_>,
     ) -> Result<Statistics> {
-        let device = begin(job, &fit_params.training)?;
+        let device = seeded_device(job, &fit_params.training)?;
         let (config, network) = match base {
             Some(base) => fit_params.network_of(base, &device)?,
             None => fit_params.new_network(&device)?,
@@ -87,14 +87,14 @@ impl Fit for LightweightOpenPose {
             side,
             base_height: params.base_height,
             augment: fit_params.augment,
-            frozen: (fit_params.freeze && is_on_processor(job)?).then(backbone).transpose()?,
+            frozen: (fit_params.freeze && is_on_cpu(job)?).then(backbone).transpose()?,
         };
         let dataset = open_for_training::<Self>(dataset, job)?;
         fit_learner::<Self, _>(&objective, network, params, &fit_params.training, &*dataset, val_dataset, job)
     }
 }
 
-/// What stands for no weights as a backbone; OpenDR's name, and a plain one.
+/// Values of `backbone` for random weights: OpenDR's name, and `none`.
 const RANDOM: [&str; 2] = ["mobilenet", "none"];
 
 impl LightweightOpenPoseFitParams {
@@ -108,7 +108,7 @@ impl LightweightOpenPoseFitParams {
         }
     }
 
-    /// A network to begin with.
+    /// Creates the network of a new training.
     fn new_network(&self, device: &Device) -> Result<(NetworkConfig, Network)> {
         let config = self.config();
         let network = config.init(device);
@@ -127,18 +127,18 @@ impl LightweightOpenPoseFitParams {
         };
         let network = read().context(|| {
             format!(
-                "the backbone {:?} for width = {}, extra_blocks = {}",
+                "loading the backbone {:?} for width = {}, extra_blocks = {}",
                 self.backbone, self.width, self.extra_blocks
             )
         })?;
-        // The norms of such files were folded into convolutions.
+        // The batch normalisations of such files are folded into convolutions.
         Ok((config, network.freeze_norms()))
     }
 
-    /// The network of a container, to go on from.
+    /// Loads the network of a container for a further training.
     fn network_of(&self, base: &Model, device: &Device) -> Result<(NetworkConfig, Network)> {
         let config: NetworkConfig = serde_json::from_slice(&base.file(CONFIG)?).map_err(|error| {
-            Error::format(format!("{CONFIG} of {} says of no network", base.path().display()))
+            Error::format(format!("{CONFIG} of {} does not describe a network", base.path().display()))
                 .with_source(error)
         })?;
         self.check_config(&config)?;
@@ -148,7 +148,7 @@ impl LightweightOpenPoseFitParams {
         Ok((config, network.freeze_norms()))
     }
 
-    /// Sizes of a container are within the limits of the parameters: it comes from anybody.
+    /// Checks the sizes of a container, which is untrusted, by the limits of the parameters.
     fn check_config(&self, config: &NetworkConfig) -> Result<()> {
         let sizes = Self {
             width: config.width,

@@ -1,21 +1,22 @@
-//! The size of the network's input.
+//! Size of the network's input.
 
-use super::STRIDE;
+/// Pixels per cell.
+pub(super) const STRIDE: usize = 8;
 
-/// Which sizes a network takes.
+/// Input sizes of a network.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum InputSize {
-    /// Any whole number of cells.
+    /// Dynamic: any whole number of cells.
     Free,
-    /// Width and height, pixels.
+    /// Fixed width and height, in pixels.
     Fixed([usize; 2]),
 }
 
-/// No input is wider than so many heights: the picture may be anything, memory may not.
+/// Maximum aspect ratio of the input, which limits the memory for extreme images.
 const MOST_HEIGHTS: usize = 4;
 
 impl InputSize {
-    /// What a network with an input `[1, 3, height, width]` takes.
+    /// Returns the input size of a network with an input `[1, 3, height, width]`.
     pub(super) fn of_network(dims: &[Option<usize>]) -> Self {
         match dims {
             [_, _, Some(height), Some(width)] if *height > 0 && *width > 0 => Self::Fixed([*width, *height]),
@@ -23,7 +24,7 @@ impl InputSize {
         }
     }
 
-    /// Width and height of the input for a picture of `[width, height]` pixels.
+    /// Returns width and height of the input for an image of `[width, height]` pixels.
     pub(super) fn of_picture(self, [width, height]: [usize; 2], base_height: usize) -> [usize; 2] {
         match self {
             Self::Fixed(size) => size,

@@ -1,7 +1,7 @@
-//! Lightweight OpenPose: any number of persons by part affinity fields, with identities and smoothed joints in a stream.
+//! Lightweight OpenPose: poses of several persons by part affinity fields, with identities and smoothed joints in a stream.
 //!
-//! Osokin, "Real-time 2D Multi-Person Pose Estimation on CPU: Lightweight OpenPose", 2018; OpenDR's default pose
-//! estimator, and one that trains. How maps become persons: [`part_affinity`](super::part_affinity).
+//! Osokin, "Real-time 2D Multi-Person Pose Estimation on CPU: Lightweight OpenPose", 2018; OpenDR's default pose estimator,
+//! trainable. [`part_affinity`](super::part_affinity) decodes the maps.
 
 #[cfg(feature = "training")]
 mod fit;
@@ -18,7 +18,7 @@ mod tests;
 
 #[cfg(feature = "training")]
 pub use fit::LightweightOpenPoseFitParams;
-use input::InputSize;
+use input::{InputSize, STRIDE};
 use opendr_engine::data::{Image, ImageView};
 use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
@@ -26,25 +26,25 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Keypoint, Pose, PoseList, Skeleton};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::TensorView;
-use opendr_perception_common::picture_network::PictureNetwork;
-use opendr_vision::{Anchor, InputGeometry, Preprocess};
+use opendr_perception_common::image_network::ImageNetwork;
+use opendr_vision::{InputGeometry, LetterboxAlign, Preprocess};
 
-use crate::pose_estimation::part_affinity::{Grid, Memory, PartAffinity, PartMaps, Person};
+use crate::pose_estimation::part_affinity::{DecodeScratch, Grid, PartAffinity, PartMaps, Person};
 use crate::pose_estimation::pose_tracks::PoseTracks;
 
-/// What a user may set.
+/// Parameters of [`LightweightOpenPose`].
 #[derive(Debug, Clone, Params)]
 pub struct LightweightOpenPoseParams {
-    /// Persons below this score are dropped. The score is the mean of those of the 18 joints; missing ones count as 0.
+    /// Score below which persons are dropped. The score is the mean over the 18 joints; missing ones count as 0.
     #[param(default = 0.1, range = 0.0..=1.0, live)]
     pub threshold: f32,
-    /// Joints below this score are missing.
+    /// Score below which joints are missing.
     #[param(default = 0.1, range = 0.01..=1.0, live)]
     pub keypoint_threshold: f32,
-    /// Height of the network's input; the width follows from the picture. Larger finds smaller persons.
+    /// Height of the network's input; its width follows from the image. Larger values detect smaller persons.
     #[param(default = 256, range = 64..=2048, unit = "px", live)]
     pub base_height: usize,
-    /// Steps between the cells of the heat maps in which joints are looked for.
+    /// Upsampling factor of the heatmaps for the search of joints.
     #[param(default = 4, range = 1..=8, live)]
     pub upsample_ratio: usize,
     /// Whether persons keep their identity from frame to frame.
@@ -58,7 +58,7 @@ pub struct LightweightOpenPoseParams {
 /// A loaded Lightweight OpenPose.
 pub struct LightweightOpenPose {
     params: LightweightOpenPoseParams,
-    network: PictureNetwork,
+    network: ImageNetwork,
     size: InputSize,
     heat: usize,
     fields: usize,
@@ -67,18 +67,16 @@ pub struct LightweightOpenPose {
 
 #[derive(Default)]
 struct Scratch {
-    memory: Memory,
+    decoding: DecodeScratch,
     persons: Vec<Person>,
 }
 
-/// The network's outputs: heat maps `[1, 19, rows, columns]` and fields `[1, 38, rows, columns]`.
+/// Names of the outputs: heatmaps `[1, 19, rows, columns]` and fields `[1, 38, rows, columns]`.
 const OUTPUTS: [&str; 2] = ["heat", "fields"];
-/// Pixels from cell to cell.
-const STRIDE: usize = 8;
-/// Inputs are (level - this) / this, in -1..=1.
+/// Mean and scale of the levels, for inputs in -1..=1.
 const LEVEL: f32 = 127.5;
 
-/// What a stream remembers.
+/// State of a stream.
 #[derive(Default)]
 pub struct LightweightOpenPoseState {
     tracks: PoseTracks,
@@ -87,19 +85,19 @@ pub struct LightweightOpenPoseState {
 impl Learner for LightweightOpenPose {
     const SPEC: Spec = Spec::new("lightweight_open_pose", Task::PoseEstimation)
         .class("LightweightOpenPoseLearner")
-        .about("Lightweight OpenPose finds 18 joints of any number of persons and follows them; it trains.")
+        .about("Lightweight OpenPose detects and tracks 18 joints of several persons; trainable.")
         .without_effect(&[
-            ("mobilenet_use_stride", "the maps lie at every 8th pixel"),
+            ("mobilenet_use_stride", "the maps have a stride of 8 pixels"),
             ("shufflenet_groups", "the backbone is MobileNet"),
-            ("experiment_name", "the folder of a training says it"),
-            ("weights_only", "`resume` of `fit` says it"),
-            ("output_name", "`eval` says where answers are written"),
-            ("multiscale", "a larger `base_height` finds smaller persons"),
-            ("scales", "a larger `base_height` finds smaller persons"),
-            ("visualize", "`draw` shows poses"),
-            ("img_mean", "the network says what it takes"),
-            ("img_scale", "the network says what it takes"),
-            ("pad_value", "the network says what it takes"),
+            ("experiment_name", "the output folder of a training names it"),
+            ("weights_only", "`resume` of `fit` sets it"),
+            ("output_name", "`eval` writes predictions"),
+            ("multiscale", "a larger `base_height` detects smaller persons"),
+            ("scales", "a larger `base_height` detects smaller persons"),
+            ("visualize", "`draw` draws poses"),
+            ("img_mean", "the model defines it"),
+            ("img_scale", "the model defines it"),
+            ("pad_value", "the model defines it"),
             ("half_precision", "the runtime chooses the precision"),
         ]);
     type Params = LightweightOpenPoseParams;
@@ -109,11 +107,13 @@ impl Learner for LightweightOpenPose {
 
     fn load(model: &Model, params: LightweightOpenPoseParams, device: Device) -> Result<Self> {
         let mut size = InputSize::Free;
-        let network = PictureNetwork::open(model, device, |input| {
+        let network = ImageNetwork::open(model, device, |input| {
             size = InputSize::of_network(&input.dims);
             let [width, height] = size.of_picture([4, 3], params.base_height);
-            // Grey around pictures, as where augmentation shows what lies outside of one.
-            Preprocess::new(width, height).letterbox(Anchor::Centre, LEVEL).normalise([LEVEL; 3], [LEVEL; 3])
+            // The padding is grey, as that of augmented images.
+            Preprocess::new(width, height)
+                .letterbox(LetterboxAlign::Centre, LEVEL)
+                .normalise([LEVEL; 3], [LEVEL; 3])
         })?;
         let [heat, fields] = OUTPUTS;
         let (heat, fields) = (network.output(heat)?, network.output(fields)?);
@@ -139,7 +139,7 @@ impl Learner for LightweightOpenPose {
 }
 
 impl LightweightOpenPose {
-    /// As [`Learner::infer_into`], by parameters that are not this learner's own.
+    /// As [`Learner::infer_into`], with other parameters than the learner's own.
     pub(crate) fn follow_with(
         &self,
         params: &LightweightOpenPoseParams,
@@ -157,27 +157,27 @@ impl LightweightOpenPose {
         Ok(())
     }
 
-    /// Adds the persons in a view to `poses`, in its pixels, by the thresholds of `params`; the network sees it
-    /// `base_height` pixels high. `see` sees the maps that they were found in.
+    /// Adds the persons in a view to `poses`, in its pixels, by the thresholds of `params`, with a network input of
+    /// `base_height` pixels height. `sink` receives the maps.
     pub(super) fn find_with(
         &self,
         params: &LightweightOpenPoseParams,
         view: ImageView<'_>,
         base_height: usize,
         poses: &mut Vec<Pose>,
-        mut see: impl FnMut(&PartMaps<'_>),
+        mut sink: impl FnMut(&PartMaps<'_>),
     ) -> Result<()> {
-        let Scratch { memory, persons } = &mut *self.scratch.take();
+        let Scratch { decoding, persons } = &mut *self.scratch.take();
         let LightweightOpenPoseParams { keypoint_threshold, upsample_ratio, threshold, .. } = *params;
         let how =
             PartAffinity { peak_threshold: keypoint_threshold, upsample_ratio, ..PartAffinity::default() };
         let size = self.size.of_picture([view.width(), view.height()], base_height);
         self.network.run_sized(view, size, |outputs, geometry| {
             let maps = self.maps(outputs)?;
-            see(&maps);
-            how.decode(&maps, memory, persons);
+            sink(&maps);
+            how.decode(&maps, decoding, persons);
             let sure = persons.iter().filter(|person| person.score >= threshold);
-            poses.extend(sure.map(|person| pose_in_picture(person, geometry)));
+            poses.extend(sure.map(|person| pose_in_image(person, geometry)));
             Ok(())
         })
     }
@@ -185,17 +185,19 @@ impl LightweightOpenPose {
     fn maps<'a>(&self, outputs: &[TensorView<'a>]) -> Result<PartMaps<'a>> {
         let [1, _, rows, columns] = *outputs[self.heat].shape() else {
             let shape = outputs[self.heat].shape();
-            return Err(Error::format(format!("heat maps are [1, 19, rows, columns], not {shape:?}")));
+            return Err(Error::format(format!(
+                "the heatmaps need the shape [1, 19, rows, columns], not {shape:?}; load another model"
+            )));
         };
         let grid = Grid { rows, columns, stride: STRIDE as f32 };
         PartMaps::new(grid, outputs[self.heat].values()?, outputs[self.fields].values()?)
     }
 }
 
-/// The person in pixels of the picture; joints in the padding are at the picture's border.
-fn pose_in_picture(person: &Person, geometry: &InputGeometry) -> Pose {
+/// Converts a person to image pixels; joints in the padding are moved to the image's border.
+fn pose_in_image(person: &Person, geometry: &InputGeometry) -> Pose {
     let keypoint = |joint: &Keypoint| {
-        if !joint.is_found() {
+        if !joint.is_detected() {
             return Keypoint::MISSING;
         }
         let [x, y] = geometry.image_from_input([joint.x, joint.y]);

@@ -1,4 +1,4 @@
-//! The network: MobileNetV1, an initial stage, and stages that refine what the one before answered.
+//! The network: MobileNetV1, an initial stage, and stages that refine the maps of the previous one.
 
 use burn::config::Config;
 use burn::module::{Module, Param};
@@ -13,48 +13,48 @@ use opendr_training::layers::{
 use super::STRIDE;
 use crate::pose_estimation::part_affinity::{FIELDS, HEAT_MAPS};
 
-/// Blocks of MobileNetV1 that the paper takes: up to its `conv5_5`.
+/// Number of MobileNetV1's blocks in the paper: up to its `conv5_5`.
 const BLOCKS: usize = 11;
 /// Channels of the last of them at width 1.
 const BLOCK_CHANNELS: usize = 512;
-/// Blocks of a refinement stage.
+/// Number of blocks of a refinement stage.
 const REFINEMENTS: usize = 5;
-/// The initial stage's maps are made of so many times the channels of a stage.
+/// Hidden channels of the initial stage's heads, in multiples of a stage's channels.
 const EXPANSION: usize = 4;
 
 /// Sizes of a [`Network`].
 #[derive(Config, Debug, PartialEq)]
 pub struct NetworkConfig {
-    /// Factor on the backbone's channels.
+    /// Factor of the backbone's channels.
     #[config(default = 1.0)]
     pub width: f64,
-    /// Blocks after the paper's, of as many channels as the last; PoseNet's backbone has 2.
+    /// Number of blocks after the paper's, with as many channels as the last; PoseNet's backbone has 2.
     #[config(default = 0)]
     pub extra_blocks: usize,
     /// Channels of the stages.
     #[config(default = 128)]
     pub channels: usize,
-    /// Whether convolutions of the stages are separable: a seventh of the weights.
+    /// Whether convolutions of the stages are separable, with a seventh of the weights.
     #[config(default = false)]
     pub separable: bool,
-    /// Stages after the initial one.
+    /// Number of stages after the initial one.
     #[config(default = 1)]
     pub refinement_stages: usize,
 }
 
-/// Maps of one stage: heat maps `[batch, 19, height / 8, width / 8]` and fields `[batch, 38, height / 8, width / 8]`.
+/// Maps of one stage: heatmaps `[batch, 19, height / 8, width / 8]` and fields `[batch, 38, height / 8, width / 8]`.
 pub type Maps = [Tensor<4>; 2];
 
 /// Lightweight OpenPose's network (Osokin, 2018, figure 3).
 ///
-/// Beyond the paper: all blocks of the backbone after the stride that was left out are dilated, so that weights which
-/// were trained with that stride see what they saw; the stages have no normalisation, so that small batches train and
-/// an exported network is read back without a loss.
+/// Unlike in the paper, all blocks of the backbone after the omitted stride are dilated, so that weights from a training
+/// with that stride keep their receptive fields; the stages have no normalisation, so that small batches train and an
+/// exported network can be reloaded without loss.
 #[derive(Module, Debug)]
 pub struct Network {
-    /// From the picture to features.
+    /// Backbone: features of the image.
     pub backbone: Backbone,
-    // In the order of their use: so an exported network is read back.
+    // In the order of their use, by which an exported network is reloaded.
     features: Features,
     initial_trunk: Vec<Conv>,
     initial: Heads,
@@ -62,7 +62,7 @@ pub struct Network {
 }
 
 impl NetworkConfig {
-    /// A network with random weights.
+    /// Creates a network with random weights.
     pub fn init(&self, device: &Device) -> Network {
         let mobilenet = MobileNetV1Config::new()
             .with_width(self.width)
@@ -114,39 +114,40 @@ impl NetworkConfig {
 }
 
 impl Network {
-    /// `[batch, 3, height, width]` of levels in -1..=1, whose sides are multiples of 8, to the maps of every stage.
+    /// Computes the maps of every stage from images `[batch, 3, height, width]` of levels in -1..=1, whose sides are
+    /// multiples of 8.
     pub fn forward(&self, pictures: Tensor<4>) -> Vec<Maps> {
         self.forward_from(self.backbone.forward(pictures))
     }
 
-    /// The same for what the backbone answered.
+    /// Computes the maps of every stage from the backbone's features.
     pub fn forward_from(&self, backbone: Tensor<4>) -> Vec<Maps> {
         let features = self.features.forward(backbone);
         let first = self.initial_trunk.iter().fold(features.clone(), |x, conv| conv.forward(x));
         let mut stages = vec![self.initial.forward(first)];
         for refinement in &self.refinement {
             let before = stages.last().into_iter().flatten().cloned();
-            let seen = Tensor::cat([features.clone()].into_iter().chain(before).collect(), 1);
-            stages.push(refinement.forward(seen));
+            let input = Tensor::cat([features.clone()].into_iter().chain(before).collect(), 1);
+            stages.push(refinement.forward(input));
         }
         stages
     }
 
-    /// The same for the maps of the last stage alone.
+    /// Computes the maps of the last stage only.
     pub fn answer(&self, pictures: Tensor<4>) -> Maps {
         let mut stages = self.forward(pictures);
-        // There is an initial stage at least.
+        // There is at least an initial stage.
         stages.swap_remove(stages.len() - 1)
     }
 
-    /// The same with a backbone that keeps its weights.
+    /// Returns the network with a frozen backbone.
     #[must_use]
     pub fn freeze_backbone(self) -> Self {
         Self { backbone: self.backbone.freeze(), ..self }
     }
 
-    /// The same with a backbone whose normalisations keep their weights and statistics: those that an exported network
-    /// was folded into have none of their own.
+    /// Returns the network with frozen batch normalisations in the backbone: those that are folded into an exported network
+    /// have no statistics.
     #[must_use]
     pub fn freeze_norms(mut self) -> Self {
         let Backbone { mobilenet, extra } = &mut self.backbone;
@@ -167,13 +168,13 @@ pub struct Backbone {
 }
 
 impl Backbone {
-    /// `[batch, 3, height, width]` to features of an eighth of the sides.
+    /// Computes features of an eighth of the sides of `[batch, 3, height, width]`.
     pub fn forward(&self, pictures: Tensor<4>) -> Tensor<4> {
         self.extra.iter().fold(self.mobilenet.forward(pictures), |x, block| block.forward(x))
     }
 }
 
-/// From the backbone's channels to those of the stages (the paper's `Cpm`).
+/// Conversion from the backbone's channels to those of the stages (the paper's `Cpm`).
 #[derive(Module, Debug)]
 struct Features {
     align: Conv2d,
@@ -189,7 +190,7 @@ impl Features {
     }
 }
 
-/// The two kinds of maps of a stage.
+/// The two heads of a stage: heatmaps and fields.
 #[derive(Module, Debug)]
 struct Heads {
     heat: [Conv2d; 2],
@@ -197,7 +198,7 @@ struct Heads {
 }
 
 impl Heads {
-    /// `[input, hidden]` channels.
+    /// Creates heads with `[input, hidden]` channels.
     fn new([input, hidden]: [usize; 2], device: &Device) -> Self {
         let head = |maps: usize| [point([input, hidden], device), maps_of([hidden, maps], device)];
         Self { heat: head(HEAT_MAPS), fields: head(FIELDS) }
@@ -209,7 +210,7 @@ impl Heads {
     }
 }
 
-/// A stage that looks again, having seen the maps of the one before.
+/// A stage that refines the maps of the previous one.
 #[derive(Module, Debug)]
 struct Refinement {
     blocks: Vec<RefinementBlock>,
@@ -222,7 +223,7 @@ impl Refinement {
     }
 }
 
-/// Sees as far as a 7x7 convolution.
+/// A block with the receptive field of a 7x7 convolution.
 #[derive(Module, Debug)]
 struct RefinementBlock {
     align: Conv2d,
@@ -236,7 +237,7 @@ impl RefinementBlock {
     }
 }
 
-/// A 3x3 convolution that keeps the number of channels, then ReLU; in one or, separably, in two steps.
+/// A 3x3 convolution that keeps the number of channels, then ReLU; either dense or separable.
 #[derive(Module, Debug)]
 struct Conv {
     over_space: Conv2d,
@@ -262,7 +263,7 @@ impl Conv {
     }
 }
 
-/// Weights after He et al. (2015), for a ReLU that follows.
+/// Initialisation after He et al. (2015), before a ReLU.
 const BEFORE_RELU: Initializer =
     Initializer::KaimingNormal { gain: std::f64::consts::SQRT_2, fan_out_only: false };
 
@@ -276,13 +277,13 @@ fn point(channels: [usize; 2], device: &Device) -> Conv2d {
     without_bias(Conv2dConfig::new(channels, [1; 2]).with_initializer(BEFORE_RELU), device)
 }
 
-/// A last layer, whose answers begin near 0.
+/// Creates a last layer, whose outputs are initially near 0.
 fn maps_of(channels: [usize; 2], device: &Device) -> Conv2d {
     let small = Initializer::Normal { mean: 0.0, std: 0.01 };
     without_bias(Conv2dConfig::new(channels, [1; 2]).with_initializer(small), device)
 }
 
-/// A convolution whose bias begins at 0.
+/// Creates a convolution with an initial bias of 0.
 fn without_bias(config: Conv2dConfig, device: &Device) -> Conv2d {
     let mut conv = config.init(device);
     conv.bias = conv.bias.map(|bias| Param::from_tensor(bias.val().zeros_like()));

@@ -1,4 +1,4 @@
-//! What the network is trained for: the maps of the persons in a picture.
+//! Training objective of Lightweight OpenPose: the maps of the persons in an image.
 
 use burn::tensor::{Device, Tensor, TensorData};
 use opendr_datasets::augment::{Colour, Flip, Pipeline};
@@ -9,31 +9,31 @@ use opendr_engine::model::Manifest;
 use opendr_engine::params::ParamValue;
 use opendr_engine::target::{BoundingBox, Keypoint, Pose, PoseList};
 use opendr_engine::{Error, Result, Value};
+use opendr_perception_common::dynamic_sides::with_dynamic_sides;
 use opendr_perception_common::frozen_layers::FrozenLayers;
-use opendr_perception_common::joints::opendr_joints;
-use opendr_perception_common::open_sides::open_sides;
+use opendr_perception_common::joints::opendr_joints_from_pose;
 use opendr_training::export::{self, Input};
 use opendr_training::{Container, Loss, Objective};
-use opendr_vision::{Anchor, InputGeometry, Preprocess};
+use opendr_vision::{InputGeometry, LetterboxAlign, Preprocess};
 
 use super::network::{Maps, Network, NetworkConfig};
 use super::person_crop::PersonCrop;
 use super::{LEVEL, LightweightOpenPose, OUTPUTS, STRIDE};
-use crate::pose_estimation::part_affinity::{FIELDS, Grid, HEAT_MAPS, JOINTS, Painter};
+use crate::pose_estimation::part_affinity::{FIELDS, Grid, HEAT_MAPS, JOINTS, MapEncoder};
 
-/// Trains Lightweight OpenPose on pictures with [`PoseList`]s of OpenDR's or COCO's joints.
+/// Training objective of Lightweight OpenPose. Samples are images with [`PoseList`]s of OpenDR's or COCO's joints.
 pub(super) struct PoseObjective {
     pub(super) config: NetworkConfig,
-    /// Side of the pictures that are trained on, a multiple of 8.
+    /// Side of the training images, a multiple of 8.
     pub(super) side: usize,
-    /// The height of pictures that the network is to be used with.
+    /// Height of the network's input at inference.
     pub(super) base_height: usize,
     pub(super) augment: bool,
-    /// The backbone, when it does not train.
+    /// The backbone, if it is frozen.
     pub(super) frozen: Option<FrozenLayers>,
 }
 
-/// The file of a container that says what network it holds.
+/// File name of the network's sizes in a container.
 pub(super) const CONFIG: &str = "network.json";
 
 impl Objective for PoseObjective {
@@ -54,8 +54,8 @@ impl Objective for PoseObjective {
             .sometimes(0.5, Colour::default())
     }
 
-    /// Half the squares of what is off, summed over the maps of all stages (Osokin, 2018; Cao et al., Eq. 5), the mean
-    /// over the batch.
+    /// Half the squared errors, summed over the maps of all stages (Osokin, 2018; Cao et al., Eq. 5), as the mean over the
+    /// batch.
     fn loss(&self, network: &Network, batch: &PoseBatch, device: &Device) -> Result<Loss> {
         let count = batch.len();
         let (side, cells) = (self.side, self.side / STRIDE);
@@ -70,15 +70,15 @@ impl Objective for PoseObjective {
         let heat = tensor(&batch.heat, [count, HEAT_MAPS, cells, cells]);
         let fields = tensor(&batch.fields, [count, FIELDS, cells, cells]);
         let mask = tensor(&batch.mask, [count, 1, cells, cells]);
-        let off = |answer: Tensor<4>, wanted: &Tensor<4>| {
-            let off = (answer - wanted.clone()) * mask.clone();
-            (off.clone() * off).sum() / (2 * count) as f64
+        let squared_error = |output: Tensor<4>, target_maps: &Tensor<4>| {
+            let difference = (output - target_maps.clone()) * mask.clone();
+            (difference.clone() * difference).sum() / (2 * count) as f64
         };
         let zero = || Tensor::<1>::zeros([1], device);
         let (mut heat_loss, mut field_loss) = (zero(), zero());
         for [stage_heat, stage_fields] in network.forward_from(features) {
-            heat_loss = heat_loss + off(stage_heat, &heat);
-            field_loss = field_loss + off(stage_fields, &fields);
+            heat_loss = heat_loss + squared_error(stage_heat, &heat);
+            field_loss = field_loss + squared_error(stage_fields, &fields);
         }
         let total = heat_loss.clone() + field_loss.clone();
         Ok(Loss { total, parts: vec![("heatmap_loss", heat_loss), ("paf_loss", field_loss)] })
@@ -93,7 +93,7 @@ impl Objective for PoseObjective {
         Ok(Container {
             manifest: self.manifest(),
             files: vec![
-                ("model.onnx".to_owned(), open_sides(&onnx)?),
+                ("model.onnx".to_owned(), with_dynamic_sides(&onnx)?),
                 (CONFIG.to_owned(), self.config.to_string().into_bytes()),
             ],
         })
@@ -113,21 +113,21 @@ impl PoseObjective {
     }
 }
 
-/// Makes [`PoseBatch`]es of samples with one picture and its [`PoseList`].
+/// Collates samples with one image and its [`PoseList`] into [`PoseBatch`]es.
 pub(super) struct PoseBatches {
     preprocess: Preprocess,
-    painter: Painter,
+    painter: MapEncoder,
     grid: Grid,
 }
 
-/// Pictures and the maps wanted, one after the other.
+/// Images and their target maps, one after the other.
 #[derive(Debug, Default)]
 pub(super) struct PoseBatch {
-    /// `[3, side, side]` each, levels in -1..=1.
+    /// Values of the images, `[3, side, side]` each, in -1..=1.
     pictures: Vec<f32>,
     heat: Vec<f32>,
     fields: Vec<f32>,
-    /// Cells that count: 1, or 0 where there are persons whose joints nobody annotated.
+    /// Weight of each cell: 1, or 0 where persons have no annotated joints.
     mask: Vec<f32>,
     count: usize,
 }
@@ -148,22 +148,22 @@ impl PoseBatches {
     pub(super) fn new(side: usize) -> Self {
         let cells = side / STRIDE;
         Self {
-            // The loader has its threads already.
+            // The loader is parallel already.
             preprocess: Preprocess::new(side, side)
-                .letterbox(Anchor::Centre, LEVEL)
+                .letterbox(LetterboxAlign::Centre, LEVEL)
                 .normalise([LEVEL; 3], [LEVEL; 3])
                 .threads(1),
-            painter: Painter::default(),
+            painter: MapEncoder::default(),
             grid: Grid { rows: cells, columns: cells, stride: STRIDE as f32 },
         }
     }
 
-    /// 0 in the boxes of crowds and of persons without joints.
+    /// Writes 0 in the boxes of crowds and of persons without joints.
     fn paint_mask(&self, poses: &PoseList, geometry: &InputGeometry, mask: &mut [f32]) {
         let crowd = |region: &BoundingBox| region.segment.as_ref().is_some_and(|segment| segment.iscrowd);
         let unknown = poses.poses.iter().filter_map(|pose| {
             let region = pose.region.as_deref()?;
-            let joints = pose.keypoints.iter().any(Keypoint::is_found);
+            let joints = pose.keypoints.iter().any(Keypoint::is_detected);
             (!joints || crowd(region)).then(|| region.corners())
         });
         for [x0, y0, x1, y1] in unknown {
@@ -200,7 +200,7 @@ impl Collate for PoseBatches {
         let (Some(Value::Image(image)), Some(Value::PoseList(poses))) = (sample.data.first(), &sample.target)
         else {
             return Err(Error::invalid_input(
-                "a pose estimator trains on pictures with lists of poses; give a data set of key points, or a teacher",
+                "the sample is not an image with poses; give a data set of keypoints, or a teacher",
             ));
         };
         let PoseBatch { pictures, heat, fields, mask, count } = batch;
@@ -208,7 +208,7 @@ impl Collate for PoseBatches {
         let geometry =
             self.preprocess.run_into(image.view(), last(pictures, *count, self.preprocess.len()))?;
         let joints = |pose: &Pose| -> [Keypoint; JOINTS] {
-            opendr_joints(pose).map(|joint| match joint.is_found() {
+            opendr_joints_from_pose(pose).map(|joint| match joint.is_detected() {
                 true => {
                     let [x, y] = geometry.input_from_image([joint.x, joint.y]);
                     Keypoint { x, y, ..joint }
@@ -218,7 +218,7 @@ impl Collate for PoseBatches {
         };
         let persons: Vec<_> = poses.poses.iter().map(joints).collect();
         let (heat, fields) = (last(heat, *count, HEAT_MAPS * cells), last(fields, *count, FIELDS * cells));
-        self.painter.paint(self.grid, &persons, heat, fields);
+        self.painter.encode(self.grid, &persons, heat, fields);
         let mask = last(mask, *count, cells);
         mask.fill(1.0);
         self.paint_mask(poses, &geometry, mask);
@@ -227,7 +227,7 @@ impl Collate for PoseBatches {
     }
 }
 
-/// Room for one more of `size` numbers after `count`, whatever a sample that was refused left there.
+/// Returns room for one more of `size` values after `count`, also after a sample that was refused.
 fn last(values: &mut Vec<f32>, count: usize, size: usize) -> &mut [f32] {
     values.resize((count + 1) * size, 0.0);
     &mut values[count * size..]

@@ -12,7 +12,7 @@ use crate::pose_estimation::part_affinity::JOINTS;
 
 const SIDE: usize = 96;
 
-/// Pictures of stick figures, each joint of its own colour, and where their joints are.
+/// Images of stick figures, each joint with its own colour, annotated with their joints.
 struct Figures {
     samples: Vec<Sample>,
 }
@@ -83,9 +83,9 @@ fn scratch(name: &str) -> PathBuf {
     folder
 }
 
-/// One batch is learnt by heart; the container finds the figures, and keeps every promise of a learner.
+/// Overfits one batch; the trained container detects the figures and passes the learner checks.
 #[test]
-fn a_batch_is_learnt_by_heart() {
+fn one_batch_is_overfitted() {
     let folder = scratch("overfit");
     let figures = Figures::new(&[20.0, 34.0]);
     let dataset = DatasetRef::Iterator(&figures);
@@ -103,19 +103,19 @@ fn a_batch_is_learnt_by_heart() {
         let found = learner.infer(&image).unwrap().poses.clone();
         assert_eq!(found.len(), 1);
         let off = |(at, found): (usize, &Keypoint)| {
-            let wanted = joint(left, at);
-            (found.x - wanted.x).hypot(found.y - wanted.y)
+            let expected = joint(left, at);
+            (found.x - expected.x).hypot(found.y - expected.y)
         };
         let mean = found[0].keypoints.iter().enumerate().map(off).sum::<f32>() / JOINTS as f32;
         assert!(mean < 4.0, "{mean}: {found:?}");
         assert!(found[0].confidence > 0.5 && found[0].confidence <= 1.0 && found[0].id == Some(0));
     }
-    keeps_its_promises(&folder.join("model"), &folder.join("check"));
-    goes_on_from(&mut learner, &figures, loss[loss.len() - 1], &folder.join("more"));
+    passes_the_learner_checks(&folder.join("model"), &folder.join("check"));
+    resumes_from(&mut learner, &figures, loss[loss.len() - 1], &folder.join("more"));
     std::fs::remove_dir_all(&folder).ok();
 }
 
-fn keeps_its_promises(model: &std::path::Path, scratch: &std::path::Path) {
+fn passes_the_learner_checks(model: &std::path::Path, scratch: &std::path::Path) {
     let registry = Box::leak(Box::new(learners![LightweightOpenPose]));
     let entry = registry.entries()[0];
     let call = |left: f32, stamp: i64| {
@@ -126,8 +126,8 @@ fn keeps_its_promises(model: &std::path::Path, scratch: &std::path::Path) {
     check_learner(entry, &CheckOptions { model, scratch, calls: &calls }).unwrap();
 }
 
-/// A second training begins where the first ended, not anew.
-fn goes_on_from(
+/// Checks that a further training starts from the loss of the first.
+fn resumes_from(
     learner: &mut Handle<LightweightOpenPose>,
     figures: &Figures,
     reached: f64,
@@ -135,7 +135,7 @@ fn goes_on_from(
 ) {
     let mut params = small();
     params.set("epochs", 1i64.into()).unwrap();
-    // Sizes are the container's, whatever is said here.
+    // The sizes are those of the container.
     params.channels = 8;
     let statistics = learner.fit(&params, DatasetRef::Iterator(figures), None, &FitJob::new(folder)).unwrap();
     let loss = statistics.curves["loss"][0];
@@ -143,7 +143,7 @@ fn goes_on_from(
 }
 
 #[test]
-fn persons_without_joints_do_not_count() {
+fn persons_without_joints_are_ignored() {
     let mut sample = figure(20.0);
     let region = BoundingBox::new(0, 48.0, 0.0, 48.0, 96.0, 1.0);
     let nobody = Pose { region: Some(Box::new(region)), ..Pose::default() };
@@ -167,18 +167,18 @@ fn persons_without_joints_do_not_count() {
 }
 
 #[test]
-fn windows_lie_around_persons() {
-    use opendr_datasets::augment::{Augment as _, Others};
+fn crops_contain_persons() {
+    use opendr_datasets::augment::{Augment as _, OtherSamples};
     let crop = person_crop::PersonCrop { size: 64, ..Default::default() };
     for seed in 0..20 {
         let mut sample = figure(30.0);
-        crop.apply(&mut sample, &mut Random::new(seed), &Others::none()).unwrap();
+        crop.apply(&mut sample, &mut Random::new(seed), &OtherSamples::none()).unwrap();
         let (Some(Value::Image(image)), Some(Value::PoseList(poses))) = (sample.data.first(), &sample.target)
         else {
             unreachable!()
         };
         assert_eq!((image.width(), image.height(), image.format()), (64, 64, PixelFormat::Rgb));
-        let found = poses.poses[0].keypoints.iter().filter(|joint| joint.is_found()).count();
+        let found = poses.poses[0].keypoints.iter().filter(|joint| joint.is_detected()).count();
         assert!(found >= JOINTS / 2, "{found} joints with seed {seed}");
     }
 }

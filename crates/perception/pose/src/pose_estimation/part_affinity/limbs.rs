@@ -1,40 +1,24 @@
-//! Limbs: which peaks the fields join.
+//! Limb candidates from peaks and fields.
 
-use opendr_engine::target::Skeleton;
-
+use super::layout::{JOINTS, LIMBS};
 use super::maps::{PartMaps, Plane};
+use super::parameters::PartAffinity;
 use super::peaks::Peak;
-use super::{JOINTS, PartAffinity};
-
-/// The limbs: the skeleton's bones, and two from shoulder to ear that hold a person together whose neck is hidden.
-/// Fields lie in this order and point from the first joint to the second.
-pub const LIMBS: [[usize; 2]; 19] = {
-    let bones = Skeleton::Opendr18.bones();
-    let mut limbs = [[0; 2]; 19];
-    let mut limb = 0;
-    while limb < bones.len() {
-        limbs[limb] = bones[limb];
-        limb += 1;
-    }
-    limbs[limb] = [2, 16];
-    limbs[limb + 1] = [5, 17];
-    limbs
-};
 
 /// Two peaks that may be the ends of a limb.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Candidate {
-    /// The mean field along the limb.
+    /// Mean of the field along the limb.
     pub(super) score: f32,
     pub(super) limb: usize,
-    /// Numbers of the peaks.
+    /// Indices of the peaks.
     pub(super) ends: [usize; 2],
 }
 
-/// Places along a limb at which the field is read.
+/// Number of samples of the field along a limb.
 const SAMPLES: usize = 10;
 
-/// Fills `candidates`, best first.
+/// Fills `candidates`, highest score first.
 pub(super) fn find(
     how: &PartAffinity,
     maps: &PartMaps<'_>,
@@ -61,8 +45,8 @@ pub(super) fn find(
 }
 
 impl PartAffinity {
-    /// The line integral of the field from one place to another (Cao et al., Eq. 10), by samples; `None` where there is
-    /// no limb.
+    /// Returns the line integral of the field from one position to another (Cao et al., Eq. 10), by samples; `None` without
+    /// a limb.
     fn limb_score(&self, [x, y]: &[Plane<'_>; 2], [from, to]: [[f32; 2]; 2]) -> Option<f32> {
         let way = [to[0] - from[0], to[1] - from[1]];
         let length = way[0].hypot(way[1]);

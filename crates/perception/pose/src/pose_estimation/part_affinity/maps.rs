@@ -1,41 +1,41 @@
-//! The maps of one picture, and the grid that they lie on.
+//! The maps of one image, and their grid.
 
 use opendr_engine::{Error, Result};
 
-use super::{FIELDS, HEAT_MAPS, JOINTS};
+use super::layout::{FIELDS, HEAT_MAPS, JOINTS};
 
 /// Cells over a network's input.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grid {
-    /// Cells down.
+    /// Number of rows of cells.
     pub rows: usize,
-    /// Cells across.
+    /// Number of columns of cells.
     pub columns: usize,
-    /// Pixels from cell to cell.
+    /// Pixels per cell.
     pub stride: f32,
 }
 
-/// Where the first cell looks: the middle of the first pixel, as strided convolutions with equal padding do.
+/// Position of the first cell: the centre of the first pixel, as of strided convolutions with symmetric padding.
 const ORIGIN: f32 = 0.5;
 
 impl Grid {
-    /// How many cells there are.
+    /// Returns the number of cells.
     pub fn cells(&self) -> usize {
         self.rows * self.columns
     }
 
-    /// Where the place `[x, y]`, in cells, is in the network's input, in pixels.
+    /// Converts a position `[x, y]` in cells to pixels of the network's input.
     pub fn point_from_cell(&self, place: [f32; 2]) -> [f32; 2] {
         place.map(|part| part * self.stride + ORIGIN)
     }
 
-    /// The place, in cells, of a point `[x, y]` of the network's input.
+    /// Converts a point `[x, y]` of the network's input to a position in cells.
     pub fn cell_from_point(&self, point: [f32; 2]) -> [f32; 2] {
         point.map(|part| (part - ORIGIN) / self.stride)
     }
 }
 
-/// What a network answers to one picture.
+/// Outputs of a network for one image.
 #[derive(Debug, Clone, Copy)]
 pub struct PartMaps<'a> {
     grid: Grid,
@@ -44,8 +44,8 @@ pub struct PartMaps<'a> {
 }
 
 impl<'a> PartMaps<'a> {
-    /// Heat maps `[19, rows, columns]`, of which the background may be left out, and fields `[38, rows, columns]`: x and y
-    /// of each of [`LIMBS`](super::LIMBS).
+    /// Creates maps from heatmaps `[19, rows, columns]`, of which the background may be missing, and fields
+    /// `[38, rows, columns]`: x and y of each of [`LIMBS`](super::LIMBS).
     ///
     /// # Errors
     /// `Format` when the sizes do not fit.
@@ -55,7 +55,7 @@ impl<'a> PartMaps<'a> {
             && Some(fields.len()) == cells.checked_mul(FIELDS);
         if cells == 0 || !fits {
             return Err(Error::format(format!(
-                "{} and {} numbers are no {HEAT_MAPS} heat maps and {FIELDS} fields of {} x {} cells",
+                "{} and {} values are not {HEAT_MAPS} heatmaps and {FIELDS} fields of {} x {} cells; load another model",
                 heat.len(),
                 fields.len(),
                 grid.columns,
@@ -65,13 +65,13 @@ impl<'a> PartMaps<'a> {
         Ok(Self { grid, heat, fields })
     }
 
-    /// The grid of all maps.
+    /// Returns the grid of all maps.
     pub fn grid(&self) -> Grid {
         self.grid
     }
 
-    /// The highest of a cell's heat maps, the background left out.
-    pub fn highest(&self, column: usize, row: usize) -> f32 {
+    /// Returns the maximum of a cell's heatmaps without the background.
+    pub fn max_heat(&self, column: usize, row: usize) -> f32 {
         let cell = row * self.grid.columns + column;
         let joints = self.heat.chunks_exact(self.grid.cells()).take(JOINTS);
         joints.filter_map(|map| map.get(cell)).copied().fold(f32::NEG_INFINITY, f32::max)
@@ -81,7 +81,7 @@ impl<'a> PartMaps<'a> {
         self.plane(self.heat, joint)
     }
 
-    /// x and y along a limb.
+    /// Returns x and y of the field of a limb.
     pub(super) fn field(&self, limb: usize) -> [Plane<'a>; 2] {
         [self.plane(self.fields, 2 * limb), self.plane(self.fields, 2 * limb + 1)]
     }
@@ -102,13 +102,13 @@ pub(super) struct Plane<'a> {
 }
 
 impl Plane<'_> {
-    /// The value of a cell; beyond the border that of the nearest.
+    /// Returns the value of a cell; beyond the border that of the nearest.
     pub(super) fn at(&self, x: isize, y: isize) -> f32 {
         let inside = |at: isize, count: usize| at.clamp(0, count as isize - 1) as usize;
         self.values[inside(y, self.rows) * self.columns + inside(x, self.columns)]
     }
 
-    /// Between the four cells around a place, in cells; beyond the border as at the border.
+    /// Interpolates between the four cells around a position in cells; beyond the border as at the border.
     pub(super) fn between(&self, [x, y]: [f32; 2]) -> f32 {
         let (x, right, left_part) = between(x, self.columns);
         let (y, lower, upper_part) = between(y, self.rows);
@@ -121,7 +121,7 @@ impl Plane<'_> {
     }
 }
 
-/// The cell before a place, the one after, and how far from the one to the other.
+/// Returns the cell before a position, the one after, and the fraction between them.
 fn between(place: f32, count: usize) -> (usize, usize, f32) {
     // The maximum of NaN and 0 is 0.
     let place = place.max(0.0).min((count - 1) as f32);

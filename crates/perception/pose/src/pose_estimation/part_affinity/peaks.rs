@@ -1,31 +1,32 @@
-//! Peaks of heat maps, between the cells.
+//! Peaks of heatmaps with subcell precision.
 
+use super::layout::JOINTS;
 use super::maps::{PartMaps, Plane};
-use super::{JOINTS, PartAffinity};
+use super::parameters::PartAffinity;
 
-/// A joint that somebody may have.
+/// A peak of a heatmap.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Peak {
-    /// In cells.
+    /// Position in cells.
     pub(super) place: [f32; 2],
     /// Height, 0..=1.
     pub(super) score: f32,
     pub(super) joint: usize,
 }
 
-/// Peaks of a joint that are looked at: their pairs are all scored.
+/// Maximum number of peaks per joint, whose pairs all get scores.
 const MOST: usize = 64;
 
-/// What is left of a peak in the nearest cell: exp(-0.33) of a Gaussian whose deviation is most of a stride, if the peak
-/// is in the middle of four.
+/// Height in the nearest cell relative to the peak: exp(-0.33) for a Gaussian with a standard deviation of most of a stride
+/// and its peak in the middle of four cells.
 const LEFT_IN_CELL: f32 = 0.7;
 
-/// Cells around a peak that its upsampling reads, on either side.
+/// Number of cells on either side of a peak that its upsampling reads.
 const REACH: usize = 2;
 const TAPS: usize = 2 * REACH + 1;
 const MOST_STEPS: usize = 2 * PartAffinity::MAX_UPSAMPLE_RATIO + 1;
 
-/// Fills `peaks`, those of each joint together, highest first; tells where those of each joint end.
+/// Fills `peaks`, joint by joint, highest first, and returns the end of each joint's peaks.
 pub(super) fn find(how: &PartAffinity, maps: &PartMaps<'_>, peaks: &mut Vec<Peak>) -> [usize; JOINTS] {
     peaks.clear();
     let upsampling = Upsampling::new(how.upsample_ratio);
@@ -51,7 +52,7 @@ pub(super) fn find(how: &PartAffinity, maps: &PartMaps<'_>, peaks: &mut Vec<Peak
     })
 }
 
-/// Brings the peaks that have no higher one within the radius to the front, and tells how many there are.
+/// Moves the peaks without a higher one within the radius to the front, and returns their number.
 fn thin_out(peaks: &mut [Peak], radius: f32) -> usize {
     let mut kept = 0;
     for at in 0..peaks.len() {
@@ -67,12 +68,13 @@ fn thin_out(peaks: &mut [Peak], radius: f32) -> usize {
 }
 
 impl Plane<'_> {
-    /// The cells that reach the threshold and are higher than the eight around; of equal ones the first.
+    /// Calls `found` for the cells that reach the threshold and are higher than the eight around; of equal ones for the
+    /// first.
     fn each_maximum(&self, threshold: f32, mut found: impl FnMut(usize, usize)) {
         for y in 0..self.rows {
             let row = &self.values[y * self.columns..(y + 1) * self.columns];
             for (x, value) in row.iter().copied().enumerate() {
-                // NaN does not reach it.
+                // NaN is below any threshold.
                 if value >= threshold && value.is_finite() && self.is_maximum(x, y, value) {
                     found(x, y);
                 }
@@ -93,16 +95,16 @@ impl Plane<'_> {
     }
 }
 
-/// Beside a peak maps are taken to be at least this high: painted ones end at a hundredth.
+/// Minimum value of maps around a peak, for the logarithm: painted ones end at a hundredth.
 const FLOOR: f32 = 0.01;
 
 /// Cubic convolution (Keys, 1981, a = -1/2) from one cell before to one cell after a cell, in steps.
 ///
-/// It is exact for parabolas, and the logarithm of a Gaussian is one: so logarithms are upsampled. The map itself would
-/// put a peak between two cells an eighth of a cell too near to one of them.
+/// It is exact for parabolas, and the logarithm of a Gaussian is one, so logarithms are upsampled. The map itself would
+/// shift a peak between two cells by an eighth of a cell towards one of them.
 struct Upsampling {
     ratio: usize,
-    /// Of the five cells around, for each step.
+    /// Weights of the five cells around, for each step.
     weights: [[f32; TAPS]; MOST_STEPS],
 }
 
@@ -117,7 +119,7 @@ impl Upsampling {
         Self { ratio, weights }
     }
 
-    /// The highest place, in cells, within a cell of `[x, y]`, and its height.
+    /// Returns the position of the maximum, in cells, within a cell of `[x, y]`, and its height.
     fn peak(&self, plane: &Plane<'_>, x: usize, y: usize) -> ([f32; 2], f32) {
         let steps = 2 * self.ratio + 1;
         let tap = |centre: usize, tap: usize| centre as isize + tap as isize - REACH as isize;
@@ -144,11 +146,11 @@ impl Upsampling {
         let ([column, row], height) = best;
         let inside = |at: usize| at > 0 && at + 1 < steps;
         let (dx, more_x) = match inside(column) {
-            true => summit(value(column - 1, row), height, value(column + 1, row)),
+            true => parabola_maximum(value(column - 1, row), height, value(column + 1, row)),
             false => (0.0, 0.0),
         };
         let (dy, more_y) = match inside(row) {
-            true => summit(value(column, row - 1), height, value(column, row + 1)),
+            true => parabola_maximum(value(column, row - 1), height, value(column, row + 1)),
             false => (0.0, 0.0),
         };
         let place = |cell: usize, step: usize, more: f32| {
@@ -158,9 +160,9 @@ impl Upsampling {
     }
 }
 
-/// Where the parabola through three values, of which the middle is the highest, is highest, in steps from the middle,
-/// and by how much it is higher there.
-fn summit(before: f32, middle: f32, after: f32) -> (f32, f32) {
+/// Returns the maximum of the parabola through three values, of which the middle one is the highest: its position in steps
+/// from the middle, and its height above the middle.
+fn parabola_maximum(before: f32, middle: f32, after: f32) -> (f32, f32) {
     let curvature = before - 2.0 * middle + after;
     if curvature >= 0.0 || !curvature.is_finite() {
         return (0.0, 0.0);

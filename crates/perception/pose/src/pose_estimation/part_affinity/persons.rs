@@ -1,26 +1,27 @@
-//! Persons grow from limbs.
+//! Assembly of persons from limbs.
 
 use opendr_engine::target::Keypoint;
 
+use super::layout::JOINTS;
 use super::limbs::Candidate;
 use super::maps::Grid;
 use super::peaks::Peak;
-use super::{JOINTS, Person};
+use super::person::Person;
 
-/// Persons in the making.
+/// Persons during the assembly.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Growing {
-    /// Whose each peak is.
+    /// Index of the person of each peak.
     owners: Vec<Option<usize>>,
-    /// The peaks of each person; one that went into another has none.
+    /// Peaks of each person; one that was merged into another has none.
     bodies: Vec<Body>,
 }
 
-/// The peak that is each joint.
+/// Index of the peak of each joint.
 type Body = [Option<usize>; JOINTS];
 
 impl Growing {
-    /// Takes the candidates in order; what would give a person two of a joint is left out.
+    /// Adds the candidates in order; one that would give a person a second joint of a kind is skipped.
     pub(super) fn grow(&mut self, peaks: &[Peak], candidates: &[Candidate]) {
         self.bodies.clear();
         self.owners.clear();
@@ -40,7 +41,7 @@ impl Growing {
         }
     }
 
-    /// Gives a peak to a body that has no such joint.
+    /// Gives a peak to a body without that joint.
     fn give(&mut self, peaks: &[Peak], peak: usize, body: usize) {
         let joint = &mut self.bodies[body][peaks[peak].joint];
         if joint.is_none() {
@@ -49,7 +50,7 @@ impl Growing {
         }
     }
 
-    /// Makes one body of two that have no joint both.
+    /// Merges two bodies without a common joint.
     fn join(&mut self, body: usize, other: usize) {
         let twice = |joint: usize| self.bodies[body][joint].is_some() && self.bodies[other][joint].is_some();
         if (0..JOINTS).any(twice) {
@@ -64,7 +65,7 @@ impl Growing {
         }
     }
 
-    /// Fills `persons` with the bodies of enough joints, best first.
+    /// Fills `persons` with the bodies of enough joints, highest score first.
     pub(super) fn finish(&self, min_joints: usize, peaks: &[Peak], grid: &Grid, persons: &mut Vec<Person>) {
         persons.clear();
         let enough = |body: &&Body| body.iter().flatten().count() >= min_joints.max(1);

@@ -1,5 +1,5 @@
 use opendr_engine::ErrorKind;
-use opendr_engine::target::Skeleton;
+use opendr_engine::target::{Keypoint, Skeleton};
 
 use super::*;
 
@@ -31,7 +31,7 @@ fn body([left, top]: [f32; 2], height: f32) -> [Keypoint; JOINTS] {
     BODY.map(|[x, y]| Keypoint { x: left + height * x, y: top + height * y, confidence: 1.0 })
 }
 
-/// The same with arms up.
+/// Returns the person with raised arms.
 fn waving(mut person: [Keypoint; JOINTS], height: f32) -> [Keypoint; JOINTS] {
     for (joint, up) in [(3, 0.05), (4, 0.2), (6, 0.05), (7, 0.2)] {
         person[joint].y = person[1].y - up * height;
@@ -42,18 +42,18 @@ fn waving(mut person: [Keypoint; JOINTS], height: f32) -> [Keypoint; JOINTS] {
 fn painted(persons: &[[Keypoint; JOINTS]]) -> [Vec<f32>; 2] {
     let mut maps = [HEAT_MAPS, FIELDS].map(|count| vec![f32::NAN; count * GRID.cells()]);
     let [heat, fields] = &mut maps;
-    Painter::default().paint(GRID, persons, heat, fields);
+    MapEncoder::default().encode(GRID, persons, heat, fields);
     maps
 }
 
 fn decoded(how: &PartAffinity, [heat, fields]: &[Vec<f32>; 2]) -> Vec<Person> {
     let mut persons = Vec::new();
     let maps = PartMaps::new(GRID, heat, fields).unwrap();
-    how.decode(&maps, &mut Memory::default(), &mut persons);
+    how.decode(&maps, &mut DecodeScratch::default(), &mut persons);
     persons
 }
 
-/// Each person is found once, every joint within `tolerance` pixels, and nobody else.
+/// Checks that each person is detected once, every joint within `tolerance` pixels, without others.
 fn check(persons: &[[Keypoint; JOINTS]], tolerance: f32) {
     let mut found = decoded(&PartAffinity::default(), &painted(persons));
     assert_eq!(found.len(), persons.len());
@@ -76,7 +76,7 @@ fn limbs_are_the_bones_and_two() {
 }
 
 #[test]
-fn a_painted_person_is_found_where_it_is() {
+fn a_painted_person_is_decoded_at_its_position() {
     for shift in 0..8 {
         let place = [150.0 + shift as f32, 10.0 + 1.7 * shift as f32];
         check(&[body(place, 220.0)], 0.7);
@@ -92,7 +92,7 @@ fn persons_side_by_side() {
 #[test]
 fn persons_that_overlap() {
     let small = waving(body([210.0, 60.0], 160.0), 160.0);
-    // Limbs cross, joints lie beside those of the other.
+    // Limbs cross, joints are beside those of the other.
     check(&[body([180.0, 15.0], 230.0), small], 2.0);
     check(&[body([160.0, 20.0], 220.0), body([188.0, 24.0], 220.0)], 2.0);
 }
@@ -103,7 +103,7 @@ fn hidden_parts_leave_the_rest_together() {
     for hidden in [1, 4, 9, 10, 12, 13, 8, 11] {
         person[hidden] = Keypoint::MISSING;
     }
-    // Without neck, shoulders hang on ears.
+    // Without a neck, ears connect the shoulders.
     check(&[person], 0.7);
     let mut cut = body([60.0, 20.0], 220.0);
     (8..14).for_each(|joint| cut[joint] = Keypoint::MISSING);
@@ -113,7 +113,7 @@ fn hidden_parts_leave_the_rest_together() {
 }
 
 #[test]
-fn places_between_cells_are_found_at_every_ratio() {
+fn positions_between_cells_are_decoded_at_every_ratio() {
     let maps = painted(&[body([151.3, 12.7], 220.0)]);
     for upsample_ratio in [1, 2, 4, 8, 1000] {
         let found = decoded(&PartAffinity { upsample_ratio, ..PartAffinity::default() }, &maps);
@@ -125,7 +125,7 @@ fn places_between_cells_are_found_at_every_ratio() {
 }
 
 #[test]
-fn few_joints_are_nobody() {
+fn few_joints_are_no_person() {
     let mut person = [Keypoint::MISSING; JOINTS];
     let whole = body([150.0, 20.0], 200.0);
     person[1] = whole[1];
@@ -154,7 +154,7 @@ fn background_is_the_rest() {
 }
 
 #[test]
-fn maps_of_nonsense_do_no_harm() {
+fn invalid_maps_do_not_panic() {
     for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, 1.0] {
         let maps = [HEAT_MAPS, FIELDS].map(|count| vec![value; count * GRID.cells()]);
         assert!(decoded(&PartAffinity::default(), &maps).len() <= 64);
@@ -185,10 +185,10 @@ fn persons_far_outside_are_painted_nowhere() {
 }
 
 #[test]
-fn memory_is_used_again() {
+fn memory_is_reused() {
     let maps = painted(&[body([60.0, 20.0], 200.0), body([250.0, 20.0], 200.0)]);
     let maps = PartMaps::new(GRID, &maps[0], &maps[1]).unwrap();
-    let (mut memory, mut persons) = (Memory::default(), Vec::new());
+    let (mut memory, mut persons) = (DecodeScratch::default(), Vec::new());
     let how = PartAffinity::default();
     how.decode(&maps, &mut memory, &mut persons);
     let before = (persons.as_ptr(), persons.clone());

@@ -1,4 +1,4 @@
-//! How it trains.
+//! Training of the patch network.
 
 use opendr_datasets::{OpenOptions, Problems, format_of};
 use opendr_engine::dataset::{DatasetIterator, DatasetRef};
@@ -7,17 +7,17 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, Statistics, ValueType};
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{OptimizerKind, TrainingParams, begin, fit_learner};
+use opendr_training::{OptimizerKind, TrainingParams, fit_learner, seeded_device};
 
 use super::network::PatchNetwork;
 use super::objective::Patches;
 use super::{HighResolutionPatches, HighResolutionPatchesParams};
 
-/// How a user may train it: on patches of two classes, of which class 0 is the background, or on pictures with boxes around what
-/// is looked for.
+/// Training parameters of [`HighResolutionPatches`]: it trains on patches of two classes, of which class 0 is the background,
+/// or on images with boxes around the objects.
 #[derive(Debug, Clone, Params)]
 pub struct HighResolutionPatchesFitParams {
-    /// What every training has.
+    /// Parameters common to all trainings.
     #[param(
         flatten,
         epochs = 100,
@@ -29,7 +29,7 @@ pub struct HighResolutionPatchesFitParams {
         optimizer = OptimizerKind::Adam
     )]
     pub training: TrainingParams,
-    /// At most so many patches with something and as many without are taken of a picture with boxes.
+    /// Maximum number of patches with an object per image with boxes, and of patches without.
     #[param(default = 8, range = 1..=1000)]
     pub patches: usize,
 }
@@ -47,22 +47,22 @@ impl Fit for HighResolutionPatches {
     ) -> Result<Statistics> {
         let HighResolutionPatchesFitParams { training, patches } = fit_params;
         let dataset = open(dataset, job)?;
-        let network = PatchNetwork::new(params.architecture, &begin(job, training)?);
+        let network = PatchNetwork::new(params.architecture, &seeded_device(job, training)?);
         let network = network_from_base(network, base)?;
         let objective = Patches { params, most: *patches };
         fit_learner::<Self, _>(&objective, network, params, training, &*dataset, val_dataset, job)
     }
 }
 
-/// The data set with classes of pictures where it has them, else with boxes.
+/// Opens the data set with a category per image where it has them, else with boxes.
 fn open<'a>(dataset: DatasetRef<'a>, job: &FitJob<'_>) -> Result<Box<dyn DatasetIterator + 'a>> {
     let external = match dataset {
         DatasetRef::Iterator(dataset) => return Ok(Box::new(dataset)),
         DatasetRef::External(external) => external,
     };
     let has = format_of(external)?.targets;
-    let wanted = [ValueType::Category, ValueType::BoundingBoxList];
-    let target = wanted.into_iter().find(|wanted| has.contains(wanted));
+    let accepted = [ValueType::Category, ValueType::BoundingBoxList];
+    let target = accepted.into_iter().find(|accepted| has.contains(accepted));
     let problems = if job.skip_broken { Problems::skipping() } else { Problems::strict() };
     opendr_datasets::open(external, &OpenOptions { split: None, target }, &problems)
 }

@@ -1,8 +1,8 @@
-//! A small network without dense layers that learns from patches and looks at whole pictures of 720 or 1080 lines.
+//! A small fully convolutional network that trains on patches and runs on whole images of 720 or 1080 lines.
 //!
 //! After M. Tzelepi and A. Tefas, "Class-Specific Discriminant Regularization in Real-Time Deep CNN Models for Binary
-//! Classification Problems", Neural Processing Letters 2020. It tells a patch from the background; over a whole picture, it does
-//! so at every eighth pixel at the cost of one pass.
+//! Classification Problems", Neural Processing Letters 2020. The network distinguishes a patch with an object from the
+//! background; on a whole image, it does so at every eighth pixel in one pass.
 
 #[cfg(feature = "training")]
 mod fit;
@@ -20,15 +20,15 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes, Heatmap};
 use opendr_engine::{Device, Error, Result, Task};
-use opendr_perception_common::category_scores::category_of_two;
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::category_scores::binary_category;
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_vision::Preprocess;
 
 #[cfg(feature = "training")]
 pub use fit::HighResolutionPatchesFitParams;
 
 opendr_engine::choices! {
-    /// The network, by the pictures that it is meant for.
+    /// Network architecture, by the resolution of the images.
     pub enum PatchArchitecture {
         /// Patches of 64 pixels.
         Vgg720p = "VGG_720p",
@@ -38,7 +38,7 @@ opendr_engine::choices! {
 }
 
 impl PatchArchitecture {
-    /// Side of a patch, pixels.
+    /// Returns the side of a patch in pixels.
     pub fn side(self) -> usize {
         match self {
             Self::Vgg720p => 64,
@@ -47,21 +47,21 @@ impl PatchArchitecture {
     }
 }
 
-/// What a user may set.
+/// Parameters of [`HighResolutionPatches`].
 #[derive(Debug, Clone, Params)]
 pub struct HighResolutionPatchesParams {
-    /// The network that is trained; a loaded model is of the one it was trained as.
+    /// Architecture of the network that is trained; a loaded model has its own.
     pub architecture: PatchArchitecture,
 }
 
-/// What is told of a picture.
+/// Prediction for an image.
 #[derive(Default, Targets)]
 pub struct HighResolutionPatchesTargets {
-    /// Probabilities `[rows, columns]`: that of row `y` and column `x` is of the square patch whose left-top corner is
-    /// (8x, 8y).
+    /// Probabilities `[rows, columns]`: that of row `y` and column `x` is of the square patch whose top left corner is (8x,
+    /// 8y).
     pub map: Heatmap,
-    /// Class 1 where one of the patches is rather that than class 0, by the probability of the best; of a picture of a patch's
-    /// size its class.
+    /// Class 1 where at least one patch has a probability above 0.5, with that of the best patch, else class 0. For an image of
+    /// the size of a patch, the class of the patch.
     pub category: Category,
 }
 
@@ -69,12 +69,12 @@ pub struct HighResolutionPatchesTargets {
 pub struct HighResolutionPatches {
     params: HighResolutionPatchesParams,
     classes: Classes,
-    network: PictureNetwork,
+    network: ImageNetwork,
 }
 
-/// The network's output: logits `[1, 2, rows, columns]`, of what is not and what is looked for.
+/// Output of the network: logits `[1, 2, rows, columns]` of background and object.
 const LOGITS: &str = "logits";
-/// Levels 0..=255 become -1..=1.
+/// Divisor that maps levels 0..=255 to -1..=1.
 const LEVEL: f32 = 127.5;
 
 fn preprocess(side: usize) -> Preprocess {
@@ -85,7 +85,7 @@ impl Learner for HighResolutionPatches {
     const SPEC: Spec = Spec::new("binary_high_resolution", Task::BinaryHighResolution)
         .class("BinaryHighResolutionLearner")
         .about(
-            "Tells where a picture of full high definition shows what it has learned to look for; it trains.",
+            "A small convolutional network detects where a high-resolution image shows the trained class; trainable.",
         );
     type Params = HighResolutionPatchesParams;
     type Input<'a> = &'a Image;
@@ -93,7 +93,7 @@ impl Learner for HighResolutionPatches {
     type State = ();
 
     fn load(model: &Model, params: HighResolutionPatchesParams, device: Device) -> Result<Self> {
-        let network = PictureNetwork::open(model, device, |_| preprocess(params.architecture.side()))?;
+        let network = ImageNetwork::open(model, device, |_| preprocess(params.architecture.side()))?;
         network.output(LOGITS)?;
         Ok(Self { params, classes: model.classes().clone(), network })
     }
@@ -116,16 +116,19 @@ impl Learner for HighResolutionPatches {
         image: &Image,
         HighResolutionPatchesTargets { map, category }: &mut HighResolutionPatchesTargets,
     ) -> Result<()> {
-        // What is smaller than a patch is stretched to one.
+        // Images smaller than a patch are stretched to one.
         let side = self.params.architecture.side();
         let size = [image.width(), image.height()].map(|length| length.max(side));
         self.network.run_sized(image.view(), size, |outputs, _| {
             let [logits] = outputs else {
-                return Err(Error::format(format!("{} outputs instead of one map", outputs.len())));
+                return Err(Error::format(format!(
+                    "the network has {} outputs instead of one map",
+                    outputs.len()
+                )));
             };
             let &[1, 2, rows, columns] = logits.shape() else {
                 return Err(Error::format(format!(
-                    "a map of {:?} instead of [1, 2, rows, columns]",
+                    "the network returns a map of shape {:?} instead of [1, 2, rows, columns]",
                     logits.shape()
                 )));
             };
@@ -137,7 +140,7 @@ impl Learner for HighResolutionPatches {
             }
             let best = scores.iter().copied().fold(0.0, f32::max);
             map.classes.clone_from(&self.classes);
-            category_of_two(category, best > 0.5, best, &self.classes);
+            binary_category(category, best > 0.5, best, &self.classes);
             Ok(())
         })
     }

@@ -1,4 +1,4 @@
-//! Four convolutions.
+//! The trained network: four convolutions.
 
 use burn::module::Module;
 use burn::nn::conv::{Conv2d, Conv2dConfig};
@@ -8,8 +8,8 @@ use burn::tensor::{Device, Tensor};
 
 use super::PatchArchitecture;
 
-/// Three convolutions that halve the picture and one as large as what is left of a patch. None pads, so that a patch gives
-/// one answer, the same alone and in a picture.
+/// Three convolutions of stride 2 and one with the size of the remaining patch. None is padded, so the output for a patch is
+/// the same alone and within an image.
 #[derive(Module, Debug)]
 pub struct PatchNetwork {
     first: Block,
@@ -25,7 +25,7 @@ struct Block {
 }
 
 impl PatchNetwork {
-    /// Of an architecture.
+    /// Creates a network of an architecture.
     pub fn new(architecture: PatchArchitecture, device: &Device) -> Self {
         let width = match architecture {
             PatchArchitecture::Vgg720p => 16,
@@ -41,7 +41,7 @@ impl PatchNetwork {
         }
     }
 
-    /// `[batch, 3, height, width]` to logits `[batch, 2, rows, columns]`, one row and column for a patch.
+    /// Returns logits `[batch, 2, rows, columns]` of `[batch, 3, height, width]`, one row and column for a patch.
     pub fn forward(&self, pictures: Tensor<4>) -> Tensor<4> {
         let features = self.third.forward(self.second.forward(self.first.forward(pictures)));
         self.answer.forward(features)

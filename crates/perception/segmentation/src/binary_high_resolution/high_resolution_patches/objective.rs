@@ -10,8 +10,8 @@ use opendr_engine::model::Manifest;
 use opendr_engine::params::Params as _;
 use opendr_engine::target::BoundingBoxList;
 use opendr_engine::{Error, Result, Value};
+use opendr_perception_common::dynamic_sides::with_dynamic_sides;
 use opendr_perception_common::labelled::{LabelledBatch, class_of};
-use opendr_perception_common::open_sides::open_sides;
 use opendr_perception_common::regions::Region;
 use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{Input, onnx};
@@ -21,10 +21,10 @@ use opendr_vision::Preprocess;
 use super::network::PatchNetwork;
 use super::{HighResolutionPatches, HighResolutionPatchesParams, LOGITS, preprocess};
 
-/// What the training minimises: the cross-entropy over patches.
+/// Training objective: cross-entropy over patches.
 pub(super) struct Patches<'a> {
     pub params: &'a HighResolutionPatchesParams,
-    /// Patches of each class from a picture, at most.
+    /// Maximum number of patches of each class per image.
     pub most: usize,
 }
 
@@ -54,14 +54,14 @@ impl Objective for Patches<'_> {
         Ok(Container {
             manifest,
             files: vec![
-                ("model.onnx".to_owned(), open_sides(&model)?),
+                ("model.onnx".to_owned(), with_dynamic_sides(&model)?),
                 (TRAINABLE.to_owned(), bytes_from_network(network)?),
             ],
         })
     }
 }
 
-/// Makes patches of samples.
+/// Cuts the patches of samples into batches.
 pub(super) struct PatchBatches {
     preprocess: Preprocess,
     side: usize,
@@ -78,7 +78,7 @@ impl Collate for PatchBatches {
     fn add(&self, batch: &mut LabelledBatch, sample: Sample) -> Result<()> {
         let Some(Value::Image(image)) = sample.data.first() else {
             return Err(Error::invalid_input(
-                "the sample has no picture; give patches, or pictures with boxes",
+                "the sample has no image; the samples must be patches, or images with boxes",
             ));
         };
         match &sample.target {
@@ -99,14 +99,14 @@ impl Collate for PatchBatches {
 impl PatchBatches {
     fn push(&self, batch: &mut LabelledBatch, image: &Image, patch: &Region, class: i64) -> Result<()> {
         let view = image.view().crop(patch.x, patch.y, patch.width, patch.height);
-        let view = view.ok_or_else(|| Error::internal("a patch beside its picture"))?;
+        let view = view.ok_or_else(|| Error::internal("a patch lies outside of its image"))?;
         let mut input = vec![0.0; self.preprocess.len()];
         self.preprocess.run_into(view, &mut input)?;
         batch.push(&input, class);
         Ok(())
     }
 
-    /// Patches around what boxes have, and others, drawn by a number that the picture fixes, that meet no box.
+    /// Returns patches around the boxes, and random ones that overlap no box; the image determines the random seed.
     pub(super) fn places(&self, image: &Image, boxes: &BoundingBoxList) -> Vec<(i64, Region)> {
         let size = [image.width(), image.height()];
         let [width, height] = size.map(|length| length.min(self.side));
@@ -123,12 +123,12 @@ impl PatchBatches {
             let [x, y] = [region.x + region.width / 2, region.y + region.height / 2];
             places.push((1, at(x.saturating_sub(width / 2), y.saturating_sub(height / 2))));
         }
-        let wanted = places.len().max(1);
-        let mut random = Random::at([size[0] as u64, size[1] as u64, regions.len() as u64]);
-        for _ in 0..8 * wanted {
+        let count = places.len().max(1);
+        let mut random = Random::from_key([size[0] as u64, size[1] as u64, regions.len() as u64]);
+        for _ in 0..8 * count {
             let patch = at(random.below(size[0]), random.below(size[1]));
             let is_free = regions.iter().all(|region| !region.overlaps(&patch));
-            if is_free && places.iter().filter(|(class, _)| *class == 0).count() < wanted {
+            if is_free && places.iter().filter(|(class, _)| *class == 0).count() < count {
                 places.push((0, patch));
             }
         }

@@ -3,13 +3,13 @@ use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Category, HeatmapValues};
 use opendr_engine::{Random, Value};
 use opendr_perception_common::regions::Region;
+use opendr_perception_testing::learner_checks::check_trained_learner;
 use opendr_perception_testing::overfit::losses_on_one_batch;
-use opendr_perception_testing::promises::check;
 
 use super::objective::{PatchBatches, Patches};
 use super::*;
 
-/// Noise; with a bright ring about each of `places`, 40 pixels across.
+/// Returns noise with a bright ring of 40 pixels around each of `places`.
 fn picture(seed: u64, [width, height]: [usize; 2], places: &[[usize; 2]]) -> Image {
     let mut random = Random::new(seed);
     let samples = (0..width * height).flat_map(|at| {
@@ -23,7 +23,7 @@ fn picture(seed: u64, [width, height]: [usize; 2], places: &[[usize; 2]]) -> Ima
     Image::from_rgb8(samples.collect(), width, height).unwrap()
 }
 
-/// Patches, every other with a ring.
+/// Patches; every other one has a ring.
 struct Rings;
 
 impl Dataset for Rings {}
@@ -42,7 +42,7 @@ impl DatasetIterator for Rings {
 }
 
 #[test]
-fn learns_one_batch_by_heart() {
+fn overfits_one_batch() {
     let params = HighResolutionPatchesParams::default();
     let objective = Patches { params: &params, most: 4 };
     let samples = (0..Rings.len()).map(|index| Rings.get(index).unwrap()).collect();
@@ -53,7 +53,7 @@ fn learns_one_batch_by_heart() {
 }
 
 #[test]
-fn patches_are_where_boxes_are_and_where_not() {
+fn patches_are_cut_at_boxes_and_outside_of_them() {
     let params = HighResolutionPatchesParams::default();
     let batches: PatchBatches =
         opendr_training::Objective::collate(&Patches { params: &params, most: 4 }).unwrap();
@@ -71,7 +71,7 @@ fn patches_are_where_boxes_are_and_where_not() {
 }
 
 #[test]
-fn fit_makes_what_infer_loads_and_finds_rings_in_large_pictures() {
+fn infer_loads_the_model_of_fit_and_detects_rings_in_large_images() {
     let output = std::env::temp_dir().join(format!("opendr-patches-{}", std::process::id()));
     std::fs::remove_dir_all(&output).ok();
     let mut fit_params = HighResolutionPatchesFitParams::default();
@@ -87,7 +87,7 @@ fn fit_makes_what_infer_loads_and_finds_rings_in_large_pictures() {
     let image = picture(77, [640, 360], &[[200, 120]]);
     let HighResolutionPatchesTargets { map, category } = handle.infer(&image).unwrap();
     assert_eq!(category.class, 1);
-    // (640 - 64) / 8 + 1, but for the ends.
+    // (640 - 64) / 8 + 1, except for the borders.
     let (rows, columns) = (map.shape()[0], map.shape()[1]);
     assert!((36..=38).contains(&rows) && (71..=73).contains(&columns), "{rows}x{columns}");
     let HeatmapValues::Scores(scores) = map.values() else { panic!("no scores") };
@@ -99,6 +99,6 @@ fn fit_makes_what_infer_loads_and_finds_rings_in_large_pictures() {
     let tiny = handle.infer(&picture(3, [1, 1], &[])).unwrap();
     assert_eq!(tiny.map.shape(), [1, 1]);
     let calls = (0..3).map(|index| vec![Value::from(picture(index, [80, 70], &[[40, 40]]))]).collect();
-    check::<HighResolutionPatches>(&job.model(), &output.join("scratch"), calls);
+    check_trained_learner::<HighResolutionPatches>(&job.model(), &output.join("scratch"), calls);
     std::fs::remove_dir_all(&output).ok();
 }

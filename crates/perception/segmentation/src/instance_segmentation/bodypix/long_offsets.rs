@@ -1,4 +1,4 @@
-//! Which person a pixel belongs to: the one whose joints its long offsets point at.
+//! Assignment of pixels to persons by long offsets, which point from a pixel to the joints of its person.
 //!
 //! Papandreou et al., PersonLab, ECCV 2018, section 3.3.
 
@@ -6,24 +6,24 @@ use opendr_engine::target::Keypoint;
 use opendr_perception_common::part_tree::Person;
 
 const JOINTS: usize = 17;
-/// How often a place is pulled to where its own cell points.
+/// Number of refinements of a joint position by the offset at its own cell.
 const REFINEMENTS: usize = 2;
-/// Joints of a person below this score do not count.
+/// Minimum score of a joint.
 const LEAST_SCORE: f32 = 0.3;
 
-/// Long offsets over a grid of cells, in pixels of the network's input.
+/// Long offsets on a grid of cells, in pixels of the network's input.
 #[derive(Clone, Copy)]
 pub(super) struct LongOffsets<'a> {
-    /// Cells down and across.
+    /// Rows and columns of cells.
     pub grid: [usize; 2],
-    /// Pixels from cell to cell.
+    /// Distance of cells in pixels.
     pub stride: f32,
-    /// `[rows, columns, 34]`: 17 y, 17 x, from a cell to the joints of its person.
+    /// Offsets `[rows, columns, 34]`, 17 y then 17 x, from a cell to the joints of its person.
     pub values: &'a [f32],
 }
 
 impl LongOffsets<'_> {
-    /// Which of the persons the place belongs to; `None` when there is none, or none whose joints are known.
+    /// Returns the index of the person to which the place belongs; `None` without a person that has known joints.
     pub fn owner(&self, place: [f32; 2], persons: &[Person]) -> Option<usize> {
         if persons.len() < 2 {
             return (!persons.is_empty()).then_some(0);
@@ -39,16 +39,16 @@ impl LongOffsets<'_> {
         best.1
     }
 
-    /// Where the place sees a joint of its person.
+    /// Returns the position of a joint that the offsets at a place point to.
     fn joint(&self, [x, y]: [f32; 2], joint: usize) -> [f32; 2] {
         let [across, down] = self.offset(self.cell_at([x, y]), joint);
-        let mut seen = [x + across, y + down];
+        let mut predicted = [x + across, y + down];
         for _ in 0..REFINEMENTS {
-            let cell = self.cell_at(seen);
+            let cell = self.cell_at(predicted);
             let [across, down] = self.offset(cell, joint);
-            seen = [cell[1] as f32 * self.stride + across, cell[0] as f32 * self.stride + down];
+            predicted = [cell[1] as f32 * self.stride + across, cell[0] as f32 * self.stride + down];
         }
-        seen
+        predicted
     }
 
     fn offset(&self, [row, column]: [usize; 2], joint: usize) -> [f32; 2] {
@@ -56,17 +56,17 @@ impl LongOffsets<'_> {
         [cell[JOINTS + joint], cell[joint]]
     }
 
-    /// The cell nearest to a point; NaN goes to the first.
+    /// Returns the cell nearest to a point; the first for NaN.
     fn cell_at(&self, [x, y]: [f32; 2]) -> [usize; 2] {
         let nearest = |at: f32, count: usize| ((at / self.stride).round().max(0.0) as usize).min(count - 1);
         [nearest(y, self.grid[0]), nearest(x, self.grid[1])]
     }
 }
 
-/// Mean squared distance over the joints that are known; infinite without any.
-fn distance(seen: &[[f32; 2]; JOINTS], joints: &[Keypoint; JOINTS]) -> f32 {
+/// Returns the mean squared distance over the known joints; infinite without any.
+fn distance(predicted: &[[f32; 2]; JOINTS], joints: &[Keypoint; JOINTS]) -> f32 {
     let (mut sum, mut count) = (0.0, 0.0);
-    for ([x, y], joint) in seen.iter().zip(joints) {
+    for ([x, y], joint) in predicted.iter().zip(joints) {
         if joint.confidence > LEAST_SCORE {
             sum += (x - joint.x).powi(2) + (y - joint.y).powi(2);
             count += 1.0;
@@ -84,7 +84,7 @@ mod tests {
         Person { joints: std::array::from_fn(joint), score: 0.9 }
     }
 
-    /// The left half of the grid points at a person at x = 32, the right half at one at x = 128.
+    /// Returns offsets that point at a person at x = 32 in the left half of the grid, and at one at x = 128 in the right half.
     fn offsets() -> Vec<f32> {
         let mut values = Vec::new();
         for row in 0..11 {
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn each_half_goes_to_its_person() {
+    fn each_half_is_assigned_to_its_person() {
         let values = offsets();
         let offsets = LongOffsets { grid: [11, 11], stride: 16.0, values: &values };
         let persons = [person(32.0), person(128.0)];
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn nonsense_belongs_to_nobody() {
+    fn invalid_offsets_are_assigned_to_no_person() {
         let values = vec![f32::NAN; 11 * 11 * 34];
         let offsets = LongOffsets { grid: [11, 11], stride: 16.0, values: &values };
         assert_eq!(offsets.owner([1.0, 1.0], &[person(1.0), person(2.0)]), None);

@@ -1,7 +1,8 @@
-//! BodyPix: the pixels of each person.
+//! BodyPix: instance segmentation of persons.
 //!
-//! Papandreou et al., PersonLab, ECCV 2018; MobileNetV1 with half the channels, Google, Apache-2.0. One map tells persons from
-//! all else; poses, decoded as PoseNet's, tell the persons apart, and each pixel goes to the one whose joints it points at.
+//! Papandreou et al., PersonLab, ECCV 2018; MobileNetV1 with half the channels, Google, Apache-2.0. One map separates persons
+//! from the background; poses, decoded as those of PoseNet, distinguish the persons, and each pixel is assigned to the person
+//! whose joints its long offsets point at.
 
 mod long_offsets;
 
@@ -12,32 +13,32 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes, Name};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::TensorView;
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_perception_common::part_tree::{PartMaps, PartTree, Peak, Person};
-use opendr_perception_common::picture_network::PictureNetwork;
 use opendr_vision::{InputGeometry, Preprocess};
 
 use super::OwnerMap;
 use long_offsets::LongOffsets;
 
-/// What a user may set.
+/// Parameters of [`BodyPix`].
 #[derive(Debug, Clone, Params)]
 pub struct BodyPixParams {
-    /// Persons below this score are dropped.
+    /// Minimum score of a person.
     #[param(default = 0.2, range = 0.0..=1.0, live)]
     pub threshold: f32,
-    /// Pixels from this score on belong to a person.
+    /// Minimum score of a pixel of a person.
     #[param(default = 0.5, range = 0.01..=0.99, live)]
     pub mask_threshold: f32,
-    /// Joints below this score start no person.
+    /// Minimum score of a joint from which a person is decoded.
     #[param(default = 0.4, range = 0.01..=0.99, live)]
     pub peak_threshold: f32,
-    /// Joints of one kind nearer than this belong to one person, in pixels of the network's input.
+    /// Radius within which joints of one kind belong to one person, in pixels of the network's input.
     #[param(default = 30.0, range = 0.0..=200.0, unit = "px", live)]
     pub nms_radius: f32,
-    /// At most this many persons a picture.
+    /// Maximum number of persons per image.
     #[param(default = 20, range = 1..=100, live)]
     pub max_detections: usize,
-    /// Longer side of the network's input. Larger finds smaller persons.
+    /// Longer side of the network's input. A larger one detects smaller persons.
     #[param(default = 513, range = 65..=1537, unit = "px", live)]
     pub resolution: usize,
 }
@@ -46,39 +47,39 @@ pub struct BodyPixParams {
 pub struct BodyPix {
     params: BodyPixParams,
     classes: Classes,
-    network: PictureNetwork,
-    /// Segments, heat maps, short offsets, both displacements, long offsets.
+    network: ImageNetwork,
+    /// Indices of the outputs: segments, heatmaps, short offsets, both displacements, long offsets.
     outputs: [usize; 6],
     work: Pool<Work>,
 }
 
 #[derive(Default)]
 struct Work {
-    /// Maps of which each lies in one piece, as the decoder of poses wants them.
+    /// Maps with the channel as first axis, the layout of the pose decoder.
     planes: [Vec<f32>; 4],
     peaks: Vec<Peak>,
     persons: Vec<Person>,
-    /// The owner of each square of [`GRAIN`] pixels of the input; 0 for none.
+    /// Owner of each square of [`GRAIN`] pixels of the input; 0 for none.
     squares: Vec<u8>,
     across: Vec<Across>,
     owners: OwnerMap,
 }
 
-/// Where a column of the picture is in the network's cells.
+/// Position of an image column on the network's cells.
 #[derive(Debug, Clone, Copy)]
 struct Across {
     cell: usize,
     next: usize,
-    /// How far it is to the next.
+    /// Distance to the next cell, as a share.
     share: f32,
     square: usize,
 }
 
-/// Distance of the network's cells, pixels of its input.
+/// Distance of the network's cells in pixels of its input.
 const STRIDE: usize = 16;
-/// Pixels of the input that are given to one person together, along each side.
+/// Side of the squares of input pixels that are assigned to one person.
 const GRAIN: usize = 4;
-/// The network's outputs, and how many numbers they have for a cell.
+/// Outputs of the network, and their number of channels.
 const OUTPUTS: [(&str, usize); 6] = [
     ("segments", 1),
     ("heatmaps", 17),
@@ -91,14 +92,14 @@ const OUTPUTS: [(&str, usize); 6] = [
 impl Learner for BodyPix {
     const SPEC: Spec = Spec::new("bodypix", Task::InstanceSegmentation)
         .class("BodyPixLearner")
-        .about("BodyPix finds persons with the pixels of each.");
+        .about("BodyPix detects persons with a mask each.");
     type Params = BodyPixParams;
     type Input<'a> = &'a Image;
     type Target = BoundingBoxList;
     type State = ();
 
     fn load(model: &Model, params: BodyPixParams, device: Device) -> Result<Self> {
-        let network = PictureNetwork::open(model, device, |_| {
+        let network = ImageNetwork::open(model, device, |_| {
             Preprocess::new(STRIDE + 1, STRIDE + 1).layout(Layout::Hwc).normalise([127.5; 3], [127.5; 3])
         })?;
         let mut outputs = [0; 6];
@@ -123,7 +124,7 @@ impl Learner for BodyPix {
     fn infer_into(&self, _: &mut (), image: &Image, found: &mut BoundingBoxList) -> Result<()> {
         found.classes.clone_from(&self.classes);
         found.boxes.clear();
-        self.look(image, |owners, persons| {
+        self.segment(image, |owners, persons| {
             for (number, person) in (1..).zip(persons) {
                 let score = person.score.min(1.0);
                 found.boxes.extend(owners.bounding_box(number, Name::Index(0), score)?);
@@ -135,19 +136,19 @@ impl Learner for BodyPix {
 }
 
 impl BodyPix {
-    /// Finds the persons in a picture and shows them to `each`, with the map of whose pixels are whose: the first person's have
-    /// the number 1. Returns what `each` makes of them.
+    /// Detects the persons in an image and passes them to `each`, with the map from pixels to persons, where the first person
+    /// has the number 1. Returns the value of `each`.
     ///
     /// # Errors
-    /// `Format` when the network answers maps of other sizes; what kept it from running.
-    pub fn look<T>(&self, image: &Image, each: impl FnOnce(&OwnerMap, &[Person]) -> T) -> Result<T> {
+    /// `Format` when the network returns maps of other sizes; the errors of the runtime.
+    pub fn segment<T>(&self, image: &Image, each: impl FnOnce(&OwnerMap, &[Person]) -> T) -> Result<T> {
         let Work { planes, peaks, persons, squares, across, owners } = &mut *self.work.take();
         let params = &self.params;
         let size = [image.width(), image.height()];
         let tree = PartTree {
             peak_threshold: params.peak_threshold,
             radius: params.nms_radius,
-            most: params.max_detections,
+            max_persons: params.max_detections,
         };
         self.network.run_sized(image.view(), input_size(size, params.resolution), |outputs, geometry| {
             let ([rows, columns], maps) = self.maps(outputs)?;
@@ -174,12 +175,12 @@ impl BodyPix {
         Ok(each(owners, persons))
     }
 
-    /// Rows and columns of the network's cells, and its outputs.
+    /// Returns rows and columns of the network's cells, and its outputs.
     fn maps<'a>(&self, outputs: &[TensorView<'a>]) -> Result<([usize; 2], [&'a [f32]; 6])> {
         let [1, rows, columns, 1] = *outputs[self.outputs[0]].shape() else {
             let shape = outputs[self.outputs[0]].shape();
             return Err(Error::format(format!(
-                "BodyPix's segments are [1, rows, columns, 1], not {shape:?}"
+                "the output segments of BodyPix must be [1, rows, columns, 1], not {shape:?}"
             )));
         };
         let mut maps = [&[][..]; 6];
@@ -187,7 +188,7 @@ impl BodyPix {
             *map = outputs[output].values::<f32>()?;
             if rows * columns == 0 || map.len() != rows * columns * channels {
                 return Err(Error::format(format!(
-                    "{name} has {} numbers instead of {channels} for each of {rows}x{columns} cells",
+                    "the output {name} of BodyPix has {} values instead of {channels} for each of {rows}x{columns} cells",
                     map.len()
                 )));
             }
@@ -196,7 +197,7 @@ impl BodyPix {
     }
 }
 
-/// The picture's size with its longer side as given, in whole cells and a pixel.
+/// Returns the size of the network's input: the image scaled to the given longer side, in whole cells plus a pixel.
 fn input_size(size: [usize; 2], resolution: usize) -> [usize; 2] {
     let scale = resolution as f64 / size[0].max(size[1]) as f64;
     size.map(|side| {
@@ -209,7 +210,7 @@ fn logit(score: f32) -> f32 {
     (score / (1.0 - score)).ln()
 }
 
-/// Writes `[cells, channels]` as `[channels, cells]`.
+/// Transposes `[cells, channels]` to `[channels, cells]`.
 fn split_channels(values: &[f32], channels: usize, out: &mut Vec<f32>) {
     out.clear();
     for channel in 0..channels {
@@ -217,9 +218,9 @@ fn split_channels(values: &[f32], channels: usize, out: &mut Vec<f32>) {
     }
 }
 
-/// Which pixels belong to persons at all.
+/// Scores of the pixels of all persons.
 struct Segments<'a> {
-    /// Cells down and across.
+    /// Rows and columns of cells.
     grid: [usize; 2],
     /// Logits, row by row.
     values: &'a [f32],
@@ -227,12 +228,12 @@ struct Segments<'a> {
 }
 
 impl Segments<'_> {
-    /// Squares a row of cells has.
+    /// Returns the number of squares in a row of cells.
     fn squares(cells: usize) -> usize {
         (cells - 1) * STRIDE / GRAIN + 1
     }
 
-    /// Gives each square near a person's pixels an owner.
+    /// Assigns an owner to each square near the pixels of a person.
     fn fill_squares(&self, offsets: &LongOffsets<'_>, persons: &[Person], squares: &mut Vec<u8>) {
         let [rows, columns] = self.grid.map(Self::squares);
         squares.clear();
@@ -248,7 +249,7 @@ impl Segments<'_> {
         }
     }
 
-    /// Whether a cell around the place has a person: pixels between cells can have one only then.
+    /// Whether a cell around the place belongs to a person; pixels between cells can only then.
     fn is_near_person(&self, [x, y]: [usize; 2]) -> bool {
         let near = |at: usize, count: usize| {
             (at.saturating_sub(GRAIN) / STRIDE).min(count - 1)
@@ -268,7 +269,7 @@ impl Segments<'_> {
     ) {
         let [rows, columns] = self.grid;
         let across = Self::squares(columns);
-        // Cells and squares are where pixels of the input have their middles.
+        // Cells and squares are at the pixel centres of the input.
         let middle = |x: usize, y: usize| {
             geometry.input_from_image([x as f32 + 0.5, y as f32 + 0.5]).map(|at| (at - 0.5).max(0.0))
         };
@@ -307,7 +308,7 @@ impl Segments<'_> {
     }
 }
 
-/// The cell before a place, and how far it is to the next.
+/// Returns the cell before a position, and the share of the distance to the next.
 fn cell_of(at: f32, count: usize) -> (usize, f32) {
     let at = at / STRIDE as f32;
     let cell = (at as usize).min(count - 1);
@@ -326,14 +327,14 @@ mod tests {
     }
 
     #[test]
-    fn channels_are_taken_apart() {
+    fn channels_are_split() {
         let mut out = vec![9.0];
         split_channels(&[1.0, 10.0, 2.0, 20.0, 3.0, 30.0], 2, &mut out);
         assert_eq!(out, [1.0, 2.0, 3.0, 10.0, 20.0, 30.0]);
     }
 
     #[test]
-    fn a_mask_ends_between_cells() {
+    fn masks_are_interpolated_between_cells() {
         let values = [4.0, -4.0, -4.0, 4.0, -4.0, -4.0];
         let segments = Segments { grid: [2, 3], values: &values, bound: 0.0 };
         let geometry = InputGeometry { image_size: [33.0, 17.0], scale: [1.0; 2], offset: [0.0; 2] };

@@ -1,4 +1,4 @@
-//! Training.
+//! Training of BiSeNet.
 
 use opendr_engine::dataset::DatasetRef;
 use opendr_engine::learner::{Fit, FitJob};
@@ -7,13 +7,15 @@ use opendr_engine::params::Params;
 use opendr_engine::{Error, Result, Statistics};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{
+    OptimizerKind, ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device,
+};
 
 use super::network::BisenetNetwork;
 use super::objective::SegmentPixels;
 use super::{Bisenet, BisenetParams};
 
-/// How it is trained.
+/// Training parameters of [`Bisenet`].
 #[derive(Debug, Clone, Params)]
 pub struct BisenetFitParams {
     /// Height of the network's input, a multiple of 32.
@@ -25,13 +27,13 @@ pub struct BisenetFitParams {
     /// Channels of the first layers; the last have eight times as many.
     #[param(default = 16, range = 4..=128)]
     pub width: usize,
-    /// The least share of a picture that a random crop shows; 1 for no crops.
+    /// Minimum share of an image in a random crop; 1 for no crops.
     #[param(default = 0.5, range = 0.05..=1.0)]
     pub crop: f32,
-    /// How often a picture is mirrored.
+    /// Probability of a horizontal flip.
     #[param(default = 0.5, range = 0.0..=1.0)]
     pub flip: f32,
-    /// What every training has.
+    /// Parameters common to all trainings.
     #[param(
         flatten,
         epochs = 100,
@@ -59,12 +61,12 @@ impl Fit for Bisenet {
         let size = [crop_height, crop_width];
         if size.iter().any(|side| !side.is_multiple_of(32)) {
             return Err(Error::invalid_param(format!(
-                "crop_height = {crop_height} and crop_width = {crop_width}; give multiples of 32"
+                "crop_height = {crop_height} and crop_width = {crop_width} must be multiples of 32"
             )));
         }
         let dataset = open_for_training::<Self>(dataset, job)?;
         let classes = classes_to_train(&dataset, params.num_classes, "num_classes")?;
-        let device = begin(job, training)?;
+        let device = seeded_device(job, training)?;
         let network = BisenetNetwork::new(classes.len(), width, &device);
         let network = network_from_base(network, base)?;
         let objective = SegmentPixels { classes, size, crop, flip };

@@ -1,8 +1,8 @@
-//! BiSeNet: the class of every pixel, by a path that sees where and a path that sees what.
+//! BiSeNet: semantic segmentation with a spatial and a context path.
 //!
 //! Yu, Wang, Peng, Gao, Yu and Sang, BiSeNet: Bilateral Segmentation Network for Real-time Semantic Segmentation, ECCV 2018
-//! (arXiv 1808.00897). A small one, to be trained on pictures with masks; in place of a ResNet that others trained, the context
-//! path is four residual blocks.
+//! (arXiv 1808.00897). A small variant, trained on images with masks; the context path is four residual blocks in place of a
+//! pretrained ResNet.
 
 #[cfg(feature = "training")]
 mod fit;
@@ -18,8 +18,8 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Classes, Heatmap};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::TensorView;
-use opendr_perception_common::described_input::described_input;
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
+use opendr_perception_common::manifest_preprocess::preprocess_from_manifest;
 #[cfg(feature = "training")]
 use opendr_vision::Preprocess;
 
@@ -28,13 +28,13 @@ use super::nearest;
 #[cfg(feature = "training")]
 pub use fit::BisenetFitParams;
 
-/// What a user may set.
+/// Parameters of [`Bisenet`].
 #[derive(Debug, Clone, Params)]
 pub struct BisenetParams {
-    /// Whether the map has the size of the picture; else it has the network's.
+    /// Whether the map has the size of the image; else it has the network's.
     #[param(default = true, live)]
     pub full_size: bool,
-    /// Classes. None: as many as the data name.
+    /// Number of classes. None: the number of classes in the data set.
     #[param(range = 2..=255)]
     pub num_classes: Option<usize>,
 }
@@ -43,25 +43,25 @@ pub struct BisenetParams {
 pub struct Bisenet {
     params: BisenetParams,
     classes: Classes,
-    network: PictureNetwork,
-    /// Of the network's answer.
+    network: ImageNetwork,
+    /// Number of classes in the network's output.
     count: usize,
     height: usize,
     width: usize,
     work: Pool<Work>,
 }
 
-/// The best class of each pixel of the network's input, and its score.
+/// Best class of each pixel of the network's input, and its score.
 #[derive(Default)]
 struct Work {
     best: Vec<u32>,
     scores: Vec<f32>,
 }
 
-/// Levels 0..=255 become -1..=1.
+/// Divisor that maps levels 0..=255 to -1..=1.
 const LEVEL: f32 = 127.5;
 
-/// The pictures as networks that were trained here want them.
+/// Preprocessing of networks that were trained by this crate.
 #[cfg(feature = "training")]
 fn preprocess([height, width]: [usize; 2]) -> Preprocess {
     Preprocess::new(width, height).normalise([LEVEL; 3], [LEVEL; 3])
@@ -70,11 +70,11 @@ fn preprocess([height, width]: [usize; 2]) -> Preprocess {
 impl Learner for Bisenet {
     const SPEC: Spec = Spec::new("bisenet", Task::SemanticSegmentation)
         .class("BisenetLearner")
-        .about("BiSeNet tells the class of every pixel; it is trained on a user's own masks.")
+        .about("BiSeNet predicts the class of every pixel; trainable on your own masks.")
         .without_effect(&[
             ("context_path", "the context path is a small residual network of its own"),
-            ("drop_last", "the last batch of an epoch counts as any other"),
-            ("pin_memory", "there is no other memory to copy to"),
+            ("drop_last", "an incomplete last batch is always dropped"),
+            ("pin_memory", "page-locked memory is not used"),
         ]);
     type Params = BisenetParams;
     type Input<'a> = &'a Image;
@@ -82,8 +82,8 @@ impl Learner for Bisenet {
     type State = ();
 
     fn load(model: &Model, params: BisenetParams, device: Device) -> Result<Self> {
-        let network = PictureNetwork::open_file(model, "model.onnx", device, |input| {
-            described_input(model, input, LEVEL)
+        let network = ImageNetwork::open_file(model, "model.onnx", device, |input| {
+            preprocess_from_manifest(model, input, LEVEL)
         })?;
         let [map] = network.outputs() else {
             let count = network.outputs().len();
@@ -92,14 +92,16 @@ impl Learner for Bisenet {
             )));
         };
         let &[Some(1), Some(count), Some(height), Some(width)] = &map.dims[..] else {
-            return Err(Error::format(format!("{map} is no map of scores [1, classes, height, width]")));
+            return Err(Error::format(format!(
+                "the output {map} is not a map of scores [1, classes, height, width]"
+            )));
         };
         if count * height * width == 0 {
-            return Err(Error::format(format!("{map} has no scores")));
+            return Err(Error::format(format!("the output {map} has no scores")));
         }
         if let Some(wanted) = params.num_classes.filter(|wanted| *wanted != count) {
             return Err(Error::invalid_param(format!(
-                "num_classes = {wanted}, but the model's is {count}; leave it out, or load a model that fits"
+                "num_classes = {wanted}, but the model has {count} classes; omit num_classes or load another model"
             )));
         }
         let classes = model.classes().clone();
@@ -125,7 +127,9 @@ impl Learner for Bisenet {
             let found = outputs.first().map_or(Ok(&[][..]), TensorView::values::<f32>)?;
             if found.len() != count * width * height {
                 let (numbers, wanted) = (found.len(), count * width * height);
-                return Err(Error::format(format!("a map of {numbers} scores instead of {wanted}")));
+                return Err(Error::format(format!(
+                    "the network returns {numbers} scores instead of {wanted}"
+                )));
             }
             best.clear();
             best.resize(width * height, 0);

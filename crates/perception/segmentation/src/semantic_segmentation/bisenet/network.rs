@@ -1,4 +1,4 @@
-//! The network as it is trained.
+//! The trained network.
 
 use burn::module::Module;
 use burn::nn::PaddingConfig2d;
@@ -9,7 +9,7 @@ use burn::tensor::ops::{InterpolateMode, InterpolateOptions};
 use burn::tensor::{Device, Tensor};
 use opendr_training::layers::{BasicBlock, ConvNormAct, ConvNormActConfig};
 
-/// Pictures to scores of classes.
+/// Network from images to class scores.
 #[derive(Module, Debug)]
 pub struct BisenetNetwork {
     spatial: Vec<ConvNormAct>,
@@ -25,7 +25,7 @@ pub struct BisenetNetwork {
 }
 
 impl BisenetNetwork {
-    /// A network with random weights that tells `classes` apart, `width` channels in its first layers.
+    /// Creates a network with random weights for `classes` classes, with `width` channels in its first layers.
     pub fn new(classes: usize, width: usize, device: &Device) -> Self {
         let block = |from: usize, to: usize, kernel: usize, stride: usize| {
             ConvNormActConfig::new([from, to]).with_kernel(kernel).with_stride(stride).init(device)
@@ -50,7 +50,7 @@ impl BisenetNetwork {
         }
     }
 
-    /// `[batch, 3, height, width]`, sides multiples of 32, to scores `[batch, classes, height, width]`.
+    /// Returns scores `[batch, classes, height, width]` of `[batch, 3, height, width]`, sides multiples of 32.
     pub fn forward(&self, pictures: Tensor<4>) -> Tensor<4> {
         let [_, _, height, width] = pictures.dims();
         let spatial = self.spatial.iter().fold(pictures.clone(), |x, block| block.forward(x));
@@ -61,7 +61,7 @@ impl BisenetNetwork {
             x = block.forward(x);
             stages.push(x.clone());
         }
-        // The last two stages, 1/16 and 1/32 of the picture, each weighed by what all of it says.
+        // The last two stages, at 1/16 and 1/32 of the resolution, each weighted by channel attention.
         let deep = stages.split_off(2);
         let whole = self.tail.forward(mean(x));
         let weighed = deep.into_iter().zip(&self.attention).enumerate().map(|(stage, (x, attention))| {
@@ -87,7 +87,7 @@ fn side(x: &Tensor<4>) -> [usize; 2] {
     [height, width]
 }
 
-/// Over the whole picture, `[batch, channels, 1, 1]`.
+/// Returns the mean over the image, `[batch, channels, 1, 1]`.
 fn mean(x: Tensor<4>) -> Tensor<4> {
     x.mean_dim(3).mean_dim(2)
 }

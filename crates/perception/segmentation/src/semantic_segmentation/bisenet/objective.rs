@@ -1,4 +1,4 @@
-//! What it is trained on and by: pictures with maps of classes, cross entropy of each pixel.
+//! Batches of images with class maps, and the cross-entropy per pixel.
 
 use burn::tensor::activation::log_softmax;
 use burn::tensor::{Device, Int, Tensor, TensorData};
@@ -17,10 +17,10 @@ use super::network::BisenetNetwork;
 use super::{Bisenet, preprocess};
 use crate::semantic_segmentation::nearest;
 
-/// Pixels of this class do not count.
+/// Class of ignored pixels.
 const IGNORED: u32 = 255;
 
-/// Pictures with maps of classes.
+/// Training objective: cross-entropy per pixel.
 pub(super) struct SegmentPixels {
     pub classes: Classes,
     /// Height and width of the network's input.
@@ -29,14 +29,14 @@ pub(super) struct SegmentPixels {
     pub flip: f32,
 }
 
-/// Makes [`MappedPictures`].
+/// Collates [`MappedPictures`].
 pub(super) struct MapCollator {
     pictures: ImageBatches,
     size: [usize; 2],
     classes: usize,
 }
 
-/// Pictures and the class of each of their pixels.
+/// Batch of images and the class of each of their pixels.
 pub(super) struct MappedPictures {
     pictures: ImageBatch,
     classes: Vec<i64>,
@@ -58,13 +58,17 @@ impl Collate for MapCollator {
     fn add(&self, batch: &mut MappedPictures, sample: Sample) -> Result<()> {
         let map = match &sample.target {
             Some(Value::Heatmap(map)) => map.clone(),
-            _ => return Err(Error::invalid_input("the sample has no map of classes to learn; give it one")),
+            _ => {
+                return Err(Error::invalid_input(
+                    "the sample has no class map; the target must be a Heatmap of classes",
+                ));
+            }
         };
         let (&[rows, columns], HeatmapValues::Labels(labels)) = (map.shape(), map.values()) else {
-            return Err(Error::invalid_input("the sample's map is none of classes [height, width]"));
+            return Err(Error::invalid_input("the sample's map is not a class map [height, width]"));
         };
         if labels.is_empty() {
-            return Err(Error::invalid_input("the sample's map has no pixel"));
+            return Err(Error::invalid_input("the sample's class map has no pixel"));
         }
         self.pictures.add(&mut batch.pictures, sample)?;
         let [height, width] = self.size;
@@ -74,7 +78,7 @@ impl Collate for MapCollator {
                 let label = labels[from + nearest(x, width, columns)];
                 if label != IGNORED && label as usize >= self.classes {
                     return Err(Error::invalid_input(format!(
-                        "a pixel is of class {label}, the network has {}, from 0; mend the data",
+                        "a pixel has class {label}, but the network has {} classes from 0; correct the data set",
                         self.classes
                     )));
                 }

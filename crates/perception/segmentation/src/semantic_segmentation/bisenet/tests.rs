@@ -8,7 +8,7 @@ use super::network::BisenetNetwork;
 use super::objective::SegmentPixels;
 use super::*;
 
-/// A road under a sky, where it bends as the number says; a corner that does not count.
+/// A road below a sky, whose slope depends on the index; one corner is ignored.
 struct Roads;
 
 impl Dataset for Roads {}
@@ -51,7 +51,7 @@ fn picture(index: usize) -> Image {
 }
 
 #[test]
-fn learns_one_batch_by_heart() {
+fn overfits_one_batch() {
     let samples = (0..4).map(|index| Roads.get(index).unwrap()).collect();
     let network = |device: &_| BisenetNetwork::new(2, 4, device);
     let [before, after] = losses_on_one_batch(&objective(), network, samples, 0.01);
@@ -59,7 +59,7 @@ fn learns_one_batch_by_heart() {
 }
 
 #[test]
-fn fit_makes_what_infer_loads() {
+fn infer_loads_the_model_of_fit() {
     let output = std::env::temp_dir().join(format!("opendr-bisenet-{}", std::process::id()));
     std::fs::remove_dir_all(&output).ok();
     let mut fit_params = BisenetFitParams {

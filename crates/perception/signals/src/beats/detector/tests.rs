@@ -4,7 +4,7 @@ use opendr_perception_testing::test_models::test_data;
 
 use super::*;
 
-/// Peaks of a heart that beats every 0.8 s, with T waves, baseline wander and noise.
+/// Returns an ECG with a beat every 0.8 s, T waves, baseline wander and noise, and its beats.
 fn heart(seconds: usize, noise: f64) -> (Vec<f32>, Vec<u64>) {
     let mut random = Random::new(3);
     let beats: Vec<u64> =
@@ -31,7 +31,7 @@ fn found(signal: &[f32], size: usize) -> Vec<u64> {
 }
 
 #[test]
-fn every_beat_is_found_where_it_is() {
+fn every_beat_is_detected_at_its_sample() {
     for noise in [0.0, 0.03] {
         let (signal, beats) = heart(60, noise);
         let found = found(&signal, signal.len());
@@ -55,7 +55,7 @@ fn pieces_units_and_gaps_change_nothing() {
 }
 
 #[test]
-fn no_signal_has_no_beats_and_takes_no_memory() {
+fn a_flat_signal_has_no_beats_and_bounded_memory() {
     let (detector, mut state) = (BeatDetector::new(360.0).unwrap(), BeatSignal::default());
     for _ in 0..600 {
         detector.push(&mut state, &[0.0; 2160], |_| panic!("a beat"));
@@ -65,16 +65,17 @@ fn no_signal_has_no_beats_and_takes_no_memory() {
 }
 
 #[test]
-fn a_weaker_signal_is_found_again() {
+fn beats_are_detected_after_the_signal_weakens() {
     let (signal, beats) = heart(60, 0.002);
     let weak: Vec<f32> =
         signal.iter().zip(0..).map(|(sample, at)| if at < 7200 { 20.0 * sample } else { *sample }).collect();
     let late = found(&weak, 500).iter().filter(|at| **at > 7200 + 10 * 360).count();
-    let wanted = beats.iter().filter(|at| **at > 7200 + 10 * 360).count();
-    assert!(late.abs_diff(wanted) <= 1, "{late} of {wanted}");
+    let expected = beats.iter().filter(|at| **at > 7200 + 10 * 360).count();
+    assert!(late.abs_diff(expected) <= 1, "{late} of {expected}");
 }
 
-/// Record 100 of the MIT-BIH arrhythmia database, against its cardiologists' labels within 150 ms, as AAMI EC57 wants it.
+/// Record 100 of the MIT-BIH arrhythmia database, compared with the annotations of its cardiologists within 150 ms, as in AAMI
+/// EC57.
 #[test]
 fn the_beats_of_record_100() {
     let Some(path) = test_data("data/ecg/wfdb/100") else { return };
@@ -91,7 +92,7 @@ fn the_beats_of_record_100() {
     let right = found.iter().filter(|at| near(**at, &labelled)).count();
     let (sensitivity, precision) = (hits as f64 / labelled.len() as f64, right as f64 / found.len() as f64);
     println!(
-        "{} labelled, {} found: sensitivity {sensitivity:.4}, precision {precision:.4}",
+        "{} labelled, {} detected: sensitivity {sensitivity:.4}, precision {precision:.4}",
         labelled.len(),
         found.len()
     );

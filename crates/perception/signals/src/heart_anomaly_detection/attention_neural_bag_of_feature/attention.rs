@@ -1,4 +1,4 @@
-//! Attention over a series of code words.
+//! Attention over a sequence of codewords.
 
 use burn::module::{Initializer, Module, Param};
 use burn::nn::{Dropout, DropoutConfig, Linear, LinearConfig};
@@ -7,27 +7,27 @@ use burn::tensor::{Device, Tensor};
 
 use super::AttentionType;
 
-/// Features that likeness is computed of.
+/// Number of features of queries and keys.
 const HIDDEN: usize = 128;
-/// Share of the attention that is left out at random in training.
+/// Dropout probability of the attention weights.
 const DROPOUT: f64 = 0.2;
 
-/// `[batch, steps, words]` to the same; a learnt share of it is attended, the rest is let through.
+/// Attention on `[batch, steps, words]`; a learnt share of the output is attended, the rest is the input.
 #[derive(Module, Debug)]
 pub struct Attention {
     share: Param<Tensor<1>>,
     weights: Weights,
-    /// Whether it is over code words: then they and the steps change places.
+    /// Whether attention is over codewords; then they and the steps are transposed.
     spatial: bool,
 }
 
 #[derive(Module, Debug)]
 enum Weights {
-    /// How much each attends to each other.
+    /// A learnt matrix of attention weights.
     Matrix(Param<Tensor<2>>),
-    /// What each asks and what it offers.
+    /// Weights from queries and keys of the same axis.
     Likeness(Likeness),
-    /// What code words ask and steps offer.
+    /// Weights from queries of codewords and keys of steps.
     Both(Likeness),
 }
 
@@ -39,7 +39,7 @@ struct Likeness {
 }
 
 impl Attention {
-    /// With weights as training begins with.
+    /// Creates the layer with initial weights.
     pub fn new(kind: AttentionType, [steps, words]: [usize; 2], device: &Device) -> Self {
         let likeness = |query: usize, key: usize| Likeness {
             query: LinearConfig::new(query, HIDDEN).init(device),
@@ -61,16 +61,16 @@ impl Attention {
         Self { share: Initializer::Constant { value: 0.5 }.init([1], device), weights, spatial }
     }
 
-    /// The series attended.
+    /// Applies attention to a sequence.
     pub fn forward(&self, series: Tensor<3>) -> Tensor<3> {
-        // Rows are what attends: code words, or instants.
+        // Rows attend: codewords or steps.
         let rows = if self.spatial { series.swap_dims(1, 2) } else { series };
         let attended = match &self.weights {
             Weights::Matrix(weights) => {
                 let size = rows.dims()[1];
                 let itself = Tensor::<2>::eye(size, &rows.device());
                 let weights = weights.val();
-                // How much each attends to itself is fixed.
+                // The weight of each row for itself is fixed.
                 let weights = weights.clone() - weights * itself.clone() + itself / size as f64;
                 let mask = softmax(weights.unsqueeze::<3>().matmul(rows.clone()), 1);
                 rows.clone() * mask
@@ -91,7 +91,7 @@ impl Attention {
 }
 
 impl Likeness {
-    /// Of each row of `queries` and each of `keys`, `[batch, queries, keys]`.
+    /// Returns the weights of each row of `queries` for each of `keys`, `[batch, queries, keys]`.
     fn of(&self, queries: Tensor<3>, keys: Tensor<3>) -> Tensor<3> {
         let keys = self.key.forward(keys).swap_dims(1, 2);
         self.query.forward(queries).matmul(keys) / (HIDDEN as f64).sqrt()

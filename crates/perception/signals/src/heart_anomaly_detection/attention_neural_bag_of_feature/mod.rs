@@ -1,10 +1,9 @@
-//! Convolutions that shorten a heart signal, a bag of learnt features over what they leave, with attention.
+//! Attention-based neural bag of features: strided convolutions, a codebook over their outputs, attention.
 //!
-//! Passalis et al., Temporal Bag-of-Features Learning for Predicting Mid Price Movements, 2019; Tran et al.,
-//! Attention-based Neural Bag-of-Features Learning for Sequence Data, 2020; Chumachenko et al., Self-attention Neural
-//! Bag-of-Features, 2022. As in [`GatedRecurrentUnit`](crate::heart_anomaly_detection::GatedRecurrentUnit), few
-//! convolutions stand for OpenDR's fifteen residual blocks. OpenDR computes no attention, though its learner makes
-//! the weights for it; here it is applied.
+//! Passalis et al., Temporal Bag-of-Features Learning for Predicting Mid Price Movements, 2019; Tran et al., Attention-based
+//! Neural Bag-of-Features Learning for Sequence Data, 2020; Chumachenko et al., Self-attention Neural Bag-of-Features, 2022. As
+//! in [`GatedRecurrentUnit`](crate::heart_anomaly_detection::GatedRecurrentUnit), a few convolutions replace OpenDR's fifteen
+//! residual blocks. OpenDR's learner creates attention weights but does not apply them; here attention is applied.
 
 #[cfg(feature = "training")]
 mod attention;
@@ -22,45 +21,45 @@ use crate::heart_anomaly_detection::heart_learner::{HeartKind, HeartLearner, Hea
 pub use training::AttentionNeuralBagOfFeatureFitParams;
 
 opendr_engine::choices! {
-    /// What is put into the bag.
+    /// Input of the bag of features.
     pub enum QuantizationType {
-        /// The whole series.
+        /// The whole sequence.
         Nbof = "nbof",
-        /// The whole series and, apart, its second half.
+        /// The whole sequence and, separately, its second half.
         Tnbof = "tnbof",
     }
 }
 
 opendr_engine::choices! {
-    /// Over what attention is spread.
+    /// Axis and kind of the attention.
     pub enum AttentionType {
-        /// Over code words, by a learnt matrix.
+        /// Over codewords, with a learnt matrix.
         Spatial = "spatial",
-        /// Over time, by a learnt matrix.
+        /// Over time, with a learnt matrix.
         Temporal = "temporal",
-        /// Over code words, by their likeness.
+        /// Over codewords, with self-attention.
         Spatialsa = "spatialsa",
-        /// Over time, by the likeness of instants.
+        /// Over time, with self-attention.
         Temporalsa = "temporalsa",
         /// Over both at once.
         Spatiotemporal = "spatiotemporal",
     }
 }
 
-/// What a user may set. Sizes are those of the network that is trained; a loaded model has its own, and one that is
-/// given and differs is refused.
+/// Parameters of [`AttentionNeuralBagOfFeature`]. The sizes apply to the network that is trained; a loaded model has its own
+/// and refuses other values.
 #[derive(Debug, Clone, Params)]
 pub struct AttentionNeuralBagOfFeatureParams {
-    /// What all learners of heart signals have.
+    /// Parameters common to all learners of heart signals.
     #[param(flatten)]
     pub heart: HeartParams,
-    /// Learnt features.
+    /// Number of codewords.
     #[param(default = 256, range = 1..=4096)]
     pub n_codeword: usize,
-    /// What is put into the bag.
+    /// Input of the bag of features.
     #[param(default = QuantizationType::Nbof)]
     pub quantization_type: QuantizationType,
-    /// Over what attention is spread.
+    /// Axis and kind of the attention.
     #[param(default = AttentionType::Spatial)]
     pub attention_type: AttentionType,
 }
@@ -68,14 +67,14 @@ pub struct AttentionNeuralBagOfFeatureParams {
 /// A loaded network.
 pub type AttentionNeuralBagOfFeature = HeartLearner<AttentionNeuralBagOfFeatureKind>;
 
-/// Which network it is.
+/// Network kind of [`AttentionNeuralBagOfFeature`].
 #[derive(Debug)]
 pub struct AttentionNeuralBagOfFeatureKind;
 
 impl HeartKind for AttentionNeuralBagOfFeatureKind {
     const SPEC: Spec = Spec::new("attention_neural_bag_of_feature", Task::HeartAnomalyDetection)
         .class("AttentionNeuralBagOfFeatureLearner")
-        .about("A bag of learnt features with attention tells abnormal heart beats from normal ones.")
+        .about("A neural bag of features with attention classifies heart beats as normal or abnormal.")
         .without_effect(TEST_MODE);
     type Params = AttentionNeuralBagOfFeatureParams;
 

@@ -1,4 +1,4 @@
-//! The network as it is trained.
+//! The trained network.
 
 use burn::module::{Initializer, Module, Param};
 use burn::nn::{Dropout, DropoutConfig, Linear, LinearConfig};
@@ -10,16 +10,16 @@ use super::{AttentionNeuralBagOfFeatureParams, QuantizationType};
 use crate::heart_anomaly_detection::HeartSizes;
 use crate::heart_anomaly_detection::halvings::Halvings;
 
-/// Features between the bag and the classes.
+/// Number of features between the bag and the classifier.
 const HIDDEN: usize = 512;
 
-/// `[batch, time, features]` to logits `[batch, classes]`.
+/// Network from `[batch, time, features]` to logits `[batch, classes]`.
 #[derive(Module, Debug)]
 pub struct AttentionNeuralBagOfFeatureNetwork {
     halvings: Halvings,
     codebook: Linear,
     scale: Param<Tensor<1>>,
-    /// One for each part of the series.
+    /// One attention layer for each part of the sequence.
     parts: Vec<Attention>,
     hidden: Linear,
     dropout: Dropout,
@@ -27,7 +27,7 @@ pub struct AttentionNeuralBagOfFeatureNetwork {
 }
 
 impl AttentionNeuralBagOfFeatureNetwork {
-    /// A network with weights as training begins with.
+    /// Returns a network with initial weights.
     pub fn new(params: &AttentionNeuralBagOfFeatureParams, sizes: &HeartSizes, device: &Device) -> Self {
         let (halvings, [steps, channels]) = Halvings::new(sizes.shape, device);
         let words = params.n_codeword;
@@ -49,7 +49,7 @@ impl AttentionNeuralBagOfFeatureNetwork {
         }
     }
 
-    /// Logits `[batch, classes]` of series `[batch, time, features]`.
+    /// Returns logits `[batch, classes]` of series `[batch, time, features]`.
     pub fn forward(&self, series: Tensor<3>) -> Tensor<2> {
         let steps = self.halvings.forward(series.swap_dims(1, 2)).swap_dims(1, 2);
         let likeness = self.codebook.forward(steps) * self.scale.val().reshape([1, 1, 1]);

@@ -1,4 +1,4 @@
-//! How it trains.
+//! Training of the attention-based neural bag of features.
 
 use burn::tensor::{Device, Tensor};
 use opendr_engine::params::Params;
@@ -8,10 +8,10 @@ use super::network::AttentionNeuralBagOfFeatureNetwork;
 use super::{AttentionNeuralBagOfFeatureKind, AttentionNeuralBagOfFeatureParams};
 use crate::heart_anomaly_detection::heart_learner::{HeartSizes, TrainableHeart};
 
-/// How a user may train it.
+/// Training parameters of [`AttentionNeuralBagOfFeature`](super::AttentionNeuralBagOfFeature).
 #[derive(Debug, Clone, Params)]
 pub struct AttentionNeuralBagOfFeatureFitParams {
-    /// What every training takes.
+    /// Parameters common to all trainings.
     #[param(
         flatten,
         epochs = 300,
@@ -22,7 +22,7 @@ pub struct AttentionNeuralBagOfFeatureFitParams {
         optimizer = OptimizerKind::Adam
     )]
     pub training: TrainingParams,
-    /// How much each class weighs in the loss, for data where some are rare; empty: all alike.
+    /// Weight of each class in the loss, for imbalanced data; empty for equal weights.
     #[param(range = 1e-6..=1e6)]
     pub class_weight: Vec<f32>,
 }

@@ -1,4 +1,4 @@
-//! The network as it is trained.
+//! The trained network.
 
 use burn::module::Module;
 use burn::nn::{Dropout, DropoutConfig, Linear, LinearConfig};
@@ -8,7 +8,7 @@ use opendr_training::layers::{Gru, GruConfig};
 use crate::heart_anomaly_detection::HeartSizes;
 use crate::heart_anomaly_detection::halvings::Halvings;
 
-/// `[batch, time, features]` to logits `[batch, classes]`.
+/// Network from `[batch, time, features]` to logits `[batch, classes]`.
 #[derive(Module, Debug)]
 pub struct GatedRecurrentUnitNetwork {
     halvings: Halvings,
@@ -18,7 +18,7 @@ pub struct GatedRecurrentUnitNetwork {
 }
 
 impl GatedRecurrentUnitNetwork {
-    /// A network with a state of `hidden` features and weights as training begins with.
+    /// Returns a network with initial weights and a state of `hidden` features.
     pub fn new(sizes: &HeartSizes, hidden: usize, device: &Device) -> Self {
         let (halvings, [_, channels]) = Halvings::new(sizes.shape, device);
         Self {
@@ -29,7 +29,7 @@ impl GatedRecurrentUnitNetwork {
         }
     }
 
-    /// Logits `[batch, classes]` of series `[batch, time, features]`.
+    /// Returns logits `[batch, classes]` of series `[batch, time, features]`.
     pub fn forward(&self, series: Tensor<3>) -> Tensor<2> {
         let steps = self.halvings.forward(series.swap_dims(1, 2)).swap_dims(1, 2);
         self.classifier.forward(self.dropout.forward(self.unit.last(steps)))

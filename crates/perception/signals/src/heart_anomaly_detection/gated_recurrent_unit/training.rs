@@ -1,4 +1,4 @@
-//! How it trains.
+//! Training of the gated recurrent unit.
 
 use burn::tensor::{Device, Tensor};
 use opendr_engine::params::Params;
@@ -8,10 +8,10 @@ use super::network::GatedRecurrentUnitNetwork;
 use super::{GatedRecurrentUnitKind, GatedRecurrentUnitParams};
 use crate::heart_anomaly_detection::heart_learner::{HeartSizes, TrainableHeart};
 
-/// How a user may train it.
+/// Training parameters of [`GatedRecurrentUnit`](super::GatedRecurrentUnit).
 #[derive(Debug, Clone, Params)]
 pub struct GatedRecurrentUnitFitParams {
-    /// What every training takes.
+    /// Parameters common to all trainings.
     #[param(
         flatten,
         epochs = 200,
@@ -22,7 +22,7 @@ pub struct GatedRecurrentUnitFitParams {
         optimizer = OptimizerKind::Adam
     )]
     pub training: TrainingParams,
-    /// How much each class weighs in the loss, for data where some are rare; empty: all alike.
+    /// Weight of each class in the loss, for imbalanced data; empty for equal weights.
     #[param(range = 1e-6..=1e6)]
     pub class_weight: Vec<f32>,
 }

@@ -1,11 +1,13 @@
-//! What the learners of heart signals have in common: a series in, the score of each class out.
+//! Shared implementation of the learners of heart signals: a series to a score per class.
 //!
-//! They differ in their network ([`HeartKind`]); input, streams of beats, training and container are one.
+//! The learners differ in their network ([`HeartKind`]) and share input, streams of beats, training and container.
 
 #[cfg(feature = "training")]
 mod fit;
 #[cfg(feature = "training")]
 mod objective;
+#[cfg(feature = "training")]
+mod trainable;
 
 use opendr_engine::data::Timeseries;
 use opendr_engine::learner::{Learner, Spec, Streaming};
@@ -19,42 +21,42 @@ use opendr_perception_common::category_scores::category_from_logits;
 use crate::heart_anomaly_detection::beat_stream::{BeatStream, Beats};
 
 #[cfg(feature = "training")]
-pub use fit::{HeartSizes, TrainableHeart};
+pub use trainable::{HeartSizes, TrainableHeart};
 
-/// What a user may set of every learner of heart signals.
+/// Parameters common to all learners of heart signals.
 #[derive(Debug, Clone, Params)]
 pub struct HeartParams {
-    /// Features of a series (leads of a recording). None: as the data have.
+    /// Number of features of a series (leads of a recording). None: that of the data set.
     #[param(range = 1..=1024)]
     pub in_channels: Option<usize>,
-    /// Instants of a series. None: as the data have.
+    /// Number of time steps of a series. None: that of the data set.
     #[param(range = 1..=1_000_000)]
     pub series_length: Option<usize>,
-    /// Classes. None: as many as the data name.
+    /// Number of classes. None: the number of classes in the data set.
     #[param(range = 2..=10_000)]
     pub n_class: Option<usize>,
-    /// Share of features that are left out at random in each training step.
+    /// Dropout probability.
     #[param(default = 0.2, range = 0.0..=0.99)]
     pub dropout: f64,
-    /// Instants a second of a stream, in which beats are found. None: each piece of a stream is a whole series.
+    /// Sample rate of a stream, in which beats are detected. None: each piece of a stream is a whole series.
     #[param(range = 50.0..=10_000.0, unit = "Hz")]
     pub sample_rate: Option<f64>,
 }
 
-/// One of the networks that tell heart signals apart.
+/// Network kind of a learner of heart signals.
 pub trait HeartKind: Send + Sync + 'static {
-    /// Name, task, class.
+    /// Name, task and class.
     const SPEC: Spec;
-    /// What a user may set.
+    /// Parameters of the learner.
     type Params: Params;
 
-    /// Those parameters that all have.
+    /// Returns the parameters common to all learners of heart signals.
     fn heart(params: &Self::Params) -> &HeartParams;
 }
 
-/// A loaded network that tells the class of a heart signal.
+/// A loaded network that classifies heart signals.
 ///
-/// A stream with a sample rate is answered for every heart beat in it ([`BeatStream`]); without one, each of its pieces is.
+/// A stream with a sample rate yields a prediction for every heart beat ([`BeatStream`]); without one, for each of its pieces.
 pub struct HeartLearner<K: HeartKind> {
     params: K::Params,
     classes: Classes,
@@ -64,11 +66,11 @@ pub struct HeartLearner<K: HeartKind> {
     features: usize,
 }
 
-/// The network in every container: `series` `[1, time, features]` to `logits` `[1, classes]`.
+/// File of the network in every container: `series` `[1, time, features]` to `logits` `[1, classes]`.
 const FILE: &str = "model.onnx";
 
-/// An argument of OpenDR's learners.
-pub(super) const TEST_MODE: &[(&str, &str)] = &[("test_mode", "it made OpenDR's own tests short")];
+/// Arguments of OpenDR's learners without effect.
+pub(super) const TEST_MODE: &[(&str, &str)] = &[("test_mode", "OpenDR used it to shorten its own tests")];
 
 impl<K: HeartKind> HeartLearner<K> {
     fn category(&self, series: &[f32], category: &mut Category) -> Result<()> {
@@ -90,18 +92,18 @@ impl<K: HeartKind> Learner for HeartLearner<K> {
     fn load(model: &Model, params: K::Params, device: Device) -> Result<Self> {
         let session = Session::open(&model.file(FILE)?, device)?;
         let ([input], [output]) = (session.inputs(), session.outputs()) else {
-            return Err(Error::format(format!("{FILE} has not one input and one output")));
+            return Err(Error::format(format!("{FILE} does not have exactly one input and one output")));
         };
         let (&[_, Some(time), Some(features)], &[_, Some(classes)]) = (&input.dims[..], &output.dims[..])
         else {
             return Err(Error::format(format!(
-                "{FILE} turns {input} into {output}, which are no series of fixed length and its scores"
+                "{FILE} maps {input} to {output}; expected a series of fixed length as input and scores as output"
             )));
         };
         let heart = K::heart(&params);
-        must_be("in_channels", heart.in_channels, features)?;
-        must_be("series_length", heart.series_length, time)?;
-        must_be("n_class", heart.n_class, classes)?;
+        check_size("in_channels", heart.in_channels, features)?;
+        check_size("series_length", heart.series_length, time)?;
+        check_size("n_class", heart.n_class, classes)?;
         let beats = heart.sample_rate.map(|rate| Beats::new(rate, [time, features])).transpose()?;
         Ok(Self { classes: model.manifest().classes.clone(), params, beats, session, time, features })
     }
@@ -124,7 +126,7 @@ impl<K: HeartKind> Learner for HeartLearner<K> {
     }
 }
 
-/// An answer for every beat that is found in the first feature, or for every piece.
+/// Yields a prediction for every beat that is detected in the first feature, or for every piece.
 impl<K: HeartKind> Streaming for HeartLearner<K> {
     fn push(&self, state: &mut BeatStream, piece: &Timeseries, emit: &mut dyn FnMut(Category)) -> Result<()> {
         let Some(beats) = &self.beats else {
@@ -136,7 +138,7 @@ impl<K: HeartKind> Streaming for HeartLearner<K> {
         let [time, features] = piece.shape();
         if features != self.features {
             return Err(Error::invalid_input(format!(
-                "a piece of {time} instants with {features} features; the network takes {}",
+                "a piece has {time} time steps with {features} features; the network takes {}",
                 self.features
             )));
         }
@@ -159,28 +161,28 @@ impl<K: HeartKind> Streaming for HeartLearner<K> {
     }
 }
 
-/// Refuses a size that the user gave and the model does not have.
-fn must_be(name: &str, wanted: Option<usize>, there: usize) -> Result<()> {
+/// Checks a size that the user gave, where there is one, against the model or the data.
+fn check_size(name: &str, wanted: Option<usize>, actual: usize) -> Result<()> {
     match wanted {
-        Some(wanted) if wanted != there => Err(Error::invalid_param(format!(
-            "{name} = {wanted}, but the model's is {there}; leave it out, or load a model that fits"
+        Some(wanted) if wanted != actual => Err(Error::invalid_param(format!(
+            "{name} = {wanted}, but it is {actual} here; omit {name}, or choose another model or data set"
         ))),
         _ => Ok(()),
     }
 }
 
-/// Refuses a series of another shape than `[time, features]`, or with missing measurements.
+/// Checks that a series has the shape `[time, features]` and no missing measurements.
 fn check_series(series: &Timeseries, shape: [usize; 2]) -> Result<()> {
     if series.shape() != shape {
         let ([time, features], [wanted_time, wanted_features]) = (series.shape(), shape);
         return Err(Error::invalid_input(format!(
-            "a series of {time} instants with {features} features; the network takes {wanted_time} with \
-             {wanted_features}: cut, resample or transpose it"
+            "the series has {time} time steps with {features} features, but the network takes {wanted_time} with \
+             {wanted_features}; cut, resample or transpose it"
         )));
     }
     match series.as_slice().iter().position(|number| !number.is_finite()) {
         Some(at) => Err(Error::invalid_input(format!(
-            "measurement {} of the series is {}; fill in what is missing",
+            "measurement {} of the series is {}; fill in missing values",
             at,
             series.as_slice()[at]
         ))),

@@ -12,10 +12,10 @@ use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network}
 use opendr_training::export::{self, Input};
 use opendr_training::{Container, Loss, Objective};
 
-use super::fit::{HeartSizes, TrainableHeart};
+use super::trainable::{HeartSizes, TrainableHeart};
 use super::{FILE, check_series};
 
-/// What the training minimises: the cross-entropy, classes weighted.
+/// Training objective: cross-entropy with class weights.
 pub(super) struct HeartObjective<'a, K: TrainableHeart> {
     pub sizes: HeartSizes,
     pub params: &'a K::Params,
@@ -51,7 +51,7 @@ impl<K: TrainableHeart> Objective for HeartObjective<'_, K> {
     }
 }
 
-/// Series `[time, features]` of one shape.
+/// Batches of series `[time, features]` of one shape.
 pub(super) struct SeriesBatches {
     shape: [usize; 2],
     classes: usize,
@@ -66,7 +66,9 @@ impl Collate for SeriesBatches {
 
     fn add(&self, batch: &mut LabelledBatch, sample: Sample) -> Result<()> {
         let Some(Value::Timeseries(series)) = sample.data.first() else {
-            return Err(Error::invalid_input("the sample has no time series; give one"));
+            return Err(Error::invalid_input(
+                "the sample has no time series; the first input must be a Timeseries",
+            ));
         };
         check_series(series, self.shape)?;
         batch.push(series.as_slice(), class_of(&sample, self.classes)?);

@@ -41,7 +41,7 @@ fn bags() -> impl Iterator<Item = AttentionNeuralBagOfFeatureParams> {
         .flat_map(|kind| [QuantizationType::Nbof, QuantizationType::Tnbof].map(|what| bag(what, kind)))
 }
 
-/// Noise with classes that have nothing to do with it.
+/// Noise with unrelated classes.
 struct Noise;
 
 impl Dataset for Noise {}
@@ -87,7 +87,7 @@ fn fit(
     trained
 }
 
-fn learns_by_heart<K: TrainableHeart>(params: &K::Params) {
+fn overfits<K: TrainableHeart>(params: &K::Params) {
     let samples = (0..Noise.len()).map(|index| Noise.get(index).unwrap()).collect();
     let network = |device: &Trainer| K::network(params, &SIZES, device);
     let [before, after] = losses_on_one_batch(&objective::<K>(params), network, samples, 0.005);
@@ -95,14 +95,14 @@ fn learns_by_heart<K: TrainableHeart>(params: &K::Params) {
 }
 
 #[test]
-fn learn_one_batch_by_heart() {
-    learns_by_heart::<GatedRecurrentUnitKind>(&recurrent());
+fn overfit_one_batch() {
+    overfits::<GatedRecurrentUnitKind>(&recurrent());
     for kind in [AttentionType::Spatial, AttentionType::Spatiotemporal] {
-        learns_by_heart::<AttentionNeuralBagOfFeatureKind>(&bag(QuantizationType::Nbof, kind));
+        overfits::<AttentionNeuralBagOfFeatureKind>(&bag(QuantizationType::Nbof, kind));
     }
 }
 
-fn infers_what_is_computed<K: TrainableHeart>(params: &K::Params, number: usize) {
+fn inference_equals_training_network<K: TrainableHeart>(params: &K::Params, number: usize) {
     let device = Trainer::flex();
     device.seed(5);
     let network = K::network(params, &SIZES, &device);
@@ -123,15 +123,15 @@ fn infers_what_is_computed<K: TrainableHeart>(params: &K::Params, number: usize)
 }
 
 #[test]
-fn infer_what_the_trainer_computes() {
-    infers_what_is_computed::<GatedRecurrentUnitKind>(&recurrent(), 0);
+fn inference_equals_the_training_network() {
+    inference_equals_training_network::<GatedRecurrentUnitKind>(&recurrent(), 0);
     for (number, params) in bags().enumerate() {
-        infers_what_is_computed::<AttentionNeuralBagOfFeatureKind>(&params, number);
+        inference_equals_training_network::<AttentionNeuralBagOfFeatureKind>(&params, number);
     }
 }
 
 #[test]
-fn what_does_not_fit_the_network_is_refused() {
+fn inputs_that_do_not_fit_the_network_are_refused() {
     let device = Trainer::flex();
     let params = recurrent();
     let network = GatedRecurrentUnitKind::network(&params, &SIZES, &device);
@@ -151,7 +151,7 @@ fn what_does_not_fit_the_network_is_refused() {
 }
 
 #[test]
-fn fit_makes_what_infer_loads() {
+fn infer_loads_the_model_of_fit() {
     let params = GatedRecurrentUnitParams { recurrent_unit: 8, ..Default::default() };
     let mut fit_params = GatedRecurrentUnitFitParams::default();
     (fit_params.training.epochs, fit_params.training.batch_size) = (1, 6);
@@ -160,7 +160,7 @@ fn fit_makes_what_infer_loads() {
 }
 
 #[test]
-fn what_does_not_fit_the_data_is_refused() {
+fn parameters_that_do_not_fit_the_data_are_refused() {
     let fit_params = GatedRecurrentUnitFitParams::default();
     let sized = |change: fn(&mut GatedRecurrentUnitParams)| {
         let mut params = GatedRecurrentUnitParams::default();

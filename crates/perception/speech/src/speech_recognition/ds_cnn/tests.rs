@@ -19,7 +19,7 @@ fn learner() -> Option<Handle<DsCnn>> {
     Some(handle)
 }
 
-/// Six seconds of words, one after the other, with a silent second.
+/// Six seconds of words in sequence, with a silent second.
 fn words() -> Option<Vec<f32>> {
     let clips = test_data("data/speech_commands_v0.02_test")?;
     let clips =
@@ -35,17 +35,17 @@ fn words() -> Option<Vec<f32>> {
 }
 
 fn streamed(stream: &mut Stream<DsCnn>, sound: &[f32], size: usize) -> Vec<Category> {
-    let mut answers = Vec::new();
+    let mut predictions = Vec::new();
     for piece in sound.chunks(size) {
         let piece = Audio::new(piece.to_vec(), 1, 16_000).unwrap();
-        stream.push((&piece).into(), &mut |answer| answers.push(answer)).unwrap();
+        stream.push((&piece).into(), &mut |prediction| predictions.push(prediction)).unwrap();
     }
-    stream.flush(&mut |answer| answers.push(answer)).unwrap();
-    answers
+    stream.flush(&mut |prediction| predictions.push(prediction)).unwrap();
+    predictions
 }
 
 #[test]
-fn tells_the_words_of_the_shared_clips() {
+fn classifies_the_shared_clips() {
     let (Some(handle), Some(clips)) = (learner(), test_data("data/speech_commands_v0.02_test")) else {
         return;
     };
@@ -54,23 +54,23 @@ fn tells_the_words_of_the_shared_clips() {
     let clips = clips.unwrap();
     let classes = clips.classes();
     let names = handle.classes();
-    let mut right = 0;
+    let mut correct = 0;
     for index in 0..clips.len() {
         let sample = clips.get(index).unwrap();
         let (Some(Value::Audio(audio)), Some(Value::Category(word))) = (sample.data.first(), &sample.target)
         else {
             panic!()
         };
-        let answer = handle.stream().unwrap().infer(audio.into()).unwrap();
-        right += usize::from(names.name(answer.class) == classes.name(word.class));
+        let prediction = handle.stream().unwrap().infer(audio.into()).unwrap();
+        correct += usize::from(names.name(prediction.class) == classes.name(word.class));
     }
-    let accuracy = right as f64 / clips.len() as f64;
-    println!("{right} of {} clips, {accuracy:.4}", clips.len());
+    let accuracy = correct as f64 / clips.len() as f64;
+    println!("{correct} of {} clips correct, accuracy {accuracy:.4}", clips.len());
     assert!(accuracy >= 0.88, "{accuracy}");
 }
 
 #[test]
-fn pieces_of_any_size_give_the_answers_of_the_whole() {
+fn pieces_of_any_size_yield_the_predictions_of_the_whole() {
     let (Some(handle), Some(sound)) = (learner(), words()) else { return };
     let whole = streamed(&mut handle.stream().unwrap(), &sound, sound.len());
     assert_eq!(whole.len(), 2 * sound.len() / 16_000 - 1);
@@ -84,20 +84,20 @@ fn pieces_of_any_size_give_the_answers_of_the_whole() {
 }
 
 #[test]
-fn what_is_no_sound_of_its_rate_leaves_a_stream_as_it_was() {
+fn refused_input_leaves_a_stream_unchanged() {
     let (Some(handle), Some(sound)) = (learner(), words()) else { return };
     let whole = streamed(&mut handle.stream().unwrap(), &sound, 9000);
-    let (mut stream, mut answers) = (handle.stream().unwrap(), Vec::new());
+    let (mut stream, mut predictions) = (handle.stream().unwrap(), Vec::new());
     for piece in sound.chunks(9000) {
         let piece = Audio::new(piece.to_vec(), 1, 16_000).unwrap();
         let other = Audio::new(vec![0.5; 800], 1, 8000).unwrap();
         let broken = Timeseries::new(vec![0.1, f32::NAN], [2, 1]).unwrap();
-        for wrong in [Sound::from(&other), Sound::from(&broken)] {
+        for wrong in [AudioInput::from(&other), AudioInput::from(&broken)] {
             let refused = stream.push(wrong, &mut |_| panic!()).unwrap_err();
             assert_eq!(refused.kind(), ErrorKind::InvalidInput);
         }
-        stream.push((&piece).into(), &mut |answer| answers.push(answer)).unwrap();
+        stream.push((&piece).into(), &mut |prediction| predictions.push(prediction)).unwrap();
     }
-    stream.flush(&mut |answer| answers.push(answer)).unwrap();
-    assert_eq!(answers, whole);
+    stream.flush(&mut |prediction| predictions.push(prediction)).unwrap();
+    assert_eq!(predictions, whole);
 }

@@ -1,8 +1,8 @@
-//! EdgeSpeechNets: small residual networks over cepstra, in four sizes.
+//! EdgeSpeechNets: small residual networks on cepstra, in four sizes.
 //!
-//! Lin, Chung and Wong, EdgeSpeechNets: Highly Efficient Deep Neural Networks for Speech Recognition on the Edge, 2018. Take
-//! D, the quickest, for small processors, A for the best answers. A stream of sound is answered twice a second,
-//! each time for the second before.
+//! Lin, Chung and Wong, EdgeSpeechNets: Highly Efficient Deep Neural Networks for Speech Recognition on the Edge, 2018. D is
+//! the fastest, for small CPUs; A is the most accurate. A stream of audio yields a prediction twice per second, each for the
+//! last second.
 
 #[cfg(feature = "training")]
 mod network;
@@ -18,7 +18,7 @@ use crate::speech_recognition::word_learner::{WordKind, WordLearner, WordParams}
 pub use training::EdgeSpeechNetsFitParams;
 
 opendr_engine::choices! {
-    /// Which of the paper's four networks.
+    /// Network of the paper.
     pub enum EdgeSpeechNet {
         /// Six blocks of 39 channels.
         A = "A",
@@ -31,13 +31,13 @@ opendr_engine::choices! {
     }
 }
 
-/// What a user may set.
+/// Parameters of [`EdgeSpeechNets`].
 #[derive(Debug, Clone, Params)]
 pub struct EdgeSpeechNetsParams {
-    /// Which network is trained; a loaded model has its own.
+    /// Network that is trained; a loaded model has its own.
     #[param(default = EdgeSpeechNet::A)]
     pub architecture: EdgeSpeechNet,
-    /// What all learners of words have.
+    /// Parameters common to all keyword spotting learners.
     #[param(flatten)]
     pub words: WordParams,
 }
@@ -45,14 +45,14 @@ pub struct EdgeSpeechNetsParams {
 /// A loaded EdgeSpeechNet.
 pub type EdgeSpeechNets = WordLearner<EdgeSpeechNetsKind>;
 
-/// Which network it is.
+/// Network kind of [`EdgeSpeechNets`].
 #[derive(Debug)]
 pub struct EdgeSpeechNetsKind;
 
 impl WordKind for EdgeSpeechNetsKind {
     const SPEC: Spec = Spec::new("edge_speech_nets", Task::SpeechRecognition)
         .class("EdgeSpeechNetsLearner")
-        .about("EdgeSpeechNets tell which of a few words was spoken; in four sizes.");
+        .about("EdgeSpeechNets classify spoken words; four sizes.");
     const COEFFICIENTS: usize = 24;
     type Params = EdgeSpeechNetsParams;
 

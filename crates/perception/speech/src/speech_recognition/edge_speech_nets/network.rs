@@ -1,4 +1,4 @@
-//! The networks as they are trained.
+//! The trained networks.
 
 use burn::module::Module;
 use burn::nn::conv::{Conv2d, Conv2dConfig};
@@ -10,11 +10,11 @@ use burn::tensor::{Device, Tensor};
 use super::{EdgeSpeechNet, EdgeSpeechNetsKind};
 use crate::speech_recognition::word_learner::WordKind as _;
 
-/// Features that the words are told by.
+/// Number of features before the classifier.
 const FEATURES: usize = 45;
 
 impl EdgeSpeechNet {
-    /// Channels of the blocks, and the channels within each.
+    /// Returns the channels between the blocks and those within each block.
     fn channels(self) -> (usize, &'static [usize]) {
         match self {
             Self::A => (39, &[20, 15, 25, 22, 22, 25]),
@@ -25,24 +25,24 @@ impl EdgeSpeechNet {
     }
 }
 
-/// `[batch, coefficients, frames]` to logits `[batch, classes]` (tables 1 to 4 of the paper).
+/// Network from `[batch, coefficients, frames]` to logits `[batch, classes]` (tables 1 to 4 of the paper).
 #[derive(Module, Debug)]
 pub struct EdgeSpeechNetsNetwork {
-    /// Each coefficient on its own scale, as the training data have it.
+    /// Normalisation of each coefficient by the training data.
     scale: BatchNorm,
     first: Conv2d,
     pool: Option<AvgPool2d>,
     blocks: Vec<Block>,
-    /// D has none.
+    /// Last convolution; network D has none.
     last: Option<Conv2d>,
     dropout: Dropout,
     classifier: Linear,
 }
 
-/// Two convolutions with a way past them.
+/// Two convolutions with a residual connection.
 #[derive(Module, Debug)]
 struct Block {
-    /// The first block has none.
+    /// Normalisation before the block; the first block has none.
     before: Option<BatchNorm>,
     inner: Conv2d,
     between: BatchNorm,
@@ -50,7 +50,7 @@ struct Block {
 }
 
 impl EdgeSpeechNetsNetwork {
-    /// A network with weights as training begins with.
+    /// Returns a network with initial weights.
     pub fn new(architecture: EdgeSpeechNet, classes: usize, dropout: f64, device: &Device) -> Self {
         let (channels, inner) = architecture.channels();
         let halved = architecture == EdgeSpeechNet::D;
@@ -71,7 +71,7 @@ impl EdgeSpeechNetsNetwork {
         }
     }
 
-    /// Logits `[batch, classes]` of cepstra `[batch, coefficients, frames]`.
+    /// Returns logits `[batch, classes]` of cepstra `[batch, coefficients, frames]`.
     pub fn forward(&self, cepstra: Tensor<3>) -> Tensor<2> {
         let [batch, coefficients, frames] = cepstra.dims();
         let picture = self.scale.forward(cepstra).reshape([batch, 1, coefficients, frames]);

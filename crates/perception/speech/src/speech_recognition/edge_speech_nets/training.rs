@@ -1,4 +1,4 @@
-//! How they train.
+//! Training of EdgeSpeechNets.
 
 use burn::tensor::{Device, Tensor};
 use opendr_engine::params::Params;
@@ -8,13 +8,13 @@ use super::network::EdgeSpeechNetsNetwork;
 use super::{EdgeSpeechNetsKind, EdgeSpeechNetsParams};
 use crate::speech_recognition::word_learner::{TrainableWords, WordFitParams};
 
-/// How a user may train them.
+/// Training parameters of [`EdgeSpeechNets`](super::EdgeSpeechNets).
 #[derive(Debug, Clone, Params)]
 pub struct EdgeSpeechNetsFitParams {
-    /// What every training takes.
+    /// Parameters common to all trainings.
     #[param(flatten, epochs = 30, batch_size = 64, lr = 0.01, optimizer = OptimizerKind::Sgd)]
     pub training: TrainingParams,
-    /// What all learners of words have.
+    /// Training parameters common to all keyword spotting learners.
     #[param(flatten)]
     pub words: WordFitParams,
 }

@@ -1,4 +1,4 @@
-//! The network as it is trained.
+//! The trained network.
 
 use burn::module::Module;
 use burn::nn::conv::{Conv1d, Conv1dConfig};
@@ -12,15 +12,15 @@ use crate::speech_recognition::word_learner::WordKind as _;
 /// Sizes of the network.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NetworkSizes {
-    /// Blocks with a way past them (B).
+    /// Number of residual blocks (B).
     pub blocks: usize,
-    /// Convolutions in a block (R).
+    /// Number of convolutions per block (R).
     pub subblocks: usize,
-    /// Channels of the blocks (C).
+    /// Number of channels of the blocks (C).
     pub channels: usize,
-    /// Classes.
+    /// Number of classes.
     pub classes: usize,
-    /// Share of the channels' values that are left out in training.
+    /// Dropout probability.
     pub dropout: f64,
 }
 
@@ -28,10 +28,10 @@ const COEFFICIENTS: usize = MatchboxNetKind::COEFFICIENTS;
 /// Channels before and after the blocks.
 const OUTER_CHANNELS: usize = 128;
 
-/// `[batch, coefficients, frames]` to logits `[batch, classes]` (figure 1 and table 1 of the paper).
+/// Network from `[batch, coefficients, frames]` to logits `[batch, classes]` (figure 1 and table 1 of the paper).
 #[derive(Module, Debug)]
 pub struct MatchboxNetNetwork {
-    /// Each coefficient on its own scale, as the training data have it.
+    /// Normalisation of each coefficient by the training data.
     scale: BatchNorm,
     prologue: Separable,
     blocks: Vec<Block>,
@@ -41,7 +41,7 @@ pub struct MatchboxNetNetwork {
     classifier: Linear,
 }
 
-/// Separable convolutions with a way past them.
+/// Separable convolutions with a residual connection.
 #[derive(Module, Debug)]
 struct Block {
     convolutions: Vec<Separable>,
@@ -49,14 +49,14 @@ struct Block {
     dropout: Dropout,
 }
 
-/// A convolution through time, channel by channel, and one through channels, instant by instant; normalised.
+/// A depthwise convolution through time followed by a pointwise one over channels; normalised.
 #[derive(Module, Debug)]
 struct Separable {
     depthwise: Conv1d,
     pointwise: Pointwise,
 }
 
-/// A convolution through channels, instant by instant; normalised.
+/// A pointwise convolution over channels; normalised.
 #[derive(Module, Debug)]
 struct Pointwise {
     convolution: Conv1d,
@@ -64,7 +64,7 @@ struct Pointwise {
 }
 
 impl MatchboxNetNetwork {
-    /// A network with weights as training begins with.
+    /// Returns a network with initial weights.
     pub fn new(sizes: &NetworkSizes, device: &Device) -> Self {
         let NetworkSizes { blocks, subblocks, channels, classes, dropout } = *sizes;
         let block = |index: usize| {
@@ -90,13 +90,13 @@ impl MatchboxNetNetwork {
         }
     }
 
-    /// Logits `[batch, classes]` of cepstra `[batch, coefficients, frames]`.
+    /// Returns logits `[batch, classes]` of cepstra `[batch, coefficients, frames]`.
     pub fn forward(&self, cepstra: Tensor<3>) -> Tensor<2> {
         let signal = relu(self.prologue.forward(self.scale.forward(cepstra)));
         let signal = self.blocks.iter().fold(signal, |signal, block| block.forward(signal));
         let signal = self.dropout.forward(relu(self.epilogue.forward(signal)));
         let signal = self.dropout.forward(relu(self.mixing.forward(signal)));
-        // The paper's last convolution and its mean over time exchanged: both are linear.
+        // The paper's last convolution and its mean over time are exchanged: both are linear.
         let [batch, channels, _] = signal.dims();
         self.classifier.forward(signal.mean_dim(2).reshape([batch, channels]))
     }

@@ -1,4 +1,4 @@
-//! How it trains.
+//! Training of MatchboxNet.
 
 use burn::tensor::{Device, Tensor};
 use opendr_engine::params::Params;
@@ -8,13 +8,13 @@ use super::network::{MatchboxNetNetwork, NetworkSizes};
 use super::{MatchboxNetKind, MatchboxNetParams};
 use crate::speech_recognition::word_learner::{TrainableWords, WordFitParams};
 
-/// How a user may train it.
+/// Training parameters of [`MatchboxNet`](super::MatchboxNet).
 #[derive(Debug, Clone, Params)]
 pub struct MatchboxNetFitParams {
-    /// What every training takes.
+    /// Parameters common to all trainings.
     #[param(flatten, epochs = 30, batch_size = 64, lr = 0.0003, optimizer = OptimizerKind::Adam)]
     pub training: TrainingParams,
-    /// What all learners of words have.
+    /// Training parameters common to all keyword spotting learners.
     #[param(flatten)]
     pub words: WordFitParams,
 }

@@ -1,9 +1,9 @@
-//! A self-organised operational network of quadratic neurons over cepstra.
+//! A self-organised operational neural network (Self-ONN) of quadratic neurons on cepstra.
 //!
-//! Kiranyaz et al., Self-Organized Operational Neural Networks with Generative Neurons, Neural Networks 2021, for the powers
-//! that a neuron takes of its input; Zoumpourlis et al., Non-linear Convolution Filters for CNN-based Learning, ICCV
-//! 2017, for the products of neighbours. Two layers only: small, and slower for each number that it has than a
-//! convolution. A stream of sound is answered twice a second, each time for the second before.
+//! Kiranyaz et al., Self-Organized Operational Neural Networks with Generative Neurons, Neural Networks 2021, for the powers of
+//! a neuron's input; Zoumpourlis et al., Non-linear Convolution Filters for CNN-based Learning, ICCV 2017, for the products of
+//! neighbours. Two layers only: few parameters, but more arithmetic per parameter than a convolution. A stream of audio yields
+//! a prediction twice per second, each for the last second.
 
 #[cfg(feature = "training")]
 mod network;
@@ -20,13 +20,13 @@ use crate::speech_recognition::word_learner::{WordKind, WordLearner, WordParams}
 #[cfg(feature = "training")]
 pub use training::QuadraticSelfOnnFitParams;
 
-/// What a user may set.
+/// Parameters of [`QuadraticSelfOnn`].
 #[derive(Debug, Clone, Params)]
 pub struct QuadraticSelfOnnParams {
-    /// Up to which power neurons take their input, in the network that is trained; a loaded model has its own.
+    /// Highest power of the input in a neuron of the network that is trained; a loaded model has its own.
     #[param(default = 3, range = 1..=9)]
     pub expansion_order: usize,
-    /// What all learners of words have.
+    /// Parameters common to all keyword spotting learners.
     #[param(flatten)]
     pub words: WordParams,
 }
@@ -34,14 +34,14 @@ pub struct QuadraticSelfOnnParams {
 /// A loaded network of quadratic neurons.
 pub type QuadraticSelfOnn = WordLearner<QuadraticSelfOnnKind>;
 
-/// Which network it is.
+/// Network kind of [`QuadraticSelfOnn`].
 #[derive(Debug)]
 pub struct QuadraticSelfOnnKind;
 
 impl WordKind for QuadraticSelfOnnKind {
     const SPEC: Spec = Spec::new("quadratic_self_onn", Task::SpeechRecognition)
         .class("QuadraticSelfOnnLearner")
-        .about("Two layers of quadratic neurons tell which of a few words was spoken.");
+        .about("A Self-ONN of two layers of quadratic neurons classifies spoken words.");
     const COEFFICIENTS: usize = 16;
     type Params = QuadraticSelfOnnParams;
 

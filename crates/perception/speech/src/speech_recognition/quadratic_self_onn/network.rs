@@ -1,4 +1,4 @@
-//! The network as it is trained.
+//! The trained network.
 
 use burn::module::Module;
 use burn::nn::pool::{MaxPool2d, MaxPool2dConfig};
@@ -10,13 +10,13 @@ use super::quadratic_convolution::QuadraticConvolution;
 use crate::speech_recognition::cepstra::FRAMES;
 use crate::speech_recognition::word_learner::WordKind as _;
 
-/// Channels of both layers.
+/// Number of channels of both layers.
 const CHANNELS: usize = 20;
 
-/// `[batch, coefficients, frames]` to logits `[batch, classes]`.
+/// Network from `[batch, coefficients, frames]` to logits `[batch, classes]`.
 #[derive(Module, Debug)]
 pub struct QuadraticSelfOnnNetwork {
-    /// Each coefficient on its own scale, as the training data have it.
+    /// Normalisation of each coefficient by the training data.
     scale: BatchNorm,
     first: QuadraticConvolution,
     second: QuadraticConvolution,
@@ -26,7 +26,7 @@ pub struct QuadraticSelfOnnNetwork {
 }
 
 impl QuadraticSelfOnnNetwork {
-    /// A network with weights as training begins with.
+    /// Returns a network with initial weights.
     pub fn new(order: usize, classes: usize, dropout: f64, device: &Device) -> Self {
         let features = CHANNELS * (QuadraticSelfOnnKind::COEFFICIENTS / 4) * (FRAMES / 4);
         Self {
@@ -39,7 +39,7 @@ impl QuadraticSelfOnnNetwork {
         }
     }
 
-    /// Logits `[batch, classes]` of cepstra `[batch, coefficients, frames]`.
+    /// Returns logits `[batch, classes]` of cepstra `[batch, coefficients, frames]`.
     pub fn forward(&self, cepstra: Tensor<3>) -> Tensor<2> {
         let [batch, coefficients, frames] = cepstra.dims();
         let picture = self.scale.forward(cepstra).reshape([batch, 1, coefficients, frames]);

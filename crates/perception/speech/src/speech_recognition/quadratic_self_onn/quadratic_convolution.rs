@@ -1,19 +1,18 @@
-//! A convolution of 3x3 whose neurons also weigh the products of all pairs that they see.
+//! A 3x3 convolution whose neurons also weigh the products of all pairs of their inputs.
 
 use burn::module::{Initializer, Module};
 use burn::nn::PaddingConfig2d;
 use burn::nn::conv::{Conv2d, Conv2dConfig};
 use burn::tensor::{Device, Tensor};
 
-/// Side of what a neuron sees.
+/// Side of a kernel.
 const SIDE: usize = 3;
 
-/// `[batch, channels, height, width]` to as many pixels of other channels.
+/// Layer from `[batch, channels, height, width]` to the same height and width with other channels.
 ///
-/// The input's powers, from the first to the `order`th, are channels of their own. For each of them a neuron adds its 9 values
-/// and the 45 products of two of them, weighted. All products of values that lie `d` apart are one picture,
-/// shifted against itself and multiplied, and their weights are a convolution of it: 13 convolutions in place of
-/// 45 products for every neuron.
+/// The powers of the input, from the first to the `order`th, are separate channels. For each of them a neuron adds its 9 values
+/// and the 45 products of two of them, weighted. All products of values at distance `d` are one feature map, the product of the
+/// input and its shifted copy, and their weights are a convolution of it: 13 convolutions in place of 45 products per neuron.
 #[derive(Module, Debug)]
 pub struct QuadraticConvolution {
     linear: Conv2d,
@@ -21,7 +20,7 @@ pub struct QuadraticConvolution {
     order: usize,
 }
 
-/// How far apart the values of a product are, rows and columns, each pair once.
+/// Returns the distances between the two values of a product, rows and columns, each pair once.
 fn distances() -> impl Iterator<Item = [isize; 2]> {
     let reach = SIDE as isize - 1;
     let all = (0..=reach).flat_map(move |down| (-reach..=reach).map(move |right| [down, right]));
@@ -29,7 +28,7 @@ fn distances() -> impl Iterator<Item = [isize; 2]> {
 }
 
 impl QuadraticConvolution {
-    /// With weights as training begins with.
+    /// Returns a layer with initial weights.
     pub fn new([inputs, outputs]: [usize; 2], order: usize, device: &Device) -> Self {
         let inputs = inputs * order;
         let uniform = |taps: usize| {
@@ -54,7 +53,7 @@ impl QuadraticConvolution {
         }
     }
 
-    /// What the neurons give.
+    /// Returns the outputs of the neurons.
     pub fn forward(&self, input: Tensor<4>) -> Tensor<4> {
         let mut powers = vec![input.clone()];
         for _ in 1..self.order {
@@ -84,7 +83,7 @@ mod tests {
 
     use super::*;
 
-    /// By the definition: values, and every pair of them once, in one place of the picture.
+    /// Compares the layer with its definition at single positions: the values and every pair of them once.
     #[test]
     fn weighs_every_pair_once() {
         assert_eq!(distances().count(), 13);
@@ -103,20 +102,20 @@ mod tests {
                 if inside { picture[(row * 5 + column) as usize] } else { 0.0 }
             };
             let linear = numbers(layer.linear.weight.val());
-            let mut wanted = bias;
+            let mut expected = bias;
             for (at, weight) in linear.iter().enumerate() {
-                wanted += weight * value(at as isize / 3, at as isize % 3);
+                expected += weight * value(at as isize / 3, at as isize % 3);
             }
             for ([down, right], weights) in distances().zip(&layer.products) {
                 let columns = 3 - right.abs();
                 for (at, weight) in numbers(weights.weight.val()).iter().enumerate() {
                     let (i, j) = (at as isize / columns, at as isize % columns);
                     let one = value(i, j + (-right).max(0));
-                    wanted += weight * one * value(i + down, j + right.max(0));
+                    expected += weight * one * value(i + down, j + right.max(0));
                 }
             }
-            let got = output[row * 5 + column];
-            assert!((got - wanted).abs() < 1e-5, "{got} {wanted}");
+            let actual = output[row * 5 + column];
+            assert!((actual - expected).abs() < 1e-5, "{actual} {expected}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! How it trains.
+//! Training of the Self-ONN.
 
 use burn::tensor::{Device, Tensor};
 use opendr_engine::params::Params;
@@ -8,13 +8,13 @@ use super::network::QuadraticSelfOnnNetwork;
 use super::{QuadraticSelfOnnKind, QuadraticSelfOnnParams};
 use crate::speech_recognition::word_learner::{TrainableWords, WordFitParams};
 
-/// How a user may train it.
+/// Training parameters of [`QuadraticSelfOnn`](super::QuadraticSelfOnn).
 #[derive(Debug, Clone, Params)]
 pub struct QuadraticSelfOnnFitParams {
-    /// What every training takes.
+    /// Parameters common to all trainings.
     #[param(flatten, epochs = 30, batch_size = 64, lr = 0.01, optimizer = OptimizerKind::Sgd)]
     pub training: TrainingParams,
-    /// What all learners of words have.
+    /// Training parameters common to all keyword spotting learners.
     #[param(flatten)]
     pub words: WordFitParams,
 }

@@ -1,7 +1,9 @@
 //! Augmentation, batches, loss and container.
 
 use burn::tensor::Device;
-use opendr_datasets::augment::{AudioGain, AudioNoise, AudioShift, Augment, Others, Pipeline, SpecAugment};
+use opendr_datasets::augment::{
+    AudioGain, AudioNoise, AudioShift, Augment, OtherSamples, Pipeline, SpecAugment,
+};
 use opendr_datasets::loader::Collate;
 use opendr_engine::data::{Audio, Timeseries};
 use opendr_engine::dataset::Sample;
@@ -11,19 +13,19 @@ use opendr_engine::target::Classes;
 use opendr_engine::{Error, Random, Result, Value};
 use opendr_perception_common::labelled::{LabelledBatch, class_of};
 use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
-use opendr_sound::Sound;
+use opendr_sound::AudioInput;
 use opendr_training::export::{self, Input};
 use opendr_training::{Container, Loss, Objective};
 
-use super::fit::TrainableWords;
+use super::trainable::TrainableWords;
 use super::{FILE, WordParams};
 use crate::speech_recognition::cepstra::{FRAMES, FrontEnd};
 
-/// What the training minimises: the cross-entropy.
+/// Training objective: cross-entropy.
 pub(super) struct WordObjective<'a, K: TrainableWords> {
     pub params: &'a K::Params,
     pub classes: Classes,
-    /// Whether sound and cepstra are changed at random.
+    /// Whether audio and cepstra are augmented at random.
     pub augment: bool,
 }
 
@@ -77,27 +79,27 @@ impl<K: TrainableWords> Objective for WordObjective<'_, K> {
     }
 }
 
-/// Makes what stands for sound an [`Audio`] of one channel.
+/// Converts an audio input to an [`Audio`] of one channel.
 struct ToSound {
     sample_rate: u32,
 }
 
 impl Augment for ToSound {
-    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         let samples = sound_of(sample)?.samples(self.sample_rate)?.into_owned();
         sample.data = vec![Value::Audio(Audio::new(samples, 1, self.sample_rate)?)];
         Ok(())
     }
 }
 
-/// Makes sound a [`Timeseries`] of its cepstra.
+/// Converts audio to a [`Timeseries`] of its cepstra.
 struct ToCepstra {
     front_end: FrontEnd,
     coefficients: usize,
 }
 
 impl Augment for ToCepstra {
-    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         let mut cepstra = Vec::new();
         self.front_end.cepstra_into(sound_of(sample)?, &mut cepstra)?;
         let shape = [cepstra.len() / self.coefficients, self.coefficients];
@@ -106,15 +108,17 @@ impl Augment for ToCepstra {
     }
 }
 
-fn sound_of(sample: &Sample) -> Result<Sound<'_>> {
+fn sound_of(sample: &Sample) -> Result<AudioInput<'_>> {
     match sample.data.first() {
-        Some(Value::Audio(audio)) => Ok(Sound::Audio(audio)),
-        Some(Value::Timeseries(series)) => Ok(Sound::Series(series)),
-        _ => Err(Error::invalid_input("the sample has no sound; give Audio or a Timeseries")),
+        Some(Value::Audio(audio)) => Ok(AudioInput::Audio(audio)),
+        Some(Value::Timeseries(series)) => Ok(AudioInput::Series(series)),
+        _ => Err(Error::invalid_input(
+            "the sample has no audio; the first input must be Audio or a Timeseries",
+        )),
     }
 }
 
-/// Cepstra as the network takes them.
+/// Batches of cepstra in the network's input layout.
 pub(super) struct CepstraBatches {
     front_end: FrontEnd,
     coefficients: usize,

@@ -33,7 +33,7 @@ fn quadratic_self_onn() -> QuadraticSelfOnnParams {
     QuadraticSelfOnnParams { expansion_order: 2, ..Default::default() }
 }
 
-/// Noise with classes that have nothing to do with it.
+/// Noise with unrelated classes.
 struct Noise;
 
 impl Dataset for Noise {}
@@ -46,7 +46,7 @@ impl DatasetIterator for Noise {
     fn get(&self, index: usize) -> Result<Sample> {
         let mut random = Random::new(index as u64);
         let samples: Vec<f32> = (0..16_000).map(|_| (0.1 * random.normal()) as f32).collect();
-        // Sound comes in both forms.
+        // Audio in both of its types.
         let sound = match index % 2 {
             0 => Value::Audio(Audio::new(samples, 1, 16_000)?),
             _ => Value::Timeseries(Timeseries::new(samples, [16_000, 1])?),
@@ -64,7 +64,7 @@ fn audio(index: usize) -> Audio {
     audio
 }
 
-fn learns_by_heart<K: TrainableWords>(params: &K::Params, lr: f64) {
+fn overfits<K: TrainableWords>(params: &K::Params, lr: f64) {
     let objective = WordObjective::<K> { params, classes: Noise.classes(), augment: true };
     let samples = (0..Noise.len()).map(|index| Noise.get(index).unwrap()).collect();
     let network = |device: &Trainer| K::network(params, 3, 0.0, device);
@@ -73,13 +73,13 @@ fn learns_by_heart<K: TrainableWords>(params: &K::Params, lr: f64) {
 }
 
 #[test]
-fn learn_one_batch_by_heart() {
-    learns_by_heart::<MatchboxNetKind>(&matchboxnet(), 0.005);
-    learns_by_heart::<EdgeSpeechNetsKind>(&edge_speech_nets(EdgeSpeechNet::D), 0.005);
-    learns_by_heart::<QuadraticSelfOnnKind>(&quadratic_self_onn(), 0.003);
+fn overfit_one_batch() {
+    overfits::<MatchboxNetKind>(&matchboxnet(), 0.005);
+    overfits::<EdgeSpeechNetsKind>(&edge_speech_nets(EdgeSpeechNet::D), 0.005);
+    overfits::<QuadraticSelfOnnKind>(&quadratic_self_onn(), 0.003);
 }
 
-fn infers_what_is_computed<K: TrainableWords>(params: &K::Params) {
+fn inference_equals_training_network<K: TrainableWords>(params: &K::Params) {
     let device = Trainer::flex();
     device.seed(5);
     let network = K::network(params, 3, 0.0, &device);
@@ -92,8 +92,10 @@ fn infers_what_is_computed<K: TrainableWords>(params: &K::Params) {
     let mut input = Vec::new();
     FrontEnd::new(true, 16_000, K::COEFFICIENTS).unwrap().input_into((&audio(2)).into(), &mut input).unwrap();
     let input = Tensor::<3>::from_data(TensorData::new(input, [1, K::COEFFICIENTS, FRAMES]), &device);
-    let wanted = softmax(K::forward(&network.valid(), input), 1).into_data().try_to_vec::<f32>().unwrap();
-    assert!(category.probabilities.iter().zip(&wanted).all(|(got, wanted)| (got - wanted).abs() < 1e-5));
+    let expected = softmax(K::forward(&network.valid(), input), 1).into_data().try_to_vec::<f32>().unwrap();
+    assert!(
+        category.probabilities.iter().zip(&expected).all(|(got, expected)| (got - expected).abs() < 1e-5)
+    );
     assert_eq!(category.description, Noise.classes().name(category.class).cloned());
     let series = Timeseries::new(audio(2).as_slice().to_vec(), [16_000, 1]).unwrap();
     assert_eq!(handle.infer((&series).into()).unwrap(), category);
@@ -101,16 +103,16 @@ fn infers_what_is_computed<K: TrainableWords>(params: &K::Params) {
 }
 
 #[test]
-fn infer_what_the_trainer_computes() {
-    infers_what_is_computed::<MatchboxNetKind>(&matchboxnet());
+fn inference_equals_the_training_network() {
+    inference_equals_training_network::<MatchboxNetKind>(&matchboxnet());
     for architecture in [EdgeSpeechNet::A, EdgeSpeechNet::B, EdgeSpeechNet::C, EdgeSpeechNet::D] {
-        infers_what_is_computed::<EdgeSpeechNetsKind>(&edge_speech_nets(architecture));
+        inference_equals_training_network::<EdgeSpeechNetsKind>(&edge_speech_nets(architecture));
     }
-    infers_what_is_computed::<QuadraticSelfOnnKind>(&quadratic_self_onn());
+    inference_equals_training_network::<QuadraticSelfOnnKind>(&quadratic_self_onn());
 }
 
 #[test]
-fn fit_makes_what_infer_loads_and_goes_on_from_it() {
+fn infer_loads_the_model_of_fit_and_training_resumes_from_it() {
     let output = std::env::temp_dir().join(format!("opendr-matchboxnet-fit-{}", std::process::id()));
     std::fs::remove_dir_all(&output).ok();
     let params = MatchboxNetParams { number_of_channels: 8, number_of_blocks: 1, ..Default::default() };

@@ -1,22 +1,22 @@
-//! The likeliest texts, side by side (openai/whisper's `BeamSearchDecoder`).
+//! Beam search (openai/whisper's `BeamSearchDecoder`).
 
 use opendr_engine::Result;
 
-use super::decode::{Begun, Candidate, Decoding};
-use super::network::Memory;
+use super::decoding::{Candidate, Decoding, Prefilled};
+use super::network::KeyValueCache;
 use super::rules::log_sum_exp;
 
-/// A search with a fixed number of texts that go on.
+/// A beam search with a fixed number of unfinished texts.
 pub struct Beams<'a, 'b> {
     decoding: &'a Decoding<'b>,
     size: usize,
-    /// The search ends with so many texts that are finished.
+    /// Number of finished texts that ends the search.
     enough: usize,
 }
 
 struct Beam {
     candidate: Candidate,
-    memory: Memory,
+    cache: KeyValueCache,
     logits: Vec<f32>,
 }
 
@@ -26,13 +26,13 @@ impl<'a, 'b> Beams<'a, 'b> {
         Self { decoding, size: size.max(1), enough }
     }
 
-    /// The texts that were finished, and where they are too few the likeliest of the others.
-    pub fn run(&self, begun: &Begun) -> Result<Vec<Candidate>> {
-        let (memory, logits) = (begun.memory.clone(), begun.logits.clone());
-        let mut beams = vec![Beam { candidate: Candidate::default(), memory, logits }];
+    /// Returns the finished texts, completed by the likeliest unfinished ones where there are too few.
+    pub fn run(&self, prefilled: &Prefilled) -> Result<Vec<Candidate>> {
+        let (cache, logits) = (prefilled.cache.clone(), prefilled.logits.clone());
+        let mut beams = vec![Beam { candidate: Candidate::default(), cache, logits }];
         let mut finished = Vec::new();
-        for step in 0..self.decoding.room() {
-            let last = step + 1 == self.decoding.room();
+        for step in 0..self.decoding.max_tokens() {
+            let last = step + 1 == self.decoding.max_tokens();
             beams = self.step(beams, &mut finished, last)?;
             if finished.len() >= self.enough || beams.is_empty() {
                 break;
@@ -44,7 +44,7 @@ impl<'a, 'b> Beams<'a, 'b> {
     }
 
     fn step(&self, mut beams: Vec<Beam>, finished: &mut Vec<Candidate>, last: bool) -> Result<Vec<Beam>> {
-        let Decoding { network, vocabulary, heard, options } = *self.decoding;
+        let Decoding { network, vocabulary, encoded, options } = *self.decoding;
         let mut next: Vec<(f32, usize, u32)> = Vec::new();
         for (source, beam) in beams.iter_mut().enumerate() {
             options.rules.apply(&mut beam.logits, &beam.candidate.tokens);
@@ -66,11 +66,11 @@ impl<'a, 'b> Beams<'a, 'b> {
                 continue;
             }
             tokens.push(token);
-            let (mut memory, mut logits) = (beam.memory.clone(), Vec::new());
+            let (mut cache, mut logits) = (beam.cache.clone(), Vec::new());
             if !last {
-                network.read(heard, &mut memory, &[token], &mut logits)?;
+                network.decode(encoded, &mut cache, &[token], &mut logits)?;
             }
-            kept.push(Beam { candidate: Candidate { tokens, sum }, memory, logits });
+            kept.push(Beam { candidate: Candidate { tokens, sum }, cache, logits });
             if kept.len() == self.size {
                 break;
             }
@@ -79,7 +79,7 @@ impl<'a, 'b> Beams<'a, 'b> {
     }
 }
 
-/// The `count` largest that are possible, largest first.
+/// Returns the `count` largest finite logits with their tokens, largest first.
 fn largest(logits: &[f32], count: usize) -> Vec<(u32, f32)> {
     let mut found: Vec<(u32, f32)> = Vec::with_capacity(count + 1);
     for (token, logit) in logits.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The two networks, and what the decoder remembers.
+//! Encoder and decoder networks, and the decoder's key-value cache.
 
 use opendr_engine::model::Model;
 use opendr_engine::{Device, Error, Result};
@@ -6,95 +6,97 @@ use opendr_inference::{Session, TensorView};
 
 use super::spectrogram::WINDOW;
 
-/// Tokens that the decoder can attend to.
+/// Maximum number of tokens of the decoder's context.
 pub const CONTEXT: usize = 448;
-/// Added to the score of what may not be attended to.
+/// Value added to the attention scores of masked positions.
 const MASKED: f32 = -1e9;
-/// More than the largest Whisper has.
+/// Upper bound of sizes; above those of the largest Whisper.
 const MOST: usize = 1 << 20;
 
 const ENCODER: &str = "encoder.onnx";
 const DECODER: &str = "decoder.onnx";
 
-/// Encoder and decoder, as `opendr-import` writes them.
+/// Encoder and decoder, as written by `opendr-import`.
 pub struct Network {
     encoder: Session,
     decoder: Session,
-    /// Bands of the spectrogram.
+    /// Number of mel bands of the spectrogram.
     pub bands: usize,
-    /// Tokens that there are.
+    /// Number of tokens of the vocabulary.
     pub tokens: usize,
     width: usize,
 }
 
-/// What the encoder made of a window: keys and values for each layer of the decoder.
+/// Encoder output of a window: cross-attention keys and values for each layer of the decoder.
 #[derive(Debug, Default)]
-pub struct Heard {
+pub struct EncoderOutput {
     cross: Vec<Vec<f32>>,
 }
 
-/// What the decoder remembers of the tokens so far: keys and values for each layer. The first row is masked: no runtime
-/// need take empty tensors.
+/// Self-attention keys and values of the tokens so far, for each layer of the decoder. The first row is masked, so that no
+/// tensor is empty.
 #[derive(Debug, Clone, Default)]
-pub struct Memory {
+pub struct KeyValueCache {
     own: Vec<Vec<f32>>,
     rows: usize,
 }
 
-impl Memory {
-    /// How many tokens it remembers.
+impl KeyValueCache {
+    /// Returns the number of cached tokens.
     pub fn len(&self) -> usize {
         self.rows.saturating_sub(1)
     }
 }
 
 impl Network {
+    /// Loads the networks of a container.
+    ///
     /// # Errors
     /// `Format` when the container does not hold the two networks of a Whisper.
     pub fn load(model: &Model, device: Device) -> Result<Self> {
         let encoder = Session::open(&model.file(ENCODER)?, device)?;
         let decoder = Session::open(&model.file(DECODER)?, device)?;
-        let wrong = |what: &str| Error::format(format!("{what}; import the Whisper anew"));
+        let wrong = |what: &str| Error::format(format!("{what}; import the Whisper model again"));
         let &[_, Some(bands), Some(WINDOW)] =
             encoder.inputs().first().map_or(&[][..], |input| &input.dims[..])
         else {
-            return Err(wrong("encoder.onnx takes no spectrogram of 30 s"));
+            return Err(wrong("the input of encoder.onnx is not a spectrogram of 30 s"));
         };
         let layers = encoder.outputs().len() / 2;
         let names = decoder.inputs().iter().map(|input| input.name.as_str());
         let pairs = |first: &'static str, second: &'static str| {
             (0..layers).flat_map(move |layer| [first, second].map(|name| format!("{name}_{layer}")))
         };
-        let wanted = ["tokens", "positions", "mask"].map(str::to_owned).into_iter();
+        let expected = ["tokens", "positions", "mask"].map(str::to_owned).into_iter();
         let crosses = || pairs("cross_key", "cross_value");
         if layers == 0
-            || !names.eq(wanted.chain(pairs("key", "value")).chain(crosses()))
+            || !names.eq(expected.chain(pairs("key", "value")).chain(crosses()))
             || !encoder.outputs().iter().map(|output| output.name.as_str()).eq(crosses())
             || decoder.outputs().len() != 1 + 2 * layers
         {
-            return Err(wrong("encoder.onnx and decoder.onnx do not fit each other"));
+            return Err(wrong("encoder.onnx and decoder.onnx do not match"));
         }
         let sizes = (decoder.outputs().first(), decoder.outputs().get(1));
         let (Some(&[_, Some(tokens)]), Some(&[_, Some(width)])) =
             (sizes.0.map(|logits| &logits.dims[..]), sizes.1.map(|keys| &keys.dims[..]))
         else {
-            return Err(wrong("decoder.onnx does not say how many tokens it tells apart"));
+            return Err(wrong("decoder.onnx does not state the size of its vocabulary"));
         };
         if [bands, tokens, width].iter().any(|size| !(1..=MOST).contains(size)) {
-            return Err(wrong("a size of the networks cannot be"));
+            return Err(wrong("a size of the networks is out of range"));
         }
         Ok(Self { encoder, decoder, bands, tokens, width })
     }
 
-    /// Hears a window, `[bands, WINDOW]`.
+    /// Encodes a window, `[bands, WINDOW]`.
     ///
     /// # Errors
-    /// What the runtime meets.
-    pub fn listen(&self, window: &[f32], heard: &mut Heard) -> Result<()> {
+    /// The errors of the runtime.
+    pub fn encode(&self, window: &[f32], encoded: &mut EncoderOutput) -> Result<()> {
         let input = TensorView::new(&[1, self.bands, WINDOW], window)?;
-        heard.cross.resize_with(self.encoder.outputs().len(), Vec::new);
+        encoded.cross.resize_with(self.encoder.outputs().len(), Vec::new);
         self.encoder.run(&[input], |outputs| {
-            for (output, values) in outputs.iter().zip(&mut heard.cross) {
+            for (output, values) in outputs.iter().zip(&mut encoded.cross) {
                 values.clear();
                 values.extend_from_slice(output.values()?);
             }
@@ -102,30 +104,32 @@ impl Network {
         })
     }
 
-    /// Forgets all tokens.
-    pub fn forget(&self, memory: &mut Memory) {
-        memory.own.resize_with(self.encoder.outputs().len(), Vec::new);
-        for values in &mut memory.own {
+    /// Clears the cache.
+    pub fn clear_cache(&self, cache: &mut KeyValueCache) {
+        cache.own.resize_with(self.encoder.outputs().len(), Vec::new);
+        for values in &mut cache.own {
             values.clear();
             values.resize(self.width, 0.0);
         }
-        memory.rows = 1;
+        cache.rows = 1;
     }
 
-    /// Reads `tokens` on, and replaces `logits` by those of the token that follows.
+    /// Decodes `tokens` and replaces `logits` by those of the next token.
     ///
     /// # Errors
-    /// `Internal` for more tokens than [`CONTEXT`], else what the runtime meets.
-    pub fn read(
+    /// `Internal` for more tokens than [`CONTEXT`]; the errors of the runtime.
+    pub fn decode(
         &self,
-        heard: &Heard,
-        memory: &mut Memory,
+        encoded: &EncoderOutput,
+        cache: &mut KeyValueCache,
         tokens: &[u32],
         logits: &mut Vec<f32>,
     ) -> Result<()> {
-        let (count, rows, known) = (tokens.len(), memory.rows, memory.len());
+        let (count, rows, known) = (tokens.len(), cache.rows, cache.len());
         if count == 0 || known + count > CONTEXT {
-            return Err(Error::internal(format!("{count} tokens after {known}: Whisper reads {CONTEXT}")));
+            return Err(Error::internal(format!(
+                "{count} tokens after {known} exceed Whisper's context of {CONTEXT}"
+            )));
         }
         let tokens: Vec<i64> = tokens.iter().map(|token| i64::from(*token)).collect();
         let positions: Vec<i64> = (known..known + count).map(|place| place as i64).collect();
@@ -137,16 +141,16 @@ impl Network {
             TensorView::new(&[count], &positions[..])?,
             TensorView::new(&[count, attended], &mask[..])?,
         ];
-        for values in &memory.own {
+        for values in &cache.own {
             inputs.push(TensorView::new(&[rows, self.width], &values[..])?);
         }
         let shapes = self.encoder.outputs().iter().map(|output| &output.dims);
-        for (values, dims) in heard.cross.iter().zip(shapes) {
+        for (values, dims) in encoded.cross.iter().zip(shapes) {
             let mut shape = [0; 3];
             shape.iter_mut().zip(dims).for_each(|(size, dim)| *size = dim.unwrap_or_default());
             inputs.push(TensorView::new(&shape, &values[..])?);
         }
-        // The views above borrow what is remembered, so what is new waits here.
+        // The inputs borrow the cache, so the new keys and values are collected first.
         let mut fresh: Vec<Vec<f32>> = Vec::new();
         self.decoder.run(&inputs, |outputs| {
             let Some((own, new)) = outputs.split_first() else { return Ok(()) };
@@ -157,10 +161,10 @@ impl Network {
             }
             Ok(())
         })?;
-        for (values, new) in memory.own.iter_mut().zip(fresh) {
+        for (values, new) in cache.own.iter_mut().zip(fresh) {
             values.extend(new);
         }
-        memory.rows += count;
+        cache.rows += count;
         Ok(())
     }
 }

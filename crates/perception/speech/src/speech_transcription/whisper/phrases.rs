@@ -1,4 +1,4 @@
-//! Where in a stream of sound somebody speaks.
+//! Segmentation of a stream of audio into phrases.
 
 use super::spectrogram::RATE;
 
@@ -9,35 +9,36 @@ const LEAD: usize = 15;
 /// Steps of silence that end a phrase.
 const PAUSE: usize = 40;
 
-/// Sound of a phrase, and silence left out. What it does follows from the samples alone, not from the pieces they come in.
+/// Audio of the current phrase, without silence. The result depends on the samples alone, not on the pieces in which they
+/// arrive.
 #[derive(Debug, Default)]
 pub struct Phrases {
-    /// Samples of the phrase that goes on; of silence, not more than `LEAD` steps.
+    /// Samples of the unfinished phrase; in silence, at most `LEAD` steps.
     pub sound: Vec<f32>,
-    /// Samples of the stream before them.
+    /// Number of samples of the stream before `sound`.
     pub begin: u64,
-    /// Less than a step.
+    /// Samples of an incomplete step.
     pending: Vec<f32>,
     speaking: bool,
     quiet: usize,
 }
 
-/// What a step brought.
+/// Result of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
-    /// Silence, which is forgotten.
+    /// Silence, which is dropped.
     Silence,
-    /// The phrase goes on.
+    /// The phrase continues.
     Speech,
-    /// The phrase is over; [`Phrases::sound`] holds it.
+    /// The phrase has ended; [`Phrases::sound`] contains it.
     End,
 }
 
 impl Phrases {
-    /// Takes the next piece; `each` is called after each step of 20 ms that it completes.
+    /// Adds a piece of audio; `each` is called after each completed step of 20 ms.
     ///
     /// # Errors
-    /// What `each` returns; the rest of the piece is lost then.
+    /// The errors of `each`; the rest of the piece is then lost.
     pub fn push<E>(
         &mut self,
         piece: &[f32],
@@ -66,25 +67,25 @@ impl Phrases {
             true if self.quiet >= PAUSE => Step::End,
             true => Step::Speech,
             false => {
-                self.forget(self.sound.len().saturating_sub(LEAD * STEP));
+                self.drop_first(self.sound.len().saturating_sub(LEAD * STEP));
                 Step::Silence
             }
         }
     }
 
-    /// Forgets samples at the begin.
-    pub fn forget(&mut self, count: usize) {
+    /// Drops samples at the start.
+    pub fn drop_first(&mut self, count: usize) {
         self.sound.drain(..count.min(self.sound.len()));
         self.begin += count as u64;
     }
 
-    /// Forgets the phrase, which is over.
+    /// Drops the phrase.
     pub fn end(&mut self) {
-        self.forget(self.sound.len());
+        self.drop_first(self.sound.len());
         self.speaking = false;
     }
 
-    /// The stream is over: the phrase with what is pending; `None` in silence.
+    /// Ends the stream and returns the phrase with the pending samples; `None` in silence.
     pub fn finish(&mut self) -> Option<&[f32]> {
         self.sound.append(&mut self.pending);
         self.speaking.then_some(&self.sound)
@@ -106,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn phrases_are_the_same_in_all_pieces() {
+    fn phrases_do_not_depend_on_the_pieces() {
         let stream = stream();
         let phrases = |size: usize| {
             let (mut phrases, mut found) = (Phrases::default(), Vec::new());
@@ -134,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn silence_is_forgotten() {
+    fn silence_is_dropped() {
         let mut phrases = Phrases::default();
         for _ in 0..3600 {
             phrases

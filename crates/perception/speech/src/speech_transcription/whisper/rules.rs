@@ -1,24 +1,24 @@
-//! Which tokens may come next (openai/whisper's `SuppressBlank`, `SuppressTokens` and `ApplyTimestampRules`).
+//! Logit filters (openai/whisper's `SuppressBlank`, `SuppressTokens` and `ApplyTimestampRules`).
 
 use super::vocabulary::Vocabulary;
 
-/// The rules of one window.
+/// Logit filters of one window.
 pub struct Rules<'a> {
     pub vocabulary: &'a Vocabulary,
-    /// Whether a text may not begin with a space or its end.
+    /// Whether a text must not begin with a space or with its end.
     pub suppress_blank: bool,
-    /// Tokens that are never taken.
+    /// Tokens that are never decoded.
     pub suppressed: &'a [u32],
-    /// Whether there are times.
+    /// Whether timestamps are decoded.
     pub times: bool,
-    /// The latest that the first time may be, steps of 20 ms.
+    /// Latest first timestamp, in steps of 20 ms.
     pub latest_begin: Option<u32>,
 }
 
 const NEVER: f32 = f32::NEG_INFINITY;
 
 impl Rules<'_> {
-    /// Makes every token impossible that may not follow `sampled`, the tokens of this window so far.
+    /// Sets the logit of every token that must not follow `sampled`, the tokens of this window so far, to minus infinity.
     pub fn apply(&self, logits: &mut [f32], sampled: &[u32]) {
         if self.suppress_blank && sampled.is_empty() {
             forbid(logits, &self.vocabulary.blank);
@@ -29,7 +29,7 @@ impl Rules<'_> {
         }
     }
 
-    /// Times come in pairs, the end of a segment and the begin of the next, and never go back.
+    /// Timestamps come in pairs, the end of a segment and the start of the next, and never decrease.
     fn apply_times(&self, logits: &mut [f32], sampled: &[u32]) {
         let Vocabulary { first_time, end, no_times, .. } = *self.vocabulary;
         let is_time = |token: &u32| *token >= first_time;
@@ -43,7 +43,7 @@ impl Rules<'_> {
             _ => {}
         }
         if let Some(time) = sampled.iter().rev().copied().find(is_time) {
-            // No segment is without length.
+            // A segment is never empty.
             let earliest = if last_is_time && !one_before_is_time { time } else { time + 1 };
             forbid_range(logits, first_time, earliest);
         }
@@ -76,7 +76,7 @@ fn forbid_range(logits: &mut [f32], begin: u32, end: u32) {
     }
 }
 
-/// The logarithm of the sum of the exponentials; minus infinity of nothing.
+/// Returns the logarithm of the sum of exponentials; minus infinity for no logits.
 pub fn log_sum_exp(logits: &[f32]) -> f32 {
     let most = logits.iter().copied().fold(NEVER, f32::max);
     if most == NEVER {

@@ -1,24 +1,24 @@
-//! From the tokens of a window to its segments, and to where the next window begins.
+//! Segments of a window, and the start of the next window.
 
-use super::decode::Decoded;
+use super::decoding::Decoded;
 use super::vocabulary::Vocabulary;
 
-/// Frames of the spectrogram that a step of the times spans.
+/// Spectrogram frames per timestamp step.
 const FRAMES: usize = 2;
-/// Seconds of it.
+/// Seconds per timestamp step.
 const STEP_S: f32 = 0.02;
 
-/// A part of a window.
+/// A segment of a window.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
-    /// Begin and end within the window, seconds.
+    /// Start and end within the window in seconds.
     pub start: f32,
     pub end: f32,
     pub tokens: Vec<u32>,
 }
 
-/// Cuts a window of `frames` frames where its times say, and tells how many of the frames were understood: the next
-/// window begins behind them.
+/// Splits a window of `frames` frames at its timestamps. Returns the segments and the number of frames they cover; the next
+/// window begins there.
 pub fn cut(decoded: &Decoded, vocabulary: &Vocabulary, frames: usize) -> (Vec<Part>, usize) {
     let tokens = &decoded.tokens;
     let step = |token: &u32| token.checked_sub(vocabulary.first_time);

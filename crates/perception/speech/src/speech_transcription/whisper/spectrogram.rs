@@ -1,22 +1,22 @@
-//! Sound as Whisper is given it.
+//! Log-mel spectrogram, the input of Whisper.
 
 use opendr_engine::Result;
 use opendr_sound::mfcc::{Mfcc, MfccOptions};
 
-/// Samples a second.
+/// Sample rate in Hz.
 pub const RATE: u32 = 16_000;
-/// Samples of a frame: 10 ms.
+/// Samples per frame: 10 ms.
 pub const HOP: usize = 160;
-/// Frames of a window: 30 s.
+/// Frames per window: 30 s.
 pub const WINDOW: usize = 3000;
 
-/// Logarithms of mel bands.
+/// Computes log-mel spectrograms.
 pub struct SpectrogramMaker {
     mel: Mfcc,
     bands: usize,
 }
 
-/// A whole sound: `[frames, bands]`.
+/// Spectrogram of a whole recording: `[frames, bands]`.
 #[derive(Debug, Default)]
 pub struct Spectrogram {
     bands: Vec<f32>,
@@ -25,13 +25,15 @@ pub struct Spectrogram {
 }
 
 impl SpectrogramMaker {
+    /// Creates the transform for `bands` mel bands.
+    ///
     /// # Errors
-    /// `InvalidParam` for a number of bands that cannot be.
+    /// `InvalidParam` for an invalid number of bands.
     pub fn new(bands: usize) -> Result<Self> {
         Ok(Self { mel: Mfcc::new(MfccOptions::whisper(bands))?, bands })
     }
 
-    /// The frames of a sound at [`RATE`]: those that are whole. After its end there is silence.
+    /// Computes the complete frames of audio at [`RATE`]; the audio is padded with silence.
     pub fn run_into(&self, samples: &[f32], spectrogram: &mut Spectrogram) {
         let Spectrogram { bands, frames, padded } = spectrogram;
         padded.clear();
@@ -44,8 +46,7 @@ impl SpectrogramMaker {
         bands.iter_mut().for_each(|band| *band = *band / 40.0 + 1.0);
     }
 
-    /// Replaces `window` by the network's input `[bands, WINDOW]`: the frames from `first` on, and zeros where the sound
-    /// is over.
+    /// Replaces `window` by the network's input `[bands, WINDOW]`: the frames from `first` on, padded with zeros.
     pub fn window_into(&self, spectrogram: &Spectrogram, first: usize, window: &mut Vec<f32>) {
         window.clear();
         window.resize(self.bands * WINDOW, 0.0);

@@ -1,32 +1,32 @@
-//! Speech that comes in pieces.
+//! Transcription of a stream of audio.
 
 use opendr_engine::Result;
 use opendr_engine::learner::Streaming;
 use opendr_engine::target::WhisperTranscription;
-use opendr_sound::Sound;
+use opendr_sound::AudioInput;
 use opendr_sound::resampler::Resampler;
 
-use super::Whisper;
+use super::model::Whisper;
 use super::phrases::{Phrases, Step};
 use super::spectrogram::{HOP, RATE, WINDOW};
 use super::transcribe::Transcript;
 
-/// What a stream remembers: at most 30 s of the phrase that goes on, and nothing of silence.
+/// State of a stream: at most 30 s of the current phrase, and no silence.
 #[derive(Debug, Default)]
 pub struct WhisperStream {
     resampler: Option<Resampler>,
     phrases: Phrases,
     /// `None` before the first phrase.
     transcript: Option<Transcript>,
-    /// Steps since the phrase was last told.
-    untold: usize,
+    /// Steps of speech since the last transcription.
+    since_emitted: usize,
 }
 
-/// Steps of [`Phrases`] in a second.
+/// Steps of [`Phrases`] per second.
 const STEPS: f32 = 50.0;
 
 impl WhisperStream {
-    /// Takes sound at another rate in.
+    /// Resamples audio to Whisper's rate.
     fn resampled(&mut self, samples: &[f32], rate: u32) -> Result<Vec<f32>> {
         let mut resampled = Vec::new();
         if self.resampler.as_ref().is_none_or(|resampler| resampler.from_rate() != rate) {
@@ -43,111 +43,115 @@ impl WhisperStream {
 }
 
 impl Whisper {
-    fn hear(
+    fn process(
         &self,
         stream: &mut WhisperStream,
         samples: &[f32],
         emit: &mut dyn FnMut(WhisperTranscription),
     ) -> Result<()> {
-        let WhisperStream { phrases, transcript, untold, .. } = stream;
+        let WhisperStream { phrases, transcript, since_emitted, .. } = stream;
         let interval = self.params.partial_interval.map(|seconds| (seconds * STEPS) as usize);
         phrases.push(samples, self.params.silence_level, |phrases, step| {
-            *untold += usize::from(step == Step::Speech);
+            *since_emitted += usize::from(step == Step::Speech);
             match step {
                 Step::Silence => Ok(()),
                 Step::End => {
-                    *untold = 0;
-                    self.tell(transcript, phrases, emit)
+                    *since_emitted = 0;
+                    self.emit_phrase(transcript, phrases, emit)
                 }
                 Step::Speech if phrases.sound.len() >= WINDOW * HOP => {
-                    *untold = 0;
-                    self.tell_window(transcript, phrases, emit)
+                    *since_emitted = 0;
+                    self.emit_window(transcript, phrases, emit)
                 }
-                Step::Speech if interval.is_some_and(|interval| *untold >= interval) => {
-                    *untold = 0;
-                    self.tell_so_far(transcript, phrases, emit)
+                Step::Speech if interval.is_some_and(|interval| *since_emitted >= interval) => {
+                    *since_emitted = 0;
+                    self.emit_partial(transcript, phrases, emit)
                 }
                 Step::Speech => Ok(()),
             }
         })
     }
 
-    fn begun<'t>(&self, transcript: &'t mut Option<Transcript>, begin: u64) -> Result<&'t mut Transcript> {
-        let begun = match transcript.take() {
-            Some(begun) => begun,
+    fn transcript_at<'t>(
+        &self,
+        transcript: &'t mut Option<Transcript>,
+        begin: u64,
+    ) -> Result<&'t mut Transcript> {
+        let current = match transcript.take() {
+            Some(current) => current,
             None => Transcript::new(self)?,
         };
-        let begun = transcript.insert(begun);
-        begun.begin = begin;
-        Ok(begun)
+        let current = transcript.insert(current);
+        current.begin = begin;
+        Ok(current)
     }
 
-    /// The phrase is over.
-    fn tell(
+    /// Transcribes a finished phrase.
+    fn emit_phrase(
         &self,
         transcript: &mut Option<Transcript>,
         phrases: &mut Phrases,
         emit: &mut dyn FnMut(WhisperTranscription),
     ) -> Result<()> {
-        let mut said = WhisperTranscription::default();
-        self.begun(transcript, phrases.begin)?.write(self, &phrases.sound, &mut said)?;
+        let mut transcription = WhisperTranscription::default();
+        self.transcript_at(transcript, phrases.begin)?.write(self, &phrases.sound, &mut transcription)?;
         phrases.end();
-        if !said.segments.is_empty() {
-            emit(said);
+        if !transcription.segments.is_empty() {
+            emit(transcription);
         }
         Ok(())
     }
 
-    /// The phrase fills a window.
-    fn tell_window(
+    /// Transcribes a phrase that fills a window.
+    fn emit_window(
         &self,
         transcript: &mut Option<Transcript>,
         phrases: &mut Phrases,
         emit: &mut dyn FnMut(WhisperTranscription),
     ) -> Result<()> {
-        let mut said = WhisperTranscription::default();
-        let begun = self.begun(transcript, phrases.begin)?;
-        let understood = begun.write_window(self, &phrases.sound, &self.params.temperature, &mut said)?;
-        phrases.forget(understood.max(HOP));
-        if !said.segments.is_empty() {
-            emit(said);
+        let mut transcription = WhisperTranscription::default();
+        let current = self.transcript_at(transcript, phrases.begin)?;
+        let consumed =
+            current.write_window(self, &phrases.sound, &self.params.temperature, &mut transcription)?;
+        phrases.drop_first(consumed.max(HOP));
+        if !transcription.segments.is_empty() {
+            emit(transcription);
         }
         Ok(())
     }
 
-    /// What was understood of a phrase that goes on: words without segments, quickly decoded.
-    fn tell_so_far(
+    /// Transcribes an unfinished phrase at the first temperature; the result has text and no segments.
+    fn emit_partial(
         &self,
         transcript: &mut Option<Transcript>,
         phrases: &Phrases,
         emit: &mut dyn FnMut(WhisperTranscription),
     ) -> Result<()> {
-        let mut so_far = self.begun(transcript, phrases.begin)?.clone();
-        let mut said = WhisperTranscription::default();
-        let coldest = self.params.temperature.get(..1).unwrap_or_default();
-        so_far.write_window(self, &phrases.sound, coldest, &mut said)?;
-        if !said.text.is_empty() {
-            said.segments.clear();
-            emit(said);
+        let mut partial = self.transcript_at(transcript, phrases.begin)?.clone();
+        let mut transcription = WhisperTranscription::default();
+        let first_temperature = self.params.temperature.get(..1).unwrap_or_default();
+        partial.write_window(self, &phrases.sound, first_temperature, &mut transcription)?;
+        if !transcription.text.is_empty() {
+            transcription.segments.clear();
+            emit(transcription);
         }
         Ok(())
     }
 }
 
-/// A transcription of every phrase: when 0.8 s of silence follow it, or it fills 30 s. Its times are those of the stream.
-/// While a phrase goes on, what was understood so far is told every `partial_interval`: words that may still change, and
-/// no segments.
+/// Yields a transcription of every phrase when 0.8 s of silence follow it or it fills 30 s. Times are those of the stream.
+/// During a phrase, partial transcriptions are yielded every `partial_interval`: text that may still change, without segments.
 impl Streaming for Whisper {
     fn push(
         &self,
         stream: &mut WhisperStream,
-        piece: Sound<'_>,
+        piece: AudioInput<'_>,
         emit: &mut dyn FnMut(WhisperTranscription),
     ) -> Result<()> {
         let rate = piece.rate(RATE);
         let samples = piece.samples(rate)?;
         let samples = stream.resampled(&samples, rate)?;
-        self.hear(stream, &samples, emit)
+        self.process(stream, &samples, emit)
     }
 
     fn flush(&self, stream: &mut WhisperStream, emit: &mut dyn FnMut(WhisperTranscription)) -> Result<()> {
@@ -155,12 +159,12 @@ impl Streaming for Whisper {
         if let Some(mut resampler) = stream.resampler.take() {
             resampler.finish(&mut rest);
         }
-        self.hear(stream, &rest, emit)?;
-        let told = match stream.phrases.finish() {
-            Some(_) => self.tell(&mut stream.transcript, &mut stream.phrases, emit),
+        self.process(stream, &rest, emit)?;
+        let emitted = match stream.phrases.finish() {
+            Some(_) => self.emit_phrase(&mut stream.transcript, &mut stream.phrases, emit),
             None => Ok(()),
         };
         *stream = WhisperStream::default();
-        told
+        emitted
     }
 }

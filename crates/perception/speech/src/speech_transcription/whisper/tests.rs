@@ -1,8 +1,9 @@
-//! What needs no weights. `crates/opendr/tests/whisper.rs` tests the rest.
+//! Tests without weights. `crates/opendr/tests/whisper.rs` has those with weights.
 
-use super::decode::Decoded;
+use super::decoding::Decoded;
 use super::rules::Rules;
 use super::segments::{Part, cut};
+use super::spectrogram::Spectrogram;
 use super::tokenizer::tests::tiny;
 use super::*;
 
@@ -44,7 +45,8 @@ fn other_tokenizers_are_refused() {
     assert!(Vocabulary::new(tiny(&SPECIAL), COUNT - 1).is_err());
 }
 
-/// Tokens that the rules allow after `sampled` where all are alike, times a little less likely together than a word.
+/// Returns the tokens that the rules allow after `sampled` for equal logits, where the timestamps together are less likely than
+/// a word.
 fn allowed(sampled: &[u32]) -> Vec<u32> {
     let vocabulary = vocabulary();
     let rules = Rules {
@@ -61,7 +63,7 @@ fn allowed(sampled: &[u32]) -> Vec<u32> {
 }
 
 #[test]
-fn times_come_in_pairs_and_never_go_back() {
+fn timestamps_come_in_pairs_and_never_decrease() {
     assert_eq!(allowed(&[]), (FIRST..=FIRST + 50).collect::<Vec<_>>());
     let after_begin = allowed(&[FIRST]);
     assert!(after_begin.contains(&104) && after_begin.contains(&END) && !after_begin.contains(&7));
@@ -77,7 +79,7 @@ fn times_come_in_pairs_and_never_go_back() {
 }
 
 #[test]
-fn likely_times_keep_words_away() {
+fn likely_timestamps_suppress_words() {
     let vocabulary = vocabulary();
     let rules = Rules {
         vocabulary: &vocabulary,
@@ -93,7 +95,7 @@ fn likely_times_keep_words_away() {
 }
 
 #[test]
-fn windows_are_cut_where_the_times_say() {
+fn windows_are_split_at_timestamps() {
     let vocabulary = vocabulary();
     let cut = |tokens: &[u32]| {
         let decoded = Decoded { tokens: tokens.to_vec(), ..Decoded::default() };
@@ -101,7 +103,7 @@ fn windows_are_cut_where_the_times_say() {
     };
     let part = |start: f32, end: f32, tokens: &[u32]| Part { start, end, tokens: tokens.to_vec() };
     let [a, b, c, d] = [FIRST, FIRST + 100, FIRST + 150, FIRST + 200];
-    // The last segment is not over: the next window begins with it.
+    // The last segment is unfinished: the next window begins with it.
     let (parts, frames) = cut(&[a, 1, b, b, 2, c, c, 3]);
     assert_eq!((parts, frames), (vec![part(0.0, 2.0, &[a, 1, b]), part(2.0, 3.0, &[b, 2, c])], 300));
     let (parts, frames) = cut(&[a, 1, b, b, 2, d]);
@@ -112,7 +114,7 @@ fn windows_are_cut_where_the_times_say() {
 }
 
 #[test]
-fn spectrograms_have_whole_frames_and_end_in_silence() {
+fn spectrograms_have_complete_frames_and_are_padded_with_silence() {
     let maker = SpectrogramMaker::new(80).unwrap();
     let (mut spectrogram, mut window) = (Spectrogram::default(), Vec::new());
     let tone: Vec<f32> = (0..16_100).map(|at| (at as f32 * 0.3).sin()).collect();

@@ -1,4 +1,4 @@
-//! Text as tokens: byte pair encoding over bytes, as GPT-2 has it (Radford et al. 2019; Sennrich et al. 2016).
+//! Byte pair encoding over bytes, as in GPT-2 (Radford et al. 2019; Sennrich et al. 2016).
 
 use std::collections::HashMap;
 
@@ -7,18 +7,18 @@ use serde::Deserialize;
 
 use super::words::words_of;
 
-/// No Whisper has nearly as many tokens.
+/// Upper bound of token ids; far above those of any Whisper.
 const MOST_TOKENS: u32 = 1 << 20;
 
-/// The largest text that is encoded, bytes: a prompt of 223 tokens has a thousand.
+/// Maximum length of an encoded text in bytes; a prompt of 223 tokens has about a thousand.
 const LONGEST: usize = 1 << 16;
 
-/// Tokens with the bytes that they stand for, and which two become one.
+/// Vocabulary as bytes, and the merges.
 pub struct Tokenizer {
     bytes: Vec<Vec<u8>>,
     of_byte: [Option<u32>; 256],
-    /// From two neighbours to the order of their join, and what they become.
-    joins: HashMap<(u32, u32), (usize, u32)>,
+    /// Rank and resulting token of each mergeable pair.
+    merges_by_pair: HashMap<(u32, u32), (usize, u32)>,
     special: HashMap<String, u32>,
 }
 
@@ -41,7 +41,7 @@ struct Model {
     merges: Vec<Merge>,
 }
 
-/// Both spellings of Hugging Face's file.
+/// Merge in either notation of Hugging Face's file.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Merge {
@@ -59,21 +59,21 @@ impl Merge {
 }
 
 impl Tokenizer {
-    /// Reads Hugging Face's `tokenizer.json`.
+    /// Parses Hugging Face's `tokenizer.json`.
     ///
     /// # Errors
-    /// `Format` when it is none, or not of bytes.
+    /// `Format` when the file is no tokenizer, or no byte-level one.
     pub fn from_json(json: &[u8]) -> Result<Self> {
         let TokenizerFile { added_tokens, model } = serde_json::from_slice(json)
             .map_err(|error| Error::format("tokenizer.json is damaged").with_source(error))?;
         let ids = model.vocab.values().copied().chain(added_tokens.iter().map(|token| token.id));
         let last = ids.max().filter(|id| *id < MOST_TOKENS).ok_or_else(|| {
-            Error::format(format!("tokenizer.json names no tokens, or more than {MOST_TOKENS}"))
+            Error::format(format!("tokenizer.json has no tokens, or more than {MOST_TOKENS}"))
         })?;
         let mut bytes = vec![Vec::new(); last as usize + 1];
         let mut of_byte = [None; 256];
         for (text, id) in &model.vocab {
-            // Special tokens may stand in the vocabulary too; they are no text.
+            // Special tokens may also be in the vocabulary; they are no text.
             let spelled: Option<Vec<u8>> = text.chars().map(byte_of).collect();
             if let Some(&[byte]) = spelled.as_deref() {
                 of_byte[usize::from(byte)] = Some(*id);
@@ -82,16 +82,18 @@ impl Tokenizer {
                 *place = spelled.unwrap_or_default();
             }
         }
-        let mut joins = HashMap::new();
+        let mut merges_by_pair = HashMap::new();
         for (order, merge) in model.merges.iter().enumerate() {
             let found = merge.pair().and_then(|(left, right)| {
                 let id = |text: &str| model.vocab.get(text).copied();
                 Some(((id(left)?, id(right)?), id(&format!("{left}{right}"))?))
             });
             let Some((pair, joined)) = found else {
-                return Err(Error::format(format!("tokenizer.json: merge {order} is of no tokens")));
+                return Err(Error::format(format!(
+                    "tokenizer.json: merge {order} is not a merge of two tokens"
+                )));
             };
-            joins.entry(pair).or_insert((order, joined));
+            merges_by_pair.entry(pair).or_insert((order, joined));
         }
         for token in &added_tokens {
             if let Some(place) = bytes.get_mut(token.id as usize) {
@@ -99,63 +101,66 @@ impl Tokenizer {
             }
         }
         let special = added_tokens.into_iter().map(|token| (token.content, token.id)).collect();
-        Ok(Self { bytes, of_byte, joins, special })
+        Ok(Self { bytes, of_byte, merges_by_pair, special })
     }
 
-    /// How many tokens there are, special ones among them.
+    /// Returns the number of tokens, including special ones.
     pub fn len(&self) -> usize {
         self.bytes.len()
     }
 
-    /// A special token by its spelling, e.g. `<|endoftext|>`.
+    /// Returns the id of a special token, e.g. `<|endoftext|>`.
     pub fn special(&self, spelling: &str) -> Option<u32> {
         self.special.get(spelling).copied()
     }
 
-    /// All special tokens.
+    /// Returns all special tokens.
     pub fn specials(&self) -> impl Iterator<Item = (&str, u32)> {
         self.special.iter().map(|(spelling, id)| (spelling.as_str(), *id))
     }
 
-    /// Adds the bytes of a token; special ones have none.
+    /// Appends the bytes of a token; special tokens have none.
     pub fn extend(&self, bytes: &mut Vec<u8>, token: u32) {
         if let Some(own) = self.bytes.get(token as usize) {
             bytes.extend_from_slice(own);
         }
     }
 
-    /// The text of tokens; what is not UTF-8 becomes U+FFFD, special tokens are left out.
+    /// Returns the text of tokens; invalid UTF-8 becomes U+FFFD, special tokens are skipped.
     pub fn text(&self, tokens: &[u32]) -> String {
         let mut bytes = Vec::new();
         tokens.iter().for_each(|token| self.extend(&mut bytes, *token));
         String::from_utf8_lossy(&bytes).into_owned()
     }
 
-    /// The tokens of a text. Spellings of special tokens count as text.
+    /// Returns the tokens of a text. Special tokens in it are encoded as text.
     ///
     /// # Errors
-    /// `InvalidParam` for a text of more than 65,536 bytes, `Format` when the tokenizer has not all 256 bytes.
+    /// `InvalidParam` for a text of more than 65,536 bytes, `Format` when the tokenizer lacks one of the 256 bytes.
     pub fn tokens(&self, text: &str) -> Result<Vec<u32>> {
         if text.len() > LONGEST {
             return Err(Error::invalid_param(format!(
-                "a text of {} bytes to begin with; give at most {LONGEST}",
+                "the prompt or prefix has {} bytes; at most {LONGEST} are allowed",
                 text.len()
             )));
         }
         let mut tokens = Vec::new();
         for word in words_of(text) {
             let ids: Option<Vec<u32>> = word.bytes().map(|byte| self.of_byte[usize::from(byte)]).collect();
-            let ids = ids.ok_or_else(|| Error::format("tokenizer.json has no token for some byte"))?;
+            let ids =
+                ids.ok_or_else(|| Error::format("tokenizer.json lacks a token for at least one byte"))?;
             tokens.extend(self.joined(ids));
         }
         Ok(tokens)
     }
 
-    /// Joins neighbours, always the pair that comes first in the list.
+    /// Merges neighbours, always the pair of the lowest rank.
     fn joined(&self, mut tokens: Vec<u32>) -> Vec<u32> {
         loop {
             let pairs = tokens.windows(2).enumerate().filter_map(|(at, pair)| match pair {
-                &[left, right] => self.joins.get(&(left, right)).map(|(order, joined)| (*order, at, *joined)),
+                &[left, right] => {
+                    self.merges_by_pair.get(&(left, right)).map(|(order, joined)| (*order, at, *joined))
+                }
                 _ => None,
             });
             let Some((_, at, joined)) = pairs.min() else { return tokens };
@@ -164,8 +169,7 @@ impl Tokenizer {
     }
 }
 
-/// The byte that a character of the file stands for: printable ones for themselves, the others, in their order, from
-/// U+0100 on.
+/// Returns the byte of a character in the file: printable bytes are themselves, the others are U+0100 onwards, in order.
 fn byte_of(character: char) -> Option<u8> {
     let itself = |byte: u8| matches!(byte, b'!'..=b'~' | 0xa1..=0xac | 0xae..=0xff);
     match u8::try_from(character) {
@@ -202,7 +206,7 @@ pub mod tests {
     }
 
     #[test]
-    fn bytes_have_characters() {
+    fn bytes_map_to_characters() {
         assert_eq!(byte_of('Ġ'), Some(b' '));
         assert_eq!(byte_of('Ċ'), Some(b'\n'));
         assert_eq!(byte_of('a'), Some(b'a'));
@@ -213,7 +217,7 @@ pub mod tests {
     }
 
     #[test]
-    fn the_first_join_comes_first() {
+    fn the_first_merge_is_applied_first() {
         let tokenizer = tiny(&["<|end|>"]);
         assert_eq!(tokenizer.tokens("hello he").unwrap(), [258, u32::from(b'o'), 259]);
         assert_eq!(tokenizer.text(&[258, u32::from(b'o'), 259, 260]), "hello he");

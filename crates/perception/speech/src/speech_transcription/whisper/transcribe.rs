@@ -1,39 +1,39 @@
-//! A sound of any length, window by window (openai/whisper's `transcribe`).
+//! Transcription of audio of any length, window by window (openai/whisper's `transcribe`).
 
 use opendr_engine::target::{WhisperSegment, WhisperTranscription};
 use opendr_engine::{Error, Result};
 
-use super::decode::{DecodeOptions, Decoded, Decoding};
-use super::network::{CONTEXT, Heard, Memory};
+use super::decoding::{DecodeOptions, Decoded, Decoding};
+use super::model::{Whisper, Work};
+use super::network::{CONTEXT, EncoderOutput, KeyValueCache};
 use super::rules::Rules;
 use super::segments::cut;
 use super::spectrogram::{HOP, RATE, WINDOW};
-use super::{Whisper, Work};
 
-/// The most tokens that stand before a window.
+/// Maximum number of prompt tokens before a window.
 const PROMPT: usize = CONTEXT / 2 - 1;
 
-/// The most tokens of a prefix: with a prompt and what a transcript begins with, others still fit.
+/// Maximum number of prefix tokens: with a prompt and the initial tokens, the context has room for the text.
 const PREFIX: usize = CONTEXT / 2 - 8;
 
-/// What is carried from window to window.
+/// State from window to window.
 #[derive(Debug, Default, Clone)]
 pub struct Transcript {
-    /// Tokens that the next window begins behind.
+    /// Prompt tokens of the next window.
     prompt: Vec<u32>,
     language: Option<u32>,
     /// Whether the language is known.
-    settled: bool,
-    /// Samples before the sound that is written next.
+    is_language_known: bool,
+    /// Number of samples before the audio that is transcribed next.
     pub begin: u64,
     segments: i64,
 }
 
 impl Transcript {
-    /// The begin of a transcript.
+    /// Starts a transcript.
     ///
     /// # Errors
-    /// `InvalidParam` for a language that the model does not know or a prompt that is too long.
+    /// `InvalidParam` for an unknown language or a prompt that is too long.
     pub fn new(whisper: &Whisper) -> Result<Self> {
         let (vocabulary, params) = (&whisper.vocabulary, &whisper.params);
         let language = params.language.as_deref().map(|name| vocabulary.language(name)).transpose()?;
@@ -43,33 +43,33 @@ impl Transcript {
             .map_or(Ok(Vec::new()), |prompt| vocabulary.tokenizer.tokens(&format!(" {}", prompt.trim())))?;
         Ok(Self {
             prompt,
-            settled: language.is_some() || !vocabulary.is_multilingual(),
+            is_language_known: language.is_some() || !vocabulary.is_multilingual(),
             language: language.flatten(),
             ..Self::default()
         })
     }
 
-    /// Writes down sound at [`RATE`] to its end, behind what `said` holds.
+    /// Transcribes audio at [`RATE`] to its end and appends to `transcription`.
     ///
     /// # Errors
-    /// `InvalidParam` for parameters that do not fit the model, else what the runtime meets.
+    /// `InvalidParam` for parameters that do not fit the model; the errors of the runtime.
     pub fn write(
         &mut self,
         whisper: &Whisper,
         samples: &[f32],
-        said: &mut WhisperTranscription,
+        transcription: &mut WhisperTranscription,
     ) -> Result<()> {
         let work = &mut *whisper.work.take();
         whisper.maker.run_into(samples, &mut work.spectrogram);
         let mut frame = 0;
         while frame < work.spectrogram.frames {
-            frame += self.window(whisper, work, frame, &whisper.params.temperature, said)?.max(1);
+            frame += self.window(whisper, work, frame, &whisper.params.temperature, transcription)?.max(1);
         }
         self.begin += samples.len() as u64;
         Ok(())
     }
 
-    /// Writes down the first window of sound at [`RATE`], and tells how many samples of it were understood.
+    /// Transcribes the first window of audio at [`RATE`] and returns the number of samples that it covers.
     ///
     /// # Errors
     /// As [`Transcript::write`].
@@ -78,42 +78,42 @@ impl Transcript {
         whisper: &Whisper,
         samples: &[f32],
         temperatures: &[f32],
-        said: &mut WhisperTranscription,
+        transcription: &mut WhisperTranscription,
     ) -> Result<usize> {
         let work = &mut *whisper.work.take();
         whisper.maker.run_into(samples, &mut work.spectrogram);
-        let frames = self.window(whisper, work, 0, temperatures, said)?;
-        let understood = (frames * HOP).min(samples.len());
-        self.begin += understood as u64;
-        Ok(understood)
+        let frames = self.window(whisper, work, 0, temperatures, transcription)?;
+        let consumed = (frames * HOP).min(samples.len());
+        self.begin += consumed as u64;
+        Ok(consumed)
     }
 
-    /// One window; how many frames of it were understood.
+    /// Transcribes one window and returns the number of frames that it covers.
     fn window(
         &mut self,
         whisper: &Whisper,
         work: &mut Work,
         first: usize,
         temperatures: &[f32],
-        said: &mut WhisperTranscription,
+        transcription: &mut WhisperTranscription,
     ) -> Result<usize> {
         let Whisper { network, vocabulary, params, .. } = whisper;
         let frames = work.spectrogram.frames.saturating_sub(first).min(WINDOW);
         whisper.maker.window_into(&work.spectrogram, first, &mut work.window);
-        network.listen(&work.window, &mut work.heard)?;
-        if !self.settled {
-            self.language = Some(detected(whisper, &work.heard)?);
-            self.settled = true;
+        network.encode(&work.window, &mut work.encoded)?;
+        if !self.is_language_known {
+            self.language = Some(detected(whisper, &work.encoded)?);
+            self.is_language_known = true;
         }
         let suppressed = suppressed(whisper)?;
         let options = self.options(whisper, &suppressed)?;
-        let decoding = Decoding { network, vocabulary, heard: &work.heard, options: &options };
+        let decoding = Decoding { network, vocabulary, encoded: &work.encoded, options: &options };
         let begin = self.begin + (first * HOP) as u64;
         let decoded = decoding.run(temperatures, begin)?;
         if is_silence(whisper, &decoded) {
             return Ok(frames);
         }
-        let (parts, understood) = cut(&decoded, vocabulary, frames);
+        let (parts, consumed) = cut(&decoded, vocabulary, frames);
         let begin_s = begin as f64 / f64::from(RATE);
         for part in parts {
             let text = vocabulary.text(&part.tokens);
@@ -121,8 +121,8 @@ impl Transcript {
                 continue;
             }
             self.prompt.extend(&part.tokens);
-            said.text.push_str(&text);
-            said.segments.push(WhisperSegment {
+            transcription.text.push_str(&text);
+            transcription.segments.push(WhisperSegment {
                 id: self.segments,
                 seek: (begin / HOP as u64) as i64,
                 start: (begin_s + f64::from(part.start)) as f32,
@@ -136,13 +136,13 @@ impl Transcript {
             });
             self.segments += 1;
         }
-        // A text that only came warm is no good company.
+        // A text from a high temperature is not used as the prompt.
         if !params.condition_on_previous_text || decoded.temperature > 0.5 {
             self.prompt.clear();
         }
         let passed = self.prompt.len().saturating_sub(PROMPT);
         self.prompt.drain(..passed);
-        Ok(understood)
+        Ok(consumed)
     }
 
     fn options<'a>(&self, whisper: &'a Whisper, suppressed: &'a [u32]) -> Result<DecodeOptions<'a>> {
@@ -188,17 +188,17 @@ fn is_silence(whisper: &Whisper, decoded: &Decoded) -> bool {
     !likely && params.no_speech_threshold.is_some_and(|most| decoded.no_speech_prob > most)
 }
 
-/// The language of what was heard.
-fn detected(whisper: &Whisper, heard: &Heard) -> Result<u32> {
-    let (mut memory, mut logits) = (Memory::default(), Vec::new());
-    whisper.network.forget(&mut memory);
-    whisper.network.read(heard, &mut memory, &[whisper.vocabulary.start], &mut logits)?;
+/// Returns the likeliest language of an encoded window.
+fn detected(whisper: &Whisper, encoded: &EncoderOutput) -> Result<u32> {
+    let (mut cache, mut logits) = (KeyValueCache::default(), Vec::new());
+    whisper.network.clear_cache(&mut cache);
+    whisper.network.decode(encoded, &mut cache, &[whisper.vocabulary.start], &mut logits)?;
     let score = |token: &u32| logits.get(*token as usize).copied().unwrap_or(f32::NEG_INFINITY);
     let likeliest = whisper.vocabulary.languages().max_by(|a, b| score(a).total_cmp(&score(b)));
-    likeliest.ok_or_else(|| Error::internal("a multilingual Whisper without languages"))
+    likeliest.ok_or_else(|| Error::internal("a multilingual Whisper has no languages"))
 }
 
-/// The tokens of the parameter `suppress_tokens`.
+/// Returns the tokens of the parameter `suppress_tokens`.
 fn suppressed(whisper: &Whisper) -> Result<Vec<u32>> {
     let Some(list) = &whisper.params.suppress_tokens else { return Ok(Vec::new()) };
     let mut tokens = Vec::new();
@@ -210,7 +210,7 @@ fn suppressed(whisper: &Whisper) -> Result<Vec<u32>> {
             }
             _ => {
                 return Err(Error::invalid_param(format!(
-                    "suppress_tokens = {list:.80?}: give numbers of tokens below {}, separated by commas, or -1",
+                    "suppress_tokens = {list:.80?} is invalid; use token ids below {}, separated by commas, or -1",
                     whisper.network.tokens
                 )));
             }

@@ -1,48 +1,48 @@
-//! Tokens that mean something to Whisper.
+//! Special tokens of Whisper.
 
 use opendr_engine::{Error, Result};
 
 use super::tokenizer::Tokenizer;
 
-/// Steps of 20 ms in a window of 30 s, both ends among them.
+/// Number of timestamps: steps of 20 ms in a window of 30 s, both ends included.
 const TIMES: u32 = 1501;
 
-/// From so many tokens on a Whisper knows other languages than English.
+/// Minimum number of tokens of a multilingual Whisper.
 const MULTILINGUAL: usize = 51_865;
 
-/// Signs that stand for no speech (openai/whisper's `non_speech_tokens`), and those whose first token is enough.
+/// Symbols that are not spoken (openai/whisper's `non_speech_tokens`), and those of which the first token is suppressed.
 const SIGNS: &str = "\" # ( ) * + / : ; < = > @ [ \\ ] ^ _ ` { | } ~ 「 」 『 』 << >> <<< >>> -- --- -( -[ (' (\" (( )) ((( ))) \
                      [[ ]] {{ }} ♪♪ ♪♪♪";
 const NOTES: [&str; 7] = ["♩", "♪", "♫", "♬", "♭", "♮", "♯"];
 
-/// The tokenizer, and the tokens that are no words.
+/// The tokenizer, and the tokens that are no text.
 pub struct Vocabulary {
     pub tokenizer: Tokenizer,
-    /// Ends a text; all tokens before it are words.
+    /// End of a text; all tokens below it are text.
     pub end: u32,
-    /// Begins a transcript.
+    /// Start of a transcript.
     pub start: u32,
-    /// Begins what was said before.
+    /// Start of the previous text (prompt).
     pub previous: u32,
     transcribe: u32,
-    /// Where nobody speaks.
+    /// No speech.
     pub no_speech: u32,
-    /// Says that no times are wanted.
+    /// No timestamps.
     pub no_times: u32,
-    /// The time zero; the others follow it, 20 ms each.
+    /// Timestamp zero; the others follow it, 20 ms each.
     pub first_time: u32,
     languages: Vec<(String, u32)>,
-    /// What a text does not begin with.
+    /// Tokens with which a text must not begin.
     pub blank: Vec<u32>,
-    /// Signs and special tokens that no transcript has.
+    /// Symbols and special tokens that no transcript contains.
     pub unspoken: Vec<u32>,
 }
 
 impl Vocabulary {
-    /// The tokens of a decoder that tells `count` apart.
+    /// Returns the special tokens of a decoder with `count` tokens.
     ///
     /// # Errors
-    /// `Format` when it is no tokenizer of Whisper, or not of that decoder.
+    /// `Format` when the tokenizer is not Whisper's or does not match the decoder.
     pub fn new(tokenizer: Tokenizer, count: usize) -> Result<Self> {
         let special = |name: &str| {
             let missing =
@@ -58,7 +58,7 @@ impl Vocabulary {
         let last = first_time + TIMES;
         if end > start || start > no_times || last as usize > count || tokenizer.len() > count {
             return Err(Error::format(format!(
-                "tokenizer.json has {} tokens with times to {last}, the decoder tells {count} apart",
+                "tokenizer.json has {} tokens and timestamps up to {last}, but the decoder has {count} tokens",
                 tokenizer.len()
             )));
         }
@@ -92,37 +92,40 @@ impl Vocabulary {
         })
     }
 
-    /// Whether it knows other languages than English.
+    /// Whether the model is multilingual.
     pub fn is_multilingual(&self) -> bool {
         !self.languages.is_empty()
     }
 
-    /// The tokens of all languages; none where there is only English.
+    /// Returns the tokens of all languages; empty for an English-only model.
     pub fn languages(&self) -> impl Iterator<Item = u32> {
         self.languages.iter().map(|(_, id)| *id)
     }
 
-    /// The token of a language; `None` where English, the only one, needs none.
+    /// Returns the token of a language; `None` for English in an English-only model.
     ///
     /// # Errors
-    /// `InvalidParam` for a language that it does not know.
+    /// `InvalidParam` for an unknown language.
     pub fn language(&self, name: &str) -> Result<Option<u32>> {
         if !self.is_multilingual() {
             return match name {
                 "en" => Ok(None),
                 _ => Err(Error::invalid_param(format!(
-                    "language = {name:.20?}, but this Whisper knows English only; give en, or load a multilingual one"
+                    "language = {name:.20?}, but this Whisper is English-only; use en, or load a multilingual model"
                 ))),
             };
         }
         let found = self.languages.iter().find(|(own, _)| own == name);
         found.map(|(_, id)| Some(*id)).ok_or_else(|| {
             let known: Vec<_> = self.languages.iter().map(|(own, _)| own.as_str()).collect();
-            Error::invalid_param(format!("language = {name:.20?}: give one of {}", known.join(", ")))
+            Error::invalid_param(format!(
+                "language = {name:.20?} is unknown; choose one of {}",
+                known.join(", ")
+            ))
         })
     }
 
-    /// What a transcript begins with.
+    /// Returns the initial tokens of a transcript.
     pub fn beginning(&self, language: Option<u32>, times: bool) -> Vec<u32> {
         let mut tokens = vec![self.start];
         tokens.extend(language.into_iter().flat_map(|language| [language, self.transcribe]));
@@ -130,7 +133,7 @@ impl Vocabulary {
         tokens
     }
 
-    /// The text of tokens, times and special tokens left out.
+    /// Returns the text of tokens without timestamps and special tokens.
     pub fn text(&self, tokens: &[u32]) -> String {
         let words: Vec<u32> = tokens.iter().copied().filter(|token| *token < self.end).collect();
         self.tokenizer.text(&words)

@@ -1,9 +1,9 @@
-//! Where a text is cut before its bytes are joined to tokens.
+//! GPT-2's split of a text into pieces before byte pair encoding.
 
 const ENDINGS: [&str; 7] = ["'s", "'t", "'re", "'ve", "'m", "'ll", "'d"];
 
-/// The pieces that GPT-2's pattern finds: endings such as `'ll`; letters, digits or other signs, each with a space before
-/// them if there is one; and white space, of which the last sign is left to the piece behind it.
+/// Returns the pieces that GPT-2's pattern matches: endings such as `'ll`; letters, digits or other characters, each with one
+/// preceding space; and white space, of which the last character belongs to the next piece.
 pub fn words_of(text: &str) -> impl Iterator<Item = &str> {
     let mut rest = text;
     std::iter::from_fn(move || {
@@ -30,7 +30,7 @@ fn sign(character: char) -> Sign {
     }
 }
 
-/// Bytes of the first piece.
+/// Returns the length of the first piece in bytes.
 fn length(text: &str) -> usize {
     if let Some(ending) = ENDINGS.into_iter().find(|ending| text.starts_with(ending)) {
         return ending.len();
@@ -51,7 +51,7 @@ fn length(text: &str) -> usize {
 mod tests {
     use super::*;
 
-    /// What the pattern finds in Python's `regex`.
+    /// Expected pieces computed with the pattern in Python's `regex`.
     #[test]
     fn pieces() {
         let pieces = |text| words_of(text).collect::<Vec<_>>();

@@ -1,35 +1,35 @@
-//! What is remembered of the looks of one object.
+//! Stored embeddings of one object.
 
-/// The last looks of an object, each of length 1.
+/// The last embeddings of an object, each of length 1.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Gallery {
-    looks: Vec<f32>,
-    /// The number of the look that is replaced next, once there are as many as may be.
+    embeddings: Vec<f32>,
+    /// Index of the embedding that is overwritten next, once the gallery is full.
     next: usize,
 }
 
 impl Gallery {
-    /// Remembers a look, in place of the oldest of `most`. One of zeros tells nothing.
-    pub fn add(&mut self, look: &[f32], most: usize) {
-        let length = look.len();
-        if look.iter().all(|number| *number == 0.0) {
+    /// Adds an embedding; of more than `most`, it overwrites the oldest. Zeros are ignored.
+    pub fn add(&mut self, embedding: &[f32], most: usize) {
+        let length = embedding.len();
+        if embedding.iter().all(|number| *number == 0.0) {
             return;
         }
-        if self.looks.len() < most * length {
-            return self.looks.extend(look);
+        if self.embeddings.len() < most * length {
+            return self.embeddings.extend(embedding);
         }
-        self.looks.truncate(most * length);
+        self.embeddings.truncate(most * length);
         self.next %= most;
-        if let Some(place) = self.looks.chunks_exact_mut(length).nth(self.next) {
-            place.copy_from_slice(look);
+        if let Some(place) = self.embeddings.chunks_exact_mut(length).nth(self.next) {
+            place.copy_from_slice(embedding);
             self.next += 1;
         }
     }
 
-    /// 1 less the largest cosine with what is remembered; 2, the largest there is, where nothing is.
-    pub fn distance(&self, look: &[f32]) -> f32 {
-        let cosine = |other: &[f32]| other.iter().zip(look).map(|(a, b)| a * b).sum::<f32>();
-        let best = self.looks.chunks_exact(look.len().max(1)).map(cosine).fold(-1.0, f32::max);
+    /// Returns 1 minus the largest cosine with the stored embeddings; 2, the maximum, when there are none.
+    pub fn distance(&self, embedding: &[f32]) -> f32 {
+        let cosine = |other: &[f32]| other.iter().zip(embedding).map(|(a, b)| a * b).sum::<f32>();
+        let best = self.embeddings.chunks_exact(embedding.len().max(1)).map(cosine).fold(-1.0, f32::max);
         1.0 - best
     }
 }
@@ -39,7 +39,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_oldest_is_forgotten() {
+    fn the_oldest_is_overwritten() {
         let mut gallery = Gallery::default();
         assert_eq!(gallery.distance(&[1.0, 0.0]), 2.0);
         gallery.add(&[0.0, 0.0], 2);
@@ -49,8 +49,8 @@ mod tests {
         assert_eq!(gallery.distance(&[1.0, 0.0]), 0.0);
         gallery.add(&[0.0, 1.0], 2);
         assert_eq!(gallery.distance(&[1.0, 0.0]), 1.0);
-        // A smaller budget forgets at once.
+        // A smaller budget applies at once.
         gallery.add(&[1.0, 0.0], 1);
-        assert_eq!((gallery.distance(&[1.0, 0.0]), gallery.looks.len()), (0.0, 2));
+        assert_eq!((gallery.distance(&[1.0, 0.0]), gallery.embeddings.len()), (0.0, 2));
     }
 }

@@ -1,8 +1,8 @@
-//! DeepSORT: SORT that knows objects again by how they look.
+//! DeepSORT: SORT with re-identification by appearance.
 //!
 //! N. Wojke, A. Bewley, D. Paulus, "Simple Online and Realtime Tracking with a Deep Association Metric", ICIP 2017; written
-//! from the paper. Here OSNet (K. Zhou et al., "Omni-Scale Feature Learning for Person Re-Identification", ICCV 2019) tells
-//! how persons look. Crops are upright boxes of the frame, x across and y down: OpenDR 3.0 exchanges both.
+//! from the paper. OSNet (K. Zhou et al., "Omni-Scale Feature Learning for Person Re-Identification", ICCV 2019) computes
+//! the embeddings of persons. Crops are upright boxes of the frame, x across and y down: OpenDR 3.0 exchanges both.
 
 mod appearance;
 mod gallery;
@@ -10,72 +10,72 @@ mod gallery;
 use opendr_engine::data::Image;
 use opendr_engine::learner::{Inputs, Learner, Spec};
 use opendr_engine::model::Model;
-use opendr_engine::overlap::image_overlap;
+use opendr_engine::overlap::box_iou;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Name, TrackingAnnotationList};
 use opendr_engine::{Device, Result, Task};
 use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
 
 use super::TrackerInputs;
-use crate::tracking::{HeightFilter, Life, Pairing, SoundBox, sound_boxes};
+use crate::tracking::{HeightFilter, Life, SparseAssignment, ValidBox, valid_boxes};
 use appearance::Appearance;
 use gallery::Gallery;
 
-/// What a user may set.
+/// Parameters of [`DeepSort`].
 #[derive(Debug, Clone, Params)]
 pub struct DeepSortParams {
-    /// Two boxes may show one object when their looks differ at most this much (1 less the cosine).
+    /// Maximum distance of the embeddings of a track and its detection (1 minus the cosine).
     #[param(default = 0.2, range = 0.0..=2.0, live)]
     pub max_dist: f32,
-    /// Detections below this score are left out.
+    /// Score below which detections are ignored.
     #[param(default = 0.3, range = 0.0..=1.0, live, alias = "threshold")]
     pub min_confidence: f32,
-    /// Of boxes that overlap more than this (intersection over union) the best is taken.
+    /// IoU above which only the box with the highest score is kept.
     #[param(default = 0.5, range = 0.0..=1.0, live)]
     pub nms_max_overlap: f32,
-    /// Without looks, a track and a box may be one object when 1 less their overlap is at most this.
+    /// Maximum of 1 minus IoU of a track and its detection, where embeddings do not match.
     #[param(default = 0.7, range = 0.0..=0.99, live)]
     pub max_iou_distance: f32,
-    /// Frames for which an object may be out of sight.
+    /// Number of frames that a track is kept without a detection.
     #[param(default = 70, range = 0..=1000, live)]
     pub max_age: u32,
-    /// An object is told once it was seen in so many frames in a row; in the first frames of a stream at once.
+    /// Number of detections in a row that confirm a track; in the first frames of a stream, one.
     #[param(default = 3, range = 1..=100, live)]
     pub n_init: u32,
-    /// Looks that are remembered of each object.
+    /// Number of embeddings that are stored per track.
     #[param(default = 100, range = 1..=200, live)]
     pub nn_budget: usize,
-    /// Only boxes of the same class can be one object.
+    /// Whether only boxes of the same class match.
     #[param(default = true, live)]
     pub per_class: bool,
 }
 
-/// A frame and what was found in it.
+/// A frame and its detections.
 #[derive(Debug, Clone, Copy, Inputs)]
 pub struct DeepSortInputs<'a> {
-    /// The frame.
+    /// Frame.
     pub image: &'a Image,
-    /// What was found in it.
+    /// Detections in the frame.
     pub detections: &'a BoundingBoxList,
 }
 
-/// DeepSORT with its network.
+/// A loaded DeepSORT.
 pub struct DeepSort {
     params: DeepSortParams,
     appearance: Appearance,
 }
 
-/// The objects of one stream.
+/// The tracks of one stream.
 #[derive(Default)]
 pub struct DeepSortState {
     tracks: Vec<Track>,
     last_id: i64,
     frame: i64,
-    boxes: Vec<SoundBox>,
-    /// How the boxes look, one after the other.
-    looks: Vec<f32>,
+    boxes: Vec<ValidBox>,
+    /// Embeddings of the boxes, one after the other.
+    embeddings: Vec<f32>,
     is_taken: Vec<bool>,
-    pairing: Pairing,
+    pairing: SparseAssignment,
     candidates: Vec<Candidate>,
     marks: Vec<bool>,
 }
@@ -86,24 +86,24 @@ struct Track {
     gallery: Gallery,
     name: Name,
     life: Life,
-    /// Place of its box in the list of this frame, if it is in it.
+    /// Index of its detection in this frame, if there is one.
     seen: Option<usize>,
 }
 
-/// So many boxes of a frame are looked at and so many objects remembered: each has pictures in memory.
+/// Maximum number of boxes per frame and of tracks; each has images in memory.
 const MOST: usize = 256;
 
 impl Learner for DeepSort {
     const SPEC: Spec = Spec::new("deep_sort", Task::ObjectTracking2d)
         .class("ObjectTracking2DDeepSortLearner")
-        .about("DeepSORT follows the persons that a detector finds and knows them again by how they look.")
+        .about("DeepSORT tracks the persons that a detector detects and re-identifies them by appearance.")
         .without_effect(&[
-            ("lr", Spec::OF_TRAINING),
-            ("iters", Spec::OF_TRAINING),
-            ("batch_size", Spec::OF_TRAINING),
-            ("optimizer", Spec::OF_TRAINING),
-            ("checkpoint_after_iter", Spec::OF_TRAINING),
-            ("checkpoint_load_iter", Spec::OF_TRAINING),
+            ("lr", Spec::TRAINING_ONLY),
+            ("iters", Spec::TRAINING_ONLY),
+            ("batch_size", Spec::TRAINING_ONLY),
+            ("optimizer", Spec::TRAINING_ONLY),
+            ("checkpoint_after_iter", Spec::TRAINING_ONLY),
+            ("checkpoint_load_iter", Spec::TRAINING_ONLY),
         ]);
     type Params = DeepSortParams;
     type Input<'a> = DeepSortInputs<'a>;
@@ -126,15 +126,15 @@ impl Learner for DeepSort {
         &self,
         state: &mut DeepSortState,
         input: DeepSortInputs<'_>,
-        answer: &mut TrackingAnnotationList,
+        target: &mut TrackingAnnotationList,
     ) -> Result<()> {
-        state.see(&self.params, &self.appearance, &input)?;
+        state.embed_boxes(&self.params, &self.appearance, &input)?;
         let input = TrackerInputs { detections: input.detections, image: None };
         state.update(&self.params, &input, self.appearance.length());
-        input.begin(answer);
+        input.begin(target);
         for track in &state.tracks {
             if let (Some(index), Some(id)) = (track.seen, track.life.id) {
-                input.tell(index, id, state.frame, answer);
+                input.write(index, id, state.frame, target);
             }
         }
         Ok(())
@@ -142,23 +142,23 @@ impl Learner for DeepSort {
 }
 
 impl DeepSortState {
-    /// How many objects are remembered, those out of sight too.
+    /// Returns the number of tracks, including those without a detection in the last frame.
     pub fn track_count(&self) -> usize {
         self.tracks.len()
     }
 
-    /// Takes the boxes of a frame and how they look.
-    fn see(
+    /// Selects the boxes of a frame and computes their embeddings.
+    fn embed_boxes(
         &mut self,
         params: &DeepSortParams,
         appearance: &Appearance,
         input: &DeepSortInputs<'_>,
     ) -> Result<()> {
-        sound_boxes(input.detections, f64::from(params.min_confidence), &mut self.boxes);
+        valid_boxes(input.detections, f64::from(params.min_confidence), &mut self.boxes);
         self.candidates.clear();
-        let name = |found: &SoundBox| input.detections.boxes.get(found.index).map(|found| &found.name);
+        let name = |found: &ValidBox| input.detections.boxes.get(found.index).map(|found| &found.name);
         for (at, found) in self.boxes.iter().enumerate() {
-            // Boxes of one class have the number of the first of them.
+            // The class index of a box is the index of the first box of its class.
             let first = self.boxes.iter().position(|other| !params.per_class || name(other) == name(found));
             self.candidates.push(Candidate {
                 corners: found.corners.map(|edge| edge as f32),
@@ -169,9 +169,9 @@ impl DeepSortState {
         }
         let suppression = Suppression {
             kind: SuppressionKind::Hard,
-            overlap: params.nms_max_overlap,
+            iou_threshold: params.nms_max_overlap,
             threshold: params.min_confidence,
-            most: MOST,
+            max_boxes: MOST,
         };
         suppression.run(&mut self.candidates, &mut self.marks);
         self.marks.clear();
@@ -181,8 +181,10 @@ impl DeepSortState {
         }
         let mut marks = self.marks.iter();
         self.boxes.retain(|_| marks.next().copied().unwrap_or(false));
-        self.looks.clear();
-        self.boxes.iter().try_for_each(|found| appearance.look(input.image, found.corners, &mut self.looks))
+        self.embeddings.clear();
+        self.boxes
+            .iter()
+            .try_for_each(|found| appearance.embed(input.image, found.corners, &mut self.embeddings))
     }
 
     fn update(&mut self, params: &DeepSortParams, input: &TrackerInputs<'_>, length: usize) {
@@ -195,24 +197,24 @@ impl DeepSortState {
             track.seen = None;
             track.expected = track.filter.corners();
         }
-        // The cascade: who was seen a shorter while ago has the first choice.
+        // Matching cascade: tracks with a more recent detection match first.
         let oldest = self.tracks.iter().map(|track| track.life.away).max().unwrap_or(0);
         for away in 1..=oldest {
-            let (is_of_level, farthest) = (
+            let (is_of_level, max_distance) = (
                 |track: &Track| track.life.id.is_some() && track.life.away == away,
                 f64::from(params.max_dist),
             );
-            self.pair(params, input, length, is_of_level, |track, found, look| {
+            self.pair(params, input, length, is_of_level, |track, found, embedding| {
                 if track.filter.squared_distance(found.corners) > HeightFilter::GATE {
                     return None;
                 }
-                Some(farthest - f64::from(track.gallery.distance(look)))
+                Some(max_distance - f64::from(track.gallery.distance(embedding)))
             });
         }
         let least = 1.0 - f64::from(params.max_iou_distance);
         let by_place = |track: &Track| track.life.id.is_none() || track.life.away == 1;
         self.pair(params, input, length, by_place, |track, found, _| {
-            Some(image_overlap(track.expected, found.corners) - least)
+            Some(box_iou(track.expected, found.corners) - least)
         });
         self.tracks.retain(|track| {
             let patience = if track.life.id.is_some() { params.max_age } else { 0 };
@@ -221,23 +223,23 @@ impl DeepSortState {
         self.begin(params, input, length);
     }
 
-    /// Pairs those of `which` that are not yet seen with boxes that are not yet taken, where `gain` is at least 0.
+    /// Associates the tracks of `which` without a detection with the free boxes, where `gain` is at least 0.
     fn pair(
         &mut self,
         params: &DeepSortParams,
         input: &TrackerInputs<'_>,
         length: usize,
         which: impl Fn(&Track) -> bool,
-        gain: impl Fn(&Track, &SoundBox, &[f32]) -> Option<f64>,
+        gain: impl Fn(&Track, &ValidBox, &[f32]) -> Option<f64>,
     ) {
-        self.pairing.begin();
+        self.pairing.clear();
         let open = |(_, track): &(usize, &Track)| track.seen.is_none() && which(track);
         for (row, track) in self.tracks.iter().enumerate().filter(open) {
-            let looks = self.looks.chunks_exact(length.max(1));
-            for (column, (found, look)) in self.boxes.iter().zip(looks).enumerate() {
+            let embeddings = self.embeddings.chunks_exact(length.max(1));
+            for (column, (found, embedding)) in self.boxes.iter().zip(embeddings).enumerate() {
                 let is_open = !self.is_taken[column]
                     && (!params.per_class || input.name(found.index) == Some(&track.name));
-                if is_open && let Some(gain) = gain(track, found, look).filter(|gain| *gain >= 0.0) {
+                if is_open && let Some(gain) = gain(track, found, embedding).filter(|gain| *gain >= 0.0) {
                     self.pairing.propose(row, column, gain + f64::EPSILON);
                 }
             }
@@ -247,18 +249,18 @@ impl DeepSortState {
             let (track, found) = (&mut self.tracks[row], &self.boxes[column]);
             self.is_taken[column] = true;
             track.filter.update(found.corners);
-            if let Some(look) = self.looks.chunks_exact(length.max(1)).nth(column) {
-                track.gallery.add(look, params.nn_budget);
+            if let Some(embedding) = self.embeddings.chunks_exact(length.max(1)).nth(column) {
+                track.gallery.add(embedding, params.nn_budget);
             }
-            track.life.see(needed, &mut self.last_id);
+            track.life.hit(needed, &mut self.last_id);
             track.seen = Some(found.index);
         }
     }
 
     fn begin(&mut self, params: &DeepSortParams, input: &TrackerInputs<'_>, length: usize) {
         let needed = self.needed(params);
-        let looks = self.looks.chunks_exact(length.max(1));
-        for ((found, look), is_taken) in self.boxes.iter().zip(looks).zip(&self.is_taken) {
+        let embeddings = self.embeddings.chunks_exact(length.max(1));
+        for ((found, embedding), is_taken) in self.boxes.iter().zip(embeddings).zip(&self.is_taken) {
             let begins = !is_taken && self.tracks.len() < MOST;
             let Some(name) = input.name(found.index).filter(|_| begins) else { continue };
             let mut track = Track {
@@ -269,8 +271,8 @@ impl DeepSortState {
                 life: Life::default(),
                 seen: Some(found.index),
             };
-            track.gallery.add(look, params.nn_budget);
-            track.life.see(needed, &mut self.last_id);
+            track.gallery.add(embedding, params.nn_budget);
+            track.life.hit(needed, &mut self.last_id);
             self.tracks.push(track);
         }
     }

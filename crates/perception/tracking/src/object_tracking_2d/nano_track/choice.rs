@@ -1,59 +1,59 @@
-//! Which of the places that the network proposes is the object.
+//! Selection of the object's position from the network's outputs.
 
 use std::f32::consts::PI;
 
 use opendr_engine::{Error, Result};
 
-use super::NanoTrackParams;
+use super::params::NanoTrackParams;
 
-/// Places each way.
+/// Number of positions along each axis.
 pub const CELLS: usize = 16;
-/// How far they are apart, pixels of the crop.
+/// Distance between positions, in pixels of the crop.
 const STRIDE: f32 = 16.0;
 
-/// Where the object is, in pixels of the crop.
+/// Position and size of the object, in pixels of the crop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Found {
-    /// Of its middle from that of the crop.
+    /// Offset of its centre from that of the crop.
     pub offset: [f32; 2],
     /// Width and height.
     pub size: [f32; 2],
-    /// How sure it is, 0..=1.
+    /// Score, 0..=1.
     pub score: f32,
-    /// How much of its size counts.
+    /// Weight of the new size.
     pub rate: f32,
 }
 
-/// The window over the places: high in the middle.
+/// The window over the positions: highest in the middle.
 pub struct Choice {
     window: [f32; CELLS],
 }
 
 impl Default for Choice {
-    /// Hann's window.
+    /// Returns Hann's window.
     fn default() -> Self {
         let level = |at: usize| 0.5 - 0.5 * (2.0 * PI * at as f32 / (CELLS - 1) as f32).cos();
         Self { window: std::array::from_fn(level) }
     }
 }
 
-/// How much larger the larger is.
+/// Returns the ratio or its inverse, whichever is larger.
 fn change(ratio: f32) -> f32 {
     ratio.max(1.0 / ratio)
 }
 
-/// The side of a square as large as what is seen of a box.
+/// Returns the side of the square with the area of a box with its context.
 fn extent([width, height]: [f32; 2]) -> f32 {
     let pad = (width + height) / 2.0;
     ((width + pad) * (height + pad)).sqrt()
 }
 
 impl Choice {
-    /// The best place, given the logits `[2, CELLS, CELLS]` of what is not and what is the object, the distances `[4, CELLS, CELLS]` to
-    /// the sides of its box, and its size before. None where no place has numbers.
+    /// Returns the position with the highest rank, from the logits `[2, CELLS, CELLS]` of background and object, the
+    /// distances `[4, CELLS, CELLS]` to the sides of the box, and the size before. `None` when no position is finite.
     ///
     /// # Errors
-    /// `Format` when there are not as many numbers.
+    /// `Format` when the number of values differs.
     pub fn best(
         &self,
         classes: &[f32],
@@ -64,7 +64,7 @@ impl Choice {
         const PLACES: usize = CELLS * CELLS;
         if classes.len() != 2 * PLACES || sides.len() != 4 * PLACES {
             return Err(Error::format(format!(
-                "{} scores and {} distances of {PLACES} places",
+                "the network has {} scores and {} distances for {PLACES} positions; load another model",
                 classes.len(),
                 sides.len()
             )));
@@ -103,8 +103,8 @@ mod tests {
 
     const PLACES: usize = CELLS * CELLS;
 
-    /// Nothing anywhere but an object of 40 by 80 pixels at each of these places.
-    fn answers(places: &[usize]) -> (Vec<f32>, Vec<f32>) {
+    /// Returns outputs with an object of 40 by 80 pixels at each of the given positions.
+    fn outputs(places: &[usize]) -> (Vec<f32>, Vec<f32>) {
         let (mut classes, mut sides) = (vec![0.0; 2 * PLACES], vec![0.0; 4 * PLACES]);
         classes[..PLACES].fill(8.0);
         for side in 0..4 {
@@ -116,33 +116,33 @@ mod tests {
         (classes, sides)
     }
 
-    fn best(answers: &(Vec<f32>, Vec<f32>)) -> Option<Found> {
+    fn best(outputs: &(Vec<f32>, Vec<f32>)) -> Option<Found> {
         let params = NanoTrackParams::default();
-        Choice::default().best(&answers.0, &answers.1, [40.0, 80.0], &params).unwrap()
+        Choice::default().best(&outputs.0, &outputs.1, [40.0, 80.0], &params).unwrap()
     }
 
     #[test]
     fn a_place_becomes_an_offset() {
-        let found = best(&answers(&[10 * CELLS + 6])).unwrap();
+        let found = best(&outputs(&[10 * CELLS + 6])).unwrap();
         assert_eq!((found.offset, found.size), ([-32.0, 32.0], [40.0, 80.0]));
         assert!(found.score > 0.999 && (found.rate - 0.348).abs() < 1e-3);
     }
 
     #[test]
-    fn of_two_the_nearer_is_it_and_of_two_sizes_the_one_before() {
-        let found = best(&answers(&[0, 9 * CELLS + 9])).unwrap();
+    fn the_nearer_position_and_the_previous_size_win() {
+        let found = best(&outputs(&[0, 9 * CELLS + 9])).unwrap();
         assert_eq!(found.offset, [16.0, 16.0]);
-        let mut two = answers(&[7 * CELLS + 8, 9 * CELLS + 8]);
+        let mut two = outputs(&[7 * CELLS + 8, 9 * CELLS + 8]);
         two.1[7 * CELLS + 8] = 300.0;
         assert_eq!(best(&two).unwrap().offset, [0.0, 16.0]);
     }
 
     #[test]
-    fn numbers_that_are_none_are_no_place() {
-        let mut all = answers(&[]);
+    fn invalid_outputs_have_no_position() {
+        let mut all = outputs(&[]);
         all.1.fill(f32::NAN);
         assert_eq!(best(&all), None);
-        let (classes, sides) = answers(&[5]);
+        let (classes, sides) = outputs(&[5]);
         let few = Choice::default().best(&classes[1..], &sides, [1.0, 1.0], &NanoTrackParams::default());
         assert!(few.is_err());
     }

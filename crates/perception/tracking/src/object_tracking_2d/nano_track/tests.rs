@@ -3,16 +3,16 @@ use opendr_engine::ErrorKind;
 use super::*;
 
 #[test]
-fn a_box_must_lie_in_the_picture() {
+fn a_box_must_lie_in_the_image() {
     let image = Image::from_rgb8(vec![90; 60 * 40 * 3], 60, 40).unwrap();
     let of = |place: [f32; 4]| {
         let [left, top, width, height] = place;
         Object::of(&image, &vec![BoundingBox::new(3, left, top, width, height, 1.0)].into())
     };
     let object = of([10.0, 5.0, 20.0, 10.0]).unwrap();
-    assert_eq!((object.middle, object.size, object.beside), ([20.0, 10.0], [20.0, 10.0], 90.0));
+    assert_eq!((object.middle, object.size, object.border_level), ([20.0, 10.0], [20.0, 10.0], 90.0));
     // (20 + 15) * (10 + 15), and its root.
-    assert!((object.seen() - 875.0_f32.sqrt()).abs() < 1e-3);
+    assert!((object.context_side() - 875.0_f32.sqrt()).abs() < 1e-3);
     let wrong = [
         [f32::NAN, 0.0, 5.0, 5.0],
         [0.0, 0.0, f32::INFINITY, 5.0],

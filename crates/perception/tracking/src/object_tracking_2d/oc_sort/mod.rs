@@ -1,71 +1,65 @@
-//! OC-SORT: SORT that trusts what was observed more than what was expected.
+//! OC-SORT: SORT that relies on observations more than on predictions.
 //!
-//! J. Cao et al., "Observation-Centric SORT: Rethinking SORT for Robust Multi-Object Tracking", CVPR 2023. Filters drift
-//! while an object is hidden. So an object that comes back walks the straight way between its observations after the fact
-//! (re-update), the direction in which an object moved counts in pairing (momentum), and who is not found where expected
-//! is looked for where it was seen last (recovery).
+//! J. Cao et al., "Observation-Centric SORT: Rethinking SORT for Robust Multi-Object Tracking", CVPR 2023. Kalman filters drift
+//! while an object is occluded. OC-SORT therefore adds three steps: when a track resumes, its filter is updated along the straight
+//! line between the two observations (re-update), the direction of motion counts in the association (momentum), and tracks
+//! without a match are associated by their last observation (recovery).
 
-mod track;
+mod motion;
 
 use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
-use opendr_engine::overlap::image_overlap;
+use opendr_engine::overlap::box_iou;
 use opendr_engine::params::Params;
 use opendr_engine::target::TrackingAnnotationList;
 use opendr_engine::{Device, Result, Task};
 
 use super::TrackerInputs;
-use crate::tracking::camera_motion::CameraMotion;
-use crate::tracking::{MOST_BOXES, Pairing, SoundBox, sound_boxes};
-use track::{MOST_FRAMES_BACK, Track};
+use super::tracks::{Rules, Track, Tracks};
+use crate::tracking::ValidBox;
+use motion::{MOST_FRAMES_BACK, Motion};
 
-/// What a user may set.
+/// Parameters of [`OcSort`].
 #[derive(Debug, Clone, Params)]
 pub struct OcSortParams {
-    /// Detections below this score are left out.
+    /// Score below which detections are ignored.
     #[param(default = 0.6, range = 0.0..=1.0, live)]
     pub threshold: f32,
-    /// A track and a detection may be one object when they overlap at least this much (intersection over union).
+    /// Minimum IoU of a track and its detection.
     #[param(default = 0.3, range = 0.01..=1.0, live)]
     pub iou_threshold: f32,
-    /// Frames for which an object may be out of sight.
+    /// Number of frames that a track is kept without a detection.
     #[param(default = 30, range = 0..=1000, live)]
     pub max_age: u32,
-    /// An object is told once it was seen in so many frames in a row; in the first frames of a stream at once.
+    /// Number of detections in a row that confirm a track; in the first frames of a stream, one.
     #[param(default = 3, range = 1..=100, live)]
     pub min_hits: u32,
-    /// Over so many frames directions are measured.
+    /// Number of frames over which directions are measured.
     #[param(default = 3, range = 1..=10, live)]
     pub delta_t: usize,
-    /// How much the direction counts beside the overlap.
+    /// Weight of the direction, relative to the overlap.
     #[param(default = 0.2, range = 0.0..=1.0, live)]
     pub inertia: f32,
-    /// Only boxes of the same class can be one object.
+    /// Whether only boxes of the same class match.
     #[param(default = true, live)]
     pub per_class: bool,
 }
 
-/// OC-SORT, ready to track.
+/// The OC-SORT tracker.
 pub struct OcSort {
     params: OcSortParams,
 }
 
-/// The objects of one stream.
+/// The tracks of one stream.
 #[derive(Default)]
 pub struct OcSortState {
-    tracks: Vec<Track>,
-    last_id: i64,
-    frame: i64,
-    camera: CameraMotion,
-    boxes: Vec<SoundBox>,
-    is_taken: Vec<bool>,
-    pairing: Pairing,
+    tracks: Tracks<Motion>,
 }
 
 impl Learner for OcSort {
     const SPEC: Spec = Spec::new("oc_sort", Task::ObjectTracking2d)
         .class("OcSortLearner")
-        .about("OC-SORT follows what a detector finds, through occlusions and uneven motion.");
+        .about("OC-SORT tracks the detections of any detector through occlusions and non-linear motion.");
     type Params = OcSortParams;
     type Input<'a> = TrackerInputs<'a>;
     type Target = TrackingAnnotationList;
@@ -87,99 +81,50 @@ impl Learner for OcSort {
         &self,
         state: &mut OcSortState,
         input: TrackerInputs<'_>,
-        answer: &mut TrackingAnnotationList,
+        target: &mut TrackingAnnotationList,
     ) -> Result<()> {
         state.update(&self.params, &input)?;
-        input.begin(answer);
-        for track in &state.tracks {
-            if let (Some(index), Some(id)) = (track.seen, track.life.id) {
-                input.tell(index, id, state.frame, answer);
-            }
-        }
+        state.tracks.write(&input, target);
         Ok(())
     }
 }
 
 impl OcSort {
-    /// A tracker; there are no weights to load.
+    /// Creates a tracker; there are no weights to load.
     pub const fn with_params(params: OcSortParams) -> Self {
         Self { params }
     }
 }
 
 impl OcSortState {
-    /// How many objects are remembered, those out of sight too.
+    /// Returns the number of tracks, including those without a detection in the last frame.
     pub fn track_count(&self) -> usize {
-        self.tracks.len()
+        self.tracks.list.len()
     }
 
     fn update(&mut self, params: &OcSortParams, input: &TrackerInputs<'_>) -> Result<()> {
-        sound_boxes(input.detections, f64::from(params.threshold), &mut self.boxes);
-        self.is_taken.clear();
-        self.is_taken.resize(self.boxes.len(), false);
-        self.frame = self.frame.saturating_add(1);
-        let motion = input.motion(&mut self.camera, &self.boxes)?;
-        for track in &mut self.tracks {
-            if let Some(motion) = &motion {
-                track.move_camera(motion);
-            }
-            track.predict();
-        }
+        let rules = Rules { min_hits: params.min_hits, per_class: params.per_class };
+        self.tracks.begin_frame(input, f64::from(params.threshold), Motion::predict)?;
         let inertia = f64::from(params.inertia);
         let span = params.delta_t.min(MOST_FRAMES_BACK);
-        self.pair(params, input, |track, found| {
-            let overlap = image_overlap(track.expected, found.corners);
-            let agreement = || inertia * found.confidence.min(1.0) * track.agreement(found.corners, span);
-            // More than 0 whatever the direction: an overlap that is large enough is a pair unless there is a better.
+        let by_prediction = |track: &Track<Motion>, found: &ValidBox| {
+            let overlap = box_iou(track.motion.expected, found.corners);
+            let agreement =
+                || inertia * found.confidence.min(1.0) * track.motion.agreement(found.corners, span);
+            // The inertia keeps the gain above 0 for any direction: a sufficient overlap matches unless there is a better one.
             (overlap >= f64::from(params.iou_threshold)).then(|| overlap + inertia + agreement())
-        });
-        self.pair(params, input, |track, found| {
-            let overlap = image_overlap(track.last, found.corners);
+        };
+        let by_observation = |track: &Track<Motion>, found: &ValidBox| {
+            let overlap = box_iou(track.motion.last, found.corners);
             (overlap >= f64::from(params.iou_threshold)).then_some(overlap)
-        });
-        self.tracks.retain(|track| track.life.away <= params.max_age);
-        self.begin(params, input);
+        };
+        let update = |motion: &mut Motion, found: &ValidBox, away: u32| {
+            motion.update(found.corners, params.delta_t, away);
+        };
+        self.tracks.associate(rules, input, |_| true, by_prediction, update);
+        self.tracks.associate(rules, input, |_| true, by_observation, update);
+        self.tracks.list.retain(|track| track.life.away <= params.max_age);
+        self.tracks.start(rules, input, |found| Some(Motion::new(found.corners)));
         Ok(())
-    }
-
-    /// Pairs tracks that are not yet seen with boxes that are not yet taken, where there is a gain.
-    fn pair(
-        &mut self,
-        params: &OcSortParams,
-        input: &TrackerInputs<'_>,
-        gain: impl Fn(&Track, &SoundBox) -> Option<f64>,
-    ) {
-        self.pairing.begin();
-        for (row, track) in self.tracks.iter().enumerate().filter(|(_, track)| track.seen.is_none()) {
-            for (column, found) in self.boxes.iter().enumerate() {
-                let is_open = !self.is_taken[column]
-                    && (!params.per_class || input.name(found.index) == Some(&track.name));
-                if is_open && let Some(gain) = gain(track, found) {
-                    self.pairing.propose(row, column, gain);
-                }
-            }
-        }
-        let needed = self.needed(params);
-        for &(row, column) in self.pairing.solve() {
-            let (track, found) = (&mut self.tracks[row], &self.boxes[column]);
-            self.is_taken[column] = true;
-            track.update(found, params.delta_t);
-            track.life.see(needed, &mut self.last_id);
-        }
-    }
-
-    fn begin(&mut self, params: &OcSortParams, input: &TrackerInputs<'_>) {
-        let needed = self.needed(params);
-        for (found, is_taken) in self.boxes.iter().zip(&self.is_taken) {
-            let begins = !is_taken && self.tracks.len() < MOST_BOXES;
-            let Some(name) = input.name(found.index).filter(|_| begins) else { continue };
-            let mut track = Track::new(found, name.clone());
-            track.life.see(needed, &mut self.last_id);
-            self.tracks.push(track);
-        }
-    }
-
-    fn needed(&self, params: &OcSortParams) -> u32 {
-        if self.frame <= i64::from(params.min_hits) { 1 } else { params.min_hits }
     }
 }

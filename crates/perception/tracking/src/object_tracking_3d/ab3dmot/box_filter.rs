@@ -1,13 +1,13 @@
-//! The filter of a box in space.
+//! Kalman filter of a 3D box.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use opendr_engine::overlap::StandingBox;
+use opendr_engine::overlap::UprightBox3D;
 use opendr_engine::target::BoundingBox3D;
 
 use crate::tracking::{Constant, ConstantVelocity};
 
-/// Place with velocity, turn and size: AB3DMOT's ten numbers, in the camera's frame, metres and radians.
+/// AB3DMOT's state of ten numbers: position with velocity, rotation and size, in the camera's frame, in metres and radians.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct BoxFilter {
     location: [ConstantVelocity; 3],
@@ -15,7 +15,7 @@ pub(super) struct BoxFilter {
     dimensions: [Constant; 3],
 }
 
-/// The paper's: nothing is known of velocities.
+/// The paper's variances: velocities are unknown at first.
 const START: [f64; 2] = [10.0, 1e4];
 const MOTION: [f64; 2] = [1.0, 0.01];
 const MEASURED: f64 = 1.0;
@@ -30,15 +30,15 @@ impl BoxFilter {
         }
     }
 
-    /// One moment on.
+    /// Advances by one step.
     pub fn predict(&mut self) {
         self.location.iter_mut().for_each(|axis| axis.predict(MOTION));
         self.rotation.predict(MOTION[0]);
         self.dimensions.iter_mut().for_each(|side| side.predict(MOTION[0]));
     }
 
-    /// Takes in where the box was found. One that is found the other way round has not turned: detectors take back for
-    /// front.
+    /// Updates with a detection. A detection rotated by more than a quarter turn counts as reversed: detectors confuse
+    /// front and back.
     pub fn update(&mut self, found: &BoundingBox3D) {
         for (axis, at) in self.location.iter_mut().zip(found.location) {
             axis.update(f64::from(at), MEASURED);
@@ -55,12 +55,12 @@ impl BoxFilter {
         self.rotation.value = wrapped(self.rotation.value);
     }
 
-    pub fn standing_box(&self) -> StandingBox {
+    pub fn standing_box(&self) -> UprightBox3D {
         let dimensions = self.dimensions.map(|side| side.value);
-        StandingBox::in_camera(dimensions, self.location.map(|axis| axis.position), self.rotation.value)
+        UprightBox3D::from_kitti(dimensions, self.location.map(|axis| axis.position), self.rotation.value)
     }
 
-    /// `found` where the filter says that it is.
+    /// Returns `found` with the filter's position, rotation and size.
     pub fn place(&self, found: &BoundingBox3D) -> BoundingBox3D {
         BoundingBox3D {
             dimensions: self.dimensions.map(|side| side.value as f32),
@@ -71,7 +71,7 @@ impl BoxFilter {
     }
 }
 
-/// An angle in -pi..=pi.
+/// Wraps an angle to -pi..=pi.
 fn wrapped(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }

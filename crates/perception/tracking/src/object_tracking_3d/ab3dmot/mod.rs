@@ -1,60 +1,60 @@
-//! AB3DMOT: boxes in space, expected by Kalman filters, paired by the volume that they share with what was found.
+//! AB3DMOT: 3D boxes predicted by Kalman filters, associated with detections by their shared volume.
 //!
 //! X. Weng, J. Wang, D. Held, K. Kitani, "3D Multi-Object Tracking: A Baseline and New Evaluation Metrics", IROS 2020;
-//! written from the paper. Every call is a moment: one without boxes too. The answer has the filters' boxes, also of objects
-//! that are out of sight for less than `max_staleness` moments.
+//! written from the paper. Every call is a time step, also without boxes. The predictions are the filters' boxes, also
+//! those of objects without a detection for less than `max_staleness` steps.
 
 mod box_filter;
 
 use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
-use opendr_engine::overlap::StandingBox;
+use opendr_engine::overlap::UprightBox3D;
 use opendr_engine::params::Params;
 use opendr_engine::target::{
     BoundingBox3D, BoundingBox3DList, TrackingAnnotation3D, TrackingAnnotation3DList,
 };
 use opendr_engine::{Device, Result, Task};
 
-use crate::tracking::{Life, MOST_BOXES, Pairing};
+use crate::tracking::{Life, MAX_BOXES, SparseAssignment};
 use box_filter::BoxFilter;
 
-/// What a user may set.
+/// Parameters of [`Ab3dmot`].
 #[derive(Debug, Clone, Params)]
 pub struct Ab3dmotParams {
-    /// An object that is out of sight for so many moments is forgotten.
+    /// Number of steps without a detection after which a track is dropped.
     #[param(default = 2, range = 1..=1000, live)]
     pub max_staleness: u32,
-    /// An object is told once it was seen so many moments in a row; in the first moments of a stream at once.
+    /// Number of detections in a row that confirm a track; in the first steps of a stream, one.
     #[param(default = 3, range = 1..=100, live)]
     pub min_updates: u32,
-    /// A track and a box may be one object when they share at least this much of their volume (intersection over union).
+    /// Minimum IoU of the volumes of a track and its detection.
     #[param(default = 0.01, range = 0.0..=1.0, live)]
     pub iou_threshold: f32,
-    /// Only boxes of the same class can be one object.
+    /// Whether only boxes of the same class match.
     #[param(default = true, live)]
     pub per_class: bool,
 }
 
-/// AB3DMOT, ready to track.
+/// The AB3DMOT tracker.
 pub struct Ab3dmot {
     params: Ab3dmotParams,
 }
 
-/// The objects of one stream.
+/// The tracks of one stream.
 #[derive(Default)]
 pub struct Ab3dmotState {
     tracks: Vec<Track>,
     last_id: i64,
     frame: i64,
-    /// What can be followed of this moment's boxes, with their places in the list.
-    boxes: Vec<(usize, StandingBox)>,
+    /// Valid boxes of this step, with their indices in the list.
+    boxes: Vec<(usize, UprightBox3D)>,
     is_taken: Vec<bool>,
-    pairing: Pairing,
+    pairing: SparseAssignment,
 }
 
 struct Track {
     filter: BoxFilter,
-    /// What was found last: class, place in the picture, score.
+    /// Last detection, for class, box in the image and score.
     found: BoundingBox3D,
     life: Life,
 }
@@ -62,7 +62,7 @@ struct Track {
 impl Learner for Ab3dmot {
     const SPEC: Spec = Spec::new("ab3dmot", Task::ObjectTracking3d)
         .class("ObjectTracking3DAb3dmotLearner")
-        .about("AB3DMOT follows boxes in space by motion and shared volume.")
+        .about("AB3DMOT tracks 3D boxes by motion and shared volume.")
         .without_effect(&[
             ("state_dimensions", "the filter is the paper's, of ten numbers"),
             ("measurement_dimensions", "the filter is the paper's, which measures seven numbers"),
@@ -92,16 +92,16 @@ impl Learner for Ab3dmot {
         &self,
         state: &mut Ab3dmotState,
         list: &BoundingBox3DList,
-        answer: &mut TrackingAnnotation3DList,
+        target: &mut TrackingAnnotation3DList,
     ) -> Result<()> {
         state.update(&self.params, list);
-        answer.annotations.clear();
-        answer.classes.clone_from(&list.classes);
-        answer.action = None;
+        target.annotations.clear();
+        target.classes.clone_from(&list.classes);
+        target.action = None;
         for track in &state.tracks {
             if let Some(id) = track.life.id {
                 let bounding_box_3d = track.filter.place(&track.found);
-                answer.annotations.push(TrackingAnnotation3D {
+                target.annotations.push(TrackingAnnotation3D {
                     bounding_box_3d,
                     id,
                     frame: Some(state.frame),
@@ -113,7 +113,7 @@ impl Learner for Ab3dmot {
 }
 
 impl Ab3dmotState {
-    /// How many objects are remembered, those out of sight too.
+    /// Returns the number of tracks, including those without a detection in the last step.
     pub fn track_count(&self) -> usize {
         self.tracks.len()
     }
@@ -124,11 +124,11 @@ impl Ab3dmotState {
         let standing =
             list.boxes.iter().enumerate().filter_map(|(at, found)| Some((at, standing_box(found)?)));
         self.boxes.extend(standing);
-        if self.boxes.len() > MOST_BOXES {
+        if self.boxes.len() > MAX_BOXES {
             let score =
-                |(at, _): &(usize, StandingBox)| list.boxes.get(*at).map_or(0.0, |found| found.confidence);
+                |(at, _): &(usize, UprightBox3D)| list.boxes.get(*at).map_or(0.0, |found| found.confidence);
             self.boxes.sort_by(|a, b| score(b).total_cmp(&score(a)));
-            self.boxes.truncate(MOST_BOXES);
+            self.boxes.truncate(MAX_BOXES);
             self.boxes.sort_unstable_by_key(|(at, _)| *at);
         }
         for track in &mut self.tracks {
@@ -141,13 +141,13 @@ impl Ab3dmotState {
     }
 
     fn pair(&mut self, params: &Ab3dmotParams, list: &BoundingBox3DList) {
-        self.pairing.begin();
+        self.pairing.clear();
         for (row, track) in self.tracks.iter().enumerate() {
             let expected = track.filter.standing_box();
             for (column, (at, found)) in self.boxes.iter().enumerate() {
                 let is_same = list.boxes.get(*at).is_some_and(|found| found.name == track.found.name);
                 if is_same || !params.per_class {
-                    let overlap = expected.overlap(found);
+                    let overlap = expected.iou(found);
                     if overlap >= f64::from(params.iou_threshold) {
                         self.pairing.propose(row, column, overlap);
                     }
@@ -163,17 +163,17 @@ impl Ab3dmotState {
             let track = &mut self.tracks[row];
             track.filter.update(found);
             track.found.clone_from(found);
-            track.life.see(needed, &mut self.last_id);
+            track.life.hit(needed, &mut self.last_id);
         }
     }
 
     fn begin(&mut self, params: &Ab3dmotParams, list: &BoundingBox3DList) {
         let needed = self.needed(params);
         for ((at, _), is_taken) in self.boxes.iter().zip(&self.is_taken) {
-            let begins = !is_taken && self.tracks.len() < MOST_BOXES;
+            let begins = !is_taken && self.tracks.len() < MAX_BOXES;
             let Some(found) = list.boxes.get(*at).filter(|_| begins) else { continue };
             let mut life = Life::default();
-            life.see(needed, &mut self.last_id);
+            life.hit(needed, &mut self.last_id);
             self.tracks.push(Track { filter: BoxFilter::new(found), found: found.clone(), life });
         }
     }
@@ -183,16 +183,16 @@ impl Ab3dmotState {
     }
 }
 
-/// Larger numbers are no metres.
-const FARTHEST: f64 = 1e6;
+/// Limit of sizes and coordinates, in metres.
+const LIMIT: f64 = 1e6;
 
-/// The box in space; `None` for one that is not finite or has no volume.
-fn standing_box(found: &BoundingBox3D) -> Option<StandingBox> {
+/// Returns the box as a volume; `None` for one that is not finite or has no volume.
+fn standing_box(found: &BoundingBox3D) -> Option<UprightBox3D> {
     let (dimensions, location) = (found.dimensions.map(f64::from), found.location.map(f64::from));
-    let is_sound = dimensions.iter().all(|side| *side > 0.0 && *side < FARTHEST)
-        && location.iter().all(|at| at.abs() < FARTHEST)
+    let is_sound = dimensions.iter().all(|side| *side > 0.0 && *side < LIMIT)
+        && location.iter().all(|at| at.abs() < LIMIT)
         && found.rotation_y.is_finite();
-    is_sound.then(|| StandingBox::in_camera(dimensions, location, f64::from(found.rotation_y)))
+    is_sound.then(|| UprightBox3D::from_kitti(dimensions, location, f64::from(found.rotation_y)))
 }
 
 #[cfg(test)]

@@ -20,17 +20,17 @@ fn tracker(params: &[(&str, f64)]) -> Ab3dmot {
 }
 
 fn run(tracker: &Ab3dmot, state: &mut Ab3dmotState, boxes: Vec<BoundingBox3D>) -> Vec<TrackingAnnotation3D> {
-    let mut answer = TrackingAnnotation3DList::default();
-    tracker.infer_into(state, &boxes.into(), &mut answer).unwrap();
-    answer.annotations
+    let mut output = TrackingAnnotation3DList::default();
+    tracker.infer_into(state, &boxes.into(), &mut output).unwrap();
+    output.annotations
 }
 
-/// A car at x = 0, then at 1, then not seen, by hand, with fractions:
+/// Computes three steps by hand, with fractions: a car at x = 0, at x = 1, and undetected.
 ///
-/// * Begin: x 0, velocity 0, variances 10 and 10000. Expected: x 0, variance 10 + 10000 + 1 = 10011, both 10000.
-/// * Seen at 1, measured with variance 1: gains 10011/10012 and 10000/10012, so x = 10011/10012, velocity = 10000/10012;
-///   the turn and the sizes do not change.
-/// * Not seen: x = 10011/10012 + 10000/10012 = 20011/10012.
+/// * Start: x 0, velocity 0, variances 10 and 10000. Prediction: x 0, variance 10 + 10000 + 1 = 10011, covariance 10000.
+/// * Detection at 1 with variance 1: gains 10011/10012 and 10000/10012, so x = 10011/10012, velocity = 10000/10012;
+///   rotation and size do not change.
+/// * No detection: x = 10011/10012 + 10000/10012 = 20011/10012.
 #[test]
 fn a_car_by_hand() {
     let (tracker, mut state) = (tracker(&[]), Ab3dmotState::default());
@@ -46,18 +46,18 @@ fn a_car_by_hand() {
     let third = run(&tracker, &mut state, vec![]);
     assert_eq!(third[0].bounding_box_3d.location[0], (20_011.0_f64 / 10_012.0) as f32);
     assert_eq!((third[0].id, third[0].frame), (1, Some(3)));
-    // The second moment out of sight is one too many.
+    // The second step without a detection is one too many.
     assert!(run(&tracker, &mut state, vec![]).is_empty() && state.tracks.is_empty());
 }
 
-/// Volumes by hand: a car 4 long, 1.5 high and 2 wide that is found 2 further along, 0.5 lower, shares 2 x 1 x 2 = 4 of
-/// 12 + 12 - 4 = 20 cubic metres, 0.2; with height and width exchanged, as OpenDR 3.0 reads them, it would be another number.
+/// Volumes by hand: a car 4 long, 1.5 high and 2 wide and one shifted by 2 along and 0.5 down share 2 x 1 x 2 = 4 of 12 +
+/// 12 - 4 = 20 cubic metres, 0.2; with height and width exchanged, as OpenDR 3.0 reads them, the result differs.
 #[test]
 fn shared_volume_by_hand() {
     let here = standing_box(&car(0.0, 20.0, 0.0)).unwrap();
     let mut other = car(2.0, 20.0, 0.0);
     other.location[1] += 0.5;
-    assert!((here.overlap(&standing_box(&other).unwrap()) - 0.2).abs() < 1e-6);
+    assert!((here.iou(&standing_box(&other).unwrap()) - 0.2).abs() < 1e-6);
     for (threshold, tracks) in [(0.19, 1), (0.21, 2)] {
         let (tracker, mut state) = (tracker(&[("iou_threshold", threshold)]), Ab3dmotState::default());
         run(&tracker, &mut state, vec![car(0.0, 20.0, 0.0)]);
@@ -67,13 +67,13 @@ fn shared_volume_by_hand() {
 }
 
 #[test]
-fn back_for_front_is_no_turn() {
+fn a_reversed_box_is_no_rotation() {
     let (tracker, mut state) = (tracker(&[]), Ab3dmotState::default());
     let turns = [3.1, 3.1, -3.1, 0.04, 3.1];
     for rotation_y in turns {
         let found = run(&tracker, &mut state, vec![car(0.0, 20.0, rotation_y)]);
         let turn = f64::from(found[0].bounding_box_3d.rotation_y);
-        // Its axis stays within 0.05 of pi, whichever way round.
+        // Its axis stays within 0.05 of pi, in either direction.
         assert!(turn.sin().abs() < 0.05, "{rotation_y}: {turn}");
         assert_eq!(found.len(), 1);
     }
@@ -100,7 +100,7 @@ fn two_cars_keep_their_numbers_and_classes_do_not_mix() {
 }
 
 #[test]
-fn hostile_boxes_never_panic_and_are_forgotten() {
+fn hostile_boxes_never_panic_and_are_dropped() {
     let (tracker, mut state) = (tracker(&[("max_staleness", 60.0)]), Ab3dmotState::default());
     let mut random = Random::new(7);
     for moment in 0..10_000 {
@@ -124,19 +124,19 @@ fn hostile_boxes_never_panic_and_are_forgotten() {
         let mut boxes = BoundingBox3DList::from(boxes.collect::<Vec<_>>());
         // Time runs backwards.
         boxes.header.stamp_ns = Some(-moment);
-        let mut answer = TrackingAnnotation3DList::default();
-        tracker.infer_into(&mut state, &boxes, &mut answer).unwrap();
-        for track in answer.annotations {
+        let mut output = TrackingAnnotation3DList::default();
+        tracker.infer_into(&mut state, &boxes, &mut output).unwrap();
+        for track in output.annotations {
             assert!(track.bounding_box_3d.location.iter().all(|at| at.is_finite()));
         }
-        assert!(state.track_count() <= MOST_BOXES);
+        assert!(state.track_count() <= MAX_BOXES);
     }
 }
 
 #[test]
 fn the_same_boxes_give_the_same_tracks() {
     let tracker = tracker(&[]);
-    let answers = [0, 1].map(|_| {
+    let outputs = [0, 1].map(|_| {
         let mut state = Ab3dmotState::default();
         let moments = (0..30).map(|moment| {
             let boxes = (0..9)
@@ -145,6 +145,6 @@ fn the_same_boxes_give_the_same_tracks() {
         });
         moments.collect::<Vec<_>>()
     });
-    assert_eq!(answers[0], answers[1]);
-    assert!(answers[0].iter().flatten().count() > 100);
+    assert_eq!(outputs[0], outputs[1]);
+    assert!(outputs[0].iter().flatten().count() > 100);
 }

@@ -1,26 +1,26 @@
-//! Which of the places and turns that were compared is the object.
+//! Selection of the object's position and rotation from the comparisons.
 
 use std::f32::consts::PI;
 
-use super::VpitParams;
 use super::layout::{PLACES, VpitLayout};
+use super::params::VpitParams;
 use super::template::Comparison;
 
-/// Where the object is, from the middle of the view that was turned least wrong.
+/// Position and rotation of the object, relative to the centre of the best view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Found {
-    /// Number of that view.
+    /// Index of that view.
     pub view: usize,
-    /// In its frame, metres.
+    /// Offset in its frame, in metres.
     pub offset: [f64; 2],
-    /// The rest of the turn, in steps from one view to the next.
+    /// Remaining rotation, in steps from one view to the next.
     pub turn: f64,
-    /// How sure it is, 0..=1.
+    /// Score, 0..=1.
     pub score: f32,
 }
 
-/// The best place, given how alike template and views are, one for each turn, the straight one in the middle. None where no
-/// place has numbers.
+/// Returns the best position, from the comparisons of template and views, one view per rotation, the expected one in the
+/// middle. `None` when no comparison is finite.
 pub(super) fn best(comparisons: &[Comparison], layout: &VpitLayout, params: &VpitParams) -> Option<Found> {
     let straight = comparisons.len() / 2;
     let logit = |alike: f32| layout.scale * alike + layout.bias;
@@ -60,12 +60,12 @@ pub(super) fn best(comparisons: &[Comparison], layout: &VpitLayout, params: &Vpi
     })
 }
 
-/// Hann's window over the places, which is 0 beside the outermost.
+/// Returns Hann's window over the positions, which is 0 outside them.
 fn window(at: usize) -> f32 {
     0.5 - 0.5 * (2.0 * PI * (at + 1) as f32 / (PLACES + 1) as f32).cos()
 }
 
-/// Where the parabola through three equidistant numbers is highest, from the middle one, in steps.
+/// Returns the maximum of the parabola through three equidistant values, relative to the middle one, in steps.
 fn peak(before: Option<f32>, here: f32, after: Option<f32>) -> f64 {
     let (Some(before), Some(after)) = (before, after) else { return 0.0 };
     let bend = f64::from(before) - 2.0 * f64::from(here) + f64::from(after);
@@ -78,7 +78,7 @@ mod tests {
 
     const LAYOUT: VpitLayout = VpitLayout { pillar: 0.2, heights: [-0.5, 3.0], scale: 2.0, bias: -1.0 };
 
-    /// A hill with its top at this row and column.
+    /// Returns a comparison with its maximum at a row and column.
     fn hill(row: f32, column: f32, top: f32) -> Comparison {
         std::array::from_fn(|at| {
             let (dy, dx) = ((at / PLACES) as f32 - row, (at % PLACES) as f32 - column);
@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn tops_lie_between_places_and_turns() {
+    fn maxima_are_interpolated() {
         let params = VpitParams { window_influence: 0.0, ..VpitParams::default() };
         let comparisons = [hill(5.0, 9.25, 1.0), hill(5.0, 9.25, 3.0), hill(5.0, 9.25, 2.0)];
         let found = best(&comparisons, &LAYOUT, &params).unwrap();
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_no_place() {
+    fn invalid_comparisons_have_no_position() {
         let params = VpitParams::default();
         assert_eq!(best(&[[f32::NAN; PLACES * PLACES]; 3], &LAYOUT, &params), None);
         assert_eq!(best(&[], &LAYOUT, &params), None);

@@ -1,4 +1,4 @@
-//! How it trains.
+//! Training of VPIT.
 
 use opendr_engine::dataset::DatasetRef;
 use opendr_engine::learner::{Fit, FitJob};
@@ -6,7 +6,7 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Error, Result, Statistics};
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device};
 
 use super::layout::VpitLayout;
 use super::network::VpitNetwork;
@@ -14,22 +14,22 @@ use super::objective::VpitObjective;
 use super::pairs::Pairs;
 use super::{Vpit, VpitParams};
 
-/// How a user may train it: on recordings of point clouds with numbered boxes in space.
+/// Training parameters of [`Vpit`]. Samples are point clouds of recordings with 3D boxes with identities.
 #[derive(Debug, Clone, Params)]
 pub struct VpitFitParams {
-    /// Side of a pillar; a view shows 64 of them each way, the largest object a quarter of it.
+    /// Side of a pillar; a view has 64 pillars along each axis, the largest object a quarter of it.
     #[param(default = 0.2, range = 0.02..=5.0, unit = "m")]
     pub pillar: f32,
-    /// An object is looked for at most so many moments after it was seen.
-    #[param(default = 5, range = 1..=1000)]
-    pub apart: usize,
-    /// At most so many objects of a scan go into a batch.
-    #[param(default = 4, range = 1..=1000)]
-    pub objects: usize,
-    /// Whether objects are looked for from places beside them, and turned.
+    /// Maximum number of steps between the two scans of a pair.
+    #[param(default = 5, range = 1..=1000, former = "apart")]
+    pub max_frame_gap: usize,
+    /// Maximum number of objects per scan in a batch.
+    #[param(default = 4, range = 1..=1000, former = "objects")]
+    pub max_objects: usize,
+    /// Whether views are shifted and rotated at random relative to their objects.
     #[param(default = true)]
     pub augment: bool,
-    /// What every training takes.
+    /// Parameters of every training.
     #[param(
         flatten,
         lr = 0.003,
@@ -44,7 +44,7 @@ pub struct VpitFitParams {
     pub training: TrainingParams,
 }
 
-/// Heights above an object's floor that count, metres.
+/// Range of heights above an object's bottom, in metres.
 const HEIGHTS: [f32; 2] = [-0.6, 3.4];
 
 impl Fit for Vpit {
@@ -60,7 +60,7 @@ impl Fit for Vpit {
     ) -> Result<Statistics> {
         if val_dataset.is_some() {
             return Err(Error::unsupported(
-                "VPIT follows one object and does not know which one of a data set: fit takes no val_dataset",
+                "VPIT tracks one object, which a validation does not select; call fit without val_dataset",
             ));
         }
         let training = &fit_params.training;
@@ -72,11 +72,11 @@ impl Fit for Vpit {
         let objective = VpitObjective {
             layout,
             context: f64::from(params.context_amount),
-            objects: fit_params.objects,
+            objects: fit_params.max_objects,
             augment: fit_params.augment,
         };
-        let network = network_from_base(VpitNetwork::new(&begin(job, training)?), base)?;
-        let pairs = Pairs { dataset: &*dataset, apart: fit_params.apart, seed: training.seed };
+        let network = network_from_base(VpitNetwork::new(&seeded_device(job, training)?), base)?;
+        let pairs = Pairs { dataset: &*dataset, apart: fit_params.max_frame_gap, seed: training.seed };
         fit_learner::<Self, _>(&objective, network, params, training, &pairs, None, job)
     }
 }

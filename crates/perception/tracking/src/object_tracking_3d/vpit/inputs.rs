@@ -1,16 +1,16 @@
-//! What the learner takes.
+//! Inputs of VPIT.
 
 use opendr_clouds::object_detection_3d::Scan;
 use opendr_engine::learner::{Inputs, Port, Ports};
 use opendr_engine::target::BoundingBox3DList;
 use opendr_engine::{Header, Result, ValueType};
 
-/// A scan, and with the first what is to be followed.
+/// A scan, and with the first one the object to track.
 #[derive(Debug, Clone, Copy)]
 pub struct VpitInputs<'a> {
-    /// What the lidar saw.
+    /// Lidar scan.
     pub scan: Scan<'a>,
-    /// What is to be followed from this scan on: its first box.
+    /// Object to track from this scan on: its first box.
     pub init_box: Option<&'a BoundingBox3DList>,
 }
 
@@ -22,7 +22,7 @@ impl<'a> Inputs<'a> for VpitInputs<'a> {
         SCAN,
         Port {
             name: INIT,
-            doc: "What is to be followed from this scan on: its first box.",
+            doc: "Object to track from this scan on: its first box.",
             value_type: ValueType::BoundingBox3DList,
             optional: true,
             init: true,

@@ -1,51 +1,51 @@
-//! What the network sees, and what it answers.
+//! Sizes of the network's inputs and outputs.
 
 use opendr_clouds::pillars::{PillarGrid, Voxeliser};
 use opendr_engine::model::Manifest;
 use opendr_engine::{Error, Result};
 use serde::{Deserialize, Serialize};
 
-/// Pillars along a side of a view.
+/// Number of pillars along a side of a view.
 pub const VIEW: usize = 64;
-/// Numbers of a pillar: that it is there, and what the voxeliser tells of it.
+/// Number of features of a pillar: its occupancy, and the voxeliser's statistics.
 pub const CHANNELS: usize = 1 + Voxeliser::STATISTICS;
-/// Pillars along a side of a cell of features.
+/// Number of pillars along a side of a cell of features.
 pub const STRIDE: usize = 2;
-/// Cells of features along a side of a view, and of the part of it that is compared with others.
+/// Number of cells of features along a side of a view, and of a template.
 pub const CELLS: usize = VIEW / STRIDE;
 pub const TEMPLATE: usize = CELLS / 2;
-/// Places along a side at which a template is compared.
+/// Number of positions along a side at which a template is compared.
 pub const PLACES: usize = CELLS - TEMPLATE + 1;
-/// Features of a cell.
+/// Number of features per cell.
 pub const FEATURES: usize = 32;
 
-/// Sizes of a view, and how comparisons become scores; they stand in a container's `inputs`.
+/// Sizes of a view, and the conversion of comparisons to scores, as in a container's `inputs`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct VpitLayout {
-    /// Side of a pillar, metres.
+    /// Side of a pillar, in metres.
     pub pillar: f32,
-    /// Heights above the object's floor that count, metres.
+    /// Range of heights above the object's bottom, in metres.
     pub heights: [f32; 2],
-    /// A mean product of features times this, and the bias added, is the logit of a score.
+    /// Factor of the mean product of features in the logit of a score.
     pub scale: f32,
-    /// See above.
+    /// Bias of the logit of a score.
     pub bias: f32,
 }
 
 impl VpitLayout {
-    /// The pillars of a view, in its own frame: x ahead, y left, its middle at 0.
+    /// Returns the pillars of a view in its own frame: x forward, y left, its centre at 0.
     pub fn grid(&self) -> PillarGrid {
         let half = self.pillar * VIEW as f32 / 2.0;
         PillarGrid { x: [-half, half], y: [-half, half], z: self.heights, side: self.pillar }
     }
 
-    /// Side of a cell of features, metres.
+    /// Returns the side of a cell of features, in metres.
     pub fn cell(&self) -> f32 {
         self.pillar * STRIDE as f32
     }
 
-    /// The cells of a template that show an object of this length and width, and `context` of its mean side around it; at least
-    /// four.
+    /// Returns the cells of a template that cover an object of this length and width, with a margin of `context` times its
+    /// mean side; at least four.
     pub fn covered(&self, size: [f64; 2], context: f64) -> impl Iterator<Item = [usize; 2]> + use<> {
         let cell = f64::from(self.cell());
         let margin = (context * (size[0] + size[1]) / 2.0).max(cell);
@@ -60,14 +60,14 @@ impl VpitLayout {
     /// Reads a container's `inputs`.
     ///
     /// # Errors
-    /// `Format` when they are not of this learner, or make no sense.
+    /// `Format` when they are not of this learner, or invalid.
     pub fn from_manifest(manifest: &Manifest) -> Result<Self> {
         let layout: Self = manifest.read_inputs("its views")?;
         layout.grid().check()?;
         if layout.scale.is_finite() && layout.bias.is_finite() {
             return Ok(layout);
         }
-        Err(Error::format("the model's scale and bias are no numbers; train or get it anew"))
+        Err(Error::format("the model's scale and bias are not finite; train or download it again"))
     }
 }
 
@@ -78,9 +78,9 @@ mod tests {
     const LAYOUT: VpitLayout = VpitLayout { pillar: 0.2, heights: [-0.5, 3.0], scale: 1.0, bias: 0.0 };
 
     #[test]
-    fn a_template_shows_the_object_and_its_surroundings() {
+    fn a_template_covers_the_object_and_its_margin() {
         let car: Vec<_> = LAYOUT.covered([4.0, 1.6], 0.25).collect();
-        // 2.7 and 1.5 metres to either side of the middle: 14 and 8 cells of 0.4.
+        // 2.7 and 1.5 metres to either side of the centre: 14 and 8 cells of 0.4.
         assert_eq!(car.len(), 14 * 8);
         assert!(car.contains(&[4, 1]) && car.contains(&[11, 14]) && !car.contains(&[3, 7]));
         assert_eq!(LAYOUT.covered([0.1, 0.1], 0.0).count(), 4);
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_container_says_is_checked() {
+    fn a_manifest_is_checked() {
         let mut manifest = Manifest::new("vpit", "");
         manifest.write_inputs(&LAYOUT).unwrap();
         assert_eq!(VpitLayout::from_manifest(&manifest).unwrap(), LAYOUT);

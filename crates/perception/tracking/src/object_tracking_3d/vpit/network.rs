@@ -1,4 +1,4 @@
-//! The network that trains: features of views.
+//! VPIT's network for training: features of views.
 
 use burn::module::{Module, Param};
 use burn::nn::conv::{Conv2d, Conv2dConfig};
@@ -11,10 +11,10 @@ use super::layout::{CELLS, CHANNELS, FEATURES, PLACES, TEMPLATE};
 
 /// Channels of the first layer.
 const FIRST: usize = 24;
-/// What the score of an unlike place is at first.
+/// Initial logit of a position.
 const BIAS: f32 = -2.0;
 
-/// The trainable network: four convolutions, the second with a stride, and how products of features become scores.
+/// The trainable network: four convolutions, the second with a stride, and the scale and bias of scores.
 #[derive(Module, Debug)]
 pub struct VpitNetwork {
     layers: Vec<ConvNormAct>,
@@ -24,7 +24,7 @@ pub struct VpitNetwork {
 }
 
 impl VpitNetwork {
-    /// A network with random weights.
+    /// Creates a network with random weights.
     pub fn new(device: &Device) -> Self {
         let layer = |from, to, stride| ConvNormActConfig::new([from, to]).with_stride(stride).init(device);
         Self {
@@ -35,13 +35,13 @@ impl VpitNetwork {
         }
     }
 
-    /// Features of views, `[views, channels, 64, 64]` to `[views, features, 32, 32]`.
+    /// Computes features of views, `[views, channels, 64, 64]` to `[views, features, 32, 32]`.
     pub fn features(&self, views: Tensor<4>) -> Tensor<4> {
         self.last.forward(self.layers.iter().fold(views, |x, layer| layer.forward(x)))
     }
 
-    /// The logits `[pairs, places, places]` of finding what the middles of `templates` show at each place of `views`, both features;
-    /// `shares` `[pairs, 1, 16, 16]` tells how much each cell of a template counts.
+    /// Returns the logits `[pairs, positions, positions]` of the centres of `templates` at each position of `views`, both
+    /// features; `shares` `[pairs, 1, 16, 16]` has the weight of each cell of a template.
     pub fn compare(&self, templates: Tensor<4>, shares: Tensor<4>, views: Tensor<4>) -> Tensor<3> {
         let [pairs, ..] = views.dims();
         let begin = (CELLS - TEMPLATE) / 2;
@@ -53,7 +53,7 @@ impl VpitNetwork {
         products * self.scale.val().reshape([1, 1, 1]) + self.bias.val().reshape([1, 1, 1])
     }
 
-    /// What [`Self::compare`] multiplies with and adds.
+    /// Returns scale and bias of [`Self::compare`].
     pub fn scale_and_bias(&self) -> [f32; 2] {
         [&self.scale, &self.bias].map(|number| number.val().into_scalar::<f32>())
     }
@@ -67,7 +67,7 @@ mod tests {
     use super::super::template::Template;
     use super::*;
 
-    /// The comparison that is trained is the one that infers.
+    /// Checks that training and inference compare alike.
     #[test]
     fn both_comparisons_agree() {
         let device = Device::flex();

@@ -1,65 +1,65 @@
-//! What is followed: where it is and how it moves.
+//! Position and motion of the tracked object.
 
 use opendr_clouds::object_detection_3d::Scan;
 use opendr_engine::target::{BoundingBox3DList, LidarBox, Name};
 use opendr_engine::{Error, Result};
 
 use super::choice::Found;
-use super::{Extrapolation, VpitParams};
+use super::params::{Extrapolation, VpitParams};
 
 pub(super) struct Object {
     pub name: Name,
-    /// In the frame of the lidar.
+    /// Box in the lidar's frame.
     pub place: LidarBox,
-    /// How far it comes in a moment, x and y, metres.
+    /// Motion per step, x and y, in metres.
     step: [f64; 2],
-    /// How high its points reached above the floor of its first box.
+    /// Height of its points above the bottom of its first box, in metres.
     pub top: Option<f32>,
     pub frame: i64,
 }
 
-/// Objects of this size can be followed, metres.
+/// Range of sides of objects, in metres.
 const SIZES: std::ops::Range<f64> = 0.05..50.0;
-/// And in this distance.
-const FARTHEST: f64 = 1e5;
-/// How much of the last step is in the mean of the last ones.
+/// Maximum coordinate, in metres.
+const LIMIT: f64 = 1e5;
+/// Weight of the last step in the mean motion.
 const RECENT: f64 = 0.5;
-/// A box rises or sinks no more in a moment, metres.
+/// Maximum vertical motion per step, in metres.
 const RISE: f64 = 0.3;
 
 impl Object {
-    /// The first of `boxes`.
+    /// Creates the object from the first of `boxes`.
     ///
     /// # Errors
-    /// `InvalidInput` without a box, and for one without volume or place.
+    /// `InvalidInput` without a box, and for one without a volume or a finite position.
     pub fn of(scan: Scan<'_>, boxes: &BoundingBox3DList) -> Result<Self> {
         let found = boxes.boxes.first().ok_or_else(|| {
-            Error::invalid_input("init_box has no box: give one around the object that is to be followed")
+            Error::invalid_input("init_box has no box; give one around the object to track")
         })?;
         let place = LidarBox::from_camera(found, scan.calibration()).filter(|place| {
             place.size.iter().all(|side| SIZES.contains(side))
-                && place.center.iter().all(|part| part.abs() < FARTHEST)
+                && place.center.iter().all(|part| part.abs() < LIMIT)
         });
         let place = place.ok_or_else(|| {
             Error::invalid_input(format!(
-                "init_box is {:?} m at {:?}: give a box with a place and sides of {} to {} m",
+                "init_box is {:?} m at {:?}; give a box with a finite position and sides of {} to {} m",
                 found.dimensions, found.location, SIZES.start, SIZES.end
             ))
         })?;
         Ok(Self { name: found.name.clone(), place, step: [0.0; 2], top: None, frame: 1 })
     }
 
-    /// A moment later.
+    /// Advances to the expected position of the next step.
     pub fn expect(&mut self, mode: Extrapolation) {
         self.frame = self.frame.saturating_add(1);
         if mode != Extrapolation::None {
             for (part, step) in self.place.center.iter_mut().zip(self.step) {
-                *part = (*part + step).clamp(-FARTHEST, FARTHEST);
+                *part = (*part + step).clamp(-LIMIT, LIMIT);
             }
         }
     }
 
-    /// Goes to where it was found in a view that was turned by `turn`; views are `step` apart. How far that is, x and y.
+    /// Moves to the detection in a view that is rotated by `turn`; views are `step` apart. Returns the offset in x and y.
     pub fn go(&mut self, found: &Found, turn: f64, step: f64, params: &VpitParams) -> [f64; 2] {
         let share = f64::from(params.offset_interpolation);
         let (sin, cos) = (self.place.yaw + turn).sin_cos();
@@ -73,14 +73,14 @@ impl Object {
         way
     }
 
-    /// Stands as high as its points say, whose top is `top` above the floor of its box.
+    /// Moves vertically by `share` of the change of the height of the object's points.
     pub fn settle(&mut self, top: Option<f32>, share: f32) {
         if let (Some(before), Some(now)) = (self.top, top) {
             self.place.center[2] += (f64::from(share) * f64::from(now - before)).clamp(-RISE, RISE);
         }
     }
 
-    /// Learns how it moves of where it was a moment ago.
+    /// Updates the motion from the position before this step.
     pub fn learn(&mut self, before: [f64; 3], mode: Extrapolation) {
         let share = match mode {
             Extrapolation::LinearPlus => RECENT,

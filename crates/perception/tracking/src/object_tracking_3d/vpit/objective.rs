@@ -1,4 +1,4 @@
-//! What a training of this tracker is told.
+//! Training objective of VPIT.
 
 use burn::tensor::activation::log_sigmoid;
 use burn::tensor::{Device, Tensor, TensorData};
@@ -14,16 +14,16 @@ use super::network::VpitNetwork;
 use super::pairs::{VpitBatch, VpitBatches};
 use super::{FILE, Vpit};
 
-/// The training of one tracker.
+/// Training objective of VPIT.
 #[derive(Debug)]
 pub struct VpitObjective {
     /// Sizes of a view.
     pub layout: VpitLayout,
-    /// What is seen around an object with it.
+    /// Margin around an object, in its mean sides.
     pub context: f64,
-    /// At most so many objects of a pair of scans.
+    /// Maximum number of objects per pair of scans.
     pub objects: usize,
-    /// Whether views lie beside their objects and turned.
+    /// Whether views are shifted and rotated at random.
     pub augment: bool,
 }
 
@@ -45,7 +45,7 @@ impl Objective for VpitObjective {
             Tensor::<4>::from_data(TensorData::new(numbers.to_vec(), shape), device)
         };
         let pairs = batch.pairs;
-        // Both through the network at once: they share its batch normalisation.
+        // One forward pass for both, which share the batch normalisation.
         let views = [batch.templates.as_slice(), &batch.views].concat();
         let features = network.features(tensor(&views, [2 * pairs, CHANNELS, VIEW, VIEW]));
         let [templates, views] = [0..pairs, pairs..2 * pairs].map(|part| features.clone().slice([part]));

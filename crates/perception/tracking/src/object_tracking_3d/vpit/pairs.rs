@@ -1,4 +1,4 @@
-//! Two scans of the same objects, a few moments apart, and batches of them.
+//! Pairs of scans of the same objects, a few steps apart, and their batches.
 
 use opendr_clouds::object_detection_3d::Scan;
 use opendr_datasets::loader::Collate;
@@ -10,10 +10,10 @@ use opendr_engine::{Error, Random, Result, Value};
 use super::layout::{PLACES, TEMPLATE, VpitLayout};
 use super::view::{VIEW_LEN, ViewPainter};
 
-/// Each sample of a data set of recordings, with one of the next ones of its recording.
+/// Each sample of a data set of recordings, with a later one of its recording.
 pub(super) struct Pairs<'a> {
     pub dataset: &'a dyn DatasetIterator,
-    /// At most so many moments later.
+    /// Maximum number of steps between the two.
     pub apart: usize,
     pub seed: u64,
 }
@@ -25,14 +25,14 @@ impl DatasetIterator for Pairs<'_> {
         self.dataset.len()
     }
 
-    /// The data and the target of the first and the data of the second, and its target.
+    /// Returns data and annotation of the first and data of the second as data, and the annotation of the second.
     fn get(&self, index: usize) -> Result<Sample> {
-        let later = index + 1 + Random::at([self.seed, index as u64]).below(self.apart);
+        let later = index + 1 + Random::from_key([self.seed, index as u64]).below(self.apart);
         let sequence = self.dataset.sequence(index);
         let is_same = |other: &usize| {
             *other < self.len() && sequence.is_some() && self.dataset.sequence(*other) == sequence
         };
-        // The last one of a recording is paired with itself: it is seen from elsewhere.
+        // The last one of a recording is paired with itself, from another view.
         let later = (index + 1..=later).rev().find(is_same).unwrap_or(index);
         let (first, second) = (self.dataset.get(index)?, self.dataset.get(later)?);
         let mut data = first.data;
@@ -55,49 +55,49 @@ impl DatasetIterator for Pairs<'_> {
     }
 }
 
-/// Makes batches.
+/// Collates pairs of scans into pairs of views.
 #[derive(Debug)]
 pub struct VpitBatches {
     /// Sizes of a view.
     pub layout: VpitLayout,
-    /// What is seen around an object with it.
+    /// Margin around an object, in its mean sides.
     pub context: f64,
-    /// At most so many objects of a pair of scans.
+    /// Maximum number of objects per pair of scans.
     pub objects: usize,
-    /// Whether the views of the second scan lie beside the object and turned.
+    /// Whether the views of the second scan are shifted and rotated at random.
     pub augment: bool,
 }
 
 /// Pairs of views of the same object.
 #[derive(Debug, Default)]
 pub struct VpitBatch {
-    /// How many.
+    /// Number of pairs.
     pub pairs: usize,
-    /// Views of the objects.
+    /// Views of the objects in the first scan.
     pub templates: Vec<f32>,
-    /// How much the cells of each count, as a share of all.
+    /// Weights of the cells of each template, of sum 1.
     pub shares: Vec<f32>,
-    /// Views of where they are later.
+    /// Views around the objects in the second scan.
     pub views: Vec<f32>,
-    /// How right each place of those is, 0..=1.
+    /// Label of each position of these, 0..=1.
     pub labels: Vec<f32>,
-    /// How much each place counts, in all 1 for each pair.
+    /// Weight of each position, of sum 1 per pair.
     pub weights: Vec<f32>,
 }
 
-/// Points within an object, so that there is something to learn of it.
+/// Minimum number of points within an object.
 const LEAST_POINTS: usize = 12;
-/// Hidden so much that nobody knows, as KITTI has it.
+/// KITTI's occlusion value of unknown visibility.
 const HIDDEN: i32 = 3;
-/// A place this far off is right by `exp(-1/2)`, in cells.
+/// Standard deviation of labels over positions, in cells.
 const SPREAD: f64 = 0.8;
-/// The same for turns, radians.
+/// Standard deviation of labels over rotations, in radians.
 const TURN_SPREAD: f64 = 0.12;
-/// Views lie this far beside their object, metres, and are turned this far, radians, at most.
+/// Maximum shift of views, in metres, and maximum rotation, in radians.
 const BESIDE: f32 = 2.4;
 const TURNED: f32 = 0.35;
 
-/// Points that lie in a box, but for those near the ground.
+/// Returns the number of points in a box, without those near the ground.
 fn points_in(cloud: &PointCloud, place: &LidarBox) -> usize {
     let (sin, cos) = place.yaw.sin_cos();
     let half = place.size.map(|side| side / 2.0);
@@ -125,7 +125,7 @@ impl VpitBatches {
         painter.gather(layout, clouds[0], first.center);
         painter.paint(layout, first.yaw, &mut batch.templates[begin..]);
         let mut beside = |most: f32| match self.augment {
-            // What follows is mostly nearly right.
+            // Small errors are the most frequent in tracking.
             true if random.chance(0.5) => f64::from(most) * 0.2 * random.normal(),
             true => f64::from(random.uniform(-most, most)),
             false => 0.0,
@@ -135,7 +135,7 @@ impl VpitBatches {
         let yaw = second.yaw + turn;
         let (sin, cos) = yaw.sin_cos();
         let [x, y, z] = second.center;
-        // The object is `ahead` and `aside` of the middle, in the view's frame.
+        // The object is at (`ahead`, `aside`) in the view's frame.
         let middle = [x - (cos * ahead - sin * aside), y - (sin * ahead + cos * aside), z + rise];
         batch.views.resize(begin + VIEW_LEN, 0.0);
         painter.gather(layout, clouds[1], middle);
@@ -150,7 +150,7 @@ impl VpitBatches {
         batch.pairs += 1;
     }
 
-    /// Right places and wrong ones count the same.
+    /// Adds labels and weights; positive and negative positions have the same total weight.
     fn add_labels(&self, batch: &mut VpitBatch, [ahead, aside]: [f64; 2], turn: f64) {
         let begin = batch.labels.len();
         let turned = (turn / TURN_SPREAD).powi(2);
@@ -193,7 +193,7 @@ impl Collate for VpitBatches {
             tracks.annotations.iter().find(|track| track.id == id).map(|track| track.bounding_box_3d.clone())
         };
         let stamp = before.header.stamp_ns.unwrap_or_default() as u64;
-        let mut random = Random::at([stamp, scans[0].cloud().len() as u64]);
+        let mut random = Random::from_key([stamp, scans[0].cloud().len() as u64]);
         let mut ids: Vec<i64> =
             before.annotations.iter().map(|track| track.id).filter(|id| *id >= 0).collect();
         random.shuffle(&mut ids);
@@ -226,7 +226,7 @@ fn scan_of(value: &Value) -> Result<Scan<'_>> {
 
 fn no_pair() -> Error {
     Error::invalid_input(
-        "a tracker in space trains on recordings of point clouds with numbered boxes in space; open such a data set \
+        "VPIT trains on recordings of point clouds with 3D boxes with identities; open such a data set \
          (kitti_tracking)",
     )
 }

@@ -1,23 +1,23 @@
-//! What an object looked like, and where a view looks like that.
+//! Features of the object, and their comparison with views.
 
 use super::layout::{CELLS, FEATURES, PLACES, TEMPLATE, VpitLayout};
 
-/// How alike the template and a view are at every place, row after row.
+/// Similarity of template and view at every position, row by row.
 pub(super) type Comparison = [f32; PLACES * PLACES];
 
-/// Features of an object in the middle of a view.
+/// Features of an object in the centre of a view.
 #[derive(Default)]
 pub(super) struct Template {
     cells: Vec<[usize; 2]>,
-    /// `FEATURES` of each cell.
+    /// `FEATURES` values per cell.
     features: Vec<f32>,
 }
 
-/// The first cell of a template in its view.
+/// Index of the first cell of a template in its view.
 const FIRST: usize = (CELLS - TEMPLATE) / 2;
 
 impl Template {
-    /// Takes what `[FEATURES, CELLS, CELLS]` show of an object of this length and width.
+    /// Stores the features `[FEATURES, CELLS, CELLS]` of an object of this length and width.
     pub fn take(&mut self, layout: &VpitLayout, size: [f64; 2], context: f64, features: &[f32]) {
         self.cells.clear();
         self.cells.extend(layout.covered(size, context));
@@ -26,7 +26,7 @@ impl Template {
         self.merge(features, 1.0);
     }
 
-    /// Lets `share` of what it knows be of another view.
+    /// Replaces `share` of the stored features by those of another view.
     pub fn merge(&mut self, features: &[f32], share: f32) {
         for ([row, column], own) in self.cells.iter().zip(self.features.chunks_exact_mut(FEATURES)) {
             let at = (FIRST + row) * CELLS + FIRST + column;
@@ -36,7 +36,7 @@ impl Template {
         }
     }
 
-    /// The mean product of its features and those of a view, at every place.
+    /// Computes the mean product of the stored features and those of a view, at every position.
     pub fn compare(&self, features: &[f32], comparison: &mut Comparison) {
         comparison.fill(0.0);
         for ([row, column], own) in self.cells.iter().zip(self.features.chunks_exact(FEATURES)) {
@@ -62,12 +62,12 @@ mod tests {
     const LAYOUT: VpitLayout = VpitLayout { pillar: 0.2, heights: [-0.5, 3.0], scale: 1.0, bias: 0.0 };
 
     #[test]
-    fn what_moved_is_found_where_it_is() {
+    fn a_shift_is_found() {
         let mut random = Random::new(5);
         let features: Vec<f32> = (0..FEATURES * CELLS * CELLS).map(|_| random.normal() as f32).collect();
         let mut template = Template::default();
         template.take(&LAYOUT, [3.0, 1.5], 0.25, &features);
-        // Everything 3 cells ahead and 2 to the right.
+        // All features 3 cells ahead and 2 to the right.
         let mut moved = vec![0.0; features.len()];
         for (plane, before) in moved.chunks_exact_mut(CELLS * CELLS).zip(features.chunks_exact(CELLS * CELLS))
         {

@@ -1,4 +1,4 @@
-//! The tracker as a whole: trained on simulated drives, exported, loaded, checked.
+//! Tests of the whole tracker: training on simulated drives, export, loading, the learner's contract.
 
 use std::path::PathBuf;
 
@@ -51,7 +51,7 @@ fn box_of(tracks: &TrackingAnnotation3DList, id: i64) -> Option<&BoundingBox3D> 
     tracks.annotations.iter().find(|track| track.id == id).map(|track| &track.bounding_box_3d)
 }
 
-/// A few steps on a drive follow its cars, whatever runtime there is.
+/// A few steps on a drive suffice to track its cars, with any runtime.
 #[test]
 fn cars_of_a_drive_are_followed() {
     let folder = scratch("overfit");
@@ -63,7 +63,7 @@ fn cars_of_a_drive_are_followed() {
     let mut learner = Handle::<Vpit>::new(Default::default(), Device::Cpu).unwrap();
     learner.load(job.model()).unwrap();
     let frames: Vec<_> = (0..6).map(frame).collect();
-    let (mut followed, mut asked) = (0, 0);
+    let (mut followed, mut evaluated) = (0, 0);
     let cars = frames[0].1.annotations.iter().filter(|track| {
         let found = &track.bounding_box_3d;
         found.name == "Car".into() && found.occluded == 0 && found.location[2] < 30.0
@@ -73,25 +73,26 @@ fn cars_of_a_drive_are_followed() {
         let first = BoundingBox3DList::from(vec![car.bounding_box_3d.clone()]);
         for (at, (scan, tracks)) in frames.iter().enumerate() {
             let init_box = (at == 0).then_some(&first);
-            let answer = learner.infer(VpitInputs { scan: Scan::from(scan), init_box }).unwrap();
-            let [followed_car] = &answer.annotations[..] else { panic!("{answer:?}") };
+            let output = learner.infer(VpitInputs { scan: Scan::from(scan), init_box }).unwrap();
+            let [followed_car] = &output.annotations[..] else { panic!("{output:?}") };
             assert_eq!((followed_car.id, followed_car.frame), (0, Some(at as i64 + 1)));
             let Some(truth) = box_of(tracks, car.id).filter(|truth| truth.occluded < 2) else { continue };
-            let apart = [0, 2].map(|axis| followed_car.bounding_box_3d.location[axis] - truth.location[axis]);
+            let offset =
+                [0, 2].map(|axis| followed_car.bounding_box_3d.location[axis] - truth.location[axis]);
             if at == 0 {
-                assert!(apart[0].hypot(apart[1]) < 1e-3, "{apart:?}");
+                assert!(offset[0].hypot(offset[1]) < 1e-3, "{offset:?}");
             } else {
-                asked += 1;
-                followed += usize::from(apart[0].hypot(apart[1]) < 0.8);
+                evaluated += 1;
+                followed += usize::from(offset[0].hypot(offset[1]) < 0.8);
             }
         }
     }
-    assert!(asked >= 5 && 3 * followed >= 2 * asked, "{followed} of {asked}");
+    assert!(evaluated >= 5 && 3 * followed >= 2 * evaluated, "{followed} of {evaluated}");
     std::fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
-fn a_trained_container_keeps_the_promises_of_a_learner() {
+fn a_trained_container_passes_the_learner_checks() {
     let folder = scratch("promises");
     let job = FitJob { device: Device::Cpu, ..FitJob::new(&folder) };
     trained(1, &job).unwrap();
@@ -112,7 +113,7 @@ fn a_trained_container_keeps_the_promises_of_a_learner() {
     std::fs::remove_dir_all(folder).unwrap();
 }
 
-/// 0, 1 and 5 million points, some of them nowhere: the box stays finite.
+/// 0 to 5 million points, some of them not finite: the box stays finite.
 #[test]
 fn hostile_clouds_never_panic() {
     let folder = scratch("hostile");
@@ -139,8 +140,8 @@ fn hostile_clouds_never_panic() {
     learner.infer(VpitInputs { init_box: Some(&first), ..input }).unwrap();
     for (count, channels) in [(0, 4), (1, 3), (5_000_000, 3), (2000, 7), (0, 3)] {
         let cloud = cloud(count, channels);
-        let answer = learner.infer(VpitInputs { scan: Scan::from(&cloud), init_box: None }).unwrap();
-        let found = &answer.annotations[0].bounding_box_3d;
+        let output = learner.infer(VpitInputs { scan: Scan::from(&cloud), init_box: None }).unwrap();
+        let found = &output.annotations[0].bounding_box_3d;
         let numbers =
             found.dimensions.iter().chain(&found.location).chain([&found.rotation_y, &found.confidence]);
         assert!(numbers.into_iter().all(|number| number.is_finite()), "{found:?}");
@@ -150,7 +151,7 @@ fn hostile_clouds_never_panic() {
 }
 
 #[test]
-fn what_cannot_be_trained_is_told() {
+fn invalid_trainings_are_refused() {
     let folder = scratch("told");
     let job = FitJob { device: Device::Cpu, ..FitJob::new(&folder) };
     let scans = StreetScans::new(1, 2);

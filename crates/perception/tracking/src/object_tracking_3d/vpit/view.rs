@@ -1,29 +1,29 @@
-//! Views: the surroundings of a place as a picture of pillars, in the frame of what stands there.
+//! Views: pseudo images of the pillars around a position, in the object's frame.
 
 use opendr_clouds::pillars::{Voxeliser, scatter};
 use opendr_engine::data::PointCloud;
 
 use super::layout::{CHANNELS, VIEW, VpitLayout};
 
-/// Draws views; what it needs of memory is kept for the next.
+/// Voxelises views; its memory is reused.
 #[derive(Default)]
 pub(super) struct ViewPainter {
-    /// Points near a place, from there.
+    /// Points near a position, relative to it.
     near: Vec<[f32; 3]>,
     voxeliser: Voxeliser,
     pillars: Vec<f32>,
     heights: Vec<f32>,
 }
 
-/// Numbers of a view.
+/// Number of values of a view.
 pub(super) const VIEW_LEN: usize = CHANNELS * VIEW * VIEW;
-/// Points of an object that tell how high it is.
+/// Minimum number of an object's points for its height.
 const LEAST_POINTS: usize = 5;
-/// The ground is below this height above the floor of a box, metres.
+/// Height above the bottom of a box below which points are ground, in metres.
 const GROUND: f32 = 0.25;
 
 impl ViewPainter {
-    /// Keeps the points that any view shows whose middle is at `center`, in the frame of the lidar.
+    /// Selects the points of any view with its centre at `center`, in the lidar's frame.
     pub fn gather(&mut self, layout: &VpitLayout, cloud: &PointCloud, center: [f64; 3]) {
         let center = center.map(|part| part as f32);
         let [low, high] = layout.heights;
@@ -37,13 +37,13 @@ impl ViewPainter {
         }));
     }
 
-    /// Whether any point was gathered.
+    /// Returns whether any point was selected.
     pub fn has_points(&self) -> bool {
         !self.near.is_empty()
     }
 
-    /// Draws what was gathered as something sees it that looks along `yaw`, `[channels, rows, columns]`: rows from right to left,
-    /// columns from behind to ahead.
+    /// Voxelises the selected points in a frame with x along `yaw`, `[channels, rows, columns]`: rows from right to left,
+    /// columns from back to front.
     pub fn paint(&mut self, layout: &VpitLayout, yaw: f64, canvas: &mut [f32]) {
         let grid = layout.grid();
         let (sin, cos) = (yaw.sin() as f32, yaw.cos() as f32);
@@ -52,15 +52,15 @@ impl ViewPainter {
             self.voxeliser.add(&grid, &[cos * x + sin * y, cos * y - sin * x, *z]);
         }
         self.pillars.clear();
-        for told in self.voxeliser.statistics() {
+        for values in self.voxeliser.statistics() {
             self.pillars.push(1.0);
-            self.pillars.extend(told);
+            self.pillars.extend(values);
         }
         scatter(&self.pillars, CHANNELS, self.voxeliser.cells(), canvas);
     }
 
-    /// How high the points of a box of this length and width reach that stands `offset` from where points were gathered: nine in
-    /// ten are lower. `None` where it has few.
+    /// Returns the 90 % quantile of the heights of the points in a box of this length and width, at `offset` from the
+    /// centre of the selection. `None` when it has few points.
     pub fn top(&mut self, [length, width]: [f64; 2], offset: [f64; 2], yaw: f64) -> Option<f32> {
         let (sin, cos) = (yaw.sin() as f32, yaw.cos() as f32);
         let [dx, dy] = offset.map(|part| part as f32);
@@ -86,16 +86,16 @@ mod tests {
     const LAYOUT: VpitLayout = VpitLayout { pillar: 0.2, heights: [-0.5, 3.0], scale: 1.0, bias: 0.0 };
 
     #[test]
-    fn a_view_turns_with_what_it_is_of() {
+    fn a_view_rotates_with_its_object() {
         let mut painter = ViewPainter::default();
-        // One metre ahead of something at (10, 5) that looks along y, one point far away and one nowhere.
+        // One metre in front of an object at (10, 5) along y, one point far away and one that is not finite.
         let points = vec![10.0, 6.0, 0.5, 30.0, 5.0, 0.0, f32::NAN, 5.0, 0.0];
         let cloud = PointCloud::new(points, [3, 3]).unwrap();
         painter.gather(&LAYOUT, &cloud, [10.0, 5.0, 0.0]);
         let mut canvas = vec![9.0; VIEW_LEN];
         painter.paint(&LAYOUT, std::f64::consts::FRAC_PI_2 + 0.05, &mut canvas);
         let there: Vec<_> = (0..VIEW * VIEW).filter(|at| canvas[*at] == 1.0).collect();
-        // 1 m ahead is the pillar from 1.0 or up to it, a little to the right.
+        // 1 m in front is the pillar from 1.0 or up to it, a little to the right.
         assert_eq!(there.len(), 1);
         let [row, column] = [there[0] / VIEW, there[0] % VIEW];
         assert!((36..=37).contains(&column) && row == 31, "{row} {column}");
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn tops_are_those_of_the_box() {
+    fn heights_are_those_of_the_box() {
         let mut painter = ViewPainter::default();
         let points: Vec<f32> = (0..20).flat_map(|at| [3.0, 0.1, at as f32 * 0.1]).collect();
         let cloud = PointCloud::new(points, [20, 3]).unwrap();

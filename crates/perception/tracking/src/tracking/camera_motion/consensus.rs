@@ -1,19 +1,19 @@
-//! The motion that most points agree on.
+//! The motion that most points agree with.
 
 use opendr_vision::Similarity;
 
-use super::PlaneMotion;
+use super::SimilarityMotion;
 
-/// Fewer points tell nothing.
+/// Minimum number of points.
 const FEWEST: usize = 8;
 const ROUNDS: usize = 6;
-/// Points agree within so many parts of the picture's longer side.
+/// Tolerance of agreement, as a share of the image's longer side.
 const AGREEMENT: f32 = 1.0 / 320.0;
-/// In the first round, which knows only a shift, the tolerance is so many times larger: turns move the corners of a picture
-/// more than its middle.
+/// Factor of the tolerance in the first round, which fits a shift only: rotations move the corners of an image more than
+/// its centre.
 const FIRST: f32 = 8.0;
 
-/// Points of the frame before and where they are now.
+/// Points of the last frame and their positions in the current one.
 #[derive(Debug, Default)]
 pub(super) struct Consensus {
     pairs: Vec<[[f32; 2]; 2]>,
@@ -31,13 +31,13 @@ impl Consensus {
         self.pairs.push([from, to]);
     }
 
-    /// Begins with the median shift; then fits a similarity to the points that agree, ever more strictly.
-    pub fn motion(&mut self, size: [usize; 2]) -> PlaneMotion {
+    /// Fits the median shift first, then a similarity to the points that agree, with a decreasing tolerance.
+    pub fn motion(&mut self, size: [usize; 2]) -> SimilarityMotion {
         if self.pairs.len() < FEWEST {
-            return PlaneMotion::NONE;
+            return SimilarityMotion::NONE;
         }
         let shift = [0, 1].map(|axis| self.median(axis));
-        let mut motion = PlaneMotion::new([1.0, 0.0], shift.map(f64::from));
+        let mut motion = SimilarityMotion::new([1.0, 0.0], shift.map(f64::from));
         let agreement = size[0].max(size[1]) as f32 * AGREEMENT;
         for round in 0..ROUNDS {
             let tolerance = agreement * (FIRST / (1 << (2 * round)) as f32).max(1.0);
@@ -53,7 +53,7 @@ impl Consensus {
             let is_majority = self.from.len() >= FEWEST.max(self.pairs.len() / 3);
             match Similarity::from_points(&self.from, &self.to).filter(|_| is_majority) {
                 Some(found) => motion = motion_of(&found),
-                None => return PlaneMotion::NONE,
+                None => return SimilarityMotion::NONE,
             }
         }
         motion
@@ -67,10 +67,10 @@ impl Consensus {
     }
 }
 
-/// A similarity of pictures as a motion: the crop is the frame now.
-fn motion_of(found: &Similarity) -> PlaneMotion {
+/// Converts a similarity of images to a motion: the crop is the current frame.
+fn motion_of(found: &Similarity) -> SimilarityMotion {
     let scale = 1.0 / f64::from(found.scale());
     let (sine, cosine) = (-f64::from(found.angle())).sin_cos();
     let [x, y] = found.crop_from_image([0.0, 0.0]).map(f64::from);
-    PlaneMotion::new([scale * cosine, scale * sine], [x, y])
+    SimilarityMotion::new([scale * cosine, scale * sine], [x, y])
 }

@@ -1,21 +1,21 @@
-//! Points of a picture that can be found again.
+//! Corners of an image, which can be tracked.
 
 use super::pyramid::Pyramid;
 
-/// At most one corner lies in a cell of so many pixels a side.
+/// Side of the cells that have at most one corner, in pixels.
 const CELL: usize = 16;
-/// Corners look at so many pixels to each side.
+/// Pixels to each side of a corner in its window.
 const REACH: usize = 3;
-/// Distance to the edge, pixels: what is closer is soon out of sight.
+/// Distance of corners to the edge of the image, in pixels, as points closer to it leave soon.
 const MARGIN: usize = 8;
-/// The smaller eigenvalue of the gradients' covariance must be this large, squared levels a pixel.
+/// Minimum of the smaller eigenvalue of the gradients' covariance, in squared levels per pixel.
 const SHARPNESS: f32 = 20.0;
 
-/// Corners of one frame, in pixels of the pyramid's largest size.
+/// Corners of one frame, in pixels of the pyramid's largest level.
 #[derive(Debug, Default)]
 pub(super) struct Corners {
     points: Vec<[f32; 2]>,
-    /// Of a row of cells: products of gradients xx, xy, yy, a pixel after the other.
+    /// Products of gradients xx, xy, yy per pixel.
     products: Vec<[f32; 3]>,
 }
 
@@ -24,7 +24,7 @@ impl Corners {
         &self.points
     }
 
-    /// Takes the sharpest corner of every cell, of those where `is_background` holds.
+    /// Selects the sharpest corner of every cell, of those for which `is_background` is true.
     pub fn pick(&mut self, pyramid: &Pyramid, is_background: impl Fn([f32; 2]) -> bool) {
         let [plane, ..] = &pyramid.planes;
         let [width, height] = plane.size;
@@ -59,7 +59,7 @@ impl Corners {
         }
     }
 
-    /// The smaller eigenvalue of the mean of the products around a pixel.
+    /// Returns the smaller eigenvalue of the mean of the products around a pixel.
     fn sharpness(&self, width: usize, x: usize, y: usize) -> f32 {
         let mut sum = [0.0; 3];
         for row in y - REACH..=y + REACH {

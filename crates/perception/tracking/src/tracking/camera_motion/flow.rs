@@ -1,24 +1,24 @@
-//! Where a point of one frame is in the next.
+//! Sparse optical flow of points between two frames.
 
 use super::pyramid::{Plane, Pyramid};
 
-/// Pixels to each side of a point that are compared.
+/// Pixels to each side of a point in its window.
 const REACH: i32 = 4;
 const COUNT: usize = ((2 * REACH + 1) * (2 * REACH + 1)) as usize;
 const STEPS: usize = 12;
-/// Steps shorter than this end the search, pixels.
+/// Step length below which the iteration ends, in pixels.
 const SHORT: f32 = 0.02;
-/// The determinant of the gradients' covariance below which a point has no place.
+/// Determinant of the gradients' covariance below which a point cannot be tracked.
 const FLAT: f32 = 1.0;
-/// The mean difference of levels beyond which what was found is something else.
+/// Mean difference of levels above which a match is rejected.
 const DIFFERENT: f32 = 16.0;
 
-/// Where `point` is in `now`, both in pixels of the largest size; `None` where it left the picture or changed.
+/// Returns the position of `point` in `now`, both in pixels of the largest level; `None` when it left the image or changed.
 pub(super) fn follow(before: &Pyramid, now: &Pyramid, point: [f32; 2]) -> Option<[f32; 2]> {
     let mut moved = [0.0; 2];
     for (level, (before, now)) in before.planes.iter().zip(&now.planes).enumerate().rev() {
         let scale = 1.0 / (1 << level) as f32;
-        // Pixels of a smaller size lie between those of the larger.
+        // Pixel centres of a smaller level lie between those of a larger one.
         let here = point.map(|at| (at + 0.5) * scale - 0.5);
         let start = moved.map(|by| by * scale);
         match step(before, now, here, start) {
@@ -28,7 +28,7 @@ pub(super) fn follow(before: &Pyramid, now: &Pyramid, point: [f32; 2]) -> Option
                 }
                 moved = found.map(|by| by / scale);
             }
-            // The smaller sizes only help.
+            // Smaller levels only improve the start.
             None if level > 0 => {}
             None => return None,
         }
@@ -36,7 +36,7 @@ pub(super) fn follow(before: &Pyramid, now: &Pyramid, point: [f32; 2]) -> Option
     Some([point[0] + moved[0], point[1] + moved[1]])
 }
 
-/// The motion at one size, from a first guess, and the mean difference of levels that is left.
+/// Returns the motion at one level, from a first guess, and the remaining mean difference of levels.
 fn step(before: &Plane, now: &Plane, [x, y]: [f32; 2], guess: [f32; 2]) -> Option<([f32; 2], f32)> {
     let mut patch = [[0.0; 3]; COUNT];
     let mut sums = [0.0; 3];

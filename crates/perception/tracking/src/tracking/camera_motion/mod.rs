@@ -1,8 +1,9 @@
-//! How the camera moved from frame to frame, told by the picture.
+//! Estimation of the camera's motion between frames.
 //!
-//! Corners of the still background (J. Shi, C. Tomasi, "Good features to track", CVPR 1994) are followed through a pyramid
-//! (B. D. Lucas, T. Kanade, IJCAI 1981; J.-Y. Bouguet, "Pyramidal implementation of the Lucas Kanade feature tracker",
-//! 2001), and the similarity that most of them agree on is the camera's motion. Trackers move what they expect by it.
+//! Corners of the static background (J. Shi, C. Tomasi, "Good features to track", CVPR 1994) are tracked through an image
+//! pyramid (B. D. Lucas, T. Kanade, IJCAI 1981; J.-Y. Bouguet, "Pyramidal implementation of the Lucas Kanade feature
+//! tracker", 2001), and the similarity that most of them agree with is the camera's motion. Trackers move their predictions
+//! by it.
 
 mod consensus;
 mod corners;
@@ -14,45 +15,45 @@ use opendr_engine::Result;
 use opendr_engine::data::Image;
 use opendr_vision::{ChannelOrder, Preprocess};
 
-pub use plane_motion::PlaneMotion;
+pub use plane_motion::SimilarityMotion;
 
-use super::SoundBox;
+use super::ValidBox;
 use consensus::Consensus;
 use corners::Corners;
 use pyramid::Pyramid;
 
-/// Longer side of the grey picture of which the pyramid is made, pixels.
+/// Longer side of the grey image from which the pyramid is built, in pixels.
 const LONGER_SIDE: usize = 640;
-/// Smaller pictures tell nothing, pixels.
+/// Minimum side of images, in pixels.
 const SMALLEST_SIDE: usize = 64;
 
-/// The motion of one camera, frame after frame. Memory is used again.
+/// Estimator of the motion of one camera, frame by frame. Its memory is reused.
 #[derive(Debug, Default)]
 pub struct CameraMotion {
-    /// Size of the pictures, and what makes the grey picture of them.
+    /// Size of the images, and their conversion to grey.
     preprocess: Option<([usize; 2], Preprocess)>,
     grey: Vec<f32>,
     before: Pyramid,
     now: Pyramid,
-    /// Corners of the frame before.
+    /// Corners of the last frame.
     corners: Corners,
     consensus: Consensus,
 }
 
 impl CameraMotion {
-    /// Where what was in the frame before is in `image`. `objects` are boxes in `image`, pixels, of what may move by itself;
-    /// the corners that are followed to the next frame lie beside them.
+    /// Returns the motion from the last frame to `image`. `objects` are boxes of moving objects in `image`, in pixels;
+    /// corners in them are not tracked to the next frame.
     ///
-    /// [`PlaneMotion::NONE`] for the first frame, after a change of the pictures' size, and where too little is seen to
-    /// tell.
+    /// The result is [`SimilarityMotion::NONE`] for the first frame, after a change of the image size, and when too few corners
+    /// agree.
     ///
     /// # Errors
     /// As [`Preprocess::run_into`].
-    pub fn next(&mut self, image: &Image, objects: &[SoundBox]) -> Result<PlaneMotion> {
+    pub fn update(&mut self, image: &Image, objects: &[ValidBox]) -> Result<SimilarityMotion> {
         let size = [image.width(), image.height()];
         if size.into_iter().min() < Some(SMALLEST_SIDE) {
             *self = Self::default();
-            return Ok(PlaneMotion::NONE);
+            return Ok(SimilarityMotion::NONE);
         }
         if self.preprocess.as_ref().is_none_or(|(known, _)| *known != size) {
             *self = Self::default();
@@ -65,12 +66,12 @@ impl CameraMotion {
         let level = self.now.size();
         let scale = [0, 1].map(|axis| size[axis] as f32 / level[axis] as f32);
         let motion = match self.corners.points() {
-            [] => PlaneMotion::NONE,
+            [] => SimilarityMotion::NONE,
             points => {
                 self.consensus.begin();
                 for point in points {
                     if let Some(found) = flow::follow(&self.before, &self.now, *point) {
-                        // Pixels have their middles at .5 in pictures, at 0 in the pyramid.
+                        // Pixel centres are at .5 in images, at 0 in the pyramid.
                         let full = |point: [f32; 2]| [0, 1].map(|axis| (point[axis] + 0.5) * scale[axis]);
                         self.consensus.add(full(*point), full(found));
                     }

@@ -1,9 +1,9 @@
-//! A grey picture in several sizes.
+//! Grey image pyramids.
 
-/// Sizes, each half of the one before.
+/// Number of levels, each half the size of the one before.
 pub(super) const LEVELS: usize = 4;
 
-/// One size of a picture, row by row.
+/// One level of the pyramid, row by row.
 #[derive(Debug, Default)]
 pub(super) struct Plane {
     pub size: [usize; 2],
@@ -11,7 +11,7 @@ pub(super) struct Plane {
 }
 
 impl Plane {
-    /// Half of a picture `source`: means of four pixels each. An odd last row or column is left out.
+    /// Halves an image `source`: each pixel is the mean of four. An odd last row or column is dropped.
     fn halve(&mut self, source: &[f32], [width, height]: [usize; 2]) {
         self.size = [width / 2, height / 2];
         self.levels.clear();
@@ -22,7 +22,7 @@ impl Plane {
         }
     }
 
-    /// The level between pixels, whose middles are at whole numbers; `None` outside.
+    /// Returns the interpolated level at a position; pixel centres are whole numbers. `None` outside.
     pub fn at(&self, x: f32, y: f32) -> Option<f32> {
         let [width, height] = self.size;
         if !(x >= 0.0 && y >= 0.0) {
@@ -42,8 +42,8 @@ impl Plane {
     }
 }
 
-/// A picture in [`LEVELS`] sizes, the largest first; the largest is half of what it is made of, so that little is left of
-/// what scaling without antialiasing brings in.
+/// An image at [`LEVELS`] sizes, the largest first, which is half of the source. Halving reduces the aliasing of a scaling
+/// without antialiasing.
 #[derive(Debug, Default)]
 pub(super) struct Pyramid {
     pub planes: [Plane; LEVELS],
@@ -60,7 +60,7 @@ impl Pyramid {
         }
     }
 
-    /// Width and height of the largest.
+    /// Returns width and height of the largest level.
     pub fn size(&self) -> [usize; 2] {
         self.planes[0].size
     }

@@ -18,7 +18,7 @@ fn diagonal(numbers: &[f64]) -> Matrix {
     (0..numbers.len()).map(|row| (0..numbers.len()).map(|column| cell(row, column)).collect()).collect()
 }
 
-/// By elimination with pivots.
+/// Inverts by elimination with pivots.
 fn inverse(a: &Matrix) -> Matrix {
     let count = a.len();
     let mut rows: Matrix =
@@ -37,7 +37,7 @@ fn inverse(a: &Matrix) -> Matrix {
     rows.into_iter().map(|row| row[count..].to_vec()).collect()
 }
 
-/// The filter of SORT's seven numbers as the textbook has it: four measured, of which three move.
+/// SORT's filter of seven variables in matrix form: four measured, of which three have velocities.
 struct Textbook {
     state: Matrix,
     covariance: Matrix,
@@ -69,14 +69,14 @@ impl Textbook {
         let spread = add(&product(&seen, &crossed), &diagonal(&MEASUREMENT), 1.0);
         let gain = product(&crossed, &inverse(&spread));
         let measured: Matrix = measured.iter().map(|number| vec![*number]).collect();
-        let surprise = add(&measured, &product(&seen, &self.state), -1.0);
-        self.state = add(&self.state, &product(&gain, &surprise), 1.0);
+        let innovation = add(&measured, &product(&seen, &self.state), -1.0);
+        self.state = add(&self.state, &product(&gain, &innovation), 1.0);
         self.covariance = add(&self.covariance, &product(&gain, &transposed(&crossed)), -1.0);
     }
 }
 
 proptest! {
-    /// Seven numbers with diagonal noise are three pairs and one single.
+    /// A filter of seven variables with diagonal noise equals three pairs and one single.
     #[test]
     fn as_the_textbook_filter(
         first in prop::array::uniform4(-1e3..1e3),
@@ -110,7 +110,7 @@ proptest! {
     }
 }
 
-/// Two steps by hand: see the fractions.
+/// Computes two steps by hand, with fractions.
 #[test]
 fn by_hand() {
     let mut axis = ConstantVelocity::new(0.0, [10.0, 10_000.0]);

@@ -14,7 +14,7 @@ fn objective(classes: usize) -> NanodetObjective {
     NanodetObjective { side: SMALL, classes, augment: false, manifest: Manifest::new("nanodet", "") }
 }
 
-/// Noise with two plain squares.
+/// Returns a sample of noise with two plain squares.
 fn sample(class: i64) -> Sample {
     let mut random = Random::new(3);
     let mut pixels: Vec<u8> = (0..3 * SMALL * SMALL).map(|_| random.below(60) as u8).collect();
@@ -46,7 +46,7 @@ fn value(tensor: Tensor<1>) -> f32 {
 }
 
 #[test]
-fn one_batch_is_learned_by_heart() {
+fn one_batch_is_overfitted() {
     let device = Device::flex().autodiff();
     device.seed(1);
     let objective = objective(2);
@@ -69,7 +69,7 @@ fn one_batch_is_learned_by_heart() {
 }
 
 #[test]
-fn a_perfect_answer_costs_nothing() {
+fn a_perfect_prediction_has_no_loss() {
     let device = Device::flex();
     let objective = objective(2);
     let batch = batch(&objective, vec![sample(1), sample(0)]).unwrap();
@@ -107,7 +107,7 @@ fn the_focal_loss_is_that_of_the_paper() {
 }
 
 #[test]
-fn pictures_without_boxes_teach_that_nothing_is_there() {
+fn images_without_boxes_are_background() {
     let device = Device::flex().autodiff();
     let objective = objective(2);
     let empty = Sample { target: Some(Value::BoundingBoxList(BoundingBoxList::default())), ..sample(0) };
@@ -121,13 +121,13 @@ fn pictures_without_boxes_teach_that_nothing_is_there() {
 fn classes_that_are_not_named_are_refused() {
     let error = batch(&objective(2), vec![sample(2)]).err().unwrap();
     assert_eq!(error.kind(), ErrorKind::InvalidInput);
-    assert!(error.to_string().contains("class 2 in a data set of 2 classes"), "{error}");
+    assert!(error.to_string().contains("class 2, but the data set has 2 classes"), "{error}");
     let unlabelled = Sample { target: None, ..sample(0) };
     assert_eq!(batch(&objective(2), vec![unlabelled]).err().unwrap().kind(), ErrorKind::InvalidInput);
 }
 
 #[test]
-fn a_new_head_keeps_what_it_knows_of_boxes() {
+fn new_classes_keep_the_weights_for_boxes() {
     let device = Device::flex();
     let network = NanodetNetwork::new(3, &device);
     let picture = Tensor::<4>::random([1, 3, 64, 64], burn::tensor::Distribution::Normal(0.0, 1.0), &device);
@@ -141,7 +141,7 @@ fn a_new_head_keeps_what_it_knows_of_boxes() {
 }
 
 #[test]
-fn what_is_frozen_gets_no_gradient() {
+fn frozen_layers_have_no_gradient() {
     let device = Device::flex().autodiff();
     let objective = objective(2);
     let batch = batch(&objective, vec![sample(1)]).unwrap();
