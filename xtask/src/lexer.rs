@@ -36,6 +36,15 @@ impl Token<'_> {
         self.kind == Kind::Symbol && self.text == symbol
     }
 
+    /// Returns the change of the nesting depth: 1 for an opening bracket, -1 for a closing one, otherwise 0.
+    pub fn nesting(&self) -> i32 {
+        match self.text {
+            "(" | "[" | "{" if self.kind == Kind::Symbol => 1,
+            ")" | "]" | "}" if self.kind == Kind::Symbol => -1,
+            _ => 0,
+        }
+    }
+
     /// Returns whether the token is this name or keyword.
     pub fn is_name(&self, name: &str) -> bool {
         self.kind == Kind::Name && self.text == name

@@ -4,11 +4,11 @@
 //! predictions. `dump.json` lists the files in the order of processing, with shape, type, range and the number of values that
 //! are not finite.
 
-use std::fs::{self, File};
-use std::io::{BufWriter, Write as _};
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use opendr::data::PixelFormat;
+use opendr::datasets::{NpyElement, npy_from_values};
 use opendr::inference::recording::{self, RecordedTensor, Recording};
 use opendr::inference::{TensorData, TensorInfo, TensorView};
 use opendr::learner::Outputs;
@@ -113,7 +113,7 @@ fn write_value(folder: &Path, value: ValueRef<'_>) -> Result<Json> {
     if let ValueRef::Image(image) = value {
         let pixels = image.hwc_u8(PixelFormat::Rgb);
         let shape = [image.height(), image.width(), 3];
-        let statistics = write_array(&folder.join("input.npy"), &TensorView::new(&shape, &pixels)?)?;
+        let statistics = write_array(&folder.join("input.npy"), &pixels, &shape, f64::from)?;
         return Ok(json!({
             "stage": "input",
             "file": "input.npy",
@@ -146,7 +146,7 @@ fn write_tensor(
         .collect();
     let file = format!("network-{run}-{stage}-{plain}.npy");
     let view = tensor.view()?;
-    let statistics = write_array(&folder.join(&file), &view)?;
+    let statistics = write_tensor_file(&folder.join(&file), &view)?;
     Ok(json!({
         "stage": format!("network {stage}"),
         "run": run,
@@ -158,41 +158,28 @@ fn write_tensor(
     }))
 }
 
-/// Writes a tensor in NumPy's format, version 1.0, and returns its statistics.
-fn write_array(path: &Path, tensor: &TensorView<'_>) -> Result<Json> {
-    let failed = || format!("writing {}", path.display());
-    let mut file = BufWriter::new(File::create(path).context(failed)?);
-    let (descr, statistics) = match tensor.data() {
-        TensorData::F32(data) => ("<f4", statistics(data.iter().map(|&value| f64::from(value)))),
-        TensorData::I32(data) => ("<i4", statistics(data.iter().map(|&value| f64::from(value)))),
-        TensorData::I64(data) => ("<i8", statistics(data.iter().map(|&value| value as f64))),
-        TensorData::U8(data) => ("|u1", statistics(data.iter().map(|&value| f64::from(value)))),
-        TensorData::I8(data) => ("|i1", statistics(data.iter().map(|&value| f64::from(value)))),
-        TensorData::Bool(data) => ("|b1", statistics(data.iter().map(|&value| f64::from(u8::from(value))))),
-        other => {
-            return Err(Error::unsupported(format!("tensors of {} cannot be dumped", other.element_type())));
-        }
-    };
-    let dims: String = tensor.shape().iter().map(|size| format!("{size}, ")).collect();
-    let mut header = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': ({dims}), }}");
-    // Magic, version, length and header are a multiple of 64 bytes.
-    let padding = 63 - (10 + header.len()) % 64;
-    header.extend(std::iter::repeat_n(' ', padding));
-    header.push('\n');
-    file.write_all(b"\x93NUMPY\x01\x00").context(failed)?;
-    file.write_all(&(header.len() as u16).to_le_bytes()).context(failed)?;
-    file.write_all(header.as_bytes()).context(failed)?;
-    let written = match tensor.data() {
-        TensorData::F32(data) => data.iter().try_for_each(|value| file.write_all(&value.to_le_bytes())),
-        TensorData::I32(data) => data.iter().try_for_each(|value| file.write_all(&value.to_le_bytes())),
-        TensorData::I64(data) => data.iter().try_for_each(|value| file.write_all(&value.to_le_bytes())),
-        TensorData::U8(data) => file.write_all(data),
-        TensorData::I8(data) => data.iter().try_for_each(|value| file.write_all(&value.to_le_bytes())),
-        TensorData::Bool(data) => data.iter().try_for_each(|value| file.write_all(&[u8::from(*value)])),
-        _ => Ok(()),
-    };
-    written.and_then(|()| file.flush()).context(failed)?;
-    Ok(statistics)
+/// Writes a tensor in NumPy's format and returns its statistics.
+fn write_tensor_file(path: &Path, tensor: &TensorView<'_>) -> Result<Json> {
+    let shape = tensor.shape();
+    match tensor.data() {
+        TensorData::F32(values) => write_array(path, values, shape, f64::from),
+        TensorData::I32(values) => write_array(path, values, shape, f64::from),
+        TensorData::I64(values) => write_array(path, values, shape, |value| value as f64),
+        TensorData::U8(values) => write_array(path, values, shape, f64::from),
+        TensorData::I8(values) => write_array(path, values, shape, f64::from),
+        TensorData::Bool(values) => write_array(path, values, shape, f64::from),
+        other => Err(Error::unsupported(format!("tensors of {} cannot be dumped", other.element_type()))),
+    }
+}
+
+fn write_array<T: NpyElement>(
+    path: &Path,
+    values: &[T],
+    shape: &[usize],
+    number: fn(T) -> f64,
+) -> Result<Json> {
+    fs::write(path, npy_from_values(values, shape)?).context(|| format!("writing {}", path.display()))?;
+    Ok(statistics(values.iter().map(|value| number(*value))))
 }
 
 /// Returns minimum, maximum and mean of the finite values, and the number of others.

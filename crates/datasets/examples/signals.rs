@@ -9,7 +9,7 @@ use std::fs;
 use std::path::Path;
 
 use opendr_datasets::{
-    NpyFile, OpenOptions, Problems, WavEncoding, WriteOptions, find_format, npy_from_f32, open,
+    NpyFile, OpenOptions, Problems, WavEncoding, WriteOptions, find_format, npy_from_values, open,
     open_mot_results, open_wav, open_wfdb_record, wav_from_audio, write_mot_results,
 };
 use opendr_engine::data::{Image, Pixels};
@@ -50,13 +50,16 @@ fn main() -> Result<()> {
             let encoding =
                 encoding.ok_or_else(|| Error::invalid_param("unknown encoding; use e.g. Pcm16"))?;
             let audio = open_wav(from)?;
-            fs::write(format!("{to}.npy"), npy_from_f32(audio.array().as_slice(), &audio.array().shape())?)?;
+            fs::write(
+                format!("{to}.npy"),
+                npy_from_values(audio.array().as_slice(), &audio.array().shape())?,
+            )?;
             Ok(fs::write(to, wav_from_audio(&audio, encoding)?)?)
         }
         ["npy", from, to] => {
             let array = NpyFile::open(from)?;
             let numbers: Vec<f32> = array.all()?.into_iter().map(|number| number as f32).collect();
-            Ok(fs::write(to, npy_from_f32(&numbers, array.shape())?)?)
+            Ok(fs::write(to, npy_from_values(&numbers, array.shape())?)?)
         }
         ["wfdb", record, out] => {
             let record = open_wfdb_record(record)?;
@@ -68,7 +71,7 @@ fn main() -> Result<()> {
                 );
             }
             fs::create_dir_all(out)?;
-            let numbers = npy_from_f32(record.signals.as_slice(), &record.signals.shape())?;
+            let numbers = npy_from_values(record.signals.as_slice(), &record.signals.shape())?;
             fs::write(Path::new(out).join("signals.npy"), numbers)?;
             record.save(out)
         }
@@ -86,7 +89,7 @@ fn arrays(dataset: &dyn DatasetIterator, out: &Path, limit: usize) -> Result<()>
         let sample = dataset.get(index)?;
         for (at, datum) in sample.data.iter().enumerate() {
             let (numbers, shape) = numbers(datum);
-            fs::write(out.join(format!("{index:06}_{at}.npy")), npy_from_f32(&numbers, &shape)?)?;
+            fs::write(out.join(format!("{index:06}_{at}.npy")), npy_from_values(&numbers, &shape)?)?;
         }
         println!(
             "{}",

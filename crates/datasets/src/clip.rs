@@ -111,7 +111,7 @@ fn small([width, height]: [usize; 2]) -> [usize; 2] {
 mod tests {
     use super::*;
     use crate::folder::TemporaryFolder;
-    use crate::npy_from_f32;
+    use crate::npy_from_values;
 
     /// Returns frames; frame `at` has the constant level `at`.
     fn frames(count: usize, width: usize, height: usize) -> impl Iterator<Item = Result<Image>> {
@@ -153,7 +153,7 @@ mod tests {
         assert!(error.contains("frame 2 is of 3x2"), "{error}");
         assert!(thinned(frames(0, 4, 2), MAX_BYTES).is_err());
         let folder = TemporaryFolder::new();
-        folder.write("flat.npy", npy_from_f32(&[0.0; 4], &[2, 2]).unwrap());
+        folder.write("flat.npy", npy_from_values(&[0.0; 4], &[2, 2]).unwrap());
         folder.write("broken.mp4", "no video");
         for (name, wanted) in [("flat.npy", "2 axes"), ("broken.mp4", "broken.mp4"), ("none.avi", "none.avi")]
         {
@@ -170,7 +170,7 @@ mod tests {
         }
         let clip = open_clip(&folder.path().join("dance")).unwrap();
         assert_eq!(clip.shape(), [3, 3, 4, 5]);
-        folder.write("dance.npy", npy_from_f32(clip.as_slice(), &clip.shape()).unwrap());
+        folder.write("dance.npy", npy_from_values(clip.as_slice(), &clip.shape()).unwrap());
         assert_eq!(open_clip(&folder.path().join("dance.npy")).unwrap(), clip);
     }
 

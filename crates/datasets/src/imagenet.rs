@@ -223,12 +223,12 @@ mod tests {
         let problems = Problems::skipping();
         let dataset = ImageNet::open(folder.path(), &OpenOptions::default(), &problems).unwrap();
         assert_eq!((dataset.len(), problems.count()), (1, 3));
-        let told: Vec<_> = problems.list().iter().map(|problem| problem.to_string()).collect();
+        let messages: Vec<_> = problems.list().iter().map(|problem| problem.to_string()).collect();
         assert!(
-            told[0].contains("val.txt:2")
-                && told[1].contains("synset")
-                && told[2].contains("class 2, but there are 2 classes"),
-            "{told:?}"
+            messages[0].contains("val.txt:2")
+                && messages[1].contains("synset")
+                && messages[2].contains("class 2, but there are 2 classes"),
+            "{messages:?}"
         );
         assert!(matches!(dataset.target(0).unwrap(), Some(Value::Category(category)) if category.class == 1));
     }

@@ -138,7 +138,7 @@ mod tests {
 
     use super::*;
     use crate::folder::TemporaryFolder;
-    use crate::npy_from_f32;
+    use crate::npy_from_values;
 
     fn open(path: &Path, split: Option<&str>) -> Result<Kinetics> {
         let options = OpenOptions { split: split.map(str::to_owned), target: None };
@@ -153,7 +153,7 @@ mod tests {
             folder.picture(&format!("train/jump/second/{frame}.png"), 6, 4);
         }
         assert!(matches!(Kinetics::recognise(folder.path()), Recognition::No(_)));
-        folder.write("train/run/quick.npy", npy_from_f32(&[0.5; 3 * 2 * 4], &[3, 2, 2, 2]).unwrap());
+        folder.write("train/run/quick.npy", npy_from_values(&[0.5; 3 * 2 * 4], &[3, 2, 2, 2]).unwrap());
         folder.write("train/none/readme.txt", "no clip");
         assert_eq!(Kinetics::recognise(folder.path()), Recognition::Possible);
         let dataset = open(folder.path(), None).unwrap();

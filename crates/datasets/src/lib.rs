@@ -89,7 +89,7 @@ pub use lfw::Lfw;
 pub use market1501::{Market1501, MarketPerson};
 pub use mnist::Mnist;
 pub use mot::{Mot, MotRow, MotSequence, open_mot_results, write_mot_results};
-pub use npy::{NpyFile, NpyHeader, NpyType, array_from_npy, npy_from_f32, npy_from_i64};
+pub use npy::{NpyElement, NpyFile, NpyHeader, NpyType, array_from_npy, npy_from_values};
 pub use pictures::UnlabelledImages;
 pub use problems::{Location, Problem, Problems};
 pub use recognition::Recognition;

@@ -132,23 +132,45 @@ pub fn array_from_npy(bytes: &[u8]) -> Result<(Vec<usize>, Vec<f64>)> {
     Ok((header.shape().to_vec(), numbers))
 }
 
-/// Returns the bytes of an `.npy` file (version 1.0) of 32-bit floats; the last axis varies fastest.
-///
-/// # Errors
-/// `InvalidInput` if `shape` does not match the number of values.
-pub fn npy_from_f32(numbers: &[f32], shape: &[usize]) -> Result<Vec<u8>> {
-    let mut bytes = header_bytes("<f4", numbers.len(), shape)?;
-    bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
-    Ok(bytes)
+/// Type of the values of a written array.
+pub trait NpyElement: Copy {
+    /// NumPy's name of the type, little-endian.
+    const DESCR: &'static str;
+
+    /// Appends the bytes of a value.
+    fn write(self, bytes: &mut Vec<u8>);
 }
 
-/// Returns the bytes of an `.npy` file (version 1.0) of 64-bit integers; the last axis varies fastest.
+macro_rules! elements {
+    ($($kind:ty => $descr:literal),* $(,)?) => {$(
+        impl NpyElement for $kind {
+            const DESCR: &'static str = $descr;
+
+            fn write(self, bytes: &mut Vec<u8>) {
+                bytes.extend(self.to_le_bytes());
+            }
+        }
+    )*};
+}
+
+elements! { f32 => "<f4", i32 => "<i4", i64 => "<i8", u8 => "|u1", i8 => "|i1" }
+
+impl NpyElement for bool {
+    const DESCR: &'static str = "|b1";
+
+    fn write(self, bytes: &mut Vec<u8>) {
+        bytes.push(u8::from(self));
+    }
+}
+
+/// Returns the bytes of an `.npy` file (version 1.0) of values; the last axis varies fastest.
 ///
 /// # Errors
 /// `InvalidInput` if `shape` does not match the number of values.
-pub fn npy_from_i64(numbers: &[i64], shape: &[usize]) -> Result<Vec<u8>> {
-    let mut bytes = header_bytes("<i8", numbers.len(), shape)?;
-    bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+pub fn npy_from_values<T: NpyElement>(values: &[T], shape: &[usize]) -> Result<Vec<u8>> {
+    let mut bytes = header_bytes(T::DESCR, values.len(), shape)?;
+    bytes.reserve(size_of_val(values));
+    values.iter().for_each(|value| value.write(&mut bytes));
     Ok(bytes)
 }
 

@@ -96,13 +96,12 @@ fn memory_stays_small() {
         .unwrap();
     let text = String::from_utf8_lossy(&done.stdout);
     assert!(done.status.success(), "{text}{}", String::from_utf8_lossy(&done.stderr));
-    let told: Vec<_> = text.lines().filter(|line| line.starts_with("problem")).collect();
-    assert_eq!(told.len(), 3, "{told:?}");
+    let reported: Vec<_> = text.lines().filter(|line| line.starts_with("problem")).collect();
+    assert_eq!(reported.len(), 3, "{reported:?}");
     let wanted = ["annotations[55]", "annotations[77].category_id", "annotations[99].image_id"];
-    wanted
-        .iter()
-        .zip(&told)
-        .for_each(|(key, told)| assert!(told.contains(key) && told.contains("byte"), "{told}"));
+    wanted.iter().zip(&reported).for_each(|(key, reported)| {
+        assert!(reported.contains(key) && reported.contains("byte"), "{reported}")
+    });
     let labels = fs::read_dir(folder.join("yolo/labels/val")).unwrap();
     let lines = labels.map(|file| fs::read_to_string(file.unwrap().path()).unwrap().lines().count());
     assert_eq!(lines.sum::<usize>(), count - 3);

@@ -2,6 +2,7 @@
 
 mod python;
 mod rust;
+mod use_tree;
 
 pub use python::imports as of_python;
 pub use rust::imports as of_crate;

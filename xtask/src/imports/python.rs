@@ -157,8 +157,7 @@ fn logical_lines(text: &str) -> Vec<Vec<Token<'_>>> {
             Some(line) if depth > 0 || continues || token.line == last_line => line.push(token),
             _ => lines.push(vec![token]),
         }
-        depth += i32::from(["(", "[", "{"].iter().any(|open| token.is(open)));
-        depth -= i32::from([")", "]", "}"].iter().any(|close| token.is(close)));
+        depth += token.nesting();
         continues = token.is("\\");
         last_line = token.line + token.text.matches('\n').count();
     }

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::Import;
+use super::use_tree::{Path, Use, names_of_use};
 use crate::lexer::{Kind, Language, Token, tokens};
 
 /// Returns the imports between the files of the crate with this root file, without code under `#[cfg(test)]`. `read` returns the text of
@@ -44,20 +45,6 @@ struct Module {
     paths: Vec<Path>,
     /// Names in its code, outside of `use` declarations.
     names: BTreeSet<String>,
-}
-
-/// One name of a `use` declaration.
-struct Use {
-    path: Path,
-    /// Name in the module; `*` if it imports all names.
-    name: String,
-    is_public: bool,
-}
-
-#[derive(Clone)]
-struct Path {
-    segments: Vec<String>,
-    line: usize,
 }
 
 /// Result of the resolution of a path.
@@ -105,16 +92,12 @@ impl Tree<'_> {
                     true => length - 1 + item_length(&rest[length..]),
                     false => length - 1,
                 };
-            } else if token.is("{") || token.is("(") || token.is("[") {
-                depth += 1;
-            } else if token.is("}") || token.is(")") || token.is("]") {
-                depth -= 1;
+            } else if token.nesting() != 0 {
+                depth += token.nesting();
             } else if token.is_name("use") && next.is_some_and(|next| !next.is("<")) {
                 let before = at.checked_sub(2).and_then(|before| tokens.get(before));
                 let is_public = before.is_some_and(|before| before.is_name("pub") || before.is(")"));
-                let mut reader = UseReader { tokens: rest, at: 1, is_public, found: Vec::new() };
-                reader.read(&[]);
-                self.modules[id].uses.append(&mut reader.found);
+                self.modules[id].uses.extend(names_of_use(&rest[1..], is_public));
                 at += rest.iter().position(|token| token.is(";")).unwrap_or(rest.len() - 1);
             } else if let (true, Some(name)) = (token.is_name("mod") && depth == 0, next_name) {
                 at += self.submodule(id, folder, name, &rest[2..]) + 1;
@@ -311,67 +294,6 @@ impl Tree<'_> {
     }
 }
 
-/// Reader of the tree of a `use` declaration.
-struct UseReader<'a> {
-    tokens: &'a [Token<'a>],
-    at: usize,
-    is_public: bool,
-    found: Vec<Use>,
-}
-
-impl UseReader<'_> {
-    fn next_is(&self, symbol: &str) -> bool {
-        self.tokens.get(self.at).is_some_and(|token| token.is(symbol))
-    }
-
-    /// Reads the tree below a prefix.
-    fn read(&mut self, prefix: &[String]) {
-        let mut segments = prefix.to_vec();
-        if segments.is_empty() && self.next_is("::") {
-            // The name of a crate follows.
-            self.at += 1;
-            segments.push(String::new());
-        }
-        while let Some(token) = self.tokens.get(self.at) {
-            self.at += 1;
-            if token.is("{") {
-                while self.at < self.tokens.len() && !self.next_is("}") {
-                    self.read(&segments);
-                    self.at += usize::from(self.next_is(","));
-                }
-                self.at += 1;
-                return;
-            }
-            if token.is("*") {
-                return self.push(segments, "*", token.line);
-            }
-            if token.kind != Kind::Name {
-                return;
-            }
-            if token.text != "self" || segments.is_empty() {
-                segments.push(token.text.to_owned());
-            }
-            if self.next_is("::") {
-                self.at += 1;
-                continue;
-            }
-            let name = segments.last().cloned().unwrap_or_default();
-            return match self.tokens[self.at..] {
-                [keyword, alias, ..] if keyword.is_name("as") => {
-                    self.at += 2;
-                    self.push(segments, alias.text, token.line);
-                }
-                _ => self.push(segments, &name, token.line),
-            };
-        }
-    }
-
-    fn push(&mut self, segments: Vec<String>, name: &str, line: usize) {
-        let path = Path { segments, line };
-        self.found.push(Use { path, name: name.to_owned(), is_public: self.is_public });
-    }
-}
-
 /// Returns the number of tokens of the attribute that begins a list of tokens.
 fn attribute_length(tokens: &[Token]) -> usize {
     let bracket = tokens.iter().position(|token| token.is("[")).unwrap_or(0);
@@ -388,8 +310,7 @@ fn is_for_tests(attribute: &[Token]) -> bool {
 fn group_length(tokens: &[Token]) -> usize {
     let mut depth = 0;
     for (at, token) in tokens.iter().enumerate() {
-        depth += i32::from(["(", "[", "{"].iter().any(|open| token.is(open)));
-        depth -= i32::from([")", "]", "}"].iter().any(|close| token.is(close)));
+        depth += token.nesting();
         if depth == 0 {
             return at + 1;
         }
@@ -410,7 +331,7 @@ fn item_length(tokens: &[Token]) -> usize {
         if token.is(";") || token.is(",") && !is_item {
             return at + 1;
         }
-        if token.is("}") || token.is(")") || token.is("]") {
+        if token.nesting() < 0 {
             return at;
         }
         at += group_length(&tokens[at..]);

@@ -36,19 +36,19 @@ fn fortran_order_is_converted() {
 
 #[test]
 fn what_is_written_is_read() {
-    let bytes = npy_from_f32(&[1.0, -2.5, 3.0, 4.0], &[2, 2, 1]).unwrap();
+    let bytes = npy_from_values(&[1.0, -2.5, 3.0, 4.0], &[2, 2, 1]).unwrap();
     assert_eq!(array_from_npy(&bytes).unwrap(), (vec![2, 2, 1], vec![1.0, -2.5, 3.0, 4.0]));
     assert_eq!(bytes.len() % 64, 16);
-    let bytes = npy_from_i64(&[-7], &[1]).unwrap();
+    let bytes = npy_from_values(&[-7_i64], &[1]).unwrap();
     assert_eq!(array_from_npy(&bytes).unwrap(), (vec![1], vec![-7.0]));
-    assert_eq!(array_from_npy(&npy_from_i64(&[3], &[]).unwrap()).unwrap(), (vec![], vec![3.0]));
-    assert!(npy_from_f32(&[1.0], &[2]).is_err());
+    assert_eq!(array_from_npy(&npy_from_values(&[3_i64], &[]).unwrap()).unwrap(), (vec![], vec![3.0]));
+    assert!(npy_from_values(&[1.0], &[2]).is_err());
 }
 
 #[test]
 fn parts_are_read_alone() {
     let path = std::env::temp_dir().join(format!("opendr-npy-{}.npy", std::process::id()));
-    std::fs::write(&path, npy_from_f32(&[1.0, 2.0, 3.0, 4.0], &[2, 2]).unwrap()).unwrap();
+    std::fs::write(&path, npy_from_values(&[1.0, 2.0, 3.0, 4.0], &[2, 2]).unwrap()).unwrap();
     let array = NpyFile::open(&path).unwrap();
     assert_eq!(array.part(1).unwrap(), [3.0, 4.0]);
     assert_eq!(array.all().unwrap(), [1.0, 2.0, 3.0, 4.0]);

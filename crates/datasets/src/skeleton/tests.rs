@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::folder::{TemporaryFolder, real_data};
-use crate::{npy_from_f32, npy_from_i64};
+use crate::npy_from_values;
 
 /// Two frames; body 7 stands still in both, body 8 moves, body 9 is in one frame.
 fn ntu() -> String {
@@ -81,8 +81,8 @@ fn names_have_class_and_part() {
 #[test]
 fn what_is_written_is_read() {
     let folder = TemporaryFolder::new()
-        .with("val_data.npy", npy_from_f32(&[1.0, 2.0, 3.0, 4.0], &[2, 1, 2, 1, 1]).unwrap())
-        .with("val_label.npy", npy_from_i64(&[1, 0], &[2]).unwrap())
+        .with("val_data.npy", npy_from_values(&[1.0, 2.0, 3.0, 4.0], &[2, 1, 2, 1, 1]).unwrap())
+        .with("val_label.npy", npy_from_values(&[1_i64, 0], &[2]).unwrap())
         .with("label_map.txt", "sit\nwave\n");
     let skeletons = open(&folder, None).unwrap();
     let Some(Value::Category(category)) = skeletons.get(0).unwrap().target else { panic!() };
@@ -100,21 +100,21 @@ fn what_is_written_is_read() {
 
 #[test]
 fn broken_arrays_are_reported() {
-    let good = npy_from_f32(&[1.0, f32::NAN], &[2, 1, 1, 1, 1]).unwrap();
+    let good = npy_from_values(&[1.0, f32::NAN], &[2, 1, 1, 1, 1]).unwrap();
     for (data, labels, wanted) in [
-        (npy_from_f32(&[1.0], &[1]).unwrap(), vec![0], "val_data.npy: has shape [1]"),
+        (npy_from_values(&[1.0], &[1]).unwrap(), vec![0_i64], "val_data.npy: has shape [1]"),
         (good.clone(), vec![0, 1, 2], "val_label.npy: has 3 classes for 2 samples"),
         (good.clone(), vec![0, -1], "val_label.npy at sample 1: has class -1"),
     ] {
         let folder = TemporaryFolder::new()
             .with("val_data.npy", data)
-            .with("val_label.npy", npy_from_i64(&labels, &[labels.len()]).unwrap());
+            .with("val_label.npy", npy_from_values(&labels, &[labels.len()]).unwrap());
         let error = open(&folder, None).unwrap_err();
         assert!(error.to_string().contains(wanted), "{error}");
     }
     let folder = TemporaryFolder::new()
         .with("val_data.npy", good)
-        .with("val_label.npy", npy_from_i64(&[0, 1], &[2]).unwrap());
+        .with("val_label.npy", npy_from_values(&[0_i64, 1], &[2]).unwrap());
     let skeletons = open(&folder, None).unwrap();
     assert!(skeletons.get(0).is_ok());
     assert!(skeletons.get(1).unwrap_err().to_string().contains("sample 1: value 0 is NaN"));

@@ -8,7 +8,7 @@ use opendr_engine::{Error, Progress, Result, Value};
 
 use crate::folder::{path_inside, write_file};
 use crate::picture_files::write_each;
-use crate::{Problems, WriteOptions, npy_from_f32, npy_from_i64};
+use crate::{Problems, WriteOptions, npy_from_values};
 
 /// Largest number of values, which are collected in memory: 8 GiB.
 const MAX_NUMBERS: usize = 2 << 30;
@@ -46,8 +46,8 @@ pub(super) fn write(
             numbers.resize(end, 0.0);
         }
     }
-    write_file(&data, &npy_from_f32(&numbers, &shape)?)?;
-    write_file(&path.join(format!("{part}_label.npy")), &npy_from_i64(&labels, &[labels.len()])?)?;
+    write_file(&data, &npy_from_values(&numbers, &shape)?)?;
+    write_file(&path.join(format!("{part}_label.npy")), &npy_from_values(&labels, &[labels.len()])?)?;
     let names: String = dataset.classes().iter().map(|name| format!("{name}\n")).collect();
     if names.is_empty() { Ok(()) } else { write_file(&path.join("label_map.txt"), names.as_bytes()) }
 }

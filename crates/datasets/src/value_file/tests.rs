@@ -3,7 +3,7 @@ use opendr_engine::target::Category;
 
 use super::*;
 use crate::folder::TemporaryFolder;
-use crate::{WavEncoding, npy_from_f32, wav_from_audio};
+use crate::{WavEncoding, npy_from_values, wav_from_audio};
 
 #[test]
 fn tables_of_every_kind_are_series() {
@@ -18,9 +18,9 @@ fn tables_of_every_kind_are_series() {
     for table in tables {
         assert_eq!(timeseries_from_table(table.as_bytes()).unwrap(), wanted, "{table:?}");
     }
-    let npy = npy_from_f32(wanted.as_slice(), &[2, 2]).unwrap();
+    let npy = npy_from_values(wanted.as_slice(), &[2, 2]).unwrap();
     assert_eq!(timeseries_from_table(&npy).unwrap(), wanted);
-    assert_eq!(timeseries_from_table(&npy_from_f32(&[5.0], &[1]).unwrap()).unwrap().shape(), [1, 1]);
+    assert_eq!(timeseries_from_table(&npy_from_values(&[5.0], &[1]).unwrap()).unwrap().shape(), [1, 1]);
 }
 
 #[test]
@@ -40,7 +40,7 @@ fn what_is_no_table_is_an_error() {
         assert!(error.contains(wanted), "{table:?}: {error}");
     }
     assert!(timeseries_from_table(&[0xff, 0xfe]).is_err());
-    assert!(timeseries_from_table(&npy_from_f32(&[0.0; 8], &[2, 2, 2]).unwrap()).is_err());
+    assert!(timeseries_from_table(&npy_from_values(&[0.0; 8], &[2, 2, 2]).unwrap()).is_err());
 }
 
 #[test]
@@ -77,11 +77,11 @@ fn an_observation_is_the_numbers_of_a_table() {
 #[test]
 fn the_joints_of_one_person_become_its_channels() {
     let numbers: Vec<f32> = (0..12).map(|number| number as f32).collect();
-    let of_person = skeletons_from_npy(&npy_from_f32(&numbers, &[2, 3, 2]).unwrap()).unwrap();
+    let of_person = skeletons_from_npy(&npy_from_values(&numbers, &[2, 3, 2]).unwrap()).unwrap();
     assert_eq!(of_person.shape(), [1, 2, 2, 3, 1]);
     assert_eq!(of_person.as_slice(), [0., 2., 4., 6., 8., 10., 1., 3., 5., 7., 9., 11.]);
-    let whole = skeletons_from_npy(&npy_from_f32(&numbers, &[1, 2, 2, 3, 1]).unwrap()).unwrap();
+    let whole = skeletons_from_npy(&npy_from_values(&numbers, &[1, 2, 2, 3, 1]).unwrap()).unwrap();
     assert_eq!(whole.as_slice(), numbers);
-    let flat = skeletons_from_npy(&npy_from_f32(&numbers, &[12]).unwrap()).unwrap_err();
+    let flat = skeletons_from_npy(&npy_from_values(&numbers, &[12]).unwrap()).unwrap_err();
     assert!(flat.to_string().contains("1 axes"), "{flat}");
 }

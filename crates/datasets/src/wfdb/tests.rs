@@ -167,12 +167,12 @@ fn broken_records_are_reported() {
         good().with("b.hea", "b x\n").with("c.hea", "c 1 100 2\na.dat 16\n").with("c.atr", [9, 4, 0, 0]);
     let problems = Problems::skipping();
     let wfdb = Wfdb::open(folder.path(), &OpenOptions::default(), &problems).unwrap();
-    let told: Vec<_> = problems.list().iter().map(ToString::to_string).collect();
-    assert_eq!((wfdb.len(), told.len()), (1, 2));
+    let messages: Vec<_> = problems.list().iter().map(ToString::to_string).collect();
+    assert_eq!((wfdb.len(), messages.len()), (1, 2));
     assert!(
-        told[0].ends_with("b.hea:1: has \"x\" as the number of signals")
+        messages[0].ends_with("b.hea:1: has \"x\" as the number of signals")
             && problems.list()[0].location.is_some()
-            && told[1].contains("c.atr: has an annotation at sample 9 of 2")
+            && messages[1].contains("c.atr: has an annotation at sample 9 of 2")
     );
     let list = good().with("RECORDS", "../a\n");
     let error = Wfdb::open(list.path(), &OpenOptions::default(), &Problems::strict()).unwrap_err();

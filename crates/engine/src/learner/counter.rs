@@ -24,7 +24,7 @@ pub struct CounterParams {
     #[param(default = 0.5, range = 0.0..=1.0, live)]
     pub threshold: f32,
     /// Factor of the count.
-    #[param(default = 2, range = 1..=9)]
+    #[param(default = 2, range = 1..=9, former = "scale")]
     pub factor: i64,
 }
 

@@ -53,7 +53,7 @@ impl<L: Learner> Handle<L> {
         model.check_learner(L::SPEC.name)?;
         let mut params = self.params.clone();
         for (index, field) in L::Params::FIELDS.iter().enumerate() {
-            if let Some(stated) = model.params().get(field.name)
+            if let Some(stated) = field.value_in(model.params())
                 && params.get_at(index) == field.default.value()
             {
                 params.set(field.name, stated.clone()).context(context)?;
@@ -133,8 +133,7 @@ impl<L: Learner> Handle<L> {
     /// Returns the default of a parameter: that of the loaded model, otherwise that of the learner.
     pub fn default_of(&self, name: &str) -> Option<ParamValue> {
         let field = L::Params::FIELDS.iter().find(|field| field.is_called(name))?;
-        let mut names = std::iter::once(&field.name).chain(field.former);
-        let stated = self.model().and_then(|model| names.find_map(|name| model.params().get(*name)));
+        let stated = self.model().and_then(|model| field.value_in(model.params()));
         Some(stated.cloned().unwrap_or_else(|| field.default.value()))
     }
 

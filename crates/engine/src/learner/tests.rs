@@ -40,8 +40,13 @@ fn scratch(name: &str) -> std::path::PathBuf {
 }
 
 fn ready(name: &str) -> Handle<Counter> {
+    ready_with(name, "factor")
+}
+
+/// Returns a handle whose container states the factor 3 under the name `param`.
+fn ready_with(name: &str, param: &str) -> Handle<Counter> {
     let folder = scratch(name);
-    write_model(&folder.join("model"), 1, &ParamMap::from([("factor".to_owned(), 3.into())])).unwrap();
+    write_model(&folder.join("model"), 1, &ParamMap::from([(param.to_owned(), 3.into())])).unwrap();
     let mut handle = Handle::<Counter>::new(CounterParams::default(), Device::Cpu).unwrap();
     handle.load(folder.join("model")).unwrap();
     handle
@@ -66,6 +71,18 @@ fn counter_passes_check_learner() {
     let calls = [call(1, &[0.9, 0.1]), call(2, &[0.9, 0.8]), call(3, &[0.7])];
     let options = CheckOptions { model: &folder.join("model"), scratch: &folder, calls: &calls };
     check_learner(registry.find("counter").unwrap(), &options).unwrap();
+}
+
+#[test]
+fn former_names_of_params_are_accepted() {
+    let mut handle = ready_with("former", "scale");
+    assert_eq!(handle.params().factor, 3);
+    assert_eq!(handle.default_of("factor"), Some(ParamValue::Int(3)));
+    assert_eq!(handle.default_of("scale"), Some(ParamValue::Int(3)));
+    let error = handle.set("scale", ParamValue::Int(1)).unwrap_err();
+    assert!(error.to_string().contains("cannot change while"), "{error}");
+    let params = CounterParams::from_map(&ParamMap::from([("scale".to_owned(), 5.into())])).unwrap();
+    assert_eq!(params.factor, 5);
 }
 
 #[test]

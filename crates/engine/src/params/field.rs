@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::params::{ParamKind, ParamValue};
+use crate::params::{ParamKind, ParamMap, ParamValue};
 use crate::{Error, Result};
 
 /// Range of a numeric parameter, both ends included.
@@ -72,6 +72,11 @@ impl Field {
     /// Returns whether `name` is the name or a former name of the parameter.
     pub fn is_called(&self, name: &str) -> bool {
         self.name == name || self.former.contains(&name)
+    }
+
+    /// Returns the value of the parameter in `map`, under its name or a former one.
+    pub fn value_in<'a>(&self, map: &'a ParamMap) -> Option<&'a ParamValue> {
+        std::iter::once(&self.name).chain(self.former).find_map(|name| map.get(*name))
     }
 
     /// Checks type, range and choices.

@@ -10,7 +10,6 @@ mod joined;
 mod param;
 mod value;
 
-use std::collections::BTreeMap;
 use std::fmt::Debug;
 
 pub use field::{Field, FieldDefault, ParamRange};
@@ -18,12 +17,9 @@ pub use field::{Field, FieldDefault, ParamRange};
 pub use joined::{count, joined};
 pub use opendr_derive::Params;
 pub use param::{Param, ParamKind};
-pub use value::ParamValue;
+pub use value::{ParamMap, ParamValue};
 
 use crate::{Error, Result};
-
-/// Parameters by name, as surfaces pass them.
-pub type ParamMap = BTreeMap<String, ParamValue>;
 
 /// A struct of parameters. It is derived; the derive implements `Default` too.
 ///

@@ -1,8 +1,12 @@
 //! Values of parameters.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
+
+/// Parameters by name, as surfaces pass them.
+pub type ParamMap = BTreeMap<String, ParamValue>;
 
 /// The value of a parameter, for all surfaces.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -132,7 +132,7 @@ fn within_30_metres(found: &BoundingBox3DList, ground_truth: &BoundingBox3DList,
         .filter(|ground_truth| ground_truth.name == "Car".into())
         .map(standing)
         .collect();
-    let told: Vec<_> =
+    let predicted: Vec<_> =
         found.boxes.iter().filter(near).filter(|found| found.confidence >= MIN_SCORE).map(standing).collect();
     let asked = ground_truth
         .boxes
@@ -142,10 +142,10 @@ fn within_30_metres(found: &BoundingBox3DList, ground_truth: &BoundingBox3DList,
         .map(standing);
     let (mut hit, mut missed) = (0, 0);
     for car in asked {
-        let is_found = told.iter().any(|told| told.iou(&car) > 0.5);
+        let is_found = predicted.iter().any(|object| object.iou(&car) > 0.5);
         *if is_found { &mut hit } else { &mut missed } += 1;
     }
-    let wrong = told.iter().filter(|told| all.iter().all(|car| told.iou(car) <= 0.5)).count();
+    let wrong = predicted.iter().filter(|object| all.iter().all(|car| object.iou(car) <= 0.5)).count();
     [hit, missed, wrong]
 }
 

@@ -5,7 +5,7 @@
 //! $ cargo run -p opendr-sound --example mfcc -- librosa 640 480 64 yes.wav cepstra.npy
 //! ```
 
-use opendr_datasets::{npy_from_f32, open_wav};
+use opendr_datasets::{npy_from_values, open_wav};
 use opendr_engine::{Error, Result};
 use opendr_sound::mfcc::{Mfcc, MfccOptions, peak_factor};
 
@@ -36,5 +36,5 @@ fn main() -> Result<()> {
     let mfcc = Mfcc::new(options)?;
     let mut cepstra = Vec::new();
     let frames = mfcc.run_scaled_into(&samples, factor, &mut cepstra);
-    Ok(std::fs::write(to, npy_from_f32(&cepstra, &[frames, mfcc.options().coefficients])?)?)
+    Ok(std::fs::write(to, npy_from_values(&cepstra, &[frames, mfcc.options().coefficients])?)?)
 }

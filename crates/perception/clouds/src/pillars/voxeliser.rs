@@ -131,9 +131,9 @@ mod tests {
                 assert!(taken.is_none_or(|taken| taken.features.iter().all(|part| part.is_finite())));
             }
             assert!(voxeliser.cells().len() <= GRID.cells());
-            let all: f32 = voxeliser.statistics().map(|told| (4.0 * told[0]).exp()).sum();
+            let all: f32 = voxeliser.statistics().map(|statistics| (4.0 * statistics[0]).exp()).sum();
             assert!((all - inside as f32).abs() <= 1e-3 * inside as f32);
-            assert!(voxeliser.statistics().flatten().all(|told| told.is_finite()));
+            assert!(voxeliser.statistics().flatten().all(|statistics| statistics.is_finite()));
         }
         assert_eq!(voxeliser.cells().len(), GRID.cells());
     }

@@ -65,8 +65,8 @@ impl PointFeatures {
         }
         self.flush(chunk, voxeliser, features)?;
         let channels = self.learnt + Voxeliser::STATISTICS;
-        for (pillar, told) in features.chunks_exact_mut(channels).zip(voxeliser.statistics()) {
-            pillar[self.learnt..].copy_from_slice(&told);
+        for (pillar, statistics) in features.chunks_exact_mut(channels).zip(voxeliser.statistics()) {
+            pillar[self.learnt..].copy_from_slice(&statistics);
         }
         Ok(())
     }

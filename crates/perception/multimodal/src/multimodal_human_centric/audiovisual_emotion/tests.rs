@@ -89,22 +89,22 @@ fn one_modality_suffices_after_training() {
     let dataset = DatasetRef::from(&Persons as &dyn DatasetIterator);
     handle.fit(&fit_params, dataset, None, &job).unwrap();
     let silence = Audio::new(vec![0.0; 100], 1, RATE).unwrap();
-    let mut told = |audio: &Audio, video: Option<&Video>| {
+    let mut predict = |audio: &Audio, video: Option<&Video>| {
         handle.infer(AudiovisualInputs { audio, video }).map(|category| category.class as usize)
     };
     let [mut both, mut audio_only, mut video_only] = [0; 3];
     for index in 0..9 {
         let (audio, video) = (voice(index), face(index));
-        both += usize::from(told(&audio, Some(&video)).unwrap() == index % 3);
-        audio_only += usize::from(told(&audio, None).unwrap() == index % 3);
-        video_only += usize::from(told(&silence, Some(&video)).unwrap() == index % 3);
+        both += usize::from(predict(&audio, Some(&video)).unwrap() == index % 3);
+        audio_only += usize::from(predict(&audio, None).unwrap() == index % 3);
+        video_only += usize::from(predict(&silence, Some(&video)).unwrap() == index % 3);
     }
     assert!(both == 9 && audio_only >= 8 && video_only >= 8, "{both} {audio_only} {video_only}");
-    assert!(told(&silence, None).unwrap() < 3);
+    assert!(predict(&silence, None).unwrap() < 3);
     let other_rate = Audio::new(vec![0.1; 100], 1, 16_000).unwrap();
-    assert_eq!(told(&other_rate, None).unwrap_err().kind(), ErrorKind::InvalidInput);
+    assert_eq!(predict(&other_rate, None).unwrap_err().kind(), ErrorKind::InvalidInput);
     let grey = Video::new(vec![0.5; 4], [1, 1, 2, 2]).unwrap();
-    assert_eq!(told(&silence, Some(&grey)).unwrap_err().kind(), ErrorKind::InvalidInput);
+    assert_eq!(predict(&silence, Some(&grey)).unwrap_err().kind(), ErrorKind::InvalidInput);
     let calls = (0..3).map(|index| Persons.get(index).unwrap().data).collect();
     check_trained_learner::<AudiovisualEmotion>(&job.model(), &output.join("scratch"), calls);
     std::fs::remove_dir_all(&output).ok();

@@ -63,22 +63,22 @@ fn infer_loads_the_model_of_fit_and_depth_decides() {
     let mut handle = Handle::<RgbdHandGesture>::new(Default::default(), Device::Cpu).unwrap();
     let dataset = DatasetRef::from(&Hands as &dyn DatasetIterator);
     handle.fit(&fit_params, dataset, None, &job).unwrap();
-    let told = |handle: &mut Handle<RgbdHandGesture>, image: &Image, depth: &Image| {
+    let predict = |handle: &mut Handle<RgbdHandGesture>, image: &Image, depth: &Image| {
         handle.infer(RgbdInputs { image, depth })
     };
     // Colours of one sample, depth of another one that is not paired with it in training.
     let mut right = 0;
     for index in 0..12 {
         let ((image, _), (_, depth)) = (pictures(index + 100), pictures(index));
-        right += usize::from(told(&mut handle, &image, &depth).unwrap().class == index as i64 % 3);
+        right += usize::from(predict(&mut handle, &image, &depth).unwrap().class == index as i64 % 3);
     }
     assert!(right >= 11, "{right} of 12");
     let (image, depth) = pictures(0);
     let unknown = Image::new(vec![0u16; 4], 2, 2, PixelFormat::Grey, Layout::Hwc).unwrap();
-    let category = told(&mut handle, &image, &unknown).unwrap();
+    let category = predict(&mut handle, &image, &unknown).unwrap();
     assert_eq!((category.probabilities.len(), category.description.is_some()), (3, true));
-    assert_eq!(told(&mut handle, &image, &unknown).unwrap(), category);
-    let refused = told(&mut handle, &depth, &image).unwrap_err();
+    assert_eq!(predict(&mut handle, &image, &unknown).unwrap(), category);
+    let refused = predict(&mut handle, &depth, &image).unwrap_err();
     assert_eq!(refused.kind(), ErrorKind::InvalidInput);
     let calls = (0..3).map(|index| Hands.get(index).unwrap().data).collect();
     check_trained_learner::<RgbdHandGesture>(&job.model(), &output.join("scratch"), calls);
