@@ -118,6 +118,14 @@ impl Tape {
         self.values.last().map_or(&[], |values| values)
     }
 
+    /// Returns the input of a layer in the last [`Network::forward`].
+    ///
+    /// # Panics
+    /// Where there is no such layer, or before a pass.
+    pub fn input_of(&self, layer: usize) -> &[f32] {
+        &self.values[layer]
+    }
+
     /// Keeps only some rows of the batch of the last [`Network::forward`], given in ascending order; the backward
     /// pass then runs for these, as if the batch had contained only them.
     ///

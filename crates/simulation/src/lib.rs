@@ -24,6 +24,7 @@
 
 mod drawing;
 mod film;
+mod multirotor;
 mod numpy_random;
 mod registered_source;
 mod registration;
@@ -32,6 +33,7 @@ mod sine_cosine;
 
 pub mod classic_control;
 pub mod lidar;
+pub mod quad_track;
 pub mod raycast;
 pub mod street;
 pub mod uav_corridor;

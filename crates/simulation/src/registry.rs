@@ -7,6 +7,7 @@ use opendr_engine::params::ParamMap;
 use opendr_engine::{Error, Result};
 
 use crate::classic_control::{Acrobot, CartPole, MountainCar, MountainCarContinuous, Pendulum};
+use crate::quad_track::QuadTrack;
 use crate::registration::Registration;
 use crate::uav_corridor;
 use crate::vector::{VecEnvironment, VectorOptions};
@@ -24,6 +25,7 @@ static BUILTIN: LazyLock<Registry> = LazyLock::new(|| {
         Registration::of::<MountainCar>(),
         Registration::of::<MountainCarContinuous>(),
         Registration::of::<Pendulum>(),
+        Registration::of::<QuadTrack>(),
     ];
     Registry { entries: classic.into_iter().chain(uav_corridor::registrations()).collect() }
 });

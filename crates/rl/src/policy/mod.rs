@@ -1,5 +1,6 @@
 //! Policies: from observations to actions.
 
+mod action_gradient;
 mod extractor;
 mod file;
 mod head;
@@ -50,6 +51,8 @@ pub struct PolicyMemory {
     likelihood: Likelihood,
     rows: usize,
     states: Vec<f32>,
+    /// Of [`Policy::action_gradient`].
+    doutputs: Vec<f32>,
 }
 
 /// How an action is chosen from a distribution.

@@ -135,6 +135,11 @@ impl TrunkMemory {
     pub fn output(&self) -> &[f32] {
         self.tape.output()
     }
+
+    /// The input of a layer of the network in the last pass forward.
+    pub fn input_of(&self, layer: usize) -> &[f32] {
+        self.tape.input_of(layer)
+    }
 }
 
 #[cfg(test)]

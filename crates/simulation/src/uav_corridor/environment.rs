@@ -280,7 +280,7 @@ impl Environment for UavDepthCorridor {
 
     fn load_state(&mut self, state: &mut StateReader<'_>) -> Result<()> {
         let [stream, episode, step] = [state.word()?, state.word()?, state.word()?];
-        self.options = CorridorOptions::of_numbers(super::quadrotor::numbers(state)?)?;
+        self.options = CorridorOptions::of_numbers(crate::multirotor::numbers(state)?)?;
         self.begin(Place { stream, episode, step: 0 })?;
         self.flight.load(state)?;
         self.place = Some(Place { stream, episode, step });

@@ -3,8 +3,9 @@
 use opendr_engine::environment::{Snapshot, StateReader};
 use opendr_engine::{Error, Random, Result};
 
-use super::quadrotor::{Quadrotor, TIME_STEP, numbers};
+use super::quadrotor::{Quadrotor, TIME_STEP};
 use super::{HEIGHT, RADIUS, TURN};
+use crate::multirotor::numbers;
 use crate::raycast::{Pose, Scene, Vector, along, length, minus};
 use crate::sine_cosine::sine_cosine;
 

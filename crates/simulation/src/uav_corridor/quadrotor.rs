@@ -1,14 +1,12 @@
 //! A quadrotor under position control.
 //!
-//! Rigid body, first-order rotors, drag in moving air; position, velocity and attitude are controlled by the geometric
-//! controller of Lee, Leok and McClamroch (Geometric tracking control of a quadrotor UAV on SE(3), 2010).
+//! First-order rotors, drag in moving air; position and velocity are controlled around the attitude controller of
+//! [`multirotor`](crate::multirotor).
 
 use opendr_engine::environment::{Snapshot, StateReader};
 use opendr_engine::{Random, Result};
 
-type Vector = [f64; 3];
-/// Columns are the body's axes in world coordinates.
-type Matrix = [Vector; 3];
+use crate::multirotor::{self, DRAG, GRAVITY, MASS, Matrix, Vector, dot, minus, numbers, plus};
 
 /// State of the quadrotor and wind. Metres, seconds, newtons; x ahead, y left, z up.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,24 +27,12 @@ pub(super) struct Quadrotor {
 
 /// Duration of one step, in seconds.
 pub(super) const TIME_STEP: f64 = 0.004;
-const GRAVITY: f64 = 9.81;
-/// Roughly a Holybro X500: kilograms, kg m^2, metres.
-const MASS: f64 = 1.5;
-const INERTIA: Vector = [0.02, 0.02, 0.035];
-const ARM: f64 = 0.17;
-/// Torque about z per newton of thrust.
-const YAW_PER_THRUST: f64 = 0.016;
 const ROTOR_LAG: f64 = 0.05;
-const MAX_THRUST: f64 = 2.0 * MASS * GRAVITY / 4.0;
-/// Linear and quadratic drag coefficients.
-const DRAG: [f64; 2] = [0.3, 0.03];
 const MAX_SPEED: f64 = 1.5;
 const MAX_TILT: f64 = 0.5;
 /// Gusts as a fraction of the mean wind, and their correlation time.
 const GUSTS: f64 = 1.0 / 3.0;
 const GUST_TIME: f64 = 1.0;
-/// Positions of the rotors, in arm lengths, and the sign of their torque on the body.
-const ROTORS: [[f64; 3]; 4] = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
 
 impl Quadrotor {
     /// Creates a hovering drone in air that moves with `mean_wind`.
@@ -65,12 +51,7 @@ impl Quadrotor {
 
     /// Returns the body's axes ahead, left and up in world coordinates.
     pub fn axes(&self) -> Matrix {
-        let [w, x, y, z] = self.attitude;
-        [
-            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)],
-            [2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)],
-            [2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)],
-        ]
+        multirotor::axes(self.attitude)
     }
 
     /// Simulates [`TIME_STEP`] towards a position, with a heading given by its cosine and sine.
@@ -93,25 +74,10 @@ impl Quadrotor {
 
     /// Integrates Euler's equations and the attitude quaternion.
     fn turn(&mut self) {
-        let mut torque = [0.0; 3];
-        for (thrust, [x, y, spin]) in self.thrusts.iter().zip(ROTORS) {
-            torque = plus(torque, [y * ARM, -x * ARM, spin * YAW_PER_THRUST], *thrust);
-        }
-        let momentum: Vector = std::array::from_fn(|axis| INERTIA[axis] * self.rates[axis]);
-        let torque = minus(torque, cross(self.rates, momentum), 1.0);
-        self.rates = std::array::from_fn(|axis| self.rates[axis] + TIME_STEP * torque[axis] / INERTIA[axis]);
-        let ([w, x, y, z], [p, q, r]) = (self.attitude, self.rates.map(|rate| rate * TIME_STEP / 2.0));
-        let turned = [
-            w - x * p - y * q - z * r,
-            x + w * p + y * r - z * q,
-            y + w * q + z * p - x * r,
-            z + w * r + x * q - y * p,
-        ];
-        let size = turned.iter().map(|part| part * part).sum::<f64>().sqrt();
-        self.attitude = turned.map(|part| part / size);
+        multirotor::turn(&mut self.attitude, &mut self.rates, self.thrusts, TIME_STEP);
     }
 
-    fn commanded_thrusts(&mut self, goal: Vector, [cosine, sine]: [f64; 2]) -> [f64; 4] {
+    fn commanded_thrusts(&mut self, goal: Vector, heading: [f64; 2]) -> [f64; 4] {
         let way = minus(goal, self.position, 1.0).map(|part| 1.5 * part);
         let speed = dot(way, way).sqrt();
         let way = way.map(|part| part * (MAX_SPEED / speed.max(MAX_SPEED)));
@@ -122,23 +88,7 @@ impl Quadrotor {
         let tilt = (force[0] * force[0] + force[1] * force[1]).sqrt() / (MAX_TILT * force[2]);
         (force[0], force[1]) = (force[0] / tilt.max(1.0), force[1] / tilt.max(1.0));
 
-        let axes = self.axes();
-        let up = unit(force);
-        let left = unit(cross(up, [cosine, sine, 0.0]));
-        let desired = [cross(left, up), left, up];
-        // Half of the skew part of (desired^T axes), as a vector.
-        let error = |a: usize, b: usize| (dot(desired[a], axes[b]) - dot(axes[a], desired[b])) / 2.0;
-        let errors = [error(2, 1), error(0, 2), error(1, 0)];
-        let gains = [[60.0, 14.0], [60.0, 14.0], [12.0, 7.0]];
-        let torque: Vector = std::array::from_fn(|axis| {
-            let [stiffness, damping] = gains[axis];
-            -INERTIA[axis] * (stiffness * errors[axis] + damping * self.rates[axis])
-        });
-        let total = MASS * dot(force, axes[2]);
-        ROTORS.map(|[x, y, spin]| {
-            let thrust = total + (y * torque[0] - x * torque[1]) / ARM + spin * torque[2] / YAW_PER_THRUST;
-            (thrust / 4.0).clamp(0.0, MAX_THRUST)
-        })
+        multirotor::thrusts_towards(force, heading, &self.axes(), self.rates)
     }
 
     /// Updates the gusts after `seconds`: a Gauss-Markov process, the simplest form of Dryden's spectrum.
@@ -169,40 +119,10 @@ impl Quadrotor {
     }
 }
 
-/// Reads the next numbers of a snapshot.
-pub(super) fn numbers<const N: usize>(state: &mut StateReader<'_>) -> Result<[f64; N]> {
-    let mut numbers = [0.0; N];
-    for number in &mut numbers {
-        *number = state.finite()?;
-    }
-    Ok(numbers)
-}
-
-fn dot(a: Vector, b: Vector) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: Vector, b: Vector) -> Vector {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn plus(a: Vector, b: Vector, times: f64) -> Vector {
-    std::array::from_fn(|axis| a[axis] + times * b[axis])
-}
-
-fn minus(a: Vector, b: Vector, times: f64) -> Vector {
-    plus(a, b, -times)
-}
-
-/// Normalises a vector that is not zero.
-fn unit(vector: Vector) -> Vector {
-    let size = dot(vector, vector).sqrt();
-    vector.map(|part| part / size)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::multirotor::INERTIA;
 
     #[test]
     fn hovers_and_reaches_its_goal() {

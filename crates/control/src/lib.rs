@@ -1,0 +1,28 @@
+//! Classical controllers, and online fine-tuning of policies with guard, monitor and rollback.
+//!
+//! [`Pid`] and [`Lqr`] are feedback laws for one axis and for a linear model; [`TrackingPid`] and [`TrackingLqr`] run them on the
+//! observations of an environment, whose places a [`TrackingLayout`] states. All are
+//! [`Controller`](opendr_engine::environment::Controller)s. [`online`] adapts a pre-trained policy while it controls.
+//!
+//! Not here: policies and their training (`opendr-rl`), environments such as `QuadTrack-v1` (`opendr-simulation`).
+//!
+//! ```
+//! use opendr_control::{Pid, PidGains};
+//!
+//! let mut pid = Pid::new(PidGains { kp: 2.0, ki: 1.0, kd: 0.5, ..PidGains::default() }, 0.01)?;
+//! let command = pid.step(0.3, false);
+//! assert!(command > 0.6);
+//! # Ok::<_, opendr_engine::Error>(())
+//! ```
+
+mod layout;
+mod lqr;
+mod matrix;
+pub mod online;
+mod pid;
+mod tracking;
+
+pub use layout::TrackingLayout;
+pub use lqr::Lqr;
+pub use pid::{Pid, PidGains};
+pub use tracking::{TrackingLqr, TrackingPid};

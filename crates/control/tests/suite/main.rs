@@ -1,0 +1,8 @@
+//! The integration tests of this crate, one program: each program more is linked once more.
+
+#![allow(clippy::unwrap_used)]
+
+mod online;
+
+#[global_allocator]
+static ALLOCATOR: opendr_test_allocator::CountingAllocator = opendr_test_allocator::CountingAllocator;
