@@ -13,7 +13,7 @@ use opendr_engine::environment::{Controller, Environment, Step};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::params::Params as _;
 use opendr_engine::{Device, Error, Result};
-use opendr_planning::end_to_end::{EndToEndPlanningFitParams, EndToEndPlanningRl};
+use opendr_planning::end_to_end::{EndToEndPlanningFitParams, EndToEndPlanningRl, surroundings_of};
 use opendr_rl::{
     EvaluationProtocol, PolicyParams, SuccessRate, evaluate_controller, observation_from_numbers,
 };
@@ -33,7 +33,7 @@ fn main() -> Result<()> {
     let (Ok(seeds), Ok(episodes)) = (next(5), next(500)) else {
         return Err(Error::invalid_param("give two integers: seeds and episodes"));
     };
-    println!("without training");
+    println!("the proposal alone, without learning");
     for id in EVALUATED {
         print_rate(id, success_rate(&mut NoCorrection, &mut FlightMemoryWrapper::new(make(id)?)?, episodes)?);
     }
@@ -43,6 +43,16 @@ fn main() -> Result<()> {
         let start = Instant::now();
         let mut learner = trained(seed, &folder)?;
         println!("seed {seed}: {:.1} s", start.elapsed().as_secs_f64());
+        let model = learner.model().ok_or_else(|| Error::internal("a learner without a model"))?;
+        if let Some(surroundings) = surroundings_of(model)? {
+            println!("  the proposal with learnt surroundings, without corrections");
+            for id in EVALUATED {
+                let mut corridor =
+                    FlightMemoryWrapper::new(make(id)?)?.with_surroundings(surroundings.clone());
+                print_rate(id, success_rate(&mut NoCorrection, &mut corridor, episodes)?);
+            }
+            println!("  with corrections");
+        }
         for (id, rates) in EVALUATED.iter().zip(&mut rates) {
             let mut corridor = make(id)?;
             let space = corridor.spec().observation.clone();

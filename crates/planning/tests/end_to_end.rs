@@ -111,7 +111,12 @@ fn memory_of_a_flight_is_kept_until_reset() {
 #[test]
 fn training_does_not_depend_on_the_number_of_threads() {
     let folder = Folder::new("fit");
-    let mut params = EndToEndPlanningFitParams { n_steps: 64, batch_size: 64, ..Default::default() };
+    let mut params = EndToEndPlanningFitParams {
+        n_steps: 64,
+        batch_size: 64,
+        surroundings_flights: 4,
+        ..Default::default()
+    };
     params.training.total_timesteps = 256;
     params.training.n_envs = 2;
     params.training.n_eval_episodes = 1;
@@ -121,9 +126,12 @@ fn training_does_not_depend_on_the_number_of_threads() {
         let statistics = learner.fit_in(&params, &corridor, None, &FitJob::new(&output)).unwrap();
         assert_eq!(statistics.get("steps"), Some(256.0));
         assert_eq!(flight(&mut learner).first().unwrap().len(), 2);
-        Model::open(output.join("model")).unwrap().file(POLICY_FILE).unwrap()
+        let model = Model::open(output.join("model")).unwrap();
+        [POLICY_FILE, "surroundings.f32"].map(|name| model.file(name).unwrap())
     });
     assert!(policies[0] == policies[1]);
+    // Another environment is refused before anything is learnt.
+    params.surroundings_flights = 1_000_000;
     let cart = || make("CartPole-v1");
     let error = handle().fit_in(&params, &cart, None, &FitJob::new(&folder.0.join("cart"))).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::Unsupported, "{error}");

@@ -70,6 +70,7 @@ const ROWS: &[&str] = &[
     replay_buffer::ROWS[2],
     replay_buffer::ROWS[3],
     replay_buffer::ROWS[4],
+    replay_buffer::ROWS[5],
 ];
 
 impl DqnConfig {
@@ -184,7 +185,7 @@ impl OffPolicyAlgorithm for Dqn {
         let OffPolicyBase { config, compute, random, policy, updates, report, .. } = &mut self.base;
         let Memory { batch, now, next, targets, doutputs, gradients } = &mut self.memory;
         let width = policy.head.outputs();
-        experience.sample(policy, config.batch_size, random, batch)?;
+        experience.sample(policy, config.batch_size, None, random, batch)?;
         let next_values = self.target.forward(compute, &batch.next_observations, next).chunks_exact(width);
         let highest = next_values
             .map(|values| values.iter().fold(f32::NEG_INFINITY, |highest, value| highest.max(*value)));

@@ -4,6 +4,7 @@ use opendr_engine::environment::{EnvironmentSpec, ResetOptions, Snapshot, StateR
 use opendr_engine::{Error, Random, Result, ResultExt as _};
 use opendr_simulation::vector::{Autoreset, Batch, Seeds, VecEnvironment};
 
+use crate::algorithm::Report;
 use crate::episodes::Episodes;
 use crate::policy::{ObservationEncoder, check_finite};
 
@@ -14,6 +15,8 @@ pub(crate) struct Interaction {
     pub episodes: Episodes,
     /// Steps of all environments together.
     pub timesteps: u64,
+    /// Steps in which a shield replaced the action; none if there is no shield.
+    shielded: Option<u64>,
     /// Current observations, encoded for the policy.
     pub encoded: Vec<f32>,
     size: usize,
@@ -39,6 +42,7 @@ impl Interaction {
             batch: Batch::new(spec, count),
             episodes: Episodes::new(count),
             timesteps: 0,
+            shielded: None,
             encoded: vec![0.0; count * encoder.encoded_len()],
             size: spec.observation.len(),
         }
@@ -84,6 +88,19 @@ impl Interaction {
             .context(|| format!("at time step {at}"))
     }
 
+    /// Counts the environments in which a shield replaced the action of the last step.
+    pub fn count_shielded(&mut self, replaced: &[bool]) {
+        let count = replaced.iter().filter(|replaced| **replaced).count() as u64;
+        self.shielded = Some(self.shielded.unwrap_or(0) + count);
+    }
+
+    /// Adds the share of steps in which a shield replaced the action to the metrics, if there is a shield.
+    pub fn report_shielded(&self, report: &mut Report) {
+        if let Some(shielded) = self.shielded {
+            report.metrics.set("shielded", shielded as f64 / self.timesteps.max(1) as f64);
+        }
+    }
+
     /// Whether the last step ended an episode in environment `index`.
     pub fn ended(&self, index: usize) -> bool {
         self.batch.terminated[index] || self.batch.truncated[index]
@@ -97,6 +114,7 @@ impl Interaction {
     pub fn save(&self, words: &mut Snapshot) {
         words.push(self.count() as u64);
         words.push(self.timesteps);
+        words.push(self.shielded.unwrap_or(u64::MAX));
         self.episodes.save(words);
         words
             .extend_numbers(self.batch.observations.iter().chain(&self.encoded).map(|&number| number.into()));
@@ -117,6 +135,7 @@ impl Interaction {
         }
         let mut interaction = Self::before_reset(environments.spec(), own, encoder);
         interaction.timesteps = words.word()?;
+        interaction.shielded = Some(words.word()?).filter(|shielded| *shielded != u64::MAX);
         interaction.episodes.load(words)?;
         for number in interaction.batch.observations.iter_mut().chain(&mut interaction.encoded) {
             *number = words.finite()? as f32;

@@ -41,6 +41,7 @@ mod onnx;
 mod policy;
 mod ppo;
 mod preset;
+pub mod prior;
 mod replay_buffer;
 mod sac;
 mod saved_state;

@@ -19,6 +19,8 @@ pub(crate) struct ReplayBuffer {
     rewards: Vec<f32>,
     /// 0 for a terminal step, else 1.
     continues: Vec<f32>,
+    /// 1 for a step in which a shield replaced the action, else 0.
+    shielded: Vec<f32>,
 }
 
 /// A batch of sampled steps; its memory is reused.
@@ -41,18 +43,21 @@ pub(crate) struct Transition<'a> {
     pub reward: f32,
     pub next_observation: &'a [f32],
     pub terminated: bool,
+    /// Whether a shield replaced the action; `action` is the executed one.
+    pub shielded: bool,
 }
 
 /// Maximum numbers in a buffer: 8 GiB.
 const MAX_NUMBERS: usize = 1 << 31;
 
 /// Names of the arrays of a saved buffer.
-pub(crate) const ROWS: [&str; 5] = [
+pub(crate) const ROWS: [&str; 6] = [
     "replay_observations",
     "replay_next_observations",
     "replay_actions",
     "replay_rewards",
     "replay_continues",
+    "replay_shielded",
 ];
 
 impl ReplayBuffer {
@@ -75,6 +80,7 @@ impl ReplayBuffer {
             actions: zeros(action),
             rewards: zeros(1),
             continues: zeros(1),
+            shielded: zeros(1),
         })
     }
 
@@ -90,14 +96,20 @@ impl ReplayBuffer {
         self.actions[at * action..(at + 1) * action].copy_from_slice(step.action);
         self.rewards[at] = step.reward;
         self.continues[at] = f32::from(!step.terminated);
+        self.shielded[at] = f32::from(step.shielded);
         self.next = (at + 1) % self.capacity;
         self.len = self.capacity.min(self.len + 1);
     }
 
     /// Samples `count` steps uniformly, with replacement, into `batch`.
     pub fn sample(&self, count: usize, random: &mut Random, batch: &mut Transitions) {
-        let [observation, action] = self.widths;
         batch.clear();
+        self.append(count, random, batch);
+    }
+
+    /// Samples `count` steps as [`sample`](Self::sample) does, behind those of `batch`.
+    pub fn append(&self, count: usize, random: &mut Random, batch: &mut Transitions) {
+        let [observation, action] = self.widths;
         for _ in 0..count {
             let at = random.below(self.len);
             let row = at * observation..(at + 1) * observation;
@@ -118,6 +130,7 @@ impl ReplayBuffer {
         state.add(ROWS[2], &self.actions[..len * action]);
         state.add(ROWS[3], &self.rewards[..len]);
         state.add(ROWS[4], &self.continues[..len]);
+        state.add(ROWS[5], &self.shielded[..len]);
     }
 
     pub fn load(&mut self, state: &SavedState, words: &mut StateReader<'_>) -> Result<()> {
@@ -128,7 +141,8 @@ impl ReplayBuffer {
         state.fill(ROWS[1], &mut self.next_observations[..len * observation])?;
         state.fill(ROWS[2], &mut self.actions[..len * action])?;
         state.fill(ROWS[3], &mut self.rewards[..len])?;
-        state.fill(ROWS[4], &mut self.continues[..len])
+        state.fill(ROWS[4], &mut self.continues[..len])?;
+        state.fill(ROWS[5], &mut self.shielded[..len])
     }
 }
 
@@ -183,6 +197,7 @@ mod tests {
                 reward: 100.0 * number,
                 next_observation: &[number + 1.0, 0.0],
                 terminated: step % 2 == 0,
+                shielded: false,
             });
         }
         buffer

@@ -9,6 +9,7 @@ use crate::algorithm::diverged;
 use crate::off_policy::{Experience, OffPolicyAlgorithm, OffPolicyBase, OffPolicyConfig};
 use crate::policy::{Bounds, Head, NetworkConfig, Policy, PolicyMemory};
 use crate::preset::Preset;
+use crate::prior::DemonstratedSteps;
 use crate::replay_buffer::{self, Transitions};
 use crate::saved_state::SavedState;
 use crate::twin_critics::{self, TwinCritics};
@@ -99,6 +100,7 @@ const ROWS: &[&str] = &[
     replay_buffer::ROWS[2],
     replay_buffer::ROWS[3],
     replay_buffer::ROWS[4],
+    replay_buffer::ROWS[5],
 ];
 
 impl Td3Config {
@@ -142,6 +144,15 @@ impl Td3 {
     pub fn with_compute(mut self, compute: Compute) -> Self {
         self.base.compute = compute;
         self
+    }
+
+    /// Adds steps of a prior to the training: the share `share` of each batch, in (0, 1). They are not part of a [`SavedState`]; set the
+    /// same ones before a training is resumed.
+    ///
+    /// # Errors
+    /// `InvalidParam` for another share, `InvalidInput` for steps of another environment.
+    pub fn set_demonstrations(&mut self, steps: &DemonstratedSteps, share: f32) -> Result<()> {
+        self.base.set_demonstrations(steps, share)
     }
 
     /// Updates the policy towards actions of higher value, then all target networks.
@@ -215,9 +226,10 @@ impl OffPolicyAlgorithm for Td3 {
 
     fn learn(&mut self, experience: &Experience) -> Result<()> {
         let timesteps = experience.interaction.timesteps;
-        let OffPolicyBase { config, compute, random, policy, updates, report, .. } = &mut self.base;
+        let OffPolicyBase { config, compute, random, policy, updates, report, demonstrations, .. } =
+            &mut self.base;
         let Memory { batch, next, actions, targets, .. } = &mut self.memory;
-        experience.sample(policy, config.batch_size, random, batch)?;
+        experience.sample(policy, config.batch_size, demonstrations.as_ref(), random, batch)?;
         let outputs = self.target.forward(compute, &batch.next_observations, next);
         actions.clear();
         actions.extend_from_slice(outputs);
@@ -239,7 +251,10 @@ impl OffPolicyAlgorithm for Td3 {
         report.metrics.set("critic_loss", loss.into());
         report.metrics.set("n_updates", *updates as f64);
         if updates.is_multiple_of(self.config.policy_delay) {
-            self.learn_policy(timesteps)?;
+            match config.trains_actor(timesteps) {
+                true => self.learn_policy(timesteps)?,
+                false => self.critics.update_targets(config.tau),
+            }
         }
         Ok(())
     }

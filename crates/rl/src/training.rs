@@ -61,12 +61,12 @@ pub fn fit_policy<M: Method>(
     let begun = Instant::now();
     let first = env.make()?;
     let id = first.spec().id.clone();
-    let first = M::wrap(first, true)?;
+    let first = M::wrap(fit_params, first, true)?;
     let spec = first.spec().clone();
     let fit_params = M::with_preset(fit_params, &id);
     fit_params.check()?;
     let training = M::training(&fit_params);
-    let further = (1..training.n_envs).map(|_| M::wrap(env.make()?, true));
+    let further = (1..training.n_envs).map(|_| M::wrap(&fit_params, env.make()?, true));
     let environments = std::iter::once(Ok(first)).chain(further).collect::<Result<Vec<_>>>()?;
     let environments = EnvironmentVector::new(environments, Autoreset::SameStep, training.num_workers)?;
     let compute = if training.num_workers > 1 {
@@ -78,7 +78,7 @@ pub fn fit_policy<M: Method>(
         algorithm: M::algorithm(&fit_params, &spec, compute, base.as_ref())?,
         environments,
         params: training,
-        val_env: evaluation_environment::<M>(env, val_env)?,
+        val_env: evaluation_environment::<M>(&fit_params, env, val_env)?,
         checkpoints: Checkpoints::new(&job.output.join(CHECKPOINTS), training.checkpoints_kept)?,
         log: RunLog::open(None, None)?,
         best: None,
@@ -90,12 +90,13 @@ pub fn fit_policy<M: Method>(
     training.log = RunLog::open(job.logging_path, resumed)?;
     training.run()?;
     let policy = training.best_policy()?;
-    write_model::<M>(&policy, &id, params, best_of(&training.measured), job)?;
+    write_model::<M>(&policy, &id, params, &fit_params, best_of(&training.measured), job)?;
     Ok(training.statistics(begun))
 }
 
 /// Returns the environment for evaluations: from `val_env`, else another of `env` if the source can make one.
 fn evaluation_environment<M: Method>(
+    params: &M::FitParams,
     env: &dyn EnvironmentSource,
     val_env: Option<&dyn EnvironmentSource>,
 ) -> Result<Option<Box<dyn Environment>>> {
@@ -104,7 +105,7 @@ fn evaluation_environment<M: Method>(
         environment => environment,
     };
     environment
-        .and_then(|environment| M::wrap(environment, false))
+        .and_then(|environment| M::wrap(params, environment, false))
         .map(Some)
         .context(|| "making the environment for evaluations")
 }
@@ -264,6 +265,7 @@ fn write_model<M: Method>(
     policy: &Policy,
     environment: &str,
     params: &ParamMap,
+    fit_params: &M::FitParams,
     measured: Option<&(u64, f64, Option<f64>)>,
     job: &FitJob<'_>,
 ) -> Result<()> {
@@ -271,6 +273,7 @@ fn write_model<M: Method>(
     manifest.task = Some(M::SPEC.task);
     manifest.params = params.clone();
     manifest.inputs.insert(ENVIRONMENT.to_owned(), environment.into());
+    manifest.inputs.extend(M::inputs(fit_params)?.into_iter().map(|(name, value)| (name.to_owned(), value)));
     if let Some((_, earned, success)) = measured {
         let mut numbers = serde_json::json!({"val_return": earned});
         if let Some(success) = success {

@@ -17,6 +17,11 @@ pub struct DenseObstacles<E> {
 /// Reset options of the episodes with more obstacles.
 const DENSE: [(&str, i64); 2] = [("min_obstacles", 8), ("max_obstacles", 10)];
 
+/// Returns the reset options of an episode with more obstacles.
+pub(super) fn dense_options() -> ResetOptions {
+    DENSE.map(|(name, value)| (name.to_owned(), value.into())).into_iter().collect()
+}
+
 impl<E: Environment> DenseObstacles<E> {
     /// Wraps a corridor environment.
     pub fn new(inner: E) -> Self {
@@ -33,7 +38,7 @@ impl<E: Environment> Environment for DenseObstacles<E> {
         self.episodes += 1;
         if self.episodes.is_multiple_of(2) {
             let mut options = options.clone();
-            options.extend(DENSE.map(|(name, value)| (name.to_owned(), value.into())));
+            options.extend(dense_options());
             return self.inner.reset(seed, &options, observation);
         }
         self.inner.reset(seed, options, observation)

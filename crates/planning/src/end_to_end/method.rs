@@ -6,10 +6,15 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, Statistics};
 use opendr_kernels::Compute;
+<<<<<<< HEAD
 use opendr_rl::{
     Algorithm as _, Method, Policy, PolicyParams, Ppo, PpoConfig, RlTrainingParams, Schedule, fit_policy,
 };
 use opendr_simulation::uav_corridor::FlightMemoryWrapper;
+=======
+use opendr_rl::prior::begin_as_prior;
+use opendr_rl::{Algorithm as _, Method, Policy, Ppo, PpoConfig, RlTrainingParams, Schedule};
+>>>>>>> bb3b7a7f
 
 use super::{DenseObstacles, EndToEndPlanningRl, TrainingRewards};
 
@@ -27,6 +32,13 @@ pub struct EndToEndPlanningFitParams {
     /// Minibatch size in steps.
     #[param(default = 1024, range = 1..=1_000_000, log)]
     pub batch_size: usize,
+    /// Flights in embedded corridors from which the map learns what is likely in cells that the camera has not observed; 0 disables it, and
+    /// unobserved cells are free.
+    #[param(default = 600, range = 0..=1_000_000)]
+    pub surroundings_flights: u64,
+    /// Steps of all environments before the actor is trained; only the critic is trained until then.
+    #[param(default = 16_384, range = 0..=1_000_000_000)]
+    pub critic_warmup: u64,
     /// Seed of all random numbers.
     #[param(default = 0)]
     pub seed: u64,
@@ -42,6 +54,9 @@ pub struct EndToEndPlanningFitParams {
     pub training: RlTrainingParams,
 }
 
+/// Initial log standard deviation of the corrections. The proposals are good, so exploration should stay near them.
+const CORRECTION_LOG_STD: f32 = -2.0;
+
 /// PPO on the memory of a flight and the proposals of the planner, with rewards that favour arrival.
 #[derive(Debug, Clone, Copy)]
 pub struct PpoInCorridors;
@@ -55,10 +70,14 @@ impl Method for PpoInCorridors {
         params.clone()
     }
 
-    fn wrap(environment: Box<dyn Environment>, in_training: bool) -> Result<Box<dyn Environment>> {
+    fn wrap(
+        _: &EndToEndPlanningFitParams,
+        environment: Box<dyn Environment>,
+        in_training: bool,
+    ) -> Result<Box<dyn Environment>> {
         Ok(match in_training {
-            true => Box::new(TrainingRewards(FlightMemoryWrapper::new(DenseObstacles::new(environment))?)),
-            false => Box::new(FlightMemoryWrapper::new(environment)?),
+            true => Box::new(TrainingRewards(DenseObstacles::new(environment))),
+            false => environment,
         })
     }
 
@@ -77,14 +96,17 @@ impl Method for PpoInCorridors {
             learning_rate_schedule: Schedule::Linear,
             n_steps: (params.n_steps / params.training.n_envs).max(1),
             batch_size: params.batch_size,
-            // The proposals are good, so exploration should stay near them.
-            log_std_init: -2.0,
+            log_std_init: CORRECTION_LOG_STD,
+            actor_starts: params.critic_warmup,
             norm_reward: true,
             seed: params.seed,
             ..PpoConfig::default()
         };
         let mut ppo = Ppo::new(&config, spec)?.with_compute(compute);
-        base.map_or(Ok(()), |base| ppo.set_policy(base))?;
+        match base {
+            Some(base) => ppo.set_policy(base)?,
+            None => begin_as_prior(&mut ppo, CORRECTION_LOG_STD)?,
+        }
         Ok(ppo)
     }
 }

@@ -5,8 +5,10 @@ mod dense_episodes;
 mod learner;
 mod method;
 mod stern_rewards;
+mod surroundings;
 
 pub use dense_episodes::DenseObstacles;
-pub use learner::{EndToEndPlanningRl, FlightState};
+pub use learner::{EndToEndPlanningRl, FlightState, surroundings_of};
 pub use method::{EndToEndPlanningFitParams, PpoInCorridors};
 pub use stern_rewards::TrainingRewards;
+pub use surroundings::learn_surroundings;

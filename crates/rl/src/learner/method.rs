@@ -27,9 +27,22 @@ pub trait Method: Send + Sync + 'static {
     ///
     /// # Errors
     /// `InvalidInput` for an environment that the learner does not support.
-    fn wrap(environment: Box<dyn Environment>, in_training: bool) -> Result<Box<dyn Environment>> {
-        let _ = in_training;
+    fn wrap(
+        params: &Self::FitParams,
+        environment: Box<dyn Environment>,
+        in_training: bool,
+    ) -> Result<Box<dyn Environment>> {
+        let _ = (params, in_training);
         Ok(environment)
+    }
+
+    /// Returns entries for the inputs of the container's manifest, e.g. the prior that the policy corrects.
+    ///
+    /// # Errors
+    /// `NotFound` for a prior that does not exist.
+    fn inputs(params: &Self::FitParams) -> Result<Vec<(&'static str, serde_json::Value)>> {
+        let _ = params;
+        Ok(Vec::new())
     }
 
     /// Returns the parameters that do not depend on the method.

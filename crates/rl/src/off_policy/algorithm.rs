@@ -8,6 +8,7 @@ use opendr_simulation::vector::VecEnvironment;
 use super::{Experience, OffPolicyConfig};
 use crate::algorithm::{Algorithm, Report, not_begun, snapshot_of};
 use crate::policy::{Head, NetworkConfig, ParameterInit, Policy};
+use crate::prior::{DemonstratedSteps, DemonstrationReplay};
 use crate::saved_state::SavedState;
 
 /// What DQN, TD3 and SAC have in common: settings, policy, random numbers, collected steps and report.
@@ -19,6 +20,8 @@ pub(crate) struct OffPolicyBase {
     /// Gradient steps so far.
     pub updates: u64,
     pub report: Report,
+    /// Steps of a prior that take part in every batch; none without demonstrations.
+    pub demonstrations: Option<DemonstrationReplay>,
     /// None before the first iteration.
     experience: Option<Experience>,
 }
@@ -76,8 +79,15 @@ impl OffPolicyBase {
             policy,
             updates: 0,
             report: Report::default(),
+            demonstrations: None,
             experience: None,
         })
+    }
+
+    /// Makes a share of every batch demonstrations.
+    pub fn set_demonstrations(&mut self, steps: &DemonstratedSteps, share: f32) -> Result<()> {
+        self.demonstrations = Some(DemonstrationReplay::new(&self.policy, steps, share)?);
+        Ok(())
     }
 
     fn take_experience(&mut self, environments: &mut dyn VecEnvironment) -> Result<Experience> {
@@ -89,6 +99,7 @@ impl OffPolicyBase {
 
     fn keep_experience(&mut self, experience: Experience) {
         self.report.count(experience.interaction.timesteps, &experience.interaction.episodes);
+        experience.interaction.report_shielded(&mut self.report);
         self.experience = Some(experience);
     }
 }
@@ -102,7 +113,7 @@ fn collect_and_learn<A: OffPolicyAlgorithm>(
 ) -> Result<()> {
     for _ in 0..algorithm.base().config.train_freq {
         let base = algorithm.base_mut();
-        if experience.interaction.timesteps < base.config.learning_starts {
+        if base.config.takes_random_actions(experience.interaction.timesteps) {
             experience.sample_actions(&base.policy, &mut base.random);
         } else {
             algorithm.explore(experience, total_timesteps);

@@ -7,6 +7,7 @@ use opendr_simulation::vector::VecEnvironment;
 use super::OffPolicyConfig;
 use crate::interaction::Interaction;
 use crate::policy::Policy;
+use crate::prior::DemonstrationReplay;
 use crate::replay_buffer::{ReplayBuffer, Transition, Transitions};
 use crate::saved_state::{SavedState, push_random, read_random};
 
@@ -52,6 +53,11 @@ impl Experience {
         last_observations.copy_from_slice(&interaction.batch.observations);
         interaction.step(environments, &mut policy.encoder, actions)?;
         let (size, width) = (policy.encoder.raw_len(), buffer_actions.len() / interaction.count());
+        let interventions = environments.interventions();
+        if let Some(interventions) = interventions {
+            policy.head.distribution_actions(interventions.actions, buffer_actions);
+            interaction.count_shielded(interventions.replaced);
+        }
         for index in 0..interaction.count() {
             let (batch, row) = (&interaction.batch, index * size..(index + 1) * size);
             // After the end of an episode, the batch holds the first observation of the next one.
@@ -65,20 +71,26 @@ impl Experience {
                 reward: batch.rewards[index] as f32,
                 next_observation,
                 terminated: batch.terminated[index],
+                shielded: interventions.is_some_and(|interventions| interventions.replaced[index]),
             });
         }
         Ok(())
     }
 
-    /// Samples `count` transitions into `batch` and encodes their observations.
+    /// Samples `count` transitions into `batch`, a share of them from `demonstrations` if given, and encodes their observations.
     pub fn sample(
         &self,
         policy: &Policy,
         count: usize,
+        demonstrations: Option<&DemonstrationReplay>,
         random: &mut Random,
         batch: &mut Transitions,
     ) -> Result<()> {
-        self.buffer.sample(count, random, batch);
+        let demonstrated = demonstrations.map_or(0, |demonstrations| demonstrations.rows(count));
+        self.buffer.sample(count - demonstrated, random, batch);
+        if let Some(demonstrations) = demonstrations {
+            demonstrations.append(demonstrated, random, batch);
+        }
         batch.encode(&policy.encoder)
     }
 

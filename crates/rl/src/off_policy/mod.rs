@@ -20,6 +20,13 @@ pub struct OffPolicyConfig {
     /// Steps of all environments with random actions before training begins.
     #[param(default = 100, range = 0..=1_000_000_000)]
     pub learning_starts: u64,
+    /// Whether the actions before training begins are those of the policy instead of random ones, for a policy that starts from prior
+    /// knowledge.
+    #[param(default = false)]
+    pub starts_with_policy: bool,
+    /// Steps of all environments before the actor is trained; only the critic is trained until then. DQN has no actor.
+    #[param(default = 0, range = 0..=1_000_000_000)]
+    pub actor_starts: u64,
     /// Transitions per gradient step.
     #[param(default = 256, range = 1..=1_000_000, log)]
     pub batch_size: usize,
@@ -50,5 +57,15 @@ impl OffPolicyConfig {
     /// Returns the clipping bound of normalised observations; none if they are not normalised.
     pub(crate) fn clip(&self) -> Option<f32> {
         self.norm_obs.then_some(self.clip_obs)
+    }
+
+    /// Whether the actions of this step are random ones.
+    pub(crate) fn takes_random_actions(&self, timesteps: u64) -> bool {
+        !self.starts_with_policy && timesteps < self.learning_starts
+    }
+
+    /// Whether the actor is trained after this step.
+    pub(crate) fn trains_actor(&self, timesteps: u64) -> bool {
+        timesteps > self.actor_starts
     }
 }

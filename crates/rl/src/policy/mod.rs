@@ -92,6 +92,25 @@ impl Policy {
         deviations.fill(log_std);
     }
 
+    /// Sets the output layer to zero: the most likely action is the middle of the action space for every observation. Log standard
+    /// deviations become `log_std`.
+    pub fn zero_output(&mut self, log_std: f32) {
+        let from = self.extractor.parameters() + self.trunk.recurrent_parameters();
+        let network = self.trunk.network();
+        let last = network.layers().len() - 1;
+        let (range, outputs) = (network.parameter_range(last), network.outputs());
+        let layer = &mut self.parameters[from..][range];
+        layer.fill(0.0);
+        if let Head::SquashedGaussian(bounds) = &self.head {
+            // The biases follow the weights.
+            let count = layer.len();
+            layer[count - outputs + bounds.low.len()..].fill(log_std);
+        }
+        let deviations = self.head.parameters();
+        let count = self.parameters.len();
+        self.parameters[count - deviations..].fill(log_std);
+    }
+
     /// Returns the observation space.
     pub fn observation(&self) -> &Space {
         self.encoder.space()
@@ -246,6 +265,12 @@ impl Policy {
                 extractor_gradients,
             );
         }
+    }
+}
+
+impl AsRef<Self> for Policy {
+    fn as_ref(&self) -> &Self {
+        self
     }
 }
 

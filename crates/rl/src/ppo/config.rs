@@ -67,6 +67,9 @@ pub struct PpoConfig {
     /// Whether weights are initialised orthogonally, else by PyTorch's default.
     #[param(default = true)]
     pub ortho_init: bool,
+    /// Steps of all environments before the actor is trained; only the critic is trained until then.
+    #[param(default = 0, range = 0..=1_000_000_000)]
+    pub actor_starts: u64,
     /// Initial log standard deviation of continuous actions.
     #[param(default = 0.0, range = -20.0..=20.0)]
     pub log_std_init: f32,

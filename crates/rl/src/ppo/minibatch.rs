@@ -14,6 +14,8 @@ pub(super) struct Minibatch {
     advantages: Vec<f32>,
     values: Vec<f32>,
     returns: Vec<f32>,
+    /// Steps in which a shield replaced the action.
+    shielded: Vec<bool>,
     /// Recurrent states of policy and critic at the start of the sequences.
     states: [Vec<f32>; 2],
     /// Steps that start an episode, for recurrent policies.
@@ -38,6 +40,8 @@ impl Minibatch {
         rows(&rollout.advantages, &mut self.advantages);
         rows(&rollout.values, &mut self.values);
         rows(&rollout.returns, &mut self.returns);
+        self.shielded.clear();
+        self.shielded.extend(self.rows.iter().map(|&row| rollout.shielded[row]));
         if normalise && self.rows.len() > 1 {
             let count = self.rows.len() as f32;
             let mean = self.advantages.iter().sum::<f32>() / count;
@@ -149,7 +153,11 @@ impl Likelihood {
         let mut loss = ActorLoss::default();
         dlogs.clear();
         let rows = self.log_probabilities.iter().zip(&steps.log_probabilities).zip(&steps.advantages);
-        for ((now, before), advantage) in rows {
+        for (((now, before), advantage), shielded) in rows.zip(&steps.shielded) {
+            if *shielded {
+                dlogs.push(0.0);
+                continue;
+            }
             let difference = now - before;
             let ratio = difference.exp();
             let clipped = ratio.clamp(1.0 - clip_range, 1.0 + clip_range);

@@ -181,6 +181,7 @@ impl Ppo {
         for step in 0..self.config.n_steps {
             self.act(interaction, step);
             interaction.step(environments, &mut self.policy.encoder, &self.memory.actions)?;
+            self.store_interventions(environments, interaction, step);
             self.store_rewards(interaction, step)?;
             self.reset_states(step);
         }
@@ -215,6 +216,26 @@ impl Ppo {
         let wide = |width: usize| rows.start * width..rows.end * width;
         rollout.actions[wide(policy.head.action_len())].copy_from_slice(&likelihood.actions);
         rollout.observations[wide(policy.encoder.encoded_len())].copy_from_slice(encoded);
+    }
+
+    /// Stores the executed actions where a shield replaced those of the policy.
+    fn store_interventions(
+        &mut self,
+        environments: &dyn VecEnvironment,
+        interaction: &mut Interaction,
+        step: usize,
+    ) {
+        let Some(interventions) = environments.interventions() else { return };
+        let (count, width) = (interaction.count(), self.policy.head.action_len());
+        let rows = step * count..(step + 1) * count;
+        let actions = &mut self.rollout.actions[rows.start * width..rows.end * width];
+        for (index, _) in interventions.replaced.iter().enumerate().filter(|(_, replaced)| **replaced) {
+            let own = index * width..(index + 1) * width;
+            self.policy.head.distribution_actions(&interventions.actions[own.clone()], &mut actions[own]);
+        }
+        self.rollout.shielded[rows].copy_from_slice(interventions.replaced);
+        interaction.count_shielded(interventions.replaced);
+        interaction.report_shielded(&mut self.report);
     }
 
     /// Stores rewards and ends of a step. Where an episode was truncated, the discounted value of its last observation is added to the

@@ -11,6 +11,8 @@ pub(super) struct Rollout {
     pub values: Vec<f32>,
     pub rewards: Vec<f32>,
     pub ends: Vec<bool>,
+    /// Where a shield replaced the action: the policy did not choose it, and its gradient leaves these steps out.
+    pub shielded: Vec<bool>,
     pub advantages: Vec<f32>,
     pub returns: Vec<f32>,
     /// Recurrent states of policy and critic at the start of each sequence.
@@ -36,6 +38,7 @@ impl Rollout {
             values: zeros(1),
             rewards: zeros(1),
             ends: vec![false; steps],
+            shielded: vec![false; steps],
             advantages: zeros(1),
             returns: zeros(1),
             states: [(); 2].map(|()| vec![0.0; steps / length * state]),

@@ -113,7 +113,9 @@ impl Ppo {
         if !norm.is_finite() {
             return Err(diverged("the norm of the gradient", norm.into(), timesteps));
         }
-        self.actor_adam.step(&self.compute, learning_rate, &mut self.policy.parameters, actor);
+        if timesteps > self.config.actor_starts {
+            self.actor_adam.step(&self.compute, learning_rate, &mut self.policy.parameters, actor);
+        }
         self.critic_adam.step(&self.compute, learning_rate, &mut self.critic_parameters, critic);
         Ok(())
     }

@@ -13,6 +13,7 @@ use crate::algorithm::diverged;
 use crate::off_policy::{Experience, OffPolicyAlgorithm, OffPolicyBase, OffPolicyConfig};
 use crate::policy::{Bounds, Head, NetworkConfig, PolicyMemory};
 use crate::preset::Preset;
+use crate::prior::DemonstratedSteps;
 use crate::replay_buffer::{self, Transitions};
 use crate::saved_state::SavedState;
 use crate::twin_critics::{self, TwinCritics};
@@ -90,6 +91,7 @@ const ROWS: &[&str] = &[
     replay_buffer::ROWS[2],
     replay_buffer::ROWS[3],
     replay_buffer::ROWS[4],
+    replay_buffer::ROWS[5],
 ];
 
 impl SacConfig {
@@ -137,6 +139,15 @@ impl Sac {
         self
     }
 
+    /// Adds steps of a prior to the training: the share `share` of each batch, in (0, 1). They are not part of a [`SavedState`]; set the
+    /// same ones before a training is resumed.
+    ///
+    /// # Errors
+    /// `InvalidParam` for another share, `InvalidInput` for steps of another environment.
+    pub fn set_demonstrations(&mut self, steps: &DemonstratedSteps, share: f32) -> Result<()> {
+        self.base.set_demonstrations(steps, share)
+    }
+
     /// Updates the policy towards actions of higher value and higher entropy. Returns the loss.
     fn learn_policy(&mut self, ent_coef: f32) -> f32 {
         let OffPolicyBase { config, compute, policy, .. } = &mut self.base;
@@ -179,14 +190,15 @@ impl OffPolicyAlgorithm for Sac {
 
     fn learn(&mut self, experience: &Experience) -> Result<()> {
         let timesteps = experience.interaction.timesteps;
-        let OffPolicyBase { config, compute, random, policy, .. } = &mut self.base;
+        let OffPolicyBase { config, compute, random, policy, demonstrations, .. } = &mut self.base;
+        let trains_actor = config.trains_actor(timesteps);
         let Memory { batch, now, next, sampled, sampled_next, targets, .. } = &mut self.memory;
         let (axes, rate) = (policy.head.action_len(), config.learning_rate);
-        experience.sample(policy, config.batch_size, random, batch)?;
+        experience.sample(policy, config.batch_size, demonstrations.as_ref(), random, batch)?;
         let outputs = policy.forward(compute, &batch.observations, now);
         sampled.sample(compute.isa(), outputs, axes, random);
         let ent_coef = self.log_ent_coef[0].exp();
-        if self.config.ent_coef.is_none() {
+        if self.config.ent_coef.is_none() && trains_actor {
             let gradient = -(sampled.mean_log_probability() + self.target_entropy);
             self.ent_adam.step(compute, rate, &mut self.log_ent_coef, &[gradient]);
         }
@@ -205,7 +217,7 @@ impl OffPolicyAlgorithm for Sac {
         if !critic_loss.is_finite() {
             return Err(diverged("the loss of values", critic_loss.into(), timesteps));
         }
-        let actor_loss = self.learn_policy(ent_coef);
+        let actor_loss = if trains_actor { self.learn_policy(ent_coef) } else { 0.0 };
         if !actor_loss.is_finite() {
             return Err(diverged("the loss of the policy", actor_loss.into(), timesteps));
         }

@@ -1,6 +1,6 @@
 //! Hand-written controllers, as baselines for policies.
 
-use opendr_engine::environment::{Controller, Space};
+use opendr_engine::environment::{Controller, Snapshot, Space, StateReader};
 use opendr_engine::{Error, Result};
 
 use super::{CorridorObservation, SIDE, TURN};
@@ -12,6 +12,22 @@ pub trait CorridorController {
 
     /// Returns heading and change of yaw, each in [-1, 1] as in `UavDepthCorridor-v1`.
     fn act(&mut self, sight: &CorridorObservation) -> [f32; 2];
+
+    /// Replaces the last action of [`act`](Self::act) by the executed one.
+    fn executed(&mut self, action: [f32; 2]);
+
+    /// Returns the yaw estimate.
+    fn yaw_tracker(&self) -> YawTracker;
+
+    /// Sets the yaw estimate, e.g. from a snapshot.
+    fn set_yaw_tracker(&mut self, account: YawTracker);
+}
+
+/// Yaw of the drone integrated from the actions, in radians, before and after the last action.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct YawTracker {
+    before: f32,
+    now: f32,
 }
 
 /// Adapts a [`CorridorController`] to raw observations, as a [`Controller`].
@@ -45,6 +61,22 @@ impl<C: CorridorController> Controller for ObservationController<C> {
         *action = self.controller.act(&self.sight);
         Ok(())
     }
+
+    fn executed(&mut self, action: &[f32]) {
+        if let Some(action) = action.as_array() {
+            self.controller.executed(*action);
+        }
+    }
+
+    fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
+        self.controller.yaw_tracker().save(snapshot);
+        Ok(())
+    }
+
+    fn load_state(&mut self, state: &mut StateReader<'_>) -> Result<()> {
+        self.controller.set_yaw_tracker(YawTracker::load(state)?);
+        Ok(())
+    }
 }
 
 /// Flies straight ahead.
@@ -54,19 +86,19 @@ pub struct StraightController;
 /// Flies towards the free columns of the depth image nearest to the target's bearing.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ReactiveController {
-    yaw: f32,
+    yaw: YawTracker,
 }
 
 /// Potential field: attraction to the target and repulsion from each column of the depth image (Khatib, Real-time obstacle
 /// avoidance for manipulators and mobile robots, 1986).
 #[derive(Debug, Clone, Copy, Default)]
 pub struct PotentialField {
-    yaw: f32,
+    yaw: YawTracker,
 }
 
 /// Columns that are processed together.
 const BLOCK: usize = 4;
-const COLUMNS: usize = SIDE / BLOCK;
+pub(super) const COLUMNS: usize = SIDE / BLOCK;
 /// Rows at the height of the flight.
 const ROWS: std::ops::Range<usize> = 20..44;
 const LARGEST: f32 = TURN as f32;
@@ -77,12 +109,39 @@ impl CorridorController for StraightController {
     fn act(&mut self, _: &CorridorObservation) -> [f32; 2] {
         [0.0; 2]
     }
+
+    fn executed(&mut self, _: [f32; 2]) {}
+
+    fn yaw_tracker(&self) -> YawTracker {
+        YawTracker::default()
+    }
+
+    fn set_yaw_tracker(&mut self, _: YawTracker) {}
+}
+
+/// The methods of a controller with a [`YawTracker`].
+macro_rules! with_yaw_tracker {
+    () => {
+        fn begin(&mut self) {
+            self.yaw = YawTracker::default();
+        }
+
+        fn executed(&mut self, action: [f32; 2]) {
+            self.yaw.replace(action);
+        }
+
+        fn yaw_tracker(&self) -> YawTracker {
+            self.yaw
+        }
+
+        fn set_yaw_tracker(&mut self, account: YawTracker) {
+            self.yaw = account;
+        }
+    };
 }
 
 impl CorridorController for ReactiveController {
-    fn begin(&mut self) {
-        self.yaw = 0.0;
-    }
+    with_yaw_tracker!();
 
     fn act(&mut self, sight: &CorridorObservation) -> [f32; 2] {
         let (columns, wanted) = (columns(sight), bearing_of_target(sight));
@@ -96,18 +155,16 @@ impl CorridorController for ReactiveController {
         }
         let turn = if best < 2.5 {
             // Nothing is free ahead: turn towards the middle of the corridor.
-            if offset(sight, self.yaw) > 0.0 { -LARGEST } else { LARGEST }
+            if offset(sight, self.yaw.now) > 0.0 { -LARGEST } else { LARGEST }
         } else {
-            (wanted + self.yaw).clamp(-0.4, 0.4) - self.yaw + 0.5 * heading
+            (wanted + self.yaw.now).clamp(-0.4, 0.4) - self.yaw.now + 0.5 * heading
         };
         action(&mut self.yaw, heading, turn)
     }
 }
 
 impl CorridorController for PotentialField {
-    fn begin(&mut self) {
-        self.yaw = 0.0;
-    }
+    with_yaw_tracker!();
 
     fn act(&mut self, sight: &CorridorObservation) -> [f32; 2] {
         const REACH: f32 = 5.0;
@@ -121,22 +178,38 @@ impl CorridorController for PotentialField {
             force = [force[0] - push * cosine, force[1] - push * sine];
         }
         let heading = force[1].atan2(force[0]).clamp(-LARGEST, LARGEST);
-        let ahead = (bearing_of_target(sight) + self.yaw).clamp(-0.4, 0.4);
-        let turn = ahead - self.yaw + 0.5 * heading;
+        let ahead = (bearing_of_target(sight) + self.yaw.now).clamp(-0.4, 0.4);
+        let turn = ahead - self.yaw.now + 0.5 * heading;
         action(&mut self.yaw, heading, turn)
     }
 }
 
 /// Scales angles to an action, and tracks the yaw as the environment does.
-fn action(yaw: &mut f32, heading: f32, turn: f32) -> [f32; 2] {
+fn action(yaw: &mut YawTracker, heading: f32, turn: f32) -> [f32; 2] {
     let action = [heading, turn].map(|angle| (angle / LARGEST).clamp(-1.0, 1.0));
-    let right_angle = std::f32::consts::FRAC_PI_2;
-    *yaw = (*yaw + action[1] * LARGEST).clamp(-right_angle, right_angle);
+    yaw.before = yaw.now;
+    yaw.replace(action);
     action
 }
 
+impl YawTracker {
+    /// Replaces the last action.
+    fn replace(&mut self, [_, turn]: [f32; 2]) {
+        let right_angle = std::f32::consts::FRAC_PI_2;
+        self.now = (self.before + turn.clamp(-1.0, 1.0) * LARGEST).clamp(-right_angle, right_angle);
+    }
+
+    pub(super) fn save(self, snapshot: &mut Snapshot) {
+        snapshot.extend_numbers([self.before, self.now].map(f64::from));
+    }
+
+    pub(super) fn load(state: &mut StateReader<'_>) -> Result<Self> {
+        Ok(Self { before: state.finite()? as f32, now: state.finite()? as f32 })
+    }
+}
+
 /// Returns the smallest depth in each block of columns.
-fn columns(sight: &CorridorObservation) -> [f32; COLUMNS] {
+pub(super) fn columns(sight: &CorridorObservation) -> [f32; COLUMNS] {
     let mut columns = [f32::INFINITY; COLUMNS];
     for row in ROWS {
         for (at, depth) in sight.depths[row * SIDE..(row + 1) * SIDE].iter().enumerate() {
@@ -144,6 +217,15 @@ fn columns(sight: &CorridorObservation) -> [f32; COLUMNS] {
         }
     }
     columns
+}
+
+/// Fills `sight` such that [`columns`] returns `shares` times the range of the camera.
+pub(super) fn spread_columns(shares: &[f32; COLUMNS], sight: &mut CorridorObservation) {
+    for row in ROWS {
+        for (at, depth) in sight.depths[row * SIDE..(row + 1) * SIDE].iter_mut().enumerate() {
+            *depth = shares[at / BLOCK] * super::RANGE;
+        }
+    }
 }
 
 /// Returns the bearing of the middle of a block of columns, in radians to the left.

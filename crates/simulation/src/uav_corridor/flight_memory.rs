@@ -1,13 +1,16 @@
 //! A map of the surroundings from past observations, for policies without memory.
 
+use std::sync::Arc;
+
 use opendr_engine::Result;
 use opendr_engine::environment::{Snapshot, Space, StateReader};
 
 use super::lookahead::Lookahead;
+use super::map_raster::{Glimpse, MapRaster};
 use super::way_costs::WayCosts;
 use super::{
-    CAMERA_HEIGHT, CorridorObservation, FINISH, HALF_TRACK, HALF_WIDTH, RADIUS, RANGE, SIDE, START, TARGET,
-    TURN,
+    CAMERA_HEIGHT, CorridorObservation, FINISH, HALF_TRACK, HALF_WIDTH, RADIUS, RANGE, SIDE, START,
+    Surroundings, TARGET, TURN,
 };
 use crate::sine_cosine::sine_cosine;
 
@@ -39,6 +42,11 @@ pub struct FlightMemory {
     along: Vec<[f32; 2]>,
     costs: WayCosts,
     lookahead: Lookahead,
+    /// Depth profiles of the last frames, a ring buffer with `taken` valid entries.
+    glimpses: Vec<Glimpse>,
+    taken: usize,
+    raster: MapRaster,
+    surroundings: Option<Arc<Surroundings>>,
 }
 
 /// Estimated place of the drone.
@@ -82,6 +90,10 @@ impl Default for FlightMemory {
             along: Vec::with_capacity(Self::FRAMES * SIDE),
             costs: WayCosts::default(),
             lookahead: Lookahead::default(),
+            glimpses: vec![Glimpse::default(); Self::FRAMES],
+            taken: 0,
+            raster: MapRaster::default(),
+            surroundings: None,
         }
     }
 }
@@ -93,6 +105,8 @@ impl FlightMemory {
     pub const WAYS: usize = 2 * (INNER + OUTER) + 1;
     /// Number of features.
     pub const LEN: usize = 3 * Self::WAYS + 10;
+    /// Number of values of [`state`](Self::state).
+    pub const STATE: usize = 7;
 
     /// Returns the space of the features.
     ///
@@ -111,7 +125,13 @@ impl FlightMemory {
         self.action = [0.0; 2];
         self.proposal = [0.0; 2];
         self.points.fill([f32::INFINITY; 2]);
-        self.next = 0;
+        (self.next, self.taken) = (0, 0);
+    }
+
+    /// Uses a model of unobserved cells for the costs of the proposals.
+    #[must_use]
+    pub fn with_surroundings(self, surroundings: Arc<Surroundings>) -> Self {
+        Self { surroundings: Some(surroundings), ..self }
     }
 
     /// Returns the action for a policy's correction: the last proposal plus the correction.
@@ -133,12 +153,7 @@ impl FlightMemory {
     /// # Errors
     /// `InvalidInput` for an observation that is not of the corridor.
     pub fn update(&mut self, space: &Space, observation: &[f32], known: &mut [f32; Self::LEN]) -> Result<()> {
-        self.sight.read(space, observation)?;
-        let expected = self.place.unwrap_or(Place { x: START.into(), y: 0.0, yaw: 0.0 });
-        let place = expected.corrected(self.sight.target);
-        self.place = Some(place);
-        self.add_points(place);
-        self.gather(place);
+        let place = self.take_in(space, observation)?;
         let (sine, cosine) = sine_cosine(place.yaw);
         let (sine, cosine) = (sine as f32, cosine as f32);
         let (ways, rest) = known.split_at_mut(Self::WAYS);
@@ -150,7 +165,13 @@ impl FlightMemory {
             |[ahead, aside]: [f32; 2]| [cosine * ahead - sine * aside, sine * ahead + cosine * aside];
         self.along.clear();
         self.along.extend(self.near.iter().copied().map(turned));
-        self.costs.find(self.along.iter().copied(), offset, left);
+        match self.surroundings.clone() {
+            None => self.costs.find(self.along.iter().copied(), offset, left),
+            Some(surroundings) => {
+                self.draw_map();
+                self.costs.find_weighed(left, |weights| surroundings.weigh(&self.raster, weights));
+            }
+        }
         self.proposal = self.lookahead.action(&self.costs, &self.along, place.yaw);
         let here = self.costs.at([0.0; 2]);
         let (nearer, rest) = rest.split_at_mut(2 * Self::WAYS);
@@ -179,6 +200,37 @@ impl FlightMemory {
         Ok(())
     }
 
+    /// Adds an observation, as [`update`](Self::update) does, and writes the drone's state: offset, sine and cosine of the yaw, share of
+    /// the corridor flown, height error, and the last action.
+    ///
+    /// # Errors
+    /// As [`update`](Self::update).
+    pub fn state(
+        &mut self,
+        space: &Space,
+        observation: &[f32],
+        numbers: &mut [f32; Self::STATE],
+    ) -> Result<()> {
+        let place = self.take_in(space, observation)?;
+        let (sine, cosine) = sine_cosine(place.yaw);
+        let advance = (place.x as f32 - START) / (FINISH - START);
+        let ([heading, turn], up) = (self.action, self.sight.target[2]);
+        let offset = place.y as f32 / HALF_TRACK;
+        *numbers = [offset, sine as f32, cosine as f32, advance, up, heading, turn];
+        Ok(())
+    }
+
+    /// Adds an observation to the map and returns the place of the drone.
+    fn take_in(&mut self, space: &Space, observation: &[f32]) -> Result<Place> {
+        self.sight.read(space, observation)?;
+        let expected = self.place.unwrap_or(Place { x: START.into(), y: 0.0, yaw: 0.0 });
+        let place = expected.corrected(self.sight.target);
+        self.place = Some(place);
+        self.add_points(place);
+        self.gather(place);
+        Ok(place)
+    }
+
     /// Adds the nearest point of each image column at the height of the flight to the map.
     fn add_points(&mut self, place: Place) {
         let slope = |at: usize| HALF_WIDTH * (1.0 - 2.0 * (at as f32 + 0.5) / SIDE as f32);
@@ -193,6 +245,9 @@ impl FlightMemory {
         let (sine, cosine) = sine_cosine(place.yaw);
         let ([x, y], [sine, cosine]) =
             ([place.x, place.y].map(|part| part as f32), [sine as f32, cosine as f32]);
+        self.glimpses[self.next] =
+            Glimpse { place: [x, y], sine, cosine, ahead: nearest.map(|ahead| ahead.min(RANGE)) };
+        self.taken = (self.taken + 1).min(Self::FRAMES);
         let frame = &mut self.points[self.next * SIDE..(self.next + 1) * SIDE];
         for (column, (point, ahead)) in frame.iter_mut().zip(nearest).enumerate() {
             let left = ahead * slope(column);
@@ -204,6 +259,13 @@ impl FlightMemory {
             };
         }
         self.next = (self.next + 1) % Self::FRAMES;
+    }
+
+    /// Rasterises the map around the drone.
+    pub(super) fn draw_map(&mut self) -> &MapRaster {
+        let place = self.place.map_or([START, 0.0], |place| [place.x as f32, place.y as f32]);
+        self.raster.draw(&self.glimpses[..self.taken], &self.along, place);
+        &self.raster
     }
 
     /// Collects the points within reach, relative to the drone.
@@ -224,8 +286,16 @@ impl FlightMemory {
         snapshot.extend_numbers(place);
         snapshot.push(self.next as u64);
         let points = self.points.iter().flatten();
-        let actions = self.action.iter().chain(&self.proposal);
-        snapshot.extend_numbers(actions.chain(points).map(|number| f64::from(*number)));
+        let told = self.action.iter().chain(&self.proposal);
+        snapshot.extend_numbers(told.chain(points).map(|number| f64::from(*number)));
+        if self.surroundings.is_some() {
+            snapshot.push(self.taken as u64);
+            for glimpse in &self.glimpses {
+                let Glimpse { place: [x, y], sine, cosine, ahead } = glimpse;
+                let numbers = [x, y, sine, cosine].into_iter().chain(ahead);
+                snapshot.extend_numbers(numbers.map(|number| f64::from(*number)));
+            }
+        }
     }
 
     pub(super) fn load(&mut self, state: &mut StateReader<'_>) -> Result<()> {
@@ -235,6 +305,15 @@ impl FlightMemory {
         let actions = self.action.iter_mut().chain(&mut self.proposal);
         for number in actions.chain(self.points.iter_mut().flatten()) {
             *number = state.number()? as f32;
+        }
+        if self.surroundings.is_some() {
+            self.taken = state.count(Self::FRAMES)?;
+            for glimpse in &mut self.glimpses {
+                let Glimpse { place: [x, y], sine, cosine, ahead } = glimpse;
+                for number in [x, y, sine, cosine].into_iter().chain(ahead) {
+                    *number = state.finite()? as f32;
+                }
+            }
         }
         Ok(())
     }

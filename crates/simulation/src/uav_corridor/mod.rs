@@ -4,31 +4,40 @@
 //! (Ugurlu, Pham and Kayacan, Sim-to-real deep reinforcement learning for safe end-to-end planning of aerial robots,
 //! 2022). Positions in metres, x along the corridor, y to the left, z up.
 
+mod compact;
 mod controllers;
 mod environment;
 mod flight;
 mod flight_memory;
 mod lookahead;
+mod map_raster;
 mod options;
 mod picture;
 mod quadrotor;
 mod range_camera;
 mod remembered;
 mod sight;
+mod surroundings;
+mod surroundings_samples;
 #[cfg(test)]
 mod tests;
 mod variants;
 mod way_costs;
 mod world;
 
+pub use compact::{CompactController, CompactCorridor, compact_space};
 pub use controllers::{
     CorridorController, ObservationController, PotentialField, ReactiveController, StraightController,
+    YawTracker,
 };
 pub use environment::UavDepthCorridor;
 pub use flight_memory::FlightMemory;
 pub use options::{CorridorForm, CorridorOptions, UavDepthCorridorParams};
 pub use remembered::FlightMemoryWrapper;
 pub use sight::CorridorObservation;
+pub use surroundings::Surroundings;
+pub use surroundings_samples::SurroundingsSamples;
+
 pub(crate) use variants::registrations;
 pub use variants::{Dense, Discrete, Dynamic, Noisy};
 pub use world::CorridorWorld;

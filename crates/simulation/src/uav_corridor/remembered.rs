@@ -1,12 +1,14 @@
 //! The corridor with a flight memory, as a wrapper.
 
+use std::sync::Arc;
+
 use opendr_engine::data::Image;
 use opendr_engine::environment::{
     Environment, EnvironmentSpec, Info, ResetOptions, Snapshot, Space, StateReader, Step,
 };
 use opendr_engine::{Error, Result};
 
-use super::FlightMemory;
+use super::{FlightMemory, Surroundings};
 
 /// A wrapper whose observations are the features of a [`FlightMemory`], and whose actions correct its proposals. Policies are
 /// trained in it; the action zero follows the proposals.
@@ -34,6 +36,12 @@ impl<E: Environment> FlightMemoryWrapper<E> {
         let observation = vec![0.0; spec.observation.len()];
         spec.observation = FlightMemory::space()?;
         Ok(Self { inner, spec, memory: FlightMemory::default(), observation })
+    }
+
+    /// Uses a model of unobserved cells for the proposals.
+    #[must_use]
+    pub fn with_surroundings(self, surroundings: Arc<Surroundings>) -> Self {
+        Self { memory: self.memory.with_surroundings(surroundings), ..self }
     }
 
     fn write_features(&mut self, known: &mut [f32]) -> Result<()> {

@@ -1,5 +1,6 @@
 //! Costs of flying on from the cells around the drone.
 
+use super::map_raster::{ASIDE, BEHIND, CELL, COLUMNS, ROWS};
 use super::{HALF_TRACK, RADIUS};
 
 /// Costs of paths from cells around the drone to the end of the map, in metres of free path. They are computed backwards, column by
@@ -14,16 +15,8 @@ pub(super) struct WayCosts {
     marked: Vec<usize>,
 }
 
-/// Side of a cell, in metres.
-const CELL: f32 = 0.2;
-/// Numbers of cells ahead, behind, and to each side of the drone.
-const AHEAD: usize = 50;
-const BEHIND: usize = 5;
-const ASIDE: usize = 25;
-const COLUMNS: usize = BEHIND + 1 + AHEAD;
-const ROWS: usize = 2 * ASIDE + 1;
 /// Distances to a point below which a cell is blocked or narrow, and the cost of such a cell.
-const BLOCKED: (f32, f32) = (RADIUS + 0.05, 10.0);
+pub(super) const BLOCKED: (f32, f32) = (RADIUS + 0.05, 10.0);
 const NARROW: (f32, f32) = (RADIUS + 0.3, 2.0);
 /// Radius, in cells, within which a point affects costs.
 const SPREAD: usize = 3;
@@ -54,6 +47,12 @@ impl WayCosts {
         for marked in std::mem::take(&mut self.marked) {
             self.spread(marked / ROWS, marked % ROWS);
         }
+        self.fly_back(left);
+    }
+
+    /// Computes the costs where `weigh` writes the cost of a metre in each cell, column by column, with `left` metres to go.
+    pub fn find_weighed(&mut self, left: f32, weigh: impl FnOnce(&mut [f32])) {
+        weigh(&mut self.weights);
         self.fly_back(left);
     }
 

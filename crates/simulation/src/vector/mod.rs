@@ -59,6 +59,15 @@ impl Seeds<'_> {
     }
 }
 
+/// The executed actions of a step.
+#[derive(Debug, Clone, Copy)]
+pub struct Interventions<'a> {
+    /// Actions, environment by environment, in the action space of the environments.
+    pub actions: &'a [f32],
+    /// Whether the action of each environment was replaced.
+    pub replaced: &'a [bool],
+}
+
 /// Environments that are stepped together. Results do not depend on the number of threads.
 pub trait VecEnvironment: Send {
     /// Returns the specification of each environment.
@@ -90,6 +99,12 @@ pub trait VecEnvironment: Send {
     /// without autoreset after the end of an episode. The message names the environment; the others may have
     /// taken their step.
     fn step(&mut self, actions: &[f32], batch: &mut Batch) -> Result<()>;
+
+    /// Returns the actions that the last step executed, if something between learner and environments may replace actions, such as a
+    /// shield. A learner stores these instead of its own.
+    fn interventions(&self) -> Option<Interventions<'_>> {
+        None
+    }
 
     /// Writes the state of all environments.
     ///

@@ -2,7 +2,7 @@
 
 pub mod dots;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use opendr_engine::{Random, Result};
@@ -27,6 +27,10 @@ impl Folder {
         let path = std::env::temp_dir().join(format!("opendr-rl-{name}-{process}-{count}"));
         std::fs::remove_dir_all(&path).ok();
         Self(path)
+    }
+
+    pub fn path(&self) -> &Path {
+        &self.0
     }
 
     pub fn checkpoints(&self) -> Checkpoints {

@@ -1,0 +1,95 @@
+//! A prior and the policy that corrects it, as one controller.
+
+use opendr_engine::environment::{Controller, Space};
+use opendr_engine::{Error, Random, Result};
+use opendr_kernels::Compute;
+
+use super::BoxedController;
+use super::residual::Correction;
+use crate::policy::{ActionMode, Policy, PolicyMemory};
+
+/// A policy that was trained in a [`Residual`](super::Residual) environment, with its prior: acts in the environment itself.
+pub struct ResidualController<P> {
+    policy: P,
+    prior: BoxedController,
+    alpha: f32,
+    correction: Correction,
+    compute: Compute,
+    memory: PolicyMemory,
+    random: Option<Random>,
+    /// Observation, then the prior's action.
+    seen: Vec<f32>,
+    corrected_by: Vec<f32>,
+}
+
+/// Observation and action space of the environment inside, from the observations of a policy trained in a
+/// [`Residual`](super::Residual) one.
+pub(super) fn inner_spaces(policy: &Policy) -> Result<(&Space, &Space)> {
+    match policy.observation() {
+        Space::Tuple(parts)
+            if parts.len() == 2 && *policy.action() == Correction::new(&parts[1])?.space() =>
+        {
+            Ok((&parts[0], &parts[1]))
+        }
+        other => Err(Error::format(format!(
+            "a policy that sees {other} corrects no prior: it was not trained in a Residual environment"
+        ))),
+    }
+}
+
+impl<P: AsRef<Policy>> ResidualController<P> {
+    /// `policy` on top of `prior`, with the most likely corrections.
+    ///
+    /// # Errors
+    /// `Format` for a policy that was not trained in a [`Residual`](super::Residual) environment.
+    pub fn new(policy: P, prior: BoxedController, alpha: f32) -> Result<Self> {
+        let (observation, action) = inner_spaces(policy.as_ref())?;
+        let seen = vec![0.0; observation.len() + action.len()];
+        let (correction, corrected_by) = (Correction::new(action)?, vec![0.0; action.len()]);
+        let (compute, memory) = (Compute::single(), PolicyMemory::default());
+        let random = None;
+        Ok(Self { policy, prior, alpha, correction, compute, memory, random, seen, corrected_by })
+    }
+
+    /// Samples corrections, by random numbers that begin with this seed; without a seed it takes the most likely ones.
+    pub fn set_sampled(&mut self, seed: Option<u64>) {
+        match seed {
+            Some(seed) => drop(self.random.get_or_insert_with(|| Random::new(seed))),
+            None => self.random = None,
+        }
+    }
+}
+
+impl<P: AsRef<Policy>> Controller for ResidualController<P> {
+    fn reset(&mut self) {
+        self.prior.reset();
+        self.memory.reset(0);
+    }
+
+    fn act(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()> {
+        let own = self.seen.len() - self.corrected_by.len();
+        let (seen, proposal) = self.seen.split_at_mut(own);
+        if observation.len() != seen.len() || action.len() != proposal.len() {
+            return Err(Error::invalid_input(format!(
+                "{} numbers of an observation and room for {} of an action; there are {} and {}",
+                observation.len(),
+                action.len(),
+                seen.len(),
+                proposal.len()
+            )));
+        }
+        seen.copy_from_slice(observation);
+        self.prior.act(observation, proposal)?;
+        let acting = self.random.as_mut().map_or(ActionMode::Deterministic, ActionMode::Sampled);
+        let policy = self.policy.as_ref();
+        policy.act(&self.compute, &self.seen, acting, &mut self.memory, &mut self.corrected_by)?;
+        let proposal = &self.seen[observation.len()..];
+        self.correction.add(proposal, &self.corrected_by, self.alpha, action);
+        self.prior.executed(action);
+        Ok(())
+    }
+
+    fn executed(&mut self, action: &[f32]) {
+        self.prior.executed(action);
+    }
+}
