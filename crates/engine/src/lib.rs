@@ -57,6 +57,7 @@ pub mod learner;
 pub mod model;
 pub mod overlap;
 pub mod params;
+pub mod rig;
 pub mod target;
 
 pub use cache::cache_dir;

@@ -35,6 +35,7 @@ pub mod classic_control;
 pub mod lidar;
 pub mod quad_track;
 pub mod raycast;
+pub mod sphere_view;
 pub mod street;
 pub mod uav_corridor;
 pub mod vector;

@@ -79,11 +79,11 @@ impl Body {
         self.shape.distance(self.point_in_body(point))
     }
 
-    pub(super) fn point_in_body(&self, point: Vector) -> Vector {
+    pub(crate) fn point_in_body(&self, point: Vector) -> Vector {
         self.direction_in_body(minus(point, self.position))
     }
 
-    pub(super) fn direction_in_body(&self, direction: Vector) -> Vector {
+    pub(crate) fn direction_in_body(&self, direction: Vector) -> Vector {
         self.body_from_world.map(|axis| dot(axis, direction))
     }
 

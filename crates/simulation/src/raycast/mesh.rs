@@ -94,6 +94,8 @@ impl Mesh {
         unit(self.nearest(point).1.normal())
     }
 
+    /// Compiled into each caller, with the vectors that the caller has.
+    #[inline(always)]
     pub(super) fn meet(&self, origin: Vector, directions: &Directions, distances: &mut [f32; LANES]) {
         let inverse = directions.map(|axis| axis.map(|part| 1.0 / part));
         let mut stack = [0; DEPTH];

@@ -1,0 +1,143 @@
+//! How much a movement is expected to raise the probability of the true class.
+
+use std::sync::Arc;
+
+use opendr_engine::{Error, Random, Result};
+use opendr_kernels::{Activation, Adam, AdamOptions, Compute, Initialisation, Network, Tape};
+
+use crate::observation::Observer;
+
+/// Movements with what they gained, to learn from.
+#[derive(Debug, Clone, Default)]
+pub struct GainSamples {
+    /// Observation and movement of each, one after the other.
+    inputs: Vec<f32>,
+    gains: Vec<f32>,
+}
+
+impl GainSamples {
+    /// Adds a movement.
+    pub fn add(&mut self, observation: &[f32], action: &[f32], gain: f32) {
+        self.inputs.extend_from_slice(observation);
+        self.inputs.extend_from_slice(action);
+        self.gains.push(gain);
+    }
+
+    /// Number of movements.
+    pub fn len(&self) -> usize {
+        self.gains.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.gains.is_empty()
+    }
+}
+
+/// A network from observation and movement to the expected gain.
+#[derive(Debug, Clone)]
+pub struct GainNetwork {
+    network: Network,
+    parameters: Arc<Vec<f32>>,
+    axes: usize,
+    tape: Tape,
+    input: Vec<f32>,
+}
+
+const BATCH: usize = 128;
+const RATE: f32 = 1e-3;
+
+impl GainNetwork {
+    /// Learns by least squares, `epochs` times over the samples.
+    ///
+    /// # Errors
+    /// `InvalidInput` for fewer samples than a batch of 128.
+    pub fn fit(
+        samples: &GainSamples,
+        axes: usize,
+        epochs: usize,
+        seed: u64,
+        compute: &Compute,
+    ) -> Result<Self> {
+        let width = Observer::LEN + axes;
+        if samples.len() < BATCH || samples.inputs.len() != width * samples.len() {
+            return Err(Error::invalid_input(format!(
+                "{} movements of {axes} axes to learn gains from; record at least {BATCH}",
+                samples.len()
+            )));
+        }
+        let network = Network::dense(&[width, 64, 32, 1], Activation::Relu)?;
+        let mut random = Random::at([seed, 0x6a14]);
+        let mut parameters = vec![0.0; network.parameters()];
+        let begin = Initialisation::Orthogonal { hidden: std::f32::consts::SQRT_2, output: 0.1 };
+        network.initialise(begin, &mut random, &mut parameters);
+        let mut adam = Adam::new(parameters.len(), AdamOptions::default());
+        let (mut tape, mut gradients) = (Tape::default(), vec![0.0; parameters.len()]);
+        let mut order: Vec<usize> = (0..samples.len()).collect();
+        let (mut x, mut dy) = (vec![0.0; BATCH * width], [0.0; BATCH]);
+        let steps = epochs * (samples.len() / BATCH);
+        for step in 0..steps {
+            let at = step % (samples.len() / BATCH);
+            if at == 0 {
+                random.shuffle(&mut order);
+            }
+            let rows = &order[at * BATCH..(at + 1) * BATCH];
+            for (to, row) in x.chunks_exact_mut(width).zip(rows) {
+                to.copy_from_slice(&samples.inputs[row * width..(row + 1) * width]);
+            }
+            let predicted = network.forward(compute, &parameters, &x, &mut tape);
+            for ((dy, predicted), row) in dy.iter_mut().zip(predicted).zip(rows) {
+                *dy = 2.0 * (predicted - samples.gains[*row]) / BATCH as f32;
+            }
+            gradients.fill(0.0);
+            network.backward(compute, &parameters, &dy, &mut tape, Some(&mut gradients), false);
+            let rate = RATE * (1.0 - step as f32 / steps as f32);
+            adam.step(compute, rate, &mut parameters, &gradients);
+        }
+        Ok(Self { network, parameters: Arc::new(parameters), axes, tape: Tape::default(), input: Vec::new() })
+    }
+
+    /// The expected gains of several movements, one after the other, from one observation.
+    ///
+    /// # Panics
+    /// When the observation is not of [`Observer::LEN`] numbers.
+    pub fn predict(&mut self, compute: &Compute, observation: &[f32], actions: &[f32]) -> &[f32] {
+        assert_eq!(observation.len(), Observer::LEN, "an observation of another length");
+        self.input.clear();
+        for action in actions.chunks_exact(self.axes) {
+            self.input.extend_from_slice(observation);
+            self.input.extend_from_slice(action);
+        }
+        self.network.forward(compute, &self.parameters, &self.input, &mut self.tape)
+    }
+
+    /// Axes of a movement.
+    pub fn axes(&self) -> usize {
+        self.axes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gains_that_depend_on_the_movement_are_learnt() {
+        let (mut random, mut samples) = (Random::new(2), GainSamples::default());
+        let mut observation = vec![0.0; Observer::LEN];
+        for _ in 0..4000 {
+            observation[3] = random.uniform(-1.0, 1.0);
+            let action = [random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)];
+            samples.add(&observation, &action, 0.5 * observation[3] * action[0]);
+        }
+        let compute = Compute::single();
+        let mut network = GainNetwork::fit(&samples, 2, 12, 1, &compute).unwrap();
+        observation[3] = 0.8;
+        let gains = network.predict(&compute, &observation, &[1.0, 0.0, -1.0, 0.0, 0.0, 1.0]);
+        assert!(
+            (gains[0] - 0.4).abs() < 0.1 && (gains[1] + 0.4).abs() < 0.1 && gains[2].abs() < 0.1,
+            "{gains:?}"
+        );
+        assert!(GainNetwork::fit(&GainSamples::default(), 2, 1, 1, &compute).is_err());
+    }
+}

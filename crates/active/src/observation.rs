@@ -1,0 +1,135 @@
+//! What a policy of movement is given: a thumbnail, confidences and poses; nothing that depends on the recogniser's inside.
+
+use opendr_engine::data::Image;
+use opendr_engine::rig::{Achieved, ViewAxis, ViewPose};
+use opendr_engine::target::ActionBase as _;
+use opendr_engine::{Error, Result};
+
+use crate::fusion::Belief;
+
+/// Pixels of the thumbnail in each direction.
+const SIDE: usize = 12;
+/// Numbers that are not of the thumbnail.
+const NUMBERS: usize = 18;
+
+/// Turns views and beliefs into observations: luminance of 12 x 12 pixels with mean 0, then confidence and uncertainty of the
+/// belief, information of the last and of the best view, the pose, the way to the best view, the last movement and what
+/// stopped it, and the share of the budget that is used.
+#[derive(Debug, Clone)]
+pub struct Observer {
+    axes: Vec<ViewAxis>,
+    budget: usize,
+    begin: ViewPose,
+    thumbnail: [f32; SIDE * SIDE],
+    last: Option<Achieved>,
+}
+
+impl Observer {
+    /// Length of an observation.
+    pub const LEN: usize = SIDE * SIDE + NUMBERS;
+
+    /// An observer of a rig with these axes and a budget of movements.
+    pub fn new(axes: &[ViewAxis], budget: usize) -> Self {
+        Self {
+            axes: axes.to_vec(),
+            budget: budget.max(1),
+            begin: ViewPose::default(),
+            thumbnail: [0.0; SIDE * SIDE],
+            last: None,
+        }
+    }
+
+    /// Begins an episode at a pose.
+    pub fn reset(&mut self, pose: ViewPose) {
+        self.begin = pose;
+        self.last = None;
+    }
+
+    /// Notes a movement.
+    pub fn moved(&mut self, achieved: Achieved) {
+        self.last = Some(achieved);
+    }
+
+    /// Notes a picture.
+    ///
+    /// # Errors
+    /// `InvalidInput` for a picture that is not of 8 bits.
+    pub fn saw(&mut self, image: &Image) -> Result<()> {
+        let (width, height) = (image.width(), image.height());
+        let opendr_engine::data::Pixels::U8(pixels) = image.pixels() else {
+            return Err(Error::invalid_input(
+                "a policy of movement takes pictures of 8 bits; convert the camera's",
+            ));
+        };
+        let (channels, planes) = (image.channels(), image.layout() == opendr_engine::data::Layout::Chw);
+        let colours = channels.min(3);
+        for (at, luminance) in self.thumbnail.iter_mut().enumerate() {
+            // At least one pixel each, where the picture is smaller than the thumbnail.
+            let range = |number: usize, size: usize| {
+                let begin = number * size / SIDE;
+                begin..((number + 1) * size / SIDE).max(begin + 1)
+            };
+            let (mut sum, mut count) = (0u32, 0u32);
+            for row in range(at / SIDE, height) {
+                for column in range(at % SIDE, width) {
+                    for channel in 0..colours {
+                        let pixel = row * width + column;
+                        let place = if planes {
+                            channel * width * height + pixel
+                        } else {
+                            channels * pixel + channel
+                        };
+                        sum += u32::from(pixels[place]);
+                    }
+                    count += colours as u32;
+                }
+            }
+            *luminance = sum as f32 / (255 * count) as f32;
+        }
+        let mean = self.thumbnail.iter().sum::<f32>() / (SIDE * SIDE) as f32;
+        self.thumbnail.iter_mut().for_each(|luminance| *luminance = 3.0 * (*luminance - mean));
+        Ok(())
+    }
+
+    /// Writes the observation of now, of [`Self::LEN`] numbers.
+    pub fn observe(&self, pose: &ViewPose, belief: &Belief, observation: &mut [f32]) {
+        let (picture, numbers) = observation.split_at_mut(SIDE * SIDE);
+        picture.copy_from_slice(&self.thumbnail);
+        let (best, told) = belief.most_informative().unwrap_or((pose, 0.0));
+        let (turned, back) =
+            ((pose.azimuth - self.begin.azimuth) as f32, (best.azimuth - pose.azimuth) as f32);
+        let share = |axis: usize, position: f64| {
+            let limits = self.axes.get(axis).map_or((0.0, 1.0), |axis| (axis.low, axis.high));
+            (2.0 * (position - limits.0) / (limits.1 - limits.0) - 1.0) as f32
+        };
+        let mut last = [0.0; 4];
+        let mut stopped = 0.0;
+        if let Some(achieved) = &self.last {
+            let axes = achieved.action.axes();
+            last[..axes.len()].copy_from_slice(axes);
+            stopped = if achieved.is_complete() { 0.0 } else { 1.0 };
+        }
+        let moves = belief.views().saturating_sub(1) as f32;
+        let all: [f32; NUMBERS] = [
+            belief.best().1,
+            belief.uncertainty(),
+            belief.last_information(),
+            told,
+            share(1, pose.elevation),
+            share(2, pose.distance),
+            turned.sin(),
+            turned.cos(),
+            back.sin(),
+            back.cos(),
+            (best.elevation - pose.elevation) as f32,
+            moves / self.budget as f32,
+            last[0],
+            last[1],
+            last[2],
+            last[3],
+            stopped,
+            if belief.views() > 1 { 1.0 } else { 0.0 },
+        ];
+        numbers.copy_from_slice(&all);
+    }
+}

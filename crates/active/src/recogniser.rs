@@ -1,0 +1,74 @@
+//! Perception in the loop: anything that gives class probabilities for a picture.
+
+use opendr_engine::Result;
+use opendr_engine::data::Image;
+use opendr_engine::learner::Learner;
+
+use crate::evidence::ClassEvidence;
+
+/// A recogniser of one view.
+pub trait ViewRecogniser: Send {
+    /// Number of classes.
+    fn classes(&self) -> usize;
+
+    /// Writes the logarithm of the probability of each class for one picture, all classes being equally likely before it.
+    ///
+    /// # Errors
+    /// Those of the network.
+    fn recognise(&mut self, image: &Image, evidence: &mut [f32]) -> Result<()>;
+}
+
+impl<R: ViewRecogniser + ?Sized> ViewRecogniser for Box<R> {
+    fn classes(&self) -> usize {
+        (**self).classes()
+    }
+
+    fn recognise(&mut self, image: &Image, evidence: &mut [f32]) -> Result<()> {
+        (**self).recognise(image, evidence)
+    }
+}
+
+/// Any learner of the toolkit whose input is an image and whose target has classes, as a recogniser of views.
+pub struct LearnerRecogniser<L: Learner> {
+    learner: L,
+    classes: usize,
+    state: L::State,
+    target: L::Target,
+}
+
+impl<L: Learner> LearnerRecogniser<L>
+where
+    L::Target: Default,
+{
+    /// A recogniser of `classes` classes; class numbers of the learner's targets count from 0.
+    pub fn new(learner: L, classes: usize) -> Self {
+        Self { learner, classes, state: L::State::default(), target: L::Target::default() }
+    }
+
+    /// The learner.
+    pub fn learner(&self) -> &L {
+        &self.learner
+    }
+
+    /// What the learner predicted for the last picture.
+    pub fn target(&self) -> &L::Target {
+        &self.target
+    }
+}
+
+impl<L> ViewRecogniser for LearnerRecogniser<L>
+where
+    L: for<'a> Learner<Input<'a> = &'a Image>,
+    L::Target: ClassEvidence + Default + Send,
+{
+    fn classes(&self) -> usize {
+        self.classes
+    }
+
+    fn recognise(&mut self, image: &Image, evidence: &mut [f32]) -> Result<()> {
+        self.learner.infer_into(&mut self.state, image, &mut self.target)?;
+        self.target.class_probabilities(evidence);
+        evidence.iter_mut().for_each(|probability| *probability = probability.max(1e-6).ln());
+        Ok(())
+    }
+}

@@ -1,0 +1,72 @@
+//! When looking ends.
+
+use opendr_engine::{Error, Result};
+use serde::{Deserialize, Serialize};
+
+/// When to stop: certain enough, out of movements, or nothing to be gained.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StopRule {
+    /// Movements at most.
+    pub moves: usize,
+    /// Stops at this probability of the best class.
+    pub confidence: f32,
+    /// Stops where the next movement is expected to raise the probability of the true class by less than this; 0 never.
+    pub gain: f32,
+}
+
+/// Why looking ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StopReason {
+    /// The belief is certain enough.
+    Confident,
+    /// All movements are used.
+    Budget,
+    /// No movement is expected to help.
+    NoGain,
+}
+
+impl Default for StopRule {
+    fn default() -> Self {
+        Self { moves: 6, confidence: 0.97, gain: 0.0 }
+    }
+}
+
+impl StopRule {
+    /// # Errors
+    /// `InvalidParam` for a confidence or a gain outside 0..=1.
+    pub fn check(&self) -> Result<()> {
+        if (0.0..=1.0).contains(&self.confidence) && (0.0..=1.0).contains(&self.gain) {
+            return Ok(());
+        }
+        Err(Error::invalid_param(format!("{self:?}: give a confidence and a gain in 0..=1")))
+    }
+
+    /// Why to stop after so many movements; `None` to go on.
+    pub fn reason(&self, moves: usize, confidence: f32, expected_gain: Option<f32>) -> Option<StopReason> {
+        if confidence >= self.confidence {
+            return Some(StopReason::Confident);
+        }
+        if moves >= self.moves {
+            return Some(StopReason::Budget);
+        }
+        expected_gain.filter(|gain| *gain < self.gain).map(|_| StopReason::NoGain)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reasons() {
+        let rule = StopRule { moves: 2, confidence: 0.9, gain: 0.05 };
+        assert_eq!(rule.reason(0, 0.5, None), None);
+        assert_eq!(rule.reason(0, 0.95, Some(0.5)), Some(StopReason::Confident));
+        assert_eq!(rule.reason(2, 0.5, Some(0.5)), Some(StopReason::Budget));
+        assert_eq!(rule.reason(1, 0.5, Some(0.01)), Some(StopReason::NoGain));
+        assert_eq!(StopRule { gain: 0.0, ..rule }.reason(1, 0.5, Some(0.0)), None);
+        assert!(StopRule { confidence: 1.5, ..rule }.check().is_err());
+    }
+}

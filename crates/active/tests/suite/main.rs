@@ -1,0 +1,11 @@
+//! The integration tests of this crate, one program: each program more is linked once more.
+
+#![allow(clippy::unwrap_used)]
+
+mod allocation;
+mod learning;
+mod rigs;
+mod toy;
+
+#[global_allocator]
+static ALLOCATOR: opendr_test_allocator::Counting = opendr_test_allocator::Counting;

@@ -1,0 +1,68 @@
+//! Subjects as parts with surfaces.
+
+use opendr_engine::Result;
+
+use super::surface::{Form, Surface, Texel};
+use super::{Subject, figure, head, object};
+use crate::raycast::{Body, Shape, Vector};
+
+/// A generated subject: the parts that a camera sees, all within a radius of 1.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Asset {
+    parts: Vec<Part>,
+}
+
+/// A surface somewhere on the subject.
+#[derive(Debug, Clone, PartialEq)]
+struct Part {
+    body: Body,
+    surface: Surface,
+}
+
+impl Asset {
+    /// Generates a subject of a class; `instance` chooses among those of the class. Faces are classes of their own: one
+    /// head for each number, and the instance changes nothing.
+    ///
+    /// # Errors
+    /// `InvalidParam` for a class that there is not.
+    pub fn generate(subject: Subject, class: u32, instance: u64) -> Result<Self> {
+        match subject {
+            Subject::Face => head::generate(class),
+            Subject::Object => object::generate(class, instance),
+            Subject::Pose => figure::generate(class, instance),
+        }
+    }
+
+    pub(super) fn empty() -> Self {
+        Self { parts: Vec::new() }
+    }
+
+    /// Adds a part: a surface around `position`, turned by a quaternion `[w, x, y, z]`.
+    pub(super) fn add(
+        &mut self,
+        [cells, side]: [usize; 2],
+        (position, rotation): (Vector, [f32; 4]),
+        form: &impl Form,
+    ) -> Result<()> {
+        let surface = Surface::new(cells, side, form)?;
+        let shape = Shape::Mesh(surface.mesh.clone());
+        self.parts.push(Part { body: Body::new(shape, position, rotation, 0)?, surface });
+        Ok(())
+    }
+
+    /// The bodies of the parts.
+    pub fn bodies(&self) -> impl Iterator<Item = &Body> {
+        self.parts.iter().map(|part| &part.body)
+    }
+
+    /// Triangles of all parts.
+    pub fn triangles(&self) -> usize {
+        self.parts.iter().map(|part| part.surface.mesh.triangles()).sum()
+    }
+
+    /// Colour and normal, in the part's frame, at a point of part `number`; `None` for a number without a part.
+    pub(super) fn texel(&self, number: usize, point: Vector) -> Option<(Texel, &Body)> {
+        let part = self.parts.get(number)?;
+        Some((part.surface.texel(part.body.point_in_body(point)), &part.body))
+    }
+}

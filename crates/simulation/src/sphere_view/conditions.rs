@@ -1,0 +1,61 @@
+//! What an episode looks like besides its subject.
+
+use opendr_engine::Random;
+use opendr_engine::environment::Info;
+
+use crate::raycast::Vector;
+use crate::sine_cosine::sine_cosine;
+
+/// Where the camera begins, and light, occluder, background and noise of an episode.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Conditions {
+    /// Azimuth of the camera's first place in the subject's frame, rad; no rig reports it.
+    pub azimuth: f64,
+    /// Elevation at the beginning, rad.
+    pub elevation: f64,
+    /// Distance at the beginning, radii of the subject.
+    pub distance: f64,
+    /// Direction to the light.
+    pub light: Vector,
+    /// Share of light from everywhere.
+    pub ambient: f32,
+    /// Azimuth of an upright pole between camera and subject, in the subject's frame; `None` for no pole.
+    pub occluder: Option<f64>,
+    /// Colours of the background: of everywhere, and of two patches around their directions.
+    pub background: [([f32; 3], Vector); 3],
+    /// Largest deviation of a pixel, levels of 255.
+    pub noise: f32,
+    /// Share of a movement during which the shutter is still open.
+    pub exposure: f32,
+}
+
+impl Conditions {
+    /// The conditions that `random` draws.
+    pub fn draw(random: &mut Random) -> Self {
+        let half = std::f64::consts::PI;
+        let azimuth = half * (2.0 * random.unit() - 1.0);
+        let mut uniform = |low: f32, high: f32| random.uniform(low, high);
+        let elevation = f64::from(uniform(-0.4, 0.6));
+        let distance = f64::from(uniform(2.7, 4.5));
+        let light = direction(f64::from(uniform(-2.2, 2.2)), f64::from(uniform(0.1, 1.1)));
+        let ambient = uniform(0.35, 0.6);
+        let aside = f64::from(uniform(-0.5, 0.5));
+        let background = [(); 3].map(|()| {
+            let colour = [uniform(0.05, 0.8), uniform(0.05, 0.8), uniform(0.05, 0.8)];
+            (colour, direction(f64::from(uniform(-3.1, 3.1)), f64::from(uniform(-0.6, 0.6))))
+        });
+        let (noise, exposure) = (uniform(6.0, 18.0), uniform(0.0, 0.2));
+        let occluder = random.chance(0.5).then_some(azimuth + aside);
+        Self { azimuth, elevation, distance, light, ambient, occluder, background, noise, exposure }
+    }
+
+    /// What is known of an episode for reports.
+    pub fn info(&self, class: u32) -> Info {
+        Info::default().with("class", f64::from(class)).with("azimuth", self.azimuth)
+    }
+}
+
+fn direction(azimuth: f64, elevation: f64) -> Vector {
+    let ((sine, cosine), (high, level)) = (sine_cosine(azimuth), sine_cosine(elevation));
+    [(level * cosine) as f32, (level * sine) as f32, high as f32]
+}
