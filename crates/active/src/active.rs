@@ -5,7 +5,7 @@ use opendr_engine::rig::{Limit, ViewPose, ViewRig};
 use opendr_engine::target::Action;
 use opendr_engine::{Error, Result};
 use opendr_kernels::Compute;
-use opendr_rl::{Acting, PolicyMemory};
+use opendr_rl::{ActionMode, PolicyMemory};
 use serde::Serialize;
 
 use crate::fusion::Belief;
@@ -137,7 +137,7 @@ impl<R: ViewRecogniser> Active<R> {
     /// Writes the policy's movement, and returns its expected gain.
     fn propose(&mut self, observation: &[f32], deflections: &mut [f32]) -> Result<f32> {
         let Self { model, compute, memory, .. } = self;
-        model.policy.act(compute, observation, Acting::Deterministic, memory, deflections)?;
+        model.policy.act(compute, observation, ActionMode::Deterministic, memory, deflections)?;
         deflections.iter_mut().for_each(|axis| *axis = axis.clamp(-1.0, 1.0));
         Ok(model.gain.predict(compute, observation, deflections).first().copied().unwrap_or(0.0))
     }

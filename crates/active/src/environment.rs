@@ -52,7 +52,7 @@ impl<S: ActiveScene> Environment for ActiveEnvironment<S> {
         };
         self.stream = Some(stream);
         self.moves = 0;
-        self.look.begin(&mut Random::at(stream))?;
+        self.look.begin(&mut Random::from_key(stream))?;
         self.look.observe(observation);
         Ok(Info::default())
     }

@@ -49,7 +49,7 @@ pub fn run_episode<S: ActiveScene>(
     seed: u64,
     mut gains: Option<&mut GainSamples>,
 ) -> Result<ActiveEpisode> {
-    look.begin(&mut Random::at([seed, 0xe415]))?;
+    look.begin(&mut Random::from_key([seed, 0xe415]))?;
     mover.begin(seed);
     let axes = look.scene().rig().axes().to_vec();
     let (mut observation, mut action) = (vec![0.0; Observer::LEN], vec![0.0; axes.len()]);

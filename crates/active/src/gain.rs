@@ -67,7 +67,7 @@ impl GainNetwork {
             )));
         }
         let network = Network::dense(&[width, 64, 32, 1], Activation::Relu)?;
-        let mut random = Random::at([seed, 0x6a14]);
+        let mut random = Random::from_key([seed, 0x6a14]);
         let mut parameters = vec![0.0; network.parameters()];
         let begin = Initialisation::Orthogonal { hidden: std::f32::consts::SQRT_2, output: 0.1 };
         network.initialise(begin, &mut random, &mut parameters);

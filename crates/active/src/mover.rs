@@ -3,7 +3,7 @@
 use opendr_engine::rig::{ViewAxis, ViewPose};
 use opendr_engine::{Random, Result};
 use opendr_kernels::Compute;
-use opendr_rl::{Acting, Policy, PolicyMemory};
+use opendr_rl::{ActionMode, Policy, PolicyMemory};
 
 use crate::gain::GainNetwork;
 
@@ -57,7 +57,7 @@ impl Default for RandomMover {
 
 impl Mover for RandomMover {
     fn begin(&mut self, seed: u64) {
-        self.0 = Random::at([seed, 0x3a4d]);
+        self.0 = Random::from_key([seed, 0x3a4d]);
     }
 
     fn choose(&mut self, _: &Situation<'_>, action: &mut [f32]) -> Result<bool> {
@@ -159,7 +159,7 @@ impl Mover for PolicyMover {
 
     fn choose(&mut self, situation: &Situation<'_>, action: &mut [f32]) -> Result<bool> {
         let Self { policy, compute, memory } = self;
-        policy.act(compute, situation.observation, Acting::Deterministic, memory, action)?;
+        policy.act(compute, situation.observation, ActionMode::Deterministic, memory, action)?;
         action.iter_mut().for_each(|axis| *axis = axis.clamp(-1.0, 1.0));
         Ok(true)
     }

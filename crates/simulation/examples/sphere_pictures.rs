@@ -25,7 +25,7 @@ fn main() -> Result<()> {
     let mut pixels = vec![0; 3 * SIDE * SIDE];
     let begun = Instant::now();
     for row in 0..ROWS {
-        let mut random = Random::at([7, row as u64]);
+        let mut random = Random::from_key([7, row as u64]);
         let asset = Asset::generate(subject, row as u32, 0)?;
         let conditions =
             Conditions { azimuth: 0.0, elevation: 0.1, distance: 3.0, ..Conditions::draw(&mut random) };

@@ -6,101 +6,11 @@ use opendr_engine::environment::Environment;
 use opendr_engine::params::ParamMap;
 use opendr_engine::{Error, Result};
 
-<<<<<<< HEAD
 use crate::classic_control::{Acrobot, CartPole, MountainCar, MountainCarContinuous, Pendulum};
 use crate::quad_track::QuadTrack;
 use crate::registration::Registration;
-use crate::uav_corridor;
 use crate::vector::{VecEnvironment, VectorOptions};
-=======
-use crate::classic_control::{
-    Acrobot, CartPole, CartPoleParams, MountainCar, MountainCarContinuous, Pendulum,
-};
-use crate::vector::{CartPoleVector, EnvironmentVector, VecEnvironment, VectorOptions};
-use crate::wrappers::{Checked, TimeLimit};
 use crate::{sphere_view, uav_corridor};
-
-/// An environment that the registry can make.
-pub trait Registered: Environment + Sized + 'static {
-    /// Name and version, as in `CartPole-v1`.
-    const ID: &'static str;
-    /// What a user may set.
-    type Params: Params;
-
-    /// The environment with these parameters.
-    ///
-    /// # Errors
-    /// `InvalidParam` when one is out of range.
-    fn new(params: &Self::Params) -> Result<Self>;
-}
-
-type Make = dyn Fn(&ParamMap) -> Result<Box<dyn Environment>> + Send + Sync;
-
-/// One environment of a [`Registry`].
-#[derive(Clone)]
-pub struct Registration {
-    id: String,
-    fields: &'static [Field],
-    make: Arc<Make>,
-}
-
-impl Registration {
-    /// An environment of the program. It is made with its time limit and with [`Checked`] around it.
-    pub fn of<E: Registered>() -> Self {
-        Self::new(E::ID, E::Params::FIELDS, |params| checked(E::new(&E::Params::from_map(params)?)?))
-    }
-
-    /// An environment that `make` makes.
-    pub fn new(
-        id: &str,
-        fields: &'static [Field],
-        make: impl Fn(&ParamMap) -> Result<Box<dyn Environment>> + Send + Sync + 'static,
-    ) -> Self {
-        Self { id: id.to_owned(), fields, make: Arc::new(make) }
-    }
-
-    /// Name and version.
-    pub fn id(&self) -> &str {
-        &self.id
-    }
-
-    /// What a user may set.
-    pub fn fields(&self) -> &'static [Field] {
-        self.fields
-    }
-
-    /// Makes the environment.
-    ///
-    /// # Errors
-    /// `InvalidParam` for parameters that it has not, or that are out of range.
-    pub fn make(&self, params: &ParamMap) -> Result<Box<dyn Environment>> {
-        (self.make)(params).map_err(|error| error.context(format!("making {}", self.id)))
-    }
-
-    /// Makes `options.count` environments that are stepped together.
-    ///
-    /// # Errors
-    /// As [`Self::make`], and `InvalidParam` for no environment or too many.
-    pub fn make_vec(&self, params: &ParamMap, options: VectorOptions) -> Result<Box<dyn VecEnvironment>> {
-        if self.id == <CartPole as Registered>::ID {
-            let carts = CartPoleParams::from_map(params)
-                .and_then(|params| CartPoleVector::new(&params, options.count, options.autoreset));
-            return Ok(Box::new(carts.map_err(|error| error.context(format!("making {}", self.id)))?));
-        }
-        let environments = (0..options.checked_count()?).map(|_| self.make(params));
-        let environments = environments.collect::<Result<Vec<_>>>()?;
-        Ok(Box::new(EnvironmentVector::new(environments, options.autoreset, options.threads)?))
-    }
-}
-
-/// An environment with the time limit of its spec and with checks.
-pub(crate) fn checked(environment: impl Environment + 'static) -> Result<Box<dyn Environment>> {
-    Ok(match environment.spec().max_episode_steps {
-        Some(limit) => Box::new(Checked::new(TimeLimit::new(environment, limit)?)),
-        None => Box::new(Checked::new(environment)),
-    })
-}
->>>>>>> 1b5c5611
 
 /// Environments by name and version.
 #[derive(Clone)]

@@ -106,7 +106,7 @@ fn sectors(name: &str, scene: &SphereScene) -> Result<()> {
     let mut look = Look::new(scene.clone(), Default::default(), 1)?;
     let mut counts = [[0u32; 2]; 4];
     for episode in 0..1500 {
-        look.begin(&mut Random::at([episode, 0x5ec]))?;
+        look.begin(&mut Random::from_key([episode, 0x5ec]))?;
         let azimuth = look.scene().world().conditions().azimuth.abs().to_degrees();
         let [right, all] = &mut counts[[30.0, 60.0, 90.0].iter().filter(|edge| azimuth > **edge).count()];
         *right += u32::from(look.belief().best().0 == look.class());

@@ -26,7 +26,7 @@ pub fn write(scene: &SphereScene, model: &ActiveModel, first: u64, rows: usize, 
     let axes = look.scene().rig().axes().to_vec();
     let (mut observation, mut action) = (vec![0.0; Observer::LEN], vec![0.0; axes.len()]);
     for row in 0..rows {
-        look.begin(&mut Random::at([first + row as u64, 0xe415]))?;
+        look.begin(&mut Random::from_key([first + row as u64, 0xe415]))?;
         mover.begin(first);
         for column in 0..columns {
             let (class, confidence) = look.belief().best();

@@ -57,7 +57,7 @@ pub fn fit_embedding(views: &ViewSet, config: &EmbeddingConfig, compute: &Comput
             views.len()
         )));
     }
-    let mut random = Random::at([config.seed, 0xe3b]);
+    let mut random = Random::from_key([config.seed, 0xe3b]);
     let mut embedding = Embedding::new(views.side, &config.kernels, config.hidden, config.dimension)?;
     let (classes, dimension) = (views.classes, config.dimension);
     let split = embedding.network.parameters();
@@ -65,7 +65,7 @@ pub fn fit_embedding(views: &ViewSet, config: &EmbeddingConfig, compute: &Comput
     let begin = Initialisation::Orthogonal { hidden: std::f32::consts::SQRT_2, output: 1.0 };
     embedding.network.initialise(begin, &mut random, &mut parameters[..split]);
     parameters[split..].iter_mut().for_each(|weight| *weight = random.normal() as f32);
-    let options = AdamOptions { decay: WeightDecay::Decoupled(1e-3), ..AdamOptions::default() };
+    let options = AdamOptions { weight_decay: WeightDecay::Decoupled(1e-3), ..AdamOptions::default() };
     let mut adam = Adam::new(parameters.len(), options);
     let mut gradients = vec![0.0; parameters.len()];
     let mut pass = Pass::new(classes, dimension);

@@ -55,7 +55,7 @@ impl ViewSet {
                 Some(person) => person.clone(),
                 None => Asset::generate(subject, class, instance)?,
             };
-            let mut random = Random::at([u64::from(first), number as u64, 0x71e3]);
+            let mut random = Random::from_key([u64::from(first), number as u64, 0x71e3]);
             let mut pixels = vec![0; VIEWS * 3 * side * side];
             for view in pixels.chunks_exact_mut(3 * side * side) {
                 let mut conditions = Conditions::draw(&mut random);

@@ -8,4 +8,4 @@ mod rigs;
 mod toy;
 
 #[global_allocator]
-static ALLOCATOR: opendr_test_allocator::Counting = opendr_test_allocator::Counting;
+static ALLOCATOR: opendr_test_allocator::CountingAllocator = opendr_test_allocator::CountingAllocator;

@@ -1,35 +1,19 @@
 //! The learner of end-to-end planning.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use opendr_engine::data::Observation;
-<<<<<<< HEAD
 use opendr_engine::environment::Space;
 use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
-=======
-use opendr_engine::environment::{Environment, EnvironmentSource, Space};
-use opendr_engine::learner::{FitJob, Learner, LearnerRl, Spec};
-use opendr_engine::model::{Model, ModelWriter};
-use opendr_engine::params::Params as _;
->>>>>>> bb3b7a7f
 use opendr_engine::target::RlTarget;
 use opendr_engine::{Device, Error, Random, Result, Task};
 use opendr_kernels::Compute;
-<<<<<<< HEAD
 use opendr_rl::{ActionMode, POLICY_FILE, Policy, PolicyMemory, PolicyParams, numbers_from_observation};
-use opendr_simulation::uav_corridor::FlightMemory;
+use opendr_simulation::uav_corridor::{FlightMemory, Surroundings};
 
-=======
-use opendr_rl::{
-    ActionMode, POLICY_FILE, Policy, PolicyMemory, PolicyParams, fit_policy, numbers_from_observation,
-};
-use opendr_simulation::uav_corridor::{FlightMemory, FlightMemoryWrapper, Surroundings};
+use super::container::surroundings_of;
 
-use super::learn_surroundings;
-use super::method::{EndToEndPlanningFitParams, PpoInCorridors};
-
->>>>>>> bb3b7a7f
 /// Flies a drone between obstacles by its depth camera (OpenDR's `EndToEndPlanningRLLearner`). The policy, trained by PPO,
 /// receives the memory of the flight and corrects the proposal of a planner with a horizon of two steps.
 ///
@@ -58,79 +42,10 @@ pub struct FlightState {
 const CORRIDOR: &str = "UavDepthCorridor-v1";
 /// Number of action axes: heading and change of yaw.
 const AXES: usize = 2;
-/// File of the surroundings in a container: little-endian f32 values.
-const SURROUNDINGS: &str = "surroundings.f32";
-
-/// Reads the surroundings of a container; none for a policy that was trained without them.
-///
-/// # Errors
-/// `Format` for a damaged file.
-pub fn surroundings_of(model: &Model) -> Result<Option<Arc<Surroundings>>> {
-    if !model.manifest().files.iter().any(|file| file.name == SURROUNDINGS) {
-        return Ok(None);
-    }
-    let bytes = model.file(SURROUNDINGS)?;
-    let (numbers, rest) = bytes.as_chunks::<4>();
-    if !rest.is_empty() {
-        return Err(Error::format(format!("{SURROUNDINGS} is cut off; train the policy again")));
-    }
-    let numbers = numbers.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
-    Ok(Some(Arc::new(Surroundings::new(numbers)?)))
-}
-
-/// Adds the surroundings to the container written by a training.
-fn add_surroundings(surroundings: &Surroundings, job: &FitJob<'_>) -> Result<()> {
-    let model = Model::open(job.model())?;
-    let files = &model.manifest().files;
-    let files = files.iter().map(|file| Ok((file.name.clone(), model.file(&file.name)?)));
-    let files = files.collect::<Result<Vec<_>>>()?;
-    let mut writer = ModelWriter::new(job.model(), model.manifest().clone())?;
-    files.iter().try_for_each(|(name, bytes)| writer.add(name, bytes))?;
-    let bytes = surroundings.parameters().iter().flat_map(|parameter| parameter.to_le_bytes());
-    writer.add(SURROUNDINGS, &bytes.collect::<Vec<_>>())?;
-    writer.finish().map(drop)
-}
-
 fn memory_with(surroundings: Option<&Arc<Surroundings>>) -> FlightMemory {
     match surroundings {
         None => FlightMemory::default(),
         Some(surroundings) => FlightMemory::default().with_surroundings(Arc::clone(surroundings)),
-    }
-}
-
-/// Surroundings that are learnt when the first environment has proved to be a corridor.
-struct SharedSurroundings<'a> {
-    known: Mutex<Option<Option<Arc<Surroundings>>>>,
-    find: &'a (dyn Fn() -> Result<Option<Arc<Surroundings>>> + Sync),
-}
-
-impl SharedSurroundings<'_> {
-    fn get(&self) -> Result<Option<Arc<Surroundings>>> {
-        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        match &*known {
-            Some(known) => Ok(known.clone()),
-            None => {
-                let found = (self.find)()?;
-                *known = Some(found.clone());
-                Ok(found)
-            }
-        }
-    }
-}
-
-/// A source of corridors with the map of the flight.
-struct MemorySource<'a> {
-    source: &'a dyn EnvironmentSource,
-    surroundings: &'a SharedSurroundings<'a>,
-}
-
-impl EnvironmentSource for MemorySource<'_> {
-    fn make(&self) -> Result<Box<dyn Environment>> {
-        let corridor = FlightMemoryWrapper::new(self.source.make()?)?;
-        Ok(match self.surroundings.get()? {
-            None => Box::new(corridor),
-            Some(surroundings) => Box::new(corridor.with_surroundings(surroundings)),
-        })
     }
 }
 
@@ -195,41 +110,3 @@ impl Learner for EndToEndPlanningRl {
         Ok(())
     }
 }
-<<<<<<< HEAD
-=======
-
-impl LearnerRl for EndToEndPlanningRl {
-    type FitParams = EndToEndPlanningFitParams;
-
-    fn fit(
-        base: Option<&Model>,
-        params: &PolicyParams,
-        fit_params: &EndToEndPlanningFitParams,
-        env: &dyn EnvironmentSource,
-        val_env: Option<&dyn EnvironmentSource>,
-        job: &FitJob<'_>,
-    ) -> Result<Statistics> {
-        let compute = Compute::with_threads(fit_params.training.num_workers);
-        let surroundings = SharedSurroundings {
-            known: Mutex::new(None),
-            find: &|| match (base, fit_params.surroundings_flights) {
-                (Some(base), _) => surroundings_of(base),
-                (None, 0) => Ok(None),
-                (None, flights) => {
-                    let learnt = learn_surroundings(flights, fit_params.seed, &compute, job.progress)?;
-                    Ok(Some(Arc::new(learnt)))
-                }
-            },
-        };
-        let remembered = |source| MemorySource { source, surroundings: &surroundings };
-        let (env, val_env) = (remembered(env), val_env.map(remembered));
-        let val_env = val_env.as_ref().map(|source| source as &dyn EnvironmentSource);
-        let statistics =
-            fit_policy::<PpoInCorridors>(base, &params.to_map(), fit_params, &env, val_env, job)?;
-        if let Some(surroundings) = surroundings.get()? {
-            add_surroundings(&surroundings, job)?;
-        }
-        Ok(statistics)
-    }
-}
->>>>>>> bb3b7a7f

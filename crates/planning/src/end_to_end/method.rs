@@ -1,20 +1,12 @@
 //! The training of end-to-end planning.
 
-use opendr_engine::environment::{Environment, EnvironmentSource, EnvironmentSpec};
-use opendr_engine::learner::{FitJob, Learner as _, LearnerRl, Spec};
-use opendr_engine::model::Model;
+use opendr_engine::Result;
+use opendr_engine::environment::{Environment, EnvironmentSpec};
+use opendr_engine::learner::{Learner as _, Spec};
 use opendr_engine::params::Params;
-use opendr_engine::{Result, Statistics};
 use opendr_kernels::Compute;
-<<<<<<< HEAD
-use opendr_rl::{
-    Algorithm as _, Method, Policy, PolicyParams, Ppo, PpoConfig, RlTrainingParams, Schedule, fit_policy,
-};
-use opendr_simulation::uav_corridor::FlightMemoryWrapper;
-=======
 use opendr_rl::prior::begin_as_prior;
 use opendr_rl::{Algorithm as _, Method, Policy, Ppo, PpoConfig, RlTrainingParams, Schedule};
->>>>>>> bb3b7a7f
 
 use super::{DenseObstacles, EndToEndPlanningRl, TrainingRewards};
 
@@ -108,20 +100,5 @@ impl Method for PpoInCorridors {
             None => begin_as_prior(&mut ppo, CORRECTION_LOG_STD)?,
         }
         Ok(ppo)
-    }
-}
-
-impl LearnerRl for EndToEndPlanningRl {
-    type FitParams = EndToEndPlanningFitParams;
-
-    fn fit(
-        base: Option<&Model>,
-        params: &PolicyParams,
-        fit_params: &EndToEndPlanningFitParams,
-        env: &dyn EnvironmentSource,
-        val_env: Option<&dyn EnvironmentSource>,
-        job: &FitJob<'_>,
-    ) -> Result<Statistics> {
-        fit_policy::<PpoInCorridors>(base, &params.to_map(), fit_params, env, val_env, job)
     }
 }

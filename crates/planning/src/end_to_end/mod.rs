@@ -1,14 +1,17 @@
 //! End-to-end planning from a depth camera to heading and yaw of a drone, as in OpenDR (Ugurlu, Pham and Kayacan,
 //! Sim-to-real deep reinforcement learning for safe end-to-end planning of aerial robots, 2022).
 
+mod container;
 mod dense_episodes;
+mod fit;
 mod learner;
 mod method;
 mod stern_rewards;
 mod surroundings;
 
+pub use container::surroundings_of;
 pub use dense_episodes::DenseObstacles;
-pub use learner::{EndToEndPlanningRl, FlightState, surroundings_of};
+pub use learner::{EndToEndPlanningRl, FlightState};
 pub use method::{EndToEndPlanningFitParams, PpoInCorridors};
 pub use stern_rewards::TrainingRewards;
 pub use surroundings::learn_surroundings;

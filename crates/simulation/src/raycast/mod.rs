@@ -52,14 +52,9 @@ pub(crate) fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-<<<<<<< HEAD
 /// Returns the vector scaled to length 1; up for the zero vector.
-fn unit(vector: Vector) -> Vector {
-=======
-/// The vector of length 1 in this direction; up where there is none.
 #[inline]
 pub(crate) fn unit(vector: Vector) -> Vector {
->>>>>>> 1b5c5611
     let size = length(vector);
     if size > 0.0 { vector.map(|part| part / size) } else { [0.0, 0.0, 1.0] }
 }

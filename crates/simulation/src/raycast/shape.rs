@@ -44,13 +44,8 @@ impl Shape {
         }
     }
 
-<<<<<<< HEAD
     /// Returns the radius of the bounding ball around the centre.
-    pub(super) fn reach(&self) -> f32 {
-=======
-    /// The radius of a ball around the centre with all of it inside.
     pub(crate) fn reach(&self) -> f32 {
->>>>>>> 1b5c5611
         match self {
             Self::Sphere { radius } => *radius,
             Self::Box { half } => length(*half),

@@ -13,7 +13,7 @@ use opendr_engine::{Random, Result};
 
 use super::{Asset, CLASSES, Conditions, SIDE, SphereWorld, Subject};
 use crate::classic_control::{check_length, not_begun};
-use crate::registry::checked;
+use crate::registration::checked;
 use crate::{NumpyRandom, Registration};
 
 /// Movements of an episode at most.
@@ -94,7 +94,7 @@ impl SphereView {
     }
 
     fn begin(&mut self, place: [u64; 2]) -> Result<()> {
-        let mut random = Random::at([place[0], place[1], self.subject as u64]);
+        let mut random = Random::from_key([place[0], place[1], self.subject as u64]);
         let class = random.below(self.subject.classes() as usize) as u32;
         let gallery = u64::from(self.params.gallery);
         let (generated, instance) = match self.subject {
@@ -145,7 +145,7 @@ impl Environment for SphereView {
         self.params = params;
         let place = match (seed, &self.episode) {
             (None, Some(Episode { place: [seed, number], .. })) => [*seed, number.wrapping_add(1)],
-            (seed, _) => [seed.unwrap_or_else(|| NumpyRandom::from_chance().bits()), 0],
+            (seed, _) => [seed.unwrap_or_else(|| NumpyRandom::from_entropy().bits()), 0],
         };
         self.begin(place)?;
         self.observe(observation)?;

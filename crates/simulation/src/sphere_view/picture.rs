@@ -36,11 +36,11 @@ impl Eye {
         pixels: &mut [u8],
     ) {
         let Self { camera, seen, sharp } = self;
-        camera.look(scene, pose, RANGE, seen);
+        camera.render_depth(scene, pose, RANGE, seen);
         let width = camera.width();
         let colours = sharp.as_chunks_mut::<3>().0;
         for (at, ((depth, body), colour)) in seen.depths().zip(seen.bodies()).zip(colours).enumerate() {
-            let direction = pose.turned(camera.direction(at % width, at / width));
+            let direction = pose.to_world(camera.direction(at % width, at / width));
             *colour = match body {
                 None => background(conditions, unit(direction)),
                 Some(number) => {

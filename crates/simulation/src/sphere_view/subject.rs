@@ -49,6 +49,6 @@ impl Subject {
 
     /// The random numbers of what is generated: `what` separates classes, persons, instances.
     pub(super) fn random(self, what: u64, number: u64) -> Random {
-        Random::at([0x5eed_5e7e, self as u64, what, number])
+        Random::from_key([0x5eed_5e7e, self as u64, what, number])
     }
 }

@@ -55,7 +55,7 @@ impl SphereWorld {
     pub fn begin(&mut self, asset: &Asset, conditions: &Conditions, seed: u64) -> Result<()> {
         self.asset.clone_from(asset);
         self.conditions = *conditions;
-        self.noise = Random::at([seed, 0xca3e7a]);
+        self.noise = Random::from_key([seed, 0xca3e7a]);
         self.motion = [0.0; 2];
         let Conditions { elevation, distance, .. } = *conditions;
         self.sphere.place(ViewPose { azimuth: 0.0, elevation, distance, fourth: 0.0 })?;
