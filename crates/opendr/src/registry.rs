@@ -44,6 +44,7 @@ use opendr_pose::{
     fall_detection::FallDetector,
     pose_estimation::{BlazePose, HighResolutionPoseEstimation, LightweightOpenPose, Movenet, Posenet},
 };
+use opendr_rl::prior::{ResidualPpoLearner, ResidualSacLearner, ResidualTd3Learner};
 use opendr_rl::{DqnLearner, PpoLearner, SacLearner, Td3Learner};
 #[cfg(feature = "segmentation")]
 use opendr_segmentation::{
@@ -180,6 +181,9 @@ pub fn registry() -> &'static Registry {
                 SacLearner,
                 Td3Learner,
                 DqnLearner,
+                ResidualPpoLearner,
+                ResidualSacLearner,
+                ResidualTd3Learner,
                 EndToEndPlanningRl,
             },
             #[cfg(feature = "test-learner")]

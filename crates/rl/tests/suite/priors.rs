@@ -262,7 +262,7 @@ fn demonstrations_have_their_share() {
     assert!(errors < 0.3, "{errors}");
 }
 
-/// An environment that tells the last action in its observation, and gives it as the reward.
+/// An environment with the last action as its observation and as its reward.
 struct Echo(EnvironmentSpec, u32);
 
 impl Echo {

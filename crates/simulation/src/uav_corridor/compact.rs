@@ -1,4 +1,4 @@
-//! The corridor as few numbers: the drone's state and the last picture, without a map and a planner.
+//! The corridor as few numbers: the drone's state and the last depth image, without a map and a planner.
 
 use opendr_engine::data::Image;
 use opendr_engine::environment::{
@@ -9,10 +9,10 @@ use opendr_engine::{Error, Result};
 use super::controllers::{COLUMNS, columns, spread_columns};
 use super::{CorridorController, CorridorObservation, FlightMemory, RANGE};
 
-/// A corridor that shows the drone's state and the last picture in 16 columns, and whose actions are those of the corridor. It holds
+/// A corridor that shows the drone's state and the last depth image in 16 columns, and whose actions are those of the corridor. It holds
 /// nothing of a map or a planner: what priors are measured in.
 ///
-/// Observations are the [`FlightMemory::STATE`] numbers of the state, then the smallest depth in each of 16 columns of the picture as a
+/// Observations are the [`FlightMemory::STATE`] numbers of the state, then the smallest depth in each of 16 columns of the depth image as a
 /// share of its range, then the way to the target in metres.
 #[derive(Debug, Clone)]
 pub struct CompactCorridor<E> {
@@ -118,7 +118,7 @@ pub struct CompactController<C> {
 }
 
 impl<C: CorridorController> CompactController<C> {
-    /// `controller`, which decides by columns of the picture.
+    /// `controller`, which decides by columns of the depth image.
     pub fn new(controller: C) -> Self {
         Self { controller, sight: CorridorObservation::default() }
     }
