@@ -20,7 +20,7 @@ pub fn is_policy(entry: &Entry) -> bool {
 pub fn add_for_episodes(command: Command) -> Command {
     add(command)
         .mut_arg(dataset_flags::DATASET, |dataset| dataset.required(false).hide(true))
-        .arg(episodes_flag())
+        .args(episode_flags())
 }
 
 /// Adds the flags of the environment.
@@ -38,12 +38,19 @@ pub fn param_flag() -> Arg {
         .help("Parameter of the environment (see \"opendr sim list ID\"); may be repeated")
 }
 
-fn episodes_flag() -> Arg {
-    Arg::new("episodes")
-        .long("episodes")
-        .value_parser(value_parser!(u64).range(1..=1_000_000))
-        .value_name("N")
-        .help("Number of episodes to evaluate, each with its own seed")
+fn episode_flags() -> [Arg; 2] {
+    [
+        Arg::new("episodes")
+            .long("episodes")
+            .value_parser(value_parser!(u64).range(1..=1_000_000))
+            .value_name("N")
+            .help("Number of episodes to evaluate, each with its own seed"),
+        Arg::new("first-seed")
+            .long("first-seed")
+            .value_parser(value_parser!(u64))
+            .value_name("N")
+            .help("Seed of the first evaluated episode; each further episode adds 1 [default: 1000000]"),
+    ]
 }
 
 /// Returns the environment that the user named, else the one that the model was trained in.

@@ -9,9 +9,7 @@ use opendr::evaluation::Teacher;
 use opendr::learner::{AnyLearner, AnyStream, Entry, Outputs, Port, Ports};
 use opendr::params::ParamMap;
 use opendr::rl::EvaluationProtocol;
-use opendr::{
-    Device, Error, FitData, FitEnvironments, FitOptions, PolicyController, Pool, Statistics, Value, ValueType,
-};
+use opendr::{Device, Error, FitData, FitEnvironments, FitOptions, Pool, Value, ValueType};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -177,7 +175,7 @@ impl Handle {
         })
     }
 
-    /// Evaluates the policy on `episodes` episodes with consecutive seeds. Returns the scalars as JSON.
+    /// Evaluates the policy on `episodes` episodes with consecutive seeds. Returns the report as JSON.
     fn eval_in(
         &self,
         py: Python<'_>,
@@ -188,12 +186,12 @@ impl Handle {
     ) -> PyResult<String> {
         let env = GivenEnvironments::from_python(env)?;
         PythonBar::new(!verbose).run(py, |bar| {
-            let stream = lock(&self.learner).stream()?;
             let mut environment = env.make()?;
-            let mut acting = PolicyController::new(stream, self.entry, environment.spec())?;
             let protocol = EvaluationProtocol { episodes, first_seed, ..EvaluationProtocol::default() };
-            let report = opendr::evaluate_policy(&mut acting, environment.as_mut(), &protocol, bar)?;
-            json_of(&Statistics::from(&report).scalars)
+            let learner = lock(&self.learner);
+            let report =
+                opendr::evaluate_learner(learner.as_ref(), self.entry, environment.as_mut(), &protocol, bar)?;
+            json_of(&report)
         })
     }
 

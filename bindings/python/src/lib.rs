@@ -23,6 +23,7 @@ mod metric;
 mod param;
 mod pixels;
 mod plugin;
+mod prior;
 mod registry;
 mod report;
 #[cfg(feature = "ros")]
@@ -69,6 +70,8 @@ fn _opendr(module: &Bound<'_, PyModule>) -> PyResult<()> {
         wrap_pyfunction!(metric::metrics, module)?,
         wrap_pyfunction!(metric::metric_of, module)?,
         wrap_pyfunction!(plugin::register, module)?,
+        wrap_pyfunction!(prior::priors, module)?,
+        wrap_pyfunction!(prior::register_prior, module)?,
         wrap_pyfunction!(plugin::check_learner, module)?,
         wrap_pyfunction!(command::main, module)?,
         wrap_pyfunction!(convert::json, module)?,

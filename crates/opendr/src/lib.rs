@@ -96,7 +96,9 @@ pub use opendr_stereo::stereo_matching;
 #[cfg(feature = "tracking")]
 pub use opendr_tracking::{object_tracking_2d, object_tracking_3d, tracking};
 pub use pipeline::Pipeline;
-pub use policy_evaluation::{PolicyController, evaluate_policy, training_environment};
+pub use policy_evaluation::{
+    PolicyController, PolicyEvaluation, evaluate_learner, evaluate_policy, training_environment,
+};
 pub use registry::registry;
 pub use smaller::optimize_loaded;
 pub use tune::{LearnerTraining, MakeLearner, TuneData, TuneOptions, Tuned, search_space, tune};

@@ -1,12 +1,15 @@
 //! Evaluation of policies in environments.
 
+use std::fmt;
 use std::time::Instant;
 
 use opendr_engine::environment::{Controller, Environment, EnvironmentSpec};
 use opendr_engine::learner::{AnyLearner, AnyStream, Entry, Ports};
 use opendr_engine::params::Params as _;
-use opendr_engine::{Error, Progress, Result, Unit, Value, ValueType};
+use opendr_engine::{Error, Progress, Result, ResultExt as _, Statistics, Unit, Value, ValueType};
+use opendr_rl::prior::{PriorReport, ReportedController, controllers_of_model};
 use opendr_rl::{EvaluationProtocol, EvaluationReport, evaluate_controller, observation_from_numbers};
+use serde::Serialize;
 
 /// A controller for an environment made from a learner's stream, whose state is reset at each episode.
 pub struct PolicyController {
@@ -63,6 +66,57 @@ impl Controller for PolicyController {
 /// Returns the id of the environment in which a loaded policy was trained, if its container names one.
 pub fn training_environment(learner: &dyn AnyLearner) -> Option<&str> {
     learner.model()?.manifest().inputs.get("environment")?.as_str()
+}
+
+/// Results of a policy: its statistics, and those of its parts where it has a prior or a shield.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct PolicyEvaluation {
+    /// Statistics of the policy as it is deployed, with its prior and shield.
+    #[serde(flatten)]
+    pub statistics: Statistics,
+    /// Prior, policy and both on the same episodes, with the share of shielded steps.
+    #[serde(skip_serializing_if = "no_rows")]
+    pub controllers: PriorReport,
+}
+
+fn no_rows(report: &PriorReport) -> bool {
+    report.rows.is_empty()
+}
+
+impl fmt::Display for PolicyEvaluation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.statistics)?;
+        if no_rows(&self.controllers) { Ok(()) } else { write!(f, "\n{}", self.controllers) }
+    }
+}
+
+/// Evaluates a loaded policy on episodes with fixed seeds; one with a prior or a shield also by its parts.
+///
+/// # Errors
+/// As [`evaluate_policy`], [`PolicyController::new`] and [`controllers_of_model`].
+pub fn evaluate_learner(
+    learner: &dyn AnyLearner,
+    entry: &Entry,
+    environment: &mut dyn Environment,
+    protocol: &EvaluationProtocol,
+    progress: &dyn Progress,
+) -> Result<PolicyEvaluation> {
+    let mut acting = PolicyController::new(learner.stream()?, entry, environment.spec())?;
+    let parts = learner.model().map(|model| controllers_of_model(model, &learner.params()));
+    let Some(parts) = parts.transpose()?.flatten() else {
+        let report = evaluate_policy(&mut acting, environment, protocol, progress)?;
+        return Ok(PolicyEvaluation { statistics: Statistics::from(&report), ..Default::default() });
+    };
+    let mut rows = Vec::new();
+    for mut part in parts {
+        progress.status(part.name());
+        let evaluation = evaluate_policy(&mut part, environment, protocol, progress)
+            .context(|| format!("evaluating the {}", part.name()))?;
+        let (name, shielded) = (part.name().to_owned(), part.shielded_share());
+        rows.push(ReportedController { name, evaluation, shielded });
+    }
+    let statistics = rows.last().map(|row| Statistics::from(&row.evaluation)).unwrap_or_default();
+    Ok(PolicyEvaluation { statistics, controllers: PriorReport { rows } })
 }
 
 /// Evaluates a controller on episodes with fixed seeds. A requested stop ends the evaluation with the episodes so far.

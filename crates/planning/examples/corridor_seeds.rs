@@ -13,10 +13,10 @@ use opendr_engine::environment::{Controller, Environment, Step};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::params::Params as _;
 use opendr_engine::{Device, Error, Result};
-use opendr_planning::end_to_end::{EndToEndPlanningFitParams, EndToEndPlanningRl, surroundings_of};
-use opendr_rl::{
-    EvaluationProtocol, PolicyParams, SuccessRate, evaluate_controller, observation_from_numbers,
+use opendr_planning::end_to_end::{
+    EndToEndPlanningFitParams, EndToEndPlanningRl, FlightParams, surroundings_of,
 };
+use opendr_rl::{EvaluationProtocol, SuccessRate, evaluate_controller, observation_from_numbers};
 use opendr_simulation::uav_corridor::FlightMemoryWrapper;
 use opendr_simulation::{RegisteredSource, make};
 
@@ -85,7 +85,7 @@ fn fit_params(seed: u64) -> Result<EndToEndPlanningFitParams> {
 }
 
 fn trained(seed: u64, folder: &Path) -> Result<Handle<EndToEndPlanningRl>> {
-    let mut learner = Handle::<EndToEndPlanningRl>::new(PolicyParams::default(), Device::Cpu)?;
+    let mut learner = Handle::<EndToEndPlanningRl>::new(FlightParams::default(), Device::Cpu)?;
     let corridors = RegisteredSource::new(EVALUATED[0], &Default::default())?;
     learner.fit_in(&fit_params(seed)?, &corridors, None, &FitJob::new(folder))?;
     Ok(learner)

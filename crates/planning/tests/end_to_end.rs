@@ -7,10 +7,8 @@ use opendr_engine::environment::{Environment, ResetOptions, Step};
 use opendr_engine::learner::{FitJob, Handle, Learner as _};
 use opendr_engine::model::{Manifest, Model, ModelWriter};
 use opendr_engine::{Device, ErrorKind, Result};
-use opendr_planning::end_to_end::{EndToEndPlanningFitParams, EndToEndPlanningRl};
-use opendr_rl::{
-    EvaluationProtocol, POLICY_FILE, PolicyParams, evaluate_controller, observation_from_numbers,
-};
+use opendr_planning::end_to_end::{EndToEndPlanningFitParams, EndToEndPlanningRl, FlightParams};
+use opendr_rl::{EvaluationProtocol, POLICY_FILE, evaluate_controller, observation_from_numbers};
 use opendr_simulation::make;
 
 struct Folder(PathBuf);
@@ -30,7 +28,7 @@ impl Drop for Folder {
 }
 
 fn handle() -> Handle<EndToEndPlanningRl> {
-    Handle::new(PolicyParams::default(), Device::Cpu).unwrap()
+    Handle::new(FlightParams::default(), Device::Cpu).unwrap()
 }
 
 /// Returns a learner with OpenDR's pretrained policy.

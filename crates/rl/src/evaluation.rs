@@ -9,6 +9,7 @@ use opendr_kernels::Compute;
 use opendr_metrics::{Interval, wilson_interval};
 
 use crate::policy::{ActionMode, Policy, PolicyMemory};
+use crate::prior::{Shield, ShieldedController};
 
 /// Episodes of an evaluation, and how the policy acts in them.
 #[derive(Debug, Clone, PartialEq, Params)]
@@ -79,6 +80,19 @@ pub fn evaluate(
     environment: &mut dyn Environment,
     protocol: &EvaluationProtocol,
 ) -> Result<EvaluationReport> {
+    evaluate_under(None, policy, environment, protocol)
+}
+
+/// Evaluates a policy as [`evaluate`] does, under a shield.
+///
+/// # Errors
+/// As [`evaluate`], and those of the shield.
+pub fn evaluate_under(
+    shield: Option<&mut Shield>,
+    policy: &Policy,
+    environment: &mut dyn Environment,
+    protocol: &EvaluationProtocol,
+) -> Result<EvaluationReport> {
     let spec = environment.spec();
     if (&spec.observation, &spec.action) != (policy.observation(), policy.action()) {
         return Err(Error::invalid_input(format!(
@@ -90,33 +104,45 @@ pub fn evaluate(
             policy.action()
         )));
     }
-    let mut controller = PolicyController {
-        policy,
-        compute: Compute::single(),
-        memory: PolicyMemory::default(),
-        random: (!protocol.deterministic).then(|| Random::from_key([protocol.first_seed, 1])),
-    };
+    let random = (!protocol.deterministic).then(|| Random::from_key([protocol.first_seed, 1]));
+    let (compute, memory) = (Compute::single(), PolicyMemory::default());
+    let mut controller = PolicyController { policy, compute, memory, random };
     let success = |step: &Step| step.info.success();
-    evaluate_controller(&mut controller, environment, protocol, &success)
+    match shield {
+        None => evaluate_controller(&mut controller, environment, protocol, &success),
+        Some(shield) => {
+            let mut shielded = ShieldedController::new(controller, shield);
+            evaluate_controller(&mut shielded, environment, protocol, &success)
+        }
+    }
 }
 
 /// A policy that acts in one environment.
-struct PolicyController<'a> {
-    policy: &'a Policy,
+struct PolicyController<P> {
+    policy: P,
     compute: Compute,
     memory: PolicyMemory,
     /// None for the most likely actions.
     random: Option<Random>,
 }
 
-impl Controller for PolicyController<'_> {
+/// Returns the controller of a policy, with sampled actions if a seed is given.
+pub(crate) fn policy_controller<P: AsRef<Policy> + Send>(
+    policy: P,
+    seed: Option<u64>,
+) -> impl Controller + Send + use<P> {
+    let (compute, memory) = (Compute::single(), PolicyMemory::default());
+    PolicyController { policy, compute, memory, random: seed.map(Random::new) }
+}
+
+impl<P: AsRef<Policy>> Controller for PolicyController<P> {
     fn reset(&mut self) {
         self.memory.reset(0);
     }
 
     fn act(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()> {
         let acting = self.random.as_mut().map_or(ActionMode::Deterministic, ActionMode::Sampled);
-        self.policy.act(&self.compute, observation, acting, &mut self.memory, action)
+        self.policy.as_ref().act(&self.compute, observation, acting, &mut self.memory, action)
     }
 }
 

@@ -57,6 +57,7 @@ pub use dqn::{Dqn, DqnConfig};
 pub use episodes::{Episode, Episodes};
 pub use evaluation::{
     EvaluatedEpisode, EvaluationProtocol, EvaluationReport, SuccessRate, evaluate, evaluate_controller,
+    evaluate_under,
 };
 pub use learner::{
     DqnFitParams, DqnLearner, DqnMethod, Method, PolicyLearner, PolicyParams, PolicyState, PpoFitParams,

@@ -10,13 +10,14 @@ use opendr_engine::params::{ParamMap, Params as _};
 use opendr_engine::{Error, ErrorKind, Result, ResultExt as _, Statistics, Unit};
 use opendr_kernels::Compute;
 use opendr_runlog::{Checkpoints, RunLog};
-use opendr_simulation::vector::{Autoreset, EnvironmentVector};
+use opendr_simulation::vector::{Autoreset, EnvironmentVector, VecEnvironment};
 
 use crate::algorithm::Algorithm;
-use crate::evaluation::{EvaluationProtocol, EvaluationReport, evaluate};
+use crate::evaluation::{EvaluationProtocol, EvaluationReport, evaluate_under};
 use crate::learner::{Method, RlTrainingParams};
 use crate::onnx::onnx_from_policy;
 use crate::policy::Policy;
+use crate::prior::{Shield, ShieldParams, ShieldedVector};
 
 /// File of the policy in a container.
 pub const POLICY_FILE: &str = "policy.safetensors";
@@ -33,7 +34,9 @@ type Measured = Vec<(u64, f64, Option<f64>)>;
 
 struct Training<'a, A> {
     algorithm: A,
-    environments: EnvironmentVector,
+    environments: Box<dyn VecEnvironment>,
+    /// Shield of the evaluations.
+    shield: Option<Shield>,
     params: &'a RlTrainingParams,
     val_env: Option<Box<dyn Environment>>,
     checkpoints: Checkpoints,
@@ -45,13 +48,14 @@ struct Training<'a, A> {
 }
 
 /// Trains a policy by the method `M` and writes the best evaluated one into [`FitJob::model`]. This is `fit` of the learners.
-/// `params` are the parameters of the learner, for the container.
+/// `params` are the parameters of the learner, for the container, and `shield` is the shield among them.
 ///
 /// # Errors
 /// As [`LearnerRl::fit`](opendr_engine::learner::LearnerRl::fit).
 pub fn fit_policy<M: Method>(
     base: Option<&Model>,
     params: &ParamMap,
+    shield: &ShieldParams,
     fit_params: &M::FitParams,
     env: &dyn EnvironmentSource,
     val_env: Option<&dyn EnvironmentSource>,
@@ -61,22 +65,28 @@ pub fn fit_policy<M: Method>(
     let begun = Instant::now();
     let first = env.make()?;
     let id = first.spec().id.clone();
-    let first = M::wrap(fit_params, first, true)?;
-    let spec = first.spec().clone();
     let fit_params = M::with_preset(fit_params, &id);
     fit_params.check()?;
+    let first = M::wrap(&fit_params, first, true)?;
+    let spec = first.spec().clone();
     let training = M::training(&fit_params);
-    let further = (1..training.n_envs).map(|_| M::wrap(&fit_params, env.make()?, true));
+    let make = || M::wrap(&fit_params, env.make()?, true);
+    let further = (1..training.n_envs).map(|_| make());
     let environments = std::iter::once(Ok(first)).chain(further).collect::<Result<Vec<_>>>()?;
     let environments = EnvironmentVector::new(environments, Autoreset::SameStep, training.num_workers)?;
+    let shield = || M::shield(&fit_params, shield, &spec.observation);
+    let environments = shielded(environments, &shield)?;
     let compute = if training.num_workers > 1 {
         Compute::with_threads(training.num_workers)
     } else {
         Compute::single()
     };
+    let mut algorithm = M::algorithm(&fit_params, &spec, compute, base.as_ref())?;
+    M::prepare(&fit_params, &mut algorithm, base.is_some(), &make)?;
     let mut training = Training {
-        algorithm: M::algorithm(&fit_params, &spec, compute, base.as_ref())?,
+        algorithm,
         environments,
+        shield: shield()?,
         params: training,
         val_env: evaluation_environment::<M>(&fit_params, env, val_env)?,
         checkpoints: Checkpoints::new(&job.output.join(CHECKPOINTS), training.checkpoints_kept)?,
@@ -92,6 +102,18 @@ pub fn fit_policy<M: Method>(
     let policy = training.best_policy()?;
     write_model::<M>(&policy, &id, params, &fit_params, best_of(&training.measured), job)?;
     Ok(training.statistics(begun))
+}
+
+/// Puts a shield before each environment, if there is one.
+fn shielded(
+    environments: EnvironmentVector,
+    shield: &dyn Fn() -> Result<Option<Shield>>,
+) -> Result<Box<dyn VecEnvironment>> {
+    let shields = (0..environments.count()).map(|_| shield()).collect::<Result<Option<Vec<_>>>>()?;
+    Ok(match shields {
+        None => Box::new(environments),
+        Some(shields) => Box::new(ShieldedVector::new(environments, shields)?),
+    })
 }
 
 /// Returns the environment for evaluations: from `val_env`, else another of `env` if the source can make one.
@@ -114,7 +136,7 @@ impl<A: Algorithm> Training<'_, A> {
     /// Resumes from the last checkpoint, if the job asks for it and there is one. Returns its step.
     fn resume(&mut self) -> Result<Option<u64>> {
         let loaded = match self.job.resume {
-            true => self.algorithm.load(&self.checkpoints, &mut self.environments)?,
+            true => self.algorithm.load(&self.checkpoints, &mut *self.environments)?,
             false => None,
         };
         let Some(checkpoint) = loaded else { return Ok(None) };
@@ -161,7 +183,7 @@ impl<A: Algorithm> Training<'_, A> {
     /// Runs one iteration, logs it, and evaluates and saves when due.
     fn step(&mut self, total: u64) -> Result<()> {
         let before = self.algorithm.report().timesteps;
-        let report = self.algorithm.iterate(&mut self.environments, total)?;
+        let report = self.algorithm.iterate(&mut *self.environments, total)?;
         let now = report.timesteps;
         if let Some(mean) = report.mean_return {
             self.log.scalar("return", now, mean)?;
@@ -196,7 +218,8 @@ impl<A: Algorithm> Training<'_, A> {
         }
         let episodes = self.params.n_eval_episodes;
         let protocol = EvaluationProtocol { episodes, ..EvaluationProtocol::default() };
-        let report = evaluate(self.algorithm.policy(), &mut **val_env, &protocol)?;
+        let policy = self.algorithm.policy();
+        let report = evaluate_under(self.shield.as_mut(), policy, &mut **val_env, &protocol)?;
         let EvaluationReport { mean_return, mean_length, success, .. } = report;
         self.log.scalar("val_return", now, mean_return)?;
         self.log.scalar("val_episode_length", now, mean_length)?;
@@ -222,7 +245,7 @@ impl<A: Algorithm> Training<'_, A> {
         })?;
         let best = self.best.clone().map(|best| (BEST.to_owned(), best));
         let further = std::iter::once((MEASURED.to_owned(), measured)).chain(best).collect();
-        self.algorithm.save_with(&self.checkpoints, &self.environments, further)?;
+        self.algorithm.save_with(&self.checkpoints, &*self.environments, further)?;
         self.saved_at = now;
         Ok(())
     }

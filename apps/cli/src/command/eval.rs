@@ -1,6 +1,6 @@
 //! `opendr eval`: evaluates a learner on a data set, or a policy in an environment.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::dataset::{DatasetIterator, DatasetRef};
@@ -11,7 +11,7 @@ use opendr::learner::Entry;
 use opendr::metrics::{self, MetricEntry};
 use opendr::params::ParamMap;
 use opendr::rl::EvaluationProtocol;
-use opendr::{Pipeline, PolicyController, Progress, Result, Statistics};
+use opendr::{Error, Pipeline, PolicyEvaluation, Progress, Result};
 
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
@@ -28,6 +28,7 @@ Examples:
   opendr eval nanodet MOT17/train/ --then byte_track           a pipeline, by its last learner's metric
   opendr eval LEARNER mine/ --classes lorry=truck,tram=train   classes whose names differ
   opendr eval ppo --env CartPole-v1 --episodes 500             a policy in an environment
+  opendr eval residual_ppo --model runs/mine/model             prior, policy and both on the same episodes
 
 An interrupted evaluation with --out resumes when the same command runs again.";
 
@@ -127,20 +128,35 @@ fn in_environment(
     let learner = loading::load(spec, &learner_flags::params(entry, matches)?, matches, bar)?;
     let source = environment_flags::source(matches, Some(learner.as_ref()))?;
     let mut environment = source.make()?;
-    let mut acting = PolicyController::new(learner.stream()?, entry, environment.spec())?;
     let mut protocol = EvaluationProtocol::default();
     if let Some(episodes) = matches.get_one::<u64>("episodes") {
         protocol.episodes = *episodes;
     }
-    let report = opendr::evaluate_policy(&mut acting, environment.as_mut(), &protocol, bar)?;
-    let statistics = Statistics::from(&report);
+    if let Some(seed) = matches.get_one::<u64>("first-seed") {
+        protocol.first_seed = *seed;
+    }
+    let report = opendr::evaluate_learner(learner.as_ref(), entry, environment.as_mut(), &protocol, bar)?;
     if matches.get_flag("json") {
-        stdout::print_json(&statistics)?;
+        stdout::print_json(&report)?;
     } else {
         stdout::print(format_args!("{spec} in {}", source.id()))?;
-        stdout::print(statistics.to_string().trim_end())?;
+        stdout::print(report.to_string().trim_end())?;
+    }
+    if let Some(folder) = matches.get_one::<PathBuf>("out") {
+        bar.note(&format!("written: {}", written_report(&report, folder)?.display()));
     }
     Ok(Outcome::Done)
+}
+
+/// Writes the evaluation of a policy as `report.json` and returns its path.
+fn written_report(report: &PolicyEvaluation, folder: &Path) -> Result<PathBuf> {
+    let path = folder.join("report.json");
+    let text = serde_json::to_string_pretty(report)
+        .map_err(|error| Error::internal("the report cannot be written as JSON").with_source(error))?;
+    std::fs::create_dir_all(folder)
+        .and_then(|()| std::fs::write(&path, text + "\n"))
+        .map_err(|error| Error::io(format!("writing {}", path.display())).with_source(error))?;
+    Ok(path)
 }
 
 /// Returns the metric's parameters that the user set.

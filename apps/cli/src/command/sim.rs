@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgMatches, Command, value_parser};
 use opendr::environment::{Controller, Environment, EnvironmentSource, ResetOptions, Space, Step};
+use opendr::rl::prior::{Prior, PriorId, SafetyRule};
 use opendr::simulation::{Recording, RegisteredSource, Registry};
 use opendr::{Error, PolicyController, Progress, Random, Result, Unit};
 
@@ -15,6 +16,7 @@ const EXAMPLES: &str = "\
 Examples:
   opendr sim list                                               list the environments
   opendr sim list UavDepthCorridor-v1                           list its spaces and parameters
+  opendr sim priors                                             list the prior controllers
   opendr sim view CartPole-v1                                   an episode of random actions, as CartPole-v1.gif
   opendr sim view CartPole-v1 --learner ppo --out cart.mp4      an episode of a policy (mp4 needs ffmpeg)
   opendr sim view UavDepthCorridor-v1 --env-param max_obstacles=10 --seed 7 --out flight.png";
@@ -57,10 +59,11 @@ pub fn grammar() -> Command {
         ])
         .args(loading::flags());
     Command::new("sim")
-        .about("List the environments for reinforcement learning and record videos of them")
+        .about("List the environments and priors of reinforcement learning and record videos of them")
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommands([
+            Command::new("priors").about("List the prior controllers and the safety rules of shields"),
             Command::new("list").about("List the environments").arg(
                 Arg::new(ID).value_name("ID").help("List the spaces and parameters of this environment"),
             ),
@@ -73,6 +76,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     match matches.subcommand() {
         Some(("list", matches)) => list(matches),
         Some(("view", matches)) => view(matches),
+        Some(("priors", _)) => priors(),
         _ => Ok(Outcome::Done),
     }
 }
@@ -106,6 +110,17 @@ fn list(matches: &ArgMatches) -> Result<Outcome> {
             range.unwrap_or_default(),
             field.doc
         ))?;
+    }
+    Ok(Outcome::Done)
+}
+
+fn priors() -> Result<Outcome> {
+    for prior in Prior::all() {
+        let PriorId { name, version } = prior.id();
+        stdout::print(format_args!("{name:28} version {version}: {}", prior.description()))?;
+    }
+    for rule in SafetyRule::all() {
+        stdout::print(format_args!("{:28} safety rule: {}", rule.name(), rule.description()))?;
     }
     Ok(Outcome::Done)
 }

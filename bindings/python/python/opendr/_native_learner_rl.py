@@ -93,14 +93,19 @@ class NativeLearnerRL(NativeBase, LearnerRL):
 
         Returns:
             ``mean_return``, ``std_return``, ``mean_length``, ``episodes``, and, if the environment reports success,
-            ``success_rate`` with its 95 % interval, ``success_rate_low`` and ``success_rate_high``.
+            ``success_rate`` with its 95 % interval, ``success_rate_low`` and ``success_rate_high``. A policy with a prior or a
+            shield also has ``controllers``: the same of prior, policy and both on the same episodes, each with its ``name``
+            and, under a shield, the share of ``shielded`` steps.
 
         Raises:
             FileNotFoundError: No model is loaded.
             ValueError: The environment has other spaces than the policy.
         """
         given = self._environments(env, env_params)
-        numbers: dict[str, Any] = json.loads(self._handle.eval_in(given, episodes, first_seed, verbose))
+        report = json.loads(self._handle.eval_in(given, episodes, first_seed, verbose))
+        numbers: dict[str, Any] = report["scalars"]
+        if "controllers" in report:
+            numbers["controllers"] = report["controllers"]
         return numbers
 
     def _environments(self, env: Any, params: Optional[dict[str, Any]]) -> Any:

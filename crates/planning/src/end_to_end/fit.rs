@@ -8,13 +8,14 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params as _;
 use opendr_engine::{Result, Statistics};
 use opendr_kernels::Compute;
-use opendr_rl::{PolicyParams, fit_policy};
+use opendr_rl::fit_policy;
+use opendr_rl::prior::ShieldParams;
 use opendr_simulation::uav_corridor::{FlightMemoryWrapper, Surroundings};
 
-use super::EndToEndPlanningRl;
 use super::container::{add_surroundings, surroundings_of};
 use super::method::{EndToEndPlanningFitParams, PpoInCorridors};
 use super::surroundings::learn_surroundings;
+use super::{EndToEndPlanningRl, FlightParams};
 
 /// Surroundings that are learnt when the first environment has proved to be a corridor.
 struct SharedSurroundings<'a> {
@@ -57,7 +58,7 @@ impl LearnerRl for EndToEndPlanningRl {
 
     fn fit(
         base: Option<&Model>,
-        params: &PolicyParams,
+        params: &FlightParams,
         fit_params: &EndToEndPlanningFitParams,
         env: &dyn EnvironmentSource,
         val_env: Option<&dyn EnvironmentSource>,
@@ -78,8 +79,15 @@ impl LearnerRl for EndToEndPlanningRl {
         let remembered = |source| MemorySource { source, surroundings: &surroundings };
         let (env, val_env) = (remembered(env), val_env.map(remembered));
         let val_env = val_env.as_ref().map(|source| source as &dyn EnvironmentSource);
-        let statistics =
-            fit_policy::<PpoInCorridors>(base, &params.to_map(), fit_params, &env, val_env, job)?;
+        let statistics = fit_policy::<PpoInCorridors>(
+            base,
+            &params.to_map(),
+            &ShieldParams::default(),
+            fit_params,
+            &env,
+            val_env,
+            job,
+        )?;
         if let Some(surroundings) = surroundings.get()? {
             add_surroundings(&surroundings, job)?;
         }

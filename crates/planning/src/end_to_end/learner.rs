@@ -6,13 +6,25 @@ use opendr_engine::data::Observation;
 use opendr_engine::environment::Space;
 use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
+use opendr_engine::params::Params;
 use opendr_engine::target::RlTarget;
 use opendr_engine::{Device, Error, Random, Result, Task};
 use opendr_kernels::Compute;
-use opendr_rl::{ActionMode, POLICY_FILE, Policy, PolicyMemory, PolicyParams, numbers_from_observation};
+use opendr_rl::{ActionMode, POLICY_FILE, Policy, PolicyMemory, numbers_from_observation};
 use opendr_simulation::uav_corridor::{FlightMemory, Surroundings};
 
 use super::container::surroundings_of;
+
+/// Parameters of a flight.
+#[derive(Debug, Clone, PartialEq, Params)]
+pub struct FlightParams {
+    /// Whether the policy takes its most likely actions instead of sampling.
+    #[param(default = true, live)]
+    pub deterministic: bool,
+    /// Seed of sampled actions, at the start of a stream.
+    #[param(default = 0)]
+    pub seed: u64,
+}
 
 /// Flies a drone between obstacles by its depth camera (OpenDR's `EndToEndPlanningRLLearner`). The policy, trained by PPO,
 /// receives the memory of the flight and corrects the proposal of a planner with a horizon of two steps.
@@ -22,7 +34,7 @@ use super::container::surroundings_of;
 /// degrees. A stream is a flight; `reset` starts another.
 pub struct EndToEndPlanningRl {
     policy: Policy,
-    params: PolicyParams,
+    params: FlightParams,
     surroundings: Option<Arc<Surroundings>>,
     /// Space of the input observations.
     space: Space,
@@ -53,12 +65,12 @@ impl Learner for EndToEndPlanningRl {
     const SPEC: Spec = Spec::new("end_to_end_planning", Task::EndToEndPlanning)
         .class("EndToEndPlanningRLLearner")
         .about("Flies a drone between obstacles: maps its depth images to heading and yaw.");
-    type Params = PolicyParams;
+    type Params = FlightParams;
     type Input<'a> = &'a Observation;
     type Target = RlTarget;
     type State = FlightState;
 
-    fn load(model: &Model, params: PolicyParams, device: Device) -> Result<Self> {
+    fn load(model: &Model, params: FlightParams, device: Device) -> Result<Self> {
         if !matches!(device, Device::Auto | Device::Cpu) {
             return Err(Error::device(format!(
                 "end-to-end planning runs on the CPU, not on {device}; give \"cpu\" or \"auto\""
@@ -79,11 +91,11 @@ impl Learner for EndToEndPlanningRl {
         Ok(Self { policy, params, surroundings, space, compute: Compute::single() })
     }
 
-    fn params(&self) -> &PolicyParams {
+    fn params(&self) -> &FlightParams {
         &self.params
     }
 
-    fn params_mut(&mut self) -> &mut PolicyParams {
+    fn params_mut(&mut self) -> &mut FlightParams {
         &mut self.params
     }
 

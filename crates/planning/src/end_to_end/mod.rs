@@ -11,7 +11,7 @@ mod surroundings;
 
 pub use container::surroundings_of;
 pub use dense_episodes::DenseObstacles;
-pub use learner::{EndToEndPlanningRl, FlightState};
+pub use learner::{EndToEndPlanningRl, FlightParams, FlightState};
 pub use method::{EndToEndPlanningFitParams, PpoInCorridors};
 pub use stern_rewards::TrainingRewards;
 pub use surroundings::learn_surroundings;

@@ -1,6 +1,6 @@
 //! The training methods of policy learners.
 
-use opendr_engine::environment::{Environment, EnvironmentSpec};
+use opendr_engine::environment::{Environment, EnvironmentSpec, Space};
 use opendr_engine::learner::Spec;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, Task};
@@ -9,6 +9,9 @@ use opendr_kernels::Compute;
 use super::training_params::{RlTrainingParams, over_preset};
 use crate::algorithm::Algorithm;
 use crate::policy::Policy;
+use crate::prior::{
+    ClonedDemonstrations, Demonstrating, MakeEnvironment, ReplayedDemonstrations, Shield, ShieldParams,
+};
 use crate::{Dqn, DqnConfig, Ppo, PpoConfig, Preset, Sac, SacConfig, Td3, Td3Config};
 
 /// A training algorithm with the parameters of its learner.
@@ -45,6 +48,30 @@ pub trait Method: Send + Sync + 'static {
         Ok(Vec::new())
     }
 
+    /// Returns the shield of an environment with observations of `space`; none where `shield` disables it.
+    ///
+    /// # Errors
+    /// `InvalidParam` for a shield that the policy does not support; as [`ShieldParams::shield`].
+    fn shield(params: &Self::FitParams, shield: &ShieldParams, space: &Space) -> Result<Option<Shield>> {
+        let _ = params;
+        shield.shield(space)
+    }
+
+    /// Prepares the algorithm before the training, e.g. by demonstrations in an environment that `make` creates. `from_base` states
+    /// whether it starts from a policy.
+    ///
+    /// # Errors
+    /// As [`Demonstrating::prepare`].
+    fn prepare(
+        params: &Self::FitParams,
+        algorithm: &mut Self::Algorithm,
+        from_base: bool,
+        make: MakeEnvironment<'_>,
+    ) -> Result<()> {
+        let _ = (params, algorithm, from_base, make);
+        Ok(())
+    }
+
     /// Returns the parameters that do not depend on the method.
     fn training(params: &Self::FitParams) -> &RlTrainingParams;
 
@@ -63,7 +90,7 @@ pub trait Method: Send + Sync + 'static {
 macro_rules! method {
     (
         $(#[$doc:meta])* $method:ident, $(#[$fit_doc:meta])* $fit_params:ident,
-        $algorithm:ident($config:ident), $spec:expr, $preset:expr
+        $algorithm:ident($config:ident), $spec:expr, $preset:expr $(, $demonstrations:ident)?
     ) => {
         $(#[$doc])*
         #[derive(Debug, Clone, Copy)]
@@ -75,6 +102,11 @@ macro_rules! method {
             /// Settings of the method.
             #[param(flatten)]
             pub config: $config,
+            $(
+                /// Settings of demonstrations.
+                #[param(flatten)]
+                pub demonstrations: $demonstrations,
+            )?
             /// Settings of any training in environments.
             #[param(flatten)]
             pub training: RlTrainingParams,
@@ -95,8 +127,25 @@ macro_rules! method {
                 let defaults = RlTrainingParams::default();
                 let training =
                     RlTrainingParams { n_envs: environments, total_timesteps: timesteps, ..defaults };
-                over_preset(params, &$fit_params { config, training })
+                let preset = $fit_params {
+                    config,
+                    $(demonstrations: $demonstrations::default(),)?
+                    training,
+                };
+                over_preset(params, &preset)
             }
+
+            $(
+                fn prepare(
+                    params: &$fit_params,
+                    algorithm: &mut $algorithm,
+                    from_base: bool,
+                    make: MakeEnvironment<'_>,
+                ) -> Result<()> {
+                    let demonstrations: &$demonstrations = &params.demonstrations;
+                    demonstrations.prepare(algorithm, from_base, make)
+                }
+            )?
 
             fn training(params: &$fit_params) -> &RlTrainingParams {
                 &params.training
@@ -130,7 +179,8 @@ method! {
     Spec::new("ppo", Task::ReinforcementLearning)
         .class("PpoLearner")
         .about("Proximal policy optimisation: a robust first choice, for discrete and continuous actions."),
-    PpoConfig::preset
+    PpoConfig::preset,
+    ClonedDemonstrations
 }
 
 method! {
@@ -142,7 +192,8 @@ method! {
     Spec::new("sac", Task::ReinforcementLearning)
         .class("SacLearner")
         .about("Soft actor-critic: sample-efficient, for continuous actions and environments with expensive steps."),
-    SacConfig::preset
+    SacConfig::preset,
+    ReplayedDemonstrations
 }
 
 method! {
@@ -154,7 +205,8 @@ method! {
     Spec::new("td3", Task::ReinforcementLearning)
         .class("Td3Learner")
         .about("Twin delayed deep deterministic policy gradient: deterministic policies for continuous actions."),
-    Td3Config::preset
+    Td3Config::preset,
+    ReplayedDemonstrations
 }
 
 method! {

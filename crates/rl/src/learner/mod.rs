@@ -3,6 +3,7 @@
 mod method;
 mod observation;
 mod policy_learner;
+mod policy_params;
 mod training_params;
 
 pub use method::{
@@ -10,8 +11,10 @@ pub use method::{
     Td3Method,
 };
 pub use observation::{numbers_from_observation, observation_from_numbers};
-pub use policy_learner::{PolicyLearner, PolicyParams, PolicyState};
+pub use policy_learner::{PolicyLearner, PolicyState};
+pub use policy_params::PolicyParams;
 pub use training_params::RlTrainingParams;
+pub(crate) use training_params::over_preset;
 
 /// Proximal policy optimisation.
 pub type PpoLearner = PolicyLearner<PpoMethod>;

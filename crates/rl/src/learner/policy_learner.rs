@@ -6,26 +6,17 @@ use opendr_engine::data::Observation;
 use opendr_engine::environment::EnvironmentSource;
 use opendr_engine::learner::{FitJob, Learner, LearnerRl, Spec};
 use opendr_engine::model::Model;
-use opendr_engine::params::Params;
+use opendr_engine::params::Params as _;
 use opendr_engine::target::RlTarget;
 use opendr_engine::{Device, Error, Random, Result, Statistics};
 use opendr_kernels::Compute;
 
 use super::method::Method;
 use super::observation::numbers_from_observation;
+use super::policy_params::PolicyParams;
 use crate::policy::{ActionMode, Policy, PolicyMemory};
+use crate::prior::Shield;
 use crate::training::{POLICY_FILE, fit_policy};
-
-/// Parameters of a policy at inference.
-#[derive(Debug, Clone, PartialEq, Params)]
-pub struct PolicyParams {
-    /// Whether the policy takes its most likely actions instead of sampling.
-    #[param(default = true, live)]
-    pub deterministic: bool,
-    /// Seed of sampled actions, at the start of a stream.
-    #[param(default = 0)]
-    pub seed: u64,
-}
 
 /// A policy trained by the method `M`: predicts an element of the action space from an observation.
 pub struct PolicyLearner<M> {
@@ -36,11 +27,12 @@ pub struct PolicyLearner<M> {
 }
 
 /// State of one stream: recurrent state and random numbers.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub struct PolicyState {
     memory: PolicyMemory,
     numbers: Vec<f32>,
     random: Option<Random>,
+    shield: Option<Shield>,
 }
 
 impl<M: Method> PolicyLearner<M> {
@@ -65,6 +57,7 @@ impl<M: Method> Learner for PolicyLearner<M> {
             )));
         }
         let policy = Policy::from_bytes(&model.file(POLICY_FILE)?)?;
+        params.shield.shield(policy.observation())?;
         Ok(Self { policy, params, compute: Compute::single(), method: PhantomData })
     }
 
@@ -82,14 +75,18 @@ impl<M: Method> Learner for PolicyLearner<M> {
         observation: &Observation,
         target: &mut RlTarget,
     ) -> Result<()> {
-        let PolicyState { memory, numbers, random } = state;
+        let PolicyState { memory, numbers, random, shield } = state;
         numbers_from_observation(self.policy.observation(), observation, numbers)?;
         target.values.resize(self.policy.head().action_len(), 0.0);
         let acting = match self.params.deterministic {
             true => ActionMode::Deterministic,
             false => ActionMode::Sampled(random.get_or_insert_with(|| Random::new(self.params.seed))),
         };
-        self.policy.act(&self.compute, numbers, acting, memory, &mut target.values)
+        self.policy.act(&self.compute, numbers, acting, memory, &mut target.values)?;
+        if self.params.shield.shield.is_some() && shield.is_none() {
+            *shield = self.params.shield.shield(self.policy.observation())?;
+        }
+        shield.as_mut().map_or(Ok(()), |shield| shield.arbitrate(numbers, &mut target.values).map(drop))
     }
 }
 
@@ -104,6 +101,6 @@ impl<M: Method> LearnerRl for PolicyLearner<M> {
         val_env: Option<&dyn EnvironmentSource>,
         job: &FitJob<'_>,
     ) -> Result<Statistics> {
-        fit_policy::<M>(base, &params.to_map(), fit_params, env, val_env, job)
+        fit_policy::<M>(base, &params.to_map(), &params.shield, fit_params, env, val_env, job)
     }
 }

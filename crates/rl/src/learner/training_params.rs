@@ -32,7 +32,7 @@ pub struct RlTrainingParams {
 }
 
 /// Returns `params`, with the values of `preset` for those at their defaults.
-pub(super) fn over_preset<P: Params>(params: &P, preset: &P) -> P {
+pub(crate) fn over_preset<P: Params>(params: &P, preset: &P) -> P {
     let mut chosen = preset.clone();
     for (index, field) in P::FIELDS.iter().enumerate() {
         let own = params.get_at(index);

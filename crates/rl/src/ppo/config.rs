@@ -109,7 +109,8 @@ impl PpoConfig {
     }
 
     /// Returns the settings of rl-zoo for an environment, if PPO alone can use them (twice as many steps for `Pendulum-v1`), or those
-    /// tuned here for `UavDepthCorridor-v1` wrapped in [`FlightMemoryWrapper`](opendr_simulation::uav_corridor::FlightMemoryWrapper).
+    /// tuned here for `UavDepthCorridor-compact-v1`, and for `UavDepthCorridor-v1` wrapped in
+    /// [`FlightMemoryWrapper`](opendr_simulation::uav_corridor::FlightMemoryWrapper).
     pub fn preset(id: &str) -> Option<Preset<Self>> {
         let base = Self::default();
         let (environments, timesteps, config) = match id {
@@ -153,7 +154,7 @@ impl PpoConfig {
                     ..base
                 },
             ),
-            "UavDepthCorridor-v1" => (
+            "UavDepthCorridor-v1" | "UavDepthCorridor-compact-v1" => (
                 8,
                 300_000,
                 Self {

@@ -4,10 +4,9 @@ use std::sync::{Arc, PoisonError, RwLock};
 
 use opendr_engine::environment::{Controller, Space};
 use opendr_engine::{Error, Result};
-use opendr_simulation::uav_corridor::{
-    CompactController, ObservationController, PotentialField, ReactiveController, compact_space,
-};
 use serde::{Deserialize, Serialize};
+
+use super::builtin::builtin;
 
 /// A controller that can move between threads.
 pub type BoxedController = Box<dyn Controller + Send>;
@@ -19,6 +18,7 @@ type Make = dyn Fn(&Space) -> Result<BoxedController> + Send + Sync;
 #[derive(Clone)]
 pub struct Prior {
     id: PriorId,
+    about: String,
     make: Arc<Make>,
 }
 
@@ -40,7 +40,24 @@ impl Prior {
         version: u32,
         make: impl Fn(&Space) -> Result<BoxedController> + Send + Sync + 'static,
     ) -> Self {
-        Self { id: PriorId { name: name.into(), version }, make: Arc::new(make) }
+        Self { id: PriorId { name: name.into(), version }, about: String::new(), make: Arc::new(make) }
+    }
+
+    /// Adds what the controller does and where, in one sentence.
+    #[must_use]
+    pub fn about(self, about: impl Into<String>) -> Self {
+        Self { about: about.into(), ..self }
+    }
+
+    /// Returns what the controller does and where; empty if not stated.
+    pub fn description(&self) -> &str {
+        &self.about
+    }
+
+    /// Returns all priors of this process: the built-in ones, then those that were registered.
+    pub fn all() -> Vec<Self> {
+        let registered = REGISTERED.read().unwrap_or_else(PoisonError::into_inner);
+        [builtin(), registered.clone()].concat()
     }
 
     /// Name and version.
@@ -77,7 +94,7 @@ impl Prior {
     /// # Errors
     /// `NotFound` where this process has none; the message lists those that it has.
     pub fn find(id: &PriorId) -> Result<Self> {
-        let known = known();
+        let known = Self::all();
         known.iter().find(|prior| prior.id == *id).cloned().ok_or_else(|| not_found(id, &known))
     }
 
@@ -86,34 +103,11 @@ impl Prior {
     /// # Errors
     /// As [`Self::find`].
     pub fn newest(name: &str) -> Result<Self> {
-        let known = known();
+        let known = Self::all();
         let own = known.iter().filter(|prior| prior.id.name == name);
         let newest = own.max_by_key(|prior| prior.id.version).cloned();
         newest.ok_or_else(|| not_found(&PriorId { name: name.to_owned(), version: 1 }, &known))
     }
-}
-
-/// Built-in priors, then those that were registered.
-fn known() -> Vec<Prior> {
-    let registered = REGISTERED.read().unwrap_or_else(PoisonError::into_inner);
-    [&builtin()[..], &registered].concat()
-}
-
-fn builtin() -> [Prior; 2] {
-    [
-        Prior::new("corridor-reactive", 1, |space| {
-            Ok(match *space == compact_space()? {
-                true => Box::new(CompactController::new(ReactiveController::default())),
-                false => Box::new(ObservationController::new(ReactiveController::default(), space.clone())),
-            })
-        }),
-        Prior::new("corridor-potential-field", 1, |space| {
-            Ok(match *space == compact_space()? {
-                true => Box::new(CompactController::new(PotentialField::default())),
-                false => Box::new(ObservationController::new(PotentialField::default(), space.clone())),
-            })
-        }),
-    ]
 }
 
 fn not_found(id: &PriorId, known: &[Prior]) -> Error {

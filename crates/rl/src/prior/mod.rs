@@ -13,20 +13,30 @@
 
 mod action_shaping;
 mod alpha;
+mod builtin;
+mod demonstration_params;
 mod demonstrations;
 mod library;
+mod model_controllers;
+mod prior_record;
 mod report;
 mod residual;
 mod residual_config;
 mod residual_controller;
 mod residual_learner;
+mod safety_rule;
 mod shield;
+mod shield_params;
 
 pub use action_shaping::{CommandLaw, Commanded, CommandedController};
 pub use alpha::AlphaSchedule;
+pub use demonstration_params::{
+    ClonedDemonstrations, Demonstrating, MakeEnvironment, ReplayedDemonstrations,
+};
 pub(crate) use demonstrations::DemonstrationReplay;
 pub use demonstrations::{DemonstratedSteps, begin_as_clone};
 pub use library::{BoxedController, Prior, PriorId};
+pub use model_controllers::{ModelController, controllers_of_model};
 pub use report::{PriorReport, ReportedController};
 pub use residual::{Residual, begin_as_prior};
 pub use residual_config::ResidualConfig;
@@ -36,4 +46,6 @@ pub use residual_learner::{
     ResidualSacFitParams, ResidualSacLearner, ResidualSacMethod, ResidualTd3FitParams, ResidualTd3Learner,
     ResidualTd3Method,
 };
+pub use safety_rule::SafetyRule;
 pub use shield::{Predicate, Shield, ShieldedController, ShieldedVector};
+pub use shield_params::ShieldParams;

@@ -3,13 +3,15 @@
 use std::fmt;
 
 use opendr_engine::environment::{Controller, Environment, Step};
-use opendr_engine::{Result, ResultExt as _};
+use opendr_engine::{Result, ResultExt as _, Statistics};
+use serde::{Serialize, Serializer};
 
 use super::ShieldedController;
 use crate::evaluation::{EvaluationProtocol, EvaluationReport, evaluate_controller};
 
 /// Prior, policy and both on the same fixed episodes.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[serde(transparent)]
 pub struct PriorReport {
     /// What was measured, in the order in which it was added.
     pub rows: Vec<ReportedController>,
@@ -56,12 +58,28 @@ impl PriorReport {
         environment: &mut dyn Environment,
         protocol: &EvaluationProtocol,
     ) -> Result<()> {
-        controller.count_anew();
+        controller.restart_count();
         self.add(name, controller, environment, protocol)?;
         if let Some(row) = self.rows.last_mut() {
             row.shielded = Some(controller.shielded_share());
         }
         Ok(())
+    }
+}
+
+impl Serialize for ReportedController {
+    /// Name, scalars and share of shielded steps.
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Row<'a> {
+            name: &'a str,
+            #[serde(flatten)]
+            scalars: std::collections::BTreeMap<String, f64>,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            shielded: Option<f64>,
+        }
+        let scalars = Statistics::from(&self.evaluation).scalars;
+        Row { name: &self.name, scalars, shielded: self.shielded }.serialize(serializer)
     }
 }
 

@@ -55,6 +55,26 @@ impl Correction {
     }
 }
 
+/// Returns observation and action space of the environment inside, from the observations of a [`Residual`] one.
+pub(super) fn residual_spaces(space: &Space) -> Result<(&Space, &Space)> {
+    match space {
+        Space::Tuple(parts) if parts.len() == 2 => Ok((&parts[0], &parts[1])),
+        other => Err(Error::format(format!(
+            "observations {other} contain no action of a prior: they are not those of a Residual environment"
+        ))),
+    }
+}
+
+impl Correction {
+    /// Writes `clip(middle + alpha * correction)`.
+    pub fn add_to_middle(&self, correction: &[f32], alpha: f32, action: &mut [f32]) {
+        let bounds = self.bounds.low.iter().zip(&self.bounds.high);
+        for (action, (correction, (low, high))) in action.iter_mut().zip(correction.iter().zip(bounds)) {
+            *action = (0.5 * (low + high) + alpha * correction).clamp(*low, *high);
+        }
+    }
+}
+
 impl<E: Environment> Residual<E> {
     /// `inner` with corrections of `prior`.
     ///

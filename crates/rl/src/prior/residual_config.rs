@@ -1,15 +1,17 @@
 //! Settings of residual policies.
 
-use opendr_engine::Result;
+use opendr_engine::environment::{Controller, Snapshot, Space, StateReader};
 use opendr_engine::params::Params;
+use opendr_engine::{Error, Result};
 
-use super::{AlphaSchedule, Prior};
+use super::residual::{Correction, residual_spaces};
+use super::{AlphaSchedule, Prior, SafetyRule, Shield};
 use crate::{PpoConfig, SacConfig, Td3Config};
 
 /// Settings of a policy that corrects a prior, whatever trains it.
 #[derive(Debug, Clone, PartialEq, Params)]
 pub struct ResidualConfig {
-    /// Name of the prior, in its newest version.
+    /// Name of the prior, in its newest version (`opendr sim priors` lists them).
     #[param(default = "corridor-reactive".to_owned())]
     pub prior: String,
     /// Factor of the corrections. At 1 a correction reaches from the middle of the bounds of an action to a bound, at 2 from one bound
@@ -47,6 +49,31 @@ impl ResidualConfig {
         AlphaSchedule::linear(self.alpha_start, self.alpha, self.alpha_steps / environments.max(1) as u64)
     }
 
+    /// Returns a shield of the corrections in a [`Residual`](super::Residual) environment with observations of `space`: where `rule` calls
+    /// the executed action unsafe, the correction is zero and the prior acts.
+    ///
+    /// # Errors
+    /// `InvalidParam` where the factor changes during the training, since the executed action is then unknown here; as
+    /// [`SafetyRule::predicate`].
+    pub fn shield(&self, rule: &SafetyRule, space: &Space) -> Result<Shield> {
+        if self.alpha_start != self.alpha && self.alpha_steps > 0 {
+            return Err(Error::invalid_param(format!(
+                "a shield with alpha from {} to {}; set alpha_start to alpha",
+                self.alpha_start, self.alpha
+            )));
+        }
+        let (own, actions) = residual_spaces(space)?;
+        let (mut predicate, correction, alpha) =
+            (rule.predicate(own)?, Correction::new(actions)?, self.alpha);
+        let (seen, mut executed) = (own.len(), vec![0.0; actions.len()]);
+        let is_unsafe = move |observation: &[f32], action: &[f32]| {
+            let (observation, proposal) = observation.split_at(seen);
+            correction.add(proposal, action, alpha, &mut executed);
+            predicate(observation, &executed)
+        };
+        Ok(Shield::new(is_unsafe, Box::new(NoCorrection)))
+    }
+
     /// `config` as it trains corrections: the actor waits for the values.
     pub fn ppo(&self, config: &PpoConfig) -> PpoConfig {
         PpoConfig {
@@ -77,3 +104,21 @@ impl ResidualConfig {
 
 /// The largest first weight of SAC's entropy.
 const SMALL_ENTROPY: f32 = 0.01;
+
+/// Corrects nothing, so that the prior acts.
+struct NoCorrection;
+
+impl Controller for NoCorrection {
+    fn act(&mut self, _: &[f32], correction: &mut [f32]) -> Result<()> {
+        correction.fill(0.0);
+        Ok(())
+    }
+
+    fn save_state(&self, _: &mut Snapshot) -> Result<()> {
+        Ok(())
+    }
+
+    fn load_state(&mut self, _: &mut StateReader<'_>) -> Result<()> {
+        Ok(())
+    }
+}

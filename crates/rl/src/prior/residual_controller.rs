@@ -5,7 +5,7 @@ use opendr_engine::{Error, Random, Result};
 use opendr_kernels::Compute;
 
 use super::BoxedController;
-use super::residual::Correction;
+use super::residual::{Correction, residual_spaces};
 use crate::policy::{ActionMode, Policy, PolicyMemory};
 
 /// A policy that was trained in a [`Residual`](super::Residual) environment, with its prior: acts in the environment itself.
@@ -20,21 +20,21 @@ pub struct ResidualController<P> {
     /// Observation, then the prior's action.
     seen: Vec<f32>,
     corrected_by: Vec<f32>,
+    /// Whether the corrections are executed without the prior's action.
+    alone: bool,
 }
 
 /// Observation and action space of the environment inside, from the observations of a policy trained in a
 /// [`Residual`](super::Residual) one.
 pub(super) fn inner_spaces(policy: &Policy) -> Result<(&Space, &Space)> {
-    match policy.observation() {
-        Space::Tuple(parts)
-            if parts.len() == 2 && *policy.action() == Correction::new(&parts[1])?.space() =>
-        {
-            Ok((&parts[0], &parts[1]))
-        }
-        other => Err(Error::format(format!(
-            "a policy that sees {other} corrects no prior: it was not trained in a Residual environment"
-        ))),
+    let (observation, action) = residual_spaces(policy.observation())?;
+    if *policy.action() == Correction::new(action)?.space() {
+        return Ok((observation, action));
     }
+    Err(Error::format(format!(
+        "a policy with actions {} corrects no actions {action}: it was not trained in a Residual environment",
+        policy.action()
+    )))
 }
 
 impl<P: AsRef<Policy>> ResidualController<P> {
@@ -47,8 +47,14 @@ impl<P: AsRef<Policy>> ResidualController<P> {
         let seen = vec![0.0; observation.len() + action.len()];
         let (correction, corrected_by) = (Correction::new(action)?, vec![0.0; action.len()]);
         let (compute, memory) = (Compute::single(), PolicyMemory::default());
-        let random = None;
-        Ok(Self { policy, prior, alpha, correction, compute, memory, random, seen, corrected_by })
+        let (random, alone) = (None, false);
+        Ok(Self { policy, prior, alpha, correction, compute, memory, random, seen, corrected_by, alone })
+    }
+
+    /// Executes the corrections around the middle of the bounds, without the prior's action: what the policy does alone.
+    #[must_use]
+    pub fn without_prior(self) -> Self {
+        Self { alone: true, ..self }
     }
 
     /// Samples corrections, by random numbers that begin with this seed; without a seed it takes the most likely ones.
@@ -84,7 +90,10 @@ impl<P: AsRef<Policy>> Controller for ResidualController<P> {
         let policy = self.policy.as_ref();
         policy.act(&self.compute, &self.seen, acting, &mut self.memory, &mut self.corrected_by)?;
         let proposal = &self.seen[observation.len()..];
-        self.correction.add(proposal, &self.corrected_by, self.alpha, action);
+        match self.alone {
+            true => self.correction.add_to_middle(&self.corrected_by, self.alpha, action),
+            false => self.correction.add(proposal, &self.corrected_by, self.alpha, action),
+        }
         self.prior.executed(action);
         Ok(())
     }

@@ -11,15 +11,17 @@ use opendr_engine::params::Params;
 use opendr_engine::target::RlTarget;
 use opendr_engine::{Device, Error, Result, Statistics, Task};
 use opendr_kernels::Compute;
-use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use super::prior_record::PriorRecord;
 use super::residual_controller::inner_spaces;
-use super::{Prior, PriorId, Residual, ResidualConfig, ResidualController, begin_as_prior};
-use crate::learner::{Method, PolicyParams, RlTrainingParams, numbers_from_observation};
+use super::{
+    Prior, PriorId, Residual, ResidualConfig, ResidualController, Shield, ShieldParams, begin_as_prior,
+};
+use crate::learner::{Method, PolicyParams, RlTrainingParams, numbers_from_observation, over_preset};
 use crate::policy::Policy;
 use crate::training::{POLICY_FILE, fit_policy};
-use crate::{Ppo, PpoConfig, Sac, SacConfig, Td3, Td3Config};
+use crate::{Ppo, PpoConfig, Preset, Sac, SacConfig, Td3, Td3Config};
 
 /// A method that trains corrections of a prior.
 pub trait ResidualMethod: Method {}
@@ -40,18 +42,9 @@ pub struct ResidualLearner<M> {
 #[derive(Default)]
 pub struct ResidualState {
     controller: Option<ResidualController<Arc<Policy>>>,
+    shield: Option<Shield>,
     numbers: Vec<f32>,
 }
-
-/// The prior of a policy, in the inputs of its container.
-#[derive(Debug, PartialEq, Serialize, Deserialize)]
-struct PriorRecord {
-    #[serde(flatten)]
-    id: PriorId,
-    alpha: f32,
-}
-
-const PRIOR: &str = "prior";
 
 impl<M> ResidualLearner<M> {
     /// The prior that the policy corrects.
@@ -80,14 +73,12 @@ impl<M: ResidualMethod> Learner for ResidualLearner<M> {
             )));
         }
         let policy = Policy::from_bytes(&model.file(POLICY_FILE)?)?;
-        let record = model.manifest().inputs.get(PRIOR).ok_or_else(|| {
+        let record = PriorRecord::of(model)?.ok_or_else(|| {
             Error::format(format!("the container names no prior; train the policy by {}", M::SPEC.class))
         })?;
-        let record = PriorRecord::deserialize(record)
-            .map_err(|error| Error::format("the container's prior is damaged").with_source(error))?;
         let prior = Prior::find(&record.id)?;
         let (observation, action) = inner_spaces(&policy)?;
-        prior.controller(observation)?;
+        own_shield(&params.shield, &prior, observation)?;
         let (observation, actions) = (observation.clone(), action.len());
         let (policy, alpha, method) = (Arc::new(policy), record.alpha, PhantomData);
         Ok(Self { policy, prior, alpha, observation, actions, params, method })
@@ -102,7 +93,7 @@ impl<M: ResidualMethod> Learner for ResidualLearner<M> {
     }
 
     fn infer_into(&self, state: &mut ResidualState, seen: &Observation, target: &mut RlTarget) -> Result<()> {
-        let ResidualState { controller, numbers } = state;
+        let ResidualState { controller, shield, numbers } = state;
         numbers_from_observation(&self.observation, seen, numbers)?;
         let controller = match controller {
             Some(controller) => controller,
@@ -116,8 +107,23 @@ impl<M: ResidualMethod> Learner for ResidualLearner<M> {
         };
         controller.set_sampled((!self.params.deterministic).then_some(self.params.seed));
         target.values.resize(self.actions, 0.0);
-        controller.act(numbers, &mut target.values)
+        controller.act(numbers, &mut target.values)?;
+        if self.params.shield.shield.is_some() && shield.is_none() {
+            *shield = own_shield(&self.params.shield, &self.prior, &self.observation)?;
+        }
+        let Some(shield) = shield else { return Ok(()) };
+        if shield.arbitrate(numbers, &mut target.values)? {
+            controller.executed(&target.values);
+        }
+        Ok(())
     }
+}
+
+/// Returns the shield under which the prior itself acts instead of a correction.
+pub(super) fn own_shield(params: &ShieldParams, prior: &Prior, space: &Space) -> Result<Option<Shield>> {
+    let fallback = prior.controller(space)?;
+    let rule = params.own_rule()?.map(|rule| rule.predicate(space)).transpose()?;
+    Ok(rule.map(|predicate| Shield::new(predicate, fallback)))
 }
 
 impl<M: ResidualMethod> LearnerRl for ResidualLearner<M> {
@@ -131,7 +137,7 @@ impl<M: ResidualMethod> LearnerRl for ResidualLearner<M> {
         val_env: Option<&dyn EnvironmentSource>,
         job: &FitJob<'_>,
     ) -> Result<Statistics> {
-        fit_policy::<M>(base, &params.to_map(), fit_params, env, val_env, job)
+        fit_policy::<M>(base, &params.to_map(), &params.shield, fit_params, env, val_env, job)
     }
 }
 
@@ -168,8 +174,16 @@ macro_rules! residual_method {
             type FitParams = $fit_params;
             type Algorithm = $algorithm;
 
-            fn with_preset(params: &$fit_params, _: &str) -> $fit_params {
-                params.clone()
+            fn with_preset(params: &$fit_params, id: &str) -> $fit_params {
+                let Some(Preset { environments, timesteps, config }) =
+                    $config::preset(id).filter(|_| params.training.preset)
+                else {
+                    return params.clone();
+                };
+                let defaults = RlTrainingParams::default();
+                let training =
+                    RlTrainingParams { n_envs: environments, total_timesteps: timesteps, ..defaults };
+                over_preset(params, &$fit_params { residual: ResidualConfig::default(), config, training })
             }
 
             fn wrap(
@@ -185,10 +199,11 @@ macro_rules! residual_method {
 
             fn inputs(params: &$fit_params) -> Result<Vec<(&'static str, Value)>> {
                 let id = params.residual.prior()?.id().clone();
-                let record = PriorRecord { id, alpha: params.residual.alpha };
-                let record = serde_json::to_value(record)
-                    .map_err(|error| Error::internal("a prior has no JSON form").with_source(error))?;
-                Ok(vec![(PRIOR, record)])
+                Ok(vec![PriorRecord { id, alpha: params.residual.alpha }.input()?])
+            }
+
+            fn shield(params: &$fit_params, shield: &ShieldParams, space: &Space) -> Result<Option<Shield>> {
+                shield.own_rule()?.map(|rule| params.residual.shield(&rule, space)).transpose()
             }
 
             fn training(params: &$fit_params) -> &RlTrainingParams {

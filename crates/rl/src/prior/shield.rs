@@ -1,5 +1,7 @@
 //! Controllers that take over where a policy's action is unsafe.
 
+use std::borrow::BorrowMut;
+
 use opendr_engine::environment::{Controller, EnvironmentSpec, ResetOptions, Snapshot, StateReader};
 use opendr_engine::{Error, Result};
 use opendr_simulation::vector::{Autoreset, Batch, Interventions, Seeds, VecEnvironment};
@@ -33,7 +35,12 @@ impl Shield {
         self.shielded as f64 / self.steps.max(1) as f64
     }
 
-    /// Tells the fallback that another episode begins.
+    /// Counts steps from now on.
+    pub fn restart_count(&mut self) {
+        (self.steps, self.shielded) = (0, 0);
+    }
+
+    /// Resets the fallback for another episode.
     pub fn reset(&mut self) {
         self.fallback.reset();
     }
@@ -178,37 +185,37 @@ impl<V: VecEnvironment> VecEnvironment for ShieldedVector<V> {
 }
 
 /// A controller under a shield: what is evaluated and deployed.
-pub struct ShieldedController<C> {
+pub struct ShieldedController<C, S = Shield> {
     controller: C,
-    shield: Shield,
+    shield: S,
 }
 
-impl<C: Controller> ShieldedController<C> {
+impl<C: Controller, S: BorrowMut<Shield>> ShieldedController<C, S> {
     /// `controller` under `shield`.
-    pub fn new(controller: C, shield: Shield) -> Self {
+    pub fn new(controller: C, shield: S) -> Self {
         Self { controller, shield }
     }
 
     /// The share of steps so far in which the fallback acted.
     pub fn shielded_share(&self) -> f64 {
-        self.shield.shielded_share()
+        self.shield.borrow().shielded_share()
     }
 
     /// Counts steps from now on.
-    pub fn count_anew(&mut self) {
-        (self.shield.steps, self.shield.shielded) = (0, 0);
+    pub fn restart_count(&mut self) {
+        self.shield.borrow_mut().restart_count();
     }
 }
 
-impl<C: Controller> Controller for ShieldedController<C> {
+impl<C: Controller, S: BorrowMut<Shield>> Controller for ShieldedController<C, S> {
     fn reset(&mut self) {
         self.controller.reset();
-        self.shield.reset();
+        self.shield.borrow_mut().reset();
     }
 
     fn act(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()> {
         self.controller.act(observation, action)?;
-        if self.shield.arbitrate(observation, action)? {
+        if self.shield.borrow_mut().arbitrate(observation, action)? {
             self.controller.executed(action);
         }
         Ok(())

@@ -21,6 +21,7 @@ pub struct CompactCorridor<E> {
     memory: FlightMemory,
     sight: CorridorObservation,
     observation: Vec<f32>,
+    sparse_reward: bool,
 }
 
 /// Numbers of the columns and of the target.
@@ -54,7 +55,14 @@ impl<E: Environment> CompactCorridor<E> {
         let observation = vec![0.0; spec.observation.len()];
         spec.observation = compact_space()?;
         let (memory, sight) = (FlightMemory::default(), CorridorObservation::default());
-        Ok(Self { inner, spec, memory, sight, observation })
+        Ok(Self { inner, spec, memory, sight, observation, sparse_reward: false })
+    }
+
+    /// Rewards arrival at the finish by 1 and everything else by 0.
+    #[must_use]
+    pub fn with_sparse_reward(mut self) -> Self {
+        self.spec.reward_range = (0.0, 1.0);
+        Self { sparse_reward: true, ..self }
     }
 
     fn show(&mut self, numbers: &mut [f32]) -> Result<()> {
@@ -92,7 +100,10 @@ impl<E: Environment> Environment for CompactCorridor<E> {
             self.memory.record_action(*action);
         }
         self.show(observation)?;
-        Ok(step)
+        Ok(match self.sparse_reward {
+            true => Step { reward: f64::from(u8::from(step.info.success() == Some(true))), ..step },
+            false => step,
+        })
     }
 
     fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {

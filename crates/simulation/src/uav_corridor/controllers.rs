@@ -84,8 +84,30 @@ impl<C: CorridorController> Controller for ObservationController<C> {
 pub struct StraightController;
 
 /// Flies towards the free columns of the depth image nearest to the target's bearing.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReactiveController {
+    yaw: YawTracker,
+    share: f32,
+}
+
+impl Default for ReactiveController {
+    fn default() -> Self {
+        Self { yaw: YawTracker::default(), share: 1.0 }
+    }
+}
+
+impl ReactiveController {
+    /// Creates one that flies only this share of its headings, for measurements of what a weak controller is worth.
+    #[must_use]
+    pub fn with_heading_share(share: f32) -> Self {
+        Self { share, ..Self::default() }
+    }
+}
+
+/// Pure pursuit of the target on the middle line of the corridor (Coulter, Implementation of the pure pursuit path tracking algorithm,
+/// 1992). It avoids no obstacle.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct PurePursuit {
     yaw: YawTracker,
 }
 
@@ -159,7 +181,19 @@ impl CorridorController for ReactiveController {
         } else {
             (wanted + self.yaw.now).clamp(-0.4, 0.4) - self.yaw.now + 0.5 * heading
         };
-        action(&mut self.yaw, heading, turn)
+        let [heading, turn] = action(&mut self.yaw, heading, turn);
+        [self.share * heading, turn]
+    }
+}
+
+impl CorridorController for PurePursuit {
+    with_yaw_tracker!();
+
+    fn act(&mut self, sight: &CorridorObservation) -> [f32; 2] {
+        let [ahead, left, _] = sight.target;
+        let curvature = 2.0 * left / (ahead * ahead + left * left).max(1e-6);
+        // The chord of a metre of the arc, then its change of direction.
+        action(&mut self.yaw, 0.5 * curvature, curvature)
     }
 }
 
@@ -229,7 +263,7 @@ pub(super) fn spread_columns(shares: &[f32; COLUMNS], sight: &mut CorridorObserv
 }
 
 /// Returns the bearing of the middle of a block of columns, in radians to the left.
-fn bearing(column: usize) -> f32 {
+pub(super) fn bearing(column: usize) -> f32 {
     (super::HALF_WIDTH * (1.0 - 2.0 * (column as f32 + 0.5) / COLUMNS as f32)).atan()
 }
 

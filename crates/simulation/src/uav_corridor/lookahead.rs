@@ -13,6 +13,17 @@ pub(super) struct Lookahead {
     fan: [[f32; 2]; FAN],
 }
 
+/// A first step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Candidate {
+    /// Heading and change of yaw, each in [-1, 1].
+    pub action: [f32; 2],
+    /// Where the step leads, along the corridor and to the left.
+    pub direction: [f32; 2],
+    /// Cost of the cheapest flight that begins with it; infinite for a turn beyond the limit of the yaw.
+    pub cost: f32,
+}
+
 /// Number of directions in [`TURN`].
 const PARTS: usize = 4;
 /// Number of directions of the first step.
@@ -23,6 +34,8 @@ const FAN: usize = 2 * HEADINGS - 1;
 const ONWARD: usize = PARTS + 1;
 /// Changes of yaw: right, none, left.
 const TURNS: usize = 3;
+/// Number of first steps.
+pub(super) const CANDIDATES: usize = HEADINGS * TURNS;
 /// Number of points at which a metre is evaluated.
 const SAMPLES: u8 = 5;
 /// Costs of a contact, of a full heading angle, and of looking aside by [`TURN`].
@@ -47,11 +60,21 @@ impl Lookahead {
     /// Returns heading and change of yaw of the cheapest flight, each in [-1, 1], for a drone in the middle of `costs` and of
     /// `points`, both given along the corridor and to the left.
     pub fn action(&self, costs: &WayCosts, points: &[[f32; 2]], yaw: f64) -> [f32; 2] {
+        let candidates = self.candidates(costs, points, yaw);
+        let cheapest = |best: Candidate, other: Candidate| if other.cost < best.cost { other } else { best };
+        candidates.into_iter().reduce(cheapest).map_or([0.0; 2], |candidate| candidate.action)
+    }
+
+    /// Returns all first steps with their costs, for the same arguments as [`Self::action`].
+    pub fn candidates(&self, costs: &WayCosts, points: &[[f32; 2]], yaw: f64) -> [Candidate; CANDIDATES] {
         let (sine, cosine) = sine_cosine(yaw);
         let (sine, cosine) = (sine as f32, cosine as f32);
         let fan = self.fan.map(|[ahead, left]| [cosine * ahead - sine * left, sine * ahead + cosine * left]);
-        let (mut least, mut action) = (f32::INFINITY, [0.0; 2]);
-        for (number, direction) in fan[PARTS..][..HEADINGS].iter().enumerate() {
+        let mut candidates =
+            [Candidate { action: [0.0; 2], direction: [0.0; 2], cost: f32::INFINITY }; CANDIDATES];
+        for (number, (direction, candidates)) in
+            fan[PARTS..][..HEADINGS].iter().zip(candidates.as_chunks_mut::<TURNS>().0).enumerate()
+        {
             let heading = number as f32 / PARTS as f32 - 1.0;
             let touch = if is_touched(points, *direction) { TOUCH } else { 0.0 };
             let first = touch + metre(costs, [0.0; 2], *direction);
@@ -59,22 +82,20 @@ impl Lookahead {
                 let [x, y] = fan[2 * at];
                 metre(costs, *direction, [x, y]) + costs.at([direction[0] + x, direction[1] + y])
             });
-            for turned in 0..TURNS {
+            for (turned, candidate) in candidates.iter_mut().enumerate() {
                 let turn = turned as f32 - 1.0;
                 let aside = (yaw / TURN) as f32 + turn;
+                (candidate.action, candidate.direction) = ([heading, turn], *direction);
                 // The yaw is limited to a right angle, four times the largest change.
                 if turn != 0.0 && aside.abs() > 4.5 {
                     continue;
                 }
                 let second = onward[2 * turned..][..ONWARD].iter().copied().fold(f32::INFINITY, f32::min);
                 let ease = RUDDER * (heading.abs() + turn.abs()) + ASIDE * aside.abs();
-                let cost = first + second + ease;
-                if cost < least {
-                    (least, action) = (cost, [heading, turn]);
-                }
+                candidate.cost = first + second + ease;
             }
         }
-        action
+        candidates
     }
 }
 

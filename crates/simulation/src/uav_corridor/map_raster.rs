@@ -55,8 +55,14 @@ impl MapRaster {
         for (cell, shadow) in self.shadow.iter_mut().enumerate() {
             let [ahead, left] = centre(cell);
             let at = [place[0] + ahead, place[1] + left];
-            let behind = glimpses.iter().filter_map(|glimpse| glimpse.behind_front(at));
-            *shadow = behind.reduce(f32::min).map_or(f32::NAN, |metres| metres.max(-1.0));
+            *shadow = f32::NAN;
+            for behind in glimpses.iter().filter_map(|glimpse| glimpse.behind_front(at)) {
+                // The minimum of a number and NaN is the number.
+                *shadow = shadow.min(behind).max(-1.0);
+                if *shadow <= -1.0 {
+                    break;
+                }
+            }
         }
         self.clearance.fill(FAR);
         for [ahead, left] in points {
@@ -98,6 +104,15 @@ impl MapRaster {
         self.clearance[cell] > CLEAR && self.shadow[cell] < -CLEAR
     }
 
+    /// Returns how unknown a place is, ahead and left of the drone: from -0.5, observed to be free, to 1, far behind a front.
+    pub fn unknown(&self, [ahead, left]: [f32; 2]) -> f32 {
+        // Negative numbers saturate at 0.
+        let cell = |metres: f32, before: usize, count: usize| {
+            ((metres / CELL + before as f32 + 0.5) as usize).min(count - 1)
+        };
+        unknown(self.shadow[cell(ahead, BEHIND, COLUMNS) * ROWS + cell(left, ASIDE, ROWS)])
+    }
+
     /// Writes the features of a cell.
     pub fn features(&self, cell: usize, features: &mut [f32; FEATURES]) {
         let (column, row, shadow) = (cell / ROWS, cell % ROWS, self.shadow[cell]);
@@ -118,10 +133,14 @@ impl MapRaster {
             let column = near(column, at / (2 * PATCH + 1), COLUMNS);
             let other = column * ROWS + near(row, at % (2 * PATCH + 1), ROWS);
             *clearance = (1.0 - 2.0 * self.clearance[other]).max(0.0);
-            let behind = self.shadow[other];
-            *shadow = if behind.is_nan() { 0.5 } else { (behind + 0.1).clamp(-0.5, 1.0) };
+            *shadow = unknown(self.shadow[other]);
         }
     }
+}
+
+/// Scales metres behind a front to a feature.
+fn unknown(shadow: f32) -> f32 {
+    if shadow.is_nan() { 0.5 } else { (shadow + 0.1).clamp(-0.5, 1.0) }
 }
 
 /// Metres from the drone to the centre of a cell, ahead and left.

@@ -4,11 +4,14 @@
 //! (Ugurlu, Pham and Kayacan, Sim-to-real deep reinforcement learning for safe end-to-end planning of aerial robots,
 //! 2022). Positions in metres, x along the corridor, y to the left, z up.
 
+mod clearance;
 mod compact;
 mod controllers;
 mod environment;
 mod flight;
 mod flight_memory;
+mod foresight;
+mod foresight_samples;
 mod lookahead;
 mod map_raster;
 mod options;
@@ -25,13 +28,16 @@ mod variants;
 mod way_costs;
 mod world;
 
+pub use clearance::CorridorClearance;
 pub use compact::{CompactController, CompactCorridor, compact_space};
 pub use controllers::{
-    CorridorController, ObservationController, PotentialField, ReactiveController, StraightController,
-    YawTracker,
+    CorridorController, ObservationController, PotentialField, PurePursuit, ReactiveController,
+    StraightController, YawTracker,
 };
 pub use environment::UavDepthCorridor;
 pub use flight_memory::FlightMemory;
+pub use foresight::Foresight;
+pub use foresight_samples::ForesightSamples;
 pub use options::{CorridorForm, CorridorOptions, UavDepthCorridorParams};
 pub use remembered::FlightMemoryWrapper;
 pub use sight::CorridorObservation;
@@ -39,7 +45,7 @@ pub use surroundings::Surroundings;
 pub use surroundings_samples::SurroundingsSamples;
 
 pub(crate) use variants::registrations;
-pub use variants::{Dense, Discrete, Dynamic, Noisy};
+pub use variants::{Compact, Dense, Discrete, Dynamic, Noisy};
 pub use world::CorridorWorld;
 
 /// Pixels of the depth camera in each direction.

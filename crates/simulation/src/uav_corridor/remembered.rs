@@ -8,7 +8,7 @@ use opendr_engine::environment::{
 };
 use opendr_engine::{Error, Result};
 
-use super::{FlightMemory, Surroundings};
+use super::{FlightMemory, Foresight, Surroundings};
 
 /// A wrapper whose observations are the features of a [`FlightMemory`], and whose actions correct its proposals. Policies are
 /// trained in it; the action zero follows the proposals.
@@ -42,6 +42,12 @@ impl<E: Environment> FlightMemoryWrapper<E> {
     #[must_use]
     pub fn with_surroundings(self, surroundings: Arc<Surroundings>) -> Self {
         Self { memory: self.memory.with_surroundings(surroundings), ..self }
+    }
+
+    /// Uses a model of how flights end for the choice of the proposals.
+    #[must_use]
+    pub fn with_foresight(self, foresight: Arc<Foresight>) -> Self {
+        Self { memory: self.memory.with_foresight(foresight), ..self }
     }
 
     fn write_features(&mut self, known: &mut [f32]) -> Result<()> {

@@ -3,7 +3,7 @@
 use opendr_engine::Result;
 use opendr_engine::params::{ParamMap, Params};
 
-use super::{CorridorForm, CorridorOptions, UavDepthCorridor, UavDepthCorridorParams};
+use super::{CompactCorridor, CorridorForm, CorridorOptions, UavDepthCorridor, UavDepthCorridorParams};
 use crate::Registration;
 use crate::registration::checked;
 
@@ -51,6 +51,19 @@ pub struct Noisy {
     pub form: CorridorForm,
 }
 
+/// `UavDepthCorridor-compact-v1`: 26 numbers instead of the depth image.
+#[derive(Debug, Clone, Params)]
+pub struct Compact {
+    /// As in `UavDepthCorridor-v1`.
+    #[param(flatten)]
+    pub options: CorridorOptions,
+    /// Rewards arrival at the finish by 1 and everything else by 0.
+    #[param(default = false)]
+    pub sparse_reward: bool,
+}
+
+const COMPACT: &str = "UavDepthCorridor-compact-v1";
+
 /// Parameters of a corridor with other defaults.
 trait Variant: Params {
     const ID: &'static str;
@@ -78,13 +91,14 @@ variants! {
 }
 
 /// Returns the entries of all variants and of the plain corridor.
-pub(crate) fn registrations() -> [Registration; 5] {
+pub(crate) fn registrations() -> [Registration; 6] {
     [
         Registration::of::<UavDepthCorridor>(),
         registration::<Discrete>(),
         registration::<Dynamic>(),
         registration::<Dense>(),
         registration::<Noisy>(),
+        compact(),
     ]
 }
 
@@ -93,4 +107,14 @@ fn registration<V: Variant>() -> Registration {
         checked(UavDepthCorridor::called(V::ID, &V::from_map(params)?.corridor())?)
     };
     Registration::new(V::ID, V::FIELDS, make)
+}
+
+fn compact() -> Registration {
+    let make = |params: &ParamMap| -> Result<_> {
+        let Compact { options, sparse_reward } = Compact::from_map(params)?;
+        let params = UavDepthCorridorParams { options, ..Default::default() };
+        let corridor = CompactCorridor::new(UavDepthCorridor::called(COMPACT, &params)?)?;
+        checked(if sparse_reward { corridor.with_sparse_reward() } else { corridor })
+    };
+    Registration::new(COMPACT, Compact::FIELDS, make)
 }
