@@ -7,6 +7,7 @@ use opendr_actions::{
     activity_recognition::{CoX3d, X3d},
     skeleton_based_action_recognition::{CoStGcn, SpatioTemporalGcn},
 };
+use opendr_active::{ActiveFaceRecognition, ActiveObjectRecognition, ActivePoseRecognition};
 #[cfg(feature = "classification")]
 use opendr_classification::{
     compressive_learning::MultilinearCompressive, image_classification::ImageClassifier,
@@ -181,6 +182,9 @@ pub fn registry() -> &'static Registry {
                 Td3Learner,
                 DqnLearner,
                 EndToEndPlanningRl,
+                ActiveFaceRecognition,
+                ActiveObjectRecognition,
+                ActivePoseRecognition,
             },
             #[cfg(feature = "test-learner")]
             {
