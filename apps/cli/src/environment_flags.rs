@@ -11,9 +11,14 @@ use crate::dataset_flags;
 const ENV: &str = "env";
 const ENV_PARAM: &str = "env-param";
 
-/// Returns whether a learner is a policy: it has an observation port.
+/// Returns whether a learner is a policy: it predicts actions of an environment.
 pub fn is_policy(entry: &Entry) -> bool {
-    entry.ports.iter().any(|port| port.value_type == ValueType::Observation)
+    entry.outputs.iter().any(|output| output.value_type == ValueType::RlTarget)
+}
+
+/// Returns whether a learner is one of active perception: it moves a camera in environments.
+pub fn is_active(entry: &Entry) -> bool {
+    entry.capabilities.fit_in && entry.ports.iter().any(|port| port.value_type == ValueType::Image)
 }
 
 /// Replaces the data set of a command by the environment, and adds the number of episodes.
@@ -21,6 +26,11 @@ pub fn add_for_episodes(command: Command) -> Command {
     add(command)
         .mut_arg(dataset_flags::DATASET, |dataset| dataset.required(false).hide(true))
         .args(episode_flags())
+}
+
+/// Adds the environment to a command that also takes a data set.
+pub fn add_beside_dataset(command: Command) -> Command {
+    add(command).mut_arg(dataset_flags::DATASET, |dataset| dataset.required(false)).arg(episodes_flag())
 }
 
 /// Adds the flags of the environment.
@@ -63,6 +73,14 @@ pub fn source(matches: &ArgMatches, learner: Option<&dyn AnyLearner>) -> Result<
             "a policy acts in an environment, not on a data set; give --env ID",
         ));
     }
+    named(matches, learner)
+}
+
+/// Returns the environment as [`source`], of a command that may have a data set, too.
+///
+/// # Errors
+/// As [`source`].
+pub fn named(matches: &ArgMatches, learner: Option<&dyn AnyLearner>) -> Result<RegisteredSource> {
     let trained_in = learner.and_then(opendr::training_environment).map(str::to_owned);
     let id = matches.get_one::<String>(ENV).cloned().or(trained_in).ok_or_else(|| {
         Error::invalid_param(

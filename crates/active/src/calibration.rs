@@ -10,9 +10,9 @@ use crate::fusion::{Belief, Fusion};
 pub struct Trajectory {
     /// The true class.
     pub class: usize,
-    /// Where the views were taken from, in their order.
+    /// Poses of the views, in their order.
     pub poses: Vec<ViewPose>,
-    /// Evidence of each view, one after the other, as the recogniser gave it.
+    /// Evidence of each view, one after the other, as the recogniser returned it.
     pub evidence: Vec<f32>,
 }
 
@@ -21,11 +21,11 @@ const FACTOR: f32 = 1.2;
 const LENGTHS: [f32; 4] = [0.1, 0.3, 0.6, 1.2];
 const FLOORS: [f32; 5] = [0.0, 0.1, 0.25, 0.45, 0.75];
 
-/// The fusion under which the true classes of the trajectories are most likely: mean negative log-likelihood over the beliefs
-/// after each view, that after the last counted as often as all others together.
+/// Returns the fusion with the lowest mean negative log-likelihood of the true classes over the beliefs after each view, with
+/// half of the weight on the last one.
 ///
 /// # Errors
-/// `InvalidInput` without trajectories, or when their evidence does not fit the number of classes.
+/// Returns `InvalidInput` without trajectories, and for evidence of another number of classes.
 pub fn fit_fusion(classes: usize, trajectories: &[Trajectory]) -> Result<Fusion> {
     if trajectories.is_empty() {
         return Err(Error::invalid_input("no episodes to calibrate on; record at least a hundred"));
@@ -54,7 +54,7 @@ pub fn fit_fusion(classes: usize, trajectories: &[Trajectory]) -> Result<Fusion>
     Ok(best.1)
 }
 
-/// Mean over trajectories, as [`fit_fusion`] weighs their beliefs.
+/// Returns the mean loss of trajectories that [`fit_fusion`] minimises.
 ///
 /// # Errors
 /// As [`fit_fusion`].
@@ -81,7 +81,7 @@ mod tests {
 
     use super::*;
 
-    /// Views whose evidence is three times too sure, and the same from the same place.
+    /// Views whose evidence is three times too confident, and equal from equal poses.
     fn trajectories() -> Vec<Trajectory> {
         let mut random = Random::new(1);
         let mut trajectory = || {

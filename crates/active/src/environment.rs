@@ -1,41 +1,41 @@
-//! Where PPO trains a policy of movement.
+//! The environment in which PPO trains a camera policy.
 
 use opendr_engine::environment::{Environment, EnvironmentSpec, Info, ResetOptions, Space, Step};
 use opendr_engine::target::Action;
 use opendr_engine::{Error, Random, Result};
 
 use crate::fusion::Fusion;
-use crate::look::Look;
 use crate::observation::Observer;
 use crate::scene::ActiveScene;
 use crate::stop::StopRule;
+use crate::view_loop::ViewLoop;
 
-/// What a movement of full deflection on all axes costs.
+/// Cost of a motion of full deflection on all axes.
 const EFFORT: f32 = 0.01;
-/// What each movement costs, so that fewer are better.
-const MOVEMENT: f32 = 0.01;
+/// Cost of each motion.
+const MOTION: f32 = 0.03;
 
-/// An environment whose reward is by how much the probability of the true class rose, less the cost of the movement. An
-/// episode ends with the stop rule.
+/// An environment whose reward is the rise of the probability of the true class, minus the cost of the motion. An episode
+/// ends with the stop rule.
 pub struct ActiveEnvironment<S> {
     spec: EnvironmentSpec,
-    look: Look<S>,
+    view_loop: ViewLoop<S>,
     stop: StopRule,
     stream: Option<[u64; 2]>,
     moves: usize,
 }
 
 impl<S: ActiveScene> ActiveEnvironment<S> {
-    /// An environment over a scene.
+    /// Creates an environment over a scene.
     ///
     /// # Errors
-    /// `InvalidParam` for a scene of fewer than two classes.
+    /// Returns `InvalidParam` for a scene of fewer than two classes.
     pub fn new(mut scene: S, fusion: Fusion, stop: StopRule) -> Result<Self> {
         let action = Space::symmetric(&vec![1.0; scene.rig().axes().len()]);
         let observation = Space::symmetric(&[f32::INFINITY; Observer::LEN]);
         let spec = EnvironmentSpec::new("ActivePerception-v1", observation, action)
-            .with_reward_range(-1.0 - f64::from(EFFORT + MOVEMENT), 1.0);
-        Ok(Self { spec, look: Look::new(scene, fusion, stop.moves)?, stop, stream: None, moves: 0 })
+            .with_reward_range(-1.0 - f64::from(EFFORT + MOTION), 1.0);
+        Ok(Self { spec, view_loop: ViewLoop::new(scene, fusion, stop.moves)?, stop, stream: None, moves: 0 })
     }
 }
 
@@ -52,8 +52,8 @@ impl<S: ActiveScene> Environment for ActiveEnvironment<S> {
         };
         self.stream = Some(stream);
         self.moves = 0;
-        self.look.begin(&mut Random::from_key(stream))?;
-        self.look.observe(observation);
+        self.view_loop.begin(&mut Random::from_key(stream))?;
+        self.view_loop.observe(observation);
         Ok(Info::default())
     }
 
@@ -61,15 +61,15 @@ impl<S: ActiveScene> Environment for ActiveEnvironment<S> {
         if self.stream.is_none() {
             return Err(Error::invalid_input("the environment was never reset; call reset before step"));
         }
-        let before = self.look.probability();
-        let achieved = self.look.step(&Action::new(action)?)?;
+        let before = self.view_loop.probability();
+        let achieved = self.view_loop.step(&Action::new(action)?)?;
         self.moves += 1;
-        let gain = self.look.probability() - before;
-        let (class, confidence) = self.look.belief().best();
-        let success = f64::from(u8::from(class == self.look.class()));
-        self.look.observe(observation);
+        let gain = self.view_loop.probability() - before;
+        let (class, confidence) = self.view_loop.belief().best();
+        let success = f64::from(u8::from(class == self.view_loop.class()));
+        self.view_loop.observe(observation);
         Ok(Step {
-            reward: f64::from(gain - EFFORT * achieved.effort() - MOVEMENT),
+            reward: f64::from(gain - EFFORT * achieved.effort() - MOTION),
             terminated: self.stop.reason(self.moves, confidence, None).is_some(),
             truncated: false,
             info: Info::default().with("success", success),

@@ -1,22 +1,25 @@
-//! Episodes from the first picture to the stop.
+//! Episodes from the first view to the stop.
 
 use opendr_engine::target::Action;
 use opendr_engine::{Random, Result};
 
 use crate::calibration::Trajectory;
+use crate::camera_policy::{CameraContext, CameraPolicy};
 use crate::gain::GainSamples;
-use crate::look::Look;
-use crate::mover::{Mover, Situation};
 use crate::observation::Observer;
 use crate::scene::ActiveScene;
 use crate::stop::StopRule;
+use crate::view_loop::ViewLoop;
 
-/// How an episode went.
+/// Key of the random numbers of episodes, beside their seed.
+pub(crate) const EPISODE_KEY: u64 = 0xe415;
+
+/// The result of an episode.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ActiveEpisode {
-    /// The seed that it began with.
+    /// Seed of the episode.
     pub seed: u64,
-    /// The class that the belief holds most likely at the end.
+    /// The most likely class at the end.
     pub predicted: usize,
     /// Its probability.
     pub confidence: f32,
@@ -27,59 +30,56 @@ pub struct ActiveEpisode {
 }
 
 impl ActiveEpisode {
-    /// Whether the prediction is the true class.
+    /// Returns whether the prediction is the true class.
     pub fn is_correct(&self) -> bool {
         self.predicted == self.trajectory.class
     }
 
-    /// Number of the first view after which the best class had this probability.
+    /// Returns the number of views until the best class had this probability.
     pub fn views_to(&self, confidence: f32) -> Option<usize> {
         self.confidences.iter().position(|reached| *reached >= confidence).map(|at| at + 1)
     }
 }
 
-/// Runs an episode; what each movement gained goes into `gains` where it is wanted.
+/// Runs an episode, and adds the gain of each motion to `gains`.
 ///
 /// # Errors
-/// Those of the scene and of the mover.
+/// Returns errors of the scene and of the camera policy.
 pub fn run_episode<S: ActiveScene>(
-    look: &mut Look<S>,
-    mover: &mut dyn Mover,
+    view_loop: &mut ViewLoop<S>,
+    camera_policy: &mut dyn CameraPolicy,
     stop: &StopRule,
     seed: u64,
     mut gains: Option<&mut GainSamples>,
 ) -> Result<ActiveEpisode> {
-    look.begin(&mut Random::from_key([seed, 0xe415]))?;
-    mover.begin(seed);
-    let axes = look.scene().rig().axes().to_vec();
+    view_loop.begin(&mut Random::from_key([seed, EPISODE_KEY]))?;
+    camera_policy.begin(seed);
+    let axes = view_loop.scene().rig().axes().to_vec();
     let (mut observation, mut action) = (vec![0.0; Observer::LEN], vec![0.0; axes.len()]);
     let mut episode = ActiveEpisode {
         seed,
         predicted: 0,
         confidence: 0.0,
         confidences: Vec::new(),
-        trajectory: Trajectory { class: look.class(), poses: Vec::new(), evidence: Vec::new() },
+        trajectory: Trajectory { class: view_loop.class(), poses: Vec::new(), evidence: Vec::new() },
     };
     for moves in 0.. {
-        let (predicted, confidence) = look.belief().best();
+        let (predicted, confidence) = view_loop.belief().best();
         (episode.predicted, episode.confidence) = (predicted, confidence);
         episode.confidences.push(confidence);
-        episode.trajectory.poses.push(look.pose());
-        episode.trajectory.evidence.extend_from_slice(look.evidence());
+        episode.trajectory.poses.push(view_loop.pose());
+        episode.trajectory.evidence.extend_from_slice(view_loop.evidence());
         if stop.reason(moves, confidence, None).is_some() {
             break;
         }
-        look.observe(&mut observation);
-        let (pose, best) = (look.pose(), look.scene().best_pose());
-        let situation = Situation { observation: &observation, pose, axes: &axes, best };
-        let before = look.probability();
-        if mover.choose(&situation, &mut action)? {
-            look.step(&Action::new(&action)?)?;
-        } else {
-            look.take()?;
-        }
+        view_loop.observe(&mut observation);
+        let (pose, best) = (view_loop.pose(), view_loop.scene().best_pose());
+        let context = CameraContext { observation: &observation, pose, axes: &axes, best };
+        let before = view_loop.probability();
+        camera_policy.choose(&context, &mut action)?;
+        view_loop.step(&Action::new(&action)?)?;
         if let Some(gains) = gains.as_deref_mut() {
-            gains.add(&observation, &action, look.probability() - before);
+            gains.add(&observation, &action, view_loop.probability() - before);
         }
     }
     Ok(episode)

@@ -4,7 +4,7 @@ use opendr_engine::target::{BoundingBoxList, Category, Name, PoseList};
 
 /// A target from which the probability of each class follows.
 pub trait ClassEvidence {
-    /// Writes a probability for each class; they sum to 1. What the target leaves open is shared by all classes alike.
+    /// Writes a probability for each class; they sum to 1. What the target does not state is shared equally.
     fn class_probabilities(&self, probabilities: &mut [f32]);
 }
 
@@ -33,7 +33,7 @@ impl ClassEvidence for Category {
     }
 }
 
-/// The box with the highest score: detection of one subject, recognition of one face. An unknown label says nothing.
+/// The box with the highest score: detection of one subject, recognition of one face. A label that is no class index is ignored.
 impl ClassEvidence for BoundingBoxList {
     fn class_probabilities(&self, probabilities: &mut [f32]) {
         let known = self.boxes.iter().filter_map(|item| match &item.name {
@@ -45,7 +45,7 @@ impl ClassEvidence for BoundingBoxList {
     }
 }
 
-/// Two classes: 0 nobody is seen well, 1 a person is, by the score of the best pose.
+/// Two classes, by the score of the best pose: 0 no person, 1 a person.
 impl ClassEvidence for PoseList {
     fn class_probabilities(&self, probabilities: &mut [f32]) {
         let best = self.poses.iter().map(|pose| pose.confidence).fold(0.0, f32::max);

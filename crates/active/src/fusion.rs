@@ -4,17 +4,17 @@ use opendr_engine::rig::ViewPose;
 use opendr_engine::{Error, Result};
 use serde::{Deserialize, Serialize};
 
-/// How the evidence of views is put together.
+/// Fusion of the evidence of views.
 ///
 /// Views from nearby places make the same errors: two of them are hardly more than one. The correlation of two views is a
 /// kernel of the way between them, `floor + (1 - floor) exp(-(d / length)^2)` with `d^2` the square of the angle (rad) and of the
 /// logarithm of the ratio of distances. A view counts by one over the sum of its correlations with all views, itself
-/// included, so that `n` pictures from one place count as one picture; a view that says less than another
-/// takes only so much of the other's weight as its information (`ln classes` less entropy) is a share of the other's.
+/// included, so that `n` images from one pose count as one image; a view with less information than another
+/// reduces the other's weight only by the ratio of their information (`ln classes` minus entropy).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fusion {
-    /// What the evidence is divided by; above 1 where the recogniser is too certain.
+    /// Divisor of the evidence; above 1 for an overconfident recogniser.
     pub temperature: f32,
     /// Range of the correlation.
     pub length: f32,
@@ -29,11 +29,11 @@ impl Default for Fusion {
     }
 }
 
-/// The lowest logarithm of a probability that one view can give: no single picture excludes a class.
+/// The lowest logarithm of a probability that one view can give: no single image excludes a class.
 const LOWEST: f32 = -9.0;
 
 impl Fusion {
-    /// Correlation of the evidence of two views, 0 to 1; of a view with itself 1.
+    /// Returns the correlation of the evidence of two views, 0 to 1; of a view with itself 1.
     pub fn correlation(&self, a: &ViewPose, b: &ViewPose) -> f32 {
         let depth = if a.distance > 0.0 && b.distance > 0.0 { (a.distance / b.distance).ln() } else { 0.0 };
         let square = (a.angle_to(b).powi(2) + depth.powi(2)) as f32;
@@ -54,11 +54,11 @@ pub struct Belief {
     probabilities: Vec<f32>,
 }
 
-/// Views for which a new belief has room.
+/// Capacity of a new belief, in views.
 const ROOM: usize = 16;
 
 impl Belief {
-    /// A belief in which all classes are equally likely.
+    /// Creates a belief in which all classes are equally likely.
     ///
     /// # Errors
     /// `InvalidParam` for fewer than two classes and for numbers out of range.
@@ -82,7 +82,7 @@ impl Belief {
         Ok(belief)
     }
 
-    /// Forgets all views.
+    /// Removes all views.
     pub fn reset(&mut self) {
         self.poses.clear();
         self.evidence.clear();
@@ -116,10 +116,15 @@ impl Belief {
     fn weigh(&mut self) {
         let Self { fusion, poses, information, weights, .. } = self;
         let weight = |at: usize| {
-            let shared = poses.iter().zip(information.iter()).enumerate().map(|(other, (pose, told))| {
-                let share = if other == at { 1.0 } else { (told / information[at].max(1e-6)).min(1.0) };
-                share * fusion.correlation(&poses[at], pose)
-            });
+            let shared =
+                poses.iter().zip(information.iter()).enumerate().map(|(other, (pose, other_information))| {
+                    let share = if other == at {
+                        1.0
+                    } else {
+                        (other_information / information[at].max(1e-6)).min(1.0)
+                    };
+                    share * fusion.correlation(&poses[at], pose)
+                });
             1.0 / shared.sum::<f32>().max(1.0)
         };
         weights.clear();
@@ -138,12 +143,12 @@ impl Belief {
         probabilities.iter_mut().for_each(|probability| *probability /= sum);
     }
 
-    /// Probability of each class.
+    /// Returns the probability of each class.
     pub fn probabilities(&self) -> &[f32] {
         &self.probabilities
     }
 
-    /// The most likely class and its probability; of equally likely ones the first.
+    /// Returns the most likely class and its probability; of equally likely ones the first.
     pub fn best(&self) -> (usize, f32) {
         let first = |best: (usize, f32), (class, probability): (usize, &f32)| {
             if *probability > best.1 { (class, *probability) } else { best }
@@ -151,18 +156,18 @@ impl Belief {
         self.probabilities.iter().enumerate().fold((0, 0.0), first)
     }
 
-    /// Entropy as a share of that of equally likely classes, 0 to 1.
+    /// Returns the entropy as a share of that of equally likely classes, 0 to 1.
     pub fn uncertainty(&self) -> f32 {
         let terms = self.probabilities.iter().filter(|p| **p > 0.0).map(|p| -p * p.ln());
         terms.sum::<f32>() / (self.classes as f32).ln()
     }
 
-    /// How much each view counts.
+    /// Returns the weight of each view.
     pub fn weights(&self) -> &[f32] {
         &self.weights
     }
 
-    /// Number of views.
+    /// Returns the number of views.
     pub fn views(&self) -> usize {
         self.poses.len()
     }

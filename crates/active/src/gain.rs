@@ -1,4 +1,4 @@
-//! How much a movement is expected to raise the probability of the true class.
+//! The expected rise of the probability of the true class by a motion.
 
 use std::sync::Arc;
 
@@ -7,34 +7,34 @@ use opendr_kernels::{Activation, Adam, AdamOptions, Compute, Initialisation, Net
 
 use crate::observation::Observer;
 
-/// Movements with what they gained, to learn from.
+/// Motions with their gains, to train on.
 #[derive(Debug, Clone, Default)]
 pub struct GainSamples {
-    /// Observation and movement of each, one after the other.
+    /// Observation and motion of each, one after the other.
     inputs: Vec<f32>,
     gains: Vec<f32>,
 }
 
 impl GainSamples {
-    /// Adds a movement.
+    /// Adds a motion.
     pub fn add(&mut self, observation: &[f32], action: &[f32], gain: f32) {
         self.inputs.extend_from_slice(observation);
         self.inputs.extend_from_slice(action);
         self.gains.push(gain);
     }
 
-    /// Number of movements.
+    /// Returns the number of motions.
     pub fn len(&self) -> usize {
         self.gains.len()
     }
 
-    /// Whether there is none.
+    /// Returns whether there is none.
     pub fn is_empty(&self) -> bool {
         self.gains.is_empty()
     }
 }
 
-/// A network from observation and movement to the expected gain.
+/// A network from observation and motion to the expected gain.
 #[derive(Debug, Clone)]
 pub struct GainNetwork {
     network: Network,
@@ -44,11 +44,15 @@ pub struct GainNetwork {
     input: Vec<f32>,
 }
 
+fn network(axes: usize) -> Result<Network> {
+    Network::dense(&[Observer::LEN + axes, 64, 32, 1], Activation::Relu)
+}
+
 const BATCH: usize = 128;
 const RATE: f32 = 1e-3;
 
 impl GainNetwork {
-    /// Learns by least squares, `epochs` times over the samples.
+    /// Trains by least squares, `epochs` times over the samples.
     ///
     /// # Errors
     /// `InvalidInput` for fewer samples than a batch of 128.
@@ -62,11 +66,11 @@ impl GainNetwork {
         let width = Observer::LEN + axes;
         if samples.len() < BATCH || samples.inputs.len() != width * samples.len() {
             return Err(Error::invalid_input(format!(
-                "{} movements of {axes} axes to learn gains from; record at least {BATCH}",
+                "{} motions of {axes} axes to learn gains from; record at least {BATCH}",
                 samples.len()
             )));
         }
-        let network = Network::dense(&[width, 64, 32, 1], Activation::Relu)?;
+        let network = network(axes)?;
         let mut random = Random::from_key([seed, 0x6a14]);
         let mut parameters = vec![0.0; network.parameters()];
         let begin = Initialisation::Orthogonal { hidden: std::f32::consts::SQRT_2, output: 0.1 };
@@ -94,10 +98,29 @@ impl GainNetwork {
             let rate = RATE * (1.0 - step as f32 / steps as f32);
             adam.step(compute, rate, &mut parameters, &gradients);
         }
-        Ok(Self { network, parameters: Arc::new(parameters), axes, tape: Tape::default(), input: Vec::new() })
+        Ok(Self::new(network, parameters, axes))
     }
 
-    /// The expected gains of several movements, one after the other, from one observation.
+    fn new(network: Network, parameters: Vec<f32>, axes: usize) -> Self {
+        Self { network, parameters: Arc::new(parameters), axes, tape: Tape::default(), input: Vec::new() }
+    }
+
+    /// Returns the parameters as little-endian `f32`.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        self.parameters.iter().flat_map(|value| value.to_le_bytes()).collect()
+    }
+
+    /// Creates a network from the bytes of [`Self::to_bytes`].
+    ///
+    /// # Errors
+    /// Returns `Format` for bytes of another length.
+    pub fn from_bytes(axes: usize, bytes: &[u8]) -> Result<Self> {
+        let network = network(axes)?;
+        let parameters = crate::parameter_bytes::parse("the network of gains", bytes, network.parameters())?;
+        Ok(Self::new(network, parameters, axes))
+    }
+
+    /// Returns the expected gains of several motions, one after the other, from one observation.
     ///
     /// # Panics
     /// When the observation is not of [`Observer::LEN`] numbers.
@@ -111,7 +134,7 @@ impl GainNetwork {
         self.network.forward(compute, &self.parameters, &self.input, &mut self.tape)
     }
 
-    /// Axes of a movement.
+    /// Returns the number of axes of a motion.
     pub fn axes(&self) -> usize {
         self.axes
     }
@@ -122,7 +145,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn gains_that_depend_on_the_movement_are_learnt() {
+    fn gains_that_depend_on_the_motion_are_learnt() {
         let (mut random, mut samples) = (Random::new(2), GainSamples::default());
         let mut observation = vec![0.0; Observer::LEN];
         for _ in 0..4000 {

@@ -1,11 +1,11 @@
-//! Active perception: cameras that move to see better.
+//! Active perception: a camera moves to where its recogniser is certain.
 //!
 //! A recogniser of single views, a rig that carries out [`Action`](opendr_engine::target::Action)s, and between them a belief over
-//! classes, a policy that was trained to move to where the recogniser is certain, and a rule for when to stop.
+//! classes, a camera policy, and a stop rule. The policy is trained with PPO in environments that report the true class.
 //!
-//! Begin with [`Active`], which runs a trained [`ActiveModel`] on a rig. [`train_active`] trains one on any [`ActiveScene`];
-//! [`sphere::SphereScene`] is one over generated subjects, and `examples/sphere_view.rs` goes the whole way. Rigs are in
-//! [`rig`], the rendered one in [`opendr_simulation::sphere_view`].
+//! Begin with [`Active`], which runs a trained [`ActiveModel`] on a rig, or with the learner [`ActiveFaceRecognition`], which is
+//! trained by `opendr fit active_face_recognition --env SphereView-Face-v1`. [`train_active`] trains on any [`ActiveScene`];
+//! [`EnvironmentScene`] is one in an environment. Rigs without a simulator are in [`rig`].
 //!
 //! ```
 //! use opendr_active::{Belief, Fusion};
@@ -13,45 +13,74 @@
 //!
 //! let mut belief = Belief::new(3, Fusion::default())?;
 //! let front = ViewPose { distance: 3.0, ..ViewPose::default() };
-//! // Seven pictures from one place count as one.
+//! // Seven images from one pose count as one.
 //! for _ in 0..7 {
 //!     belief.add(front, &[0.6_f32.ln(), 0.3_f32.ln(), 0.1_f32.ln()])?;
 //! }
 //! assert!((belief.best().1 - 0.6).abs() < 1e-4);
+//! // One from the side adds to it.
+//! belief.add(ViewPose { azimuth: 1.5, ..front }, &[0.6_f32.ln(), 0.3_f32.ln(), 0.1_f32.ln()])?;
+//! assert!(belief.best().1 > 0.7);
 //! # Ok::<_, opendr_engine::Error>(())
 //! ```
 
 mod active;
+mod any_recogniser;
 mod calibration;
+mod camera_policy;
+mod comparison;
 mod environment;
+mod environment_rig;
+mod environment_scene;
 mod episode;
+mod episode_strip;
 mod evidence;
 mod fusion;
 mod gain;
-mod look;
-mod mover;
+mod learner;
+mod model;
 mod observation;
+mod parameter_bytes;
 mod recogniser;
 mod report;
 mod scene;
+mod session;
 mod stop;
 mod training;
+mod view_classifier;
+mod view_loop;
 
 pub mod rig;
-pub mod sphere;
 
 pub use active::{Active, Outcome, View};
+pub use any_recogniser::AnyRecogniser;
 pub use calibration::{Trajectory, fit_fusion, negative_log_likelihood};
+pub use camera_policy::{
+    CameraContext, CameraPolicy, GreedyPolicy, OracleBaseline, OrbitBaseline, RandomBaseline, StaticBaseline,
+    TrainedPolicy,
+};
+pub use comparison::{Comparison, ComparisonRow, FIRST_EVALUATION_SEED, compare};
 pub use environment::ActiveEnvironment;
+pub use environment_rig::EnvironmentRig;
+pub use environment_scene::EnvironmentScene;
 pub use episode::{ActiveEpisode, run_episode};
+pub use episode_strip::episode_strip;
 pub use evidence::ClassEvidence;
 pub use fusion::{Belief, Fusion};
 pub use gain::{GainNetwork, GainSamples};
-pub use look::Look;
-pub use mover::{Greedy, Mover, Oracle, Orbit, PolicyMover, RandomMover, Situation, Stare};
+pub use learner::{
+    ActiveContainer, ActiveFaceRecognition, ActiveFitParams, ActiveInput, ActiveKind, ActiveLearner,
+    ActiveObjectRecognition, ActiveParams, ActivePoseRecognition, ActiveState, write_active_model,
+};
+pub use model::ActiveModel;
 pub use observation::Observer;
 pub use recogniser::{LearnerRecogniser, ViewRecogniser};
 pub use report::{ActiveReport, CERTAIN};
 pub use scene::ActiveScene;
+pub use session::{ActiveSession, Decision};
 pub use stop::{StopReason, StopRule};
-pub use training::{ActiveModel, ActiveTraining, calibrated, train_active};
+pub use training::{ActiveTraining, calibrated, train_active};
+pub use view_classifier::{
+    LabelledViews, ViewClassifier, ViewClassifierConfig, ViewTraining, fit_view_classifier,
+};
+pub use view_loop::ViewLoop;

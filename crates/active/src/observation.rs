@@ -1,4 +1,4 @@
-//! What a policy of movement is given: a thumbnail, confidences and poses; nothing that depends on the recogniser's inside.
+//! Observations of camera policies: a thumbnail, confidences and poses, nothing internal to the recogniser.
 
 use opendr_engine::data::Image;
 use opendr_engine::rig::{Achieved, ViewAxis, ViewPose};
@@ -7,14 +7,14 @@ use opendr_engine::{Error, Result};
 
 use crate::fusion::Belief;
 
-/// Pixels of the thumbnail in each direction.
+/// Width and height of the thumbnail in pixels.
 const SIDE: usize = 12;
-/// Numbers that are not of the thumbnail.
+/// Length of an observation without the thumbnail.
 const NUMBERS: usize = 18;
 
 /// Turns views and beliefs into observations: luminance of 12 x 12 pixels with mean 0, then confidence and uncertainty of the
-/// belief, information of the last and of the best view, the pose, the way to the best view, the last movement and what
-/// stopped it, and the share of the budget that is used.
+/// belief, information of the last and of the best view, the pose, the direction to the best view, the last motion and whether a
+/// limit stopped it, and the used share of the budget.
 #[derive(Debug, Clone)]
 pub struct Observer {
     axes: Vec<ViewAxis>,
@@ -28,7 +28,7 @@ impl Observer {
     /// Length of an observation.
     pub const LEN: usize = SIDE * SIDE + NUMBERS;
 
-    /// An observer of a rig with these axes and a budget of movements.
+    /// Creates an observer of a rig with these axes and a maximum number of motions.
     pub fn new(axes: &[ViewAxis], budget: usize) -> Self {
         Self {
             axes: axes.to_vec(),
@@ -45,26 +45,24 @@ impl Observer {
         self.last = None;
     }
 
-    /// Notes a movement.
-    pub fn moved(&mut self, achieved: Achieved) {
+    /// Sets the last motion.
+    pub fn set_motion(&mut self, achieved: Achieved) {
         self.last = Some(achieved);
     }
 
-    /// Notes a picture.
+    /// Sets the thumbnail from an image.
     ///
     /// # Errors
-    /// `InvalidInput` for a picture that is not of 8 bits.
-    pub fn saw(&mut self, image: &Image) -> Result<()> {
+    /// Returns `InvalidInput` for an image that is not of 8 bits.
+    pub fn set_image(&mut self, image: &Image) -> Result<()> {
         let (width, height) = (image.width(), image.height());
         let opendr_engine::data::Pixels::U8(pixels) = image.pixels() else {
-            return Err(Error::invalid_input(
-                "a policy of movement takes pictures of 8 bits; convert the camera's",
-            ));
+            return Err(Error::invalid_input("a camera policy takes images of 8 bits; convert the image"));
         };
         let (channels, planes) = (image.channels(), image.layout() == opendr_engine::data::Layout::Chw);
         let colours = channels.min(3);
         for (at, luminance) in self.thumbnail.iter_mut().enumerate() {
-            // At least one pixel each, where the picture is smaller than the thumbnail.
+            // At least one pixel each, for an image smaller than the thumbnail.
             let range = |number: usize, size: usize| {
                 let begin = number * size / SIDE;
                 begin..((number + 1) * size / SIDE).max(begin + 1)
@@ -91,11 +89,11 @@ impl Observer {
         Ok(())
     }
 
-    /// Writes the observation of now, of [`Self::LEN`] numbers.
+    /// Writes the observation, of [`Self::LEN`] numbers.
     pub fn observe(&self, pose: &ViewPose, belief: &Belief, observation: &mut [f32]) {
-        let (picture, numbers) = observation.split_at_mut(SIDE * SIDE);
-        picture.copy_from_slice(&self.thumbnail);
-        let (best, told) = belief.most_informative().unwrap_or((pose, 0.0));
+        let (thumbnail, numbers) = observation.split_at_mut(SIDE * SIDE);
+        thumbnail.copy_from_slice(&self.thumbnail);
+        let (best, information) = belief.most_informative().unwrap_or((pose, 0.0));
         let (turned, back) =
             ((pose.azimuth - self.begin.azimuth) as f32, (best.azimuth - pose.azimuth) as f32);
         let share = |axis: usize, position: f64| {
@@ -114,7 +112,7 @@ impl Observer {
             belief.best().1,
             belief.uncertainty(),
             belief.last_information(),
-            told,
+            information,
             share(1, pose.elevation),
             share(2, pose.distance),
             turned.sin(),

@@ -1,4 +1,4 @@
-//! Perception in the loop: anything that gives class probabilities for a picture.
+//! Recognisers: class probabilities of one image.
 
 use opendr_engine::Result;
 use opendr_engine::data::Image;
@@ -8,13 +8,13 @@ use crate::evidence::ClassEvidence;
 
 /// A recogniser of one view.
 pub trait ViewRecogniser: Send {
-    /// Number of classes.
+    /// Returns the number of classes.
     fn classes(&self) -> usize;
 
-    /// Writes the logarithm of the probability of each class for one picture, all classes being equally likely before it.
+    /// Writes the logarithm of the probability of each class for an image, under equal prior probabilities.
     ///
     /// # Errors
-    /// Those of the network.
+    /// Returns errors of the network.
     fn recognise(&mut self, image: &Image, evidence: &mut [f32]) -> Result<()>;
 }
 
@@ -40,17 +40,17 @@ impl<L: Learner> LearnerRecogniser<L>
 where
     L::Target: Default,
 {
-    /// A recogniser of `classes` classes; class numbers of the learner's targets count from 0.
+    /// Creates a recogniser of `classes` classes; class indices of the learner's targets start at 0.
     pub fn new(learner: L, classes: usize) -> Self {
         Self { learner, classes, state: L::State::default(), target: L::Target::default() }
     }
 
-    /// The learner.
+    /// Returns the learner.
     pub fn learner(&self) -> &L {
         &self.learner
     }
 
-    /// What the learner predicted for the last picture.
+    /// Returns the prediction for the last image.
     pub fn target(&self) -> &L::Target {
         &self.target
     }

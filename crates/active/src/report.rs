@@ -1,19 +1,21 @@
-//! What episodes show: accuracy, calibration, views to certainty.
+//! Figures over episodes: accuracy, calibration, views until a confidence.
 
 use std::fmt;
 
-use opendr_engine::{Error, Result};
+use opendr_engine::Error;
 use opendr_metrics::{Calibration, Interval, wilson_interval};
+use serde::Serialize;
 
 use crate::episode::ActiveEpisode;
 
-/// The probability that counts as certain.
+/// The confidence of [`ActiveReport::median_views`].
 pub const CERTAIN: f32 = 0.9;
 
 /// Figures over episodes.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ActiveReport {
-    /// Share of right predictions with its 95 % interval (Wilson).
+    /// Share of correct predictions with its 95 % interval (Wilson).
+    #[serde(serialize_with = "as_bounds")]
     pub accuracy: Interval,
     /// Expected calibration error of the beliefs at the end, 15 bins.
     pub calibration_error: f64,
@@ -26,29 +28,34 @@ pub struct ActiveReport {
     pub episodes: usize,
 }
 
+/// Writes value, low and high.
+fn as_bounds<S: serde::Serializer>(interval: &Interval, serializer: S) -> Result<S::Ok, S::Error> {
+    [interval.value, interval.low, interval.high].serialize(serializer)
+}
+
 impl ActiveReport {
-    /// The report of episodes.
+    /// Computes the figures of episodes.
     ///
     /// # Errors
-    /// `InvalidInput` for no episode.
-    pub fn of(episodes: &[ActiveEpisode]) -> Result<Self> {
+    /// Returns `InvalidInput` without episodes.
+    pub fn of(episodes: &[ActiveEpisode]) -> opendr_engine::Result<Self> {
         let correct = episodes.iter().filter(|episode| episode.is_correct()).count();
         let mut calibration = Calibration::default();
         for episode in episodes {
             calibration.add(episode.is_correct(), f64::from(episode.confidence.min(1.0)))?;
         }
-        let none = || Error::invalid_input("a report of no episodes; run at least one");
+        let none = || Error::invalid_input("no episodes to report on; run at least one");
         let mut views: Vec<f64> = episodes
             .iter()
             .map(|episode| episode.views_to(CERTAIN).map_or(f64::INFINITY, |views| views as f64))
             .collect();
         views.sort_by(f64::total_cmp);
-        let looks = episodes.iter().map(|episode| episode.confidences.len()).sum::<usize>();
+        let views_in_all = episodes.iter().map(|episode| episode.confidences.len()).sum::<usize>();
         Ok(Self {
             accuracy: wilson_interval(correct as u64, episodes.len() as u64).ok_or_else(none)?,
             calibration_error: calibration.expected_error().ok_or_else(none)?,
             median_views: views[(views.len() - 1) / 2],
-            mean_views: looks as f64 / episodes.len() as f64,
+            mean_views: views_in_all as f64 / episodes.len() as f64,
             episodes: episodes.len(),
         })
     }

@@ -1,29 +1,29 @@
-//! When looking ends.
+//! Rules for the end of a run.
 
 use opendr_engine::{Error, Result};
 use serde::{Deserialize, Serialize};
 
-/// When to stop: certain enough, out of movements, or nothing to be gained.
+/// When to stop: confident enough, out of motions, or no expected gain.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StopRule {
-    /// Movements at most.
+    /// Maximum number of motions.
     pub moves: usize,
     /// Stops at this probability of the best class.
     pub confidence: f32,
-    /// Stops where the next movement is expected to raise the probability of the true class by less than this; 0 never.
+    /// Stops if the next motion is expected to raise the probability of the true class by less than this; 0 never.
     pub gain: f32,
 }
 
-/// Why looking ended.
+/// Reason of a stop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StopReason {
-    /// The belief is certain enough.
+    /// The belief is confident enough.
     Confident,
-    /// All movements are used.
+    /// All motions are used.
     Budget,
-    /// No movement is expected to help.
+    /// No motion is expected to help.
     NoGain,
 }
 
@@ -34,8 +34,10 @@ impl Default for StopRule {
 }
 
 impl StopRule {
+    /// Checks the ranges.
+    ///
     /// # Errors
-    /// `InvalidParam` for a confidence or a gain outside 0..=1.
+    /// Returns `InvalidParam` for a confidence or a gain outside 0..=1.
     pub fn check(&self) -> Result<()> {
         if (0.0..=1.0).contains(&self.confidence) && (0.0..=1.0).contains(&self.gain) {
             return Ok(());
@@ -43,7 +45,7 @@ impl StopRule {
         Err(Error::invalid_param(format!("{self:?}: give a confidence and a gain in 0..=1")))
     }
 
-    /// Why to stop after so many movements; `None` to go on.
+    /// Returns the reason to stop after a number of motions; `None` to continue.
     pub fn reason(&self, moves: usize, confidence: f32, expected_gain: Option<f32>) -> Option<StopReason> {
         if confidence >= self.confidence {
             return Some(StopReason::Confident);

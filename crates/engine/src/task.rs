@@ -97,6 +97,8 @@ tasks! {
     VoiceActivityDetection = "voice_activity_detection";
     /// Transcription of speech to text.
     SpeechTranscription = "speech_transcription";
+    /// Recognition from several views, with proposed camera motions.
+    ActivePerception = "active_perception";
     /// Control policies trained by reinforcement learning.
     ReinforcementLearning = "reinforcement_learning";
     /// Motion planning from camera images to motion in one network.

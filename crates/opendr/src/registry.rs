@@ -7,6 +7,7 @@ use opendr_actions::{
     activity_recognition::{CoX3d, X3d},
     skeleton_based_action_recognition::{CoStGcn, SpatioTemporalGcn},
 };
+use opendr_active::{ActiveFaceRecognition, ActiveObjectRecognition, ActivePoseRecognition};
 #[cfg(feature = "classification")]
 use opendr_classification::{
     compressive_learning::MultilinearCompressive, image_classification::ImageClassifier,
@@ -185,6 +186,9 @@ pub fn registry() -> &'static Registry {
                 ResidualSacLearner,
                 ResidualTd3Learner,
                 EndToEndPlanningRl,
+                ActiveFaceRecognition,
+                ActiveObjectRecognition,
+                ActivePoseRecognition,
             },
             #[cfg(feature = "test-learner")]
             {

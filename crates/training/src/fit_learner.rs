@@ -56,7 +56,7 @@ pub fn fit_learner<L: Learner, O: Objective>(
         DatasetRef::Iterator(dataset) => Box::new(dataset),
         DatasetRef::External(external) => open_for_metric(metric, external, None, &problems)?,
     };
-    let entry = Entry::of::<L>(Probe::<L>::abilities(None, None, None));
+    let entry = Entry::of::<L>(Probe::<L>::abilities(None, None, None, None));
     let mut validate = |container: &Path| -> Result<Score> {
         let learner = entry.make(&learner_params.to_map(), Device::Auto)?;
         score(learner, &entry, metric, &*val_dataset, container, &problems, job)

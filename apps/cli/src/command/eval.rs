@@ -1,5 +1,7 @@
 //! `opendr eval`: evaluates a learner on a data set, or a policy in an environment.
 
+mod active;
+
 use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
@@ -29,6 +31,7 @@ Examples:
   opendr eval LEARNER mine/ --classes lorry=truck,tram=train   classes whose names differ
   opendr eval ppo --env CartPole-v1 --episodes 500             a policy in an environment
   opendr eval residual_ppo --model runs/mine/model             prior, policy and both on the same episodes
+  opendr eval active_face_recognition --model MODEL --episodes 500   a moving camera, beside baselines
 
 An interrupted evaluation with --out resumes when the same command runs again.";
 
@@ -53,6 +56,11 @@ pub fn grammar() -> Command {
         )
         .args(loading::flags())
         .after_help(EXAMPLES)
+}
+
+/// Adds the environment and the recogniser for learners of active perception.
+pub fn add_for_active(command: Command) -> Command {
+    active::add_recogniser(environment_flags::add_for_episodes(command))
 }
 
 /// Returns the flags of commands that compute a metric.
@@ -84,6 +92,9 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let bar = ProgressBar::new(matches.get_flag("quiet"));
     if environment_flags::is_policy(entry) {
         return in_environment(spec, entry, matches, &bar);
+    }
+    if environment_flags::is_active(entry) {
+        return active::run(spec, entry, matches, &bar);
     }
     let mut options = EvalOptions {
         metric: matches.get_one("metric").cloned(),

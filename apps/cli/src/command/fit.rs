@@ -20,6 +20,7 @@ Examples:
   opendr fit LEARNER/VARIANT labelled/                         fine-tune a pretrained model
   opendr fit LEARNER photos/ --teacher nanodet                 distil the predictions of another learner
   opendr fit ppo --env CartPole-v1                             train a policy in an environment
+  opendr fit active_face_recognition --env SphereView-Face-v1  train a recogniser and the camera's motion
   opendr fit LEARNER --help                                    list the learner's flags, such as --epochs
 
 Without --out the output folder is runs/LEARNER-DATE; --resume without it uses the last of these. The trained model is in
@@ -149,6 +150,17 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         let source = environment_flags::source(matches, Some(learner.as_ref()))?;
         let environments = FitEnvironments { env: &source, val_env: None };
         let fitted = opendr::fit_policy(learner.as_mut(), entry, environments, &options, &bar)?;
+        return print_fitted(&fitted, matches, &bar);
+    }
+    if environment_flags::is_active(entry) {
+        let env = environment_flags::named(matches, Some(learner.as_ref()))?;
+        let fitted = if matches.contains_id(dataset_flags::DATASET) {
+            let dataset = dataset_flags::external(matches);
+            opendr::fit_active(learner.as_mut(), entry, (&dataset).into(), &env, &options, &bar)?
+        } else {
+            let environments = FitEnvironments { env: &env, val_env: None };
+            opendr::fit_policy(learner.as_mut(), entry, environments, &options, &bar)?
+        };
         return print_fitted(&fitted, matches, &bar);
     }
     let val = matches.get_one::<PathBuf>("val");

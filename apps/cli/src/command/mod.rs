@@ -95,6 +95,14 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
             };
             *command = add(std::mem::take(command));
         }
+        if environment_flags::is_active(entry) {
+            let add = match name.to_str() {
+                Some("eval") => eval::add_for_active,
+                Some("fit") => environment_flags::add_beside_dataset,
+                _ => |command| command,
+            };
+            *command = add(std::mem::take(command));
+        }
     }
     Ok(Command::new("opendr")
         .about("OpenDR in Rust: the open deep-learning toolkit for robotics")

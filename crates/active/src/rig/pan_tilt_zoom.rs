@@ -18,7 +18,7 @@ pub struct PanTiltZoom {
 }
 
 impl PanTiltZoom {
-    /// A camera over an image of RGB bytes, pixel after pixel, whose width is `field` rad; its pictures have `width` x
+    /// A camera over an image of RGB bytes, pixel after pixel, whose width is `field` rad; its images have `width` x
     /// `height` pixels. It begins with the whole image.
     ///
     /// # Errors

@@ -26,8 +26,8 @@ struct Index {
     views: Vec<RecordedView>,
 }
 
-/// Images that were taken from known places around a subject: a picture is the recorded view nearest to where the camera was
-/// moved. The pose is that of the recorded view, so that a belief is not told of views that nobody took.
+/// Images that were captured at known poses around a subject: the image is the recorded view nearest to the pose of the
+/// camera. The reported pose is that of the recorded view, so that a belief contains only views that exist.
 ///
 /// The index is JSON: `{"axes": [{"name": "azimuth", "step": 0.6, "low": -3.14, "high": 3.14, "wraps": true}], "views":
 /// [{"image": "0001.png", "pose": {"azimuth": 0.0, "elevation": 0.1, "distance": 1.5}}]}`.

@@ -1,9 +1,7 @@
-//! A policy learns to look from where the recogniser is certain, and the active recogniser uses it.
+//! A policy learns to move to where the recogniser is certain, and active perception uses it.
 
-use opendr_active::{
-    Active, ActiveModel, ActiveReport, ActiveTraining, Look, Mover, Oracle, PolicyMover, Stare, StopReason,
-    StopRule, run_episode, train_active,
-};
+use opendr_active::{Active, ActiveModel, ActiveTraining, StopReason, StopRule, compare, train_active};
+use opendr_engine::Silent;
 use opendr_engine::target::ActionBase as _;
 
 use crate::toy::{ToyRecogniser, ToyRig, ToyScene};
@@ -21,26 +19,19 @@ fn training() -> ActiveTraining {
 }
 
 fn train(training: &ActiveTraining) -> ActiveModel {
-    train_active(&|| Ok(ToyScene::new()), training, &mut |_, _| ()).unwrap()
-}
-
-fn report(model: &ActiveModel, mover: &mut dyn Mover, stop: &StopRule) -> ActiveReport {
-    let mut look = Look::new(ToyScene::new(), model.fusion, model.stop.moves).unwrap();
-    let run = (1_000_000..1_000_200).map(|seed| run_episode(&mut look, mover, stop, seed, None).unwrap());
-    ActiveReport::of(&run.collect::<Vec<_>>()).unwrap()
+    train_active(&|| Ok(ToyScene::new()), training, &mut |_, _| false).unwrap()
 }
 
 #[test]
-fn a_policy_learns_where_to_look() {
+fn a_policy_learns_to_move_to_the_front() {
     let model = train(&training());
-    let fixed = report(&model, &mut Stare, &StopRule { moves: 0, ..model.stop }).accuracy.value;
-    let oracle = report(&model, &mut Oracle, &model.stop).accuracy.value;
-    let policy = report(&model, &mut PolicyMover::new(model.policy.clone()), &model.stop);
-    assert!(fixed < 0.6 && oracle > 0.9, "{fixed} {oracle}");
-    assert!(policy.accuracy.value > fixed + 0.4, "{policy:?} {fixed}");
-    assert!(policy.calibration_error < 0.1, "{policy:?}");
+    let comparison = compare(ToyScene::new(), &model, 1_000_000, 200, &Silent).unwrap();
+    let accuracy = |name: &str| comparison.of(name).unwrap().accuracy.value;
+    assert!(accuracy("static") < 0.6 && accuracy("oracle") > 0.9, "{comparison}");
+    assert!(accuracy("policy") > accuracy("static") + 0.4, "{comparison}");
+    assert!(comparison.of("policy").unwrap().calibration_error < 0.1, "{comparison}");
 
-    let mut active = Active::new(ToyRecogniser, model.clone()).unwrap();
+    let mut active = Active::new(ToyRecogniser, &model).unwrap();
     let outcome = active.run(&mut ToyRig::new(1.6, 3)).unwrap();
     assert_eq!((outcome.class, outcome.reason), (3, StopReason::Confident), "{outcome:?}");
     let (last, moved) = outcome.views.split_last().unwrap();
@@ -66,7 +57,7 @@ fn threads_and_repetitions_change_no_bit() {
 #[test]
 fn a_rig_of_other_axes_is_refused() {
     let model = train(&ActiveTraining { timesteps: 512, ..training() });
-    let mut active = Active::new(ToyRecogniser, model).unwrap();
+    let mut active = Active::new(ToyRecogniser, &model).unwrap();
     let mut world = opendr_simulation::sphere_view::SphereWorld::new(16).unwrap();
     let error = active.run(&mut world).unwrap_err().to_string();
     assert!(error.contains("a policy of 1 axes for a rig of 3"), "{error}");

@@ -3,8 +3,10 @@
 #![allow(clippy::unwrap_used)]
 
 mod allocation;
+mod learner;
 mod learning;
 mod rigs;
+mod small;
 mod toy;
 
 #[global_allocator]

@@ -1,5 +1,5 @@
-//! A scene without pictures to render: four classes that can be told apart from one side only, and pictures that show which
-//! side that is.
+//! A scene without rendering: four classes that can be distinguished from one side only, and images that show which side
+//! that is.
 
 use opendr_active::{ActiveScene, ViewRecogniser};
 use opendr_engine::data::Image;
@@ -10,7 +10,7 @@ use opendr_engine::{Random, Result};
 pub const CLASSES: usize = 4;
 const SIDE: usize = 12;
 
-/// A rig whose pictures are bright to the left where the front is to the left.
+/// A rig whose images are bright to the left where the front is to the left.
 pub struct ToyRig {
     sphere: ViewSphere,
     front: f64,
@@ -47,7 +47,7 @@ impl ViewRig for ToyRig {
     fn capture(&mut self) -> Result<Image> {
         let off = self.off();
         let level = |left: bool| if left == (off > 0.0) { (40.0 + 60.0 * off.abs()) as u8 } else { 0 };
-        // The class and how clearly it is seen stand in two pixels, for the recogniser below.
+        // Two pixels have the class and whether it is visible, for the recogniser below.
         let mut pixels: Vec<u8> = (0..SIDE * SIDE).flat_map(|at| [level(at % SIDE < SIDE / 2); 3]).collect();
         pixels[0] = self.class as u8;
         pixels[1] = if off.abs() < 0.5 { 200 } else { 100 };

@@ -67,6 +67,22 @@ pub trait AnyLearner: Send {
         Err(Error::unsupported("this learner cannot fit in an environment"))
     }
 
+    /// Trains perception on a data set, or on views that the environments provide, and its motion in environments, and loads
+    /// the trained model.
+    ///
+    /// # Errors
+    /// Returns `Unsupported` if the learner is not one of active perception.
+    fn fit_active(
+        &mut self,
+        fit_params: &ParamMap,
+        dataset: Option<DatasetRef<'_>>,
+        env: &dyn EnvironmentSource,
+        job: &FitJob<'_>,
+    ) -> Result<Statistics> {
+        let _ = (fit_params, dataset, env, job);
+        Err(Error::unsupported("this learner does not move a camera"))
+    }
+
     /// Resets the state of the own stream.
     fn reset(&mut self);
 
@@ -179,8 +195,22 @@ impl<L: Learner> AnyLearner for Typed<L> {
         val_env: Option<&dyn EnvironmentSource>,
         job: &FitJob<'_>,
     ) -> Result<Statistics> {
+        if self.abilities.fit_active.is_some() && val_env.is_none() {
+            return self.fit_active(fit_params, None, env, job);
+        }
         let (fit, _) = self.abilities.fit_in.ok_or_else(|| cannot::<L>("fit in an environment"))?;
         fit(&mut self.handle, fit_params, env, val_env, job)
+    }
+
+    fn fit_active(
+        &mut self,
+        fit_params: &ParamMap,
+        dataset: Option<DatasetRef<'_>>,
+        env: &dyn EnvironmentSource,
+        job: &FitJob<'_>,
+    ) -> Result<Statistics> {
+        let (fit, _) = self.abilities.fit_active.ok_or_else(|| cannot::<L>("move a camera"))?;
+        fit(&mut self.handle, fit_params, dataset, env, job)
     }
 
     fn reset(&mut self) {

@@ -4,7 +4,9 @@ use std::marker::PhantomData;
 
 use crate::dataset::DatasetRef;
 use crate::environment::EnvironmentSource;
-use crate::learner::{Fit, FitJob, Handle, Learner, LearnerRl, Outputs, Ports, Stream, Streaming};
+use crate::learner::{
+    Fit, FitJob, Handle, Learner, LearnerActive, LearnerRl, Outputs, Ports, Stream, Streaming,
+};
 use crate::params::{Field, ParamMap, Params};
 use crate::{Result, Statistics};
 
@@ -29,6 +31,13 @@ pub(crate) type FitInFn<L> = fn(
     Option<&dyn EnvironmentSource>,
     &FitJob<'_>,
 ) -> Result<Statistics>;
+pub(crate) type FitActiveFn<L> = fn(
+    &mut Handle<L>,
+    &ParamMap,
+    Option<DatasetRef<'_>>,
+    &dyn EnvironmentSource,
+    &FitJob<'_>,
+) -> Result<Statistics>;
 
 /// The optional capabilities of `L` as plain functions.
 #[doc(hidden)]
@@ -36,6 +45,7 @@ pub struct Abilities<L: Learner> {
     pub(crate) push: Option<PushFn<L>>,
     pub(crate) fit: Option<(FitFn<L>, &'static [Field])>,
     pub(crate) fit_in: Option<(FitInFn<L>, &'static [Field])>,
+    pub(crate) fit_active: Option<(FitActiveFn<L>, &'static [Field])>,
 }
 
 impl<L: Learner> Clone for Abilities<L> {
@@ -50,7 +60,7 @@ impl<L: Learner> Abilities<L> {
     pub(crate) fn capabilities(&self) -> Capabilities {
         Capabilities {
             fit: self.fit.is_some(),
-            fit_in: self.fit_in.is_some(),
+            fit_in: self.fit_in.is_some() || self.fit_active.is_some(),
             streaming: self.push.is_some(),
         }
     }
@@ -58,7 +68,8 @@ impl<L: Learner> Abilities<L> {
     /// Returns the parameters of the training.
     pub(crate) fn fit_fields(&self) -> &'static [Field] {
         let fields = self.fit.map(|(_, fields)| fields);
-        fields.or(self.fit_in.map(|(_, fields)| fields)).unwrap_or(&[])
+        let fields = fields.or(self.fit_in.map(|(_, fields)| fields));
+        fields.or(self.fit_active.map(|(_, fields)| fields)).unwrap_or(&[])
     }
 }
 
@@ -81,11 +92,12 @@ impl<L> Probe<L> {
         push: Option<PushFn<L>>,
         fit: Option<(FitFn<L>, &'static [Field])>,
         fit_in: Option<(FitInFn<L>, &'static [Field])>,
+        fit_active: Option<(FitActiveFn<L>, &'static [Field])>,
     ) -> Abilities<L>
     where
         L: Learner,
     {
-        Abilities { push, fit, fit_in }
+        Abilities { push, fit, fit_in, fit_active }
     }
 }
 
@@ -101,6 +113,10 @@ pub trait ProbeFallback<L: Learner> {
     }
 
     fn fit_in(&self) -> Option<(FitInFn<L>, &'static [Field])> {
+        None
+    }
+
+    fn fit_active(&self) -> Option<(FitActiveFn<L>, &'static [Field])> {
         None
     }
 }
@@ -146,6 +162,23 @@ impl<L: LearnerRl> ProbeFitIn<L> for Probe<L> {
     fn fit_in(&self) -> Option<(FitInFn<L>, &'static [Field])> {
         Some((
             |handle, map, env, val_env, job| handle.fit_in(&L::FitParams::from_map(map)?, env, val_env, job),
+            L::FitParams::FIELDS,
+        ))
+    }
+}
+
+#[doc(hidden)]
+#[allow(missing_docs)]
+pub trait ProbeFitActive<L: LearnerActive> {
+    fn fit_active(&self) -> Option<(FitActiveFn<L>, &'static [Field])>;
+}
+
+impl<L: LearnerActive> ProbeFitActive<L> for Probe<L> {
+    fn fit_active(&self) -> Option<(FitActiveFn<L>, &'static [Field])> {
+        Some((
+            |handle, map, dataset, env, job| {
+                handle.fit_active(&L::FitParams::from_map(map)?, dataset, env, job)
+            },
             L::FitParams::FIELDS,
         ))
     }

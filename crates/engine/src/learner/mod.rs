@@ -23,7 +23,7 @@ pub use active::LearnerActive;
 pub use any::{AnyLearner, AnyStream};
 pub use capability::Capabilities;
 #[doc(hidden)]
-pub use capability::{Probe, ProbeFallback, ProbeFit, ProbeFitIn, ProbeStreaming};
+pub use capability::{Probe, ProbeFallback, ProbeFit, ProbeFitActive, ProbeFitIn, ProbeStreaming};
 pub use check::{CheckOptions, check_learner};
 pub use fit::{Fit, FitJob};
 pub use handle::{Handle, empty_learner};

@@ -135,7 +135,8 @@ macro_rules! learners {
     ($($(#[$attribute:meta])* { $($learner:ty),* $(,)? }),* $(,)?) => {{
         #[allow(unused_imports)]
         use $crate::learner::{
-            Probe, ProbeFallback as _, ProbeFit as _, ProbeFitIn as _, ProbeStreaming as _,
+            Probe, ProbeFallback as _, ProbeFit as _, ProbeFitActive as _, ProbeFitIn as _,
+            ProbeStreaming as _,
         };
         #[allow(unused_mut)]
         let mut entries = Vec::<$crate::learner::Entry>::new();
@@ -146,6 +147,7 @@ macro_rules! learners {
                     (&Probe::<$learner>::new()).push(),
                     (&Probe::<$learner>::new()).fit(),
                     (&Probe::<$learner>::new()).fit_in(),
+                    (&Probe::<$learner>::new()).fit_active(),
                 ))
             ),*]);
         )*

@@ -24,7 +24,7 @@ pub trait ViewRig {
     /// Axes of its actions, in the order azimuth, elevation, distance, roll or zoom; 1 to 4.
     fn axes(&self) -> &[ViewAxis];
 
-    /// Where the camera is.
+    /// Returns the pose of the camera.
     fn pose(&self) -> ViewPose;
 
     /// Moves, and returns the part of the action that was carried out and the limits that stopped the rest.
@@ -33,7 +33,7 @@ pub trait ViewRig {
     /// `InvalidInput` for an action with another number of axes than the rig has, and those of the device.
     fn apply(&mut self, action: &Action) -> Result<Achieved>;
 
-    /// Takes a picture from where the camera is.
+    /// Captures an image at the current pose.
     ///
     /// # Errors
     /// Those of the camera.

@@ -32,7 +32,7 @@ impl ViewSphere {
         Ok(sphere)
     }
 
-    /// A camera on a free sphere: azimuth round by 35 degrees, elevation by 17 between -23 and 34 degrees, distance by 0.7 closer
+    /// A camera on a free sphere: azimuth round by 35 degrees, elevation by 17 between -52 and 52 degrees, distance by 0.7 closer
     /// between 2.7 and 4.5 radii of the subject.
     ///
     /// # Errors
@@ -40,7 +40,7 @@ impl ViewSphere {
     pub fn camera(pose: ViewPose) -> Result<Self> {
         let axes = vec![
             ViewAxis::turning("azimuth", 35f64.to_radians()),
-            ViewAxis::limited("elevation", 17f64.to_radians(), -0.4, 0.6),
+            ViewAxis::limited("elevation", 17f64.to_radians(), -0.9, 0.9),
             ViewAxis::limited("distance", -0.7, 2.7, 4.5),
         ];
         Self::new(axes, pose)

@@ -2,11 +2,14 @@
 
 use std::time::Instant;
 
+use opendr_datasets::Problems;
+use opendr_engine::dataset::{DatasetIterator as _, DatasetRef};
 use opendr_engine::environment::EnvironmentSource;
 use opendr_engine::learner::{AnyLearner, Entry, FitJob};
 use opendr_engine::{Error, Progress, Result, Statistics};
 
-use super::{FitOptions, Fitted, check_fit, finish, run_folder};
+use super::samples::limited;
+use super::{DatasetOpener, FitOptions, Fitted, check_fit, finish, run_folder};
 use crate::training_environment;
 
 /// Environments in which a policy is trained and evaluated.
@@ -33,6 +36,48 @@ pub fn fit_policy(
     options: &FitOptions,
     progress: &dyn Progress,
 ) -> Result<Fitted> {
+    check_options(options)?;
+    let FitEnvironments { env, val_env } = environments;
+    fit_with(learner, entry, options, progress, |learner, job| {
+        learner.fit_in(&options.params, env, val_env, job)
+    })
+}
+
+/// Trains a learner of active perception: perception on a data set, and the camera motion in environments from `env`.
+///
+/// # Errors
+/// As [`fit_policy`], and errors of the data set.
+pub fn fit_active(
+    learner: &mut dyn AnyLearner,
+    entry: &'static Entry,
+    dataset: DatasetRef<'_>,
+    env: &dyn EnvironmentSource,
+    options: &FitOptions,
+    progress: &dyn Progress,
+) -> Result<Fitted> {
+    let problems = if options.skip_broken { Problems::skipping() } else { Problems::strict() };
+    let opener = DatasetOpener { entry, annotated: true, problems: &problems, progress };
+    let samples = limited(opener.open_training(dataset, options.split.as_deref())?, options.limit);
+    let count = samples.len();
+    let mut fitted = fit_with(learner, entry, options, progress, |learner, job| {
+        let dataset = DatasetRef::Iterator(samples.as_ref());
+        learner.fit_active(&options.params, Some(dataset), env, job)
+    })?;
+    fitted.samples = count;
+    if let DatasetRef::External(external) = dataset {
+        fitted.dataset = external.path().display().to_string();
+    }
+    Ok(fitted)
+}
+
+/// Trains by `train` and reports the result.
+fn fit_with(
+    learner: &mut dyn AnyLearner,
+    entry: &'static Entry,
+    options: &FitOptions,
+    progress: &dyn Progress,
+    train: impl FnOnce(&mut dyn AnyLearner, &FitJob<'_>) -> Result<Statistics>,
+) -> Result<Fitted> {
     let begun = Instant::now();
     if !entry.capabilities.fit_in {
         let class = entry.spec.class;
@@ -41,12 +86,10 @@ pub fn fit_policy(
         )));
     }
     check_fit(entry, &options.params)?;
-    check_options(options)?;
     let output = options.output_folder(entry.spec.name)?;
     run_folder::check(&output, options.resume)?;
     run_folder::make(&output)?;
     progress.note(&format!("output: {}", output.display()));
-    let FitEnvironments { env, val_env } = environments;
     let job = FitJob {
         output: &output,
         resume: options.resume,
@@ -57,7 +100,7 @@ pub fn fit_policy(
     };
     let statistics = match progress.stopped() {
         true => Statistics::default(),
-        false => learner.fit_in(&options.params, env, val_env, &job)?,
+        false => train(learner, &job)?,
     };
     let fitted = Fitted {
         learner: entry.spec.name.to_owned(),

@@ -18,7 +18,7 @@ use opendr_evaluation::{Distillation, Teacher};
 use opendr_inference as inference;
 
 pub use fitted::Fitted;
-pub use in_environment::{FitEnvironments, fit_policy};
+pub use in_environment::{FitEnvironments, fit_active, fit_policy};
 pub use options::FitOptions;
 pub use samples::{DatasetOpener, Samples};
 

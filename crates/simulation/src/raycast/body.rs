@@ -88,7 +88,7 @@ impl Body {
     }
 
     /// Returns the outward normal at a world point on the surface.
-    pub(super) fn normal(&self, point: Vector) -> Vector {
+    pub(crate) fn normal(&self, point: Vector) -> Vector {
         let normal = self.shape.normal(self.point_in_body(point));
         std::array::from_fn(|axis| (0..3).map(|row| normal[row] * self.body_from_world[row][axis]).sum())
     }

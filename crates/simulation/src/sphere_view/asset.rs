@@ -1,9 +1,8 @@
-//! Subjects as parts with surfaces.
+//! Parts of a subject, each a body with a surface.
 
 use opendr_engine::Result;
 
 use super::surface::{Form, Surface, Texel};
-use super::{Subject, figure, head, object};
 use crate::raycast::{Body, Shape, Vector};
 
 /// A generated subject: the parts that a camera sees, all within a radius of 1.
@@ -20,19 +19,6 @@ struct Part {
 }
 
 impl Asset {
-    /// Generates a subject of a class; `instance` chooses among those of the class. Faces are classes of their own: one
-    /// head for each number, and the instance changes nothing.
-    ///
-    /// # Errors
-    /// `InvalidParam` for a class that there is not.
-    pub fn generate(subject: Subject, class: u32, instance: u64) -> Result<Self> {
-        match subject {
-            Subject::Face => head::generate(class),
-            Subject::Object => object::generate(class, instance),
-            Subject::Pose => figure::generate(class, instance),
-        }
-    }
-
     pub(super) fn empty() -> Self {
         Self { parts: Vec::new() }
     }

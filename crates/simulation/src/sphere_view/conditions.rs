@@ -1,4 +1,4 @@
-//! What an episode looks like besides its subject.
+//! Conditions of an episode besides its subject.
 
 use opendr_engine::Random;
 use opendr_engine::environment::Info;
@@ -6,15 +6,25 @@ use opendr_engine::environment::Info;
 use crate::raycast::Vector;
 use crate::sine_cosine::sine_cosine;
 
-/// Where the camera begins, and light, occluder, background and noise of an episode.
+/// Largest tilt, rad.
+const TILT: f32 = 1.0;
+/// Range of the length of the enclosure, radii.
+const ENCLOSURE: [f32; 2] = [0.8, 1.2];
+
+/// First camera pose, orientation of the subject, light, occluders, background and noise of an episode.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Conditions {
-    /// Azimuth of the camera's first place in the subject's frame, rad; no rig reports it.
+    /// Azimuth of the first camera pose in the subject's frame, rad; no rig reports it.
     pub azimuth: f64,
     /// Elevation at the beginning, rad.
     pub elevation: f64,
     /// Distance at the beginning, radii of the subject.
     pub distance: f64,
+    /// Elevation of the direction that the subject's front faces, rad; no rig reports it.
+    pub tilt: f64,
+    /// Length of the enclosure in front of the subject's middle, radii. The enclosure is open towards the subject's front and
+    /// moves with it; the longer it is, the smaller the solid angle from which the front is visible.
+    pub enclosure: f32,
     /// Direction to the light.
     pub light: Vector,
     /// Share of light from everywhere.
@@ -30,13 +40,15 @@ pub struct Conditions {
 }
 
 impl Conditions {
-    /// The conditions that `random` draws.
+    /// Draws conditions.
     pub fn draw(random: &mut Random) -> Self {
         let half = std::f64::consts::PI;
         let azimuth = half * (2.0 * random.unit() - 1.0);
         let mut uniform = |low: f32, high: f32| random.uniform(low, high);
-        let elevation = f64::from(uniform(-0.4, 0.6));
+        let elevation = f64::from(uniform(-0.9, 0.9));
         let distance = f64::from(uniform(2.7, 4.5));
+        let tilt = f64::from(uniform(-TILT, TILT));
+        let enclosure = uniform(ENCLOSURE[0], ENCLOSURE[1]);
         let light = direction(f64::from(uniform(-2.2, 2.2)), f64::from(uniform(0.1, 1.1)));
         let ambient = uniform(0.35, 0.6);
         let aside = f64::from(uniform(-0.5, 0.5));
@@ -46,12 +58,26 @@ impl Conditions {
         });
         let (noise, exposure) = (uniform(6.0, 18.0), uniform(0.0, 0.2));
         let occluder = random.chance(0.5).then_some(azimuth + aside);
-        Self { azimuth, elevation, distance, light, ambient, occluder, background, noise, exposure }
+        Self {
+            azimuth,
+            elevation,
+            distance,
+            tilt,
+            enclosure,
+            light,
+            ambient,
+            occluder,
+            background,
+            noise,
+            exposure,
+        }
     }
 
-    /// What is known of an episode for reports.
+    /// Returns what only a simulator knows of an episode: the class, and azimuth and elevation of the best view, relative to
+    /// the first camera pose and to the horizontal plane.
     pub fn info(&self, class: u32) -> Info {
-        Info::default().with("class", f64::from(class)).with("azimuth", self.azimuth)
+        let best = Info::default().with("class", f64::from(class)).with("best_azimuth", -self.azimuth);
+        best.with("best_elevation", self.tilt)
     }
 }
 

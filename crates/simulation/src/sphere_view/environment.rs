@@ -1,4 +1,4 @@
-//! The environments: look, move, say what it is.
+//! The environments: view, move, classify.
 
 use std::collections::BTreeMap;
 
@@ -16,16 +16,16 @@ use crate::classic_control::{check_length, not_begun};
 use crate::registration::checked;
 use crate::{NumpyRandom, Registration};
 
-/// Movements of an episode at most.
+/// Maximum number of motions of an episode.
 pub const MOVES: u32 = 6;
-/// Axes of a movement.
+/// Number of axes of a motion.
 const AXES: usize = 3;
-/// Largest score of a class.
+/// Maximum score of a class.
 const LIMIT: f32 = 20.0;
-/// What a movement of full deflection on all axes costs.
+/// Cost of a motion of full deflection on all axes.
 const COST: f64 = 0.02;
 
-/// What a user may set of the `SphereView` environments.
+/// Parameters of the `SphereView` environments.
 #[derive(Debug, Clone, PartialEq, Params)]
 pub struct SphereViewParams {
     /// The persons, or the instances of each class, that episodes choose from: ten persons, a hundred instances.
@@ -33,15 +33,15 @@ pub struct SphereViewParams {
     pub gallery: u32,
 }
 
-/// `SphereView-Face-v1`, `SphereView-Object-v1`, `SphereView-Pose-v1`: look at a subject from up to seven places and
-/// say which class it is of.
+/// `SphereView-Face-v1`, `SphereView-Object-v1`, `SphereView-Pose-v1`: classify a subject from up to seven views.
 ///
-/// An action is a movement of three axes, each in [-1, 1] (azimuth by 35 degrees, elevation by 17, distance by 0.7 radii), and
-/// then a score for each class. Seen are the picture of 48 x 48 pixels, and the camera's azimuth from where the episode
-/// began, its elevation (rad), its distance (radii) and the number of movements. The reward of a step is by how much the
-/// probability of the true class rose, under the softmax of the scores (from 1 over the number of classes), less 0.02
-/// times the mean square of the movement. The seventh step moves no more; it ends the episode. The info has `success`,
-/// whether the highest score is the true class's.
+/// An action is a motion of three axes, each in [-1, 1] (azimuth by 35 degrees, elevation by 17, distance by 0.7 radii), and
+/// then a score for each class. An observation is an `image` of 48 x 48 pixels and a `pose`: azimuth relative to the first
+/// pose (rad), elevation (rad), distance (radii), number of motions. The reward of a step is the rise of the probability of
+/// the true class, under the softmax of the scores (from 1 over the number of classes), minus 0.02 times the mean square of
+/// the motion. The seventh step does not move; it ends the episode. The info of a step has `success`, whether the highest
+/// score is that of the true class. The info of a reset has what only a simulator knows, for training and evaluation: `class`,
+/// `best_azimuth` and `best_elevation`.
 #[derive(Debug, Clone)]
 pub struct SphereView {
     spec: EnvironmentSpec,
@@ -77,7 +77,7 @@ impl SphereView {
         let low: Vec<_> = bounds.axes().iter().map(|axis| axis.low as f32).chain([0.0]).collect();
         let high: Vec<_> = bounds.axes().iter().map(|axis| axis.high as f32).chain([MOVES as f32]).collect();
         let observation = Space::Dict(BTreeMap::from([
-            ("picture".to_owned(), Space::uniform(0.0, 255.0, &[SIDE, SIDE, 3])?.with_dtype(Dtype::Uint8)?),
+            ("image".to_owned(), Space::uniform(0.0, 255.0, &[SIDE, SIDE, 3])?.with_dtype(Dtype::Uint8)?),
             ("pose".to_owned(), Space::bounded(low, high, vec![AXES + 1])?),
         ]));
         let spec = EnvironmentSpec::new(subject.id(), observation, Space::symmetric(&limits))
@@ -93,7 +93,7 @@ impl SphereView {
         &self.world
     }
 
-    fn begin(&mut self, place: [u64; 2]) -> Result<()> {
+    fn begin(&mut self, place: [u64; 2]) -> Result<Info> {
         let mut random = Random::from_key([place[0], place[1], self.subject as u64]);
         let class = random.below(self.subject.classes() as usize) as u32;
         let gallery = u64::from(self.params.gallery);
@@ -106,14 +106,14 @@ impl SphereView {
         self.world.begin(&asset, &conditions, random.bits())?;
         let probability = 1.0 / f64::from(self.subject.classes());
         self.episode = Some(Episode { place, class, moves: 0, probability, actions: Vec::new() });
-        Ok(())
+        Ok(conditions.info(class))
     }
 
     fn observe(&mut self, observation: &mut [f32]) -> Result<()> {
         check_length(&self.spec, observation)?;
         self.world.capture_into(&mut self.pixels);
-        let (picture, numbers) = observation.split_at_mut(self.pixels.len());
-        picture.iter_mut().zip(&self.pixels).for_each(|(to, level)| *to = f32::from(*level));
+        let (image, numbers) = observation.split_at_mut(self.pixels.len());
+        image.iter_mut().zip(&self.pixels).for_each(|(to, level)| *to = f32::from(*level));
         let pose = self.world.pose();
         let moves = self.episode.as_ref().map_or(0, |episode| episode.moves);
         let shown = [pose.azimuth, pose.elevation, pose.distance].map(|part| part as f32);
@@ -147,9 +147,9 @@ impl Environment for SphereView {
             (None, Some(Episode { place: [seed, number], .. })) => [*seed, number.wrapping_add(1)],
             (seed, _) => [seed.unwrap_or_else(|| NumpyRandom::from_entropy().bits()), 0],
         };
-        self.begin(place)?;
+        let info = self.begin(place)?;
         self.observe(observation)?;
-        Ok(Info::default())
+        Ok(info)
     }
 
     fn step(&mut self, action: &[f32], observation: &mut [f32]) -> Result<Step> {
@@ -189,7 +189,7 @@ impl Environment for SphereView {
         let actions = (0..count).map(|_| state.finite().map(|part| part as f32));
         let actions = actions.collect::<Result<Vec<_>>>()?;
         self.begin(place)?;
-        // Pictures are taken as they were, so that the noise goes on where it was.
+        // Images are captured as before, so that the noise continues from the same state.
         self.world.capture_into(&mut self.pixels);
         for movement in actions.chunks(AXES) {
             self.world.apply(&Action::new(movement)?)?;

@@ -1,16 +1,14 @@
-//! Figures: ten poses of the arms before the body. From behind all of them look alike.
+//! Figures: ten poses of the arms in front of the body, which all look alike from behind.
 
 use opendr_engine::{Error, Random, Result};
 
+use super::subject::POSES;
 use super::surface::{Form, Plain, bump, ellipsoid, mix, step};
 use super::{Asset, Subject};
 use crate::raycast::{Vector, along, cross, dot, length, minus};
 
-/// Poses.
-pub(super) const CLASSES: u32 = HANDS.len() as u32;
-
-/// Where the left and the right hand are, for each pose: x to the front, y to the left, z up.
-const HANDS: [[Vector; 2]; 10] = [
+/// Positions of the left and the right hand in each pose: x to the front, y to the left, z up.
+const HANDS: [[Vector; 2]; POSES as usize] = [
     // Folded, together low, together high, wide low, wide high.
     [[0.24, -0.13, 0.24], [0.21, 0.13, 0.2]],
     [[0.25, 0.05, -0.02], [0.25, -0.05, -0.02]],
@@ -29,7 +27,7 @@ const HANDS: [[Vector; 2]; 10] = [
 const ELBOWS: [Vector; 2] = [[0.02, 0.31, 0.06], [0.02, -0.31, 0.06]];
 const SHOULDERS: [Vector; 2] = [[0.0, 0.25, 0.38], [0.0, -0.25, 0.38]];
 const SKIN: [f32; 3] = [0.85, 0.64, 0.5];
-/// A figure of these measures is made so much larger, around its middle, that it fills a radius of 1.
+/// Factor by which a figure of these measures is scaled around its middle to fill a radius of 1.
 const SCALE: f32 = 1.6;
 const MIDDLE: f32 = 0.24;
 const UPRIGHT: [f32; 4] = [1.0, 0.0, 0.0, 0.0];
@@ -37,10 +35,7 @@ const UPRIGHT: [f32; 4] = [1.0, 0.0, 0.0, 0.0];
 /// A figure in a pose.
 pub(super) fn generate(class: u32, instance: u64) -> Result<Asset> {
     let Some(hands) = HANDS.get(class as usize) else {
-        return Err(Error::invalid_param(format!(
-            "there is no pose class {class}; give 0 to {}",
-            CLASSES - 1
-        )));
+        return Err(Error::invalid_param(format!("there is no pose class {class}; give 0 to {}", POSES - 1)));
     };
     let mut random = Subject::Pose.random(u64::from(class), instance);
     let mut asset = Asset::empty();
@@ -81,7 +76,7 @@ fn add_limb(asset: &mut Asset, [from, to]: [Vector; 2], radius: f32, colour: [f3
     add(asset, [8, 8], (along(from, way, 0.5), turn_up_to(way)), &Plain { half, colour })
 }
 
-/// Adds a part where the figure's own measures say; the asset's radius is 1.
+/// Adds a part at a position in the figure's own measures.
 fn add(
     asset: &mut Asset,
     sizes: [usize; 2],
@@ -92,7 +87,7 @@ fn add(
     asset.add(sizes, ([x * SCALE, y * SCALE, (z - MIDDLE) * SCALE], rotation), form)
 }
 
-/// A head that shows where the front is.
+/// The head, whose face marks the front.
 struct Face {
     skin: [f32; 3],
 }

@@ -1,4 +1,4 @@
-//! Heads: every number is a person. All that tells persons apart is on the front.
+//! Heads: each number is a person. Persons are distinguished by the front of the head alone.
 
 use opendr_engine::{Random, Result};
 
@@ -6,7 +6,7 @@ use super::surface::{Form, bump, ellipsoid, mix, step};
 use super::{Asset, Subject};
 use crate::raycast::Vector;
 
-/// What makes a face. Lengths are shares of the head's radius, seen from the front: y to the left, z up.
+/// Appearance of a face. Lengths are shares of the head's radius, seen from the front: y to the left, z up.
 struct Face {
     half: Vector,
     skin: [f32; 3],

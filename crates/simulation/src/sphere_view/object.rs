@@ -3,13 +3,11 @@
 
 use opendr_engine::{Error, Random, Result};
 
+use super::subject::PRODUCTS;
 use super::surface::{Form, bump, mix, step};
 use super::{Asset, Subject};
 use crate::raycast::Vector;
 
-/// Forms times labels.
-pub(super) const CLASSES: u32 = FORMS * LABELS;
-const FORMS: u32 = 3;
 const LABELS: u32 = 5;
 
 struct Product {
@@ -24,10 +22,10 @@ struct Product {
 
 /// The object of a class.
 pub(super) fn generate(class: u32, instance: u64) -> Result<Asset> {
-    if class >= CLASSES {
+    if class >= PRODUCTS {
         return Err(Error::invalid_param(format!(
             "there is no object class {class}; give 0 to {}",
-            CLASSES - 1
+            PRODUCTS - 1
         )));
     }
     let product = Product::new(class, &mut Subject::Object.random(u64::from(class), instance));
@@ -50,7 +48,7 @@ impl Product {
         // The print is dark on bright or bright on dark, so that no colour belongs to a label.
         let [label, print] = if random.chance(0.5) { [bright, dark] } else { [dark, bright] };
         let product = [(); 3].map(|()| random.uniform(0.15, 0.85));
-        let print_at = [random.uniform(-0.05, 0.05), random.uniform(-0.05, 0.05), random.uniform(0.26, 0.34)];
+        let print_at = [random.uniform(-0.03, 0.03), random.uniform(-0.03, 0.03), random.uniform(0.36, 0.42)];
         Self { form, label: class % LABELS, half, colours: [product, label, print], print: print_at }
     }
 

@@ -1,11 +1,11 @@
-//! What can stand in the middle of the sphere.
+//! Kinds of subjects.
 
 use opendr_engine::Random;
 
-/// What is to be recognised.
+/// What an environment has to recognise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Subject {
-    /// One of ten persons, by a head whose back says nothing.
+    /// One of ten persons, by the front of the head.
     Face,
     /// One of fifteen products: three forms, five labels on the front of each.
     Object,
@@ -13,14 +13,18 @@ pub enum Subject {
     Pose,
 }
 
-/// Persons in a gallery of faces.
+/// Number of persons in a gallery of faces.
 pub const CLASSES: u32 = 10;
+/// Number of products: three forms with five labels each.
+pub(super) const PRODUCTS: u32 = 15;
+/// Number of poses of a figure.
+pub(super) const POSES: u32 = 10;
 
 impl Subject {
-    /// All of them.
+    /// All kinds.
     pub const ALL: [Self; 3] = [Self::Face, Self::Object, Self::Pose];
 
-    /// Name, as on a command line.
+    /// Returns the name, as on a command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Face => "face",
@@ -29,7 +33,7 @@ impl Subject {
         }
     }
 
-    /// Id of its environment.
+    /// Returns the id of its environment.
     pub fn id(self) -> &'static str {
         match self {
             Self::Face => "SphereView-Face-v1",
@@ -38,16 +42,16 @@ impl Subject {
         }
     }
 
-    /// Number of classes that an episode decides between.
+    /// Returns the number of classes.
     pub fn classes(self) -> u32 {
         match self {
             Self::Face => CLASSES,
-            Self::Object => super::object::CLASSES,
-            Self::Pose => super::figure::CLASSES,
+            Self::Object => PRODUCTS,
+            Self::Pose => POSES,
         }
     }
 
-    /// The random numbers of what is generated: `what` separates classes, persons, instances.
+    /// Returns the random numbers of a generated subject; `what` separates classes, `number` instances.
     pub(super) fn random(self, what: u64, number: u64) -> Random {
         Random::from_key([0x5eed_5e7e, self as u64, what, number])
     }

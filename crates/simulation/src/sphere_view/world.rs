@@ -5,22 +5,23 @@ use opendr_engine::rig::{Achieved, ViewAxis, ViewPose, ViewRig, ViewSphere};
 use opendr_engine::target::{Action, ActionBase as _};
 use opendr_engine::{Random, Result};
 
-use super::picture::Eye;
+use super::camera_image::ImageSensor;
+use super::enclosure::panels;
 use super::{Asset, Conditions};
-use crate::raycast::{Body, Pose, Scene, Shape, along, cross, unit};
+use crate::raycast::{Body, Pose, Scene, Shape, Vector};
 use crate::sine_cosine::sine_cosine;
 
-/// Pixels of a picture in each direction, as environments take them.
+/// Width and height of an image of the environments, in pixels.
 pub const SIDE: usize = 48;
-/// The pole: how far it is from the subject's axis, its radius and half of its height.
+/// The pole: distance from the subject's axis, radius and half of the height.
 const POLE: (f64, f32, f32) = (1.8, 0.25, 1.6);
 
-/// A rig over a rendered subject: a camera that an action moves on a sphere (35 degrees of azimuth, 17 of elevation, 0.7
-/// radii closer). Its azimuth counts from where an episode began, so a pose does not tell where the subject's front is.
+/// A rig around a rendered subject: a camera that an action moves on a sphere ([`ViewSphere::camera`]). Its azimuth counts from
+/// the first pose of the episode, so that a pose does not reveal the direction of the subject's front.
 #[derive(Debug, Clone)]
 pub struct SphereWorld {
     sphere: ViewSphere,
-    eye: Eye,
+    sensor: ImageSensor,
     side: usize,
     scene: Scene,
     asset: Asset,
@@ -30,7 +31,7 @@ pub struct SphereWorld {
 }
 
 impl SphereWorld {
-    /// A world without a subject, which takes pictures of `side` x `side` pixels.
+    /// Creates a world without a subject and with images of `side` x `side` pixels.
     ///
     /// # Errors
     /// `InvalidParam` for no pixel or more than 2^24.
@@ -38,7 +39,7 @@ impl SphereWorld {
         let noise = Random::new(0);
         Ok(Self {
             sphere: ViewSphere::camera(ViewPose { distance: 3.0, ..ViewPose::default() })?,
-            eye: Eye::new(side)?,
+            sensor: ImageSensor::new(side)?,
             side,
             scene: Scene::default(),
             asset: Asset::empty(),
@@ -48,7 +49,7 @@ impl SphereWorld {
         })
     }
 
-    /// Begins an episode around a subject; `seed` fixes the noise of its pictures.
+    /// Begins an episode around a subject; `seed` fixes the noise of its images.
     ///
     /// # Errors
     /// None that [`Conditions::draw`] makes.
@@ -61,51 +62,62 @@ impl SphereWorld {
         self.sphere.place(ViewPose { azimuth: 0.0, elevation, distance, fourth: 0.0 })?;
         self.scene.clear();
         asset.bodies().for_each(|body| self.scene.add(body.clone()));
+        panels(conditions.enclosure)?.into_iter().for_each(|panel| self.scene.add(panel));
         if let Some(azimuth) = conditions.occluder {
             let (away, radius, half_height) = POLE;
             let (sine, cosine) = sine_cosine(azimuth);
             let position = [(away * cosine) as f32, (away * sine) as f32, 0.0];
-            self.scene.add(Body::upright(Shape::Cylinder { radius, half_height }, position, 0)?);
+            let (sine, cosine) = sine_cosine(0.5 * conditions.tilt);
+            let upright = [cosine as f32, 0.0, sine as f32, 0.0];
+            let pole = Shape::Cylinder { radius, half_height };
+            self.scene.add(Body::new(pole, in_subject(position, conditions.tilt), upright, 0)?);
         }
         Ok(())
     }
 
-    /// Pixels in each direction.
+    /// Returns width and height of an image in pixels.
     pub fn side(&self) -> usize {
         self.side
     }
 
-    /// The conditions of this episode.
+    /// Returns the conditions of this episode.
     pub fn conditions(&self) -> &Conditions {
         &self.conditions
     }
 
-    /// Where the camera is in the subject's frame: its azimuth is that from the subject's front, which only the simulator
-    /// knows.
+    /// Returns the camera pose with the azimuth from the subject's front, which only the simulator knows.
     pub fn true_pose(&self) -> ViewPose {
         let pose = self.sphere.pose();
         ViewPose { azimuth: pose.azimuth + self.conditions.azimuth, ..pose }
     }
 
-    /// Takes a picture into `[height, width, 3]` RGB bytes.
+    /// Captures an image into `[height, width, 3]` RGB bytes.
     ///
     /// # Panics
     /// When there are not `3 * side * side` of them.
     pub fn capture_into(&mut self, pixels: &mut [u8]) {
-        assert_eq!(pixels.len(), 3 * self.side * self.side, "a picture of another size");
-        let pose = camera_pose(&self.true_pose());
-        let Self { eye, scene, asset, conditions, noise, motion, .. } = self;
-        eye.look((scene, asset), &pose, conditions, *motion, noise, pixels);
+        assert_eq!(pixels.len(), 3 * self.side * self.side, "an image of another size");
+        let pose = self.camera_pose();
+        let Self { sensor, scene, asset, conditions, noise, motion, .. } = self;
+        sensor.capture((scene, asset), &pose, conditions, *motion, noise, pixels);
+    }
+
+    /// Position and axes of the camera in the subject's frame.
+    fn camera_pose(&self) -> Pose {
+        let (pose, tilt) = (self.true_pose(), self.conditions.tilt);
+        let ((sine, cosine), (high, level)) = (sine_cosine(pose.azimuth), sine_cosine(pose.elevation));
+        let outward = [level * cosine, level * sine, high];
+        let position = outward.map(|part| (part * pose.distance) as f32);
+        let upright = Pose::looking_at(position, [0.0; 3]);
+        Pose { position: in_subject(position, tilt), axes: upright.axes.map(|axis| in_subject(axis, tilt)) }
     }
 }
 
-/// Position and axes of a camera that looks at the origin.
-fn camera_pose(pose: &ViewPose) -> Pose {
-    let ((sine, cosine), (high, level)) = (sine_cosine(pose.azimuth), sine_cosine(pose.elevation));
-    let outward = [(level * cosine) as f32, (level * sine) as f32, high as f32];
-    let ahead = outward.map(|part| -part);
-    let left = unit(cross([0.0, 0.0, 1.0], ahead));
-    Pose { position: along([0.0; 3], outward, pose.distance as f32), axes: [ahead, left, cross(ahead, left)] }
+/// Rotates from the upright frame into that of a subject whose front is raised by `tilt`.
+fn in_subject([x, y, z]: Vector, tilt: f64) -> Vector {
+    let (sine, cosine) = sine_cosine(tilt);
+    let (sine, cosine) = (sine as f32, cosine as f32);
+    [cosine * x + sine * z, y, cosine * z - sine * x]
 }
 
 impl ViewRig for SphereWorld {
@@ -119,7 +131,7 @@ impl ViewRig for SphereWorld {
 
     fn apply(&mut self, action: &Action) -> Result<Achieved> {
         let achieved = self.sphere.apply(action)?;
-        // What is nearest to the camera moves by one radius per radian, and a radius is so many pixels.
+        // The nearest point of the subject moves by one radius per radian; `radius` is that length in pixels.
         let radius = 0.5 * self.side as f32 / (0.38 * achieved.pose.distance as f32);
         let shift = |axis: usize| {
             let step = self.sphere.axes()[axis].step as f32;

@@ -163,7 +163,7 @@ fn agree(clip_wise: &mut Handle<SpatioTemporalGcn>, stream: &mut Stream<CoStGcn>
 
 /// Runs the registry's checks on a model with random weights.
 fn check<L: Learner>(model: &Path, scratch: &Path, values: Vec<Value>) {
-    let entry = Box::leak(Box::new(Entry::of::<L>(Probe::<L>::abilities(None, None, None))));
+    let entry = Box::leak(Box::new(Entry::of::<L>(Probe::<L>::abilities(None, None, None, None))));
     let port = entry.ports[0].name;
     let calls = values.into_iter().zip(1..).map(|(mut value, stamp)| {
         *value.header_mut() = Header::new(stamp, "sensor");

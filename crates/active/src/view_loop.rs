@@ -1,4 +1,4 @@
-//! One episode of looking: views into a belief, the observation of now.
+//! The perception loop of an episode: view, belief, observation, motion.
 
 use opendr_engine::rig::{Achieved, ViewPose};
 use opendr_engine::target::Action;
@@ -8,9 +8,9 @@ use crate::fusion::{Belief, Fusion};
 use crate::observation::Observer;
 use crate::scene::ActiveScene;
 
-/// A scene with the belief about it.
+/// A scene with the belief over its classes.
 #[derive(Debug)]
-pub struct Look<S> {
+pub struct ViewLoop<S> {
     scene: S,
     belief: Belief,
     observer: Observer,
@@ -18,11 +18,11 @@ pub struct Look<S> {
     class: usize,
 }
 
-impl<S: ActiveScene> Look<S> {
-    /// Over a scene, before an episode.
+impl<S: ActiveScene> ViewLoop<S> {
+    /// Creates the loop over a scene; `budget` is the maximum number of motions.
     ///
     /// # Errors
-    /// `InvalidParam` for a scene of fewer than two classes.
+    /// Returns `InvalidParam` for a scene of fewer than two classes.
     pub fn new(mut scene: S, fusion: Fusion, budget: usize) -> Result<Self> {
         let classes = scene.classes();
         let observer = Observer::new(scene.rig().axes(), budget);
@@ -35,71 +35,71 @@ impl<S: ActiveScene> Look<S> {
         })
     }
 
-    /// Begins an episode and takes its first picture.
+    /// Begins an episode and captures its first view.
     ///
     /// # Errors
-    /// Those of the scene.
+    /// Returns errors of the scene.
     pub fn begin(&mut self, random: &mut Random) -> Result<()> {
         self.class = self.scene.begin(random)?;
         self.belief.reset();
         self.observer.reset(self.scene.rig().pose());
-        self.take()
+        self.capture()
     }
 
-    /// Moves and takes a picture.
+    /// Moves the camera and captures a view.
     ///
     /// # Errors
-    /// Those of the scene.
+    /// Returns errors of the scene.
     pub fn step(&mut self, action: &Action) -> Result<Achieved> {
         let achieved = self.scene.rig().apply(action)?;
-        self.observer.moved(achieved);
-        self.take()?;
+        self.observer.set_motion(achieved);
+        self.capture()?;
         Ok(achieved)
     }
 
-    /// Takes a picture from where the camera is.
+    /// Captures a view at the current pose.
     ///
     /// # Errors
-    /// Those of the scene.
-    pub fn take(&mut self) -> Result<()> {
+    /// Returns errors of the scene.
+    fn capture(&mut self) -> Result<()> {
         let image = self.scene.view(&mut self.evidence)?;
-        self.observer.saw(image)?;
+        self.observer.set_image(image)?;
         let pose = self.scene.rig().pose();
         self.belief.add(pose, &self.evidence)
     }
 
-    /// Writes the observation of now.
+    /// Writes the observation of the camera policy.
     pub fn observe(&mut self, observation: &mut [f32]) {
         let pose = self.scene.rig().pose();
         self.observer.observe(&pose, &self.belief, observation);
     }
 
-    /// The belief.
+    /// Returns the belief.
     pub fn belief(&self) -> &Belief {
         &self.belief
     }
 
-    /// Evidence of the last view.
+    /// Returns the evidence of the last view.
     pub fn evidence(&self) -> &[f32] {
         &self.evidence
     }
 
-    /// The true class of this episode.
+    /// Returns the true class of this episode.
     pub fn class(&self) -> usize {
         self.class
     }
 
-    /// The probability of the true class.
+    /// Returns the probability of the true class.
     pub fn probability(&self) -> f32 {
         self.belief.probabilities()[self.class]
     }
 
-    /// Where the camera is.
+    /// Returns the camera pose.
     pub fn pose(&mut self) -> ViewPose {
         self.scene.rig().pose()
     }
 
-    /// The scene.
+    /// Returns the scene.
     pub fn scene(&mut self) -> &mut S {
         &mut self.scene
     }

@@ -1,106 +1,91 @@
-//! Training of embeddings on static views.
-
-use std::sync::Arc;
+//! Training of classifiers on labelled views.
 
 use opendr_engine::{Error, Random, Result};
 use opendr_kernels::{
     Adam, AdamOptions, Compute, Initialisation, Matrix, MatrixMut, Product, Tape, WeightDecay, log_softmax,
 };
 
-use super::embedding::planes;
-use super::{Embedding, ViewSet};
+use super::{LabelledViews, ViewClassifier, ViewClassifierConfig, normalise, normalised_planes};
 
-/// Network and training of an embedding.
+/// Training of a classifier.
 #[derive(Debug, Clone, PartialEq)]
-pub struct EmbeddingConfig {
-    /// Kernels of each convolution.
-    pub kernels: Vec<usize>,
-    /// Neurons of the hidden layer.
-    pub hidden: usize,
-    /// Numbers of an embedding.
-    pub dimension: usize,
-    /// Passes over the views.
+pub struct ViewTraining {
+    /// Sizes of the classifier.
+    pub config: ViewClassifierConfig,
+    /// Number of epochs.
     pub epochs: usize,
-    /// What fixes everything random.
+    /// Seed of initialisation and order.
     pub seed: u64,
-}
-
-impl Default for EmbeddingConfig {
-    fn default() -> Self {
-        Self { kernels: Vec::new(), hidden: 128, dimension: 24, epochs: 8, seed: 0 }
-    }
-}
-
-/// A trained embedding.
-#[derive(Debug, Clone)]
-pub struct EmbeddingFit {
-    /// The embedding.
-    pub embedding: Embedding,
-    /// The direction of each class of the training, length 1, one after the other.
-    pub directions: Vec<f32>,
-    /// Mean loss of each epoch.
-    pub losses: Vec<f32>,
 }
 
 const BATCH: usize = 64;
 const RATE: f32 = 1e-3;
 
-/// Trains by cross-entropy over the classes, whose logits are the products of the embedding with learnt directions of length
-/// 1: the embedding alone decides how certain a view is.
+/// Trains by cross-entropy over the classes. `observer` receives the number of the epoch and its mean loss; it returns whether
+/// to stop.
 ///
 /// # Errors
-/// `InvalidInput` for fewer views than a batch of 64, `Internal` when learning diverges.
-pub fn fit_embedding(views: &ViewSet, config: &EmbeddingConfig, compute: &Compute) -> Result<EmbeddingFit> {
+/// Returns `InvalidInput` for fewer views than a batch of 64, `Internal` if the training diverges.
+pub fn fit_view_classifier(
+    views: &LabelledViews,
+    training: &ViewTraining,
+    compute: &Compute,
+    observer: &mut dyn FnMut(usize, f32) -> bool,
+) -> Result<ViewClassifier> {
+    let config = ViewClassifierConfig { side: views.side, classes: views.classes, ..training.config.clone() };
     if views.len() < BATCH {
         return Err(Error::invalid_input(format!(
-            "{} views to train on; render at least {BATCH}",
+            "{} views to train on; give at least {BATCH}",
             views.len()
         )));
     }
-    let mut random = Random::from_key([config.seed, 0xe3b]);
-    let mut embedding = Embedding::new(views.side, &config.kernels, config.hidden, config.dimension)?;
-    let (classes, dimension) = (views.classes, config.dimension);
-    let split = embedding.network.parameters();
+    let mut random = Random::from_key([training.seed, 0xe3b]);
+    let network = config.network()?;
+    let (classes, dimension) = (config.classes, config.dimension);
+    let split = network.parameters();
     let mut parameters = vec![0.0; split + classes * dimension];
     let begin = Initialisation::Orthogonal { hidden: std::f32::consts::SQRT_2, output: 1.0 };
-    embedding.network.initialise(begin, &mut random, &mut parameters[..split]);
+    network.initialise(begin, &mut random, &mut parameters[..split]);
     parameters[split..].iter_mut().for_each(|weight| *weight = random.normal() as f32);
     let options = AdamOptions { weight_decay: WeightDecay::Decoupled(1e-3), ..AdamOptions::default() };
     let mut adam = Adam::new(parameters.len(), options);
     let mut gradients = vec![0.0; parameters.len()];
     let mut pass = Pass::new(classes, dimension);
-    let size = embedding.network.inputs();
+    let size = network.inputs();
     let (mut tape, mut input) = (Tape::default(), vec![0.0; BATCH * size]);
     let mut order: Vec<usize> = (0..views.len()).collect();
     let batches = views.len() / BATCH;
-    let mut losses = Vec::new();
-    for epoch in 0..config.epochs {
+    for epoch in 0..training.epochs {
         random.shuffle(&mut order);
         let mut sum = 0.0;
         for (batch, rows) in order.chunks_exact(BATCH).enumerate() {
             for (to, row) in input.chunks_exact_mut(size).zip(rows) {
-                planes(views.view(*row), to);
+                normalised_planes(views.view(*row), to);
             }
             gradients.fill(0.0);
-            let (network, weights) = parameters.split_at(split);
-            let embedded = embedding.network.forward(compute, network, &input, &mut tape);
+            let (weights, directions) = parameters.split_at(split);
+            let embedded = network.forward(compute, weights, &input, &mut tape);
             let labels = rows.iter().map(|row| views.labels[*row]);
-            let (dnetwork, dweights) = gradients.split_at_mut(split);
-            sum += pass.run(compute, (embedded, weights), labels, dweights);
-            embedding.network.backward(compute, network, &pass.dembedded, &mut tape, Some(dnetwork), false);
-            let done = (epoch * batches + batch) as f32 / (config.epochs * batches) as f32;
+            let (dnetwork, ddirections) = gradients.split_at_mut(split);
+            sum += pass.run(compute, (embedded, directions), labels, ddirections);
+            network.backward(compute, weights, &pass.dembedded, &mut tape, Some(dnetwork), false);
+            let done = (epoch * batches + batch) as f32 / (training.epochs * batches) as f32;
             adam.step(compute, RATE * (1.0 - done), &mut parameters, &gradients);
         }
         let loss = sum / batches as f32;
         if !loss.is_finite() {
-            return Err(Error::internal(format!("the loss of epoch {epoch} is {loss}: training diverged")));
+            return Err(Error::internal(format!(
+                "the loss of epoch {epoch} is {loss}: the training diverged"
+            )));
         }
-        losses.push(loss);
+        if observer(epoch, loss) {
+            break;
+        }
     }
-    pass.normalise(&parameters[split..]);
-    parameters.truncate(split);
-    embedding.parameters = Arc::new(parameters);
-    Ok(EmbeddingFit { embedding, directions: pass.directions, losses })
+    parameters[split..].chunks_exact_mut(dimension).for_each(|direction| {
+        normalise(direction);
+    });
+    Ok(ViewClassifier::new(config, network, parameters))
 }
 
 /// The loss with its gradients.
@@ -133,7 +118,7 @@ impl Pass {
     fn normalise(&mut self, weights: &[f32]) {
         self.directions.copy_from_slice(weights);
         for (direction, length) in self.directions.chunks_exact_mut(self.dimension).zip(&mut self.lengths) {
-            *length = super::pool::normalise(direction);
+            *length = normalise(direction);
         }
     }
 
@@ -171,7 +156,7 @@ impl Pass {
         );
         let ddirections = MatrixMut::new(&mut self.ddirections, classes, dimension);
         Product::new().run(compute, dlogits.transposed(), rows, ddirections);
-        // A direction has no length to be learnt: only what is across it counts.
+        // The length of a direction is not trained: the gradient along it is removed.
         let pairs = self.ddirections.chunks_exact(dimension).zip(self.directions.chunks_exact(dimension));
         for ((dweight, (ddirection, direction)), length) in
             dweights.chunks_exact_mut(dimension).zip(pairs).zip(&self.lengths)

@@ -5,28 +5,28 @@ use opendr_engine::{Random, Result};
 use super::{Asset, Conditions};
 use crate::raycast::{Camera, DepthBuffer, Pose, Scene, Vector, along, dot, unit};
 
-/// A camera with the memory that pictures need.
+/// A camera with its buffers.
 #[derive(Debug, Clone)]
-pub(super) struct Eye {
+pub(super) struct ImageSensor {
     camera: Camera,
-    seen: DepthBuffer,
+    depths: DepthBuffer,
     sharp: Vec<f32>,
 }
 
-/// The tangent of half the angle of view: a subject of radius 1 fills the picture from 2.7 radii.
+/// The tangent of half the angle of view: a subject of radius 1 fills the image from 2.7 radii.
 const HALF_WIDTH: f32 = 0.38;
 const RANGE: f32 = 8.0;
-const POLE: [f32; 3] = [0.45, 0.42, 0.38];
+const OCCLUDER: [f32; 3] = [0.45, 0.42, 0.38];
 
-impl Eye {
+impl ImageSensor {
     pub fn new(side: usize) -> Result<Self> {
         let camera = Camera::new(side, side, HALF_WIDTH)?;
-        Ok(Self { camera, seen: DepthBuffer::default(), sharp: vec![0.0; 3 * side * side] })
+        Ok(Self { camera, depths: DepthBuffer::default(), sharp: vec![0.0; 3 * side * side] })
     }
 
-    /// Writes `[height, width, 3]` RGB bytes. `motion` is what the last movement shifted the picture by, in pixels to the
+    /// Writes `[height, width, 3]` RGB bytes. `motion` is what the last movement shifted the image by, in pixels to the
     /// right and down, while the shutter was open.
-    pub fn look(
+    pub fn capture(
         &mut self,
         (scene, asset): (&Scene, &Asset),
         pose: &Pose,
@@ -35,17 +35,23 @@ impl Eye {
         random: &mut Random,
         pixels: &mut [u8],
     ) {
-        let Self { camera, seen, sharp } = self;
-        camera.render_depth(scene, pose, RANGE, seen);
+        let Self { camera, depths, sharp } = self;
+        camera.render_depth(scene, pose, RANGE, depths);
         let width = camera.width();
         let colours = sharp.as_chunks_mut::<3>().0;
-        for (at, ((depth, body), colour)) in seen.depths().zip(seen.bodies()).zip(colours).enumerate() {
+        for (at, ((depth, body), colour)) in depths.depths().zip(depths.bodies()).zip(colours).enumerate() {
             let direction = pose.to_world(camera.direction(at % width, at / width));
             *colour = match body {
                 None => background(conditions, unit(direction)),
                 Some(number) => {
                     let point = along(pose.position, direction, depth);
-                    surface(asset, number, point, conditions)
+                    match asset.texel(number, point) {
+                        Some((texel, part)) => {
+                            let toward = part.direction_in_body(conditions.light);
+                            lit(texel.colour, dot(texel.normal, toward), conditions)
+                        }
+                        None => occluder(scene, number, point, conditions),
+                    }
                 }
             };
         }
@@ -62,16 +68,16 @@ fn background(conditions: &Conditions, direction: Vector) -> [f32; 3] {
     colour
 }
 
-fn surface(asset: &Asset, number: usize, point: Vector, conditions: &Conditions) -> [f32; 3] {
-    let light = |facing: f32| conditions.ambient + (1.0 - conditions.ambient) * facing.max(0.0);
-    match asset.texel(number, point) {
-        Some((texel, body)) => {
-            let light = light(dot(texel.normal, body.direction_in_body(conditions.light)));
-            texel.colour.map(|part| part * light)
-        }
-        // Bodies behind those of the subject are the pole.
-        None => POLE.map(|part| part * light(0.3)),
-    }
+/// The colour of a surface that faces the light by this cosine.
+fn lit(colour: [f32; 3], facing: f32, conditions: &Conditions) -> [f32; 3] {
+    let light = conditions.ambient + (1.0 - conditions.ambient) * facing.max(0.0);
+    colour.map(|part| part * light)
+}
+
+/// The colour of a panel or of the pole, which follow the parts of the subject in the scene.
+fn occluder(scene: &Scene, number: usize, point: Vector, conditions: &Conditions) -> [f32; 3] {
+    let facing = scene.bodies().get(number).map_or(0.0, |body| dot(body.normal(point), conditions.light));
+    lit(OCCLUDER, facing, conditions)
 }
 
 /// Averages along the motion, adds noise and rounds.

@@ -1,0 +1,85 @@
+//! Evaluation of a moving camera beside baselines.
+
+use std::path::PathBuf;
+
+use clap::ArgMatches;
+use opendr::active::{
+    ActiveContainer, AnyRecogniser, EnvironmentScene, FIRST_EVALUATION_SEED, ViewRecogniser, calibrated,
+    compare, episode_strip,
+};
+use opendr::learner::Entry;
+use opendr::{Error, Progress as _, Result, Unit};
+
+use crate::exit::Outcome;
+use crate::progress_bar::ProgressBar;
+use crate::{environment_flags, learner_flags, loading, stdout};
+
+/// Number of episodes by default, and of those that calibrate the belief for another recogniser.
+const EPISODES: u64 = 500;
+const CALIBRATION_EPISODES: u64 = 1000;
+/// Number of camera policies that are compared, and of episodes in the strip.
+const CAMERA_POLICIES: u64 = 6;
+const STRIP_ROWS: usize = 6;
+
+/// Evaluates the camera policy and the baselines on the same episodes; with `--out`, writes a strip of episodes and the figures.
+pub fn run(spec: &str, entry: &'static Entry, matches: &ArgMatches, bar: &ProgressBar) -> Result<Outcome> {
+    let learner = loading::load(spec, &learner_flags::params(entry, matches)?, matches, bar)?;
+    let source = environment_flags::source(matches, Some(learner.as_ref()))?;
+    let model = learner.model().ok_or_else(|| Error::not_found("no model; train one with \"opendr fit\""))?;
+    let mut container = ActiveContainer::read(model)?;
+    container.set_stop(&learner.params())?;
+    let other = matches.get_one::<String>(RECOGNISER);
+    let make = || -> Result<Box<dyn ViewRecogniser>> {
+        let Some(name) = other else { return Ok(Box::new(container.recogniser.clone())) };
+        let entry = loading::entry(name)?;
+        let mut recogniser = entry.make(&Default::default(), loading::device(matches)?)?;
+        match matches.get_one::<PathBuf>(RECOGNISER_MODEL) {
+            Some(path) => recogniser.load(path)?,
+            None => recogniser.load(&loading::pretrained(name, matches, bar)?)?,
+        }
+        Ok(Box::new(AnyRecogniser::new(recogniser.as_ref(), entry, container.recogniser.config().classes)?))
+    };
+    let scene = || EnvironmentScene::new(&source, make()?);
+    if other.is_some() {
+        container.model = calibrated(&container.model, &scene, CALIBRATION_EPISODES)?;
+    }
+    let episodes = matches.get_one("episodes").copied().unwrap_or(EPISODES);
+    bar.begin("episodes", Some(CAMERA_POLICIES * episodes), Unit::Items);
+    let comparison = compare(scene()?, &container.model, FIRST_EVALUATION_SEED, episodes, bar);
+    bar.end();
+    let comparison = comparison?;
+    if let Some(folder) = matches.get_one::<PathBuf>("out") {
+        std::fs::create_dir_all(folder)?;
+        let strip = episode_strip(scene()?, &container.model, FIRST_EVALUATION_SEED, STRIP_ROWS)?;
+        opendr::vision::save(&strip, folder.join("episodes.png"))?;
+        let report = serde_json::to_string_pretty(&comparison)
+            .map_err(|error| Error::internal("the report has no JSON form").with_source(error))?;
+        std::fs::write(folder.join("report.json"), report)?;
+        bar.note(&format!("written: episodes.png and report.json in {}", folder.display()));
+    }
+    if matches.get_flag("json") {
+        stdout::print_json(&comparison)?;
+    } else {
+        stdout::print(format_args!("{spec} in {}, {episodes} episodes\n", source.id()))?;
+        stdout::print(comparison.to_string().trim_end())?;
+    }
+    Ok(Outcome::Done)
+}
+
+/// Learner in place of the model's recogniser, and its container.
+const RECOGNISER: &str = "recogniser";
+const RECOGNISER_MODEL: &str = "recogniser-model";
+
+/// Adds the flags of the recogniser.
+pub fn add_recogniser(command: clap::Command) -> clap::Command {
+    let recogniser = clap::Arg::new(RECOGNISER).long(RECOGNISER).value_name("LEARNER").help(
+        "Learner of images with classes, in place of the model's recogniser; the belief is calibrated for it",
+    );
+    let model = clap::Arg::new(RECOGNISER_MODEL)
+        .long(RECOGNISER_MODEL)
+        .requires(RECOGNISER)
+        .value_parser(clap::value_parser!(PathBuf))
+        .value_name("PATH")
+        .help("Model container of --recogniser, instead of its pretrained model");
+    command.args([recogniser, model])
+}

@@ -1,0 +1,51 @@
+//! The options of the command line.
+
+use opendr_engine::{Error, Result};
+use opendr_simulation::sphere_view::Subject;
+
+pub struct Options {
+    pub subject: Subject,
+    pub seeds: u64,
+    pub timesteps: u64,
+    pub episodes: u64,
+    pub view_episodes: u64,
+    pub strip: Option<String>,
+}
+
+impl Options {
+    pub fn parse() -> Result<Self> {
+        let mut options = Self {
+            subject: Subject::Face,
+            seeds: 1,
+            timesteps: 400_000,
+            episodes: 500,
+            view_episodes: 12_000,
+            strip: None,
+        };
+        let mut arguments = std::env::args().skip(1);
+        while let Some(argument) = arguments.next() {
+            if let Some(subject) = Subject::ALL.into_iter().find(|subject| subject.name() == argument) {
+                options.subject = subject;
+                continue;
+            }
+            if argument == "--strip" {
+                options.strip = arguments.next();
+                continue;
+            }
+            let value = arguments.next().and_then(|value| value.parse().ok());
+            let value = value.ok_or_else(|| Error::invalid_param(format!("give {argument} a number")))?;
+            match argument.as_str() {
+                "--seeds" => options.seeds = value,
+                "--timesteps" => options.timesteps = value,
+                "--episodes" => options.episodes = value,
+                "--view-episodes" => options.view_episodes = value,
+                _ => {
+                    return Err(Error::invalid_param(format!(
+                        "no option {argument:?}; give face, object or pose, and --seeds, --timesteps, --episodes, --view-episodes or --strip"
+                    )));
+                }
+            }
+        }
+        Ok(options)
+    }
+}

@@ -1,0 +1,67 @@
+//! Learners by name as recognisers.
+
+use opendr_engine::data::Image;
+use opendr_engine::learner::{AnyLearner, AnyStream, Entry, Ports};
+use opendr_engine::{Error, Result, Value, ValueType};
+
+use crate::evidence::ClassEvidence as _;
+use crate::recogniser::ViewRecogniser;
+
+/// A learner of the registry, with an image port and a target that has classes, as a recogniser of views.
+pub struct AnyRecogniser {
+    stream: Box<dyn AnyStream>,
+    port: &'static str,
+    classes: usize,
+}
+
+impl AnyRecogniser {
+    /// Creates a recogniser from a loaded learner of `entry`, for `classes` classes.
+    ///
+    /// # Errors
+    /// Returns `Unsupported` for a learner without an image port or without classes.
+    pub fn new(learner: &dyn AnyLearner, entry: &Entry, classes: usize) -> Result<Self> {
+        let port = entry.ports.iter().find(|port| port.value_type == ValueType::Image);
+        let has_classes = |value_type| {
+            matches!(value_type, ValueType::Category | ValueType::BoundingBoxList | ValueType::PoseList)
+        };
+        let needs_more = entry.ports.iter().filter(|port| !port.optional).count() != 1;
+        match port {
+            Some(port)
+                if !needs_more && entry.outputs.iter().any(|output| has_classes(output.value_type)) =>
+            {
+                Ok(Self { stream: learner.stream()?, port: port.name, classes })
+            }
+            _ => Err(Error::unsupported(format!(
+                "{} does not classify single images, so no camera can be moved for it",
+                entry.spec.class
+            ))),
+        }
+    }
+}
+
+impl ViewRecogniser for AnyRecogniser {
+    fn classes(&self) -> usize {
+        self.classes
+    }
+
+    fn recognise(&mut self, image: &Image, evidence: &mut [f32]) -> Result<()> {
+        self.stream.reset();
+        let outputs = self.stream.infer(&Ports::default().with(self.port, image))?;
+        let mut is_written = false;
+        for (_, value) in outputs.iter() {
+            match value {
+                Value::Category(target) => target.class_probabilities(evidence),
+                Value::BoundingBoxList(target) => target.class_probabilities(evidence),
+                Value::PoseList(target) => target.class_probabilities(evidence),
+                _ => continue,
+            }
+            is_written = true;
+            break;
+        }
+        if !is_written {
+            return Err(Error::internal("a learner without its declared output"));
+        }
+        evidence.iter_mut().for_each(|probability| *probability = probability.max(1e-6).ln());
+        Ok(())
+    }
+}

@@ -1,0 +1,112 @@
+//! The files of a model of active perception.
+
+use std::path::Path;
+
+use opendr_engine::environment::EnvironmentSpec;
+use opendr_engine::model::{Manifest, Model, ModelWriter};
+use opendr_engine::params::{ParamMap, Params as _};
+use opendr_engine::rig::{ViewAxis, ViewPose, ViewSphere};
+use opendr_engine::{Error, Result, ResultExt as _};
+use opendr_rl::{POLICY_FILE, Policy};
+use serde::{Deserialize, Serialize};
+
+use super::{ActiveKind, ActiveParams};
+use crate::fusion::{Belief, Fusion};
+use crate::gain::GainNetwork;
+use crate::model::ActiveModel;
+use crate::observation::Observer;
+use crate::stop::StopRule;
+use crate::view_classifier::{ViewClassifier, ViewClassifierConfig};
+
+const RECOGNISER_FILE: &str = "recogniser.bin";
+const GAIN_FILE: &str = "gain.bin";
+
+/// Contents of `inputs` in the manifest.
+#[derive(Debug, Serialize, Deserialize)]
+struct Layout {
+    /// Id of the environment of the training.
+    environment: String,
+    axes: Vec<ViewAxis>,
+    fusion: Fusion,
+    stop: StopRule,
+    recogniser: ViewClassifierConfig,
+}
+
+/// A camera policy and the recogniser that it was trained with.
+#[derive(Debug, Clone)]
+pub struct ActiveContainer {
+    /// The camera policy, with fusion, expected gain and stop rule.
+    pub model: ActiveModel,
+    /// The recogniser.
+    pub recogniser: ViewClassifier,
+    /// Id of the environment of the training.
+    pub environment: String,
+}
+
+impl ActiveContainer {
+    /// Sets the stop rule from the parameters of a learner.
+    ///
+    /// # Errors
+    /// Returns `InvalidParam` for other parameters.
+    pub fn set_stop(&mut self, params: &ParamMap) -> Result<()> {
+        self.model.stop = ActiveParams::from_map(params)?.stop();
+        Ok(())
+    }
+
+    /// Reads a container.
+    ///
+    /// # Errors
+    /// Returns `Format` for the container of another learner or damaged files, `Integrity` for files with other checksums.
+    pub fn read(model: &Model) -> Result<Self> {
+        let layout: Layout = model.manifest().read_inputs("a camera policy")?;
+        let axes = layout.axes.len();
+        // Both check the ranges of what a file contains.
+        ViewSphere::new(layout.axes.clone(), ViewPose { distance: 1.0, ..ViewPose::default() })?;
+        Belief::new(layout.recogniser.classes, layout.fusion)?;
+        layout.stop.check()?;
+        let policy = Policy::from_bytes(&model.file(POLICY_FILE)?)?;
+        if policy.action().len() != axes || policy.observation().len() != Observer::LEN {
+            return Err(Error::format(format!(
+                "{}: a policy from {} numbers to {} axes; {} and {axes} are needed, train the model again",
+                model.path().display(),
+                policy.observation().len(),
+                policy.action().len(),
+                Observer::LEN
+            )));
+        }
+        let gain = GainNetwork::from_bytes(axes, &model.file(GAIN_FILE)?)?;
+        let recogniser = ViewClassifier::from_bytes(layout.recogniser, &model.file(RECOGNISER_FILE)?)
+            .context(|| model.path().display().to_string())?;
+        let model = ActiveModel { policy, fusion: layout.fusion, gain, stop: layout.stop, axes: layout.axes };
+        Ok(Self { model, recogniser, environment: layout.environment })
+    }
+}
+
+/// Writes the container of a learner of kind `K`.
+///
+/// # Errors
+/// Returns `Io` if writing fails.
+pub fn write_active_model<K: ActiveKind>(
+    path: &Path,
+    container: &ActiveContainer,
+    params: &ActiveParams,
+    spec: &EnvironmentSpec,
+) -> Result<()> {
+    let ActiveContainer { model, recogniser, .. } = container;
+    let mut manifest = Manifest::new(K::SPEC.name, spec.id.to_lowercase());
+    manifest.task = Some(K::SPEC.task);
+    manifest.params = params.to_map();
+    manifest.write_inputs(&Layout {
+        environment: spec.id.clone(),
+        axes: model.axes.clone(),
+        fusion: model.fusion,
+        stop: model.stop,
+        recogniser: recogniser.config().clone(),
+    })?;
+    manifest.lineage.source = format!("trained in {}", spec.id);
+    let mut writer = ModelWriter::new(path, manifest)?;
+    writer.add(POLICY_FILE, &model.policy.to_bytes()?)?;
+    writer.add(RECOGNISER_FILE, &recogniser.to_bytes())?;
+    writer.add(GAIN_FILE, &model.gain.to_bytes())?;
+    writer.finish().map(drop)
+}

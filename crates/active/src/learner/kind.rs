@@ -1,0 +1,42 @@
+//! The learners of active perception by what they recognise.
+
+use opendr_engine::Task;
+use opendr_engine::learner::Spec;
+
+/// What a learner recognises.
+pub trait ActiveKind: Send + Sync + 'static {
+    /// Name, task and class name of the learner.
+    const SPEC: Spec;
+}
+
+/// Persons by their faces.
+#[derive(Debug)]
+pub struct Face;
+
+/// Objects by their labels.
+#[derive(Debug)]
+pub struct Object;
+
+/// Persons' poses.
+#[derive(Debug)]
+pub struct BodyPose;
+
+impl ActiveKind for Face {
+    const SPEC: Spec = Spec::new("active_face_recognition", Task::ActivePerception)
+        .class("ActiveFaceRecognitionLearner")
+        .about("Recognises a person from several views, and proposes the camera motion to the next one.");
+}
+
+impl ActiveKind for Object {
+    const SPEC: Spec = Spec::new("active_object_recognition", Task::ActivePerception)
+        .class("ActiveObjectRecognitionLearner")
+        .about("Recognises an object from several views, and proposes the camera motion to the next one.");
+}
+
+impl ActiveKind for BodyPose {
+    const SPEC: Spec = Spec::new("active_pose_recognition", Task::ActivePerception)
+        .class("ActivePoseRecognitionLearner")
+        .about(
+            "Recognises a person's pose from several views, and proposes the camera motion to the next one.",
+        );
+}
