@@ -1,0 +1,154 @@
+//! Cameras, range finders and lidars.
+
+use std::fs::File;
+use std::path::PathBuf;
+
+use opendr_engine::{Error, Result};
+
+use super::CONFIGURE;
+use crate::kind::DeviceKind;
+use crate::reader::Reader;
+use crate::request::Request;
+use crate::version::Version;
+
+const RECONFIGURE: u8 = 7;
+const MEMORY_MAPPED_FILE: u8 = 8;
+const SET_EXPOSURE: u8 = 6;
+/// Bytes of a pixel (BGRA) and of a range (f32).
+const ELEMENT: usize = 4;
+/// Bytes of a point of a lidar's cloud, which follows the ranges.
+const POINT: usize = 20;
+/// Largest image that is accepted: 16 million pixels.
+const MAX_ELEMENTS: usize = 1 << 24;
+
+/// A device that sends images.
+#[derive(Debug, Clone)]
+pub(crate) struct Imager {
+    pub kind: DeviceKind,
+    pub width: usize,
+    pub height: usize,
+    /// Horizontal field of view, in rad.
+    pub field_of_view: f64,
+    pub near: f64,
+    /// Largest range in m; infinite for cameras.
+    pub max_range: f64,
+    image: Vec<u8>,
+    /// Where Webots writes the images, on one machine.
+    file: Option<PathBuf>,
+    new_period: Option<u16>,
+    /// The library of R2023a sends the exposure of a camera with its first request.
+    new_exposure: Option<f64>,
+    sends_exposure: bool,
+}
+
+impl Imager {
+    pub(super) fn new(kind: DeviceKind, version: Version) -> Self {
+        Self {
+            kind,
+            width: 0,
+            height: 0,
+            field_of_view: f64::NAN,
+            near: f64::NAN,
+            max_range: f64::INFINITY,
+            image: Vec::new(),
+            file: None,
+            new_period: None,
+            new_exposure: None,
+            sends_exposure: !version.is_stated(),
+        }
+    }
+
+    /// Returns the last image: BGRA for cameras, f32 ranges otherwise; empty before the first.
+    pub fn image(&self) -> &[u8] {
+        let length = self.elements() * ELEMENT;
+        self.image.get(..length).unwrap_or_default()
+    }
+
+    fn elements(&self) -> usize {
+        self.width * self.height
+    }
+
+    /// Returns the buffer for an image of `size` bytes that is about to arrive.
+    pub fn buffer(&mut self, size: usize) -> Result<&mut [u8]> {
+        let plain = self.elements() * ELEMENT;
+        let with_points = plain + self.elements() * POINT;
+        if plain == 0 || !(size == plain || self.kind == DeviceKind::Lidar && size == with_points) {
+            return Err(Error::format(format!(
+                "an image of {size} bytes does not fit {} by {} elements",
+                self.width, self.height
+            )));
+        }
+        self.image.resize(size, 0);
+        Ok(&mut self.image)
+    }
+
+    /// Reads the image from the file in which Webots places it, if there is one.
+    pub fn refresh(&mut self) -> Result<()> {
+        let Some(path) = &self.file else { return Ok(()) };
+        let size = self.elements() * ELEMENT;
+        self.image.resize(size, 0);
+        let read = File::open(path).and_then(|mut file| std::io::Read::read_exact(&mut file, &mut self.image));
+        read.map_err(|error| Error::io(format!("cannot read the image {}", path.display())).with_source(error))
+    }
+
+    pub(super) fn enable(&mut self, period_ms: u16) {
+        self.new_period = Some(period_ms);
+    }
+
+    pub(super) fn write(&mut self, request: &mut Request) {
+        super::write_period(&mut self.new_period, request);
+        if let Some(exposure) = self.new_exposure.take() {
+            request.u8(SET_EXPOSURE);
+            request.f64(exposure);
+        }
+    }
+
+    pub(super) fn answer(&mut self, command: u8, reader: &mut Reader<'_>) -> Result<bool> {
+        match command {
+            CONFIGURE => {
+                let _id = reader.u32()?;
+                (self.width, self.height) = (reader.u16()?.into(), reader.u16()?.into());
+                self.optics(reader)?;
+            }
+            RECONFIGURE => self.optics(reader)?,
+            MEMORY_MAPPED_FILE => {
+                let size = reader.i32()?;
+                self.file = if size > 0 { Some(reader.text()?.into()) } else { None };
+            }
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+
+    /// Reads what follows the size in a configuration.
+    fn optics(&mut self, reader: &mut Reader<'_>) -> Result<()> {
+        (self.field_of_view, self.near) = (reader.f64()?, reader.f64()?);
+        let _planar = reader.u8()?;
+        match self.kind {
+            DeviceKind::Camera => {
+                let (_min_view, _max_view) = (reader.f64()?, reader.f64()?);
+                let (_recognition, _segmentation) = (reader.u8()?, reader.u8()?);
+                self.new_exposure = Some(reader.f64()?).filter(|_| self.sends_exposure);
+                reader.fill(&mut [0.0; 4])?;
+            }
+            DeviceKind::Lidar => {
+                self.max_range = reader.f64()?;
+                self.height = reader.u16()?.into();
+                // Frequency, its limits, vertical field of view.
+                reader.fill(&mut [0.0; 4])?;
+                let resolution = reader.f64()?;
+                if !(0.0..=f64::from(u16::MAX)).contains(&resolution) {
+                    return Err(Error::format(format!("a lidar of {resolution} columns is not possible")));
+                }
+                self.width = resolution as usize;
+            }
+            _ => self.max_range = reader.f64()?,
+        }
+        if self.elements() > MAX_ELEMENTS {
+            let (width, height) = (self.width, self.height);
+            (self.width, self.height) = (0, 0);
+            return Err(Error::format(format!("an image of {width} by {height} is too large")));
+        }
+        Ok(())
+    }
+}

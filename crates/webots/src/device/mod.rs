@@ -1,0 +1,136 @@
+//! Devices of a robot as the native client keeps them: configuration, measurements, and messages to be sent.
+
+mod channels;
+mod emitter;
+mod imager;
+mod motor;
+mod receiver;
+mod sensor;
+
+use opendr_engine::{Error, Result};
+
+use crate::kind::DeviceKind;
+use crate::reader::Reader;
+use crate::request::Request;
+use crate::version::Version;
+
+pub(crate) use emitter::Emitter;
+pub(crate) use imager::Imager;
+pub(crate) use motor::Motor;
+pub(crate) use receiver::Receiver;
+pub(crate) use sensor::Sensor;
+
+/// Opcode of a configuration, in both directions of a device.
+pub(crate) const CONFIGURE: u8 = 0;
+/// Opcode that sets the sampling period.
+const SET_SAMPLING_PERIOD: u8 = 1;
+
+/// A device.
+#[derive(Debug, Clone)]
+pub(crate) struct Device {
+    pub name: String,
+    pub model: String,
+    pub state: State,
+}
+
+/// What a device is.
+#[derive(Debug, Clone)]
+pub(crate) enum State {
+    Motor(Motor),
+    Sensor(Sensor),
+    Imager(Imager),
+    Emitter(Emitter),
+    Receiver(Receiver),
+    /// A node number whose messages are not known.
+    Unknown(u16),
+}
+
+impl Device {
+    /// Reads number, name and model.
+    pub fn read(reader: &mut Reader<'_>, version: Version) -> Result<Self> {
+        let node = reader.u16()?;
+        let kind = DeviceKind::ALL.iter().copied().find(|kind| version.device_node(*kind) == node);
+        let state = match kind {
+            None => State::Unknown(node),
+            Some(kind) if kind.is_motor() => State::Motor(Motor::new(kind)),
+            Some(kind) if kind.is_imager() => State::Imager(Imager::new(kind, version)),
+            Some(DeviceKind::Emitter) => State::Emitter(Emitter::default()),
+            Some(DeviceKind::Receiver) => State::Receiver(Receiver::default()),
+            Some(kind) => State::Sensor(Sensor::new(kind)),
+        };
+        let (name, model) = (reader.text()?.to_owned(), reader.text()?.to_owned());
+        Ok(Self { name, model, state })
+    }
+
+    /// Returns the kind; none for a device that is not known.
+    pub fn kind(&self) -> Option<DeviceKind> {
+        match &self.state {
+            State::Motor(motor) => Some(motor.kind),
+            State::Sensor(sensor) => Some(sensor.kind),
+            State::Imager(imager) => Some(imager.kind),
+            State::Emitter(_) => Some(DeviceKind::Emitter),
+            State::Receiver(_) => Some(DeviceKind::Receiver),
+            State::Unknown(_) => None,
+        }
+    }
+
+    /// Reads one message of Webots.
+    pub fn answer(&mut self, reader: &mut Reader<'_>) -> Result<()> {
+        let command = reader.u8()?;
+        let known = match &mut self.state {
+            State::Motor(motor) => motor.answer(command, reader),
+            State::Sensor(sensor) => sensor.answer(command, reader),
+            State::Imager(imager) => imager.answer(command, reader),
+            State::Emitter(emitter) => emitter.answer(command, reader),
+            State::Receiver(receiver) => receiver.answer(command, reader),
+            State::Unknown(node) => {
+                return Err(Error::unsupported(format!(
+                    "Webots sent a message of device {:?}, whose type (node number {node}) the native client does not know; \
+                     connect with libController (feature webots-library)",
+                    self.name
+                )));
+            }
+        };
+        match known {
+            Ok(true) => Ok(()),
+            Ok(false) => Err(Error::format(format!(
+                "command {command} of device {:?} is not known; is this the version of Webots that was named?",
+                self.name
+            ))),
+            Err(error) => Err(error.context(format!("device {:?}", self.name))),
+        }
+    }
+
+    /// Writes the messages that are due, as Webots' own library orders them.
+    pub fn write(&mut self, step_ms: u32, request: &mut Request) {
+        match &mut self.state {
+            State::Motor(motor) => motor.write(request),
+            State::Sensor(sensor) => write_period(&mut sensor.new_period, request),
+            State::Imager(imager) => imager.write(request),
+            State::Emitter(emitter) => emitter.write(step_ms, request),
+            State::Receiver(receiver) => receiver.write(request),
+            State::Unknown(_) => {}
+        }
+    }
+
+    /// Sets the sampling period of a sensor; 0 stops it.
+    pub fn enable(&mut self, period_ms: u16) -> Result<()> {
+        match &mut self.state {
+            State::Motor(motor) => motor.enable_feedback(period_ms),
+            State::Sensor(sensor) => sensor.enable(period_ms),
+            State::Imager(imager) => imager.enable(period_ms),
+            State::Receiver(receiver) => receiver.enable(period_ms),
+            State::Emitter(_) | State::Unknown(_) => {
+                return Err(Error::invalid_param(format!("device {:?} is not a sensor", self.name)));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn write_period(new_period: &mut Option<u16>, request: &mut Request) {
+    if let Some(period) = new_period.take() {
+        request.u8(SET_SAMPLING_PERIOD);
+        request.u16(period);
+    }
+}
