@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use opendr::learner::{AnyLearner, Entry};
+use opendr::model::{MANIFEST_NAME, Model};
 use opendr::params::ParamMap;
 use opendr::zoo::{Zoo, ZooOptions};
-use opendr::{Device, Progress, Result, inference};
+use opendr::{Device, Error, Progress, Result, inference};
 
 /// Maximum number of copies of a learner that run in parallel.
 const MAX_WORKERS: usize = 4;
@@ -20,8 +21,8 @@ pub const LEARNER: &str = "learner";
 pub fn learner() -> Arg {
     Arg::new(LEARNER)
         .required(true)
-        .value_name("LEARNER[/VARIANT]")
-        .help("Learner to run (see \"opendr models\")")
+        .value_name("LEARNER[/VARIANT]|MODEL")
+        .help("Learner to run (see \"opendr models\"), a model container, or an ONNX file of another tool")
 }
 
 /// Returns the flags of every command that runs a learner.
@@ -71,12 +72,44 @@ pub fn quiet() -> Arg {
         .help("Print results and errors only")
 }
 
-/// Finds the learner by registry or class name, with or without a variant.
+/// Finds the learner by registry or class name, with or without a variant, or the learner of a model: a container, or an ONNX file
+/// of another tool.
 ///
 /// # Errors
-/// `NotFound`, with the known names.
+/// `NotFound`, with the known names; the error of a model that cannot be opened.
 pub fn entry(spec: &str) -> Result<&'static Entry> {
+    match own_model(spec) {
+        Some(path) => entry_of_model(path),
+        None => named_entry(spec),
+    }
+}
+
+fn named_entry(spec: &str) -> Result<&'static Entry> {
     opendr::registry().find(spec.split('/').next().unwrap_or(spec))
+}
+
+/// Returns the path of a model that is given in place of a learner; names of learners come first.
+fn own_model(spec: &str) -> Option<&Path> {
+    let path = Path::new(spec);
+    let ends_with = |end: &str| path.extension().is_some_and(|found| found.eq_ignore_ascii_case(end));
+    let is_model =
+        ends_with("onnx") || (ends_with("zip") && path.is_file()) || path.join(MANIFEST_NAME).is_file();
+    (is_model && named_entry(spec).is_err()).then_some(path)
+}
+
+fn entry_of_model(path: &Path) -> Result<&'static Entry> {
+    let model = Model::open(path)?;
+    let name = &model.manifest().learner;
+    if !name.is_empty() {
+        return opendr::registry().find(name);
+    }
+    let recognises = |entry: &&'static Entry| entry.spec.recognises_networks;
+    opendr::registry().entries().into_iter().find(recognises).ok_or_else(|| {
+        Error::unsupported(format!(
+            "{} names no learner, and no learner of this build recognises networks; write \"LEARNER --model {0}\"",
+            path.display()
+        ))
+    })
 }
 
 /// Returns the zoo with the options of environment and flags.
@@ -139,11 +172,14 @@ pub fn load_pretrained(
     Ok(learner)
 }
 
-/// Returns the path of the pretrained model's container; downloads it if it is not cached.
+/// Returns the path of the pretrained model's container, which is downloaded if it is not cached, or of the given model.
 ///
 /// # Errors
 /// The error of the download.
 pub fn pretrained(spec: &str, matches: &ArgMatches, progress: &dyn Progress) -> Result<PathBuf> {
+    if let Some(path) = own_model(spec) {
+        return Ok(path.to_owned());
+    }
     let entry = entry(spec)?;
     let variant = spec.split_once('/').map_or(String::new(), |(_, variant)| format!("/{variant}"));
     zoo(matches)?.get(&format!("{}{variant}", entry.spec.name), progress)

@@ -16,7 +16,7 @@ use opendr_classification::{
 use opendr_clouds::object_detection_3d::VoxelObjectDetection3d;
 #[cfg(feature = "detection")]
 use opendr_detection::object_detection_2d::{
-    CenterNet, Gem, Nanodet, Seq2SeqNms, SingleShotDetector, TiledDetection,
+    CenterNet, Gem, ImportedDetector, Nanodet, Seq2SeqNms, SingleShotDetector, TiledDetection, Yolox,
 };
 use opendr_engine::learner::Registry;
 use opendr_engine::learners;
@@ -79,6 +79,8 @@ pub fn registry() -> &'static Registry {
             {
                 CenterNet,
                 Nanodet,
+                Yolox,
+                ImportedDetector,
                 SingleShotDetector,
                 TiledDetection,
                 Seq2SeqNms,

@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use clap::{Arg, ArgMatches, Command, value_parser};
+use opendr::learner::Entry;
 use opendr::model::Manifest;
+use opendr::params::ParamMap;
 use opendr::zoo::{ImportOptions, import_files};
 use opendr::{Result, ResultExt};
 
@@ -15,6 +17,7 @@ Examples:
   opendr import whisper model.safetensors tokenizer.json --out small     saved by transformers
   opendr import whisper encoder_model.onnx decoder_model.onnx tokenizer.json --out small   by Optimum
   opendr import whisper model.bin tokenizer.json --out small             by CTranslate2
+  opendr import detector yolo.onnx --out mine                             a detector of another tool, recognised
   opendr import LEARNER detector.tflite --classes names.txt --out mine
   opendr import LEARNER net.param net.bin --out mine                     from ncnn
   opendr infer whisper talk.wav --model small                          run the result";
@@ -83,12 +86,30 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         manifest.classes = text.lines().map(str::trim).filter(|name| !name.is_empty()).collect();
     }
     let device = loading::device(matches)?;
+    let mut recognised = Vec::new();
     import_files(manifest, &files, &options, &output, |model| {
-        let loaded = entry.make(&params, device).and_then(|mut learner| learner.load(model.path()));
+        let loaded = entry.make(&params, device).and_then(|mut learner| {
+            learner.load(model.path())?;
+            recognised = settled_on_load(&learner.params(), &params, entry);
+            Ok(())
+        });
         loaded.context(|| format!("{} cannot load this model", entry.spec.name))
     })?;
+    if !matches.get_flag("quiet") && !recognised.is_empty() {
+        eprintln!("recognised: {}", recognised.join(", "));
+    }
     stdout::print(output.display())?;
     Ok(Outcome::Done)
+}
+
+/// Returns the parameters that have another value than the default since the model was loaded and that the user did not set.
+fn settled_on_load(loaded: &ParamMap, given: &ParamMap, entry: &Entry) -> Vec<String> {
+    let fields = entry.params.iter().filter(|field| field.value_in(given).is_none());
+    let settled = fields.filter_map(|field| Some((field, field.value_in(loaded)?)));
+    settled
+        .filter(|(field, value)| field.default.value() != **value)
+        .map(|(field, value)| format!("{} {value}", field.name.replace('_', "-")))
+        .collect()
 }
 
 fn image_size(text: &str) -> Result<(usize, usize), String> {

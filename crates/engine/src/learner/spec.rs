@@ -15,6 +15,8 @@ pub struct Spec {
     pub about: &'static str,
     /// Arguments of OpenDR's class of this name that have no effect here, each with the reason.
     pub without_effect: &'static [(&'static str, &'static str)],
+    /// Whether it loads ONNX files of other tools as they are; it recognises their inputs and outputs.
+    pub recognises_networks: bool,
 }
 
 impl Spec {
@@ -23,7 +25,7 @@ impl Spec {
 
     /// Creates the specification of a learner named `name`.
     pub const fn new(name: &'static str, task: Task) -> Self {
-        Self { name, task, class: "", about: "", without_effect: &[] }
+        Self { name, task, class: "", about: "", without_effect: &[], recognises_networks: false }
     }
 
     /// Sets the class name.
@@ -42,5 +44,11 @@ impl Spec {
     #[must_use]
     pub const fn about(self, about: &'static str) -> Self {
         Self { about, ..self }
+    }
+
+    /// States that the learner loads ONNX files of other tools as they are.
+    #[must_use]
+    pub const fn recognises_networks(self) -> Self {
+        Self { recognises_networks: true, ..self }
     }
 }

@@ -1,6 +1,7 @@
 //! The manifest of a model, `model.json`.
 
 use std::collections::HashSet;
+use std::path::Path;
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -109,6 +110,14 @@ impl Manifest {
             metrics: Map::new(),
             lineage: Lineage::default(),
         }
+    }
+
+    /// Creates the manifest of an ONNX file that is not in a container.
+    pub(super) fn of_network(path: &Path) -> Result<Self> {
+        let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+        member_path(name)?;
+        let file = ModelFile { name: name.to_owned(), size: None, sha256: None };
+        Ok(Self { files: vec![file], ..Self::new("", "") })
     }
 
     /// Parses [`inputs`](Self::inputs) as a type of the learner; `what` names its contents in the error.

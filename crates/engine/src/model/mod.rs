@@ -47,7 +47,8 @@ pub struct Model {
 }
 
 impl Model {
-    /// Opens a container: its folder, its JSON file (OpenDR's own too), or a zip of it.
+    /// Opens a container: its folder, its JSON file (OpenDR's own too), or a zip of it. An ONNX file alone is a model without
+    /// a learner, classes and parameters.
     ///
     /// # Errors
     /// Returns `NotFound` if there is none at `path`; otherwise as [`Manifest::from_json`].
@@ -65,6 +66,10 @@ impl Model {
             }
             let folder =
                 path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+            if is_onnx(path) {
+                let manifest = Manifest::of_network(path)?;
+                return Ok(Self { path: path.to_owned(), manifest, store: Store::Folder(folder.to_owned()) });
+            }
             let manifest = Manifest::from_json(&store::read_file(path, MAX_MANIFEST_BYTES)?)?;
             Ok(Self { path: path.to_owned(), manifest, store: Store::Folder(folder.to_owned()) })
         };
@@ -142,9 +147,8 @@ impl Model {
     /// # Errors
     /// Returns `NotFound` if it lists none, `InvalidInput` if it lists several; otherwise as [`Model::file`].
     pub fn onnx(&self) -> Result<Vec<u8>> {
-        let is_onnx =
-            |name: &str| Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case("onnx"));
-        let mut names = self.own_files().map(|file| file.name.as_str()).filter(|name| is_onnx(name));
+        let mut names =
+            self.own_files().map(|file| file.name.as_str()).filter(|name| is_onnx(Path::new(name)));
         match (names.next(), names.next()) {
             (Some(name), None) => self.file(name),
             (None, _) => {
@@ -156,6 +160,10 @@ impl Model {
             ))),
         }
     }
+}
+
+fn is_onnx(path: &Path) -> bool {
+    path.extension().is_some_and(|end| end.eq_ignore_ascii_case("onnx"))
 }
 
 /// Returns the name of the JSON in a model's folder: `model.json`, or the only JSON file, as OpenDR writes it.

@@ -1,8 +1,9 @@
 //! Object detection in images: boxes with class labels.
 //!
-//! Learners: [`object_detection_2d::Nanodet`], [`object_detection_2d::CenterNet`], [`object_detection_2d::SingleShotDetector`]
-//! (SSD, trainable on own classes), [`object_detection_2d::Gem`] (colour and infrared), [`object_detection_2d::Seq2SeqNms`]
-//! (learned non-maximum suppression) and [`object_detection_2d::TiledDetection`] (any detector over tiles of large images).
+//! Learners: [`object_detection_2d::Yolox`], [`object_detection_2d::CenterNet`], [`object_detection_2d::Nanodet`],
+//! [`object_detection_2d::ImportedDetector`] (ONNX files of other tools), [`object_detection_2d::SingleShotDetector`] (SSD, trainable
+//! on own classes), [`object_detection_2d::Gem`] (colour and infrared), [`object_detection_2d::Seq2SeqNms`] (learned non-maximum
+//! suppression) and [`object_detection_2d::TiledDetection`] (any detector over tiles of large images).
 //! `fit` needs the feature `training`.
 //!
 //! Face detectors are in `opendr-face-detection`, 3D detectors in `opendr-clouds`, greedy suppression in

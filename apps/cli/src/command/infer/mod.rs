@@ -30,6 +30,7 @@ Examples:
   opendr infer LEARNER 'photos/**/*.jpg' --threshold 0.8
   opendr infer LEARNER/VARIANT dance.mp4 --out dance-poses.mp4
   opendr infer LEARNER camera:0 --limit 100
+  opendr infer yolo.onnx street.jpg                      a detector of another tool
   opendr infer matchboxnet yes.wav no.wav                audio, time series (.csv), point clouds
   opendr infer LEARNER drive.bag --topic /camera/image_raw --out boxes.mcap
   opendr infer nanodet walk.mp4 --then 'posenet threshold=0.3' --out poses.mp4  a pipeline, in parallel

@@ -3,18 +3,25 @@
 mod centernet;
 mod detectors;
 mod gem;
+mod imported_detector;
 mod nanodet;
+mod rows;
 #[cfg(feature = "training")]
 mod selected_classes;
 mod seq2seq_nms;
 pub mod single_shot_detector;
 mod tiled_detection;
+mod yolox;
 
 pub use centernet::{CenterNet, CenterNetParams};
 pub use detectors::DETECTORS;
 #[cfg(feature = "training")]
 pub use gem::GemFitParams;
 pub use gem::{Gem, GemInputs, GemParams, GemTargets};
+pub use imported_detector::{
+    BoxFormat, BoxUnit, ImportedDetector, ImportedDetectorParams, InputColour, InputLevels, InputResize,
+    Objectness, OutputLayout, RowOrder, ScoreFormat,
+};
 pub use nanodet::{Nanodet, NanodetParams};
 #[cfg(feature = "training")]
 pub use nanodet::{NanodetFitParams, NanodetFreeze, NanodetNetwork};
@@ -25,3 +32,4 @@ pub use seq2seq_nms::Seq2SeqNmsFitParams;
 pub use seq2seq_nms::{NmsVariant, Seq2SeqNms, Seq2SeqNmsInputs, Seq2SeqNmsParams};
 pub use single_shot_detector::{SingleShotDetector, SingleShotDetectorParams};
 pub use tiled_detection::{TiledDetection, TiledDetectionParams, TiledDetectionState};
+pub use yolox::{Yolox, YoloxParams};

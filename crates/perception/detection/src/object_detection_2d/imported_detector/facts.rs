@@ -1,0 +1,108 @@
+//! What a network states about itself: inputs, outputs, metadata, and the operators that compute its outputs.
+
+use std::collections::{HashMap, HashSet};
+
+use opendr_engine::Result;
+use opendr_inference::{ElementType, Session, TensorInfo};
+use opendr_onnx::model_from_bytes;
+use opendr_onnx::proto::{GraphProto, NodeProto};
+
+/// Operators whose further inputs are shapes or indices, which are not followed.
+const SHAPED: [&str; 9] =
+    ["Reshape", "Expand", "Slice", "Gather", "Unsqueeze", "Squeeze", "Resize", "Tile", "Split"];
+/// Operators of layers with weights, at which an output's computation is followed no further.
+const LAYERS: [&str; 4] = ["Conv", "ConvTranspose", "Gemm", "MatMul"];
+
+/// Facts about a network.
+pub(super) struct Facts {
+    pub(super) inputs: Vec<TensorInfo>,
+    pub(super) outputs: Vec<TensorInfo>,
+    metadata: HashMap<String, String>,
+    operators: HashSet<String>,
+    graph: GraphProto,
+}
+
+impl Facts {
+    /// Reads the facts of the ONNX file that `session` runs.
+    pub(super) fn read(onnx: &[u8], session: &Session) -> Result<Self> {
+        let model = model_from_bytes(onnx)?;
+        let mut graph = model.graph.unwrap_or_default();
+        graph.initializer.clear();
+        Ok(Self {
+            inputs: session.inputs().to_vec(),
+            outputs: session.outputs().to_vec(),
+            metadata: model.metadata_props.into_iter().map(|entry| (entry.key, entry.value)).collect(),
+            operators: graph.node.iter().map(|node| node.op_type.clone()).collect(),
+            graph,
+        })
+    }
+
+    /// Returns an entry of the metadata; empty if there is none.
+    pub(super) fn metadata(&self, key: &str) -> &str {
+        self.metadata.get(key).map_or("", String::as_str)
+    }
+
+    /// Returns whether the network has an operator.
+    pub(super) fn has_operator(&self, name: &str) -> bool {
+        self.operators.contains(name)
+    }
+
+    /// Returns the index of the output whose name contains `part`.
+    pub(super) fn output_named(&self, part: &str) -> Option<usize> {
+        self.outputs.iter().position(|output| output.name.contains(part))
+    }
+
+    /// Returns the only output for which `is` holds.
+    pub(super) fn only_output(&self, is: impl Fn(&TensorInfo) -> bool) -> Option<usize> {
+        let mut found = (0..).zip(&self.outputs).filter(|(_, output)| is(output)).map(|(index, _)| index);
+        found.next().filter(|_| found.next().is_none())
+    }
+
+    /// Returns the operators between an output and the last layers with weights.
+    pub(super) fn tail(&self, output: usize) -> HashSet<&str> {
+        let makers: HashMap<&str, &NodeProto> = self
+            .graph
+            .node
+            .iter()
+            .flat_map(|node| node.output.iter().map(move |name| (name.as_str(), node)))
+            .collect();
+        let mut names: Vec<&str> =
+            self.outputs.get(output).map(|output| output.name.as_str()).into_iter().collect();
+        let (mut seen, mut found) = (HashSet::new(), HashSet::new());
+        while let Some(name) = names.pop() {
+            let Some(node) = makers.get(name).filter(|_| seen.insert(name)) else { continue };
+            let kind = node.op_type.as_str();
+            if LAYERS.contains(&kind) {
+                continue;
+            }
+            found.insert(kind);
+            let followed = if SHAPED.contains(&kind) { 1 } else { node.input.len() };
+            names.extend(node.input.iter().take(followed).map(String::as_str));
+        }
+        found
+    }
+
+    /// Returns inputs and outputs as one text for messages.
+    pub(super) fn describe(&self) -> String {
+        let list = |infos: &[TensorInfo]| {
+            let texts: Vec<String> = infos.iter().take(12).map(ToString::to_string).collect();
+            texts.join(", ")
+        };
+        format!("inputs {}; outputs {}", list(&self.inputs), list(&self.outputs))
+    }
+}
+
+/// Returns the last two dimensions of a tensor of floats with at least `rank` dimensions.
+pub(super) fn last_two(info: &TensorInfo, rank: usize) -> Option<[Option<usize>; 2]> {
+    match info.dims[..] {
+        [.., first, second] if info.element_type == ElementType::F32 && info.dims.len() >= rank => {
+            Some([first, second])
+        }
+        _ => None,
+    }
+}
+
+/// Returns whether a tensor has integer elements.
+pub(super) fn is_integer(info: &TensorInfo) -> bool {
+    matches!(info.element_type, ElementType::I32 | ElementType::I64)
+}

@@ -1,0 +1,203 @@
+//! The inputs of a network: an image, and constants that describe it.
+
+use opendr_engine::data::{Image, Layout};
+use opendr_engine::{Error, Pool, Result};
+use opendr_inference::{ElementType, Session, TensorInfo, TensorView};
+use opendr_vision::{ChannelOrder, InputGeometry, LetterboxAlign, Preprocess};
+
+use super::convention::Convention;
+use super::facts::Facts;
+use super::params::{InputColour, InputLevels, InputResize};
+
+/// Maximum number of inputs of a detector.
+const MAX_INPUTS: usize = 4;
+/// Maximum number of pixels of the network's input.
+const MAX_PIXELS: usize = 1 << 24;
+const IMAGENET_MEAN: [f32; 3] = [123.675, 116.28, 103.53];
+const IMAGENET_STD: [f32; 3] = [58.395, 57.12, 57.375];
+
+/// The image input of a network.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ImageInput {
+    index: usize,
+    is_bytes: bool,
+    layout: Layout,
+    has_batch: bool,
+    /// Width and height, in pixels.
+    pub(super) size: [usize; 2],
+}
+
+impl ImageInput {
+    /// Finds the image among the inputs; sides that are not fixed have `side` pixels.
+    ///
+    /// # Errors
+    /// `Unsupported` for a network without an image of three channels, or with a batch of several.
+    pub(super) fn find(facts: &Facts, side: usize) -> Result<Self> {
+        let images =
+            facts.inputs.iter().enumerate().filter_map(|(index, input)| Self::of(index, input, side));
+        let found =
+            images.max_by_key(|image| image.size[0].saturating_mul(image.size[1])).ok_or_else(|| {
+                Error::unsupported(format!(
+                    "no input of the network is an image [1, 3, height, width] or [1, height, width, 3]: {}",
+                    facts.describe()
+                ))
+            })?;
+        let [width, height] = found.size;
+        if !(1..=MAX_PIXELS).contains(&width.saturating_mul(height)) {
+            return Err(Error::unsupported(format!(
+                "the network's input has {width} x {height} pixels; at most {MAX_PIXELS} are supported"
+            )));
+        }
+        Ok(found)
+    }
+
+    fn of(index: usize, input: &TensorInfo, side: usize) -> Option<Self> {
+        let is_bytes = match input.element_type {
+            ElementType::F32 => false,
+            ElementType::U8 => true,
+            _ => return None,
+        };
+        let (batch, image) = match input.dims[..] {
+            [batch, a, b, c] => (Some(batch), [a, b, c]),
+            [a, b, c] => (None, [a, b, c]),
+            _ => return None,
+        };
+        let (layout, height, width) = match image {
+            [Some(3), height, width] => (Layout::Chw, height, width),
+            [height, width, Some(3)] => (Layout::Hwc, height, width),
+            [None, None, None] => (Layout::Chw, None, None),
+            _ => return None,
+        };
+        let is_single = batch.flatten().is_none_or(|batch| batch == 1);
+        let size = [width.unwrap_or(side), height.unwrap_or(side)];
+        is_single.then_some(Self { index, is_bytes, layout, has_batch: batch.is_some(), size })
+    }
+}
+
+/// The inputs of a network, with its session.
+pub(super) struct Network {
+    session: Session,
+    image: ImageInput,
+    preprocess: Preprocess,
+    constants: Vec<(usize, Constant)>,
+    floats: Pool<Vec<f32>>,
+    bytes: Pool<Vec<u8>>,
+}
+
+/// An input that does not depend on the image.
+enum Constant {
+    Floats(Vec<usize>, Vec<f32>),
+    Integers(Vec<usize>, Vec<i64>),
+}
+
+impl Constant {
+    /// Makes the value of an input: sizes are those of the network's input, so that boxes are in its pixels.
+    fn of(input: &TensorInfo, [width, height]: [usize; 2]) -> Option<Self> {
+        let dims: Vec<usize> = input.dims.iter().map(|dim| dim.unwrap_or(1)).collect();
+        let values = match () {
+            () if input.name.contains("mask") => {
+                let dims = vec![1, height, width];
+                return (input.element_type == ElementType::I64 && input.dims.len() == 3)
+                    .then(|| Self::Integers(dims, vec![1; width * height]));
+            }
+            () if input.name.contains("scale") => [1, 1],
+            () if input.name.contains("shape") => [height, width],
+            () if input.name.contains("size") => [width, height],
+            () => return None,
+        };
+        if dims.iter().product::<usize>() != values.len() {
+            return None;
+        }
+        Some(match input.element_type {
+            ElementType::F32 => Self::Floats(dims, values.map(|value| value as f32).to_vec()),
+            ElementType::I64 => Self::Integers(dims, values.map(|value| value as i64).to_vec()),
+            _ => return None,
+        })
+    }
+
+    fn view(&self) -> Result<TensorView<'_>> {
+        match self {
+            Self::Floats(dims, values) => TensorView::new(dims, values),
+            Self::Integers(dims, values) => TensorView::new(dims, values),
+        }
+    }
+}
+
+impl Network {
+    /// Prepares the inputs of `session`.
+    ///
+    /// # Errors
+    /// `Unsupported` for an input that is neither the image nor known.
+    pub(super) fn new(session: Session, image: ImageInput, convention: &Convention) -> Result<Self> {
+        let count = session.inputs().len();
+        let others = session.inputs().iter().enumerate().filter(|(index, _)| *index != image.index);
+        let constants = others.map(|(index, input)| Some((index, Constant::of(input, image.size)?)));
+        let constants: Option<Vec<_>> = constants.collect();
+        let Some(constants) = constants.filter(|_| count <= MAX_INPUTS) else {
+            let inputs: Vec<String> = session.inputs().iter().map(ToString::to_string).collect();
+            return Err(Error::unsupported(format!(
+                "the network's inputs {} are not those of a known detector; export it with an image as its only input",
+                inputs.join(", ")
+            )));
+        };
+        let preprocess = preprocess(&image, convention);
+        Ok(Self { session, image, preprocess, constants, floats: Pool::default(), bytes: Pool::default() })
+    }
+
+    /// Runs the network on an image. `sink` receives the outputs and the mapping back to image pixels.
+    pub(super) fn run(
+        &self,
+        image: &Image,
+        mut sink: impl FnMut(&[TensorView<'_>], &InputGeometry) -> Result<()>,
+    ) -> Result<()> {
+        let shape = self.preprocess.shape();
+        let shape = if self.image.has_batch { &shape[..] } else { &shape[1..] };
+        if self.image.is_bytes {
+            let mut input = self.bytes.take();
+            input.resize(self.preprocess.len(), 0);
+            let geometry = self.preprocess.run_into(image.view(), &mut input[..])?;
+            self.run_on(TensorView::new(shape, &input[..])?, |outputs| sink(outputs, &geometry))
+        } else {
+            let mut input = self.floats.take();
+            input.resize(self.preprocess.len(), 0.0);
+            let geometry = self.preprocess.run_into(image.view(), &mut input[..])?;
+            self.run_on(TensorView::new(shape, &input[..])?, |outputs| sink(outputs, &geometry))
+        }
+    }
+
+    fn run_on(&self, image: TensorView<'_>, sink: impl FnMut(&[TensorView<'_>]) -> Result<()>) -> Result<()> {
+        let mut inputs = [image; MAX_INPUTS];
+        for (index, constant) in &self.constants {
+            inputs[*index] = constant.view()?;
+        }
+        self.session.run(&inputs[..=self.constants.len()], sink)
+    }
+}
+
+fn preprocess(image: &ImageInput, convention: &Convention) -> Preprocess {
+    let padding = convention.padding as f32;
+    let order = match convention.colour {
+        InputColour::Bgr => ChannelOrder::Bgr,
+        InputColour::Auto | InputColour::Rgb => ChannelOrder::Rgb,
+    };
+    let (mean, std) = match convention.levels {
+        InputLevels::Auto | InputLevels::Bytes => ([0.0; 3], [1.0; 3]),
+        InputLevels::Unit => ([0.0; 3], [255.0; 3]),
+        InputLevels::Signed => ([127.5; 3], [127.5; 3]),
+        InputLevels::ImageNet => (IMAGENET_MEAN, IMAGENET_STD),
+    };
+    let ordered = |mut values: [f32; 3]| {
+        if order == ChannelOrder::Bgr {
+            values.reverse();
+        }
+        values
+    };
+    let [width, height] = image.size;
+    let base = Preprocess::new(width, height).order(order).layout(image.layout);
+    let base = base.normalise(ordered(mean), ordered(std));
+    match convention.resize {
+        InputResize::Letterbox => base.letterbox(LetterboxAlign::Centre, padding),
+        InputResize::TopLeft => base.letterbox(LetterboxAlign::TopLeft, padding),
+        InputResize::Auto | InputResize::Stretch => base.stretch(),
+    }
+}

@@ -1,0 +1,119 @@
+//! Detector from an ONNX file that another tool exported: YOLOv5 to v12, YOLO26, YOLOX, RT-DETR, D-FINE, DETR, torchvision and others.
+//!
+//! The layout of inputs and outputs is recognised from names, shapes, metadata and operators. A parameter overrides it; what is
+//! neither recognised nor given is an error that names the parameter. `docs/bring_your_own.md` lists the conventions.
+
+mod class_names;
+mod convention;
+mod decode;
+mod facts;
+mod input;
+mod params;
+mod roles;
+mod settled;
+#[cfg(test)]
+mod tests;
+
+use opendr_engine::data::Image;
+use opendr_engine::learner::{Learner, Spec};
+use opendr_engine::model::Model;
+use opendr_engine::target::{BoundingBoxList, Classes};
+use opendr_engine::{Device, Error, Pool, Result, Task};
+use opendr_inference::Session;
+use opendr_perception_common::boxes_from_candidates::boxes_from_candidates;
+use opendr_perception_common::suppression::Suppression;
+
+pub use params::{
+    BoxFormat, BoxUnit, ImportedDetectorParams, InputColour, InputLevels, InputResize, Objectness,
+    OutputLayout, RowOrder, ScoreFormat,
+};
+
+use class_names::class_names;
+use decode::{Decoder, Scratch};
+use facts::Facts;
+use input::{ImageInput, Network};
+use roles::Roles;
+
+/// A loaded detector of another tool.
+pub struct ImportedDetector {
+    params: ImportedDetectorParams,
+    classes: Classes,
+    network: Network,
+    decoder: Decoder,
+    scratch: Pool<Scratch>,
+}
+
+impl Learner for ImportedDetector {
+    const SPEC: Spec = Spec::new("detector", Task::ObjectDetection2d)
+        .class("ImportedDetectorLearner")
+        .about(
+            "Runs your own detector, exported to ONNX by another tool; recognises the layout of its outputs.",
+        )
+        .recognises_networks();
+    type Params = ImportedDetectorParams;
+    type Input<'a> = &'a Image;
+    type Target = BoundingBoxList;
+    type State = ();
+
+    fn load(model: &Model, mut params: ImportedDetectorParams, device: Device) -> Result<Self> {
+        let onnx = model.onnx()?;
+        let session = Session::open(&onnx, device)?;
+        let facts = Facts::read(&onnx, &session)?;
+        let image = ImageInput::find(&facts, params.size)?;
+        let classes = match model.classes() {
+            given if given.is_empty() => {
+                Classes::from(class_names(facts.metadata("names")).unwrap_or_default())
+            }
+            given => given.clone(),
+        };
+        let convention = settled::settle(&mut params, convention::recognise(&facts, image.size)?, &facts)?;
+        let roles = Roles::find(convention.layout, &facts, classes.len())?;
+        let network = Network::new(session, image, &convention)?;
+        let decoder = Decoder { convention, roles, classes: classes.len(), size: image.size };
+        Ok(Self { params, classes, network, decoder, scratch: Pool::default() })
+    }
+
+    fn params(&self) -> &ImportedDetectorParams {
+        &self.params
+    }
+
+    fn params_mut(&mut self) -> &mut ImportedDetectorParams {
+        &mut self.params
+    }
+
+    fn classes(&self) -> Classes {
+        self.classes.clone()
+    }
+
+    fn infer_into(&self, _: &mut (), image: &Image, boxes: &mut BoundingBoxList) -> Result<()> {
+        let scratch = &mut *self.scratch.take();
+        let ImportedDetectorParams { threshold, max_detections, suppression, .. } = self.params;
+        let suppression = Suppression {
+            kind: suppression,
+            iou_threshold: self.iou_threshold(),
+            threshold,
+            max_boxes: max_detections,
+        };
+        self.network.run(image, |outputs, geometry| {
+            if outputs.is_empty() {
+                return Err(Error::format("the network has no outputs"));
+            }
+            self.decoder.run(outputs, threshold, scratch)?;
+            suppression.run(&mut scratch.candidates, &mut scratch.marks);
+            boxes_from_candidates(boxes, &scratch.candidates, geometry, &self.classes);
+            Ok(())
+        })
+    }
+}
+
+impl ImportedDetector {
+    /// Returns the threshold of the suppression; 1 where the network has suppressed already, as no IoU exceeds it.
+    fn iou_threshold(&self) -> f32 {
+        match self.params.layout {
+            OutputLayout::Detections | OutputLayout::Queries => 1.0,
+            OutputLayout::Auto | OutputLayout::Candidates | OutputLayout::GridCandidates => {
+                self.params.iou_threshold
+            }
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! Parameters of [`super::ImportedDetector`]: its settings, and what is to be known of a network's inputs and outputs.
+
+use opendr_engine::params::Params;
+use opendr_perception_common::suppression::SuppressionKind;
+
+opendr_engine::choices! {
+    /// What the rows of a detector's outputs are.
+    pub enum OutputLayout {
+        /// Recognised from the network.
+        Auto = "auto",
+        /// Box and class scores of every cell or anchor, before suppression (YOLOv5 to v12).
+        Candidates = "candidates",
+        /// The same, with boxes relative to their cells (YOLOX).
+        GridCandidates = "grid_candidates",
+        /// Detections after suppression, in one output or in one each for boxes, scores and classes.
+        Detections = "detections",
+        /// Box and class scores of every query, without suppression (DETR).
+        Queries = "queries",
+    }
+}
+
+opendr_engine::choices! {
+    /// The four values of a box.
+    pub enum BoxFormat {
+        /// Recognised from the network.
+        Auto = "auto",
+        /// Left, top, right, bottom.
+        Xyxy = "xyxy",
+        /// Centre, width and height.
+        Cxcywh = "cxcywh",
+        /// Left, top, width and height.
+        Xywh = "xywh",
+        /// Top, left, bottom, right.
+        Yxyx = "yxyx",
+    }
+}
+
+opendr_engine::choices! {
+    /// The unit of a box.
+    pub enum BoxUnit {
+        /// Recognised from the network.
+        Auto = "auto",
+        /// Pixels of the network's input.
+        Pixels = "pixels",
+        /// Fractions of the network's input.
+        Fractions = "fractions",
+    }
+}
+
+opendr_engine::choices! {
+    /// The class scores of a network.
+    pub enum ScoreFormat {
+        /// Recognised from the network.
+        Auto = "auto",
+        /// Probabilities.
+        Probabilities = "probabilities",
+        /// Logits of one logistic function each.
+        Sigmoid = "sigmoid",
+        /// Logits of a softmax whose last class is the background.
+        Softmax = "softmax",
+    }
+}
+
+opendr_engine::choices! {
+    /// Whether rows of candidates have an objectness before the class scores.
+    pub enum Objectness {
+        /// Recognised from the network.
+        Auto = "auto",
+        /// A row has an objectness, by which class scores are multiplied.
+        Present = "present",
+        /// A row has none.
+        Absent = "absent",
+    }
+}
+
+opendr_engine::choices! {
+    /// Order of the values of a detection in an output with rows of detections.
+    pub enum RowOrder {
+        /// Recognised from the network.
+        Auto = "auto",
+        /// Box, score, class.
+        BoxScoreClass = "box_score_class",
+        /// Class, score, box.
+        ClassScoreBox = "class_score_box",
+        /// Index in the batch, box, class, score.
+        BatchBoxClassScore = "batch_box_class_score",
+        /// Index in the batch, box, score, class.
+        BatchBoxScoreClass = "batch_box_score_class",
+    }
+}
+
+opendr_engine::choices! {
+    /// How an image becomes the network's input.
+    pub enum InputResize {
+        /// Recognised from the network.
+        Auto = "auto",
+        /// The aspect ratio is kept; padding on all sides.
+        Letterbox = "letterbox",
+        /// The aspect ratio is kept; padding on the right and at the bottom.
+        TopLeft = "top_left",
+        /// The whole input is filled.
+        Stretch = "stretch",
+    }
+}
+
+opendr_engine::choices! {
+    /// Order of the colour channels of the network's input.
+    pub enum InputColour {
+        /// Recognised from the network.
+        Auto = "auto",
+        /// Red, green, blue.
+        Rgb = "rgb",
+        /// Blue, green, red.
+        Bgr = "bgr",
+    }
+}
+
+opendr_engine::choices! {
+    /// Range of the samples of the network's input.
+    pub enum InputLevels {
+        /// Recognised from the network.
+        Auto = "auto",
+        /// 0 to 255.
+        Bytes = "0_255",
+        /// 0 to 1.
+        Unit = "0_1",
+        /// -1 to 1.
+        Signed = "-1_1",
+        /// Mean 0 and variance 1 over ImageNet.
+        ImageNet = "imagenet",
+    }
+}
+
+/// Parameters of [`super::ImportedDetector`].
+#[derive(Debug, Clone, Params)]
+pub struct ImportedDetectorParams {
+    /// Score below which detections are dropped.
+    #[param(default = 0.25, range = 0.0..=1.0, live)]
+    pub threshold: f32,
+    /// IoU above which candidates of one class count as one object; detections and queries are not suppressed.
+    #[param(default = 0.65, range = 0.0..=1.0, live)]
+    pub iou_threshold: f32,
+    /// Maximum number of boxes per image.
+    #[param(default = 300, range = 1..=1000, live)]
+    pub max_detections: usize,
+    /// Method of non-maximum suppression of candidates.
+    #[param(live)]
+    pub suppression: SuppressionKind,
+    /// What the rows of the outputs are.
+    pub layout: OutputLayout,
+    /// The four values of a box.
+    pub boxes: BoxFormat,
+    /// Unit of boxes.
+    pub unit: BoxUnit,
+    /// What the class scores are.
+    pub scores: ScoreFormat,
+    /// Whether rows of candidates have an objectness.
+    pub objectness: Objectness,
+    /// Order of the values of a detection in one output.
+    pub row_order: RowOrder,
+    /// How an image becomes the network's input.
+    pub resize: InputResize,
+    /// Level of the padding of a letterbox; recognised from the network if absent.
+    #[param(range = 0..=255)]
+    pub padding: Option<usize>,
+    /// Order of the colour channels of the network's input.
+    pub colour: InputColour,
+    /// Range of the samples of the network's input.
+    pub levels: InputLevels,
+    /// Class index of the network that is the first of the class names; recognised from the network if absent.
+    #[param(range = 0..=1000)]
+    pub first_class: Option<usize>,
+    /// Side of the network's input, for models of dynamic size.
+    #[param(default = 640, range = 32..=4096, unit = "px")]
+    pub size: usize,
+}

@@ -1,0 +1,83 @@
+//! The convention that parameters and recognition settle together.
+
+use opendr_engine::{Error, Result};
+
+use super::convention::{Convention, UNKNOWN};
+use super::facts::Facts;
+use super::params::{
+    BoxFormat, BoxUnit, ImportedDetectorParams, InputColour, InputLevels, InputResize, Objectness,
+    OutputLayout, RowOrder, ScoreFormat,
+};
+
+/// Combines the parameters with what was recognised, and writes the result into the parameters.
+///
+/// # Errors
+/// `Unsupported` when something is neither recognised nor given; the message has the network's outputs and the parameters to set.
+pub(super) fn settle(
+    params: &mut ImportedDetectorParams,
+    recognised: Option<Convention>,
+    facts: &Facts,
+) -> Result<Convention> {
+    let known = recognised.unwrap_or(UNKNOWN);
+    macro_rules! take {
+        ($field:ident, $of:expr, $auto:path) => {
+            if params.$field == $auto {
+                params.$field = $of;
+            }
+        };
+    }
+    take!(layout, known.layout, OutputLayout::Auto);
+    // What was recognised together with another layout says nothing about this one.
+    let known =
+        if params.layout == known.layout { known } else { Convention { layout: params.layout, ..UNKNOWN } };
+    take!(boxes, known.boxes, BoxFormat::Auto);
+    take!(unit, known.unit, BoxUnit::Auto);
+    take!(scores, known.scores, ScoreFormat::Auto);
+    take!(objectness, known.objectness, Objectness::Auto);
+    take!(row_order, known.row_order, RowOrder::Auto);
+    take!(resize, known.resize, InputResize::Auto);
+    take!(colour, known.colour, InputColour::Auto);
+    take!(levels, known.levels, InputLevels::Auto);
+    let padding = params.padding.unwrap_or(known.padding);
+    let first_class = params.first_class.unwrap_or(known.first_class);
+    (params.padding, params.first_class) = (Some(padding), Some(first_class));
+    let convention = Convention {
+        layout: params.layout,
+        boxes: params.boxes,
+        unit: params.unit,
+        scores: params.scores,
+        objectness: params.objectness,
+        row_order: params.row_order,
+        resize: params.resize,
+        padding,
+        colour: params.colour,
+        levels: params.levels,
+        first_class,
+    };
+    match missing(&convention)[..] {
+        [] => Ok(convention),
+        ref missing => Err(Error::unsupported(format!(
+            "the network does not state all of its layout; set {} ({})",
+            missing.join(", "),
+            facts.describe()
+        ))),
+    }
+}
+
+/// Returns the names of the parameters that are still to be set.
+fn missing(convention: &Convention) -> Vec<&'static str> {
+    use OutputLayout::{Auto, Candidates, Detections};
+    let layout = convention.layout;
+    let is_grid = layout == OutputLayout::GridCandidates;
+    let all = [
+        ("layout", layout == Auto),
+        ("boxes", !is_grid && convention.boxes == BoxFormat::Auto),
+        ("unit", !is_grid && convention.unit == BoxUnit::Auto),
+        ("scores", !is_grid && layout != Detections && convention.scores == ScoreFormat::Auto),
+        ("objectness", layout == Candidates && convention.objectness == Objectness::Auto),
+        ("resize", convention.resize == InputResize::Auto),
+        ("colour", convention.colour == InputColour::Auto),
+        ("levels", convention.levels == InputLevels::Auto),
+    ];
+    all.into_iter().filter(|(_, is_missing)| *is_missing).map(|(name, _)| name).collect()
+}

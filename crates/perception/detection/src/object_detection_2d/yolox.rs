@@ -1,0 +1,99 @@
+//! YOLOX: an anchor-free one-stage detector.
+//!
+//! Ge et al., YOLOX: Exceeding YOLO Series in 2021, arXiv 2107.08430; code and weights Apache-2.0. The variant `nano` is the most
+//! precise of the light detectors and has the smallest file.
+
+use opendr_engine::data::Image;
+use opendr_engine::learner::{Learner, Spec};
+use opendr_engine::model::Model;
+use opendr_engine::params::Params;
+use opendr_engine::target::{BoundingBoxList, Classes};
+use opendr_engine::{Device, Pool, Result, Task};
+use opendr_perception_common::boxes_from_candidates::boxes_from_candidates;
+use opendr_perception_common::image_network::{ImageNetwork, preprocess_from_input};
+use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
+use opendr_vision::{ChannelOrder, LetterboxAlign};
+
+use super::rows::{Rows, decode_grid};
+
+/// Parameters of [`Yolox`].
+#[derive(Debug, Clone, Params)]
+pub struct YoloxParams {
+    /// Score below which detections are dropped.
+    #[param(default = 0.3, range = 0.0..=1.0, live)]
+    pub threshold: f32,
+    /// IoU above which boxes of one class count as one object.
+    #[param(default = 0.45, range = 0.0..=1.0, live)]
+    pub iou_threshold: f32,
+    /// Maximum number of boxes per image.
+    #[param(default = 100, range = 1..=1000, live)]
+    pub max_detections: usize,
+    /// Method of non-maximum suppression.
+    #[param(live)]
+    pub suppression: SuppressionKind,
+}
+
+/// A loaded YOLOX.
+pub struct Yolox {
+    params: YoloxParams,
+    classes: Classes,
+    network: ImageNetwork,
+    scratch: Pool<Scratch>,
+}
+
+#[derive(Default)]
+struct Scratch {
+    best: Vec<(f32, u32)>,
+    candidates: Vec<Candidate>,
+    marks: Vec<bool>,
+}
+
+/// Strides of the levels, in pixels.
+const STRIDES: [usize; 3] = [8, 16, 32];
+/// Level of the padding.
+const PADDING: f32 = 114.0;
+
+impl Learner for Yolox {
+    const SPEC: Spec = Spec::new("yolox", Task::ObjectDetection2d)
+        .class("YoloxLearner")
+        .about("YOLOX detects the 80 COCO classes; the nano variant is the most precise light detector.");
+    type Params = YoloxParams;
+    type Input<'a> = &'a Image;
+    type Target = BoundingBoxList;
+    type State = ();
+
+    fn load(model: &Model, params: YoloxParams, device: Device) -> Result<Self> {
+        let network = ImageNetwork::open_file(model, "model.onnx", device, |input| {
+            let preprocess = preprocess_from_input(input)?;
+            Ok(preprocess.letterbox(LetterboxAlign::TopLeft, PADDING).order(ChannelOrder::Bgr))
+        })?;
+        Ok(Self { params, classes: model.classes().clone(), network, scratch: Pool::default() })
+    }
+
+    fn params(&self) -> &YoloxParams {
+        &self.params
+    }
+
+    fn params_mut(&mut self) -> &mut YoloxParams {
+        &mut self.params
+    }
+
+    fn classes(&self) -> Classes {
+        self.classes.clone()
+    }
+
+    fn infer_into(&self, _: &mut (), image: &Image, boxes: &mut BoundingBoxList) -> Result<()> {
+        let Scratch { best, candidates, marks } = &mut *self.scratch.take();
+        let YoloxParams { threshold, iou_threshold, max_detections, suppression } = self.params;
+        let suppression =
+            Suppression { kind: suppression, iou_threshold, threshold, max_boxes: max_detections };
+        candidates.clear();
+        self.network.run(image, |outputs, geometry| {
+            let rows = Rows::of(&outputs[0], false)?;
+            decode_grid(&rows, self.network.size(), &STRIDES, threshold, best, candidates)?;
+            suppression.run(candidates, marks);
+            boxes_from_candidates(boxes, candidates, geometry, &self.classes);
+            Ok(())
+        })
+    }
+}

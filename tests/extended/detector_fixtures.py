@@ -1,0 +1,229 @@
+"""Writes the fixtures of the imported detectors: small networks with random weights, exported by their own packages, and the
+detections of the packages' own post-processing on one image.
+
+    python tests/extended/detector_fixtures.py crates/perception/detection/tests/imported
+
+It needs torch, torchvision, ultralytics, transformers, onnx and onnxruntime, and downloads nothing. Each fixture is a container
+NAME.zip and the detections NAME.json. The packages' code is run, not copied; no weights of theirs are involved.
+"""
+
+import hashlib
+import json
+import os
+import sys
+import tempfile
+import zipfile
+from pathlib import Path
+
+os.environ.update(YOLO_AUTOINSTALL="false", YOLO_OFFLINE="true", HF_HUB_OFFLINE="1")
+
+import numpy as np
+import onnxruntime
+import torch
+
+SIDE = 64
+CLASSES = ["ball", "cone", "door"]
+
+
+def image(width, height):
+    """The image of every fixture, RGB; tests/imported/main.rs computes the same."""
+    y, x, c = np.meshgrid(np.arange(height), np.arange(width), np.arange(3), indexing="ij")
+    return ((x * 5 + y * 11 + c * 71 + x * y // 7) % 256).astype(np.uint8)
+
+
+def randomise(model, seed, density=0.5):
+    """Sparse weights of one magnitude per layer, which make scores differ and compress well."""
+    generator = torch.Generator().manual_seed(seed)
+    for parameter in model.parameters():
+        if parameter.dim() > 1:
+            fan_in = parameter[0].numel()
+            kept = torch.rand(parameter.shape, generator=generator) < density
+            signs = torch.rand(parameter.shape, generator=generator).sub(0.5).sign()
+            parameter.data = kept * signs * (2 / (fan_in * density)) ** 0.5
+
+
+def write(folder, name, onnx, detections, size, threshold, iou=0.65, params=None, classes=()):
+    """Writes a container and its detections; `detections` are rows of x0, y0, x1, y1, score, class in image pixels."""
+    onnx = Path(onnx).read_bytes()
+    entry = {"name": "model.onnx", "size": len(onnx), "sha256": hashlib.sha256(onnx).hexdigest()}
+    manifest = {
+        "format_version": 1,
+        "learner": "detector",
+        "task": "object_detection_2d",
+        "params": params or {},
+        "classes": list(classes),
+        "files": [entry],
+    }
+    # Entries with one date, so that the same networks give the same bytes.
+    with zipfile.ZipFile(folder / f"{name}.zip", "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
+        archive.writestr(zipfile.ZipInfo("model.json"), json.dumps(manifest))
+        archive.writestr(zipfile.ZipInfo("model.onnx"), onnx, compress_type=zipfile.ZIP_DEFLATED, compresslevel=9)
+    rows = sorted(([round(float(value), 5) for value in row] for row in detections), key=lambda row: -row[4])
+    expected = {"image": size, "threshold": threshold, "iou_threshold": iou, "detections": rows}
+    (folder / f"{name}.json").write_text(json.dumps(expected) + "\n")
+    print(f"{name}: {len(rows)} detections, {(folder / f'{name}.zip').stat().st_size} bytes")
+
+
+def outputs_of(onnx, **inputs):
+    session = onnxruntime.InferenceSession(str(onnx), providers=["CPUExecutionProvider"])
+    names = [one.name for one in session.get_inputs()]
+    return session.run(None, {name: inputs[name] for name in names})
+
+
+def ultralytics(folder):
+    import yaml
+    from ultralytics import RTDETR, YOLO
+    from ultralytics.data.augment import LetterBox
+    from ultralytics.utils.nms import non_max_suppression
+    from ultralytics.utils.ops import scale_boxes, xywh2xyxy
+
+    convolutions = [[-1, 1, "Conv", [16, 3, 2]]] * 3 + [[-1, 1, "Conv", [32, 3, 2]], [-1, 1, "Conv", [48, 3, 2]]]
+    heads = {
+        "detect": [[2, 3, 4], 1, "Detect", ["nc"]],
+        "segment": [[2, 3, 4], 1, "Segment", ["nc", 4, 8]],
+        "pose": [[2, 3, 4], 1, "Pose", ["nc", [5, 3]]],
+    }
+    cases = [
+        ("yolo", "detect", {}, {}),
+        ("yolo_segment", "segment", {}, {}),
+        ("yolo_pose", "pose", {}, {}),
+        ("yolo_end_to_end", "detect", {"end2end": True}, {}),
+        ("yolo_nms", "detect", {}, {"nms": True, "conf": 0.5, "iou": 0.65}),
+    ]
+    width, height = SIDE, SIDE * 3 // 4
+    rgb = image(width, height)
+    boxed = LetterBox((SIDE, SIDE), auto=False)(image=rgb)
+    tensor = np.ascontiguousarray(boxed.transpose(2, 0, 1)[None].astype(np.float32) / 255)
+    for name, task, options, export in cases:
+        spec = {"nc": 3, "reg_max": 1, "scales": {"n": [1, 1, 1024]}, "kpt_shape": [5, 3]}
+        spec |= {"backbone": convolutions, "head": [heads[task]], **options}
+        path = Path(f"yolo11n-{name}.yaml")
+        path.write_text(yaml.safe_dump(spec))
+        model = YOLO(path, task=task)
+        randomise(model.model, len(name))
+        model.model.names = dict(enumerate(CLASSES))
+        onnx = model.export(format="onnx", imgsz=SIDE, simplify=False, opset=17, **export)
+        rows = torch.from_numpy(outputs_of(onnx, images=tensor)[0])
+        threshold = 0.5
+        if options or export:
+            kept = rows[0][rows[0][:, 4] > threshold]
+        else:
+            kept = non_max_suppression(rows, threshold, 0.65, nc=3)[0]
+        kept[:, :4] = scale_boxes((SIDE, SIDE), kept[:, :4], (height, width))
+        write(folder, name, onnx, kept[:, :6], [width, height], threshold)
+
+    decoder = [[2, 3, 4], 1, "RTDETRDecoder", ["nc", 32, 20, 2, 4, 1, 64]]
+    spec = {"nc": 3, "scales": {"l": [1, 1, 1024]}, "backbone": convolutions, "head": [decoder]}
+    Path("rtdetr-tiny.yaml").write_text(yaml.safe_dump(spec))
+    model = RTDETR("rtdetr-tiny.yaml")
+    randomise(model.model, 7)
+    model.model.names = dict(enumerate(CLASSES))
+    onnx = model.export(format="onnx", imgsz=SIDE, simplify=False, opset=17)
+    square = np.ascontiguousarray(image(SIDE, SIDE).transpose(2, 0, 1)[None].astype(np.float32) / 255)
+    rows = torch.from_numpy(outputs_of(onnx, images=square)[0])[0]
+    scores, classes = rows[:, 4:].max(-1)
+    boxes = xywh2xyxy(rows[:, :4]) * SIDE
+    threshold = float(scores.median())
+    kept = torch.cat([boxes.clamp(0, SIDE), scores[:, None], classes[:, None].float()], 1)[scores > threshold]
+    write(folder, "rtdetr_ultralytics", onnx, kept, [SIDE, SIDE], threshold)
+
+
+def torchvision(folder):
+    from torchvision.models.detection import RetinaNet
+    from torchvision.models.detection.anchor_utils import AnchorGenerator
+
+    class Backbone(torch.nn.Sequential):
+        out_channels = 16
+
+    layers = [torch.nn.Conv2d(3, 16, 3, 8, 1), torch.nn.ReLU(), torch.nn.Conv2d(16, 16, 3, 2, 1), torch.nn.ReLU()]
+    anchors = AnchorGenerator(((16, 32),), ((0.5, 1.0, 2.0),))
+    model = RetinaNet(Backbone(*layers), 4, min_size=SIDE, max_size=SIDE, anchor_generator=anchors, score_thresh=0.3)
+    randomise(model, 3)
+    torch.nn.init.zeros_(model.head.classification_head.cls_logits.bias)
+    model.eval()
+    rgb = torch.from_numpy(image(SIDE, SIDE).transpose(2, 0, 1).astype(np.float32) / 255)
+    names = {"input_names": ["images"], "output_names": ["boxes", "scores", "labels"]}
+    torch.onnx.export(model, ([rgb],), "retinanet.onnx", opset_version=17, dynamo=False, **names)
+    with torch.no_grad():
+        found = model([rgb])[0]
+    kept = found["scores"] > 0.35
+    rows = [found["boxes"], found["scores"][:, None], found["labels"][:, None]]
+    write(folder, "torchvision_retinanet", "retinanet.onnx", torch.cat(rows, 1)[kept], [SIDE, SIDE], 0.35)
+
+
+def transformers(folder):
+    from transformers import (
+        DetrConfig,
+        DetrForObjectDetection,
+        DetrImageProcessor,
+        ResNetConfig,
+        RTDetrConfig,
+        RTDetrForObjectDetection,
+        RTDetrImageProcessor,
+        RTDetrResNetConfig,
+    )
+
+    rgb = image(SIDE, SIDE)
+    levels = rgb.astype(np.float32).transpose(2, 0, 1)[None] / 255
+    mean, std = np.array([0.485, 0.456, 0.406]), np.array([0.229, 0.224, 0.225])
+    normalised = ((levels - mean[:, None, None]) / std[:, None, None]).astype(np.float32)
+    small = {"d_model": 16, "encoder_ffn_dim": 16, "decoder_ffn_dim": 16}
+    detr = DetrConfig(
+        use_timm_backbone=False, use_pretrained_backbone=False, backbone=None, num_labels=3, num_queries=100,
+        backbone_config=ResNetConfig(hidden_sizes=[8, 8, 8, 8], depths=[1, 1, 1, 1], embedding_size=8, out_features=["stage4"]),
+        encoder_layers=1, decoder_layers=1, encoder_attention_heads=2, decoder_attention_heads=2, **small,
+    )
+    backbone = RTDetrResNetConfig(
+        hidden_sizes=[8, 8, 16, 16], depths=[1, 1, 1, 1], embedding_size=8, layer_type="basic",
+        out_features=["stage2", "stage3", "stage4"],
+    )
+    rt_detr = RTDetrConfig(
+        use_timm_backbone=False, use_pretrained_backbone=False, backbone=None, backbone_config=backbone, num_labels=3,
+        num_queries=20, encoder_in_channels=[8, 16, 16], encoder_hidden_dim=16, feat_strides=[8, 16, 32],
+        decoder_in_channels=[16, 16, 16], decoder_layers=1, encoder_attention_heads=2, decoder_attention_heads=2,
+        hidden_expansion=1.0, anchor_image_size=[SIDE, SIDE], eval_size=[SIDE, SIDE], **small,
+    )
+    cases = [
+        ("detr", DetrForObjectDetection, detr, DetrImageProcessor(), normalised),
+        ("rt_detr", RTDetrForObjectDetection, rt_detr, RTDetrImageProcessor(), levels),
+    ]
+    for name, model, config, processor, pixels in cases:
+        torch.manual_seed(5)
+        model = model(config)
+        randomise(model, 5)
+        model.eval()
+
+        class Outputs(torch.nn.Module):
+            def __init__(self, inner):
+                super().__init__()
+                self.inner = inner
+
+            def forward(self, pixel_values):
+                found = self.inner(pixel_values=pixel_values, return_dict=True)
+                return found.logits, found.pred_boxes
+
+        names = {"input_names": ["pixel_values"], "output_names": ["logits", "pred_boxes"]}
+        pixels = torch.from_numpy(pixels)
+        torch.onnx.export(Outputs(model), (pixels,), f"{name}.onnx", opset_version=17, dynamo=False, **names)
+        logits, boxes = (torch.from_numpy(one) for one in outputs_of(f"{name}.onnx", pixel_values=pixels.numpy()))
+        found = type("Found", (), {"logits": logits, "pred_boxes": boxes})()
+        scores = processor.post_process_object_detection(found, 0.0, [(SIDE, SIDE)])[0]["scores"]
+        threshold = round(float(scores.quantile(0.6)), 3)
+        found = processor.post_process_object_detection(found, threshold, [(SIDE, SIDE)])[0]
+        rows = [found["boxes"].clamp(0, SIDE), found["scores"][:, None], found["labels"][:, None]]
+        write(folder, name, f"{name}.onnx", torch.cat(rows, 1), [SIDE, SIDE], threshold)
+
+
+def main():
+    folder = Path(sys.argv[1]).resolve()
+    wanted = sys.argv[2:]
+    folder.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as scratch:
+        os.chdir(scratch)
+        for package in (ultralytics, torchvision, transformers):
+            if not wanted or package.__name__ in wanted:
+                package(folder)
+
+
+if __name__ == "__main__":
+    main()
