@@ -30,7 +30,7 @@ pub fn add_for_episodes(command: Command) -> Command {
 
 /// Adds the environment to a command that also takes a data set.
 pub fn add_beside_dataset(command: Command) -> Command {
-    add(command).mut_arg(dataset_flags::DATASET, |dataset| dataset.required(false)).arg(episodes_flag())
+    add(command).mut_arg(dataset_flags::DATASET, |dataset| dataset.required(false)).args(episode_flags())
 }
 
 /// Adds the flags of the environment.
