@@ -2,8 +2,10 @@
 //! Sim-to-real deep reinforcement learning for safe end-to-end planning of aerial robots, 2022).
 
 mod container;
+mod cross_entropy;
 mod dense_episodes;
 mod fit;
+mod foresight;
 mod learner;
 mod method;
 mod stern_rewards;
@@ -11,6 +13,7 @@ mod surroundings;
 
 pub use container::surroundings_of;
 pub use dense_episodes::DenseObstacles;
+pub use foresight::learn_foresight;
 pub use learner::{EndToEndPlanningRl, FlightParams, FlightState};
 pub use method::{EndToEndPlanningFitParams, PpoInCorridors};
 pub use stern_rewards::TrainingRewards;
