@@ -56,3 +56,35 @@ def test_wrong_use_is_told(opendr, tmp_path):
     ]:
         done = opendr.run(*arguments)
         assert done.returncode not in (0, 101) and word in done.stderr, (arguments, done.stderr)
+
+
+def test_a_residual_policy_is_reported_with_its_prior(opendr, tmp_path):
+    listed = opendr.run("sim", "priors").stdout
+    assert "corridor-reactive " in listed and "safety rule" in listed
+    run, evaluated = tmp_path / "run", tmp_path / "evaluated"
+    steps = ["--total-timesteps", "2048", "--n-eval-episodes", "2"]
+    fit = ["residual_ppo", "--env", "UavDepthCorridor-compact-v1", "--prior", "corridor-reactive"]
+    done = opendr.run("fit", *fit, *steps, "--out", run, "--quiet")
+    assert done.returncode == 0, done.stderr
+    model = ["residual_ppo", "--model", run / "model"]
+    shield = ["--shield", "corridor-clearance"]
+    seeds = ["--episodes", "10", "--first-seed", "7000000"]
+    done = opendr.run("eval", *model, *shield, *seeds, "--out", evaluated, "--quiet")
+    assert done.returncode == 0, done.stderr
+    rows = json.loads((evaluated / "report.json").read_text())["controllers"]
+    assert [row["name"] for row in rows] == ["prior", "policy", "prior and policy", "prior and policy, shielded"]
+    assert all(row["episodes"] == 10 for row in rows) and 0 <= rows[3]["shielded"] < 1
+    assert all(row["name"] in done.stdout for row in rows)
+    # 2048 steps are fewer than the warm-up of the critic: the policy is still the prior.
+    assert rows[0]["mean_return"] == rows[2]["mean_return"]
+    film = tmp_path / "flight.gif"
+    view = ["UavDepthCorridor-compact-v1", "--learner", "residual_ppo", "--model", run / "model", "--out", film]
+    done = opendr.run("sim", "view", *view, "--quiet")
+    assert done.returncode == 0, done.stderr
+    for arguments, word in [
+        (["fit", *fit[:3], "--prior", "nobody"], "corridor-potential-field"),
+        (["eval", *model, "--shield", "nothing"], "corridor-clearance"),
+        (["fit", "residual_ppo", "--env", "CartPole-v1"], "reads no observations"),
+    ]:
+        done = opendr.run(*arguments)
+        assert done.returncode not in (0, 101) and word in done.stderr, (arguments, done.stderr)

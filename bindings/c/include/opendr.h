@@ -3430,6 +3430,108 @@ static inline opendr_status opendr_infer_dqn(const opendr_learner *learner,
 }
 
 /*
+ * ResidualPpoLearner: A prior controller with corrections that PPO trains.
+ *
+ * Parameters:
+ *   deterministic (a bool, live, default true): Whether the policy takes its most likely actions instead of sampling.
+ *   seed (an int, default 0): Seed of sampled actions, at the start of a stream.
+ *
+ * Inputs:
+ *   observation (Observation)
+ *
+ * Outputs:
+ *   target (RlTarget)
+ */
+static inline opendr_status opendr_load_residual_ppo(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("residual_ppo", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_residual_ppo(const opendr_learner *learner,
+    const opendr_observation *observation,
+    opendr_rl_target **target) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "observation";
+    inputs_[0].value = (const opendr_value *)observation;
+    outputs_[0].name = "target";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (target != NULL) *target = (opendr_rl_target *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * ResidualSacLearner: A prior controller with corrections that SAC trains.
+ *
+ * Parameters:
+ *   deterministic (a bool, live, default true): Whether the policy takes its most likely actions instead of sampling.
+ *   seed (an int, default 0): Seed of sampled actions, at the start of a stream.
+ *
+ * Inputs:
+ *   observation (Observation)
+ *
+ * Outputs:
+ *   target (RlTarget)
+ */
+static inline opendr_status opendr_load_residual_sac(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("residual_sac", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_residual_sac(const opendr_learner *learner,
+    const opendr_observation *observation,
+    opendr_rl_target **target) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "observation";
+    inputs_[0].value = (const opendr_value *)observation;
+    outputs_[0].name = "target";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (target != NULL) *target = (opendr_rl_target *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * ResidualTd3Learner: A prior controller with corrections that TD3 trains.
+ *
+ * Parameters:
+ *   deterministic (a bool, live, default true): Whether the policy takes its most likely actions instead of sampling.
+ *   seed (an int, default 0): Seed of sampled actions, at the start of a stream.
+ *
+ * Inputs:
+ *   observation (Observation)
+ *
+ * Outputs:
+ *   target (RlTarget)
+ */
+static inline opendr_status opendr_load_residual_td3(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("residual_td3", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_residual_td3(const opendr_learner *learner,
+    const opendr_observation *observation,
+    opendr_rl_target **target) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "observation";
+    inputs_[0].value = (const opendr_value *)observation;
+    outputs_[0].name = "target";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (target != NULL) *target = (opendr_rl_target *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
  * EndToEndPlanningRLLearner: Flies a drone between obstacles: maps its depth images to heading and yaw.
  *
  * Parameters:

@@ -4,7 +4,7 @@ import gymnasium
 import numpy as np
 import opendr
 import pytest
-from opendr import _opendr
+from opendr import _opendr, priors
 from opendr.control.reinforcement_learning import PpoLearner, SacLearner
 from opendr.engine.data import Observation
 from opendr.engine.learners import LearnerRL
@@ -117,3 +117,30 @@ def test_wrong_environments_are_told(tmp_path):
         learner.fit("CartPole-v1", env_params={"gravity": -1}, silent=True, out=tmp_path / "run")
     with pytest.raises(TypeError, match="no argument 'epochs'"):
         learner.fit("CartPole-v1", silent=True, out=tmp_path / "run", epochs=3)
+
+
+def test_a_function_is_a_prior(tmp_path):
+    def damp(seen):
+        return [max(-2.0, min(2.0, -2.0 * seen[1] - 0.5 * seen[2]))]
+
+    priors.register("test-damping", 1, damp, "damps a pendulum")
+    assert "test-damping" in priors.names() and "corridor-reactive" in priors.names()
+    with pytest.raises(ValueError, match="new version"):
+        priors.register("test-damping", 1, damp)
+    with pytest.raises(TypeError):
+        priors.register("test-number", 1, 3)
+    learner = opendr.learner("residual_ppo")
+    steps = {"total_timesteps": 256, "n_steps": 64, "n_envs": 1, "n_eval_episodes": 1}
+    learner.fit("Pendulum-v1", prior="test-damping", out=tmp_path / "run", silent=True, **steps)
+    numbers = learner.eval(episodes=2)
+    names = [row["name"] for row in numbers["controllers"]]
+    assert names == ["prior", "policy", "prior and policy"]
+    # The critic alone was trained: the policy is its prior.
+    assert numbers["controllers"][0]["mean_return"] == numbers["mean_return"]
+    action = learner.infer(Observation([1.0, 0.0, 0.5]))
+    assert list(np.asarray(action)) == pytest.approx(damp([1.0, 0.0, 0.5]), abs=1e-6)
+    # An exception of the function is one of the training.
+    priors.register("test-broken", 1, lambda seen: [])
+    with pytest.raises(ValueError, match="0 numbers"):
+        broken = opendr.learner("residual_ppo")
+        broken.fit("Pendulum-v1", prior="test-broken", out=tmp_path / "broken", silent=True, **steps)

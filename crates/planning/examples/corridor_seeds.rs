@@ -2,7 +2,7 @@
 //! many obstacles, with a noisy camera, and with inertia and wind:
 //!
 //! ```console
-//! $ cargo run --release -p opendr-planning --example corridor_seeds -- [SEEDS [EPISODES [PARAMETER=VALUE ...]]]
+//! $ cargo run --release -p opendr-planning --example corridor_seeds -- [SEEDS [EPISODES [FIRST_SEED [PARAMETER=VALUE ...]]]]
 //! ```
 
 use std::path::Path;
@@ -14,7 +14,7 @@ use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::params::Params as _;
 use opendr_engine::{Device, Error, Result};
 use opendr_planning::end_to_end::{
-    EndToEndPlanningFitParams, EndToEndPlanningRl, FlightParams, surroundings_of,
+    EndToEndPlanningFitParams, EndToEndPlanningRl, FlightModels, FlightParams,
 };
 use opendr_rl::{EvaluationProtocol, SuccessRate, evaluate_controller, observation_from_numbers};
 use opendr_simulation::uav_corridor::FlightMemoryWrapper;
@@ -30,12 +30,15 @@ const EVALUATED: [&str; 4] = [
 fn main() -> Result<()> {
     let mut arguments = std::env::args().skip(1).map(|text| text.parse::<u64>());
     let mut next = |default| arguments.next().unwrap_or(Ok(default));
-    let (Ok(seeds), Ok(episodes)) = (next(5), next(500)) else {
-        return Err(Error::invalid_param("give two integers: seeds and episodes"));
+    let (Ok(seeds), Ok(episodes), Ok(first_seed)) = (next(5), next(500), next(1_000_000)) else {
+        return Err(Error::invalid_param(
+            "give three integers: seeds, episodes and the seed of the first episode",
+        ));
     };
+    let protocol = &EvaluationProtocol { episodes, first_seed, ..EvaluationProtocol::default() };
     println!("the proposal alone, without learning");
     for id in EVALUATED {
-        print_rate(id, success_rate(&mut NoCorrection, &mut FlightMemoryWrapper::new(make(id)?)?, episodes)?);
+        print_rate(id, success_rate(&mut NoCorrection, &mut FlightMemoryWrapper::new(make(id)?)?, protocol)?);
     }
     let mut rates: [Vec<SuccessRate>; EVALUATED.len()] = Default::default();
     for seed in 0..seeds {
@@ -44,21 +47,22 @@ fn main() -> Result<()> {
         let mut learner = trained(seed, &folder)?;
         println!("seed {seed}: {:.1} s", start.elapsed().as_secs_f64());
         let model = learner.model().ok_or_else(|| Error::internal("a learner without a model"))?;
-        if let Some(surroundings) = surroundings_of(model)? {
-            println!("  the proposal with learnt surroundings, without corrections");
+        let models = FlightModels::of(model)?;
+        let alone = FlightModels { foresight: None, ..models.clone() };
+        for (learnt, models) in [("surroundings", alone), ("surroundings and foresight", models)] {
+            println!("  the proposal with learnt {learnt}, without corrections");
             for id in EVALUATED {
-                let mut corridor =
-                    FlightMemoryWrapper::new(make(id)?)?.with_surroundings(surroundings.clone());
-                print_rate(id, success_rate(&mut NoCorrection, &mut corridor, episodes)?);
+                let mut corridor = models.propose_in(FlightMemoryWrapper::new(make(id)?)?);
+                print_rate(id, success_rate(&mut NoCorrection, &mut corridor, protocol)?);
             }
-            println!("  with corrections");
         }
+        println!("  with corrections");
         for (id, rates) in EVALUATED.iter().zip(&mut rates) {
             let mut corridor = make(id)?;
             let space = corridor.spec().observation.clone();
             let observe = |numbers: &[f32]| observation_from_numbers(&space, numbers);
             let mut pilot = Pilot { learner: &mut learner, observe: &observe };
-            rates.extend(print_rate(id, success_rate(&mut pilot, &mut *corridor, episodes)?));
+            rates.extend(print_rate(id, success_rate(&mut pilot, &mut *corridor, protocol)?));
         }
         std::fs::remove_dir_all(folder)?;
     }
@@ -72,10 +76,10 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// Returns the parameters of the training from the arguments after the two numbers.
+/// Returns the parameters of the training from the arguments after the three numbers.
 fn fit_params(seed: u64) -> Result<EndToEndPlanningFitParams> {
     let mut params = EndToEndPlanningFitParams { seed, ..Default::default() };
-    for text in std::env::args().skip(3) {
+    for text in std::env::args().skip(4) {
         let (name, value) = text.split_once('=').unwrap_or((&text, ""));
         let field = EndToEndPlanningFitParams::FIELDS.iter().find(|field| field.name == name);
         let field = field.ok_or_else(|| Error::invalid_param(format!("no parameter {name:?}")))?;
@@ -94,11 +98,10 @@ fn trained(seed: u64, folder: &Path) -> Result<Handle<EndToEndPlanningRl>> {
 fn success_rate(
     pilot: &mut dyn Controller,
     corridor: &mut dyn Environment,
-    episodes: u64,
+    protocol: &EvaluationProtocol,
 ) -> Result<Option<SuccessRate>> {
-    let protocol = EvaluationProtocol { episodes, ..EvaluationProtocol::default() };
     let success = |step: &Step| step.info.success();
-    Ok(evaluate_controller(pilot, corridor, &protocol, &success)?.success)
+    Ok(evaluate_controller(pilot, corridor, protocol, &success)?.success)
 }
 
 fn print_rate(id: &str, success: Option<SuccessRate>) -> Option<SuccessRate> {

@@ -1,7 +1,5 @@
 //! The learner of end-to-end planning.
 
-use std::sync::Arc;
-
 use opendr_engine::data::Observation;
 use opendr_engine::environment::Space;
 use opendr_engine::learner::{Learner, Spec};
@@ -11,9 +9,9 @@ use opendr_engine::target::RlTarget;
 use opendr_engine::{Device, Error, Random, Result, Task};
 use opendr_kernels::Compute;
 use opendr_rl::{ActionMode, POLICY_FILE, Policy, PolicyMemory, numbers_from_observation};
-use opendr_simulation::uav_corridor::{FlightMemory, Surroundings};
+use opendr_simulation::uav_corridor::FlightMemory;
 
-use super::container::surroundings_of;
+use super::flight_models::FlightModels;
 
 /// Parameters of a flight.
 #[derive(Debug, Clone, PartialEq, Params)]
@@ -35,7 +33,7 @@ pub struct FlightParams {
 pub struct EndToEndPlanningRl {
     policy: Policy,
     params: FlightParams,
-    surroundings: Option<Arc<Surroundings>>,
+    models: FlightModels,
     /// Space of the input observations.
     space: Space,
     compute: Compute,
@@ -54,13 +52,6 @@ pub struct FlightState {
 const CORRIDOR: &str = "UavDepthCorridor-v1";
 /// Number of action axes: heading and change of yaw.
 const AXES: usize = 2;
-fn memory_with(surroundings: Option<&Arc<Surroundings>>) -> FlightMemory {
-    match surroundings {
-        None => FlightMemory::default(),
-        Some(surroundings) => FlightMemory::default().with_surroundings(Arc::clone(surroundings)),
-    }
-}
-
 impl Learner for EndToEndPlanningRl {
     const SPEC: Spec = Spec::new("end_to_end_planning", Task::EndToEndPlanning)
         .class("EndToEndPlanningRLLearner")
@@ -87,8 +78,8 @@ impl Learner for EndToEndPlanningRl {
             )));
         }
         let space = opendr_simulation::make(CORRIDOR)?.spec().observation.clone();
-        let surroundings = surroundings_of(model)?;
-        Ok(Self { policy, params, surroundings, space, compute: Compute::single() })
+        let models = FlightModels::of(model)?;
+        Ok(Self { policy, params, models, space, compute: Compute::single() })
     }
 
     fn params(&self) -> &FlightParams {
@@ -108,7 +99,7 @@ impl Learner for EndToEndPlanningRl {
         let FlightState { flight, memory, numbers, random } = state;
         numbers_from_observation(&self.space, observation, numbers)?;
         let (mut features, mut correction) = ([0.0; FlightMemory::LEN], [0.0; AXES]);
-        let flight = flight.get_or_insert_with(|| memory_with(self.surroundings.as_ref()));
+        let flight = flight.get_or_insert_with(|| self.models.memory());
         flight.update(&self.space, numbers, &mut features)?;
         let acting = match self.params.deterministic {
             true => ActionMode::Deterministic,

@@ -28,6 +28,10 @@ pub struct EndToEndPlanningFitParams {
     /// unobserved cells are free.
     #[param(default = 600, range = 0..=1_000_000)]
     pub surroundings_flights: u64,
+    /// Flights in embedded corridors, each repeated from some of its places with other steps, from which the proposals learn after which
+    /// steps flights fail; 0 disables it. It needs surroundings.
+    #[param(default = 4000, range = 0..=1_000_000)]
+    pub foresight_flights: u64,
     /// Steps of all environments before the actor is trained; only the critic is trained until then.
     #[param(default = 16_384, range = 0..=1_000_000_000)]
     pub critic_warmup: u64,

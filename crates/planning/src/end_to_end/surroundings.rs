@@ -1,13 +1,14 @@
 //! Learning what lies behind the fronts that a depth camera shows.
 
 use opendr_engine::environment::ResetOptions;
-use opendr_engine::{Error, Progress, Random, Result, Unit};
-use opendr_kernels::{Activation, Adam, AdamOptions, Compute, Initialisation, Network, Tape};
+use opendr_engine::{Error, Progress, Result, Unit};
+use opendr_kernels::Compute;
 use opendr_simulation::RegisteredEnvironment as _;
 use opendr_simulation::uav_corridor::{
     Surroundings, SurroundingsSamples, UavDepthCorridor, UavDepthCorridorParams,
 };
 
+use super::cross_entropy::{self, Samples, Settings};
 use super::dense_episodes::dense_options;
 
 /// How often all samples are gone over, samples of a step, and the first learning rate of Adam, which falls evenly to zero.
@@ -45,38 +46,20 @@ pub fn learn_surroundings(
 }
 
 fn train(samples: &SurroundingsSamples, seed: u64, compute: &Compute) -> Result<Surroundings> {
-    let (inputs, outputs) = (Surroundings::FEATURES, Surroundings::OUTPUTS);
-    let network = Network::dense(&[inputs, Surroundings::HIDDEN, outputs], Activation::Relu)?;
-    let mut random = Random::from_key([seed, 2]);
-    let mut parameters = vec![0.0; network.parameters()];
-    network.initialise(Initialisation::Uniform, &mut random, &mut parameters);
-    let mut adam = Adam::new(parameters.len(), AdamOptions::default());
-    let (mut tape, mut gradients) = (Tape::default(), vec![0.0; parameters.len()]);
-    let mut order: Vec<usize> = (0..samples.len()).collect();
-    let (mut features, mut errors) = (Vec::new(), Vec::new());
-    let total = (EPOCHS * samples.len().div_ceil(BATCH)) as f32;
-    let mut step = 0.0;
-    for _ in 0..EPOCHS {
-        random.shuffle(&mut order);
-        for rows in order.chunks(BATCH) {
-            features.clear();
-            rows.iter()
-                .for_each(|row| features.extend_from_slice(&samples.features[row * inputs..][..inputs]));
-            let logits = network.forward(compute, &parameters, &features, &mut tape);
-            errors.clear();
-            for (logits, row) in logits.chunks_exact(outputs).zip(rows) {
-                let targets = &samples.targets[row * outputs..][..outputs];
-                // The gradient of the cross-entropy.
-                let error = |(logit, target): (&f32, &f32)| 1.0 / (1.0 + (-logit).exp()) - target;
-                errors.extend(logits.iter().zip(targets).map(error).map(|error| error / rows.len() as f32));
-            }
-            gradients.fill(0.0);
-            network.backward(compute, &parameters, &errors, &mut tape, Some(&mut gradients), false);
-            adam.step(compute, LEARNING_RATE * (1.0 - step / total), &mut parameters, &gradients);
-            step += 1.0;
-        }
-    }
-    Surroundings::new(parameters)
+    let samples = Samples {
+        features: &samples.features,
+        targets: &samples.targets,
+        inputs: Surroundings::FEATURES,
+        outputs: Surroundings::OUTPUTS,
+    };
+    let settings = Settings {
+        hidden: Surroundings::HIDDEN,
+        epochs: EPOCHS,
+        batch: BATCH,
+        learning_rate: LEARNING_RATE,
+        key: [seed, 2],
+    };
+    Surroundings::new(cross_entropy::train(&samples, &settings, compute)?)
         .map_err(|error| Error::internal("learning surroundings diverged").with_source(error))
 }
 

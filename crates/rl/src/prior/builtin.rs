@@ -7,7 +7,7 @@ use opendr_simulation::uav_corridor::{
     PurePursuit, ReactiveController, compact_space,
 };
 
-use super::library::{BoxedController, Prior};
+use super::named_prior::{BoxedController, Prior};
 
 /// The share of its headings that the weak reactive controller flies.
 const WEAK: f32 = 0.6;

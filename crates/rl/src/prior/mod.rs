@@ -18,6 +18,7 @@ mod demonstration_params;
 mod demonstrations;
 mod library;
 mod model_controllers;
+mod named_prior;
 mod prior_record;
 mod report;
 mod residual;
@@ -35,8 +36,8 @@ pub use demonstration_params::{
 };
 pub(crate) use demonstrations::DemonstrationReplay;
 pub use demonstrations::{DemonstratedSteps, begin_as_clone};
-pub use library::{BoxedController, Prior, PriorId};
 pub use model_controllers::{ModelController, controllers_of_model};
+pub use named_prior::{BoxedController, Prior, PriorId};
 pub use report::{PriorReport, ReportedController};
 pub use residual::{Residual, begin_as_prior};
 pub use residual_config::ResidualConfig;

@@ -8,6 +8,7 @@ mod learner;
 mod learning;
 mod memory;
 mod pictures;
+mod prior_params;
 mod priors;
 mod resume;
 mod stable_baselines3;

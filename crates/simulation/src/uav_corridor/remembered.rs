@@ -1,14 +1,12 @@
 //! The corridor with a flight memory, as a wrapper.
 
-use std::sync::Arc;
-
 use opendr_engine::data::Image;
 use opendr_engine::environment::{
     Environment, EnvironmentSpec, Info, ResetOptions, Snapshot, Space, StateReader, Step,
 };
 use opendr_engine::{Error, Result};
 
-use super::{FlightMemory, Foresight, Surroundings};
+use super::FlightMemory;
 
 /// A wrapper whose observations are the features of a [`FlightMemory`], and whose actions correct its proposals. Policies are
 /// trained in it; the action zero follows the proposals.
@@ -38,16 +36,11 @@ impl<E: Environment> FlightMemoryWrapper<E> {
         Ok(Self { inner, spec, memory: FlightMemory::default(), observation })
     }
 
-    /// Uses a model of unobserved cells for the proposals.
+    /// Uses `memory`, reset, instead of one without learnt models.
     #[must_use]
-    pub fn with_surroundings(self, surroundings: Arc<Surroundings>) -> Self {
-        Self { memory: self.memory.with_surroundings(surroundings), ..self }
-    }
-
-    /// Uses a model of how flights end for the choice of the proposals.
-    #[must_use]
-    pub fn with_foresight(self, foresight: Arc<Foresight>) -> Self {
-        Self { memory: self.memory.with_foresight(foresight), ..self }
+    pub fn with_memory(self, mut memory: FlightMemory) -> Self {
+        memory.reset();
+        Self { memory, ..self }
     }
 
     fn write_features(&mut self, known: &mut [f32]) -> Result<()> {
