@@ -76,23 +76,22 @@ fn parts(
     matches: &ArgMatches,
 ) -> Result<(ActiveContainer, Box<dyn ViewRecogniser>)> {
     let policy = matches.get_one::<PathBuf>(CAMERA_POLICY);
-    match (policy, learner.model()) {
-        (None, Some(model)) if environment_flags::is_active(entry) => {
-            let mut container = ActiveContainer::read(model)?;
-            container.set_stop(&learner.params())?;
+    match policy {
+        None if environment_flags::is_active(entry) => {
+            let container = ActiveContainer::of(learner)?;
             let recogniser = Box::new(container.recogniser.clone());
             Ok((container, recogniser))
         }
-        (Some(path), _) if !environment_flags::is_active(entry) => {
+        Some(path) if !environment_flags::is_active(entry) => {
             let container = ActiveContainer::read(&Model::open(path)?)?;
             let recogniser = AnyRecogniser::new(learner, entry, learner.classes().len())?;
             Ok((container, Box::new(recogniser)))
         }
-        (Some(_), _) => Err(Error::invalid_param(format!(
+        Some(_) => Err(Error::invalid_param(format!(
             "{} has a camera policy of its own; omit --{CAMERA_POLICY}",
             entry.spec.class
         ))),
-        _ => Err(Error::invalid_param(format!(
+        None => Err(Error::invalid_param(format!(
             "{} has no camera policy; give one by --{CAMERA_POLICY}, trained by \"opendr fit active_object_recognition\"",
             entry.spec.class
         ))),
