@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use opendr::active::{ActiveContainer, EnvironmentScene, compare};
 use opendr::data::Pixels as Samples;
 use opendr::environment::EnvironmentSource;
 use opendr::evaluation::Teacher;
@@ -192,6 +193,23 @@ impl Handle {
             let report =
                 opendr::evaluate_learner(learner.as_ref(), self.entry, environment.as_mut(), &protocol, bar)?;
             json_of(&report)
+        })
+    }
+
+    /// Evaluates the camera policy and the baselines on `episodes` episodes with consecutive seeds. Returns the rows as JSON.
+    fn eval_active(
+        &self,
+        py: Python<'_>,
+        env: &Bound<'_, PyAny>,
+        episodes: u64,
+        first_seed: u64,
+        verbose: bool,
+    ) -> PyResult<String> {
+        let env = GivenEnvironments::from_python(env)?;
+        PythonBar::new(!verbose).run(py, |bar| {
+            let container = ActiveContainer::of(lock(&self.learner).as_ref())?;
+            let scene = EnvironmentScene::new(&env, container.recogniser)?;
+            json_of(&compare(scene, &container.model, first_seed, episodes, bar)?)
         })
     }
 

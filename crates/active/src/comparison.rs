@@ -15,7 +15,7 @@ use crate::scene::ActiveScene;
 use crate::stop::StopRule;
 use crate::view_loop::ViewLoop;
 
-/// First seed of the evaluation; trainings use lower ones.
+/// First seed of the evaluation; trainings and calibrations use none from here to 2^32.
 pub const FIRST_EVALUATION_SEED: u64 = 1_000_000;
 
 /// Figures of each camera policy.

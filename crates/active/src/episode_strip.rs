@@ -5,6 +5,7 @@ use opendr_engine::target::Action;
 use opendr_engine::{Random, Result};
 use opendr_vision::resize;
 
+use crate::active::Outcome;
 use crate::camera_policy::{CameraContext, CameraPolicy as _, TrainedPolicy};
 use crate::episode::EPISODE_KEY;
 use crate::model::ActiveModel;
@@ -18,6 +19,7 @@ const BAR: usize = 12;
 const EDGE: usize = 4;
 const GREEN: [u8; 3] = [60, 170, 80];
 const RED: [u8; 3] = [205, 70, 60];
+const GREY: [u8; 3] = [110, 110, 110];
 
 /// Draws the episodes with seeds from `first_seed` on, one per row. The length of the bar below a view is the probability of
 /// the most likely class; it is green if that is the true class.
@@ -57,6 +59,22 @@ pub fn episode_strip<S: ActiveScene>(
             policy.choose(&context, &mut action)?;
             view_loop.step(&Action::new(&action)?)?;
         }
+    }
+    Image::from_rgb8(strip, width, height)
+}
+
+/// Draws the views of a run from left to right; the bars below them are grey, since the true class is unknown.
+///
+/// # Errors
+/// Returns `InvalidInput` for images that cannot be resized.
+pub fn strip_of_views(outcome: &Outcome) -> Result<Image> {
+    let [width, height] = [outcome.views.len() * (VIEW + EDGE) + EDGE, VIEW + BAR + 2 * EDGE];
+    let mut strip = vec![245; 3 * width * height];
+    for (column, view) in outcome.views.iter().enumerate() {
+        let at = [EDGE + column * (VIEW + EDGE), EDGE];
+        paste(&mut strip, width, &resize(&view.image, VIEW, VIEW)?, at);
+        let length = (view.confidence * VIEW as f32) as usize;
+        fill(&mut strip, width, [at[0], at[1] + VIEW + 2], [length, BAR - 4], GREY);
     }
     Image::from_rgb8(strip, width, height)
 }

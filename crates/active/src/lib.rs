@@ -64,7 +64,7 @@ pub use environment::ActiveEnvironment;
 pub use environment_rig::EnvironmentRig;
 pub use environment_scene::EnvironmentScene;
 pub use episode::{ActiveEpisode, run_episode};
-pub use episode_strip::episode_strip;
+pub use episode_strip::{episode_strip, strip_of_views};
 pub use evidence::ClassEvidence;
 pub use fusion::{Belief, Fusion};
 pub use gain::{GainNetwork, GainSamples};

@@ -43,8 +43,9 @@ impl Default for ActiveTraining {
     }
 }
 
-/// Seeds of episodes for calibration; those of evaluations begin at a million.
-const CALIBRATION: u64 = 500_000;
+/// First seeds of the episodes for calibration, in the training and after it, above those of evaluations.
+const CALIBRATION: u64 = 1 << 32;
+const LATER_CALIBRATION: u64 = 1 << 33;
 
 /// Trains on scenes that `make` creates, one for each environment. `observer` receives the number of motions and the mean
 /// return; it returns whether to stop.
@@ -96,12 +97,8 @@ pub fn calibrated<S: ActiveScene>(
     let everything = StopRule { confidence: 1.0, ..model.stop };
     let mut camera_policy = TrainedPolicy::new(model.policy.clone());
     let run = (make, model.fusion, &everything);
-    let own = trajectories(
-        run,
-        &mut camera_policy,
-        [CALIBRATION + 400_000, episodes],
-        &mut GainSamples::default(),
-    )?;
+    let own =
+        trajectories(run, &mut camera_policy, [LATER_CALIBRATION, episodes], &mut GainSamples::default())?;
     Ok(ActiveModel { fusion: fit_fusion(make()?.classes(), &own)?, ..model.clone() })
 }
 

@@ -7,6 +7,7 @@ from importlib import import_module
 from typing import Any, Optional
 
 from opendr._native_learner import NativeBase, NativeLearner, Table
+from opendr._native_learner_active import NativeLearnerActive
 from opendr._native_learner_rl import NativeLearnerRL
 from opendr._reference import constructor, document, params_annotations
 from opendr._upstream.arguments import methods
@@ -47,7 +48,10 @@ def _parent(entry: Table, row: Row) -> type[NativeBase]:
         module, _, name = row.mixin.partition(":")
         mixin: type[NativeBase] = getattr(import_module(module), name)
         return mixin
-    return NativeLearnerRL if entry["fit_in"] else NativeLearner
+    if not entry["fit_in"]:
+        return NativeLearner
+    acts = any(output["type"] == "RlTarget" for output in entry["outputs"])
+    return NativeLearnerRL if acts else NativeLearnerActive
 
 
 class _Classes(Parameter):

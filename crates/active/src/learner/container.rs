@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use opendr_engine::environment::EnvironmentSpec;
+use opendr_engine::learner::AnyLearner;
 use opendr_engine::model::{Manifest, Model, ModelWriter};
-use opendr_engine::params::{ParamMap, Params as _};
+use opendr_engine::params::Params as _;
 use opendr_engine::rig::{ViewAxis, ViewPose, ViewSphere};
 use opendr_engine::{Error, Result, ResultExt as _};
 use opendr_rl::{POLICY_FILE, Policy};
@@ -44,13 +45,15 @@ pub struct ActiveContainer {
 }
 
 impl ActiveContainer {
-    /// Sets the stop rule from the parameters of a learner.
+    /// Reads the container of a loaded learner of active perception, with the learner's parameters as stop rule.
     ///
     /// # Errors
-    /// Returns `InvalidParam` for other parameters.
-    pub fn set_stop(&mut self, params: &ParamMap) -> Result<()> {
-        self.model.stop = ActiveParams::from_map(params)?.stop();
-        Ok(())
+    /// Returns `NotFound` if no model is loaded, `InvalidParam` for another learner; otherwise as [`Self::read`].
+    pub fn of(learner: &dyn AnyLearner) -> Result<Self> {
+        let missing = || Error::not_found("no model is loaded; train one with fit, or load one");
+        let mut container = Self::read(learner.model().ok_or_else(missing)?)?;
+        container.model.stop = ActiveParams::from_map(&learner.params())?.stop();
+        Ok(container)
     }
 
     /// Reads a container.

@@ -16,8 +16,8 @@ use crate::model::ActiveModel;
 use crate::training::{calibrated, train_active};
 use crate::view_classifier::{LabelledViews, ViewClassifier, fit_view_classifier};
 
-/// First seed of the episodes that report the result of a training, below those of evaluations.
-const VALIDATION: u64 = 900_000;
+/// First seed of the episodes that report the result of a training; no calibration uses them.
+const VALIDATION: u64 = 1 << 34;
 const VALIDATION_EPISODES: u64 = 200;
 /// Seeds of the episodes that provide views begin at multiples of this number.
 const VIEW_SEEDS: u64 = 1 << 40;

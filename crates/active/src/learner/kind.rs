@@ -21,9 +21,24 @@ pub struct Object;
 #[derive(Debug)]
 pub struct BodyPose;
 
+/// Arguments of OpenDR's learner, which trains PPO on images with settings of its own.
+const WITHOUT_EFFECT: &[(&str, &str)] = &[
+    ("lr", FIXED),
+    ("batch_size", FIXED),
+    ("n_steps", FIXED),
+    ("gamma", FIXED),
+    ("clip_range", FIXED),
+    ("target_kl", FIXED),
+    ("checkpoint_after_iter", SHORT),
+    ("checkpoint_load_iter", SHORT),
+];
+const FIXED: &str = "the settings of PPO are fixed for active perception";
+const SHORT: &str = "a training takes minutes and writes no checkpoints";
+
 impl ActiveKind for Face {
     const SPEC: Spec = Spec::new("active_face_recognition", Task::ActivePerception)
         .class("ActiveFaceRecognitionLearner")
+        .without_effect(WITHOUT_EFFECT)
         .about("Recognises a person from several views, and proposes the camera motion to the next one.");
 }
 

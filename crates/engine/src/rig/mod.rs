@@ -1,4 +1,4 @@
-//! Cameras that move: rigs that carry out an [`Action`](crate::target::Action) and take a picture.
+//! Cameras that move: rigs that carry out an [`Action`](crate::target::Action) and capture an image.
 //!
 //! A rig moves on a sphere around its subject. An action is relative: each of its 1 to 4 numbers is a share, in [-1, 1],
 //! of the step that the rig states for that axis.
@@ -21,7 +21,7 @@ pub use view_pose::ViewPose;
 
 /// A camera that carries out actions: on a gimbal, a drone or an arm, in a simulator, or over recorded views.
 pub trait ViewRig {
-    /// Axes of its actions, in the order azimuth, elevation, distance, roll or zoom; 1 to 4.
+    /// Returns the axes of its actions, in the order azimuth, elevation, distance, roll or zoom; 1 to 4.
     fn axes(&self) -> &[ViewAxis];
 
     /// Returns the pose of the camera.
@@ -30,17 +30,17 @@ pub trait ViewRig {
     /// Moves, and returns the part of the action that was carried out and the limits that stopped the rest.
     ///
     /// # Errors
-    /// `InvalidInput` for an action with another number of axes than the rig has, and those of the device.
+    /// Returns `InvalidInput` for an action with another number of axes, and errors of the device.
     fn apply(&mut self, action: &Action) -> Result<Achieved>;
 
     /// Captures an image at the current pose.
     ///
     /// # Errors
-    /// Those of the camera.
+    /// Returns errors of the camera.
     fn capture(&mut self) -> Result<Image>;
 }
 
-/// A boxed rig is one too.
+/// Boxed rigs are rigs.
 impl<R: ViewRig + ?Sized> ViewRig for Box<R> {
     fn axes(&self) -> &[ViewAxis] {
         (**self).axes()

@@ -105,7 +105,13 @@ impl SphereView {
         let conditions = Conditions::draw(&mut random);
         self.world.begin(&asset, &conditions, random.bits())?;
         let probability = 1.0 / f64::from(self.subject.classes());
-        self.episode = Some(Episode { place, class, moves: 0, probability, actions: Vec::new() });
+        self.episode = Some(Episode {
+            place,
+            class,
+            moves: 0,
+            probability,
+            actions: Vec::with_capacity(AXES * MOVES as usize),
+        });
         Ok(conditions.info(class))
     }
 

@@ -25,9 +25,7 @@ const STRIP_ROWS: usize = 6;
 pub fn run(spec: &str, entry: &'static Entry, matches: &ArgMatches, bar: &ProgressBar) -> Result<Outcome> {
     let learner = loading::load(spec, &learner_flags::params(entry, matches)?, matches, bar)?;
     let source = environment_flags::source(matches, Some(learner.as_ref()))?;
-    let model = learner.model().ok_or_else(|| Error::not_found("no model; train one with \"opendr fit\""))?;
-    let mut container = ActiveContainer::read(model)?;
-    container.set_stop(&learner.params())?;
+    let mut container = ActiveContainer::of(learner.as_ref())?;
     let other = matches.get_one::<String>(RECOGNISER);
     let make = || -> Result<Box<dyn ViewRecogniser>> {
         let Some(name) = other else { return Ok(Box::new(container.recogniser.clone())) };

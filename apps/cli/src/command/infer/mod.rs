@@ -2,6 +2,7 @@
 
 mod chain;
 mod job;
+mod on_rig;
 
 use std::path::PathBuf;
 
@@ -35,6 +36,7 @@ Examples:
   opendr infer LEARNER drive.bag --topic /camera/image_raw --out boxes.mcap
   opendr infer nanodet walk.mp4 --then 'posenet threshold=0.3' --out poses.mp4  a pipeline, in parallel
   opendr infer yunet crowd.mp4 --then 'each facial_emotion input_kind=face'          ... one call per detected box
+  opendr infer active_face_recognition --model MODEL --rig SphereView-Face-v1        move a camera until the class is certain
   opendr infer LEARNER wrong.jpg --dump tensors/         debug a wrong prediction: all tensors as .npy
 
 \"opendr infer LEARNER --help\" lists the learner's parameters; \"opendr models\" lists the learners.";
@@ -42,7 +44,7 @@ Examples:
 pub fn grammar() -> Command {
     let switch = |name: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue);
     let path = |name: &'static str| Arg::new(name).long(name).value_parser(value_parser!(PathBuf));
-    Command::new("infer")
+    let command = Command::new("infer")
         .about("Run a learner on images, videos, a camera, files of other input types, or recordings")
         .arg(loading::learner())
         .arg(
@@ -75,13 +77,17 @@ pub fn grammar() -> Command {
         ])
         .args(recordings::flags())
         .args(loading::flags())
-        .after_help(EXAMPLES)
+        .after_help(EXAMPLES);
+    on_rig::add(command)
 }
 
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
     let entry = loading::entry(spec)?;
     let bar = ProgressBar::new(matches.get_flag("quiet"));
+    if let Some(rig) = matches.get_one::<String>(on_rig::RIG) {
+        return on_rig::run(spec, entry, rig, matches, &bar);
+    }
     let json = match matches.get_one::<PathBuf>("json") {
         Some(path) => Json::file(path)?,
         None if matches.contains_id("json") => Json::Stdout,
