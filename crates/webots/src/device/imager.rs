@@ -87,8 +87,11 @@ impl Imager {
         let Some(path) = &self.file else { return Ok(()) };
         let size = self.elements() * ELEMENT;
         self.image.resize(size, 0);
-        let read = File::open(path).and_then(|mut file| std::io::Read::read_exact(&mut file, &mut self.image));
-        read.map_err(|error| Error::io(format!("cannot read the image {}", path.display())).with_source(error))
+        let read =
+            File::open(path).and_then(|mut file| std::io::Read::read_exact(&mut file, &mut self.image));
+        read.map_err(|error| {
+            Error::io(format!("cannot read the image {}", path.display())).with_source(error)
+        })
     }
 
     pub(super) fn enable(&mut self, period_ms: u16) {

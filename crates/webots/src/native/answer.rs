@@ -67,13 +67,20 @@ fn chunk(stream: &mut impl Read, robot: &mut Robot, data: &mut Vec<u8>) -> Resul
             let command = array::<1>(stream)?[0];
             let device = robot.device(tag)?;
             let (State::Imager(imager), COLOUR_OR_RANGE) = (&mut device.state, command) else {
-                return Err(Error::format(format!("device {:?} sent an image of kind {command}", device.name)));
+                return Err(Error::format(format!(
+                    "device {:?} sent an image of kind {command}",
+                    device.name
+                )));
             };
-            let size = usize::try_from(size).map_err(|_| Error::format(format!("an image of {size} bytes")))?;
-            let buffer = imager.buffer(size).map_err(|error| error.context(format!("device {:?}", device.name)))?;
+            let size =
+                usize::try_from(size).map_err(|_| Error::format(format!("an image of {size} bytes")))?;
+            let buffer =
+                imager.buffer(size).map_err(|error| error.context(format!("device {:?}", device.name)))?;
             stream.read_exact(buffer).map_err(|error| lost(&error))
         }
-        other => Err(Error::format(format!("an answer has a chunk of type {other}; is the port that of Webots?"))),
+        other => {
+            Err(Error::format(format!("an answer has a chunk of type {other}; is the port that of Webots?")))
+        }
     }
 }
 
@@ -81,7 +88,9 @@ fn chunk(stream: &mut impl Read, robot: &mut Robot, data: &mut Vec<u8>) -> Resul
 fn extend(stream: &mut impl Read, data: &mut Vec<u8>, size: i32) -> Result<()> {
     let stated = usize::try_from(size).ok().filter(|size| data.len() + size <= MAX_DATA);
     let Some(mut left) = stated else {
-        return Err(Error::format(format!("{size} bytes of messages are not possible; is the port that of Webots?")));
+        return Err(Error::format(format!(
+            "{size} bytes of messages are not possible; is the port that of Webots?"
+        )));
     };
     while left > 0 {
         let (start, piece) = (data.len(), left.min(PIECE));
@@ -101,9 +110,10 @@ fn array<const N: usize>(stream: &mut impl Read) -> Result<[u8; N]> {
 /// Returns the error of a connection that ended or fell silent.
 pub(crate) fn lost(error: &std::io::Error) -> Error {
     match error.kind() {
-        ErrorKind::UnexpectedEof | ErrorKind::ConnectionReset | ErrorKind::BrokenPipe | ErrorKind::ConnectionAborted => {
-            Error::network("Webots closed the connection before it answered")
-        }
+        ErrorKind::UnexpectedEof
+        | ErrorKind::ConnectionReset
+        | ErrorKind::BrokenPipe
+        | ErrorKind::ConnectionAborted => Error::network("Webots closed the connection before it answered"),
         ErrorKind::WouldBlock | ErrorKind::TimedOut => {
             Error::network("Webots did not answer in time; is the simulation paused?")
         }

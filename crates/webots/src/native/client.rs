@@ -40,7 +40,12 @@ impl<S: Read + Write + Send> NativeLink<S> {
             stream: BufReader::with_capacity(READ_BUFFER, stream),
             framing,
             robot: Robot::new(version),
-            info: RobotInfo { name: String::new(), is_supervisor: false, basic_step_ms: 0, devices: Vec::new() },
+            info: RobotInfo {
+                name: String::new(),
+                is_supervisor: false,
+                basic_step_ms: 0,
+                devices: Vec::new(),
+            },
             request: Request::default(),
             due: Request::default(),
             data: Vec::new(),
