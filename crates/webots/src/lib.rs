@@ -8,6 +8,7 @@
 
 mod device;
 mod environment;
+mod incoming;
 mod kind;
 #[cfg(feature = "webots-library")]
 mod library;

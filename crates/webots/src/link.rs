@@ -121,7 +121,15 @@ impl DeviceInfo {
     /// Creates a description without limits.
     pub(crate) fn new(name: String, model: String, kind: Option<DeviceKind>) -> Self {
         let unlimited = (f64::NEG_INFINITY, f64::INFINITY);
-        Self { name, model, kind, size: (0, 0), range: unlimited, max_velocity: f64::NAN, max_force: f64::NAN }
+        Self {
+            name,
+            model,
+            kind,
+            size: (0, 0),
+            range: unlimited,
+            max_velocity: f64::NAN,
+            max_force: f64::NAN,
+        }
     }
 
     /// Returns the error of a request that does not fit this device.
@@ -160,7 +168,10 @@ impl RobotInfo {
 
     /// Returns the error for a robot that is no supervisor.
     pub(crate) fn no_supervisor(&self) -> Error {
-        Error::unsupported(format!("robot {:?} is not a supervisor; set its field supervisor to TRUE", self.name))
+        Error::unsupported(format!(
+            "robot {:?} is not a supervisor; set its field supervisor to TRUE",
+            self.name
+        ))
     }
 
     /// Returns the index of the device with this name.
@@ -171,10 +182,7 @@ impl RobotInfo {
         self.devices.iter().position(|device| device.name == name).ok_or_else(|| {
             let names: Vec<_> = self.devices.iter().map(|device| device.name.as_str()).collect();
             let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-            Error::not_found(format!(
-                "robot {:?} has no device {name:?}; its devices: {names}",
-                self.name
-            ))
+            Error::not_found(format!("robot {:?} has no device {name:?}; its devices: {names}", self.name))
         })
     }
 }

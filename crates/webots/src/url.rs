@@ -51,7 +51,8 @@ impl ControllerUrl {
         }
         match scheme {
             "tcp" => {
-                let (host, port) = place.rsplit_once(':').filter(|(host, _)| !host.is_empty()).ok_or_else(wrong)?;
+                let (host, port) =
+                    place.rsplit_once(':').filter(|(host, _)| !host.is_empty()).ok_or_else(wrong)?;
                 let port = port.parse().map_err(|_| wrong())?;
                 Ok(Self::Tcp { host: host.to_owned(), port, robot: robot.map(str::to_owned) })
             }
@@ -98,7 +99,15 @@ mod tests {
         for text in ["tcp://10.0.0.2:1234/my robot", "ipc://1234/robot", "tcp://[::1]:99/"] {
             assert_eq!(ControllerUrl::parse(text).unwrap().to_string(), text);
         }
-        for text in ["", "robot", "tcp://host/robot", "tcp://:1/robot", "ipc://1234", "http://a:1/b", "tcp://a:70000/b"] {
+        for text in [
+            "",
+            "robot",
+            "tcp://host/robot",
+            "tcp://:1/robot",
+            "ipc://1234",
+            "http://a:1/b",
+            "tcp://a:70000/b",
+        ] {
             assert!(ControllerUrl::parse(text).is_err(), "{text}");
         }
         assert!(ControllerUrl::parse(&format!("ipc://1/{}", "a".repeat(71))).is_err());

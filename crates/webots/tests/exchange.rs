@@ -1,4 +1,5 @@
 //! The native client against the protocol fixture.
+#![allow(clippy::unwrap_used, reason = "code of tests")]
 
 mod fixture;
 
@@ -95,7 +96,10 @@ fn a_peer_that_is_lost_in_a_step_is_an_error() {
     let error = link.step(32).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::Network);
     let text = error.to_string();
-    assert!(text.contains("step 3 of robot at 0.032 s: Webots closed the connection before it answered"), "{text}");
+    assert!(
+        text.contains("step 3 of robot at 0.032 s: Webots closed the connection before it answered"),
+        "{text}"
+    );
     let error = link.step(32).unwrap_err().to_string();
     assert!(error.contains("was lost before"), "{error}");
     peer.join().unwrap();
@@ -118,7 +122,12 @@ fn a_peer_that_falls_silent_is_an_error() {
 fn versions_must_be_known_and_agree() {
     let cases = [
         (Layout::Stated("R2022b"), None, ErrorKind::Unsupported, "R2022b"),
-        (Layout::Stated("R2025a"), Some(Version::R2023b), ErrorKind::InvalidParam, "states the version R2025a"),
+        (
+            Layout::Stated("R2025a"),
+            Some(Version::R2023b),
+            ErrorKind::InvalidParam,
+            "states the version R2025a",
+        ),
         (Layout::Old, None, ErrorKind::Unsupported, "set the version to R2023a"),
         (Layout::Old, Some(Version::R2023b), ErrorKind::Unsupported, "set the version to R2023a"),
         (Layout::Stated("R2023b"), Some(Version::R2023a), ErrorKind::Format, "version"),
@@ -141,12 +150,17 @@ fn wrong_calls_change_nothing() {
     assert!(link.command(0, MotorCommand::Velocity(f64::NAN)).is_err());
     assert!(link.command(99, MotorCommand::Force(1.0)).is_err());
     assert!(link.enable(11, 32).is_err() && link.image(0).is_err() && link.values(6, &mut [0.0]).is_err());
-    assert!(link.send(12, b"a").is_err() && link.send(11, b"").is_err() && link.send(11, &[0; 5000]).is_err());
+    assert!(
+        link.send(12, b"a").is_err() && link.send(11, b"").is_err() && link.send(11, &[0; 5000]).is_err()
+    );
     assert_eq!(link.supervisor().err().unwrap().kind(), ErrorKind::Unsupported);
     assert!(link.robot().find("wheel").unwrap_err().to_string().contains("motor, position"));
     link.step(64).unwrap();
     drop(link);
-    assert_eq!(peer.join().unwrap()[1], Request { step_ms: 64, messages: vec![], raw: vec![8, 0, 0, 0, 64, 0, 0, 0] });
+    assert_eq!(
+        peer.join().unwrap()[1],
+        Request { step_ms: 64, messages: vec![], raw: vec![8, 0, 0, 0, 64, 0, 0, 0] }
+    );
 }
 
 /// Answers the requests of a supervisor.

@@ -1,11 +1,13 @@
 //! Cameras, range finders and lidars.
 
 use std::fs::File;
+use std::io::Read;
 use std::path::PathBuf;
 
 use opendr_engine::{Error, Result};
 
 use super::CONFIGURE;
+use crate::incoming::receive;
 use crate::kind::DeviceKind;
 use crate::reader::Reader;
 use crate::request::Request;
@@ -64,12 +66,18 @@ impl Imager {
         self.image.get(..length).unwrap_or_default()
     }
 
+    /// Returns the bytes that the image occupies.
+    #[cfg(test)]
+    pub fn held(&self) -> usize {
+        self.image.capacity()
+    }
+
     fn elements(&self) -> usize {
         self.width * self.height
     }
 
-    /// Returns the buffer for an image of `size` bytes that is about to arrive.
-    pub fn buffer(&mut self, size: usize) -> Result<&mut [u8]> {
+    /// Reads an image of `size` bytes.
+    pub fn receive(&mut self, stream: &mut impl Read, size: usize) -> Result<()> {
         let plain = self.elements() * ELEMENT;
         let with_points = plain + self.elements() * POINT;
         if plain == 0 || !(size == plain || self.kind == DeviceKind::Lidar && size == with_points) {
@@ -78,8 +86,8 @@ impl Imager {
                 self.width, self.height
             )));
         }
-        self.image.resize(size, 0);
-        Ok(&mut self.image)
+        self.image.truncate(size);
+        receive(stream, &mut self.image, size)
     }
 
     /// Reads the image from the file in which Webots places it, if there is one.
@@ -87,8 +95,11 @@ impl Imager {
         let Some(path) = &self.file else { return Ok(()) };
         let size = self.elements() * ELEMENT;
         self.image.resize(size, 0);
-        let read = File::open(path).and_then(|mut file| std::io::Read::read_exact(&mut file, &mut self.image));
-        read.map_err(|error| Error::io(format!("cannot read the image {}", path.display())).with_source(error))
+        let read =
+            File::open(path).and_then(|mut file| file.read_exact(&mut self.image));
+        read.map_err(|error| {
+            Error::io(format!("cannot read the image {}", path.display())).with_source(error)
+        })
     }
 
     pub(super) fn enable(&mut self, period_ms: u16) {

@@ -32,7 +32,10 @@ impl Actuators {
         }
         for (at, (motor, _)) in motors.iter().enumerate() {
             if motors[..at].iter().any(|(other, _)| other == motor) {
-                return Err(Error::invalid_param(format!("motor {:?} is named twice", robot.devices[*motor].name)));
+                return Err(Error::invalid_param(format!(
+                    "motor {:?} is named twice",
+                    robot.devices[*motor].name
+                )));
             }
         }
         if motors.is_empty() {
@@ -100,5 +103,9 @@ fn one(robot: &RobotInfo, entry: &str) -> Result<(usize, Control)> {
     };
     let index = robot.find(name)?;
     let device = &robot.devices[index];
-    if device.kind.is_some_and(DeviceKind::is_motor) { Ok((index, control)) } else { Err(device.refused("is not a motor")) }
+    if device.kind.is_some_and(DeviceKind::is_motor) {
+        Ok((index, control))
+    } else {
+        Err(device.refused("is not a motor"))
+    }
 }

@@ -61,5 +61,7 @@ fn library(params: &WebotsParams, set: &str) -> Result<Box<dyn WebotsLink>> {
 
 #[cfg(not(feature = "webots-library"))]
 fn library(_: &WebotsParams, _: &str) -> Result<Box<dyn WebotsLink>> {
-    Err(Error::unsupported("this build has no link by libController; build it with the feature webots-library"))
+    Err(Error::unsupported(
+        "this build has no link by libController; build it with the feature webots-library",
+    ))
 }

@@ -59,7 +59,9 @@ impl Rewards {
             packets += 1;
         }
         if packets == 0 {
-            return Err(Error::device("no reward arrived in the step; the sender must send one in each step"));
+            return Err(Error::device(
+                "no reward arrived in the step; the sender must send one in each step",
+            ));
         }
         Ok(step)
     }

@@ -23,7 +23,8 @@ pub(super) struct Sensors {
 impl Sensors {
     /// Selects the sensors in `list`; all if it is empty.
     pub fn select(robot: &RobotInfo, list: &str) -> Result<Self> {
-        let is_sensor = |device: &DeviceInfo| device.kind.is_some_and(|kind| kind.values() > 0 || kind.is_imager());
+        let is_sensor =
+            |device: &DeviceInfo| device.kind.is_some_and(|kind| kind.values() > 0 || kind.is_imager());
         let mut chosen = names(list).map(|name| robot.find(name)).collect::<Result<Vec<_>>>()?;
         if chosen.is_empty() {
             chosen = (0..robot.devices.len()).filter(|index| is_sensor(&robot.devices[*index])).collect();
@@ -39,7 +40,9 @@ impl Sensors {
         sensors.sort_by(|(_, one, _), (_, other, _)| one.name.cmp(&other.name));
         if let Some(pair) = sensors.windows(2).find(|pair| pair[0].1.name == pair[1].1.name) {
             let name = &pair[0].1.name;
-            return Err(Error::invalid_param(format!("two observed sensors have the name {name:?}; rename one")));
+            return Err(Error::invalid_param(format!(
+                "two observed sensors have the name {name:?}; rename one"
+            )));
         }
         if sensors.is_empty() {
             return Err(Error::unsupported(format!("robot {:?} has no sensors to observe", robot.name)));
@@ -53,7 +56,8 @@ impl Sensors {
             let count = self.sensors.iter().map(|(_, _, kind)| kind.values()).sum();
             return Space::uniform(f32::NEG_INFINITY, f32::INFINITY, &[count]);
         }
-        let parts = self.sensors.iter().map(|(_, device, kind)| Ok((device.name.clone(), space(device, *kind)?)));
+        let parts =
+            self.sensors.iter().map(|(_, device, kind)| Ok((device.name.clone(), space(device, *kind)?)));
         parts.collect::<Result<BTreeMap<_, _>>>().map(Space::Dict)
     }
 
@@ -120,7 +124,9 @@ fn space(device: &DeviceInfo, kind: DeviceKind) -> Result<Space> {
 
 /// Converts blue, green, red, alpha to red, green, blue.
 fn write_colours(image: &[u8], observation: &mut [f32]) {
-    for (seen, [blue, green, red, _]) in observation.as_chunks_mut::<3>().0.iter_mut().zip(image.as_chunks().0) {
+    for (seen, [blue, green, red, _]) in
+        observation.as_chunks_mut::<3>().0.iter_mut().zip(image.as_chunks().0)
+    {
         *seen = [*red, *green, *blue].map(f32::from);
     }
 }

@@ -34,7 +34,9 @@ impl LibraryLink {
     pub fn connect(library: &Path) -> Result<Self> {
         let functions = Functions::load(library)?;
         if IS_TAKEN.swap(true, Ordering::SeqCst) {
-            return Err(Error::unsupported("libController serves one robot per process; start a process for each"));
+            return Err(Error::unsupported(
+                "libController serves one robot per process; start a process for each",
+            ));
         }
         // SAFETY: called once per process, before every other function.
         if unsafe { (functions.robot_init)() } == 0 {
@@ -43,7 +45,8 @@ impl LibraryLink {
         // SAFETY: the robot is initialised, as for all calls below.
         let count = unsafe { (functions.robot_get_number_of_devices)() };
         // SAFETY: the indices are below the number of devices.
-        let tags: Vec<_> = (0..count).map(|index| unsafe { (functions.robot_get_device_by_index)(index) }).collect();
+        let tags: Vec<_> =
+            (0..count).map(|index| unsafe { (functions.robot_get_device_by_index)(index) }).collect();
         let devices = tags.iter().map(|tag| info(&functions, *tag)).collect::<Result<_>>()?;
         let info = RobotInfo {
             // SAFETY: the library returns a string that lives until the next configuration.
@@ -63,7 +66,8 @@ impl LibraryLink {
     /// Returns `NotFound` if `WEBOTS_HOME` is not set.
     pub fn installed() -> Result<PathBuf> {
         let home = std::env::var_os("WEBOTS_HOME").filter(|home| !home.is_empty());
-        let home = home.ok_or_else(|| Error::not_found("WEBOTS_HOME is not set; set it to the folder of Webots"))?;
+        let home =
+            home.ok_or_else(|| Error::not_found("WEBOTS_HOME is not set; set it to the folder of Webots"))?;
         let file = match std::env::consts::OS {
             "windows" => "lib/controller/Controller.dll",
             "macos" => "Contents/lib/controller/libController.dylib",
@@ -86,7 +90,9 @@ pub(super) fn text(pointer: *const c_char) -> Result<String> {
     }
     // SAFETY: the library's strings end in a zero byte and live at least until its next call.
     let text = unsafe { CStr::from_ptr(pointer) };
-    text.to_str().map(str::to_owned).map_err(|error| Error::format("a name in Webots is not UTF-8").with_source(error))
+    text.to_str()
+        .map(str::to_owned)
+        .map_err(|error| Error::format("a name in Webots is not UTF-8").with_source(error))
 }
 
 /// Describes a device.
@@ -98,25 +104,35 @@ fn info(functions: &Functions, tag: Tag) -> Result<DeviceInfo> {
     };
     let kind = DeviceKind::named(&node);
     let mut info = DeviceInfo::new(name, model, kind);
-    let size = |width: c_int, height: c_int| (usize::try_from(width).unwrap_or(0), usize::try_from(height).unwrap_or(0));
+    let size = |width: c_int, height: c_int| {
+        (usize::try_from(width).unwrap_or(0), usize::try_from(height).unwrap_or(0))
+    };
     // SAFETY: see above.
     unsafe {
         match kind {
             Some(kind) if kind.is_motor() => {
-                info.range = ((functions.motor_get_min_position)(tag), (functions.motor_get_max_position)(tag));
+                info.range =
+                    ((functions.motor_get_min_position)(tag), (functions.motor_get_max_position)(tag));
                 info.max_velocity = (functions.motor_get_max_velocity)(tag);
                 info.max_force = (functions.motor_get_max_force)(tag);
             }
             Some(DeviceKind::DistanceSensor) => {
-                let range = ((functions.distance_sensor_get_min_value)(tag), (functions.distance_sensor_get_max_value)(tag));
+                let range = (
+                    (functions.distance_sensor_get_min_value)(tag),
+                    (functions.distance_sensor_get_max_value)(tag),
+                );
                 info.range = range;
             }
             Some(DeviceKind::Camera) => {
                 info.size = size((functions.camera_get_width)(tag), (functions.camera_get_height)(tag));
             }
             Some(DeviceKind::RangeFinder) => {
-                info.size = size((functions.range_finder_get_width)(tag), (functions.range_finder_get_height)(tag));
-                info.range = ((functions.range_finder_get_min_range)(tag), (functions.range_finder_get_max_range)(tag));
+                info.size =
+                    size((functions.range_finder_get_width)(tag), (functions.range_finder_get_height)(tag));
+                info.range = (
+                    (functions.range_finder_get_min_range)(tag),
+                    (functions.range_finder_get_max_range)(tag),
+                );
             }
             Some(DeviceKind::Lidar) => {
                 let columns = (functions.lidar_get_horizontal_resolution)(tag);

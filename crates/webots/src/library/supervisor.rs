@@ -43,8 +43,12 @@ impl Supervisor for LibraryLink {
                 FieldKind::Float => FieldValue::Float((functions.supervisor_field_get_sf_float)(at)),
                 FieldKind::Vec2 => FieldValue::Vec2(numbers((functions.supervisor_field_get_sf_vec2f)(at))?),
                 FieldKind::Vec3 => FieldValue::Vec3(numbers((functions.supervisor_field_get_sf_vec3f)(at))?),
-                FieldKind::Rotation => FieldValue::Rotation(numbers((functions.supervisor_field_get_sf_rotation)(at))?),
-                FieldKind::Color => FieldValue::Color(numbers((functions.supervisor_field_get_sf_color)(at))?),
+                FieldKind::Rotation => {
+                    FieldValue::Rotation(numbers((functions.supervisor_field_get_sf_rotation)(at))?)
+                }
+                FieldKind::Color => {
+                    FieldValue::Color(numbers((functions.supervisor_field_get_sf_color)(at))?)
+                }
                 FieldKind::Text => FieldValue::Text(text((functions.supervisor_field_get_sf_string)(at))?),
             }
         })
@@ -61,9 +65,13 @@ impl Supervisor for LibraryLink {
                 FieldValue::Float(number) => (functions.supervisor_field_set_sf_float)(at, *number),
                 FieldValue::Vec2(parts) => (functions.supervisor_field_set_sf_vec2f)(at, parts.as_ptr()),
                 FieldValue::Vec3(parts) => (functions.supervisor_field_set_sf_vec3f)(at, parts.as_ptr()),
-                FieldValue::Rotation(parts) => (functions.supervisor_field_set_sf_rotation)(at, parts.as_ptr()),
+                FieldValue::Rotation(parts) => {
+                    (functions.supervisor_field_set_sf_rotation)(at, parts.as_ptr())
+                }
                 FieldValue::Color(parts) => (functions.supervisor_field_set_sf_color)(at, parts.as_ptr()),
-                FieldValue::Text(text) => (functions.supervisor_field_set_sf_string)(at, c_text(text)?.as_ptr()),
+                FieldValue::Text(text) => {
+                    (functions.supervisor_field_set_sf_string)(at, c_text(text)?.as_ptr())
+                }
             }
         }
         Ok(())
@@ -106,7 +114,8 @@ fn pointer(address: usize) -> Pointer {
 }
 
 fn c_text(text: &str) -> Result<CString> {
-    CString::new(text).map_err(|error| Error::invalid_param(format!("{text:?} has a zero byte")).with_source(error))
+    CString::new(text)
+        .map_err(|error| Error::invalid_param(format!("{text:?} has a zero byte")).with_source(error))
 }
 
 /// Copies numbers of the library.

@@ -4,10 +4,11 @@ use std::io::{BufReader, Read, Write};
 
 use opendr_engine::{Error, Result};
 
-use super::answer::{self, Framing};
+use super::answer::{self, Data, Framing};
 use super::robot::Robot;
 use super::stream::Stream;
 use crate::device::{Device, State};
+use crate::incoming::lost;
 use crate::link::{DeviceInfo, MotorCommand, RobotInfo, StepEnd, WebotsLink};
 use crate::request::Request;
 use crate::scene::Supervisor;
@@ -28,7 +29,7 @@ pub struct NativeLink<S: Write = Stream> {
     request: Request,
     /// Messages of the robot itself for the next request.
     pub(super) due: Request,
-    data: Vec<u8>,
+    data: Data,
     steps: u64,
     is_lost: bool,
 }
@@ -40,10 +41,15 @@ impl<S: Read + Write + Send> NativeLink<S> {
             stream: BufReader::with_capacity(READ_BUFFER, stream),
             framing,
             robot: Robot::new(version),
-            info: RobotInfo { name: String::new(), is_supervisor: false, basic_step_ms: 0, devices: Vec::new() },
+            info: RobotInfo {
+                name: String::new(),
+                is_supervisor: false,
+                basic_step_ms: 0,
+                devices: Vec::new(),
+            },
             request: Request::default(),
             due: Request::default(),
-            data: Vec::new(),
+            data: Data::default(),
             steps: 0,
             is_lost: false,
         };
@@ -81,7 +87,7 @@ impl<S: Read + Write + Send> NativeLink<S> {
             self.request.device(tag, |request| device.write(step_ms, request));
         }
         let sent = self.stream.get_mut().write_all(self.request.finish());
-        sent.map_err(|error| answer::lost(&error))?;
+        sent.map_err(|error| lost(&error))?;
         for _ in 0..MAX_UNSOLICITED {
             if answer::read(&mut self.stream, self.framing, &mut self.robot, &mut self.data)? >= 0 {
                 self.is_lost = false;
@@ -94,6 +100,16 @@ impl<S: Read + Write + Send> NativeLink<S> {
     /// Carries out the messages that are due, without a step.
     pub(super) fn flush(&mut self) -> Result<()> {
         self.exchange(0)
+    }
+
+    /// Returns the bytes that answers and images occupy.
+    #[cfg(test)]
+    pub(super) fn held(&self) -> usize {
+        let images = self.robot.devices.iter().map(|device| match &device.state {
+            State::Imager(imager) => imager.held(),
+            _ => 0,
+        });
+        self.data.bytes.capacity() + images.sum::<usize>()
     }
 
     /// Reads the images that Webots places in files.

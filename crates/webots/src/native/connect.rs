@@ -71,7 +71,9 @@ fn open(url: &ControllerUrl, timeout: Option<Duration>) -> Result<Option<(Stream
             Ok(Some((stream, Framing::Ipc)))
         }
         #[cfg(not(unix))]
-        ControllerUrl::Ipc { .. } => Err(Error::unsupported("ipc:// needs Unix sockets; use tcp://localhost:1234/ROBOT")),
+        ControllerUrl::Ipc { .. } => {
+            Err(Error::unsupported("ipc:// needs Unix sockets; use tcp://localhost:1234/ROBOT"))
+        }
     }
 }
 
@@ -80,7 +82,9 @@ fn open(url: &ControllerUrl, timeout: Option<Duration>) -> Result<Option<(Stream
 fn instance_folder(port: u16) -> Result<PathBuf> {
     let set = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty());
     let user = set("USER").or_else(|| set("USERNAME")).ok_or_else(|| {
-        Error::not_found("neither USER nor USERNAME is set, which are part of the path of Webots' sockets; set USER")
+        Error::not_found(
+            "neither USER nor USERNAME is set, which are part of the path of Webots' sockets; set USER",
+        )
     })?;
     let folder: PathBuf = set("WEBOTS_TMPDIR").map_or_else(|| "/tmp".into(), PathBuf::from);
     Ok(folder.join("webots").join(user).join(port.to_string()))

@@ -24,7 +24,9 @@ pub(super) fn greet(stream: &mut (impl Read + Write), robot: Option<&str>) -> Re
         Some(robot) => format!("CTR\nRobot-Name: {}", encoded(robot)),
         None => "CTR".to_owned(),
     };
-    stream.write_all(hello.as_bytes()).map_err(|error| Error::network("cannot greet Webots").with_source(error))?;
+    stream
+        .write_all(hello.as_bytes())
+        .map_err(|error| Error::network("cannot greet Webots").with_source(error))?;
     let (mut answer, mut length) = ([0; MAX_ANSWER], 0);
     // The answer has no end of its own: it is one of four words.
     while !WORDS.contains(&&answer[..length]) {
@@ -32,7 +34,9 @@ pub(super) fn greet(stream: &mut (impl Read + Write), robot: Option<&str>) -> Re
         match read.map_err(|error| Error::network("Webots did not answer the greeting").with_source(error))? {
             0 => {
                 let text = String::from_utf8_lossy(&answer[..length]).into_owned();
-                return Err(Error::network(format!("{text:?} is no answer of Webots; is the port that of Webots?")));
+                return Err(Error::network(format!(
+                    "{text:?} is no answer of Webots; is the port that of Webots?"
+                )));
             }
             more => length += more,
         }

@@ -8,5 +8,7 @@ mod robot;
 mod scene;
 mod stream;
 mod supervisor;
+#[cfg(test)]
+mod tests;
 
 pub use client::NativeLink;

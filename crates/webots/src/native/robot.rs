@@ -160,13 +160,17 @@ impl Robot {
     fn read_name_and_version(&mut self, reader: &mut Reader<'_>) -> Result<()> {
         // Without name and version, the configuration begins with a flag, which is no letter.
         if reader.clone().u8()? <= 1 {
-            return Err(Error::unsupported("Webots does not state its version; if it is R2023a, set the version to R2023a"));
+            return Err(Error::unsupported(
+                "Webots does not state its version; if it is R2023a, set the version to R2023a",
+            ));
         }
         self.name = reader.text()?.to_owned();
         let stated = Version::parse(reader.text()?)?;
         if self.is_named && stated != self.version {
             let named = self.version;
-            return Err(Error::invalid_param(format!("Webots states the version {stated}, not {named}; set the version to it")));
+            return Err(Error::invalid_param(format!(
+                "Webots states the version {stated}, not {named}; set the version to it"
+            )));
         }
         self.version = stated;
         Ok(())
@@ -175,7 +179,10 @@ impl Robot {
     fn add_devices(&mut self, count: u16, reader: &mut Reader<'_>) -> Result<()> {
         let fits = usize::from(count) <= reader.left() / SHORTEST_DEVICE;
         if !fits || self.devices.len() + usize::from(count) >= usize::from(u16::MAX) {
-            return Err(Error::format(format!("{count} devices do not fit a message with {} bytes", reader.left())));
+            return Err(Error::format(format!(
+                "{count} devices do not fit a message with {} bytes",
+                reader.left()
+            )));
         }
         for _ in 0..count {
             self.devices.push(Device::read(reader, self.version)?);

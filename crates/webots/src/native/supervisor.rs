@@ -6,8 +6,8 @@ use opendr_engine::{Error, Result};
 
 use super::client::NativeLink;
 use super::scene::{
-    FIELD_FROM_NAME, NODE_FROM_DEF, POSITION, RESET_PHYSICS, RESET_SIMULATION, SET_VALUE, SET_VELOCITY, VALUE,
-    VELOCITY, write_value,
+    FIELD_FROM_NAME, NODE_FROM_DEF, POSITION, RESET_PHYSICS, RESET_SIMULATION, SET_VALUE, SET_VELOCITY,
+    VALUE, VELOCITY, write_value,
 };
 use crate::scene::{FieldKind, FieldRef, FieldValue, NodeRef, Supervisor};
 

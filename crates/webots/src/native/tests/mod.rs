@@ -1,0 +1,5 @@
+//! The client against bytes in memory.
+
+mod golden;
+mod mutations;
+mod peer;
