@@ -12,6 +12,7 @@ use opendr_engine::{Error, Result, ResultExt, Value, ValueType};
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
+use crate::journal::PREDICTIONS_FORMAT;
 use crate::predictor::empty_list;
 use crate::sample_names::SampleNames;
 
@@ -77,6 +78,8 @@ pub struct Lines {
 /// A line of which only the names are parsed.
 #[derive(Deserialize)]
 struct Line<'a> {
+    #[serde(alias = "opendr_eval")]
+    format_version: Option<u64>,
     #[serde(alias = "input")]
     name: Option<String>,
     #[serde(default)]
@@ -91,7 +94,7 @@ impl Lines {
     /// Indexes the lines of the samples of `dataset`.
     ///
     /// # Errors
-    /// `Io`; `Format` for a line that is not JSON, unless `problems` skips it.
+    /// `Io`; `Unsupported` for a newer version of the format; `Format` for a line that is not JSON, unless `problems` skips it.
     pub fn open(path: &Path, dataset: &dyn DatasetIterator, problems: &Problems) -> Result<Self> {
         let context = || format!("opening {}", path.display());
         let file = File::open(path).context(context)?;
@@ -105,7 +108,11 @@ impl Lines {
             if length == 0 {
                 break;
             }
-            match serde_json::from_slice::<Line<'_>>(&text) {
+            let line = serde_json::from_slice::<Line<'_>>(&text);
+            if let Some(version) = line.as_ref().ok().and_then(|line| line.format_version) {
+                PREDICTIONS_FORMAT.check_version(version).context(context)?;
+            }
+            match line {
                 Ok(line) if line.outputs.is_some() || line.prediction.is_some() => {
                     let sample = line.name.as_deref().and_then(|name| match line.index {
                         0 => names.find(name),

@@ -5,7 +5,7 @@
 use opendr_engine::target::Classes;
 use opendr_engine::{Progress, Random, Result, Unit};
 use opendr_metrics::{AnyMetric, Report};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Maximum number of groups that are resampled. With fewer samples, each is a group.
 const MAX_GROUPS: usize = 50;
@@ -16,7 +16,7 @@ const LEVEL: f64 = 0.95;
 const SEED: u64 = 0;
 
 /// A confidence interval of the headline number of a report.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Interval {
     /// Lower end.
     pub low: f64,

@@ -68,8 +68,8 @@ pub fn score_coco_results(
         seconds: begun.elapsed().as_secs_f64(),
         report: found.report(),
         interval: None,
-        worst: Vec::new(),
-        evenly: Vec::new(),
+        lowest_scores: Vec::new(),
+        evenly_spaced: Vec::new(),
         problems: Vec::new(),
         written: Vec::new(),
     })

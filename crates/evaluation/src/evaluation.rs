@@ -209,7 +209,7 @@ impl<'a> Evaluation<'a> {
         let complete = tally.next == tally.dataset.len();
         let report = tally.groups.report()?;
         let interval = tally.groups.interval(&report, self.resamples, self.progress)?;
-        let (worst, evenly) = tally.listed.into_samples();
+        let (lowest_scores, evenly_spaced) = tally.listed.into_samples();
         let mut outcome = Outcome {
             learner: self.subject.learner.clone(),
             dataset: self.dataset.clone(),
@@ -224,8 +224,8 @@ impl<'a> Evaluation<'a> {
             seconds: begun.elapsed().as_secs_f64(),
             report,
             interval,
-            worst,
-            evenly,
+            lowest_scores,
+            evenly_spaced,
             problems: self.problems.list(),
             written: Vec::new(),
         };
@@ -301,7 +301,12 @@ impl Tally<'_> {
         match self.score(line) {
             Ok((score, prediction)) => {
                 self.counted += 1;
-                self.listed.add(&ScoredSample { index: at, name: dataset.name(at), score, prediction });
+                self.listed.add(&ScoredSample {
+                    index: at,
+                    name: dataset.name(at),
+                    score,
+                    prediction: Some(prediction),
+                });
             }
             Err(problem) => self.problems.report(problem)?,
         }

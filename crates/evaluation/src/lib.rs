@@ -41,6 +41,7 @@ pub use bootstrap::Interval;
 pub use classes::{ByNumber, ClassMap, ClassMatching, ClassPair, ClassReport, MapLabels, MatchedBy};
 pub use coco_results::{is_coco_results, score_coco_results};
 pub use evaluation::Evaluation;
+pub use journal::PREDICTIONS_FORMAT;
 pub use open::open_for_metric;
 pub use options::{EvalJob, EvalOptions};
 pub use outcome::Outcome;

@@ -11,7 +11,7 @@ use opendr::learner::Entry;
 use opendr::metrics::{self, MetricEntry};
 use opendr::params::ParamMap;
 use opendr::rl::EvaluationProtocol;
-use opendr::{Pipeline, PolicyController, Progress, Result, Statistics};
+use opendr::{JsonFormat, Pipeline, PolicyController, Progress, Result, Statistics};
 
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
@@ -30,6 +30,9 @@ Examples:
   opendr eval ppo --env CartPole-v1 --episodes 500             a policy in an environment
 
 An interrupted evaluation with --out resumes when the same command runs again.";
+
+/// Format of the statistics of a policy.
+const POLICY_REPORT: JsonFormat = JsonFormat::new("evaluation of a policy", 1);
 
 pub fn grammar() -> Command {
     Command::new("eval")
@@ -135,7 +138,7 @@ fn in_environment(
     let report = opendr::evaluate_policy(&mut acting, environment.as_mut(), &protocol, bar)?;
     let statistics = Statistics::from(&report);
     if matches.get_flag("json") {
-        stdout::print_json(&statistics)?;
+        stdout::print_json(POLICY_REPORT, &statistics)?;
     } else {
         stdout::print(format_args!("{spec} in {}", source.id()))?;
         stdout::print(statistics.to_string().trim_end())?;
@@ -163,7 +166,7 @@ pub fn print_outcome(
     bar: &ProgressBar,
 ) -> Result<Outcome> {
     if matches.get_flag("json") {
-        stdout::print_json(outcome)?;
+        stdout::print_json(Evaluated::FORMAT, outcome)?;
     } else {
         stdout::print(outcome.to_string().trim_end())?;
         dataset_flags::print_problems(problems)?;

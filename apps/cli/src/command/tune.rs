@@ -176,7 +176,7 @@ fn options(entry: &'static opendr::learner::Entry, matches: &ArgMatches) -> Resu
 
 fn print_tuned(tuned: &Tuned, matches: &ArgMatches, bar: &ProgressBar) -> Result<Outcome> {
     if matches.get_flag("json") {
-        stdout::print_json(tuned)?;
+        stdout::print_json(Tuned::FORMAT, tuned)?;
     } else {
         stdout::print(tuned.to_string().trim_end())?;
     }
