@@ -131,9 +131,9 @@ mod tests {
         let metric = find("classification").unwrap().make(&ParamMap::new()).unwrap();
         let mut groups = Groups::new(metric, samples);
         for at in 0..samples {
-            let (prediction, truth) =
+            let (prediction, ground_truth) =
                 (Category::new(i64::from(at % samples < right), None), Category::new(1, None));
-            groups.of(at).update(at, (&prediction).into(), (&truth).into()).unwrap();
+            groups.of(at).update(at, (&prediction).into(), (&ground_truth).into()).unwrap();
         }
         groups
     }

@@ -42,7 +42,7 @@ pub fn score_coco_results(
     };
     // Checks the parameters.
     metric.make(params)?;
-    let options = OpenOptions { split, target: Some(metric.truth) };
+    let options = OpenOptions { split, target: Some(metric.ground_truth) };
     let annotations = Coco::annotation_file(dataset, &options)?;
     let mut files = CocoFiles { threads, ..CocoFiles::new(kind) };
     if let Some(ParamValue::Bool(use_classes)) = params.get("use_classes") {

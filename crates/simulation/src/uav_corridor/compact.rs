@@ -27,7 +27,7 @@ pub struct CompactCorridor<E> {
 const VIEW: usize = COLUMNS + 3;
 const LEN: usize = FlightMemory::STATE + VIEW;
 
-/// The space of the observations of a [`CompactCorridor`] corridor.
+/// Returns the space of the observations of a [`CompactCorridor`] corridor.
 ///
 /// # Errors
 /// None; a space is checked when it is made.
@@ -39,7 +39,7 @@ pub fn compact_space() -> Result<Space> {
 }
 
 impl<E: Environment> CompactCorridor<E> {
-    /// `inner`, one of the corridors with two numbers as action.
+    /// Wraps `inner`, one of the corridors with two numbers as action.
     ///
     /// # Errors
     /// `Unsupported` for an environment of other actions.
@@ -118,7 +118,7 @@ pub struct CompactController<C> {
 }
 
 impl<C: CorridorController> CompactController<C> {
-    /// `controller`, which decides by columns of the picture.
+    /// Wraps `controller`, which decides by columns of the image.
     pub fn new(controller: C) -> Self {
         Self { controller, sight: CorridorObservation::default() }
     }

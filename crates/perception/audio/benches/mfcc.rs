@@ -5,7 +5,7 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use opendr_sound::mfcc::{Mfcc, MfccOptions};
+use opendr_audio::mfcc::{Mfcc, MfccOptions};
 
 fn recipes(criterion: &mut Criterion) {
     let second: Vec<f32> = (0..16_000).map(|at| ((at * at) as f32 * 1e-4).sin()).collect();

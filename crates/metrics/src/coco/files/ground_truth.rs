@@ -9,7 +9,7 @@ use serde::Deserialize;
 use super::batches::{Batch, Batches};
 use super::entry::{Entry, needed};
 use super::kind::Kind;
-use crate::coco::matching::Truth;
+use crate::coco::matching::GroundTruth;
 
 /// An annotated object.
 pub(super) struct Annotation<S> {
@@ -25,8 +25,8 @@ pub(super) struct Annotation<S> {
 
 impl<S> Annotation<S> {
     /// Returns the object for matching; its area is `own` square pixels unless the file has it.
-    pub(super) fn truth(&self, own: f64) -> Truth {
-        Truth { area: self.area.unwrap_or(own), crowd: self.crowd, ignored: self.ignored }
+    pub(super) fn ground_truth(&self, own: f64) -> GroundTruth {
+        GroundTruth { area: self.area.unwrap_or(own), crowd: self.crowd, ignored: self.ignored }
     }
 }
 
@@ -45,7 +45,7 @@ struct Category {
 }
 
 /// Contents of an annotation file.
-pub(super) struct Truths<K: Kind> {
+pub(super) struct GroundTruths<K: Kind> {
     /// Indices of the images by id, in ascending order of ids, which is their order in ties.
     images: HashMap<i64, u32>,
     /// Id and `[height, width]` by index of the image.
@@ -60,7 +60,7 @@ pub(super) struct Truths<K: Kind> {
     pub unlisted: u64,
 }
 
-impl<K: Kind> Truths<K> {
+impl<K: Kind> GroundTruths<K> {
     /// Reads the file.
     ///
     /// # Errors

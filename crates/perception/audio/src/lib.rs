@@ -7,7 +7,7 @@
 //! Begin with [`mfcc::Mfcc`].
 //!
 //! ```
-//! use opendr_sound::resampler::resampled;
+//! use opendr_audio::resampler::resampled;
 //!
 //! let second = vec![0.1; 44_100];
 //! assert_eq!(resampled(&second, 44_100, 16_000)?.len(), 16_000);
@@ -17,8 +17,8 @@
 pub mod mfcc;
 pub mod resampler;
 
-mod sound;
+mod audio_input;
 mod standardise;
 
-pub use sound::AudioInput;
+pub use audio_input::AudioInput;
 pub use standardise::standardise;

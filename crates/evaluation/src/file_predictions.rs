@@ -28,24 +28,24 @@ pub enum FilePredictions {
 }
 
 impl FilePredictions {
-    /// Uses the annotations of `answers` as predictions for the samples of `dataset` of the same names.
-    pub fn from_dataset(answers: Box<dyn DatasetIterator>, dataset: &dyn DatasetIterator) -> Self {
+    /// Uses the annotations of `predictions` as predictions for the samples of `dataset` of the same names.
+    pub fn from_dataset(predictions: Box<dyn DatasetIterator>, dataset: &dyn DatasetIterator) -> Self {
         let names = SampleNames::of(dataset);
         let mut of_sample = vec![None; dataset.len()];
-        for at in 0..answers.len() {
-            let found = names.find(&answers.name(at));
-            if let Some(place) = found.and_then(|sample| of_sample.get_mut(sample)) {
-                *place = Some(at);
+        for at in 0..predictions.len() {
+            let found = names.find(&predictions.name(at));
+            if let Some(position) = found.and_then(|sample| of_sample.get_mut(sample)) {
+                *position = Some(at);
             }
         }
-        Self::Dataset(answers, of_sample)
+        Self::Dataset(predictions, of_sample)
     }
 
     /// Returns the classes of the predictions, if they are the same for all of them.
     pub fn classes(&self) -> Classes {
         match self {
             Self::Lines(_) => Classes::default(),
-            Self::Dataset(answers, _) => answers.classes(),
+            Self::Dataset(predictions, _) => predictions.classes(),
         }
     }
 
@@ -54,14 +54,14 @@ impl FilePredictions {
     /// # Errors
     /// `InvalidInput` for a missing prediction that cannot be empty; `Format` for a line that is not a target.
     pub fn get(&self, at: usize, wanted: ValueType) -> Result<Value> {
-        let answer = match self {
+        let prediction = match self {
             Self::Lines(lines) => lines.get(at, wanted)?,
-            Self::Dataset(answers, of_sample) => match of_sample.get(at).copied().flatten() {
-                Some(index) => answers.target(index)?,
+            Self::Dataset(predictions, of_sample) => match of_sample.get(at).copied().flatten() {
+                Some(index) => predictions.target(index)?,
                 None => None,
             },
         };
-        answer
+        prediction
             .or_else(|| empty_list(wanted))
             .ok_or_else(|| Error::invalid_input("the sample has no prediction"))
     }
@@ -72,7 +72,7 @@ pub struct Lines {
     path: PathBuf,
     file: Mutex<File>,
     /// Line number, first byte and length of each sample's line.
-    places: Vec<Option<(u64, u64, usize)>>,
+    positions: Vec<Option<(u64, u64, usize)>>,
 }
 
 /// A line of which only the names are parsed.
@@ -99,7 +99,7 @@ impl Lines {
         let context = || format!("opening {}", path.display());
         let file = File::open(path).context(context)?;
         let names = SampleNames::of(dataset);
-        let mut places = vec![None; dataset.len()];
+        let mut positions = vec![None; dataset.len()];
         let mut reader = BufReader::new(&file);
         let (mut begin, mut text) = (0, Vec::new());
         for number in 1.. {
@@ -118,8 +118,8 @@ impl Lines {
                         0 => names.find(name),
                         frame => names.find(&format!("{name}/{frame}")),
                     });
-                    if let Some(place) = sample.and_then(|sample| places.get_mut(sample)) {
-                        *place = Some((number, begin, length));
+                    if let Some(position) = sample.and_then(|sample| positions.get_mut(sample)) {
+                        *position = Some((number, begin, length));
                     }
                 }
                 // A heading, or a sample that failed.
@@ -129,11 +129,13 @@ impl Lines {
             begin += length as u64;
         }
         drop(reader);
-        Ok(Self { path: path.to_owned(), file: Mutex::new(file), places })
+        Ok(Self { path: path.to_owned(), file: Mutex::new(file), positions })
     }
 
     fn get(&self, at: usize, wanted: ValueType) -> Result<Option<Value>> {
-        let Some((number, begin, length)) = self.places.get(at).copied().flatten() else { return Ok(None) };
+        let Some((number, begin, length)) = self.positions.get(at).copied().flatten() else {
+            return Ok(None);
+        };
         let mut text = vec![0; length];
         {
             let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);

@@ -16,24 +16,24 @@ pub struct ValidBox {
     pub index: usize,
 }
 
-/// Fills `sound` with the boxes of a list that have at least the score `threshold`, are finite and have an area, in the
+/// Fills `valid` with the boxes of a list that have at least the score `threshold`, are finite and have an area, in the
 /// order of the list; of more than [`MAX_BOXES`], those with the highest scores.
-pub fn valid_boxes(list: &BoundingBoxList, threshold: f64, sound: &mut Vec<ValidBox>) {
-    sound.clear();
-    sound.extend(list.boxes.iter().enumerate().filter_map(|(index, found)| {
+pub fn valid_boxes(list: &BoundingBoxList, threshold: f64, valid: &mut Vec<ValidBox>) {
+    valid.clear();
+    valid.extend(list.boxes.iter().enumerate().filter_map(|(index, found)| {
         let [left, top, width, height] = [found.left, found.top, found.width, found.height].map(f64::from);
         let corners = [left, top, left + width, top + height];
         let confidence = f64::from(found.confidence);
         let has_area = corners[2] > corners[0] && corners[3] > corners[1];
-        let is_sound = has_area && corners.iter().all(|edge| edge.is_finite()) && confidence >= threshold;
-        is_sound.then_some(ValidBox { corners, confidence, index })
+        let is_valid = has_area && corners.iter().all(|edge| edge.is_finite()) && confidence >= threshold;
+        is_valid.then_some(ValidBox { corners, confidence, index })
     }));
-    if sound.len() > MAX_BOXES {
+    if valid.len() > MAX_BOXES {
         let best_first =
             |a: &ValidBox, b: &ValidBox| b.confidence.total_cmp(&a.confidence).then(a.index.cmp(&b.index));
-        sound.select_nth_unstable_by(MAX_BOXES, best_first);
-        sound.truncate(MAX_BOXES);
-        sound.sort_unstable_by_key(|found| found.index);
+        valid.select_nth_unstable_by(MAX_BOXES, best_first);
+        valid.truncate(MAX_BOXES);
+        valid.sort_unstable_by_key(|found| found.index);
     }
 }
 
@@ -59,20 +59,20 @@ mod tests {
         ];
         let boxes = rows
             .map(|[left, top, width, height, score]| BoundingBox::new(0, left, top, width, height, score));
-        let mut sound = Vec::new();
-        valid_boxes(&boxes.to_vec().into(), 0.3, &mut sound);
-        assert_eq!(sound.iter().map(|found| found.index).collect::<Vec<_>>(), [0, 9]);
-        assert_eq!(sound[1].corners, [1.0, 2.0, 4.0, 6.0]);
+        let mut valid = Vec::new();
+        valid_boxes(&boxes.to_vec().into(), 0.3, &mut valid);
+        assert_eq!(valid.iter().map(|found| found.index).collect::<Vec<_>>(), [0, 9]);
+        assert_eq!(valid[1].corners, [1.0, 2.0, 4.0, 6.0]);
     }
 
     #[test]
     fn of_many_the_best_are_kept_in_their_order() {
         let boxes =
             (0..5000).map(|at| BoundingBox::new(0, at as f32, 0.0, 1.0, 1.0, (at % 10) as f32 / 10.0));
-        let mut sound = Vec::new();
-        valid_boxes(&boxes.collect::<Vec<_>>().into(), 0.0, &mut sound);
-        assert_eq!(sound.len(), MAX_BOXES);
-        assert!(sound.is_sorted_by_key(|found| found.index));
-        assert!(sound.iter().all(|found| found.index % 10 >= 8));
+        let mut valid = Vec::new();
+        valid_boxes(&boxes.collect::<Vec<_>>().into(), 0.0, &mut valid);
+        assert_eq!(valid.len(), MAX_BOXES);
+        assert!(valid.is_sorted_by_key(|found| found.index));
+        assert!(valid.iter().all(|found| found.index % 10 >= 8));
     }
 }

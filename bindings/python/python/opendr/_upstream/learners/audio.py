@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 from typing import Any, Union
 
-from opendr._native_learner import NativeLearner, _value
+from opendr._input_value import input_value
+from opendr._native_learner import NativeLearner
 from opendr._upstream.arguments import by_name
 from opendr._upstream.rows import arguments as arguments_of
 from opendr.engine.data import Audio, Video
@@ -54,7 +55,7 @@ class AudiovisualEmotion(NativeLearner):
         Returns:
             The arguments of ``infer``.
         """
-        return _value(audio, "audio", "Audio"), _value(video, "video", "Video")
+        return input_value(audio, "audio", "Audio"), input_value(video, "video", "Video")
 
     def pred_to_label(self, prediction: Category) -> str:
         """Returns the class name of a prediction."""

@@ -5,7 +5,7 @@
 //! TensorFlow and librosa up to rounding.
 //!
 //! ```
-//! use opendr_sound::mfcc::{Mfcc, MfccOptions};
+//! use opendr_audio::mfcc::{Mfcc, MfccOptions};
 //!
 //! let mfcc = Mfcc::new(MfccOptions::keywords())?;
 //! let second = vec![0.1; 16_000];
@@ -87,7 +87,7 @@ impl Mfcc {
         self.run_scaled_into(samples, 1.0, cepstra)
     }
 
-    /// Like [`Mfcc::run_into`] for samples multiplied by `factor`, a positive number; the factor is applied to the bands and
+    /// Computes as [`Mfcc::run_into`] for samples multiplied by `factor`, a positive number; the factor is applied to the bands and
     /// not to the samples.
     pub fn run_scaled_into(&self, samples: &[f32], factor: f32, cepstra: &mut Vec<f32>) -> usize {
         let Work { frames: work, bands } = &mut *self.work.take();

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""librosa's time for the cepstra of `mfcc/librosa_64` in `cargo bench -p opendr-sound --bench mfcc`."""
+"""librosa's time for the cepstra of `mfcc/librosa_64` in `cargo bench -p opendr-audio --bench mfcc`."""
 
 import time
 

@@ -1,13 +1,13 @@
 //! Writes the cepstra of a WAVE file as `[frames, coefficients]` into a `.npy` file, for comparison by the Python tests.
 //!
 //! ```console
-//! $ cargo run -p opendr-sound --example mfcc -- keywords yes.wav cepstra.npy
-//! $ cargo run -p opendr-sound --example mfcc -- librosa 640 480 64 yes.wav cepstra.npy
+//! $ cargo run -p opendr-audio --example mfcc -- keywords yes.wav cepstra.npy
+//! $ cargo run -p opendr-audio --example mfcc -- librosa 640 480 64 yes.wav cepstra.npy
 //! ```
 
+use opendr_audio::mfcc::{Mfcc, MfccOptions, peak_factor};
 use opendr_datasets::{npy_from_values, open_wav};
 use opendr_engine::{Error, Result};
-use opendr_sound::mfcc::{Mfcc, MfccOptions, peak_factor};
 
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
