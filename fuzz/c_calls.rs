@@ -172,7 +172,7 @@ impl Program<'_> {
             opendr_tensors_free(&mut tensors);
             opendr_network_input(self.network, index, std::mem::MaybeUninit::uninit().as_mut_ptr());
             opendr_network_output(self.network, index, std::mem::MaybeUninit::uninit().as_mut_ptr());
-            opendr_network_of(self.learner, file.as_ptr(), &mut other);
+            opendr_learner_network(self.learner, file.as_ptr(), &mut other);
             opendr_network_free(&mut other);
             opendr_set_last_error(file.as_ptr());
         }

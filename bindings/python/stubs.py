@@ -16,7 +16,7 @@ from pathlib import Path
 
 import opendr
 from opendr import _opendr
-from opendr._native_learner import OF_SEVERAL_PARTS
+from opendr._input_value import OF_SEVERAL_PARTS
 from opendr._reference import document
 from opendr._registered import _DRAWING
 from opendr._upstream.modules import TASKS, names_of, rows
@@ -45,7 +45,7 @@ its task, or with that of `--metric`; `opendr score` evaluates files of predicti
 be computed (a class without objects) is missing. `<k>` in a name is variable.
 
 Furthermore, `tables` has numbers by class or sequence (`name`, `columns`, `rows` of label and numbers), `figures` what
-`--out` draws (curves with their points, confusion matrices with their counts), `headline` the main scalar, `worst` the
+`--out` draws (curves with their points, confusion matrices with their counts), `headline` the main scalar, `lowest_scores` the
 samples with the lowest scores, `problems` the samples that were skipped as broken.
 
 Where a metric ranks predictions by their scores, `eval` lowers a learner's `threshold` to 0.01 unless it is set.
@@ -81,7 +81,7 @@ TYPES = {"float": "float", "int": "int", "bool": "bool", "text": "str", "list": 
 #: Further types that `infer` accepts for a datum.
 ALSO = {"Audio": ["Timeseries"], "Image": ["NDArray[Any]", "str", "os.PathLike[str]"]}
 #: Modules of the types in signatures.
-HOMES = {"Dataset": "opendr.engine.datasets", "Learner": "opendr.engine.learners", "PathLike": "opendr._native_learner"}
+HOMES = {"Dataset": "opendr.engine.datasets", "Learner": "opendr.engine.learners", "PathLike": "opendr._input_value"}
 #: Learners whose base class annotates `infer` itself.
 OWN_INFER = {
     "FallDetectorLearner",
@@ -344,7 +344,7 @@ def metrics_page():
     text = METRICS_HEADER
     for table in _opendr.metrics():
         text += f"\n## `{table['name']}`\n\n{table['about']}\n\n"
-        text += f"Compares a {table['prediction']} with a {table['truth']}.\n\n| number | |\n|---|---|\n"
+        text += f"Compares a {table['prediction']} with a {table['ground_truth']}.\n\n| number | |\n|---|---|\n"
         text += "".join(f"| `{name}` | {cell(doc)} |\n" for name, doc in table["numbers"])
         if table["params"]:
             text += "\n" + PARAMS_HEADER + "".join(map(param_row, table["params"]))

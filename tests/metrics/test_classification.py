@@ -20,7 +20,7 @@ def category(kind, confidence=None, probabilities=()):
 
 
 def case(metric, answers, truths, parts=1, **params):
-    samples = [{"prediction": answer, "truth": category(truth)} for answer, truth in zip(answers, truths)]
+    samples = [{"prediction": answer, "ground_truth": category(truth)} for answer, truth in zip(answers, truths)]
     return {"metric": metric, "params": params, "samples": samples, "parts": parts}
 
 
@@ -96,7 +96,7 @@ def test_names_of_classes(compute):
     answer = {**category(1), "description": "dog"}
     truth = {**category(0), "description": "cat"}
     (report,) = compute(
-        {"metric": "classification", "samples": [{"prediction": answer, "truth": truth}]}
+        {"metric": "classification", "samples": [{"prediction": answer, "ground_truth": truth}]}
     )
     assert report["figures"][0]["labels"] == ["cat", "dog"]
 

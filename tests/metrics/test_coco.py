@@ -105,7 +105,7 @@ def samples(truth, results, kind):
         for entry in entries:
             pictures[entry["image_id"]][side].append(convert(entry))
     target = lambda entries: {"type": name, field: entries}
-    return [{"prediction": target(found), "truth": target(there)} for found, there in pictures.values()]
+    return [{"prediction": target(found), "ground_truth": target(there)} for found, there in pictures.values()]
 
 
 def case(truth, results, kind, parts=1, use_classes=True):

@@ -22,7 +22,7 @@ def case(persons, parts=1, **params):
     samples = [
         {
             "prediction": {"type": "PoseList", "poses": [pose(answer, found)]},
-            "truth": {"type": "PoseList", "poses": [pose(places, visible, box)]},
+            "ground_truth": {"type": "PoseList", "poses": [pose(places, visible, box)]},
         }
         for places, visible, answer, found, box in persons
     ]
@@ -159,7 +159,7 @@ def test_persons_in_one_picture(compute, test_data):
             {
                 "metric": "keypoints",
                 "samples": [
-                    {"prediction": {"type": "PoseList", "poses": some}, "truth": {"type": "PoseList", "poses": truths}}
+                    {"prediction": {"type": "PoseList", "poses": some}, "ground_truth": {"type": "PoseList", "poses": truths}}
                 ],
             }
             for some in (answers + [pose(far[0][0] + 90000, far[0][1])], answers[1:])

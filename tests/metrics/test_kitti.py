@@ -112,7 +112,7 @@ def case(pictures, parts=1):
     def target(rows):
         return {"type": "BoundingBox3DList", "boxes": rows}
 
-    samples = [{"prediction": target(found), "truth": target(truth)} for found, truth in pictures]
+    samples = [{"prediction": target(found), "ground_truth": target(truth)} for found, truth in pictures]
     return {"metric": "kitti_detection", "samples": samples, "parts": parts}
 
 

@@ -20,7 +20,7 @@ def target(labels):
 
 
 def case(pictures, things, parts=1):
-    samples = [{"prediction": target(found), "truth": target(truth)} for found, truth in pictures]
+    samples = [{"prediction": target(found), "ground_truth": target(truth)} for found, truth in pictures]
     return {"metric": "panoptic", "params": {"things": things}, "samples": samples, "parts": parts}
 
 
@@ -43,11 +43,11 @@ def write_coco(pictures, things, classes, folder):
     """The two JSON files with their folders of images."""
     categories = [{"id": kind, "name": f"class {kind}", "isthing": int(kind in things)} for kind in classes]
     paths = []
-    for side, name in enumerate(["found", "truth"]):
+    for side, name in enumerate(["found", "ground_truth"]):
         (folder / name).mkdir()
         images, annotations = [], []
         for at, picture in enumerate(pictures):
-            ids, table = segments_of(picture[side], things, name == "truth")
+            ids, table = segments_of(picture[side], things, name == "ground_truth")
             colours = np.stack([ids & 255, ids >> 8 & 255, ids >> 16], axis=-1).astype(np.uint8)
             Image.fromarray(colours).save(folder / name / f"{at}.png")
             height, width = ids.shape
@@ -205,7 +205,7 @@ def test_masks_are_as_good_as_labels(compute):
     pictures[3][0][:] = VOID * DIVISOR
     of_labels = case(pictures, things)
     samples = [
-        {"prediction": masks_of(found, things, False), "truth": masks_of(truth, things, True)}
+        {"prediction": masks_of(found, things, False), "ground_truth": masks_of(truth, things, True)}
         for found, truth in pictures
     ]
     report, wanted = compute({**of_labels, "samples": samples}, of_labels)

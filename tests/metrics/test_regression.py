@@ -15,7 +15,7 @@ def scores(array):
 
 
 def case(metric, pairs, parts=1, **params):
-    samples = [{"prediction": scores(answer), "truth": scores(truth)} for truth, answer in pairs]
+    samples = [{"prediction": scores(answer), "ground_truth": scores(truth)} for truth, answer in pairs]
     return {"metric": metric, "params": params, "samples": samples, "parts": parts}
 
 

@@ -15,7 +15,7 @@ def labels(array):
 
 
 def case(pictures, parts=1, **params):
-    samples = [{"prediction": labels(answer), "truth": labels(truth)} for truth, answer in pictures]
+    samples = [{"prediction": labels(answer), "ground_truth": labels(truth)} for truth, answer in pictures]
     return {"metric": "segmentation", "params": params, "samples": samples, "parts": parts}
 
 
@@ -93,7 +93,7 @@ def test_scores(compute):
     truth = random.integers(0, 5, size=(12, 17))
     sample = {
         "prediction": {"type": "Heatmap", "shape": [5, 12, 17], "scores": scores.ravel().tolist()},
-        "truth": labels(truth),
+        "ground_truth": labels(truth),
     }
     (report,) = compute({"metric": "segmentation", "samples": [sample]})
     assert_equals_scikit(report, truth.ravel(), scores.argmax(axis=0).ravel())

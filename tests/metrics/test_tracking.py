@@ -55,7 +55,7 @@ def target(rows):
 def case(metric, sequences, parts=1, **params):
     samples = []
     for frames in sequences:
-        samples += [{"prediction": target(found), "truth": target(truth)} for truth, found in frames]
+        samples += [{"prediction": target(found), "ground_truth": target(truth)} for truth, found in frames]
         samples[-1]["end_sequence"] = True
     return {"metric": metric, "params": params, "samples": samples, "parts": parts}
 

@@ -12,7 +12,7 @@ def spoken(text, kind="BaseTranscription"):
 
 
 def case(pairs, parts=1, **params):
-    samples = [{"prediction": spoken(answer), "truth": spoken(truth)} for truth, answer in pairs]
+    samples = [{"prediction": spoken(answer), "ground_truth": spoken(truth)} for truth, answer in pairs]
     return {"metric": "transcription", "params": params, "samples": samples, "parts": parts}
 
 
@@ -121,12 +121,12 @@ def test_normalization(compute):
 
 @pytest.mark.parametrize("kind", ["VoskTranscription", "WhisperTranscription"])
 def test_other_transcriptions(compute, kind):
-    sample = {"prediction": spoken(" go left", kind), "truth": spoken("go left now", kind)}
+    sample = {"prediction": spoken(" go left", kind), "ground_truth": spoken("go left now", kind)}
     (report,) = compute({"metric": "transcription", "samples": [sample]})
     assert_equals_jiwer(report, [("go left now", " go left")])
 
 
 def test_spoken_commands(compute):
     command = {"type": "SpeechCommand", "command": "stop", "confidence": 0.5}
-    (report,) = compute({"metric": "transcription", "samples": [{"prediction": command, "truth": spoken("go")}]})
+    (report,) = compute({"metric": "transcription", "samples": [{"prediction": command, "ground_truth": spoken("go")}]})
     assert_equals_jiwer(report, [("go", "stop")])

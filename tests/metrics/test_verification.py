@@ -18,7 +18,7 @@ def category(kind, confidence=None):
 
 def case(same, scores, parts=1, **params):
     samples = [
-        {"prediction": category(0, float(score)), "truth": category(truth)} for truth, score in zip(same, scores)
+        {"prediction": category(0, float(score)), "ground_truth": category(truth)} for truth, score in zip(same, scores)
     ]
     return {"metric": "verification", "params": params, "samples": samples, "parts": parts}
 
@@ -96,7 +96,7 @@ def test_one_kind_of_pairs_only(compute):
 
 
 def test_answers_without_a_score_are_errors(compute):
-    sample = {"prediction": category(1), "truth": category(1)}
+    sample = {"prediction": category(1), "ground_truth": category(1)}
     (report,) = compute({"metric": "verification", "samples": [sample]})
     assert "no confidence" in report["error"]
 
@@ -135,7 +135,7 @@ def test_reidentification(compute, distance, queries):
         samples = [
             {
                 "prediction": {"type": "Heatmap", "shape": [6], "scores": vector.tolist()},
-                "truth": {"type": "Category", "class": int(identity), "frame_id": f"camera_{camera}"},
+                "ground_truth": {"type": "Category", "class": int(identity), "frame_id": f"camera_{camera}"},
             }
             for vector, identity, camera in zip(vectors, identities, cameras)
         ]

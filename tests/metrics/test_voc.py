@@ -83,7 +83,7 @@ def test_random_cases(compute, eleven_points):
         {
             "metric": "voc_detection",
             "params": {"eleven_points": eleven_points},
-            "samples": [{"prediction": target(found, False), "truth": target(there, True)} for there, found in pictures],
+            "samples": [{"prediction": target(found, False), "ground_truth": target(there, True)} for there, found in pictures],
             "parts": 1 + at % 3,
         }
         for at, pictures in enumerate(cases)

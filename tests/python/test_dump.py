@@ -17,7 +17,7 @@ def test_dump_has_the_tensors_of_each_stage(opendr, shared, photo, tmp_path):
     [line] = opendr.infer("yunet/640", photo, "--dump", folder)
     index = json.loads((folder / "dump.json").read_text())
     [item] = index["items"]
-    assert index["schema"] == 1 and item["runs"] == 1 and item["input"] == str(photo)
+    assert index["format_version"] == 1 and item["runs"] == 1 and item["input"] == str(photo)
     by_stage = {}
     for entry in item["files"]:
         by_stage.setdefault(entry["stage"], []).append(entry)

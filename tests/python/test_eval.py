@@ -60,8 +60,8 @@ def test_eval_gives_pycocotools_numbers(coco128, evaluated):
     assert json.loads((folder / "report.json").read_text())["scalars"] == outcome["scalars"]
     assert (folder / "precision_recall.svg").read_text().startswith("<svg")
     # 24 samples, each with ground truth and prediction, six images per row.
-    worst, answers = (cv2.imread(str(folder / name)) for name in ["worst.png", "answers.png"])
-    assert worst.shape == answers.shape and (worst != answers).any()
+    lowest, evenly = (cv2.imread(str(folder / name)) for name in ["lowest_scores.png", "samples.png"])
+    assert lowest.shape == evenly.shape and (lowest != evenly).any()
 
 
 def test_answers_are_ranked_below_the_threshold_of_the_card(opendr, coco128):

@@ -8,7 +8,7 @@ import time
 import zlib
 
 CART = ["tune", "ppo", "--env", "CartPole-v1", "--search", "learning_rate=1e-5..1e-2", "--search", "n_steps=32,64"]
-SHORT = ["--length", "4000", "--points", "4", "--tuning-seeds", "2", "--episodes", "5"]
+SHORT = ["--length", "4000", "--evaluations", "4", "--tuning-seeds", "2", "--episodes", "5"]
 
 
 def trials(output):

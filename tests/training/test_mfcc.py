@@ -1,4 +1,4 @@
-"""Cepstra of crates/perception/sound equal those of librosa and TensorFlow."""
+"""Cepstra of crates/perception/audio equal those of librosa and TensorFlow."""
 
 import os
 import subprocess
@@ -19,7 +19,7 @@ WORDS = ["down", "go", "left", "no", "off", "on", "right", "stop", "up", "yes", 
 
 @pytest.fixture(scope="session")
 def program():
-    """crates/perception/sound/examples/mfcc.rs."""
+    """crates/perception/audio/examples/mfcc.rs."""
     return example("sound", "mfcc")
 
 

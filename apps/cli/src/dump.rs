@@ -12,11 +12,14 @@ use opendr::datasets::{NpyElement, npy_from_values};
 use opendr::inference::recording::{self, RecordedTensor, Recording};
 use opendr::inference::{TensorData, TensorInfo, TensorView};
 use opendr::learner::Outputs;
-use opendr::{Error, Result, ResultExt as _, ValueRef};
+use opendr::{Error, JsonFormat, Result, ResultExt as _, ValueRef};
 use serde::Serialize;
 use serde_json::{Value as Json, json};
 
 use crate::item::Item;
+
+/// Format of `dump.json`.
+const FORMAT: JsonFormat = JsonFormat::new("index of a dump", 1);
 
 /// A folder of tensors that are written item by item.
 pub struct Dump {
@@ -102,7 +105,8 @@ impl Dump {
     /// Writes `dump.json` beside and then in place of the last one, so that Ctrl-C leaves a whole file.
     fn write_index(&self) -> Result<()> {
         let (partial, path) = (self.folder.join("dump.json.part"), self.folder.join("dump.json"));
-        write_json(&partial, &json!({"schema": 1, "items": self.items}))?;
+        let index = FORMAT.to_pretty_json(&json!({"items": self.items}))?;
+        fs::write(&partial, index).context(|| format!("writing {}", partial.display()))?;
         fs::rename(&partial, &path).context(|| format!("writing {}", path.display()))
     }
 }

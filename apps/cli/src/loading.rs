@@ -139,7 +139,7 @@ pub fn with_threads<R>(matches: &ArgMatches, work: impl FnOnce() -> R) -> R {
     }
 }
 
-/// Makes and loads the learner; downloads its model if it is not cached.
+/// Creates and loads the learner; downloads its model if it is not cached.
 ///
 /// # Errors
 /// `InvalidParam` for a wrong parameter; the error of the download or of loading.

@@ -6,6 +6,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use opendr::evaluation::PREDICTIONS_FORMAT;
 use opendr::learner::Outputs;
 use opendr::{Error, Result, ResultExt, Value};
 use serde::Serialize;
@@ -124,9 +125,7 @@ impl<'a> Report<'a> {
         if matches!(self.json, Json::Off) {
             return Ok(());
         }
-        let text = serde_json::to_string(line).map_err(|error| {
-            Error::internal("the predictions cannot be written as JSON").with_source(error)
-        })?;
+        let text = PREDICTIONS_FORMAT.to_json(line)?;
         match &mut self.json {
             Json::Off => Ok(()),
             Json::Stdout => self.bar.suspend(|| stdout::print(text)),

@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::io::Write;
 
-use opendr::{Error, Result};
+use opendr::{Error, JsonFormat, Result};
 use serde::Serialize;
 
 /// Prints a line.
@@ -15,22 +15,18 @@ pub fn print(line: impl Display) -> Result<()> {
     written.map_err(|error| Error::io("writing to standard output").with_source(error))
 }
 
-/// Prints a report as a line of JSON.
+/// Prints a report with the version of its format as a line of JSON.
 ///
 /// # Errors
-/// As [`print`]; `Internal` for a report that serde cannot serialise.
-pub fn print_json(report: &impl Serialize) -> Result<()> {
-    print(json_or_error(serde_json::to_string(report))?)
+/// As [`print`]; `Internal` for a report that does not serialise as an object.
+pub fn print_json(format: JsonFormat, report: &impl Serialize) -> Result<()> {
+    print(format.to_json(report)?)
 }
 
 /// Prints a report as JSON over several lines.
 ///
 /// # Errors
 /// As [`print_json`].
-pub fn print_pretty_json(report: &impl Serialize) -> Result<()> {
-    print(json_or_error(serde_json::to_string_pretty(report))?)
-}
-
-fn json_or_error(json: serde_json::Result<String>) -> Result<String> {
-    json.map_err(|error| Error::internal("the report cannot be written as JSON").with_source(error))
+pub fn print_pretty_json(format: JsonFormat, report: &impl Serialize) -> Result<()> {
+    print(format.to_pretty_json(report)?.trim_end())
 }

@@ -75,14 +75,14 @@ typedef enum opendr_status {
 } opendr_status;
 
 // The sample type of an image.
-typedef enum opendr_samples {
+typedef enum opendr_sample_type {
     // 8 bits, 0 to 255.
     OPENDR_U8 = 0,
     // 16 bits: depth in millimetres, thermal counts.
     OPENDR_U16 = 1,
     // Floats: depth in metres, or colours.
     OPENDR_F32 = 2,
-} opendr_samples;
+} opendr_sample_type;
 
 // The channels of an image in memory.
 typedef enum opendr_pixel_format {
@@ -171,7 +171,7 @@ typedef struct opendr_pixels {
     size_t height;
     // Bytes from one row to the next; 0 for contiguous rows. A plane has height rows.
     size_t row_stride;
-    // One of opendr_samples.
+    // One of opendr_sample_type.
     int32_t samples;
     // One of opendr_pixel_format.
     int32_t format;
@@ -614,7 +614,7 @@ enum opendr_status opendr_fit(const struct opendr_learner *learner,
 // env_params_json is an object of parameters of the environment; NULL uses the defaults. options_json is an object:
 // "params" (of the training), "out", "logging_path", "resume"; NULL uses the defaults. progress and report are the same as
 // for opendr_fit.
-enum opendr_status opendr_fit_in(const struct opendr_learner *learner,
+enum opendr_status opendr_fit_policy(const struct opendr_learner *learner,
                                  const char *id,
                                  const char *env_params_json,
                                  const char *options_json,
@@ -696,7 +696,7 @@ enum opendr_status opendr_network_open(const char *path,
 
 // Opens the network of a loaded learner again, on the learner's device, to run it without the learner's pre- and
 // post-processing. file is the same as for opendr_network_open(); the learner may be freed.
-enum opendr_status opendr_network_of(const struct opendr_learner *learner,
+enum opendr_status opendr_learner_network(const struct opendr_learner *learner,
                                      const char *file,
                                      struct opendr_network **network);
 

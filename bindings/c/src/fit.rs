@@ -76,7 +76,7 @@ fn options_from_json(json: &str) -> Result<FitOptions> {
 /// "params" (of the training), "out", "logging_path", "resume"; NULL uses the defaults. progress and report are the same as
 /// for opendr_fit.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn opendr_fit_in(
+pub unsafe extern "C" fn opendr_fit_policy(
     learner: *const opendr_learner,
     id: *const c_char,
     env_params_json: *const c_char,

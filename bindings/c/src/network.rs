@@ -175,7 +175,7 @@ pub unsafe extern "C" fn opendr_network_open(
 /// Opens the network of a loaded learner again, on the learner's device, to run it without the learner's pre- and
 /// post-processing. file is the same as for opendr_network_open(); the learner may be freed.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn opendr_network_of(
+pub unsafe extern "C" fn opendr_learner_network(
     learner: *const opendr_learner,
     file: *const c_char,
     network: *mut *mut opendr_network,

@@ -85,7 +85,7 @@ impl ArrayMemory {
         Ok(Self { start: address as *const u8, shape, strides, type_text })
     }
 
-    /// Length of each axis.
+    /// Returns the length of each axis.
     pub fn shape(&self) -> &[usize] {
         &self.shape
     }
@@ -95,7 +95,7 @@ impl ArrayMemory {
         self.type_text == T::TYPE_TEXT
     }
 
-    /// NumPy's string for the element type, for error messages.
+    /// Returns NumPy's string for the element type, for error messages.
     pub fn type_text(&self) -> &str {
         &self.type_text
     }

@@ -212,7 +212,7 @@ impl GivenDataset {
         }
     }
 
-    /// Name of the data set in outcomes: its path, or its class.
+    /// Returns the name of the data set in outcomes: its path, or its class.
     pub fn name(&self) -> String {
         match self {
             Self::External(external) => external.path().display().to_string(),

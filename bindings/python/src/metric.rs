@@ -38,20 +38,20 @@ impl Metric {
     }
 
     /// Adds the prediction for one sample. Returns its score, 0 to 1.
-    #[pyo3(signature = (prediction, truth, at=None))]
+    #[pyo3(signature = (prediction, ground_truth, index=None))]
     fn update(
         &self,
         py: Python<'_>,
         prediction: &Bound<'_, PyAny>,
-        truth: &Bound<'_, PyAny>,
-        at: Option<usize>,
+        ground_truth: &Bound<'_, PyAny>,
+        index: Option<usize>,
     ) -> PyResult<f64> {
-        let (prediction, truth) = (target_from_python(prediction)?, target_from_python(truth)?);
+        let (prediction, ground_truth) = (target_from_python(prediction)?, target_from_python(ground_truth)?);
         let counted = py.detach(|| {
             let mut state = self.lock();
-            let at = at.unwrap_or(state.next);
-            let score = state.metric.update(at, (&prediction).into(), (&truth).into())?;
-            state.next = state.next.max(at + 1);
+            let index = index.unwrap_or(state.next);
+            let score = state.metric.update(index, (&prediction).into(), (&ground_truth).into())?;
+            state.next = state.next.max(index + 1);
             Ok(score)
         });
         counted.to_python(py)
@@ -109,7 +109,7 @@ pub fn metrics(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
         table.set_item("name", entry.name)?;
         table.set_item("about", entry.about)?;
         table.set_item("prediction", entry.prediction.name())?;
-        table.set_item("truth", entry.truth.name())?;
+        table.set_item("ground_truth", entry.ground_truth.name())?;
         table.set_item("numbers", entry.numbers.to_vec())?;
         table.set_item("params", rows(py, entry.params, field)?)?;
         Ok(table)

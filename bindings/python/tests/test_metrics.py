@@ -19,7 +19,7 @@ from opendr.metrics import Metric, names, tables
 def test_tables_name_defaults_and_types():
     assert {"classification", "coco_detection", "coco_keypoints", "voc_detection"} <= set(names())
     table = next(table for table in tables() if table["name"] == "coco_detection")
-    assert (table["prediction"], table["truth"]) == ("BoundingBoxList", "BoundingBoxList")
+    assert (table["prediction"], table["ground_truth"]) == ("BoundingBoxList", "BoundingBoxList")
 
 
 def box(name, left, score=0.0):
@@ -32,8 +32,8 @@ def test_metric_counts_merges_and_tells():
     whole = Metric("coco_detection")
     assert whole.update(right, truth) > whole.update(wrong, truth)
     one, other = Metric("coco_detection"), Metric("coco_detection")
-    one.update(right, truth, at=0)
-    other.update(wrong, truth, at=1)
+    one.update(right, truth, index=0)
+    other.update(wrong, truth, index=1)
     one.merge(other)
     assert one.result() == whole.result()
     assert whole.result()["map50"] == pytest.approx(0.2525, abs=1e-3)
@@ -58,7 +58,7 @@ def test_threads_may_share_a_metric():
 
     def count(offset):
         for at in range(100):
-            metric.update(Category(at % 2, confidence=1.0), Category(at % 4 // 2), at=offset + at)
+            metric.update(Category(at % 2, confidence=1.0), Category(at % 4 // 2), index=offset + at)
 
     threads = [threading.Thread(target=count, args=(100 * at,)) for at in range(4)]
     for thread in threads:
@@ -107,8 +107,8 @@ def test_eval_of_a_python_data_set_resumes(detector, picture, tmp_path):
     assert (report["samples"], report["counted"], report["complete"], report["skipped"]) == (3, 3, True, 0)
     # "person" is the data set's "human"; classes that it does not have are ignored.
     assert outcome["map50"] == report["scalars"]["map50"] > 0.2
-    assert report["worst"][0]["index"] == 1
-    assert {"predictions.jsonl", "report.json", "worst.png", "answers.png"} <= {path.name for path in tmp_path.iterdir()}
+    assert report["lowest_scores"][0]["index"] == 1
+    assert {"predictions.jsonl", "report.json", "lowest_scores.png", "samples.png"} <= {path.name for path in tmp_path.iterdir()}
     assert any(path.suffix == ".svg" for path in tmp_path.iterdir())
     lines = (tmp_path / "predictions.jsonl").read_text().splitlines(keepends=True)
     assert len(lines) == 4
@@ -175,3 +175,19 @@ def test_eval_refuses_what_does_not_fit(detector, tmp_path):
         detector.eval(ExternalDataset(tmp_path, "auto"))
     with pytest.raises(ValueError, match="BoundingBoxList, not a Category"):
         detector.eval([(Image(np.zeros((3, 64, 64), np.uint8)), Category(1))])
+
+
+def test_former_arguments_of_update_warn():
+    metric = Metric("classification")
+    category = Category(1, confidence=1.0)
+    with pytest.warns(DeprecationWarning, match="truth is called ground_truth"):
+        metric.update(category, truth=category)
+    with pytest.warns(DeprecationWarning, match="at is called index"):
+        metric.update(category, category, at=1)
+    with pytest.raises(TypeError, match="give only ground_truth"), pytest.warns(DeprecationWarning):
+        metric.update(category, category, truth=category)
+    with pytest.raises(TypeError, match="needs the ground truth"):
+        metric.update(category)
+    with pytest.raises(TypeError, match="no argument 'sample'"):
+        metric.update(category, category, sample=1)
+    assert metric.result()["accuracy"] == 1.0

@@ -11,7 +11,7 @@ import opendr
 import pytest
 from opendr import Source, _opendr
 from opendr._native_class import native_class
-from opendr._native_learner import _value
+from opendr._input_value import input_value
 from opendr.engine.data import Audio, Image, PointCloud, SkeletonSequence, Timeseries, Vector, Video
 from opendr.engine.learners import BaseLearner, Init, Learner, LearnerRL
 from opendr.engine.target import BoundingBox, BoundingBox3D, BoundingBox3DList, BoundingBoxList, Heatmap
@@ -360,16 +360,16 @@ def test_several_inputs_and_outputs(pair):
 @pytest.mark.parametrize("given", [np.zeros((3, 2)), None, b"sound.wav", [1, 2]])
 def test_data_of_several_parts_are_not_guessed(given):
     with pytest.raises(TypeError, match="sound should be an Audio, not"):
-        _value(given, "sound", "Audio")
+        input_value(given, "sound", "Audio")
 
 
 def test_paths_are_files_of_the_type(tmp_path):
     (tmp_path / "beat.csv").write_text("volt,ampere\n1,2\n3,4\n5,6\n")
-    assert _value(tmp_path / "beat.csv", "series", "Timeseries").data.tolist() == [[1, 2], [3, 4], [5, 6]]
+    assert input_value(tmp_path / "beat.csv", "series", "Timeseries").data.tolist() == [[1, 2], [3, 4], [5, 6]]
     with pytest.raises(FileNotFoundError, match="none.wav"):
-        _value("none.wav", "sound", "Audio")
+        input_value("none.wav", "sound", "Audio")
     with pytest.raises(ValueError, match="beat.csv"):
-        _value(tmp_path / "beat.csv", "sound", "Audio")
+        input_value(tmp_path / "beat.csv", "sound", "Audio")
 
 
 def test_lists_that_hold_themselves():

@@ -259,7 +259,7 @@ pub fn write_mot_results(path: impl AsRef<Path>, tracks: &TrackingAnnotationList
 pub(crate) fn parse_any(text: &str) {
     let _ = sequence::SequenceInfo::parse(text, |_, _| Ok(()));
     for line in text.lines() {
-        let _ = MotRow::parse(line, row::RowKind::Truth);
+        let _ = MotRow::parse(line, row::RowKind::GroundTruth);
         let _ = MotRow::parse(line, row::RowKind::Detections);
     }
 }

@@ -99,7 +99,7 @@ pub struct Problems {
 }
 
 impl Problems {
-    /// Makes the first problem an error.
+    /// Creates a list of problems whose first one is an error.
     pub fn strict() -> Self {
         Self::default()
     }

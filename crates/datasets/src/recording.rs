@@ -21,7 +21,7 @@ const SLOP_NS: i64 = 20_000_000;
 pub struct AnnotatedRecording {
     recording: Recording,
     data: (Topic, ValueType),
-    truth: (Topic, ValueType),
+    ground_truth: (Topic, ValueType),
     samples: Vec<Pair>,
     classes: Classes,
 }
@@ -29,7 +29,7 @@ pub struct AnnotatedRecording {
 #[derive(Debug, Clone, Copy)]
 struct Pair {
     data: At,
-    truth: At,
+    ground_truth: At,
 }
 
 /// Location of a message in its topic.
@@ -144,7 +144,7 @@ impl AnnotatedRecording {
         let mut labels = BTreeSet::new();
         for pair in &self.samples {
             // Errors of reading are reported when the sample is read.
-            match self.value(&self.truth, pair.truth) {
+            match self.value(&self.ground_truth, pair.ground_truth) {
                 Ok(mut value) => for_each_name(&mut value, |name| {
                     if let Name::Label(label) = name {
                         labels.insert(label.to_string());
@@ -193,7 +193,7 @@ impl DatasetIterator for AnnotatedRecording {
     }
 
     fn target(&self, index: usize) -> Result<Option<Value>> {
-        let mut value = self.value(&self.truth, self.pair(index)?.truth)?;
+        let mut value = self.value(&self.ground_truth, self.pair(index)?.ground_truth)?;
         for_each_name(&mut value, |name| {
             if let Some(number) = self.classes.label(name).and_then(|label| self.classes.index(label)) {
                 *name = Name::Index(number);
@@ -253,16 +253,16 @@ impl Format for AnnotatedRecording {
         let recording = Recording::open(path)?;
         let named: Vec<&str> = options.split.iter().flat_map(|split| split.split(',')).collect();
         let types = options.target.as_ref().map_or(Self::TARGETS, std::slice::from_ref);
-        let truth = topic_of(&recording, types, &named)?;
-        let data = topic_of(&recording, data_types(truth.1), &named)?;
+        let ground_truth = topic_of(&recording, types, &named)?;
+        let data = topic_of(&recording, data_types(ground_truth.1), &named)?;
         let is_unused = |name: &&&str| {
-            [&data.0, &truth.0]
+            [&data.0, &ground_truth.0]
                 .iter()
                 .all(|topic| topic.name.trim_start_matches('/') != name.trim_start_matches('/'))
         };
         if let Some(name) = named.iter().find(is_unused) {
             // The error of `topic_for` states the reason.
-            recording.topic_for(truth.1, Some(name))?;
+            recording.topic_for(ground_truth.1, Some(name))?;
             return Err(Error::invalid_param(format!(
                 "{name:?} is one topic too many: select one of data and one of annotations"
             )));
@@ -272,22 +272,22 @@ impl Format for AnnotatedRecording {
             problems.report(Problem::new(path, message))?;
         }
         let classes = Classes::default();
-        let mut opened = Self { recording, data, truth, samples: Vec::new(), classes };
+        let mut opened = Self { recording, data, ground_truth, samples: Vec::new(), classes };
         let mut data = opened.index(&opened.data.0, problems)?;
         data.sort_by_key(|at| at.stamp_ns);
-        for truth in opened.index(&opened.truth.0, problems)? {
-            let after = data.partition_point(|at| at.stamp_ns < truth.stamp_ns);
+        for ground_truth in opened.index(&opened.ground_truth.0, problems)? {
+            let after = data.partition_point(|at| at.stamp_ns < ground_truth.stamp_ns);
             let near =
                 [after.checked_sub(1), Some(after)].into_iter().flatten().filter_map(|at| data.get(at));
-            let distance = |at: &&At| at.stamp_ns.saturating_sub(truth.stamp_ns).saturating_abs();
+            let distance = |at: &&At| at.stamp_ns.saturating_sub(ground_truth.stamp_ns).saturating_abs();
             if let Some(nearest) = near.min_by_key(distance).filter(|at| distance(at) <= SLOP_NS) {
-                opened.samples.push(Pair { data: *nearest, truth });
+                opened.samples.push(Pair { data: *nearest, ground_truth });
             } else {
                 let message = Error::invalid_input(format!(
                     "{} has no message within 20 ms of the stamp",
                     opened.data.0.name
                 ));
-                opened.problem(&opened.truth.0, truth.log_time_ns, &message, problems)?;
+                opened.problem(&opened.ground_truth.0, ground_truth.log_time_ns, &message, problems)?;
             }
         }
         opened.classes = opened.find_classes().context(|| path.display().to_string())?;

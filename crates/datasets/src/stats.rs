@@ -5,7 +5,7 @@ use std::fmt;
 
 use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::target::Name;
-use opendr_engine::{Progress, Result, Unit, Value};
+use opendr_engine::{JsonFormat, Progress, Result, Unit, Value};
 use serde::Serialize;
 
 use crate::{Problem, Problems};
@@ -80,6 +80,9 @@ pub struct DatasetStats {
 }
 
 impl DatasetStats {
+    /// Format of the statistics as JSON. Version 2 renamed `picture_width` and `picture_height` to `image_...`.
+    pub const FORMAT: JsonFormat = JsonFormat::new("statistics of a data set", 2);
+
     /// Counts a data set; images are read only if the format requires it.
     ///
     /// # Errors

@@ -37,6 +37,7 @@ mod cache;
 mod device;
 mod error;
 mod header;
+mod json_format;
 mod json_stream;
 mod map_in_stages;
 #[allow(dead_code)]
@@ -64,6 +65,7 @@ pub use cache::cache_dir;
 pub use device::Device;
 pub use error::{Error, ErrorKind, Result, ResultExt};
 pub use header::Header;
+pub use json_format::JsonFormat;
 pub use json_stream::{JsonPiece, JsonStream};
 pub use map_in_stages::map_in_stages;
 pub use model::Model;

@@ -5,7 +5,7 @@
 use opendr_engine::target::Classes;
 use opendr_engine::{Progress, Random, Result, Unit};
 use opendr_metrics::{AnyMetric, Report};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Maximum number of groups that are resampled. With fewer samples, each is a group.
 const MAX_GROUPS: usize = 50;
@@ -16,7 +16,7 @@ const LEVEL: f64 = 0.95;
 const SEED: u64 = 0;
 
 /// A confidence interval of the headline number of a report.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Interval {
     /// Lower end.
     pub low: f64,
@@ -131,9 +131,9 @@ mod tests {
         let metric = find("classification").unwrap().make(&ParamMap::new()).unwrap();
         let mut groups = Groups::new(metric, samples);
         for at in 0..samples {
-            let (prediction, truth) =
+            let (prediction, ground_truth) =
                 (Category::new(i64::from(at % samples < right), None), Category::new(1, None));
-            groups.of(at).update(at, (&prediction).into(), (&truth).into()).unwrap();
+            groups.of(at).update(at, (&prediction).into(), (&ground_truth).into()).unwrap();
         }
         groups
     }

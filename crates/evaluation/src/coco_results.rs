@@ -42,7 +42,7 @@ pub fn score_coco_results(
     };
     // Checks the parameters.
     metric.make(params)?;
-    let options = OpenOptions { split, target: Some(metric.truth) };
+    let options = OpenOptions { split, target: Some(metric.ground_truth) };
     let annotations = Coco::annotation_file(dataset, &options)?;
     let mut files = CocoFiles { threads, ..CocoFiles::new(kind) };
     if let Some(ParamValue::Bool(use_classes)) = params.get("use_classes") {
@@ -68,8 +68,8 @@ pub fn score_coco_results(
         seconds: begun.elapsed().as_secs_f64(),
         report: found.report(),
         interval: None,
-        worst: Vec::new(),
-        evenly: Vec::new(),
+        lowest_scores: Vec::new(),
+        evenly_spaced: Vec::new(),
         problems: Vec::new(),
         written: Vec::new(),
     })

@@ -153,11 +153,11 @@ impl<'a> Evaluation<'a> {
     ///
     /// # Errors
     /// As [`Evaluation::run`].
-    pub fn score(&self, answers: &FilePredictions, dataset: &dyn DatasetIterator) -> Result<Outcome> {
+    pub fn score(&self, predictions: &FilePredictions, dataset: &dyn DatasetIterator) -> Result<Outcome> {
         let begun = Instant::now();
-        let mut tally = self.begin(dataset, answers.classes())?;
+        let mut tally = self.begin(dataset, predictions.classes())?;
         let done = (0..dataset.len()).take_while(|_| !self.progress.stopped()).try_for_each(|at| {
-            let prediction = answers.get(at, self.metric.prediction);
+            let prediction = predictions.get(at, self.metric.prediction);
             self.progress.advance(1);
             tally.count(Line {
                 at,
@@ -177,7 +177,7 @@ impl<'a> Evaluation<'a> {
     where
         'a: 'd,
     {
-        let AnnotatedClasses { classes, occurring } = annotated_classes(dataset, self.metric.truth);
+        let AnnotatedClasses { classes, occurring } = annotated_classes(dataset, self.metric.ground_truth);
         let labels = if self.metric.segments { MapLabels::Segments } else { MapLabels::Classes };
         let map = ClassMap::new(learner, classes.clone(), &self.classes)?.with_labels(labels);
         map.check(occurring.as_deref(), REMEDY)?;
@@ -209,7 +209,7 @@ impl<'a> Evaluation<'a> {
         let complete = tally.next == tally.dataset.len();
         let report = tally.groups.report()?;
         let interval = tally.groups.interval(&report, self.resamples, self.progress)?;
-        let (worst, evenly) = tally.listed.into_samples();
+        let (lowest_scores, evenly_spaced) = tally.listed.into_samples();
         let mut outcome = Outcome {
             learner: self.subject.learner.clone(),
             dataset: self.dataset.clone(),
@@ -224,8 +224,8 @@ impl<'a> Evaluation<'a> {
             seconds: begun.elapsed().as_secs_f64(),
             report,
             interval,
-            worst,
-            evenly,
+            lowest_scores,
+            evenly_spaced,
             problems: self.problems.list(),
             written: Vec::new(),
         };
@@ -301,7 +301,12 @@ impl Tally<'_> {
         match self.score(line) {
             Ok((score, prediction)) => {
                 self.counted += 1;
-                self.listed.add(&ScoredSample { index: at, name: dataset.name(at), score, prediction });
+                self.listed.add(&ScoredSample {
+                    index: at,
+                    name: dataset.name(at),
+                    score,
+                    prediction: Some(prediction),
+                });
             }
             Err(problem) => self.problems.report(problem)?,
         }
@@ -320,10 +325,10 @@ impl Tally<'_> {
             SampleResult::Error(problem) => return Err(problem),
         };
         let mapped = self.classes.apply(&mut prediction);
-        let counted = mapped.and_then(|()| dataset.target(at)).and_then(|truth| {
-            let truth =
-                truth.ok_or_else(|| Error::invalid_input("the sample has no annotation to compare with"))?;
-            self.groups.of(self.unit).update(at, (&prediction).into(), (&truth).into())
+        let counted = mapped.and_then(|()| dataset.target(at)).and_then(|ground_truth| {
+            let ground_truth = ground_truth
+                .ok_or_else(|| Error::invalid_input("the sample has no annotation to compare with"))?;
+            self.groups.of(self.unit).update(at, (&prediction).into(), (&ground_truth).into())
         });
         match counted {
             Ok(score) => Ok((score, prediction)),

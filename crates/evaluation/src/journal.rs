@@ -9,17 +9,19 @@ use std::path::{Path, PathBuf};
 
 use opendr_datasets::Problem;
 use opendr_engine::dataset::DatasetIterator;
-use opendr_engine::{Error, Result, ResultExt, Value};
+use opendr_engine::{Error, JsonFormat, Result, ResultExt, Value};
 use serde::{Deserialize, Serialize};
 
 use crate::Subject;
 
-const VERSION: u32 = 1;
+/// Format of files of predictions. A journal has the version in its first line, `opendr infer --json` in each. Version 2 renamed
+/// `opendr_eval` to `format_version`, and `place` of a problem to `location`.
+pub const PREDICTIONS_FORMAT: JsonFormat =
+    JsonFormat::new("file of predictions", 2).with_former_key("opendr_eval");
 
 /// The first line.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub struct Heading {
-    opendr_eval: u32,
     #[serde(flatten)]
     subject: Subject,
     dataset: String,
@@ -36,7 +38,7 @@ impl Heading {
 
     fn of_names(subject: Subject, dataset: String, names: impl ExactSizeIterator<Item = String>) -> Self {
         let samples = names.len();
-        Self { opendr_eval: VERSION, subject, dataset, samples, fingerprint: fingerprint(names) }
+        Self { subject, dataset, samples, fingerprint: fingerprint(names) }
     }
 }
 
@@ -99,7 +101,7 @@ impl Journal {
         if !first.ends_with('\n') {
             file.set_len(0).context(context)?;
             let mut journal = Self { path: path.to_owned(), file };
-            journal.write(heading)?;
+            journal.append(PREDICTIONS_FORMAT.to_json(heading)?)?;
             return Ok(journal);
         }
         check_heading(path, &first, heading)?;
@@ -151,10 +153,14 @@ impl Journal {
     /// # Errors
     /// `Io` when the disk is full.
     pub fn write(&mut self, line: &impl Serialize) -> Result<()> {
-        let mut text = serde_json::to_vec(line)
+        let text = serde_json::to_string(line)
             .map_err(|error| Error::internal("a prediction cannot be written as JSON").with_source(error))?;
-        text.push(b'\n');
-        self.file.write_all(&text).context(|| format!("writing {}", self.path.display()))
+        self.append(text)
+    }
+
+    fn append(&mut self, mut text: String) -> Result<()> {
+        text.push('\n');
+        self.file.write_all(text.as_bytes()).context(|| format!("writing {}", self.path.display()))
     }
 }
 
@@ -166,10 +172,8 @@ fn whole_sequences(dataset: &dyn DatasetIterator, count: usize) -> usize {
 
 fn check_heading(path: &Path, text: &str, heading: &Heading) -> Result<()> {
     let path = path.display();
-    let found: Heading = serde_json::from_str(text).map_err(|error| {
-        Error::format(format!("{path} is not a journal of predictions; use another folder"))
-            .with_source(error)
-    })?;
+    let found: Heading =
+        PREDICTIONS_FORMAT.read(text.as_bytes()).context(|| format!("opening {path}; use another folder"))?;
     if found == *heading {
         return Ok(());
     }
@@ -233,8 +237,36 @@ mod tests {
         assert_eq!(read(&path, &heading("a")).unwrap().0, [line(0), failed, line(2)]);
         let error = read(&path, &heading("b")).err().unwrap();
         assert!(error.to_string().contains("(learner differs)"), "{error}");
+        std::fs::write(&path, "{\"format_version\": 3}\n").unwrap();
+        let error = read(&path, &heading("a")).err().unwrap();
+        assert!(
+            error.to_string().contains("format version 3") && error.to_string().contains("update OpenDR"),
+            "{error}"
+        );
         std::fs::write(&path, "nonsense\n").unwrap();
         assert!(read(&path, &heading("a")).is_err());
+        std::fs::remove_dir_all(folder).unwrap();
+    }
+
+    /// `tests/formats/version_1` has the file and the command that wrote it.
+    #[test]
+    fn a_journal_of_version_1_is_resumed() {
+        let folder = std::env::temp_dir().join(format!("opendr-journal-1-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let path = folder.join("predictions.jsonl");
+        std::fs::write(&path, include_bytes!("../../../tests/formats/version_1/eval/predictions.jsonl"))
+            .unwrap();
+        let subject = Subject {
+            learner: "gated_recurrent_unit".to_owned(),
+            model: Some("gru/model".to_owned()),
+            ..Subject::default()
+        };
+        let names = (1..=12).map(|number| format!("waves_TEST.tsv:{number}"));
+        let heading = Heading::of_names(subject, "waves".to_owned(), names);
+        let (lines, _) = read(&path, &heading).unwrap();
+        assert_eq!(lines.len(), 12);
+        let SampleResult::Error(problem) = &lines[7].result else { panic!("{:?}", lines[7]) };
+        assert!(problem.location.is_some());
         std::fs::remove_dir_all(folder).unwrap();
     }
 }

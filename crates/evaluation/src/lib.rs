@@ -19,11 +19,11 @@
 //! # Ok::<_, opendr_engine::Error>(())
 //! ```
 
-mod answers;
 mod bootstrap;
 mod classes;
 mod coco_results;
 mod evaluation;
+mod file_predictions;
 mod journal;
 mod open;
 mod options;
@@ -36,11 +36,12 @@ mod task;
 mod taught;
 mod teacher;
 
-pub use answers::{FilePredictions, Lines};
 pub use bootstrap::Interval;
 pub use classes::{ByNumber, ClassMap, ClassMatching, ClassPair, ClassReport, MapLabels, MatchedBy};
 pub use coco_results::{is_coco_results, score_coco_results};
 pub use evaluation::Evaluation;
+pub use file_predictions::{FilePredictions, Lines};
+pub use journal::PREDICTIONS_FORMAT;
 pub use open::open_for_metric;
 pub use options::{EvalJob, EvalOptions};
 pub use outcome::Outcome;

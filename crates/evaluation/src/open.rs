@@ -16,15 +16,15 @@ pub fn open_for_metric(
     problems: &Problems,
 ) -> Result<Box<dyn DatasetIterator>> {
     let format = format_of(dataset)?;
-    if !format.targets.contains(&metric.truth) {
+    if !format.targets.contains(&metric.ground_truth) {
         let has: Vec<_> = format.targets.iter().map(|target| target.name()).collect();
         return Err(Error::invalid_input(format!(
             "{} needs the annotations {}, but a data set of format {} has {}; choose another metric, or another format",
             metric.name,
-            metric.truth.name(),
+            metric.ground_truth.name(),
             format.name,
             has.join(" or ")
         )));
     }
-    (format.open)(dataset.path(), &OpenOptions { split, target: Some(metric.truth) }, problems)
+    (format.open)(dataset.path(), &OpenOptions { split, target: Some(metric.ground_truth) }, problems)
 }

@@ -7,19 +7,21 @@ use std::path::{Path, PathBuf};
 use opendr_datasets::Problem;
 use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::params::ParamMap;
-use opendr_engine::{Error, Result, ResultExt};
+use opendr_engine::{JsonFormat, Result, ResultExt};
 use opendr_metrics::{Report, Table};
 use opendr_runlog::svg_from_figure;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::shown::{ScoredSample, contact_sheet};
 use crate::{ClassReport, Interval};
 
 /// Maximum rows of a printed table; the JSON has all.
 const ROWS: usize = 40;
+/// File name of the report in the output folder.
+const REPORT: &str = "report.json";
 
 /// Results of an evaluation. `Display` prints a table.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
     /// Name of the learner.
     pub learner: String,
@@ -28,12 +30,13 @@ pub struct Outcome {
     /// Name of the metric.
     pub metric: String,
     /// All parameters of the metric.
+    #[serde(default)]
     pub metric_params: ParamMap,
     /// Threshold of the learner, if it has one.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub threshold: Option<f64>,
     /// How classes were matched.
-    #[serde(skip_serializing_if = "ClassReport::is_empty")]
+    #[serde(default, skip_serializing_if = "ClassReport::is_empty")]
     pub classes: ClassReport,
     /// Number of samples of the data set.
     pub samples: usize,
@@ -49,15 +52,16 @@ pub struct Outcome {
     #[serde(flatten)]
     pub report: Report,
     /// Confidence interval of the headline.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interval: Option<Interval>,
     /// Samples with the lowest scores, lowest first.
-    pub worst: Vec<ScoredSample>,
+    #[serde(alias = "worst")]
+    pub lowest_scores: Vec<ScoredSample>,
     /// Samples spaced evenly over the data set.
     #[serde(skip)]
-    pub evenly: Vec<ScoredSample>,
+    pub evenly_spaced: Vec<ScoredSample>,
     /// Skipped samples and annotations.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub problems: Vec<Problem>,
     /// Files that were written.
     #[serde(skip)]
@@ -65,11 +69,26 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// Format of `report.json`. Version 2 renamed `worst` to `lowest_scores`, and `place` of a problem to `location`.
+    pub const FORMAT: JsonFormat = JsonFormat::new("report of an evaluation", 2);
+
+    /// Reads a report that [`Self::write_report`] of this version or of an earlier one wrote. The samples have no predictions.
+    ///
+    /// # Errors
+    /// `Io`; `Format` for another file; `Unsupported` for a newer version.
+    pub fn read(path: &Path) -> Result<Self> {
+        let context = || format!("reading {}", path.display());
+        let json = fs::read(path).context(context)?;
+        Self::FORMAT.read(&json).context(context)
+    }
+
     /// Writes `report.json`, an SVG file per figure, and two contact sheets into a folder. Predictions with a confidence below
     /// `least` are not drawn.
     pub(crate) fn write(&mut self, dataset: &dyn DatasetIterator, folder: &Path, least: f32) -> Result<()> {
         self.write_report(folder)?;
-        for (name, samples) in [("worst.png", &self.worst), ("answers.png", &self.evenly)] {
+        for (name, samples) in
+            [("lowest_scores.png", &self.lowest_scores), ("samples.png", &self.evenly_spaced)]
+        {
             if let Some(sheet) = contact_sheet(samples, dataset, least)? {
                 let path = folder.join(name);
                 opendr_vision::save(&sheet, &path)?;
@@ -85,9 +104,7 @@ impl Outcome {
     /// `Io` when a file cannot be written.
     pub fn write_report(&mut self, folder: &Path) -> Result<()> {
         fs::create_dir_all(folder).context(|| format!("creating {}", folder.display()))?;
-        let json = serde_json::to_string_pretty(self)
-            .map_err(|error| Error::internal("the report cannot be written as JSON").with_source(error))?;
-        let mut files = vec![("report.json".to_owned(), json + "\n")];
+        let mut files = vec![(REPORT.to_owned(), Self::FORMAT.to_pretty_json(self)?)];
         files.extend(self.report.figures.iter().map(|figure| {
             let (name, svg) = svg_from_figure(figure);
             (format!("{name}.svg"), svg)

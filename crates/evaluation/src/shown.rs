@@ -7,7 +7,7 @@ use opendr_engine::data::Image;
 use opendr_engine::dataset::{DatasetIterator, Sample};
 use opendr_engine::{Result, Value};
 use opendr_vision::draw;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Images per row: pairs of ground truth and prediction.
 const COLUMNS: usize = 6;
@@ -15,51 +15,51 @@ const COLUMNS: usize = 6;
 const SIDE: usize = 300;
 
 /// A sample with its prediction and score.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ScoredSample {
     /// Index in the data set.
     pub index: usize,
     /// Name in the data set.
     pub name: String,
-    /// Score of the prediction, 0 (worst) to 1.
+    /// Score of the prediction, 0 to 1, the best.
     pub score: f64,
-    /// Prediction, in the classes of the data set.
+    /// Prediction, in the classes of the data set; `None` in a report that was read from a file.
     #[serde(skip)]
-    pub prediction: Value,
+    pub prediction: Option<Value>,
 }
 
 /// Collects at most `limit` samples of each kind.
 pub struct ContactSheetSamples {
     limit: usize,
     samples: usize,
-    worst: Vec<ScoredSample>,
-    evenly: Vec<ScoredSample>,
+    lowest: Vec<ScoredSample>,
+    evenly_spaced: Vec<ScoredSample>,
 }
 
 impl ContactSheetSamples {
     /// Creates a collector for a data set of `samples` samples.
     pub fn new(limit: usize, samples: usize) -> Self {
-        Self { limit, samples, worst: Vec::new(), evenly: Vec::new() }
+        Self { limit, samples, lowest: Vec::new(), evenly_spaced: Vec::new() }
     }
 
     /// Adds a sample; keeps a copy if it is among the lowest scores or evenly spaced.
     pub fn add(&mut self, sample: &ScoredSample) {
         let order =
             |other: &ScoredSample| other.score.total_cmp(&sample.score).then(other.index.cmp(&sample.index));
-        let at = self.worst.partition_point(|other| order(other) == Ordering::Less);
+        let at = self.lowest.partition_point(|other| order(other) == Ordering::Less);
         if at < self.limit {
-            self.worst.insert(at, sample.clone());
-            self.worst.truncate(self.limit);
+            self.lowest.insert(at, sample.clone());
+            self.lowest.truncate(self.limit);
         }
         let share = |index: usize| index * self.limit.min(self.samples) / self.samples.max(1);
         if share(sample.index) < share(sample.index + 1) {
-            self.evenly.push(sample.clone());
+            self.evenly_spaced.push(sample.clone());
         }
     }
 
     /// Returns the samples with the lowest scores, lowest first, and the evenly spaced ones.
     pub fn into_samples(self) -> (Vec<ScoredSample>, Vec<ScoredSample>) {
-        (self.worst, self.evenly)
+        (self.lowest, self.evenly_spaced)
     }
 }
 
@@ -73,9 +73,10 @@ pub fn contact_sheet(
     let mut images = Vec::new();
     for ScoredSample { index, name, score, prediction } in samples {
         let sample = dataset.get(*index)?;
-        let predicted = Sample { target: Some(confident(prediction, least)), ..sample.clone() };
-        if let (Some(truth), Some(predicted)) = (draw_sample(&sample), draw_sample(&predicted)) {
-            images.push((truth, name.clone()));
+        let target = prediction.as_ref().map(|prediction| confident(prediction, least));
+        let predicted = Sample { target, ..sample.clone() };
+        if let (Some(ground_truth), Some(predicted)) = (draw_sample(&sample), draw_sample(&predicted)) {
+            images.push((ground_truth, name.clone()));
             images.push((predicted, format!("predicted, {score:.2}")));
         }
     }
@@ -106,12 +107,12 @@ mod tests {
     fn selected(limit: usize, scores: &[f64]) -> (Vec<usize>, Vec<usize>) {
         let mut selected = ContactSheetSamples::new(limit, scores.len());
         for (index, &score) in scores.iter().enumerate() {
-            let prediction = Category::default().into();
+            let prediction = Some(Category::default().into());
             selected.add(&ScoredSample { index, name: index.to_string(), score, prediction });
         }
         let indices = |samples: Vec<ScoredSample>| samples.iter().map(|sample| sample.index).collect();
-        let (worst, evenly) = selected.into_samples();
-        (indices(worst), indices(evenly))
+        let (lowest, evenly_spaced) = selected.into_samples();
+        (indices(lowest), indices(evenly_spaced))
     }
 
     #[test]

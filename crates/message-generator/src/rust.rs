@@ -34,7 +34,7 @@ pub fn rust_files(ros2: &Library, ros1: &Library, names: &Ros1Names) -> Result<B
         files.entry(path).or_insert_with(|| head(&definition.name.package, "")).push_str(&writer.structure(
             definition,
             "",
-            &definition.name.to_string(),
+            &format!("`{}`", definition.name),
         )?);
         writer.write_row(&mut table, definition)?;
         if let Some(form) = writer.ros1_form(definition)?
@@ -44,15 +44,15 @@ pub fn rust_files(ros2: &Library, ros1: &Library, names: &Ros1Names) -> Result<B
             files
                 .entry(path)
                 .or_insert_with(|| head(&form.name.package, " as ROS 1 has them"))
-                .push_str(&writer.structure(form, "ros1::", &format!("{}, ROS 1's", form.name))?);
+                .push_str(&writer.structure(form, "ros1::", &format!("`{}` of ROS 1", form.name))?);
         }
     }
     table.push_str("}\n\nservices! {\n");
     for service in ros2.services() {
         let path = format!("{}.rs", service.name.package);
         let file = files.entry(path).or_insert_with(|| head(&service.name.package, ""));
-        for (part, what) in [(&service.request, "request"), (&service.response, "response")] {
-            file.push_str(&writer.structure(part, "", &format!("{}, the {what}", service.name))?);
+        for (part, what) in [(&service.request, "Request"), (&service.response, "Response")] {
+            file.push_str(&writer.structure(part, "", &format!("{what} of `{}`", service.name))?);
         }
         let TypeName { package, name } = &service.name;
         let (md5, hash) = (service_md5sum(ros1, service)?, service_rihs01(ros2, service)?);
@@ -173,7 +173,7 @@ impl Writer<'_> {
             field.default.as_deref().is_some_and(|value| !matches!(value, "0" | "0.0" | "false"))
                 || matches!(field.field_type.array, Array::Fixed(length) if length > LONGEST_KNOWN_ARRAY)
         });
-        let mut text = format!("\n/// `{title}`");
+        let mut text = format!("\n/// {title}");
         text.push_str(if definition.doc.is_empty() { "." } else { ": " });
         text.push_str(&definition.doc);
         if fields.iter().any(|field| field.doc.is_empty()) {

@@ -2,7 +2,7 @@
 //! other languages compare the metrics with the reference tools by it.
 //!
 //! An input line is
-//! `{"metric": NAME, "params": {..}, "samples": [{"prediction": TARGET, "truth": TARGET}, ..], "parts": N}`.
+//! `{"metric": NAME, "params": {..}, "samples": [{"prediction": TARGET, "ground truth": TARGET}, ..], "parts": N}`.
 //! `"end_sequence": true` in a sample ends a sequence after it. `parts` is the number of accumulators that share the
 //! samples (whole sequences, if there are any) and are then merged. The output line is the report, or
 //! `{"error": TEXT}`. Targets are in the form of docs/json.md.
@@ -27,7 +27,7 @@ struct Case {
 #[derive(Deserialize)]
 struct Sample {
     prediction: Value,
-    truth: Value,
+    ground_truth: Value,
     #[serde(default)]
     end_sequence: bool,
 }
@@ -58,7 +58,7 @@ fn compute(case: &Case) -> Result<Report> {
     let mut sequence = 0;
     for (at, sample) in case.samples.iter().enumerate() {
         let part = &mut parts[if in_sequences { sequence } else { at } % count];
-        part.update(at, (&sample.prediction).into(), (&sample.truth).into())?;
+        part.update(at, (&sample.prediction).into(), (&sample.ground_truth).into())?;
         if sample.end_sequence {
             part.end_sequence();
             sequence += 1;

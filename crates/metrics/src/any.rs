@@ -20,7 +20,7 @@ pub trait AnyMetric: Send {
     ///
     /// # Errors
     /// Returns `InvalidInput` for a value of another type than that of the metric; otherwise as [`Metric::update`].
-    fn update(&mut self, at: usize, prediction: ValueRef<'_>, truth: ValueRef<'_>) -> Result<f64>;
+    fn update(&mut self, at: usize, prediction: ValueRef<'_>, ground_truth: ValueRef<'_>) -> Result<f64>;
 
     /// As [`Metric::end_sequence`].
     fn end_sequence(&mut self);
@@ -49,15 +49,16 @@ impl<M: Metric> AnyMetric for Typed<M> {
         Box::new(Self(self.0.clone()))
     }
 
-    fn update(&mut self, at: usize, prediction: ValueRef<'_>, truth: ValueRef<'_>) -> Result<f64> {
+    fn update(&mut self, at: usize, prediction: ValueRef<'_>, ground_truth: ValueRef<'_>) -> Result<f64> {
         let invalid = |what: &str, expected: ValueType, given: ValueRef<'_>| {
             let (expected, given) = (expected.name(), given.value_type().name());
             Error::invalid_input(format!("the {what} of {} must be a {expected}, not a {given}", M::NAME))
         };
         let prediction = M::prediction(prediction)
             .ok_or_else(|| invalid("prediction", M::Prediction::TYPE, prediction))?;
-        let truth = M::truth(truth).ok_or_else(|| invalid("ground truth", M::Truth::TYPE, truth))?;
-        self.0.update(at, &prediction, &truth)
+        let ground_truth = M::ground_truth(ground_truth)
+            .ok_or_else(|| invalid("ground truth", M::GroundTruth::TYPE, ground_truth))?;
+        self.0.update(at, &prediction, &ground_truth)
     }
 
     fn end_sequence(&mut self) {
@@ -101,7 +102,7 @@ pub struct MetricEntry {
     /// Type of the predictions.
     pub prediction: ValueType,
     /// Type of the ground truth.
-    pub truth: ValueType,
+    pub ground_truth: ValueType,
     make: fn(&ParamMap) -> Result<Box<dyn AnyMetric>>,
 }
 
@@ -117,7 +118,7 @@ impl MetricEntry {
             is_ranking: M::IS_RANKING,
             segments: M::SEGMENTS,
             prediction: M::Prediction::TYPE,
-            truth: M::Truth::TYPE,
+            ground_truth: M::GroundTruth::TYPE,
             make: |params| Ok(Box::new(Typed(M::new(&M::Params::from_map(params)?)?))),
         }
     }

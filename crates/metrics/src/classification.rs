@@ -49,8 +49,8 @@ pub struct Classification {
 
 impl Classification {
     /// Adds a sample.
-    pub fn add(&mut self, truth: i64, predicted: i64) {
-        *self.pairs.entry((truth, predicted)).or_default() += 1;
+    pub fn add(&mut self, ground_truth: i64, predicted: i64) {
+        *self.pairs.entry((ground_truth, predicted)).or_default() += 1;
     }
 
     /// Adds the rank of the true class among the scores of all classes, from class 0 on, for the top-k accuracies. Of equal
@@ -58,9 +58,9 @@ impl Classification {
     /// `top_k_accuracy_score` of numbers and of names.
     ///
     /// # Errors
-    /// Returns `InvalidInput` if `truth` has no score, a score is NaN, or there are more than 2^20 scores.
-    pub fn add_scores(&mut self, truth: i64, scores: &[f32]) -> Result<()> {
-        let rank = rank_of_class(truth, scores, &self.order)?;
+    /// Returns `InvalidInput` if `ground_truth` has no score, a score is NaN, or there are more than 2^20 scores.
+    pub fn add_scores(&mut self, ground_truth: i64, scores: &[f32]) -> Result<()> {
+        let rank = rank_of_class(ground_truth, scores, &self.order)?;
         self.add_rank(rank);
         Ok(())
     }
@@ -88,13 +88,13 @@ impl Classification {
     /// Returns the classes that occur as ground truth or prediction, ascending.
     pub fn labels(&self) -> Vec<i64> {
         let labels: BTreeSet<i64> =
-            self.pairs.keys().flat_map(|(truth, predicted)| [*truth, *predicted]).collect();
+            self.pairs.keys().flat_map(|(ground_truth, predicted)| [*ground_truth, *predicted]).collect();
         labels.into_iter().collect()
     }
 
     /// Returns the fraction of correct predictions; `None` without samples.
     pub fn accuracy(&self) -> Option<f64> {
-        let hits = self.pairs.iter().filter(|((truth, predicted), _)| truth == predicted);
+        let hits = self.pairs.iter().filter(|((ground_truth, predicted), _)| ground_truth == predicted);
         ratio(hits.map(|(_, count)| count).sum(), self.samples())
     }
 
@@ -131,8 +131,10 @@ impl Classification {
     pub fn confusion(&self, labels: &[i64]) -> Vec<u64> {
         let side = labels.len();
         let mut counts = vec![0; side * side];
-        for ((truth, predicted), count) in &self.pairs {
-            if let (Ok(row), Ok(column)) = (labels.binary_search(truth), labels.binary_search(predicted)) {
+        for ((ground_truth, predicted), count) in &self.pairs {
+            if let (Ok(row), Ok(column)) =
+                (labels.binary_search(ground_truth), labels.binary_search(predicted))
+            {
                 counts[row * side + column] = *count;
             }
         }
@@ -141,11 +143,11 @@ impl Classification {
 
     fn counts(&self) -> BTreeMap<i64, ClassCounts> {
         let mut counts = BTreeMap::<i64, ClassCounts>::new();
-        for ((truth, predicted), count) in &self.pairs {
+        for ((ground_truth, predicted), count) in &self.pairs {
             counts.entry(*predicted).or_default().predicted += count;
-            let class = counts.entry(*truth).or_default();
+            let class = counts.entry(*ground_truth).or_default();
             class.support += count;
-            if truth == predicted {
+            if ground_truth == predicted {
                 class.hits += count;
             }
         }
@@ -188,7 +190,7 @@ impl Metric for Classification {
         &["expected_calibration_error", "maximum_calibration_error"];
     type Params = ClassificationParams;
     type Prediction = Category;
-    type Truth = Category;
+    type GroundTruth = Category;
 
     fn new(params: &ClassificationParams) -> Result<Self> {
         let mut unique = BTreeSet::new();
@@ -209,12 +211,12 @@ impl Metric for Classification {
         self.names.extend((0..).zip(names).map(|(class, name)| (class, Arc::from(name))));
     }
 
-    fn update(&mut self, _at: usize, prediction: &Category, truth: &Category) -> Result<f64> {
-        let correct = prediction.class == truth.class;
+    fn update(&mut self, _at: usize, prediction: &Category, ground_truth: &Category) -> Result<f64> {
+        let correct = prediction.class == ground_truth.class;
         let scores = &prediction.probabilities;
         let rank = match scores.is_empty() {
             true => None,
-            false => Some(rank_of_class(truth.class, scores, &self.order)?),
+            false => Some(rank_of_class(ground_truth.class, scores, &self.order)?),
         };
         let own = usize::try_from(prediction.class).ok().and_then(|class| scores.get(class));
         if let Some(confidence) = prediction.confidence.or(own.copied()) {
@@ -223,12 +225,12 @@ impl Metric for Classification {
         if let Some(rank) = rank {
             self.add_rank(rank);
         }
-        for category in [truth, prediction] {
+        for category in [ground_truth, prediction] {
             if let Some(name) = &category.description {
                 self.names.entry(category.class).or_insert_with(|| name.clone());
             }
         }
-        self.add(truth.class, prediction.class);
+        self.add(ground_truth.class, prediction.class);
         Ok(f64::from(u8::from(correct)))
     }
 
@@ -296,14 +298,15 @@ impl Metric for Classification {
     }
 }
 
-/// Returns the number of classes that rank before class `truth`; see [`Classification::add_scores`].
-fn rank_of_class(truth: i64, scores: &[f32], order: &[usize]) -> Result<usize> {
-    let class =
-        usize::try_from(truth).ok().filter(|class| *class < scores.len() && scores.len() <= MAX_SCORES);
+/// Returns the number of classes that rank before class `ground_truth`; see [`Classification::add_scores`].
+fn rank_of_class(ground_truth: i64, scores: &[f32], order: &[usize]) -> Result<usize> {
+    let class = usize::try_from(ground_truth)
+        .ok()
+        .filter(|class| *class < scores.len() && scores.len() <= MAX_SCORES);
     let Some(class) = class else {
         let count = scores.len();
         return Err(Error::invalid_input(format!(
-            "class {truth} has none of {count} scores; give one score per class, at most {MAX_SCORES}"
+            "class {ground_truth} has none of {count} scores; give one score per class, at most {MAX_SCORES}"
         )));
     };
     if let Some(place) = scores.iter().position(|score| score.is_nan()) {

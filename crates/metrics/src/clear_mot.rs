@@ -40,15 +40,15 @@ impl TrackMatchingParams {
 pub struct ClearMotCounts {
     /// Frames.
     pub frames: u64,
-    /// Ground-truth boxes.
+    /// Ground-ground truth boxes.
     pub objects: u64,
     /// Predicted boxes.
     pub predictions: u64,
-    /// Ground-truth objects.
+    /// Ground-ground truth objects.
     pub unique_objects: u64,
-    /// Ground-truth boxes matched with the previous track of the object, or with its first.
+    /// Ground-ground truth boxes matched with the previous track of the object, or with its first.
     pub matches: u64,
-    /// Ground-truth boxes matched with another track than the previous one of the object (identity switches).
+    /// Ground-ground truth boxes matched with another track than the previous one of the object (identity switches).
     pub switches: u64,
     /// Predicted boxes matched with another object than the previous one of the track.
     pub transfers: u64,
@@ -138,12 +138,12 @@ impl Sequence {
     /// Matches the boxes of a frame, previous matches first, and counts them. Returns pairs of indices (ground truth,
     /// prediction).
     fn count(&mut self, frame: &TrackingFrame, params: &TrackMatchingParams) -> Vec<(usize, usize)> {
-        let (truth, found) = (frame.truth(), frame.predictions());
+        let (ground_truth, found) = (frame.ground_truth(), frame.predictions());
         let distances = |(row, at)| params.distance(frame.overlap(row, at));
-        let mut matched = vec![false; truth.len()];
+        let mut matched = vec![false; ground_truth.len()];
         let mut taken = vec![false; found.len()];
         let mut pairs = Vec::new();
-        for (row, id) in truth.iter().enumerate() {
+        for (row, id) in ground_truth.iter().enumerate() {
             let Some(track) = self.objects.get(id).and_then(|object| object.track) else { continue };
             let place = found.iter().position(|other| *other == track).filter(|at| !taken[*at]);
             if let Some(at) = place.filter(|at| distances((row, *at)).is_finite()) {
@@ -154,21 +154,21 @@ impl Sequence {
             }
         }
 
-        let costs: Vec<_> = (0..truth.len())
+        let costs: Vec<_> = (0..ground_truth.len())
             .flat_map(|row| (0..found.len()).map(move |at| (row, at)))
             .map(|(row, at)| if matched[row] || taken[at] { f64::INFINITY } else { distances((row, at)) })
             .collect();
         for (row, at) in cheapest_pairs(&costs, found.len()) {
-            self.count_new_match(truth[row], found[at]);
+            self.count_new_match(ground_truth[row], found[at]);
             (matched[row], taken[at]) = (true, true);
             pairs.push((row, at));
         }
         self.counts.distance += pairs.iter().map(|pair| distances(*pair)).sum::<f64>();
         self.counts.frames += 1;
-        self.counts.objects += truth.len() as u64;
+        self.counts.objects += ground_truth.len() as u64;
         self.counts.predictions += found.len() as u64;
         self.counts.false_positives += taken.iter().filter(|taken| !**taken).count() as u64;
-        for (id, matched) in truth.iter().zip(matched) {
+        for (id, matched) in ground_truth.iter().zip(matched) {
             self.count_object(*id, matched);
         }
         pairs
@@ -238,7 +238,7 @@ impl ClearMot {
     /// Counts the next frame of the sequence and returns the fraction of its boxes that match, 0 to 1.
     pub fn count(&mut self, frame: &TrackingFrame) -> f64 {
         let matches = self.sequences.open.count(frame, &self.params).len();
-        match frame.truth().len() + frame.predictions().len() - matches {
+        match frame.ground_truth().len() + frame.predictions().len() - matches {
             0 => 1.0,
             boxes => matches as f64 / boxes as f64,
         }
@@ -268,7 +268,7 @@ impl Metric for ClearMot {
         ("ascends", "Switches to a new track."),
         ("migrates", "Transfers to a new object."),
         ("false_positives", "Predicted boxes without a match."),
-        ("misses", "Ground-truth boxes without a match."),
+        ("misses", "Ground-ground truth boxes without a match."),
         ("fragmentations", "Number of times that an object is lost and matched again."),
         ("mostly_tracked", "Objects matched in 80 % of their frames or more."),
         ("partially_tracked", "Objects matched in 20 to 80 %."),
@@ -287,7 +287,7 @@ impl Metric for ClearMot {
     ];
     type Params = TrackMatchingParams;
     type Prediction = TrackingAnnotationList;
-    type Truth = TrackingAnnotationList;
+    type GroundTruth = TrackingAnnotationList;
 
     fn new(params: &TrackMatchingParams) -> Result<Self> {
         Ok(Self { params: params.clone(), sequences: Sequences::default() })
@@ -297,9 +297,9 @@ impl Metric for ClearMot {
         &mut self,
         _at: usize,
         prediction: &TrackingAnnotationList,
-        truth: &TrackingAnnotationList,
+        ground_truth: &TrackingAnnotationList,
     ) -> Result<f64> {
-        Ok(self.count(&self.params.rules.frame(prediction, truth)?))
+        Ok(self.count(&self.params.rules.frame(prediction, ground_truth)?))
     }
 
     fn end_sequence(&mut self) {

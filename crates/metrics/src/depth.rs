@@ -55,14 +55,15 @@ impl DepthErrors {
     ///
     /// # Errors
     /// Returns `InvalidInput` if the maps differ in size or the prediction of such a pixel is NaN.
-    pub fn of(truth: &[f32], predicted: &[f32], range: [f64; 2]) -> Result<Option<Self>> {
+    pub fn of(ground_truth: &[f32], predicted: &[f32], range: [f64; 2]) -> Result<Option<Self>> {
         let (mut count, mut sums, mut within) = (0_u64, [0.0; 5], [0_u64; 3]);
-        for (truth, predicted) in pairs(truth, predicted, range)? {
+        for (ground_truth, predicted) in pairs(ground_truth, predicted, range)? {
             let predicted = predicted.clamp(range[0], range[1]);
-            let (error, log) = (predicted - truth, (predicted / truth).ln());
-            let terms = [error.abs() / truth, error * error / truth, error * error, log * log, log];
+            let (error, log) = (predicted - ground_truth, (predicted / ground_truth).ln());
+            let terms =
+                [error.abs() / ground_truth, error * error / ground_truth, error * error, log * log, log];
             sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
-            let factor = (predicted / truth).max(truth / predicted);
+            let factor = (predicted / ground_truth).max(ground_truth / predicted);
             for (count, bound) in within.iter_mut().zip([1.25, 1.25 * 1.25, 1.25 * 1.25 * 1.25]) {
                 *count += u64::from(factor < bound);
             }
@@ -114,10 +115,10 @@ impl DisparityErrors {
     ///
     /// # Errors
     /// Returns `InvalidInput` if the maps differ in size or the prediction of such a pixel is NaN or infinite.
-    pub fn of(truth: &[f32], predicted: &[f32]) -> Result<Self> {
+    pub fn of(ground_truth: &[f32], predicted: &[f32]) -> Result<Self> {
         let mut errors = Self::default();
-        for (truth, predicted) in pairs(truth, predicted, [f64::MIN_POSITIVE, f64::MAX])? {
-            let distance = (predicted - truth).abs();
+        for (ground_truth, predicted) in pairs(ground_truth, predicted, [f64::MIN_POSITIVE, f64::MAX])? {
+            let distance = (predicted - ground_truth).abs();
             if !distance.is_finite() {
                 return Err(Error::invalid_input(
                     "a disparity is infinite; give finite numbers, 0 for points at infinity",
@@ -128,7 +129,7 @@ impl DisparityErrors {
             for (bad, bound) in errors.bad.iter_mut().zip([1.0, 2.0, 3.0]) {
                 *bad += u64::from(distance > bound);
             }
-            errors.outliers += u64::from(distance > 3.0 && distance / truth > 0.05);
+            errors.outliers += u64::from(distance > 3.0 && distance / ground_truth > 0.05);
         }
         Ok(errors)
     }
@@ -142,16 +143,24 @@ impl DisparityErrors {
 }
 
 /// Returns ground truth and prediction of the pixels with ground truth within `range`, after a check for NaN.
-fn pairs(truth: &[f32], predicted: &[f32], range: [f64; 2]) -> Result<impl Iterator<Item = (f64, f64)>> {
-    if truth.len() != predicted.len() {
-        let (expected, given) = (truth.len(), predicted.len());
+fn pairs(
+    ground_truth: &[f32],
+    predicted: &[f32],
+    range: [f64; 2],
+) -> Result<impl Iterator<Item = (f64, f64)>> {
+    if ground_truth.len() != predicted.len() {
+        let (expected, given) = (ground_truth.len(), predicted.len());
         return Err(Error::invalid_input(format!(
             "a map of {given} pixels cannot be compared with one of {expected}; give maps of the same size"
         )));
     }
-    let all =
-        truth.iter().zip(predicted).map(|(truth, predicted)| (f64::from(*truth), f64::from(*predicted)));
-    let valid = all.filter(move |(truth, _)| (range[0]..=range[1]).contains(truth) && truth.is_finite());
+    let all = ground_truth
+        .iter()
+        .zip(predicted)
+        .map(|(ground_truth, predicted)| (f64::from(*ground_truth), f64::from(*predicted)));
+    let valid = all.filter(move |(ground_truth, _)| {
+        (range[0]..=range[1]).contains(ground_truth) && ground_truth.is_finite()
+    });
     match valid.clone().any(|(_, predicted)| predicted.is_nan()) {
         true => Err(Error::invalid_input("the prediction of a pixel with ground truth is NaN; give numbers")),
         false => Ok(valid),
@@ -183,8 +192,8 @@ impl Metric for Depth {
     const ABOUT: &'static str =
         "relative and root errors and delta of depth; end-point error, bad pixels and D1 of disparity";
     const NUMBERS: &'static [(&'static str, &'static str)] = &[
-        ("abs_rel", "Mean of |prediction - truth| / truth."),
-        ("sq_rel", "Mean of (prediction - truth)^2 / truth, in metres."),
+        ("abs_rel", "Mean of |prediction - ground truth| / ground truth."),
+        ("sq_rel", "Mean of (prediction - ground truth)^2 / ground truth, in metres."),
         ("rmse", "Root mean square error in metres, the mean over images."),
         ("rmse_log", "Root mean square error of logarithms."),
         ("silog", "Scale-invariant error of logarithms (Eigen et al. 2014)."),
@@ -192,7 +201,7 @@ impl Metric for Depth {
         ("end_point_error", "Mean absolute error of disparities, in pixels."),
         ("bad_<n>", "Fraction of pixels with an error of more than n pixels."),
         ("d1", "Fraction of pixels with an error of more than 3 pixels and 5 % (KITTI)."),
-        ("pictures", "Number of images."),
+        ("images", "Number of images."),
     ];
     const LOWER_IS_BETTER: &'static [&'static str] = &[
         "abs_rel",
@@ -208,7 +217,7 @@ impl Metric for Depth {
     ];
     type Params = DepthParams;
     type Prediction = Heatmap;
-    type Truth = Heatmap;
+    type GroundTruth = Heatmap;
 
     fn new(params: &DepthParams) -> Result<Self> {
         let (min, max) = (params.min_depth, params.max_depth);
@@ -218,14 +227,14 @@ impl Metric for Depth {
         Ok(Self { params: params.clone(), ..Self::default() })
     }
 
-    fn update(&mut self, _at: usize, prediction: &Heatmap, truth: &Heatmap) -> Result<f64> {
+    fn update(&mut self, _at: usize, prediction: &Heatmap, ground_truth: &Heatmap) -> Result<f64> {
         let (HeatmapValues::Scores(given), HeatmapValues::Scores(expected)) =
-            (prediction.values(), truth.values())
+            (prediction.values(), ground_truth.values())
         else {
             return Err(Error::invalid_input("depth must be a map of scores, not of labels"));
         };
-        if prediction.shape() != truth.shape() {
-            let (given, expected) = (prediction.shape(), truth.shape());
+        if prediction.shape() != ground_truth.shape() {
+            let (given, expected) = (prediction.shape(), ground_truth.shape());
             return Err(Error::invalid_input(format!(
                 "a map of shape {given:?} cannot be compared with one of {expected:?}; resize the prediction to the ground truth"
             )));
@@ -252,7 +261,7 @@ impl Metric for Depth {
     fn finish(&self) -> Report {
         let disparity = self.params.quantity == DepthQuantity::Disparity;
         let mut report = Report::new(if disparity { "d1" } else { "abs_rel" });
-        report.statistics.set("pictures", self.images as f64);
+        report.statistics.set("images", self.images as f64);
         if disparity {
             let DisparityErrors { pixels, distance, bad, outliers } = self.disparity;
             report.statistics.set("end_point_error", distance / pixels as f64);
@@ -282,8 +291,8 @@ mod tests {
 
     #[test]
     fn depths_by_hand() {
-        let truth = [2.0, 4.0, 0.0, f32::NAN, f32::INFINITY];
-        let errors = DepthErrors::of(&truth, &[2.0, 5.0, 9.0, 9.0, f32::NAN], ALL).unwrap().unwrap();
+        let ground_truth = [2.0, 4.0, 0.0, f32::NAN, f32::INFINITY];
+        let errors = DepthErrors::of(&ground_truth, &[2.0, 5.0, 9.0, 9.0, f32::NAN], ALL).unwrap().unwrap();
         assert_eq!(errors.absolute_relative, 0.125);
         assert_eq!(errors.squared_relative, 0.125);
         assert_eq!(errors.rmse, 0.5_f64.sqrt());
@@ -303,8 +312,8 @@ mod tests {
 
     #[test]
     fn outliers_exceed_pixels_and_fraction() {
-        let truth = [10.0, 10.0, 100.0, 100.0, 0.0];
-        let errors = DisparityErrors::of(&truth, &[13.0, 14.0, 104.0, 106.0, 50.0]).unwrap();
+        let ground_truth = [10.0, 10.0, 100.0, 100.0, 0.0];
+        let errors = DisparityErrors::of(&ground_truth, &[13.0, 14.0, 104.0, 106.0, 50.0]).unwrap();
         assert_eq!((errors.pixels, errors.outliers, errors.bad), (4, 2, [4, 4, 3]));
         assert_eq!(errors.distance, 17.0);
     }
@@ -319,7 +328,7 @@ mod tests {
         depth.merge(other);
         let report = depth.finish();
         assert_eq!(report.statistics.get("abs_rel"), Some(0.5));
-        assert_eq!(report.statistics.get("pictures"), Some(2.0));
+        assert_eq!(report.statistics.get("images"), Some(2.0));
         assert_eq!(Depth::default().finish().statistics.get("rmse"), None);
     }
 

@@ -168,7 +168,8 @@ struct Sequence {
 
 impl Sequence {
     fn add_frame(&mut self, frame: &TrackingFrame) {
-        let (objects, tracks) = (self.objects.count(frame.truth()), self.tracks.count(frame.predictions()));
+        let (objects, tracks) =
+            (self.objects.count(frame.ground_truth()), self.tracks.count(frame.predictions()));
         let mut overlaps = Vec::new();
         let mut sums = (vec![0.0; objects.len()], vec![0.0; tracks.len()]);
         for (row, overlaps_of_row) in frame.overlaps().chunks_exact(tracks.len().max(1)).enumerate() {
@@ -298,7 +299,7 @@ impl Metric for Hota {
     ];
     type Params = HotaParams;
     type Prediction = TrackingAnnotationList;
-    type Truth = TrackingAnnotationList;
+    type GroundTruth = TrackingAnnotationList;
 
     fn new(params: &HotaParams) -> Result<Self> {
         Ok(Self { params: params.clone(), sequences: Sequences::default() })
@@ -308,9 +309,9 @@ impl Metric for Hota {
         &mut self,
         _at: usize,
         prediction: &TrackingAnnotationList,
-        truth: &TrackingAnnotationList,
+        ground_truth: &TrackingAnnotationList,
     ) -> Result<f64> {
-        let frame = self.params.rules.frame(prediction, truth)?;
+        let frame = self.params.rules.frame(prediction, ground_truth)?;
         self.count(&frame);
         Ok(frame.coverage())
     }

@@ -15,11 +15,11 @@ use crate::{Metric, Report, TrackingFrame};
 /// Counts of boxes over whole sequences. Every ground-truth object has at most one track, by the best overall assignment.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct IdentityCounts {
-    /// Ground-truth boxes matched by the track of the object.
+    /// Ground-ground truth boxes matched by the track of the object.
     pub true_positives: u64,
     /// Predicted boxes not matched with the object of the track.
     pub false_positives: u64,
-    /// Ground-truth boxes not matched by the track of the object.
+    /// Ground-ground truth boxes not matched by the track of the object.
     pub false_negatives: u64,
 }
 
@@ -116,10 +116,12 @@ impl Identity {
     /// Counts the next frame of the sequence.
     pub fn count(&mut self, frame: &TrackingFrame) {
         let sequence = &mut self.sequences.open;
-        sequence.objects += frame.truth().len() as u64;
+        sequence.objects += frame.ground_truth().len() as u64;
         sequence.predictions += frame.predictions().len() as u64;
-        let pairs =
-            frame.truth().iter().flat_map(|id| frame.predictions().iter().map(move |track| (*id, *track)));
+        let pairs = frame
+            .ground_truth()
+            .iter()
+            .flat_map(|id| frame.predictions().iter().map(move |track| (*id, *track)));
         for (pair, overlap) in pairs.zip(frame.overlaps()) {
             if self.params.distance(*overlap).is_finite() {
                 *sequence.matches.entry(pair).or_default() += 1;
@@ -146,7 +148,7 @@ impl Metric for Identity {
     ];
     type Params = TrackMatchingParams;
     type Prediction = TrackingAnnotationList;
-    type Truth = TrackingAnnotationList;
+    type GroundTruth = TrackingAnnotationList;
 
     fn new(params: &TrackMatchingParams) -> Result<Self> {
         Ok(Self { params: params.clone(), sequences: Sequences::default() })
@@ -156,9 +158,9 @@ impl Metric for Identity {
         &mut self,
         _at: usize,
         prediction: &TrackingAnnotationList,
-        truth: &TrackingAnnotationList,
+        ground_truth: &TrackingAnnotationList,
     ) -> Result<f64> {
-        let frame = self.params.rules.frame(prediction, truth)?;
+        let frame = self.params.rules.frame(prediction, ground_truth)?;
         self.count(&frame);
         Ok(frame.coverage())
     }
@@ -196,10 +198,10 @@ mod tests {
     }
 
     fn frame(pairs: &[(i64, i64)]) -> TrackingFrame {
-        let (truth, found): (Vec<_>, Vec<_>) = pairs.iter().copied().unzip();
-        let size = truth.len();
+        let (ground_truth, found): (Vec<_>, Vec<_>) = pairs.iter().copied().unzip();
+        let size = ground_truth.len();
         let overlaps = (0..size * size).map(|at| if at / size == at % size { 0.75 } else { 0.1 }).collect();
-        TrackingFrame::new(truth, found, overlaps).unwrap()
+        TrackingFrame::new(ground_truth, found, overlaps).unwrap()
     }
 
     /// Object 1 is matched by tracks 7, 7, 8; object 2 by 8, 8, 7: the best is 1-7 and 2-8 with 2 + 2 of 6 boxes.

@@ -50,7 +50,7 @@ pub struct Keypoints {
 
 impl Keypoints {
     /// Adds a pose of `size` pixels and returns its fraction of correct joints; `None` if no joint is annotated. Joints that
-    /// are not annotated are `None` in `truth`. Joints that are not predicted are `None` in `predicted`; they are incorrect
+    /// are not annotated are `None` in `ground_truth`. Joints that are not predicted are `None` in `predicted`; they are incorrect
     /// and have no distance.
     ///
     /// # Errors
@@ -58,17 +58,17 @@ impl Keypoints {
     /// is not a positive number.
     pub fn add(
         &mut self,
-        truth: &[Option<[f64; 2]>],
+        ground_truth: &[Option<[f64; 2]>],
         predicted: &[Option<[f64; 2]>],
         size: f64,
     ) -> Result<Option<f64>> {
-        if truth.len() != predicted.len() || truth.len() > MAX_JOINTS {
-            let (expected, given) = (truth.len(), predicted.len());
+        if ground_truth.len() != predicted.len() || ground_truth.len() > MAX_JOINTS {
+            let (expected, given) = (ground_truth.len(), predicted.len());
             return Err(Error::invalid_input(format!(
                 "a pose of {given} joints cannot be compared with one of {expected}; give poses of the same joints, at most {MAX_JOINTS}"
             )));
         }
-        let places = truth.iter().chain(predicted).flatten().flatten();
+        let places = ground_truth.iter().chain(predicted).flatten().flatten();
         if let Some(place) = places.into_iter().chain([&size]).find(|number| !number.is_finite()) {
             return Err(Error::invalid_input(format!(
                 "a coordinate or size of a pose is {place}; give finite numbers"
@@ -79,17 +79,19 @@ impl Keypoints {
                 "the size of a pose is {size}; give a positive number"
             )));
         }
-        if self.joints.len() < truth.len() {
-            self.joints.resize(truth.len(), Joint::default());
+        if self.joints.len() < ground_truth.len() {
+            self.joints.resize(ground_truth.len(), Joint::default());
         }
         self.poses += 1;
         let (mut count, mut correct) = (0, 0);
-        for (joint, (truth, predicted)) in self.joints.iter_mut().zip(truth.iter().zip(predicted)) {
-            let Some(truth) = truth else { continue };
+        for (joint, (ground_truth, predicted)) in
+            self.joints.iter_mut().zip(ground_truth.iter().zip(predicted))
+        {
+            let Some(ground_truth) = ground_truth else { continue };
             joint.count += 1;
             count += 1;
             let Some(predicted) = predicted else { continue };
-            let distance = (predicted[0] - truth[0]).hypot(predicted[1] - truth[1]);
+            let distance = (predicted[0] - ground_truth[0]).hypot(predicted[1] - ground_truth[1]);
             joint.found += 1;
             joint.distance += distance;
             joint.normalized += distance / size;
@@ -144,9 +146,10 @@ impl Keypoints {
         self.joints.iter().map(number).sum()
     }
 
-    fn add_pose(&mut self, truth: &Pose, predicted: Option<&Pose>, size: f64) -> Result<Option<f64>> {
-        let places = truth.keypoints.iter().map(place_of).collect::<Vec<_>>();
-        let predicted = predicted.map_or_else(|| vec![None; places.len()], |pose| places_like(truth, pose));
+    fn add_pose(&mut self, ground_truth: &Pose, predicted: Option<&Pose>, size: f64) -> Result<Option<f64>> {
+        let places = ground_truth.keypoints.iter().map(place_of).collect::<Vec<_>>();
+        let predicted =
+            predicted.map_or_else(|| vec![None; places.len()], |pose| places_like(ground_truth, pose));
         self.add(&places, &predicted, size)
     }
 
@@ -182,7 +185,7 @@ impl Metric for Keypoints {
     const LOWER_IS_BETTER: &'static [&'static str] = &["nme", "epe"];
     type Params = KeypointsParams;
     type Prediction = PoseList;
-    type Truth = PoseList;
+    type GroundTruth = PoseList;
 
     fn new(params: &KeypointsParams) -> Result<Self> {
         if params.normalize == PoseSize::Joints
@@ -196,11 +199,12 @@ impl Metric for Keypoints {
         Ok(Self { params: params.clone(), ..Self::default() })
     }
 
-    fn update(&mut self, _at: usize, prediction: &PoseList, truth: &PoseList) -> Result<f64> {
+    fn update(&mut self, _at: usize, prediction: &PoseList, ground_truth: &PoseList) -> Result<f64> {
         let mut image = Self { params: self.params.clone(), ..Self::default() };
-        let sizes: Vec<Option<f64>> = truth.poses.iter().map(|pose| self.params.size_of_pose(pose)).collect();
-        let matches = matching::nearest(&truth.poses, &prediction.poses)?;
-        for ((pose, size), matched) in truth.poses.iter().zip(sizes).zip(matches) {
+        let sizes: Vec<Option<f64>> =
+            ground_truth.poses.iter().map(|pose| self.params.size_of_pose(pose)).collect();
+        let matches = matching::nearest(&ground_truth.poses, &prediction.poses)?;
+        for ((pose, size), matched) in ground_truth.poses.iter().zip(sizes).zip(matches) {
             let matched = matched.and_then(|at| prediction.poses.get(at));
             match size {
                 Some(size) => image.add_pose(pose, matched, size)?,

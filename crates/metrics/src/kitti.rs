@@ -38,8 +38,8 @@ impl Kitti {
     ///
     /// # Errors
     /// Returns `InvalidInput` for more than 1024 boxes, and for a box whose numbers are not finite.
-    pub fn count(&mut self, at: usize, found: &[KittiObject], truth: &[KittiObject]) -> Result<f64> {
-        let frame = Frame::new(at, found, truth)?;
+    pub fn count(&mut self, at: usize, found: &[KittiObject], ground_truth: &[KittiObject]) -> Result<f64> {
+        let frame = Frame::new(at, found, ground_truth)?;
         let coverage = frame.coverage;
         self.frames.push(frame);
         Ok(coverage)
@@ -70,7 +70,7 @@ impl Metric for Kitti {
     const IS_RANKING: bool = true;
     type Params = NoParams;
     type Prediction = BoundingBox3DList;
-    type Truth = BoundingBox3DList;
+    type GroundTruth = BoundingBox3DList;
 
     fn new(_params: &NoParams) -> Result<Self> {
         Ok(Self::default())
@@ -80,9 +80,9 @@ impl Metric for Kitti {
         &mut self,
         at: usize,
         prediction: &BoundingBox3DList,
-        truth: &BoundingBox3DList,
+        ground_truth: &BoundingBox3DList,
     ) -> Result<f64> {
-        self.count(at, &object::objects_from_list(prediction)?, &object::objects_from_list(truth)?)
+        self.count(at, &object::objects_from_list(prediction)?, &object::objects_from_list(ground_truth)?)
     }
 
     fn merge(&mut self, other: Self) {

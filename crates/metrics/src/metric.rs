@@ -24,7 +24,7 @@ pub trait Metric: Clone + Send + Sized + 'static {
     /// Type of the predictions.
     type Prediction: Datum;
     /// Type of the ground truth.
-    type Truth: Datum;
+    type GroundTruth: Datum;
 
     /// Keys of the numbers for which lower is better.
     const LOWER_IS_BETTER: &'static [&'static str] = &[];
@@ -53,7 +53,12 @@ pub trait Metric: Clone + Send + Sized + 'static {
     ///
     /// # Errors
     /// Returns `InvalidInput` for an invalid prediction or ground truth; nothing is counted then.
-    fn update(&mut self, at: usize, prediction: &Self::Prediction, truth: &Self::Truth) -> Result<f64>;
+    fn update(
+        &mut self,
+        at: usize,
+        prediction: &Self::Prediction,
+        ground_truth: &Self::GroundTruth,
+    ) -> Result<f64>;
 
     /// Ends a sequence (video, drive); the next frame belongs to another one.
     fn end_sequence(&mut self) {}
@@ -70,7 +75,7 @@ pub trait Metric: Clone + Send + Sized + 'static {
     }
 
     /// Converts a value to ground truth; metrics that accept several types override it.
-    fn truth(value: ValueRef<'_>) -> Option<Cow<'_, Self::Truth>> {
-        Self::Truth::from_value_ref(value).map(Cow::Borrowed)
+    fn ground_truth(value: ValueRef<'_>) -> Option<Cow<'_, Self::GroundTruth>> {
+        Self::GroundTruth::from_value_ref(value).map(Cow::Borrowed)
     }
 }

@@ -58,18 +58,18 @@ impl MotRules {
     pub fn frame(
         self,
         found: &TrackingAnnotationList,
-        truth: &TrackingAnnotationList,
+        ground_truth: &TrackingAnnotationList,
     ) -> Result<TrackingFrame> {
-        let frame = TrackingFrame::from_lists(found, truth)?;
+        let frame = TrackingFrame::from_lists(found, ground_truth)?;
         if self == Self::All {
             return Ok(frame);
         }
-        let is_marked = |at: usize| truth.annotations[at].bounding_box.confidence.abs() >= 1.0;
+        let is_marked = |at: usize| ground_truth.annotations[at].bounding_box.confidence.abs() >= 1.0;
         if self == Self::Mot15 {
-            let kept: Vec<_> = (0..frame.truth().len()).map(is_marked).collect();
+            let kept: Vec<_> = (0..frame.ground_truth().len()).map(is_marked).collect();
             return Ok(frame.keep(&kept, &vec![true; frame.predictions().len()]));
         }
-        let classes = truth
+        let classes = ground_truth
             .annotations
             .iter()
             .map(|track| class_from_name(&track.bounding_box.name))
@@ -87,11 +87,11 @@ impl MotRules {
             .map(|overlap| if *overlap < 0.5 - f64::EPSILON { 0.0 } else { -overlap })
             .collect();
         let mut kept = vec![true; frame.predictions().len()];
-        for (truth, found) in cheapest_pairs(&costs, kept.len()) {
-            let class = classes[truth];
+        for (ground_truth, found) in cheapest_pairs(&costs, kept.len()) {
+            let class = classes[ground_truth];
             let is_distractor =
                 DISTRACTORS.contains(&class) || (self == Self::Mot20 && class == NON_MOT_VEHICLE);
-            if is_distractor && costs[truth * kept.len() + found] < -f64::EPSILON {
+            if is_distractor && costs[ground_truth * kept.len() + found] < -f64::EPSILON {
                 kept[found] = false;
             }
         }
@@ -134,7 +134,7 @@ mod tests {
 
     #[test]
     fn rules_remove_rows() {
-        let truth = list(&[
+        let ground_truth = list(&[
             (1, 1.into(), 0.0, 1.0),
             (2, "Static person".into(), 20.0, 1.0),
             (3, 1.into(), 40.0, 0.0),
@@ -147,8 +147,8 @@ mod tests {
             (4, 0.into(), 61.0, 0.9),
         ]);
         let ids = |rules: MotRules| {
-            let frame = rules.frame(&found, &truth).unwrap();
-            (frame.truth().to_vec(), frame.predictions().to_vec())
+            let frame = rules.frame(&found, &ground_truth).unwrap();
+            (frame.ground_truth().to_vec(), frame.predictions().to_vec())
         };
         assert_eq!(ids(MotRules::All), (vec![1, 2, 3, 4], vec![1, 2, 3, 4]));
         assert_eq!(ids(MotRules::Mot15), (vec![1, 2, 4], vec![1, 2, 3, 4]));

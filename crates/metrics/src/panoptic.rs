@@ -103,8 +103,8 @@ impl Panoptic {
     /// # Errors
     /// Returns `InvalidInput` for maps of different size, for an id in a map that its table does not have or has twice,
     /// and for a predicted segment without pixels.
-    pub fn count(&mut self, found: &PanopticMap<'_>, truth: &PanopticMap<'_>) -> Result<f64> {
-        let counted = count_image(found, truth)?;
+    pub fn count(&mut self, found: &PanopticMap<'_>, ground_truth: &PanopticMap<'_>) -> Result<f64> {
+        let counted = count_image(found, ground_truth)?;
         let mut all = PanopticCounts::default();
         for (class, counts) in &counted {
             all.add(counts);
@@ -144,12 +144,15 @@ impl Panoptic {
     }
 }
 
-fn count_image(found: &PanopticMap<'_>, truth: &PanopticMap<'_>) -> Result<BTreeMap<u32, PanopticCounts>> {
-    let overlaps = Overlaps::new(found, truth)?;
+fn count_image(
+    found: &PanopticMap<'_>,
+    ground_truth: &PanopticMap<'_>,
+) -> Result<BTreeMap<u32, PanopticCounts>> {
+    let overlaps = Overlaps::new(found, ground_truth)?;
     let mut classes = BTreeMap::<u32, PanopticCounts>::new();
-    let mut is_paired = (vec![false; truth.segments.len()], vec![false; found.segments.len()]);
+    let mut is_paired = (vec![false; ground_truth.segments.len()], vec![false; found.segments.len()]);
     for (row, column, shared) in overlaps.pairs() {
-        let (object, predicted) = (truth.segments[row], found.segments[column]);
+        let (object, predicted) = (ground_truth.segments[row], found.segments[column]);
         if object.is_crowd || object.class != predicted.class {
             continue;
         }
@@ -162,7 +165,7 @@ fn count_image(found: &PanopticMap<'_>, truth: &PanopticMap<'_>) -> Result<BTree
             (is_paired.0[row], is_paired.1[column]) = (true, true);
         }
     }
-    for (object, is_paired) in truth.segments.iter().zip(is_paired.0) {
+    for (object, is_paired) in ground_truth.segments.iter().zip(is_paired.0) {
         if !is_paired && !object.is_crowd {
             classes.entry(object.class).or_default().false_negatives += 1;
         }
@@ -190,15 +193,15 @@ impl Metric for Panoptic {
     const SEGMENTS: bool = true;
     type Params = PanopticParams;
     type Prediction = Heatmap;
-    type Truth = Heatmap;
+    type GroundTruth = Heatmap;
 
     fn new(params: &PanopticParams) -> Result<Self> {
         Ok(Self { params: params.clone(), classes: BTreeMap::new(), names: Classes::default() })
     }
 
-    fn update(&mut self, _at: usize, prediction: &Heatmap, truth: &Heatmap) -> Result<f64> {
+    fn update(&mut self, _at: usize, prediction: &Heatmap, ground_truth: &Heatmap) -> Result<f64> {
         let (HeatmapValues::Labels(found), HeatmapValues::Labels(expected)) =
-            (prediction.values(), truth.values())
+            (prediction.values(), ground_truth.values())
         else {
             return Err(Error::invalid_input(
                 "panoptic quality needs a map of labels, not of scores; give labels",
@@ -207,11 +210,11 @@ impl Metric for Panoptic {
         // A prediction without segments may have no size.
         let nothing = vec![VOID_LABEL; if found.is_empty() { expected.len() } else { 0 }];
         let found = if found.is_empty() { &nothing } else { found.as_slice() };
-        if prediction.shape() != truth.shape() && nothing.is_empty() {
+        if prediction.shape() != ground_truth.shape() && nothing.is_empty() {
             return Err(Error::invalid_input(format!(
                 "the shape of the prediction is {:?}, that of the ground truth {:?}; give maps of one size",
                 prediction.shape(),
-                truth.shape()
+                ground_truth.shape()
             )));
         }
         let (ids, segments) = self.segments_from_labels(found, false);
@@ -220,7 +223,7 @@ impl Metric for Panoptic {
             &PanopticMap { ids: &ids, segments: &segments },
             &PanopticMap { ids: &true_ids, segments: &true_segments },
         )?;
-        for classes in [&prediction.classes, &truth.classes] {
+        for classes in [&prediction.classes, &ground_truth.classes] {
             if !classes.is_empty() {
                 self.names = classes.clone();
             }
@@ -245,7 +248,7 @@ impl Metric for Panoptic {
         }
     }
 
-    fn truth(value: ValueRef<'_>) -> Option<Cow<'_, Heatmap>> {
+    fn ground_truth(value: ValueRef<'_>) -> Option<Cow<'_, Heatmap>> {
         match value {
             ValueRef::BoundingBoxList(list) => masks::labels_from_masks(list, true).map(Cow::Owned),
             _ => Self::prediction(value),

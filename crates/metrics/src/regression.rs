@@ -26,10 +26,10 @@ pub struct Residuals {
 
 impl Residuals {
     /// Adds a sample; both numbers are finite.
-    pub fn add(&mut self, truth: f64, predicted: f64) {
-        let error = predicted - truth;
+    pub fn add(&mut self, ground_truth: f64, predicted: f64) {
+        let error = predicted - ground_truth;
         let (absolute, squared) = (error.abs(), error * error);
-        let (truth_mean, predicted_mean) = (truth, predicted);
+        let (truth_mean, predicted_mean) = (ground_truth, predicted);
         self.merge(&Self { count: 1, absolute, squared, truth_mean, predicted_mean, ..Self::default() });
     }
 
@@ -41,12 +41,12 @@ impl Residuals {
         }
         let share = other.count as f64 / total as f64;
         let weight = self.count as f64 * share;
-        let truth = other.truth_mean - self.truth_mean;
+        let ground_truth = other.truth_mean - self.truth_mean;
         let predicted = other.predicted_mean - self.predicted_mean;
-        self.truth_squares += other.truth_squares + truth * truth * weight;
+        self.truth_squares += other.truth_squares + ground_truth * ground_truth * weight;
         self.predicted_squares += other.predicted_squares + predicted * predicted * weight;
-        self.products += other.products + truth * predicted * weight;
-        self.truth_mean += truth * share;
+        self.products += other.products + ground_truth * predicted * weight;
+        self.truth_mean += ground_truth * share;
         self.predicted_mean += predicted * share;
         self.absolute += other.absolute;
         self.squared += other.squared;
@@ -133,30 +133,33 @@ impl Metric for Regression {
     const LOWER_IS_BETTER: &'static [&'static str] = &["mae", "rmse"];
     type Params = NoParams;
     type Prediction = Vector;
-    type Truth = Vector;
+    type GroundTruth = Vector;
 
     fn new(_params: &NoParams) -> Result<Self> {
         Ok(Self::default())
     }
 
-    fn update(&mut self, _at: usize, prediction: &Vector, truth: &Vector) -> Result<f64> {
-        let (given, truth) = (prediction.as_slice(), truth.as_slice());
-        let expected = if self.columns.is_empty() { truth.len() } else { self.columns.len() };
-        if given.len() != truth.len() || truth.len() != expected {
-            let (given, truth) = (given.len(), truth.len());
+    fn update(&mut self, _at: usize, prediction: &Vector, ground_truth: &Vector) -> Result<f64> {
+        let (given, ground_truth) = (prediction.as_slice(), ground_truth.as_slice());
+        let expected = if self.columns.is_empty() { ground_truth.len() } else { self.columns.len() };
+        if given.len() != ground_truth.len() || ground_truth.len() != expected {
+            let (given, ground_truth) = (given.len(), ground_truth.len());
             return Err(Error::invalid_input(format!(
-                "{given} predicted and {truth} true numbers where {expected} are expected; give equally many in every sample"
+                "{given} predicted and {ground_truth} true numbers where {expected} are expected; give equally many in every sample"
             )));
         }
-        if let Some(number) = given.iter().chain(truth).find(|number| !number.is_finite()) {
+        if let Some(number) = given.iter().chain(ground_truth).find(|number| !number.is_finite()) {
             return Err(Error::invalid_input(format!("{number} is not finite; give finite numbers")));
         }
         self.columns.resize(expected, Residuals::default());
-        let pairs = given.iter().zip(truth).map(|(given, truth)| [f64::from(*given), f64::from(*truth)]);
-        for (column, [given, truth]) in self.columns.iter_mut().zip(pairs.clone()) {
-            column.add(truth, given);
+        let pairs = given
+            .iter()
+            .zip(ground_truth)
+            .map(|(given, ground_truth)| [f64::from(*given), f64::from(*ground_truth)]);
+        for (column, [given, ground_truth]) in self.columns.iter_mut().zip(pairs.clone()) {
+            column.add(ground_truth, given);
         }
-        let error = mean(pairs.map(|[given, truth]| (given - truth).abs()));
+        let error = mean(pairs.map(|[given, ground_truth]| (given - ground_truth).abs()));
         Ok(1.0 / (1.0 + error.unwrap_or(0.0)))
     }
 
@@ -197,7 +200,7 @@ impl Metric for Regression {
         }
     }
 
-    fn truth(value: ValueRef<'_>) -> Option<Cow<'_, Vector>> {
+    fn ground_truth(value: ValueRef<'_>) -> Option<Cow<'_, Vector>> {
         Self::prediction(value)
     }
 }
@@ -208,7 +211,7 @@ mod tests {
 
     fn counted(pairs: &[(f64, f64)]) -> Residuals {
         let mut residuals = Residuals::default();
-        pairs.iter().for_each(|(truth, predicted)| residuals.add(*truth, *predicted));
+        pairs.iter().for_each(|(ground_truth, predicted)| residuals.add(*ground_truth, *predicted));
         residuals
     }
 

@@ -214,14 +214,14 @@ impl Metric for Reidentification {
     ];
     type Params = ReidentificationParams;
     type Prediction = Vector;
-    type Truth = Category;
+    type GroundTruth = Category;
 
     fn new(params: &ReidentificationParams) -> Result<Self> {
         Ok(Self { params: params.clone(), images: Vec::new() })
     }
 
     /// Returns 1: an image alone has no quality.
-    fn update(&mut self, at: usize, prediction: &Vector, truth: &Category) -> Result<f64> {
+    fn update(&mut self, at: usize, prediction: &Vector, ground_truth: &Category) -> Result<f64> {
         let (length, numbers) = (prediction.as_slice().len(), prediction.as_slice());
         let expected = self.images.first().map_or(length, |image| image.vector.as_slice().len());
         if length != expected || numbers.iter().any(|number| !number.is_finite()) {
@@ -229,7 +229,7 @@ impl Metric for Reidentification {
                 "image {at} has a vector of {length} numbers; give {expected} finite numbers"
             )));
         }
-        let subject = Subject { identity: truth.class, camera: truth.header.frame_id.clone() };
+        let subject = Subject { identity: ground_truth.class, camera: ground_truth.header.frame_id.clone() };
         let length = self::length(numbers);
         self.images.push(ImageVector { at, subject, vector: prediction.clone(), length });
         Ok(1.0)
@@ -315,9 +315,9 @@ mod tests {
         let samples = [([1.0, 0.0], 3), ([0.0, 1.0], 3), ([1.0, 0.1], 4), ([0.5, 0.5], 3)];
         let mut whole = Reidentification::new(&params).unwrap();
         for (at, (vector, identity)) in samples.iter().enumerate().rev() {
-            let mut truth = Category::new(*identity, None);
-            truth.header = Header::new(0, format!("camera {at}"));
-            whole.update(at, &Vector::from_data(vector.to_vec()).unwrap(), &truth).unwrap();
+            let mut ground_truth = Category::new(*identity, None);
+            ground_truth.header = Header::new(0, format!("camera {at}"));
+            whole.update(at, &Vector::from_data(vector.to_vec()).unwrap(), &ground_truth).unwrap();
         }
         let report = whole.finish();
         assert_eq!(report.statistics.get("map"), Some((1.0 / 2.0 + 2.0 / 3.0) / 2.0));
@@ -333,10 +333,10 @@ mod tests {
     fn invalid_vectors_are_rejected() {
         let mut reidentification = Reidentification::default();
         let vector = |numbers: &[f32]| Vector::from_data(numbers.to_vec()).unwrap();
-        let truth = Category::new(1, None);
-        assert!(reidentification.update(0, &vector(&[f32::INFINITY]), &truth).is_err());
-        reidentification.update(0, &vector(&[1.0]), &truth).unwrap();
-        assert!(reidentification.update(1, &vector(&[1.0, 2.0]), &truth).is_err());
+        let ground_truth = Category::new(1, None);
+        assert!(reidentification.update(0, &vector(&[f32::INFINITY]), &ground_truth).is_err());
+        reidentification.update(0, &vector(&[1.0]), &ground_truth).unwrap();
+        assert!(reidentification.update(1, &vector(&[1.0, 2.0]), &ground_truth).is_err());
         assert_eq!(reidentification.images.len(), 1);
     }
 }

@@ -211,13 +211,13 @@ impl Metric for Roc {
     ];
     type Params = RocParams;
     type Prediction = Category;
-    type Truth = Category;
+    type GroundTruth = Category;
 
     fn new(params: &RocParams) -> Result<Self> {
         Ok(Self { params: params.clone(), samples: Vec::new() })
     }
 
-    fn update(&mut self, _at: usize, prediction: &Category, truth: &Category) -> Result<f64> {
+    fn update(&mut self, _at: usize, prediction: &Category, ground_truth: &Category) -> Result<f64> {
         let positive = self.params.positive;
         let own = usize::try_from(positive).ok().and_then(|class| prediction.probabilities.get(class));
         let score = match (own, prediction.confidence) {
@@ -231,7 +231,7 @@ impl Metric for Roc {
                 )));
             }
         };
-        let is_positive = truth.class == positive;
+        let is_positive = ground_truth.class == positive;
         self.add(is_positive, score)?;
         Ok((if is_positive { score } else { 1.0 - score }).clamp(0.0, 1.0))
     }
@@ -299,13 +299,13 @@ mod tests {
     #[test]
     fn score_of_the_positive_class() {
         let mut roc = Roc::default();
-        let truth = Category::new(1, None);
+        let ground_truth = Category::new(1, None);
         let prediction = Category { probabilities: vec![0.25, 0.75], ..Category::new(0, None) };
-        assert_eq!(roc.update(0, &prediction, &truth).unwrap(), 0.75);
-        assert_eq!(roc.update(1, &Category::new(0, Some(0.75)), &truth).unwrap(), 0.25);
-        assert_eq!(roc.update(2, &Category::new(1, Some(0.75)), &truth).unwrap(), 0.75);
-        assert!(roc.update(3, &Category::new(1, Some(f32::NAN)), &truth).is_err());
-        assert!(roc.update(3, &Category::new(1, None), &truth).is_err());
+        assert_eq!(roc.update(0, &prediction, &ground_truth).unwrap(), 0.75);
+        assert_eq!(roc.update(1, &Category::new(0, Some(0.75)), &ground_truth).unwrap(), 0.25);
+        assert_eq!(roc.update(2, &Category::new(1, Some(0.75)), &ground_truth).unwrap(), 0.75);
+        assert!(roc.update(3, &Category::new(1, Some(f32::NAN)), &ground_truth).is_err());
+        assert!(roc.update(3, &Category::new(1, None), &ground_truth).is_err());
         assert_eq!(roc.samples.len(), 3);
     }
 

@@ -35,8 +35,8 @@ impl Pixels {
         Self { classes, counts: vec![0; (classes + 1) * (classes + 1)] }
     }
 
-    fn count(&mut self, truth: &[u32], predicted: &[u32]) {
-        let (runs, rest) = truth.as_chunks::<RUN>();
+    fn count(&mut self, ground_truth: &[u32], predicted: &[u32]) {
+        let (runs, rest) = ground_truth.as_chunks::<RUN>();
         let (predictions, rest_of_predictions) = predicted.as_chunks::<RUN>();
         let differing = |run: &[u32; RUN]| run.iter().fold(0, |bits, label| bits | (label ^ run[0]));
         for (run, prediction) in runs.iter().zip(predictions) {
@@ -49,15 +49,15 @@ impl Pixels {
         self.count_each(rest, rest_of_predictions);
     }
 
-    fn count_each(&mut self, truth: &[u32], predicted: &[u32]) {
-        for (truth, predicted) in truth.iter().zip(predicted) {
-            *self.at(*truth, *predicted) += 1;
+    fn count_each(&mut self, ground_truth: &[u32], predicted: &[u32]) {
+        for (ground_truth, predicted) in ground_truth.iter().zip(predicted) {
+            *self.at(*ground_truth, *predicted) += 1;
         }
     }
 
     #[inline]
-    fn at(&mut self, truth: u32, predicted: u32) -> &mut u64 {
-        let [row, column] = [truth, predicted].map(|label| label.min(self.classes as u32) as usize);
+    fn at(&mut self, ground_truth: u32, predicted: u32) -> &mut u64 {
+        let [row, column] = [ground_truth, predicted].map(|label| label.min(self.classes as u32) as usize);
         &mut self.counts[row * (self.classes + 1) + column]
     }
 
@@ -82,7 +82,7 @@ impl Pixels {
         let mut classes = vec![ClassPixels::default(); self.classes];
         for (row, counts) in self.counts.chunks(side).enumerate().filter(|(row, _)| *row != ignored) {
             let Some(class) = classes.get_mut(row) else { continue };
-            class.truth = counts.iter().sum();
+            class.ground_truth = counts.iter().sum();
             class.hits = counts[row];
             for (column, count) in counts.iter().enumerate().filter(|(column, _)| *column != ignored) {
                 if let Some(class) = classes.get_mut(column) {
@@ -100,7 +100,7 @@ pub struct ClassPixels {
     /// Pixels of the class that are predicted as the class.
     pub hits: u64,
     /// Pixels of the class.
-    pub truth: u64,
+    pub ground_truth: u64,
     /// Pixels predicted as the class.
     pub predicted: u64,
 }
@@ -108,12 +108,12 @@ pub struct ClassPixels {
 impl ClassPixels {
     /// Returns the intersection over union; `None` for a class that occurs in neither map.
     pub fn iou(&self) -> Option<f64> {
-        ratio(self.hits, self.truth + self.predicted - self.hits)
+        ratio(self.hits, self.ground_truth + self.predicted - self.hits)
     }
 
     /// Returns the fraction of its pixels that are correct; `None` for a class without pixels.
     pub fn accuracy(&self) -> Option<f64> {
-        ratio(self.hits, self.truth)
+        ratio(self.hits, self.ground_truth)
     }
 }
 
@@ -136,7 +136,7 @@ impl SegmentationScores {
 
     /// Returns the fraction of correct pixels.
     pub fn pixel_accuracy(&self) -> Option<f64> {
-        ratio(self.total(|class| class.hits), self.total(|class| class.truth))
+        ratio(self.total(|class| class.hits), self.total(|class| class.ground_truth))
     }
 
     /// Returns the mean accuracy of the classes that occur in the ground truth.
@@ -146,8 +146,8 @@ impl SegmentationScores {
 
     /// Returns the intersection over union, weighted by the fraction of pixels of the class (Long et al., 2015).
     pub fn frequency_weighted_iou(&self) -> Option<f64> {
-        let total = self.total(|class| class.truth);
-        let part = |class: &ClassPixels| class.iou().unwrap_or(0.0) * class.truth as f64;
+        let total = self.total(|class| class.ground_truth);
+        let part = |class: &ClassPixels| class.iou().unwrap_or(0.0) * class.ground_truth as f64;
         (total > 0).then(|| self.classes.iter().map(part).sum::<f64>() / total as f64)
     }
 }
@@ -166,9 +166,9 @@ impl Segmentation {
     ///
     /// # Errors
     /// Returns `InvalidInput` if the maps differ in size, or a label is above 1023 and not the ignored one.
-    pub fn add(&mut self, truth: &[u32], predicted: &[u32]) -> Result<SegmentationScores> {
-        if truth.len() != predicted.len() {
-            let (expected, given) = (truth.len(), predicted.len());
+    pub fn add(&mut self, ground_truth: &[u32], predicted: &[u32]) -> Result<SegmentationScores> {
+        if ground_truth.len() != predicted.len() {
+            let (expected, given) = (ground_truth.len(), predicted.len());
             return Err(Error::invalid_input(format!(
                 "a map of {given} pixels cannot be compared with one of {expected}; give maps of the same size"
             )));
@@ -180,14 +180,14 @@ impl Segmentation {
             let counted = labels.iter().filter(|label| ![none, uncounted].contains(label));
             counted.max().copied().unwrap_or(0)
         };
-        let highest = highest(truth, none).max(highest(predicted, Heatmap::NO_CLASS)) as usize;
+        let highest = highest(ground_truth, none).max(highest(predicted, Heatmap::NO_CLASS)) as usize;
         if highest >= MAX_CLASSES {
             return Err(Error::invalid_input(format!(
                 "label {highest} is not a class index below {MAX_CLASSES} and not the ignored label {ignore:?}; fix the labels"
             )));
         }
         let mut image = Pixels::new(highest + 1);
-        image.count(truth, predicted);
+        image.count(ground_truth, predicted);
         self.pixels.add(&image);
         Ok(image.scores(ignore))
     }
@@ -227,28 +227,29 @@ impl Metric for Segmentation {
     ];
     type Params = SegmentationParams;
     type Prediction = Heatmap;
-    type Truth = Heatmap;
+    type GroundTruth = Heatmap;
 
     fn new(params: &SegmentationParams) -> Result<Self> {
         Ok(Self { params: params.clone(), ..Self::default() })
     }
 
-    fn update(&mut self, _at: usize, prediction: &Heatmap, truth: &Heatmap) -> Result<f64> {
-        let HeatmapValues::Labels(expected) = truth.values() else {
+    fn update(&mut self, _at: usize, prediction: &Heatmap, ground_truth: &Heatmap) -> Result<f64> {
+        let HeatmapValues::Labels(expected) = ground_truth.values() else {
             return Err(Error::invalid_input(
                 "the ground truth of segmentation must be a map of labels, not of scores",
             ));
         };
         let (given, shape) = prediction.class_labels()?;
-        if shape != truth.shape() {
-            let expected = truth.shape();
+        if shape != ground_truth.shape() {
+            let expected = ground_truth.shape();
             return Err(Error::invalid_input(format!(
                 "a map of shape {shape:?} cannot be compared with one of {expected:?}; resize the prediction to the ground truth"
             )));
         }
         let scores = self.add(expected, &given)?;
         if self.names.is_empty() {
-            let names = if truth.classes.is_empty() { &prediction.classes } else { &truth.classes };
+            let names =
+                if ground_truth.classes.is_empty() { &prediction.classes } else { &ground_truth.classes };
             self.names = names.clone();
         }
         Ok(scores.mean_iou().unwrap_or(1.0))
@@ -265,7 +266,7 @@ impl Metric for Segmentation {
         let mut report = Report::new("miou");
         let scores = self.scores();
         let numbers = [
-            ("pixels", Some(scores.total(|class| class.truth) as f64)),
+            ("pixels", Some(scores.total(|class| class.ground_truth) as f64)),
             ("miou", scores.mean_iou()),
             ("pixel_accuracy", scores.pixel_accuracy()),
             ("mean_accuracy", scores.mean_accuracy()),
@@ -275,9 +276,9 @@ impl Metric for Segmentation {
             report.statistics.set(key, value.unwrap_or(f64::NAN));
         }
         let present =
-            scores.classes.iter().enumerate().filter(|(_, class)| class.truth + class.predicted > 0);
+            scores.classes.iter().enumerate().filter(|(_, class)| class.ground_truth + class.predicted > 0);
         let row = |(at, class): (usize, &ClassPixels)| {
-            (self.name(at), vec![class.iou(), class.accuracy(), Some(class.truth as f64)])
+            (self.name(at), vec![class.iou(), class.accuracy(), Some(class.ground_truth as f64)])
         };
         report.tables.push(Table {
             name: "class".to_owned(),

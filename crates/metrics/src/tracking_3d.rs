@@ -45,7 +45,7 @@ impl Metric for Tracking3d {
         ("switches", "Matches by another track than before (identity switches)."),
         ("fragmentations", "Number of times that an object is lost and matched again."),
         ("false_positives", "Predicted boxes without a match."),
-        ("misses", "Ground-truth boxes without a match."),
+        ("misses", "Ground-ground truth boxes without a match."),
         ("mostly_tracked", "Objects matched in 80 % of their frames or more."),
         ("mostly_lost", "Objects matched in less than 20 %."),
     ];
@@ -53,7 +53,7 @@ impl Metric for Tracking3d {
         &["motp", "switches", "fragmentations", "false_positives", "misses", "mostly_lost"];
     type Params = Tracking3dParams;
     type Prediction = TrackingAnnotation3DList;
-    type Truth = TrackingAnnotation3DList;
+    type GroundTruth = TrackingAnnotation3DList;
 
     fn new(params: &Tracking3dParams) -> Result<Self> {
         let clear = TrackMatchingParams { overlap: params.overlap, ..TrackMatchingParams::default() };
@@ -64,9 +64,9 @@ impl Metric for Tracking3d {
         &mut self,
         _at: usize,
         prediction: &TrackingAnnotation3DList,
-        truth: &TrackingAnnotation3DList,
+        ground_truth: &TrackingAnnotation3DList,
     ) -> Result<f64> {
-        let frame = frame_from_lists(prediction, truth)?;
+        let frame = frame_from_lists(prediction, ground_truth)?;
         self.hota.count(&frame);
         self.clear.count(&frame);
         Ok(frame.coverage())
@@ -99,16 +99,16 @@ impl Metric for Tracking3d {
 /// Returns `InvalidInput` for a box that is not finite; otherwise as [`TrackingFrame::new`].
 fn frame_from_lists(
     found: &TrackingAnnotation3DList,
-    truth: &TrackingAnnotation3DList,
+    ground_truth: &TrackingAnnotation3DList,
 ) -> Result<TrackingFrame> {
-    let (found, truth) = (boxes_from_list(found)?, boxes_from_list(truth)?);
-    if found.len().saturating_mul(truth.len()) > TrackingFrame::MOST_PAIRS {
-        let (truth, found) = (truth.len(), found.len());
+    let (found, ground_truth) = (boxes_from_list(found)?, boxes_from_list(ground_truth)?);
+    if found.len().saturating_mul(ground_truth.len()) > TrackingFrame::MOST_PAIRS {
+        let (ground_truth, found) = (ground_truth.len(), found.len());
         return Err(Error::invalid_input(format!(
-            "{truth} true and {found} predicted objects in one frame are too many pairs; give fewer"
+            "{ground_truth} true and {found} predicted objects in one frame are too many pairs; give fewer"
         )));
     }
-    let overlaps = truth.iter().flat_map(|(_, name, place)| {
+    let overlaps = ground_truth.iter().flat_map(|(_, name, place)| {
         found.iter().map(move |(_, other, found)| {
             let same = name.eq_ignore_ascii_case(other);
             if same { place.iou(found).clamp(0.0, 1.0) } else { 0.0 }
@@ -116,7 +116,7 @@ fn frame_from_lists(
     });
     let overlaps = overlaps.collect();
     let ids = |boxes: &[(i64, String, UprightBox3D)]| boxes.iter().map(|(id, ..)| *id).collect();
-    TrackingFrame::new(ids(&truth), ids(&found), overlaps)
+    TrackingFrame::new(ids(&ground_truth), ids(&found), overlaps)
 }
 
 fn boxes_from_list(list: &TrackingAnnotation3DList) -> Result<Vec<(i64, String, UprightBox3D)>> {
@@ -163,8 +163,8 @@ mod tests {
             annotations: annotations.to_vec(),
             ..TrackingAnnotation3DList::default()
         };
-        for (at, (found, truth)) in frames.iter().enumerate() {
-            metric.update(at, &list(found), &list(truth)).unwrap();
+        for (at, (found, ground_truth)) in frames.iter().enumerate() {
+            metric.update(at, &list(found), &list(ground_truth)).unwrap();
         }
         let scalars = metric.finish().statistics.scalars;
         assert_eq!(scalars.len(), Tracking3d::NUMBERS.len());
@@ -185,12 +185,12 @@ mod tests {
 
     #[test]
     fn switches_classes_and_dont_care() {
-        let truth = vec![car(1, 0.0, "Car"), car(-1, 50.0, "DontCare")];
+        let ground_truth = vec![car(1, 0.0, "Car"), car(-1, 50.0, "DontCare")];
         let frames = vec![
-            (vec![car(5, 0.0, "car")], truth.clone()),
-            (vec![car(6, 0.0, "Car")], truth.clone()),
-            (vec![car(6, 0.0, "Pedestrian")], truth.clone()),
-            (vec![car(6, 0.0, "Car"), car(7, 50.0, "Car")], truth),
+            (vec![car(5, 0.0, "car")], ground_truth.clone()),
+            (vec![car(6, 0.0, "Car")], ground_truth.clone()),
+            (vec![car(6, 0.0, "Pedestrian")], ground_truth.clone()),
+            (vec![car(6, 0.0, "Car"), car(7, 50.0, "Car")], ground_truth),
         ];
         let [_, mota, _, switches, misses, wrong] = numbers(&frames)[..] else { panic!() };
         assert_eq!((switches, misses, wrong, mota), (1.0, 1.0, 2.0, 0.0));

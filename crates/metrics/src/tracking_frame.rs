@@ -9,7 +9,7 @@ use opendr_engine::{Error, Result};
 /// Identities in one frame and the overlap of every pair.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TrackingFrame {
-    truth: Vec<i64>,
+    ground_truth: Vec<i64>,
     found: Vec<i64>,
     overlaps: Vec<f64>,
 }
@@ -18,56 +18,56 @@ impl TrackingFrame {
     /// Maximum number of pairs per frame, which bounds the memory for hostile lists.
     pub(crate) const MOST_PAIRS: usize = 1 << 22;
 
-    /// Creates a frame from identities and `overlaps`, `[truth, found]` in row-major order, each 0 to 1.
+    /// Creates a frame from identities and `overlaps`, `[ground truth, found]` in row-major order, each 0 to 1.
     ///
     /// # Errors
-    /// Returns `InvalidInput` if an identity occurs twice in `truth` or in `found`, if there is not one overlap per pair,
+    /// Returns `InvalidInput` if an identity occurs twice in `ground_truth` or in `found`, if there is not one overlap per pair,
     /// or if an overlap is outside 0..=1.
-    pub fn new(truth: Vec<i64>, found: Vec<i64>, overlaps: Vec<f64>) -> Result<Self> {
-        check_identities("the ground truth", &truth)?;
+    pub fn new(ground_truth: Vec<i64>, found: Vec<i64>, overlaps: Vec<f64>) -> Result<Self> {
+        check_identities("the ground truth", &ground_truth)?;
         check_identities("the prediction", &found)?;
-        check_pairs(truth.len(), found.len())?;
-        if overlaps.len() != truth.len() * found.len() {
+        check_pairs(ground_truth.len(), found.len())?;
+        if overlaps.len() != ground_truth.len() * found.len() {
             return Err(Error::invalid_input(format!(
                 "{} overlaps for {} true and {} predicted objects; give one for every pair",
                 overlaps.len(),
-                truth.len(),
+                ground_truth.len(),
                 found.len()
             )));
         }
         if let Some(wrong) = overlaps.iter().find(|overlap| !(0.0..=1.0).contains(*overlap)) {
             return Err(Error::invalid_input(format!("an overlap is {wrong}; give numbers from 0 to 1")));
         }
-        Ok(Self { truth, found, overlaps })
+        Ok(Self { ground_truth, found, overlaps })
     }
 
     /// Creates a frame from identities and corners `[x0, y0, x1, y1]`; the overlap is the intersection over union.
     ///
     /// # Errors
     /// Returns `InvalidInput` for a box that is not finite; otherwise as [`TrackingFrame::new`].
-    pub fn from_boxes(truth: &[(i64, [f64; 4])], found: &[(i64, [f64; 4])]) -> Result<Self> {
-        check_boxes("the ground truth", truth)?;
+    pub fn from_boxes(ground_truth: &[(i64, [f64; 4])], found: &[(i64, [f64; 4])]) -> Result<Self> {
+        check_boxes("the ground truth", ground_truth)?;
         check_boxes("the prediction", found)?;
-        check_pairs(truth.len(), found.len())?;
-        let overlaps = truth
+        check_pairs(ground_truth.len(), found.len())?;
+        let overlaps = ground_truth
             .iter()
-            .flat_map(|(_, truth)| found.iter().map(|(_, found)| box_iou(*truth, *found)))
+            .flat_map(|(_, ground_truth)| found.iter().map(|(_, found)| box_iou(*ground_truth, *found)))
             .collect();
         let identities = |boxes: &[(i64, [f64; 4])]| boxes.iter().map(|(id, _)| *id).collect();
-        Self::new(identities(truth), identities(found), overlaps)
+        Self::new(identities(ground_truth), identities(found), overlaps)
     }
 
     /// Creates a frame from the lists of a tracker and of the ground truth; classes are ignored.
     ///
     /// # Errors
     /// As [`TrackingFrame::from_boxes`].
-    pub fn from_lists(found: &TrackingAnnotationList, truth: &TrackingAnnotationList) -> Result<Self> {
-        Self::from_boxes(&boxes_from_list(truth), &boxes_from_list(found))
+    pub fn from_lists(found: &TrackingAnnotationList, ground_truth: &TrackingAnnotationList) -> Result<Self> {
+        Self::from_boxes(&boxes_from_list(ground_truth), &boxes_from_list(found))
     }
 
     /// Returns the identities of the ground truth.
-    pub fn truth(&self) -> &[i64] {
-        &self.truth
+    pub fn ground_truth(&self) -> &[i64] {
+        &self.ground_truth
     }
 
     /// Returns the identities of the prediction.
@@ -75,23 +75,26 @@ impl TrackingFrame {
         &self.found
     }
 
-    /// Returns the overlaps, `[truth, found]` in row-major order.
+    /// Returns the overlaps, `[ground truth, found]` in row-major order.
     pub fn overlaps(&self) -> &[f64] {
         &self.overlaps
     }
 
-    /// Returns the overlap of object `truth` and track `found`, by their indices in the frame.
-    pub(crate) fn overlap(&self, truth: usize, found: usize) -> f64 {
-        self.overlaps[truth * self.found.len() + found]
+    /// Returns the overlap of object `ground_truth` and track `found`, by their indices in the frame.
+    pub(crate) fn overlap(&self, ground_truth: usize, found: usize) -> f64 {
+        self.overlaps[ground_truth * self.found.len() + found]
     }
 
     /// Returns the frame with the objects and tracks whose flags are set.
-    pub(crate) fn keep(&self, truth: &[bool], found: &[bool]) -> Self {
+    pub(crate) fn keep(&self, ground_truth: &[bool], found: &[bool]) -> Self {
         let kept = |mask: &[bool]| (0..mask.len()).filter(|at| mask[*at]).collect::<Vec<_>>();
-        let (truth, found) = (kept(truth), kept(found));
+        let (ground_truth, found) = (kept(ground_truth), kept(found));
         Self {
-            overlaps: truth.iter().flat_map(|row| found.iter().map(|at| self.overlap(*row, *at))).collect(),
-            truth: truth.into_iter().map(|at| self.truth[at]).collect(),
+            overlaps: ground_truth
+                .iter()
+                .flat_map(|row| found.iter().map(|at| self.overlap(*row, *at)))
+                .collect(),
+            ground_truth: ground_truth.into_iter().map(|at| self.ground_truth[at]).collect(),
             found: found.into_iter().map(|at| self.found[at]).collect(),
         }
     }
@@ -99,13 +102,13 @@ impl TrackingFrame {
     /// Returns how well the boxes overlap regardless of identities, 0 to 1.
     pub(crate) fn coverage(&self) -> f64 {
         let width = self.found.len();
-        let mut best = (vec![0.0f64; self.truth.len()], vec![0.0f64; width]);
+        let mut best = (vec![0.0f64; self.ground_truth.len()], vec![0.0f64; width]);
         for (at, overlap) in self.overlaps.iter().enumerate() {
             best.0[at / width] = best.0[at / width].max(*overlap);
             best.1[at % width] = best.1[at % width].max(*overlap);
         }
         let hits = best.0.iter().sum::<f64>().min(best.1.iter().sum());
-        match (self.truth.len() + width) as f64 - hits {
+        match (self.ground_truth.len() + width) as f64 - hits {
             union if union > 0.0 => hits / union,
             _ => 1.0,
         }
@@ -145,11 +148,11 @@ fn check_boxes(what: &str, boxes: &[(i64, [f64; 4])]) -> Result<()> {
     }
 }
 
-fn check_pairs(truth: usize, found: usize) -> Result<()> {
-    match truth.checked_mul(found) {
+fn check_pairs(ground_truth: usize, found: usize) -> Result<()> {
+    match ground_truth.checked_mul(found) {
         Some(pairs) if pairs <= TrackingFrame::MOST_PAIRS => Ok(()),
         _ => Err(Error::invalid_input(format!(
-            "{truth} true and {found} predicted objects in one frame are more than {} pairs; give fewer",
+            "{ground_truth} true and {found} predicted objects in one frame are more than {} pairs; give fewer",
             TrackingFrame::MOST_PAIRS
         ))),
     }
@@ -161,9 +164,9 @@ mod tests {
 
     #[test]
     fn boxes_and_coverage() {
-        let truth = [(1, [0.0, 0.0, 2.0, 2.0]), (2, [10.0, 0.0, 12.0, 2.0])];
+        let ground_truth = [(1, [0.0, 0.0, 2.0, 2.0]), (2, [10.0, 0.0, 12.0, 2.0])];
         let found = [(7, [0.0, 1.0, 2.0, 3.0]), (8, [10.0, 0.0, 12.0, 2.0]), (9, [50.0, 0.0, 51.0, 1.0])];
-        let frame = TrackingFrame::from_boxes(&truth, &found).unwrap();
+        let frame = TrackingFrame::from_boxes(&ground_truth, &found).unwrap();
         assert_eq!(frame.overlaps(), [1.0 / 3.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
         let hits = 4.0 / 3.0;
         assert_eq!(frame.coverage(), hits / (5.0 - hits));

@@ -168,7 +168,7 @@ impl Metric for Transcription {
     const LOWER_IS_BETTER: &'static [&'static str] = &["wer", "cer", "mer", "wil", "utterance_error_rate"];
     type Params = TranscriptionParams;
     type Prediction = BaseTranscription;
-    type Truth = BaseTranscription;
+    type GroundTruth = BaseTranscription;
 
     fn new(params: &TranscriptionParams) -> Result<Self> {
         Ok(Self { params: params.clone(), ..Self::default() })
@@ -178,9 +178,9 @@ impl Metric for Transcription {
         &mut self,
         _at: usize,
         prediction: &BaseTranscription,
-        truth: &BaseTranscription,
+        ground_truth: &BaseTranscription,
     ) -> Result<f64> {
-        let words = self.add(&truth.text, &prediction.text)?;
+        let words = self.add(&ground_truth.text, &prediction.text)?;
         Ok(1.0 - words.error_rate().min(1.0))
     }
 
@@ -226,7 +226,7 @@ impl Metric for Transcription {
         Some(Cow::Owned(BaseTranscription { text, ..BaseTranscription::default() }))
     }
 
-    fn truth(value: ValueRef<'_>) -> Option<Cow<'_, BaseTranscription>> {
+    fn ground_truth(value: ValueRef<'_>) -> Option<Cow<'_, BaseTranscription>> {
         Self::prediction(value)
     }
 }

@@ -155,19 +155,19 @@ impl Metric for Verification {
     const LOWER_IS_BETTER: &'static [&'static str] = &["accuracy_standard_error", "equal_error_rate"];
     type Params = VerificationParams;
     type Prediction = Category;
-    type Truth = Category;
+    type GroundTruth = Category;
 
     fn new(params: &VerificationParams) -> Result<Self> {
         Ok(Self { params: params.clone(), pairs: Vec::new() })
     }
 
-    fn update(&mut self, at: usize, prediction: &Category, truth: &Category) -> Result<f64> {
+    fn update(&mut self, at: usize, prediction: &Category, ground_truth: &Category) -> Result<f64> {
         let Some(score) = prediction.confidence else {
             return Err(Error::invalid_input(format!(
                 "pair {at} has no confidence; give its similarity as confidence"
             )));
         };
-        let (score, same) = (f64::from(score), truth.class == 1);
+        let (score, same) = (f64::from(score), ground_truth.class == 1);
         self.add(at, same, score)?;
         Ok((if same { score } else { 1.0 - score }).clamp(0.0, 1.0))
     }

@@ -41,7 +41,7 @@ pub struct Voc {
 #[derive(Debug, Clone, Default)]
 struct Class {
     /// Number of objects that are not difficult.
-    truths: u64,
+    ground_truths: u64,
     ranked: Vec<Ranked>,
 }
 
@@ -63,15 +63,22 @@ impl Metric for Voc {
     const IS_RANKING: bool = true;
     type Params = VocParams;
     type Prediction = BoundingBoxList;
-    type Truth = BoundingBoxList;
+    type GroundTruth = BoundingBoxList;
 
     fn new(params: &VocParams) -> Result<Self> {
         Ok(Self { params: params.clone(), names: Classes::default(), classes: BTreeMap::new() })
     }
 
-    fn update(&mut self, at: usize, prediction: &BoundingBoxList, truth: &BoundingBoxList) -> Result<f64> {
+    fn update(
+        &mut self,
+        at: usize,
+        prediction: &BoundingBoxList,
+        ground_truth: &BoundingBoxList,
+    ) -> Result<f64> {
         let is_finite = |object: &BoundingBox| object.corners().into_iter().all(f32::is_finite);
-        if let Some(invalid) = prediction.boxes.iter().chain(&truth.boxes).find(|object| !is_finite(object)) {
+        if let Some(invalid) =
+            prediction.boxes.iter().chain(&ground_truth.boxes).find(|object| !is_finite(object))
+        {
             return Err(Error::invalid_input(format!(
                 "{invalid:#} has coordinates that are not finite; give finite numbers"
             )));
@@ -80,23 +87,23 @@ impl Metric for Voc {
             return Err(Error::invalid_input("the score of a detection is NaN; give a number"));
         }
         if self.names.is_empty() {
-            self.names = truth.classes.clone();
+            self.names = ground_truth.classes.clone();
         }
         let mut pairs: BTreeMap<ClassKey, [Vec<&BoundingBox>; 2]> = BTreeMap::new();
-        for (side, list) in [prediction, truth].into_iter().enumerate() {
+        for (side, list) in [prediction, ground_truth].into_iter().enumerate() {
             for object in &list.boxes {
-                let key = ClassKey::new(&object.name, &list.classes, &truth.classes);
+                let key = ClassKey::new(&object.name, &list.classes, &ground_truth.classes);
                 pairs.entry(key).or_default()[side].push(object);
             }
         }
         let mut averages = Vec::new();
         for (key, [detected, annotated]) in pairs {
             let class = self.classes.entry(key).or_default();
-            let truths = annotated.iter().filter(|object| !is_difficult(object)).count() as u64;
+            let ground_truths = annotated.iter().filter(|object| !is_difficult(object)).count() as u64;
             let start = class.ranked.len();
             class.ranked.extend(ranked(at, detected, &annotated, self.params.overlap));
-            class.truths += truths;
-            averages.extend(self.params.average(&class.ranked[start..], truths));
+            class.ground_truths += ground_truths;
+            averages.extend(self.params.average(&class.ranked[start..], ground_truths));
         }
         let highest =
             prediction.boxes.iter().map(|detection| f64::from(detection.confidence)).fold(0.0, f64::max);
@@ -109,7 +116,7 @@ impl Metric for Voc {
         }
         for (key, theirs) in other.classes {
             let ours = self.classes.entry(key).or_default();
-            ours.truths += theirs.truths;
+            ours.ground_truths += theirs.ground_truths;
             ours.ranked.extend(theirs.ranked);
         }
     }
@@ -120,17 +127,17 @@ impl Metric for Voc {
         for (key, class) in &self.classes {
             let mut ranked = class.ranked.clone();
             ranked.sort_unstable_by(Ranked::before);
-            let Some(average) = self.params.average(&ranked, class.truths) else { continue };
+            let Some(average) = self.params.average(&ranked, class.ground_truths) else { continue };
             let label = key.label(&self.names);
             let recall =
-                ranked.iter().filter(|ranked| ranked.is_correct).count() as f64 / class.truths as f64;
-            rows.push((label.clone(), vec![Some(class.truths as f64), Some(average), Some(recall)]));
-            lines.push(Line { label, points: points(&ranked, class.truths) });
+                ranked.iter().filter(|ranked| ranked.is_correct).count() as f64 / class.ground_truths as f64;
+            rows.push((label.clone(), vec![Some(class.ground_truths as f64), Some(average), Some(recall)]));
+            lines.push(Line { label, points: points(&ranked, class.ground_truths) });
             averages.push(average);
         }
         report.statistics.set("map", mean(averages).unwrap_or(f64::NAN));
         if !rows.is_empty() {
-            let columns = ["truths", "ap", "recall"].map(str::to_owned).to_vec();
+            let columns = ["ground_truth", "ap", "recall"].map(str::to_owned).to_vec();
             report.tables.push(Table { name: "class".to_owned(), columns, rows });
         }
         lines.truncate(DRAWN);
@@ -191,12 +198,13 @@ impl Ranked {
 
 impl VocParams {
     /// Returns the average precision; `None` without objects.
-    fn average(&self, ranked: &[Ranked], truths: u64) -> Option<f64> {
+    fn average(&self, ranked: &[Ranked], ground_truths: u64) -> Option<f64> {
         let precision = precisions(ranked);
-        let at = |tenth: u64| precision.get((tenth * truths).div_ceil(10).max(1) as usize - 1).copied();
-        (truths > 0).then(|| match self.eleven_points {
+        let at =
+            |tenth: u64| precision.get((tenth * ground_truths).div_ceil(10).max(1) as usize - 1).copied();
+        (ground_truths > 0).then(|| match self.eleven_points {
             true => (0..=10).filter_map(at).sum::<f64>() / 11.0,
-            false => precision.iter().sum::<f64>() / truths as f64,
+            false => precision.iter().sum::<f64>() / ground_truths as f64,
         })
     }
 }
@@ -216,11 +224,11 @@ fn precisions(ranked: &[Ranked]) -> Vec<f64> {
 }
 
 /// Returns at most 101 points of the curve.
-fn points(ranked: &[Ranked], truths: u64) -> Vec<[f64; 2]> {
+fn points(ranked: &[Ranked], ground_truths: u64) -> Vec<[f64; 2]> {
     let precision = precisions(ranked);
     let step = precision.len().div_ceil(100).max(1);
     let sampled = precision.iter().enumerate().step_by(step);
-    sampled.map(|(at, precision)| [(at + 1) as f64 / truths as f64, *precision]).collect()
+    sampled.map(|(at, precision)| [(at + 1) as f64 / ground_truths as f64, *precision]).collect()
 }
 
 #[cfg(test)]

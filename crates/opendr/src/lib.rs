@@ -62,6 +62,7 @@ pub use fit::{
 };
 #[cfg(feature = "actions")]
 pub use opendr_actions::{activity_recognition, skeleton_based_action_recognition};
+pub use opendr_audio::{mfcc, resampler};
 #[cfg(feature = "classification")]
 pub use opendr_classification::{compressive_learning, image_classification};
 #[cfg(feature = "clouds")]
@@ -88,7 +89,6 @@ pub use opendr_pose::{fall_detection, pose_estimation};
 pub use opendr_segmentation::{binary_high_resolution, instance_segmentation, semantic_segmentation};
 #[cfg(feature = "signals")]
 pub use opendr_signals::{beats, heart_anomaly_detection};
-pub use opendr_sound::{mfcc, resampler};
 #[cfg(feature = "speech")]
 pub use opendr_speech::{speech_recognition, speech_transcription, voice_activity, voice_activity_detection};
 #[cfg(feature = "stereo")]

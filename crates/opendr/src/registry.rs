@@ -65,7 +65,7 @@ use opendr_speech::{
 use opendr_stereo::stereo_matching::SemiGlobalMatching;
 #[cfg(feature = "tracking")]
 use opendr_tracking::{
-    object_tracking_2d::{ByteTrack, DeepSort, FairMot, NanoTrack, OcSort, Sort},
+    object_tracking_2d::{ByteTrack, CBiou, DeepSort, FairMot, NanoTrack, OcSort, Sort},
     object_tracking_3d::{Ab3dmot, Vpit},
 };
 
@@ -95,6 +95,7 @@ pub fn registry() -> &'static Registry {
                 Sort,
                 ByteTrack,
                 OcSort,
+                CBiou,
                 DeepSort,
                 FairMot,
                 NanoTrack,

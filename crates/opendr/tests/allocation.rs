@@ -11,7 +11,7 @@ mod models;
 use opendr::data::{Audio, Image};
 use opendr::inference::{Session, TensorView};
 use opendr::learner::{Handle, Inputs, Learner};
-use opendr::object_tracking_2d::{ByteTrack, OcSort, Sort, TrackerInputs};
+use opendr::object_tracking_2d::{ByteTrack, CBiou, OcSort, Sort, TrackerInputs};
 use opendr::params::{ParamMap, Params};
 use opendr::speech_recognition::DsCnn;
 use opendr::stereo_matching::{SemiGlobalMatching, SemiGlobalMatchingInputs, SemiGlobalMatchingTargets};
@@ -88,6 +88,7 @@ fn trackers_allocate_nothing() {
     check_tracker(Sort::with_params);
     check_tracker(ByteTrack::with_params);
     check_tracker(OcSort::with_params);
+    check_tracker(CBiou::with_params);
 }
 
 #[test]

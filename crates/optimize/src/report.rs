@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use opendr_engine::JsonFormat;
 use serde::Serialize;
 
 /// Report of an optimisation. `Display` writes a table.
@@ -57,6 +58,11 @@ impl LayerReport {
         let loss = |ratio: f64| 10f64.powf(-ratio / 10.0);
         -10.0 * (loss(self.weight_snr_db) + loss(self.input_snr_db)).log10()
     }
+}
+
+impl Report {
+    /// Format of the report as JSON. Version 2 renamed the ratios of a layer to `..._snr_db`.
+    pub const FORMAT: JsonFormat = JsonFormat::new("report of an optimisation", 2);
 }
 
 impl fmt::Display for Report {

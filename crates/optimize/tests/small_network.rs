@@ -249,7 +249,7 @@ fn fp16_predicts_the_same_on_every_runtime() {
 
 #[test]
 fn unsupported_cases_are_errors() {
-    let folder = Folder::new("told");
+    let folder = Folder::new("report");
     let model = container(&folder);
     let output = folder.0.join("out");
     let run = |model: &Model, seen: &[Recording]| {

@@ -101,7 +101,7 @@ impl Interaction {
         }
     }
 
-    /// Whether the last step ended an episode in environment `index`.
+    /// Returns whether the last step ended an episode in environment `index`.
     pub fn ended(&self, index: usize) -> bool {
         self.batch.terminated[index] || self.batch.truncated[index]
     }

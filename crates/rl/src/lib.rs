@@ -34,6 +34,7 @@ mod behaviour_cloning;
 mod dqn;
 mod episodes;
 mod evaluation;
+mod evaluation_history;
 mod interaction;
 mod learner;
 mod off_policy;

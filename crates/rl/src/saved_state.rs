@@ -1,7 +1,7 @@
 //! The saved state of a training, from which it resumes bit for bit.
 
 use opendr_engine::environment::{Snapshot, StateReader};
-use opendr_engine::{Error, Random, Result};
+use opendr_engine::{Error, JsonFormat, Random, Result, ResultExt as _};
 use opendr_kernels::Adam;
 use serde::{Deserialize, Serialize};
 
@@ -21,6 +21,7 @@ struct Record {
 }
 
 const STATE: &str = "state.json";
+const FORMAT: JsonFormat = JsonFormat::new("state of a policy's training", 1);
 
 impl SavedState {
     /// Creates an empty state of the algorithm `name` with the states of its environments.
@@ -74,8 +75,7 @@ impl SavedState {
     /// `Internal` when the words cannot be written as JSON.
     pub fn files(&self) -> Result<Vec<(String, Vec<u8>)>> {
         let record = Record { words: self.words.clone(), environments: self.environments.clone() };
-        let json = serde_json::to_vec(&record)
-            .map_err(|error| Error::internal("the state cannot be written as JSON").with_source(error))?;
+        let json = FORMAT.to_json(&record)?.into_bytes();
         let rows = self.arrays.iter().map(|(name, row)| {
             let bytes = row.iter().flat_map(|number| number.to_le_bytes());
             (file_name(name), bytes.collect())
@@ -88,9 +88,7 @@ impl SavedState {
     /// # Errors
     /// `Format` for a damaged file, and the errors of `read`.
     pub fn from_files(read: &dyn Fn(&str) -> Result<Vec<u8>>, names: &[&'static str]) -> Result<Self> {
-        let Record { words, environments } = serde_json::from_slice(&read(STATE)?).map_err(|error| {
-            Error::format(format!("{STATE} is not the state of a training")).with_source(error)
-        })?;
+        let Record { words, environments } = FORMAT.read(&read(STATE)?).context(|| STATE.to_owned())?;
         let array = |name: &&'static str| -> Result<_> {
             let bytes = read(&file_name(name))?;
             let (numbers, rest) = bytes.as_chunks::<4>();

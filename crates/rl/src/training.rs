@@ -1,19 +1,19 @@
 //! Training of a policy with log, checkpoints and evaluations: the implementation of `fit`.
 
-use std::cmp::Ordering;
 use std::time::Instant;
 
 use opendr_engine::environment::{Environment, EnvironmentSource};
 use opendr_engine::learner::FitJob;
 use opendr_engine::model::{Manifest, Model, ModelWriter};
 use opendr_engine::params::{ParamMap, Params as _};
-use opendr_engine::{Error, ErrorKind, Result, ResultExt as _, Statistics, Unit};
+use opendr_engine::{ErrorKind, Result, ResultExt as _, Statistics, Unit};
 use opendr_kernels::Compute;
 use opendr_runlog::{Checkpoints, RunLog};
 use opendr_simulation::vector::{Autoreset, EnvironmentVector, VecEnvironment};
 
 use crate::algorithm::Algorithm;
 use crate::evaluation::{EvaluationProtocol, EvaluationReport, evaluate_under};
+use crate::evaluation_history::{EVALUATIONS, EvaluationHistory, EvaluationRecord};
 use crate::learner::{Method, RlTrainingParams};
 use crate::onnx::onnx_from_policy;
 use crate::policy::Policy;
@@ -23,14 +23,10 @@ use crate::prior::{Shield, ShieldParams, ShieldedVector};
 pub const POLICY_FILE: &str = "policy.safetensors";
 /// Folder of the checkpoints in the output folder.
 const CHECKPOINTS: &str = "checkpoints";
-/// Further files of a checkpoint: the best policy so far, and the results of the evaluations.
+/// File of a checkpoint with the best policy so far.
 const BEST: &str = "best.safetensors";
-const MEASURED: &str = "measured.json";
 /// Key of the environment's name in the inputs of the manifest.
 const ENVIRONMENT: &str = "environment";
-
-/// Results of the evaluations, oldest first: time steps, mean return, success rate.
-type Measured = Vec<(u64, f64, Option<f64>)>;
 
 struct Training<'a, A> {
     algorithm: A,
@@ -42,7 +38,7 @@ struct Training<'a, A> {
     checkpoints: Checkpoints,
     log: RunLog,
     best: Option<Vec<u8>>,
-    measured: Measured,
+    history: EvaluationHistory,
     saved_at: u64,
     job: &'a FitJob<'a>,
 }
@@ -92,7 +88,7 @@ pub fn fit_policy<M: Method>(
         checkpoints: Checkpoints::new(&job.output.join(CHECKPOINTS), training.checkpoints_kept)?,
         log: RunLog::open(None, None)?,
         best: None,
-        measured: Measured::new(),
+        history: EvaluationHistory::default(),
         saved_at: 0,
         job,
     };
@@ -100,7 +96,7 @@ pub fn fit_policy<M: Method>(
     training.log = RunLog::open(job.logging_path, resumed)?;
     training.run()?;
     let policy = training.best_policy()?;
-    write_model::<M>(&policy, &id, params, &fit_params, best_of(&training.measured), job)?;
+    write_model::<M>(&policy, &id, params, &fit_params, training.history.best(), job)?;
     Ok(training.statistics(begun))
 }
 
@@ -140,10 +136,7 @@ impl<A: Algorithm> Training<'_, A> {
             false => None,
         };
         let Some(checkpoint) = loaded else { return Ok(None) };
-        self.measured = serde_json::from_slice(&checkpoint.file(MEASURED)?).map_err(|error| {
-            let path = checkpoint.path().display();
-            Error::format(format!("{path} has no valid {MEASURED}")).with_source(error)
-        })?;
+        self.history = EvaluationHistory::from_checkpoint(&checkpoint)?;
         if checkpoint.names().any(|name| name == BEST) {
             self.best = Some(checkpoint.file(BEST)?);
         }
@@ -213,7 +206,7 @@ impl<A: Algorithm> Training<'_, A> {
     fn measure(&mut self) -> Result<()> {
         let now = self.algorithm.report().timesteps;
         let Some(val_env) = &mut self.val_env else { return Ok(()) };
-        if self.measured.last().is_some_and(|(step, ..)| *step == now) {
+        if self.history.ends_at(now) {
             return Ok(());
         }
         let episodes = self.params.n_eval_episodes;
@@ -227,8 +220,12 @@ impl<A: Algorithm> Training<'_, A> {
         if let Some(rate) = success {
             self.log.scalar("val_success_rate", now, rate)?;
         }
-        self.measured.push((now, mean_return, success));
-        if best_of(&self.measured).is_some_and(|(step, ..)| *step == now) {
+        self.history.evaluations.push(EvaluationRecord {
+            timesteps: now,
+            mean_return,
+            success_rate: success,
+        });
+        if self.history.best().is_some_and(|best| best.timesteps == now) {
             self.best = Some(self.algorithm.policy().to_bytes()?);
         }
         Ok(())
@@ -240,11 +237,9 @@ impl<A: Algorithm> Training<'_, A> {
             return Ok(());
         }
         self.log.flush()?;
-        let measured = serde_json::to_vec(&self.measured).map_err(|error| {
-            Error::internal("the results of evaluations cannot be written as JSON").with_source(error)
-        })?;
+        let evaluations = EvaluationHistory::FORMAT.to_json(&self.history)?.into_bytes();
         let best = self.best.clone().map(|best| (BEST.to_owned(), best));
-        let further = std::iter::once((MEASURED.to_owned(), measured)).chain(best).collect();
+        let further = std::iter::once((EVALUATIONS.to_owned(), evaluations)).chain(best).collect();
         self.algorithm.save_with(&self.checkpoints, &*self.environments, further)?;
         self.saved_at = now;
         Ok(())
@@ -267,20 +262,14 @@ impl<A: Algorithm> Training<'_, A> {
         if let Some(mean) = report.mean_return {
             statistics.set("mean_return", mean);
         }
-        for (_, earned, success) in &self.measured {
-            statistics.push("val_return", *earned);
-            if let Some(success) = success {
-                statistics.push("val_success_rate", *success);
+        for record in &self.history.evaluations {
+            statistics.push("val_return", record.mean_return);
+            if let Some(rate) = record.success_rate {
+                statistics.push("val_success_rate", rate);
             }
         }
         statistics
     }
-}
-
-/// Returns the evaluation of the highest success rate, then of the highest return; the last of equals.
-fn best_of(measured: &Measured) -> Option<&(u64, f64, Option<f64>)> {
-    let score = |(_, earned, success): &(u64, f64, Option<f64>)| (success.unwrap_or(0.0), *earned);
-    measured.iter().max_by(|one, other| score(one).partial_cmp(&score(other)).unwrap_or(Ordering::Equal))
 }
 
 /// Writes the container: the policy, its ONNX model if it can be exported, and the environment of the training.
@@ -289,7 +278,7 @@ fn write_model<M: Method>(
     environment: &str,
     params: &ParamMap,
     fit_params: &M::FitParams,
-    measured: Option<&(u64, f64, Option<f64>)>,
+    best: Option<&EvaluationRecord>,
     job: &FitJob<'_>,
 ) -> Result<()> {
     let mut manifest = Manifest::new(M::SPEC.name, "");
@@ -297,10 +286,10 @@ fn write_model<M: Method>(
     manifest.params = params.clone();
     manifest.inputs.insert(ENVIRONMENT.to_owned(), environment.into());
     manifest.inputs.extend(M::inputs(fit_params)?.into_iter().map(|(name, value)| (name.to_owned(), value)));
-    if let Some((_, earned, success)) = measured {
-        let mut numbers = serde_json::json!({"val_return": earned});
-        if let Some(success) = success {
-            numbers["val_success_rate"] = (*success).into();
+    if let Some(best) = best {
+        let mut numbers = serde_json::json!({"val_return": best.mean_return});
+        if let Some(rate) = best.success_rate {
+            numbers["val_success_rate"] = rate.into();
         }
         manifest.metrics.insert(environment.to_owned(), numbers);
     }

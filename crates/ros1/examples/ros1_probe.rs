@@ -114,7 +114,7 @@ fn set_bool(request: &[u8]) -> Result<Vec<u8>, String> {
     match request {
         [1] => Ok([&[1], text("switched on").as_slice()].concat()),
         _ => {
-            assert_eq!(request, [0], "no truth value");
+            assert_eq!(request, [0], "no ground truth value");
             Err("it stays on".to_owned())
         }
     }
@@ -237,13 +237,13 @@ fn hold(node: &Node, topic: &str) -> Result<()> {
     Ok(())
 }
 
-fn told(value: &ParameterValue) -> String {
+fn text_of(value: &ParameterValue) -> String {
     format!("{value:?}").replace('"', "'")
 }
 
 fn parameters(node: &Node, words: &[&str]) -> Result<()> {
     match words {
-        ["get", key] => say("value", &told(&node.parameter(key)?)),
+        ["get", key] => say("value", &text_of(&node.parameter(key)?)),
         ["has", key] => println!("{{\"has\": {}}}", node.has_parameter(key)?),
         ["delete", key] => node.delete_parameter(key)?,
         ["search", key] => say("found", &node.search_parameter(key)?.unwrap_or_default()),
@@ -267,7 +267,7 @@ fn parameters(node: &Node, words: &[&str]) -> Result<()> {
                     format!("{value:?}").replace('"', "'")
                 );
             })?;
-            say("value", &told(&now));
+            say("value", &text_of(&now));
             node.wait();
         }
         _ => {

@@ -5,13 +5,13 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use opendr_engine::model::{Sha256, member_path};
-use opendr_engine::{Error, Result, ResultExt};
+use opendr_engine::{Error, JsonFormat, Result, ResultExt};
 use serde::{Deserialize, Serialize};
 
 use crate::atomic_file::{sync_folder, write_error, write_synced};
 
 const MANIFEST: &str = "checkpoint.json";
-const FORMAT_VERSION: u32 = 1;
+const FORMAT: JsonFormat = JsonFormat::new("manifest of a checkpoint", 1);
 const MAX_MANIFEST_BYTES: u64 = 1 << 20;
 /// Maximum size of a file.
 const MAX_FILE_BYTES: u64 = 16 << 30;
@@ -29,7 +29,6 @@ pub struct Checkpoint {
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct Manifest {
-    format_version: u32,
     step: u64,
     files: Vec<Entry>,
 }
@@ -85,10 +84,8 @@ impl Checkpoint {
             let (name, size) = ((*name).to_owned(), bytes.len() as u64);
             entries.push(Entry { name, size, sha256: Sha256::of(bytes) });
         }
-        let manifest = Manifest { format_version: FORMAT_VERSION, step, files: entries };
-        let json = serde_json::to_vec_pretty(&manifest)
-            .map_err(|error| Error::internal("the manifest cannot be written as JSON").with_source(error))?;
-        write_whole(&folder.join(MANIFEST), &json)
+        let json = FORMAT.to_pretty_json(&Manifest { step, files: entries })?;
+        write_whole(&folder.join(MANIFEST), json.as_bytes())
     }
 
     /// Opens the checkpoint in a folder and verifies all its files.
@@ -100,16 +97,7 @@ impl Checkpoint {
         let mut json = Vec::new();
         let file = File::open(&manifest_path).context(|| manifest_path.display().to_string())?;
         file.take(MAX_MANIFEST_BYTES).read_to_end(&mut json)?;
-        let manifest: Manifest = serde_json::from_slice(&json).map_err(|error| {
-            Error::format(format!("{} is not a manifest", manifest_path.display())).with_source(error)
-        })?;
-        if manifest.format_version != FORMAT_VERSION {
-            let version = manifest.format_version;
-            return Err(Error::unsupported(format!(
-                "{} has version {version}, this OpenDR reads version {FORMAT_VERSION}; update OpenDR",
-                manifest_path.display()
-            )));
-        }
+        let manifest: Manifest = FORMAT.read(&json).context(|| manifest_path.display().to_string())?;
         manifest.files.iter().try_for_each(|entry| entry.check(&path))?;
         Ok(Self { step: manifest.step, skipped: Vec::new(), path, manifest })
     }

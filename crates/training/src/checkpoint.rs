@@ -4,7 +4,7 @@ use burn::module::Module;
 use burn::optim::{ModuleOptimizer, OptimizerRecord};
 use burn::store::{ModuleRecord, RecordError};
 use burn::tensor::Bytes;
-use opendr_engine::{Error, Result};
+use opendr_engine::{Error, Result, ResultExt};
 use opendr_runlog::Checkpoint;
 
 use crate::training_state::TrainingState;
@@ -12,7 +12,9 @@ use crate::training_state::TrainingState;
 const NETWORK: &str = "network.bpk";
 const AVERAGE: &str = "average.bpk";
 const OPTIMIZER: &str = "optimizer.bpk";
-const STATE: &str = "standing.json";
+const STATE: &str = "training_state.json";
+/// File name of the state in checkpoints of version 1.
+const FORMER_STATE: &str = "standing.json";
 
 /// A loaded checkpoint.
 pub struct Saved<'a> {
@@ -33,7 +35,7 @@ impl<'a> Saved<'a> {
         optimizer: &ModuleOptimizer,
     ) -> Result<Vec<(&'static str, Vec<u8>)>> {
         let mut files = vec![
-            (STATE, serde_json::to_vec_pretty(state).map_err(|error| not_serialisable().with_source(error))?),
+            (STATE, TrainingState::FORMAT.to_pretty_json(state)?.into_bytes()),
             (NETWORK, bytes(network.into_record().into_bytes())?),
             (OPTIMIZER, bytes(optimizer.into_bytes())?),
         ];
@@ -46,13 +48,13 @@ impl<'a> Saved<'a> {
     /// Reads the progress of the training.
     ///
     /// # Errors
-    /// `Format` when the checkpoint is not one of a training.
+    /// `NotFound` or `Format` when the checkpoint is not one of a training, `Unsupported` when it is of a newer OpenDR.
     pub fn read(checkpoint: &'a Checkpoint) -> Result<Self> {
-        let json = checkpoint.file(STATE)?;
-        let state = serde_json::from_slice(&json).map_err(|error| {
-            Error::format(format!("{} is not a checkpoint of a training", checkpoint.path().display()))
-                .with_source(error)
-        })?;
+        let former = checkpoint.names().find(|name| *name == FORMER_STATE);
+        let json = checkpoint.file(former.unwrap_or(STATE))?;
+        let state = TrainingState::FORMAT
+            .read(&json)
+            .context(|| format!("resuming from {}", checkpoint.path().display()))?;
         Ok(Self { checkpoint, state })
     }
 

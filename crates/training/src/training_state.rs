@@ -1,7 +1,7 @@
 //! Progress of a training: the contents of a checkpoint besides weights.
 
 use opendr_engine::params::{ParamMap, ParamValue};
-use opendr_engine::{Error, Result, Statistics};
+use opendr_engine::{Error, JsonFormat, Result, Statistics};
 use serde::{Deserialize, Serialize};
 
 /// Progress of a training.
@@ -27,6 +27,11 @@ pub struct TrainingState {
     pub statistics: Statistics,
     /// Data set and parameters, which a resumed training must not change.
     pub setting: Setting,
+}
+
+impl TrainingState {
+    /// Format of the state in a checkpoint. Version 2 renamed the file `standing.json` to `training_state.json`.
+    pub const FORMAT: JsonFormat = JsonFormat::new("state of a training", 2);
 }
 
 /// The best validation so far.

@@ -12,7 +12,7 @@ use crate::import::imported;
 /// Maximum size of a file in bytes; an ONNX file cannot exceed 2 GiB.
 const MAX_BYTES: u64 = 1 << 31;
 
-/// Makes a container at `output` from a user's files, converted to ONNX: a model of TensorFlow Lite, TensorFlow.js (the JSON first,
+/// Creates a container at `output` from a user's files, converted to ONNX: a model of TensorFlow Lite, TensorFlow.js (the JSON first,
 /// then the weights) or ncnn (the `.param` file first, then the weights), or Whisper weights of CTranslate2, in safetensors, or in
 /// two ONNX files exported by PyTorch (the encoder first). The format is detected from the content of the first file. Further
 /// files, such as a tokeniser, are copied; a single ONNX file becomes `model.onnx`. The container replaces `output` only if

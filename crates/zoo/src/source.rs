@@ -25,7 +25,7 @@ pub type FilePlaces = BTreeMap<String, String>;
 pub enum Source {
     /// Relative paths inside `OPENDR_MODEL_REPOSITORY`, a folder or an address.
     Repository {
-        /// Where each file is.
+        /// Returns the location of each file.
         files: FilePlaces,
     },
     /// Files of `models/weights/`, OpenDR's own weights: in the data package `opendr-rs-models` on this machine
@@ -36,7 +36,7 @@ pub enum Source {
     },
     /// URLs.
     Url {
-        /// Where each file is.
+        /// Returns the location of each file.
         files: FilePlaces,
     },
     /// A commit of a repository on GitHub.
@@ -76,7 +76,7 @@ pub struct Package {
 }
 
 impl Source {
-    /// Where each file is.
+    /// Returns the location of each file.
     pub fn files(&self) -> &FilePlaces {
         match self {
             Self::Repository { files }

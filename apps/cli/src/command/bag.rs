@@ -7,7 +7,7 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::bags::{
     Bag, BagFormat, Compression, Conversion, Recording, RecordingWriter, Topic, WriteOptions,
 };
-use opendr::{Error, Progress, Result, ValueType};
+use opendr::{Error, JsonFormat, Progress, Result, ValueType};
 use serde_json::json;
 
 use crate::exit::Outcome;
@@ -80,6 +80,9 @@ fn types(topic: &Topic) -> Vec<&'static str> {
     fitting.map(|value_type| value_type.name()).collect()
 }
 
+/// Format of `bag info --json`.
+const INFO: JsonFormat = JsonFormat::new("description of a recording", 1);
+
 fn info(matches: &ArgMatches) -> Result<Outcome> {
     let recording = open(matches)?;
     let (bag, topics) = (recording.bag(), recording.topics());
@@ -92,11 +95,12 @@ fn info(matches: &ArgMatches) -> Result<Outcome> {
                 })
             })
             .collect();
-        stdout::print(json!({
+        let report = json!({
             "recording": recording.path().to_string_lossy(), "format": bag.format().name(),
             "complete": bag.is_complete(), "messages": bag.message_count(), "start_ns": bag.start_ns(),
             "end_ns": bag.end_ns(), "duration_s": seconds(bag), "topics": topics,
-        }))?;
+        });
+        stdout::print_json(INFO, &report)?;
         return Ok(Outcome::Done);
     }
     let cut = if bag.is_complete() { "" } else { "; truncated or damaged, listed up to the damage" };

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::dataset::{DatasetIterator, Subset};
 use opendr::datasets::{self, DatasetStats, OpenOptions, Problems, WriteOptions};
-use opendr::{Error, Progress, Result, inference};
+use opendr::{Error, JsonFormat, Progress, Result, inference};
 
 use crate::exit::Outcome;
 use crate::progress_bar::{ProgressBar, interrupted};
@@ -67,6 +67,9 @@ pub fn grammar() -> Command {
         .after_help(EXAMPLES)
 }
 
+/// Format of the report of `data check`. Version 2 renamed `place` of a problem to `location`.
+const CHECK: JsonFormat = JsonFormat::new("report of a check", 2);
+
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     match matches.subcommand() {
         Some(("formats", matches)) => formats(matches),
@@ -122,7 +125,8 @@ fn check(matches: &ArgMatches) -> Result<Outcome> {
     let (samples, count) = (dataset.len(), problems.count());
     if matches.get_flag("json") {
         let list = problems.list();
-        stdout::print(serde_json::json!({"samples": samples, "problems": count, "list": list}))?;
+        let report = serde_json::json!({"samples": samples, "problems": count, "list": list});
+        stdout::print_json(CHECK, &report)?;
     } else {
         dataset_flags::print_problems(&problems)?;
         let end = if interrupted() { " so far" } else { "" };
@@ -137,7 +141,7 @@ fn stats(matches: &ArgMatches) -> Result<Outcome> {
     let dataset = open(matches, &problems)?;
     let stats = DatasetStats::of(dataset.as_ref(), &problems, &bar)?;
     if matches.get_flag("json") {
-        stdout::print_json(&stats)?;
+        stdout::print_json(DatasetStats::FORMAT, &stats)?;
     } else {
         stdout::print(stats.to_string().trim_end())?;
         dataset_flags::print_problems(&problems)?;

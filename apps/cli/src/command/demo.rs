@@ -21,7 +21,7 @@ pub fn grammar() -> Command {
             "Detect people in a photograph: downloads a model and an image, prints and draws the predictions",
         )
         .arg(
-            Arg::new("picture")
+            Arg::new("image")
                 .value_parser(value_parser!(PathBuf))
                 .value_name("IMAGE")
                 .help("Image to process [default: a public-domain photograph]"),
@@ -44,14 +44,14 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let bar = ProgressBar::new(matches.get_flag("quiet"));
     let zoo = loading::zoo(matches)?;
     let spec = demo_item(&zoo, ItemKind::Model)?;
-    let picture = match matches.get_one::<PathBuf>("picture") {
+    let path = match matches.get_one::<PathBuf>("image") {
         Some(path) => path.clone(),
         None => zoo.get(&demo_item(&zoo, ItemKind::Sample)?, &bar)?,
     };
-    let mut image = vision::open(&picture)?;
+    let mut image = vision::open(&path)?;
     let mut learner = loading::load(&spec, &ParamMap::new(), matches, &bar)?;
     let (outputs, timings) = Timings::of(|| learner.infer(&Ports::one(&image)))?;
-    let title = format!("{spec} on {}", picture.display());
+    let title = format!("{spec} on {}", path.display());
     stdout::print(report::text(&title, &outputs, Some(timings)))?;
     outputs.iter().for_each(|(_, value)| draw(&mut image, value, &Style::default()));
     let out = matches.get_one::<PathBuf>("out").map_or(Path::new(""), PathBuf::as_path);

@@ -13,7 +13,7 @@ use opendr::learner::Entry;
 use opendr::metrics::{self, MetricEntry};
 use opendr::params::ParamMap;
 use opendr::rl::EvaluationProtocol;
-use opendr::{Error, Pipeline, PolicyEvaluation, Progress, Result};
+use opendr::{Error, JsonFormat, Pipeline, PolicyEvaluation, Progress, Result};
 
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
@@ -34,6 +34,9 @@ Examples:
   opendr eval active_face_recognition --model MODEL --episodes 500   a moving camera, beside baselines
 
 An interrupted evaluation with --out resumes when the same command runs again.";
+
+/// Format of the statistics of a policy.
+const POLICY_REPORT: JsonFormat = JsonFormat::new("evaluation of a policy", 1);
 
 pub fn grammar() -> Command {
     Command::new("eval")
@@ -148,7 +151,7 @@ fn in_environment(
     }
     let report = opendr::evaluate_learner(learner.as_ref(), entry, environment.as_mut(), &protocol, bar)?;
     if matches.get_flag("json") {
-        stdout::print_json(&report)?;
+        stdout::print_json(POLICY_REPORT, &report)?;
     } else {
         stdout::print(format_args!("{spec} in {}", source.id()))?;
         stdout::print(report.to_string().trim_end())?;
@@ -190,7 +193,7 @@ pub fn print_outcome(
     bar: &ProgressBar,
 ) -> Result<Outcome> {
     if matches.get_flag("json") {
-        stdout::print_json(outcome)?;
+        stdout::print_json(Evaluated::FORMAT, outcome)?;
     } else {
         stdout::print(outcome.to_string().trim_end())?;
         dataset_flags::print_problems(problems)?;

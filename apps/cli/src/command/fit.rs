@@ -214,7 +214,7 @@ fn load_teacher(spec: &str, matches: &ArgMatches, bar: &ProgressBar) -> Result<T
 /// Prints the outcome, the path of the model, and how to resume.
 fn print_fitted(fitted: &Fitted, matches: &ArgMatches, bar: &ProgressBar) -> Result<Outcome> {
     if matches.get_flag("json") {
-        stdout::print_json(fitted)?;
+        stdout::print_json(Fitted::FORMAT, fitted)?;
     } else {
         stdout::print(fitted.to_string().trim_end())?;
     }

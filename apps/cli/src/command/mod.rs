@@ -13,6 +13,7 @@ mod import;
 mod infer;
 mod models;
 mod optimize;
+mod report;
 #[cfg(feature = "ros")]
 mod ros;
 mod runtime;
@@ -58,6 +59,7 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
         import::grammar(),
         optimize::grammar(),
         score::grammar(),
+        report::grammar(),
         data::grammar(),
         sim::grammar(),
         models::grammar(),
@@ -129,6 +131,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         "import" => import::run(matches),
         "optimize" => optimize::run(matches),
         "score" => score::run(matches),
+        "report" => report::run(matches),
         "data" => data::run(matches),
         "sim" => sim::run(matches),
         "models" => models::run(matches),

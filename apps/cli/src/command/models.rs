@@ -3,7 +3,7 @@
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use opendr::model::Licence;
 use opendr::zoo::{Item, ItemKind, Zoo, ZooOptions};
-use opendr::{Result, Task};
+use opendr::{Error, Result, Task};
 use serde::Serialize;
 
 use crate::exit::Outcome;
@@ -60,7 +60,9 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         .filter(|row| !matches.get_flag("cached") || row.cached)
         .collect();
     if matches.get_flag("json") {
-        stdout::print_pretty_json(&rows)?;
+        let json = serde_json::to_string_pretty(&rows)
+            .map_err(|error| Error::internal("the list cannot be written as JSON").with_source(error))?;
+        stdout::print(json)?;
     } else {
         stdout::print(table(&rows))?;
     }

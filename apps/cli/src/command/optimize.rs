@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, value_parser};
 use opendr::dataset::ExternalDataset;
 use opendr::model::Model;
-use opendr::optimize::{OptimizeJob, OptimizeOptions};
+use opendr::optimize::{OptimizeJob, OptimizeOptions, Report};
 use opendr::params::{Field, ParamValue, Params};
 use opendr::{DatasetOpener, Progress, Result};
 
@@ -119,7 +119,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     }
     .run()?;
     if matches.get_flag("json") {
-        stdout::print_json(&report)?;
+        stdout::print_json(Report::FORMAT, &report)?;
     } else {
         stdout::print(report.to_string().trim_end())?;
     }

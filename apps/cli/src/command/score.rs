@@ -19,13 +19,13 @@ Examples:
   opendr score results.json coco/annotations/instances_val2017.json --metric coco_detection
   opendr score predictions.jsonl coco/ --metric coco_detection  lines of \"opendr infer --json\"
   opendr score tracker/ MOT17/train/ --metric hota              files in the data set's own format
-  opendr score results/ KITTI/ --metric kitti --answers-format kitti";
+  opendr score results/ KITTI/ --metric kitti --predictions-format kitti";
 
 pub fn grammar() -> Command {
     Command::new("score")
         .about("Evaluate predictions that were written into files")
         .arg(
-            Arg::new("answers")
+            Arg::new("predictions")
                 .required(true)
                 .value_name("PREDICTIONS")
                 .value_parser(value_parser!(PathBuf))
@@ -34,8 +34,9 @@ pub fn grammar() -> Command {
         .arg(dataset_flags::dataset())
         .args(dataset_flags::flags())
         .arg(
-            Arg::new("answers-format")
-                .long("answers-format")
+            Arg::new("predictions-format")
+                .long("predictions-format")
+                .alias("answers-format")
                 .value_name("FORMAT")
                 .help("Format of the predictions [default: that of DATASET]"),
         )
@@ -54,7 +55,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let bar = ProgressBar::new(matches.get_flag("quiet"));
     let problems = dataset_flags::problems(matches);
     let external = dataset_flags::external(matches);
-    let path = matches.get_one::<PathBuf>("answers").cloned().unwrap_or_default();
+    let path = matches.get_one::<PathBuf>("predictions").cloned().unwrap_or_default();
     let split = dataset_flags::split(matches);
     if evaluation::is_coco_results(&path)? {
         let params = eval::metric_params(metric, matches)?;
@@ -67,7 +68,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         return eval::print_outcome(&outcome, matches, &problems, &bar);
     }
     let dataset = evaluation::open_for_metric(metric, &external, split, &problems)?;
-    let answers = match path.extension().and_then(|extension| extension.to_str()) {
+    let predictions = match path.extension().and_then(|extension| extension.to_str()) {
         Some("jsonl") => FilePredictions::Lines(Lines::open(&path, dataset.as_ref(), &problems)?),
         _ => FilePredictions::from_dataset(
             open(&path, &external, metric, matches, &problems)?,
@@ -86,7 +87,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         progress: &bar,
         ..Evaluation::new(subject, metric, &problems)
     };
-    let outcome = evaluation.score(&answers, dataset.as_ref())?;
+    let outcome = evaluation.score(&predictions, dataset.as_ref())?;
     eval::print_outcome(&outcome, matches, &problems, &bar)
 }
 
@@ -98,7 +99,7 @@ fn open(
     matches: &ArgMatches,
     problems: &Problems,
 ) -> Result<Box<dyn opendr::dataset::DatasetIterator>> {
-    let format = match matches.get_one::<String>("answers-format") {
+    let format = match matches.get_one::<String>("predictions-format") {
         Some(format) => format,
         None => datasets::format_of(ground_truth)?.name,
     };

@@ -21,7 +21,7 @@ Examples:
   opendr tune image_classifier digits/ --val-split test --search lr --search width=8,16,32 --length 500
   opendr tune ppo --env CartPole-v1 --search gamma --out runs/tuned --trials 100     resume in the same folder
   opendr tune byte_track MOT17/ --split train --search new_threshold --search track_buffer=10..60    no training
-  opendr tune nanodet coco/ --split val2017 --answers --search iou_threshold
+  opendr tune nanodet coco/ --split val2017 --inference --search iou_threshold
 
 A trial pauses while others have better values, and may resume later from its checkpoint. OUTPUT/study.log is a journal that
 Optuna reads. After Ctrl-C the same command resumes the study. Several processes may share one study.";
@@ -41,7 +41,7 @@ pub fn grammar() -> Command {
                 .value_name("NAME")
                 .help("Split of DATASET on which each training is evaluated"),
         )
-        .arg(Arg::new("answers").long("answers").action(ArgAction::SetTrue).conflicts_with("val-split").help(
+        .arg(Arg::new("inference").long("inference").alias("answers").action(ArgAction::SetTrue).conflicts_with("val-split").help(
             "Search the learner's own parameters, evaluated on DATASET, without training; the default for learners that do not train",
         ))
         .arg(
@@ -70,7 +70,7 @@ fn search_flags() -> [Arg; 10] {
         number("trials", "30", "Total number of configurations, including those of earlier calls"),
         number("tuning-seeds", "3", "Seeds of each configuration that completes"),
         number("length", "100000", "Steps of a complete training"),
-        number("points", "9", "Evaluations during a training"),
+        number("evaluations", "9", "Evaluations during a training").alias("points"),
         number("jobs", "1", "Trials that run at the same time"),
         Arg::new("pruner")
             .long("pruner")
@@ -121,7 +121,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         let protocol = EvaluationProtocol { episodes, ..EvaluationProtocol::default() };
         let data = TuneData::Environment { env: &env, protocol: &protocol };
         opendr::tune(entry, data, &options, &output, &watch, &bar)?
-    } else if matches.get_flag("answers") || !entry.capabilities.fit {
+    } else if matches.get_flag("inference") || !entry.capabilities.fit {
         let external = dataset_flags::external(matches);
         let split = dataset_flags::split(matches);
         let metric = matches.get_one::<String>("metric").map(String::as_str);
@@ -165,7 +165,7 @@ fn options(entry: &'static opendr::learner::Entry, matches: &ArgMatches) -> Resu
         trials: small("trials"),
         seeds: small("tuning-seeds"),
         steps: length,
-        interval: length.div_ceil(number("points")),
+        interval: length.div_ceil(number("evaluations")),
         pruner: matches.get_one::<String>("pruner").cloned().unwrap_or_default(),
         jobs: small("jobs"),
         timeout: matches.get_one::<f64>("timeout").map(|seconds| Duration::from_secs_f64(seconds.max(0.0))),
@@ -176,7 +176,7 @@ fn options(entry: &'static opendr::learner::Entry, matches: &ArgMatches) -> Resu
 
 fn print_tuned(tuned: &Tuned, matches: &ArgMatches, bar: &ProgressBar) -> Result<Outcome> {
     if matches.get_flag("json") {
-        stdout::print_json(tuned)?;
+        stdout::print_json(Tuned::FORMAT, tuned)?;
     } else {
         stdout::print(tuned.to_string().trim_end())?;
     }

@@ -8,6 +8,7 @@ mod pictures;
 mod place;
 #[cfg(feature = "ros")]
 mod recordings;
+mod reports;
 #[cfg(feature = "ros")]
 mod topics;
 mod training;

@@ -233,7 +233,7 @@ fn bench_measures_every_stage() {
     let done = place.run(arguments.iter().chain(&flags)).ends_with(0);
     let report: Value = serde_json::from_str(&done.stdout).unwrap();
     assert_eq!((&report["frames"], &report["threads"]), (&5.into(), &1.into()));
-    assert_eq!((&report["picture"]["width"], &report["picture"]["height"]), (&1280.into(), &720.into()));
+    assert_eq!((&report["image"]["width"], &report["image"]["height"]), (&1280.into(), &720.into()));
     for key in ["p50_ms", "p99_ms"] {
         let [pre, session, post, total] =
             ["pre", "session", "post", "total"].map(|stage| report[key][stage].as_f64().unwrap());

@@ -82,7 +82,7 @@ static inline void loadFaceRecognitionModel(const char *modelPath, FaceRecogniti
     opendr_string *params = NULL;
     memset(model, 0, sizeof *model);
     if (opendr_load("face_recognition", path, NULL, NULL, &learner) != OPENDR_OK
-        || opendr_network_of(learner, NULL, &network) != OPENDR_OK || opendr_params(learner, &params) != OPENDR_OK) {
+        || opendr_learner_network(learner, NULL, &network) != OPENDR_OK || opendr_params(learner, &params) != OPENDR_OK) {
         fprintf(stderr, "loadFaceRecognitionModel: %s\n", opendr_last_error());
         opendr_learner_free(&learner);
     } else {

@@ -23,7 +23,7 @@ static inline opendr_network *opendr_compat_open(const char *caller, const char 
     } else if (learner == NULL) {
         opendr_set_last_error("there is no pretrained model; give the path of an ONNX file of your own");
     } else if (opendr_load(learner, NULL, device, NULL, &loaded) == OPENDR_OK) {
-        opendr_network_of(loaded, NULL, &network);
+        opendr_learner_network(loaded, NULL, &network);
         opendr_learner_free(&loaded);
     }
     if (network == NULL) fprintf(stderr, "%s: %s\n", caller, opendr_last_error());

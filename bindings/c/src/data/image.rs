@@ -14,7 +14,7 @@ use crate::value::{AnyValue, opendr_image, typed};
 /// The sample type of an image.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum opendr_samples {
+pub enum opendr_sample_type {
     /// 8 bits, 0 to 255.
     OPENDR_U8 = 0,
     /// 16 bits: depth in millimetres, thermal counts.
@@ -51,7 +51,7 @@ pub enum opendr_layout {
 
 use opendr_layout::*;
 use opendr_pixel_format::*;
-use opendr_samples::*;
+use opendr_sample_type::*;
 
 pub(crate) const FORMATS: [(opendr_pixel_format, PixelFormat); 5] = [
     (OPENDR_GREY, PixelFormat::Grey),
@@ -77,7 +77,7 @@ pub struct opendr_pixels {
     pub height: usize,
     /// Bytes from one row to the next; 0 for contiguous rows. A plane has height rows.
     pub row_stride: usize,
-    /// One of opendr_samples.
+    /// One of opendr_sample_type.
     pub samples: i32,
     /// One of opendr_pixel_format.
     pub format: i32,

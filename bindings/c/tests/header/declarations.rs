@@ -7,6 +7,13 @@ use opendr::ValueType;
 
 use crate::value_functions::c_name;
 
+/// Names from before 0.1. Programs that use them compile until 1.0.
+const FORMER_NAMES: [(&str, &str); 3] = [
+    ("opendr_fit_in", "opendr_fit_policy"),
+    ("opendr_network_of", "opendr_learner_network"),
+    ("opendr_samples", "opendr_sample_type"),
+];
+
 const RULES: &str = "\
 /*
  * OpenDR in Rust: the C API. Generated from the library; docs/c.md explains it.
@@ -47,12 +54,16 @@ pub fn render(sources: &Path) -> String {
         tab_width: 4,
         ..Config::default()
     };
-    config.export.include = ["opendr_samples", "opendr_pixel_format", "opendr_layout", "opendr_skeleton"]
+    config.export.include = ["opendr_sample_type", "opendr_pixel_format", "opendr_layout", "opendr_skeleton"]
         .map(str::to_owned)
         .to_vec();
     // cbindgen follows the modules itself; a source given twice would be declared twice.
     let builder = Builder::new().with_config(config).with_src(sources.join("lib.rs"));
     let mut header = Vec::new();
     builder.generate().unwrap().write(&mut header);
-    format!("{RULES}{}", String::from_utf8(header).unwrap())
+    let former = FORMER_NAMES.map(|(former, name)| format!("#define {former} {name}\n")).concat();
+    format!(
+        "{RULES}{}\n/* Names from before 0.1, deprecated; they compile until 1.0. */\n{former}",
+        String::from_utf8(header).unwrap()
+    )
 }

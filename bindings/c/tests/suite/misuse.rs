@@ -17,7 +17,7 @@ fn image() -> *mut opendr_image {
 }
 
 pub fn pixels(bytes: &[u8], width: usize, height: usize) -> opendr_pixels {
-    let (samples, format) = (opendr_samples::OPENDR_U8 as i32, opendr_pixel_format::OPENDR_RGB as i32);
+    let (samples, format) = (opendr_sample_type::OPENDR_U8 as i32, opendr_pixel_format::OPENDR_RGB as i32);
     let (data, size) = (bytes.as_ptr().cast(), bytes.len());
     opendr_pixels { data, size, width, height, row_stride: 0, samples, format, layout: 0 }
 }
@@ -67,7 +67,7 @@ fn null_is_refused_everywhere() {
             opendr_learner_free(null_mut()),
             opendr_learners(null_mut()),
             opendr_network_open(null(), null(), null(), null_mut()),
-            opendr_network_of(null(), null(), null_mut()),
+            opendr_learner_network(null(), null(), null_mut()),
             opendr_network_run(null(), null(), 0, null_mut()),
             opendr_network_input(null(), 0, null_mut()),
             opendr_network_output(null(), 0, null_mut()),

@@ -116,7 +116,7 @@ fn outputs_are_those_of_a_session() {
         assert_eq!(status, OPENDR_OK, "{}", last_error());
         let mut of_learner = null_mut();
         let file = c"model.onnx".as_ptr();
-        assert_eq!(opendr_network_of(learner, file, &mut of_learner), OPENDR_OK, "{}", last_error());
+        assert_eq!(opendr_learner_network(learner, file, &mut of_learner), OPENDR_OK, "{}", last_error());
         assert_eq!(opendr_learner_free(&mut learner), OPENDR_OK);
         assert_eq!(run(of_learner, None), wanted);
         for network in [&mut network, &mut of_container, &mut of_learner] {
@@ -241,7 +241,7 @@ fn what_is_no_network_is_refused() {
     // SAFETY: texts and variables.
     unsafe {
         assert_eq!(opendr_create(c"x3d".as_ptr(), null(), null(), &mut learner), OPENDR_OK);
-        refused(opendr_network_of(learner, null(), &mut null_mut()), OPENDR_NOT_FOUND, "has no model");
+        refused(opendr_learner_network(learner, null(), &mut null_mut()), OPENDR_NOT_FOUND, "has no model");
         opendr_learner_free(&mut learner);
     }
 }

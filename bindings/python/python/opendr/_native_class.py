@@ -6,7 +6,9 @@ from collections import namedtuple
 from importlib import import_module
 from typing import Any, Optional
 
-from opendr._native_learner import NativeBase, NativeLearner, Table
+from opendr._native_arguments import Table
+from opendr._native_base import NativeBase
+from opendr._native_learner import NativeLearner
 from opendr._native_learner_active import NativeLearnerActive
 from opendr._native_learner_rl import NativeLearnerRL
 from opendr._reference import constructor, document, params_annotations

@@ -7,7 +7,8 @@ import os
 from typing import Any, Optional
 
 from opendr._errors import Unsupported
-from opendr._native_learner import NativeBase, PathLike
+from opendr._input_value import PathLike
+from opendr._native_base import NativeBase
 from opendr._older_names import under_older_name
 from opendr.engine.learners import LearnerRL
 

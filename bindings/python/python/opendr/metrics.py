@@ -3,8 +3,8 @@
     from opendr.metrics import Metric
 
     metric = Metric("coco_detection")
-    for image, truth in dataset:
-        metric.update(detector.infer(image), truth)
+    for image, annotation in dataset:
+        metric.update(detector.infer(image), annotation)
     print(metric.result()["map50"])
 
 Results are equal to those of the reference tools listed in docs/metrics.md.
@@ -17,6 +17,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Callable, Optional
 
 from opendr import _opendr
+from opendr._older_names import renamed
 from opendr.engine.target import BaseTarget
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ def names() -> list[str]:
 
 
 def tables() -> list[dict[str, Any]]:
-    """Returns a table of each metric: ``name``, ``about``, the classes of ``prediction`` and ``truth`` (ground truth),
+    """Returns a table of each metric: ``name``, ``about``, the classes of ``prediction`` and ``ground_truth``,
     ``numbers`` (name and meaning of each scalar), and ``params``."""
     return _opendr.metrics()
 
@@ -52,21 +53,36 @@ class Metric:
         self._metric = _opendr.Metric(name, params)
         self.name: str = name
 
-    def update(self, prediction: BaseTarget, truth: BaseTarget, *, at: Optional[int] = None) -> float:
+    def update(
+        self,
+        prediction: BaseTarget,
+        ground_truth: Optional[BaseTarget] = None,
+        *,
+        index: Optional[int] = None,
+        **former: Any,
+    ) -> float:
         """Adds the prediction for one sample.
 
         Args:
             prediction: The prediction.
-            truth: The ground truth.
-            at: Index of the sample, which breaks ties; by default consecutive.
+            ground_truth: The ground truth.
+            index: Index of the sample, which breaks ties; by default consecutive.
+            former: The names of these arguments before 0.1: ``truth`` and ``at``.
 
         Returns:
-            The score of the prediction: 0 (worst) to 1.
+            The score of the prediction, from 0 to 1, the best.
 
         Raises:
+            TypeError: An argument is missing or unknown.
             ValueError: The types are not those of the metric, or a value is invalid; nothing is added then.
         """
-        return self._metric.update(prediction, truth, at)
+        ground_truth = renamed(ground_truth, "ground_truth", former, "truth")
+        index = renamed(index, "index", former, "at")
+        if former:
+            raise TypeError(f"update has no argument {next(iter(former))!r}; its arguments are prediction, ground_truth, index")
+        if ground_truth is None:
+            raise TypeError("update needs the ground truth of the sample")
+        return self._metric.update(prediction, ground_truth, index)
 
     def end_sequence(self) -> None:
         """Ends the current sequence (video or drive); the next sample begins a new one."""

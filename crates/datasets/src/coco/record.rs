@@ -58,11 +58,11 @@ pub(super) fn flag<'de, D: Deserializer<'de>>(deserializer: D) -> Result<bool, D
     #[derive(Deserialize)]
     #[serde(untagged)]
     enum Flag {
-        Truth(bool),
+        GroundTruth(bool),
         Number(i64),
     }
     match Flag::deserialize(deserializer) {
-        Ok(Flag::Truth(flag)) => Ok(flag),
+        Ok(Flag::GroundTruth(flag)) => Ok(flag),
         Ok(Flag::Number(number @ 0..=1)) => Ok(number == 1),
         _ => Err(D::Error::custom("is neither 0 nor 1")),
     }

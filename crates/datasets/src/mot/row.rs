@@ -29,7 +29,7 @@ pub(super) const MAX_FRAMES: i64 = 10_000_000;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum RowKind {
     /// `gt.txt`, in which every object has an identity.
-    Truth,
+    GroundTruth,
     /// `det.txt`, without identities.
     Detections,
 }
@@ -64,7 +64,7 @@ impl MotRow {
         let fields = Fields::of(line);
         fields.expect(6..=10)?;
         let [left, top, width, height] = fields.numbers(2)?;
-        let classed = kind == RowKind::Truth && matches!(fields.len(), 8 | 9);
+        let classed = kind == RowKind::GroundTruth && matches!(fields.len(), 8 | 9);
         let row = Self {
             frame: fields.whole(0)?,
             id: fields.whole(1)?,
@@ -84,7 +84,7 @@ impl MotRow {
         if !(1..=MAX_FRAMES).contains(frame) {
             return Err(format!("has frame {frame}; number frames from 1"));
         }
-        if kind == RowKind::Truth && *id < 0 {
+        if kind == RowKind::GroundTruth && *id < 0 {
             return Err(format!("has object id {id}; number the objects of the ground truth from 0 or 1"));
         }
         if *width <= 0.0 || *height <= 0.0 {

@@ -17,7 +17,7 @@ pub struct MotSequence {
     frame_rate: f64,
     image_size: Option<[u32; 2]>,
     frames: Frames,
-    truth: Vec<MotRow>,
+    ground_truth: Vec<MotRow>,
     detections: Vec<MotRow>,
 }
 
@@ -100,10 +100,10 @@ impl MotSequence {
             let path = names.map(|name| folder.join(name)).into_iter().find(|path| path.is_file());
             path.map_or(Ok(Vec::new()), |path| read_rows(&path, kind, info.length, problems))
         };
-        let truth = read(["gt/gt.txt", "gt.txt"], RowKind::Truth)?;
+        let ground_truth = read(["gt/gt.txt", "gt.txt"], RowKind::GroundTruth)?;
         let detections = read(["det/det.txt", "det.txt"], RowKind::Detections)?;
         let images = folder.join(&info.image_folder);
-        let mut sequence = Self::of_rows(name_of(folder), truth, detections);
+        let mut sequence = Self::of_rows(name_of(folder), ground_truth, detections);
         sequence.frame_rate = info.frame_rate;
         sequence.image_size = info.image_size;
         if images.is_dir() {
@@ -118,18 +118,18 @@ impl MotSequence {
     pub(super) fn open_file(path: &Path, problems: &Problems) -> Result<Self> {
         let name = name_of(path);
         let name = name.rsplit_once('.').map_or(name.as_str(), |(stem, _)| stem);
-        let kind = if name == "det" { RowKind::Detections } else { RowKind::Truth };
+        let kind = if name == "det" { RowKind::Detections } else { RowKind::GroundTruth };
         let rows = read_rows(path, kind, None, problems)?;
         Ok(match kind {
-            RowKind::Truth => Self::of_rows(name.to_owned(), rows, Vec::new()),
+            RowKind::GroundTruth => Self::of_rows(name.to_owned(), rows, Vec::new()),
             RowKind::Detections => Self::of_rows(name.to_owned(), Vec::new(), rows),
         })
     }
 
-    fn of_rows(name: String, truth: Vec<MotRow>, detections: Vec<MotRow>) -> Self {
-        let last = [&truth, &detections].map(|rows| rows.last().map_or(0, |row| row.frame));
+    fn of_rows(name: String, ground_truth: Vec<MotRow>, detections: Vec<MotRow>) -> Self {
+        let last = [&ground_truth, &detections].map(|rows| rows.last().map_or(0, |row| row.frame));
         let frames = Frames::Count(last[0].max(last[1]));
-        Self { name, frame_rate: 30.0, image_size: None, frames, truth, detections }
+        Self { name, frame_rate: 30.0, image_size: None, frames, ground_truth, detections }
     }
 
     /// Adds the images in `folder`, whose names are their frame numbers.
@@ -207,7 +207,7 @@ impl MotSequence {
 
     /// Returns the rows of `gt.txt` for frame number `frame`, including ignored objects.
     pub fn ground_truth(&self, frame: i64) -> &[MotRow] {
-        rows_of(&self.truth, frame)
+        rows_of(&self.ground_truth, frame)
     }
 
     /// Returns whether `det.txt` has any detections.
@@ -240,7 +240,7 @@ fn read_rows(path: &Path, kind: RowKind, length: Option<i64>, problems: &Problem
                     length.unwrap_or_default()
                 ));
             }
-            if kind == RowKind::Truth && !seen.insert((row.frame, row.id)) {
+            if kind == RowKind::GroundTruth && !seen.insert((row.frame, row.id)) {
                 return Err(format!("has object {} twice in frame {}", row.id, row.frame));
             }
             Ok(row)

@@ -166,7 +166,7 @@ fn results_both_ways() {
 proptest! {
     #[test]
     fn any_line_is_read_or_refused(line in "[-0-9.,enaif ]{0,60}") {
-        for kind in [RowKind::Truth, RowKind::Detections] {
+        for kind in [RowKind::GroundTruth, RowKind::Detections] {
             MotRow::parse(&line, kind).ok();
         }
     }

@@ -17,7 +17,7 @@ use crate::{Problems, WriteOptions};
 struct Unfinished {
     folder: PathBuf,
     name: String,
-    truth: String,
+    ground_truth: String,
     detections: String,
     pictures: i64,
     image_size: Option<[usize; 2]>,
@@ -89,7 +89,7 @@ impl Unfinished {
         let Some(Value::TrackingAnnotationList(tracks)) = &sample.target else {
             return Err(Error::invalid_input("the sample has no tracks; MOT needs a TrackingAnnotationList"));
         };
-        let truth = truth_text(tracks, self.pictures + 1)?;
+        let ground_truth = truth_text(tracks, self.pictures + 1)?;
         if let Some(Value::Image(image)) = sample.data.first() {
             let file = self.folder.join(format!("img1/{:06}.jpg", self.pictures + 1));
             write_picture(dataset.path(index).as_deref(), image, &file, link)?;
@@ -112,7 +112,7 @@ impl Unfinished {
             .ok();
         }
         self.pictures += 1;
-        self.truth += &truth;
+        self.ground_truth += &ground_truth;
         Ok(())
     }
 
@@ -129,6 +129,6 @@ impl Unfinished {
         if !self.detections.is_empty() {
             write_file(&self.folder.join("det/det.txt"), self.detections.as_bytes())?;
         }
-        write_file(&self.folder.join("gt/gt.txt"), self.truth.as_bytes())
+        write_file(&self.folder.join("gt/gt.txt"), self.ground_truth.as_bytes())
     }
 }

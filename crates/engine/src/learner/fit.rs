@@ -64,7 +64,7 @@ pub trait Fit: Learner {
 }
 
 impl<L: Fit> Handle<L> {
-    /// Trains, starting from the loaded model if there is one, and loads the trained model. A training that the user stops
+    /// Trains the learner, starting from the loaded model if there is one, and loads the trained model. A training that the user stops
     /// before it wrote a model leaves the handle unchanged.
     ///
     /// # Errors

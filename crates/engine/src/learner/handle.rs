@@ -44,7 +44,7 @@ impl<L: Learner> Handle<L> {
         self.load_model(Model::open(path).context(|| format!("loading {}", L::SPEC.name))?)
     }
 
-    /// Loads a container that is open already.
+    /// Loads an open container.
     ///
     /// # Errors
     /// As [`Handle::load`].

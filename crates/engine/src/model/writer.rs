@@ -99,7 +99,7 @@ impl ModelWriter {
         self.finish_checked(|_| Ok(()))
     }
 
-    /// Like [`ModelWriter::finish`], after `check` accepted the finished model in its temporary folder.
+    /// Finishes as [`ModelWriter::finish`], after `check` accepted the finished model in its temporary folder.
     ///
     /// # Errors
     /// Returns the error of `check`, which leaves the path unchanged; otherwise as [`ModelWriter::finish`].

@@ -29,12 +29,12 @@ pub struct Achieved {
 }
 
 impl Achieved {
-    /// Whether nothing stopped the movement.
+    /// Returns whether nothing stopped the movement.
     pub fn is_complete(&self) -> bool {
         self.limits.iter().all(Option::is_none)
     }
 
-    /// Mean of the squared deflections: a cost of movement in [0, 1].
+    /// Returns the mean of the squared deflections: a cost of movement in [0, 1].
     pub fn effort(&self) -> f32 {
         let axes = self.action.axes();
         axes.iter().map(|axis| axis * axis).sum::<f32>() / axes.len() as f32

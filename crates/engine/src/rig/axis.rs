@@ -26,12 +26,12 @@ pub struct ViewAxis {
 pub(super) const TICKS: i64 = 1 << 32;
 
 impl ViewAxis {
-    /// An axis between two limits.
+    /// Creates an axis between two limits.
     pub fn limited(name: &str, step: f64, low: f64, high: f64) -> Self {
         Self { name: name.to_owned(), step, low, high, wraps: false }
     }
 
-    /// An axis that goes round, from -pi to pi.
+    /// Creates an unlimited axis, from -pi to pi.
     pub fn turning(name: &str, step: f64) -> Self {
         let half = std::f64::consts::PI;
         Self { name: name.to_owned(), step, low: -half, high: half, wraps: true }

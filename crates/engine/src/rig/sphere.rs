@@ -18,7 +18,7 @@ pub struct ViewSphere {
 }
 
 impl ViewSphere {
-    /// A sphere of these axes, beginning at `pose`; a position outside its limits begins at the nearest limit.
+    /// Creates a sphere of these axes that begins at `pose`, or at the nearest limits.
     ///
     /// # Errors
     /// `InvalidParam` when there are not 1 to 4 axes, or one of them has no room or no step.
@@ -32,7 +32,7 @@ impl ViewSphere {
         Ok(sphere)
     }
 
-    /// A camera on a free sphere: azimuth round by 35 degrees, elevation by 17 between -52 and 52 degrees, distance by 0.7 closer
+    /// Creates a camera on a free sphere: azimuth round by 35 degrees, elevation by 17 between -52 and 52 degrees, distance by 0.7 closer
     /// between 2.7 and 4.5 radii of the subject.
     ///
     /// # Errors
@@ -46,7 +46,7 @@ impl ViewSphere {
         Self::new(axes, pose)
     }
 
-    /// A drone around its subject: as [`Self::camera`], never from below, distances in metres.
+    /// Creates a drone around its subject: as [`Self::camera`], never from below, distances in metres.
     ///
     /// # Errors
     /// `InvalidParam` when the nearest distance is not below the farthest, or one is not positive.
@@ -59,7 +59,7 @@ impl ViewSphere {
         )
     }
 
-    /// A camera at the wrist of an arm whose base stands before the subject: it reaches `half_turn` rad to either side,
+    /// Creates a camera at the wrist of an arm whose base stands before the subject: it reaches `half_turn` rad to either side,
     /// distances in metres.
     ///
     /// # Errors
@@ -85,12 +85,12 @@ impl ViewSphere {
         Self::new(axes, pose)
     }
 
-    /// The axes.
+    /// Returns the axes.
     pub fn axes(&self) -> &[ViewAxis] {
         &self.axes
     }
 
-    /// The pose of the ticks.
+    /// Returns the pose of the ticks.
     pub fn pose(&self) -> ViewPose {
         let mut pose = self.fixed;
         let places = [&mut pose.azimuth, &mut pose.elevation, &mut pose.distance, &mut pose.fourth];
@@ -100,7 +100,7 @@ impl ViewSphere {
         pose
     }
 
-    /// Goes to the tick nearest to a pose, or to the nearest limit.
+    /// Moves to the tick nearest to a pose, or to the nearest limit.
     ///
     /// # Errors
     /// `InvalidInput` for numbers that are not finite.

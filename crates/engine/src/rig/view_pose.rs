@@ -20,18 +20,18 @@ pub struct ViewPose {
 }
 
 impl ViewPose {
-    /// Direction from the subject to the camera, length 1.
+    /// Returns the direction from the subject to the camera, length 1.
     pub fn direction(&self) -> [f64; 3] {
         let (sine, cosine) = self.elevation.sin_cos();
         [cosine * self.azimuth.cos(), cosine * self.azimuth.sin(), sine]
     }
 
-    /// Position of the camera in the subject's frame.
+    /// Returns the position of the camera in the subject's frame.
     pub fn position(&self) -> [f64; 3] {
         self.direction().map(|part| part * self.distance)
     }
 
-    /// Angle between the directions of two views, 0 to pi.
+    /// Returns the angle between the directions of two views, 0 to pi.
     pub fn angle_to(&self, other: &Self) -> f64 {
         let (a, b) = (self.direction(), other.direction());
         // The half angle from the chord: the arc cosine loses half of the digits of small angles.

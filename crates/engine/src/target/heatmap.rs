@@ -154,7 +154,7 @@ impl Heatmap {
         labels
     }
 
-    /// Like [`Heatmap::labels_mut`], for scores.
+    /// Makes this a map of scores; otherwise as [`Heatmap::labels_mut`].
     pub fn scores_mut(&mut self, shape: &[usize]) -> &mut [f32] {
         self.shape = shape.into();
         let count = shape.iter().product();

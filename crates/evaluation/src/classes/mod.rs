@@ -196,7 +196,7 @@ impl ClassMap {
     }
 
     /// Converts a prediction to the classes of the data set. Objects of other classes are dropped, since the data set has no ground
-    /// truth for them. Pixels of other classes get no class, and a category gets one after those of the data set.
+    /// ground truth for them. Pixels of other classes get no class, and a category gets one after those of the data set.
     ///
     /// # Errors
     /// `InvalidInput` when the numbers of a category's probabilities and of the learner's classes differ.

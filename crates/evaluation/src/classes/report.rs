@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::MatchedBy;
 
@@ -10,7 +10,7 @@ use super::MatchedBy;
 const PRINTED: usize = 24;
 
 /// Why classes were compared by number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ByNumber {
     /// The user requested it.
@@ -22,7 +22,7 @@ pub enum ByNumber {
 }
 
 /// A class of the learner and the matching class of the data set.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ClassPair {
     /// Name in the predictions.
     pub learner: String,
@@ -33,10 +33,10 @@ pub struct ClassPair {
 }
 
 /// The matching of a learner's classes with those of a data set.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ClassReport {
     /// Why classes were compared by number; `None` if they were compared by name.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub by_number: Option<ByNumber>,
     /// Matched classes.
     pub pairs: Vec<ClassPair>,

@@ -77,7 +77,7 @@ pub(super) fn spellings(label: &str) -> impl Iterator<Item = String> + '_ {
 }
 
 /// How a class was matched.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MatchedBy {
     /// By a pair of the user.

@@ -119,14 +119,14 @@ fn labelled(labels: Vec<u32>, classes: Classes) -> Value {
     map.into()
 }
 
-struct Truths {
+struct GroundTruths {
     values: Vec<Value>,
     classes: Classes,
 }
 
-impl Dataset for Truths {}
+impl Dataset for GroundTruths {}
 
-impl DatasetIterator for Truths {
+impl DatasetIterator for GroundTruths {
     fn len(&self) -> usize {
         self.values.len()
     }
@@ -154,19 +154,20 @@ impl Predictor for Predictions {
 
 /// Returns all numbers of the report, including those of each class by its name.
 fn numbers(metric: &str, learner: &Numbering, dataset: &Numbering, seed: u64) -> BTreeMap<String, f64> {
-    let [mut truths, mut predictions] = [Vec::new(), Vec::new()];
+    let [mut ground_truths, mut predictions] = [Vec::new(), Vec::new()];
     for at in 0..SAMPLES {
         let place = |what| Random::from_key([seed, at as u64, what]);
-        truths.push(value(metric, dataset, &mut place(0), true, &mut place(1)));
+        ground_truths.push(value(metric, dataset, &mut place(0), true, &mut place(1)));
         predictions.push(value(metric, learner, &mut place(0), false, &mut place(2)));
     }
     let problems = Problems::strict();
     let evaluation =
         Evaluation { resamples: 0, ..Evaluation::new(Subject::default(), find(metric).unwrap(), &problems) };
-    let truths = Truths { values: truths, classes: dataset.classes() };
+    let ground_truths = GroundTruths { values: ground_truths, classes: dataset.classes() };
     let ports = <&Vector as Inputs<'_>>::PORTS;
-    let outcome =
-        evaluation.run_pipelines(&mut [Predictions(predictions)], ports, learner.classes(), &truths).unwrap();
+    let outcome = evaluation
+        .run_pipelines(&mut [Predictions(predictions)], ports, learner.classes(), &ground_truths)
+        .unwrap();
     let mut numbers = outcome.report.statistics.scalars.clone();
     for table in &outcome.report.tables {
         for (row, values) in &table.rows {

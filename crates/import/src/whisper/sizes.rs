@@ -31,6 +31,8 @@ pub struct Sizes {
 }
 
 impl Sizes {
+    /// Reads the sizes from the shapes of the weights.
+    ///
     /// # Errors
     /// `Format` for sizes that are not those of a Whisper.
     pub fn of(weights: &dyn WhisperWeights) -> Result<Self> {

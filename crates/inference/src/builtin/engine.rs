@@ -29,7 +29,7 @@ pub(super) struct BuiltinEngine {
 #[derive(Default)]
 struct Widened {
     integers: Vec<i64>,
-    truths: Vec<bool>,
+    ground_truths: Vec<bool>,
 }
 
 impl BuiltinEngine {
@@ -99,10 +99,10 @@ impl Widened {
             Value::Int32Tensor(tensor) => {
                 tensor.make_contiguous();
                 self.integers.clear();
-                self.truths.clear();
+                self.ground_truths.clear();
                 match declared {
                     ElementType::I64 => self.integers.extend(tensor.iter().map(|&value| i64::from(value))),
-                    ElementType::Bool => self.truths.extend(tensor.iter().map(|&value| value != 0)),
+                    ElementType::Bool => self.ground_truths.extend(tensor.iter().map(|&value| value != 0)),
                     _ => {}
                 }
             }
@@ -165,7 +165,7 @@ fn tensor_from_value<'a>(
             tensor.data().map(|data| TensorView::new(&shape, data))
         }
         (Value::Int32Tensor(_), ElementType::I64) => Some(TensorView::new(&shape, &widened.integers)),
-        (Value::Int32Tensor(_), ElementType::Bool) => Some(TensorView::new(&shape, &widened.truths)),
+        (Value::Int32Tensor(_), ElementType::Bool) => Some(TensorView::new(&shape, &widened.ground_truths)),
         _ => None,
     };
     view.unwrap_or_else(|| {

@@ -88,56 +88,56 @@ pub struct TransitionEvent {
     pub goal_state: State,
 }
 
-/// `lifecycle_msgs/ChangeState, the request`.
+/// Request of `lifecycle_msgs/ChangeState`.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ChangeStateRequest {
     pub transition: Transition,
 }
 
-/// `lifecycle_msgs/ChangeState, the response`.
+/// Response of `lifecycle_msgs/ChangeState`.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ChangeStateResponse {
     pub success: bool,
 }
 
-/// `lifecycle_msgs/GetAvailableStates, the request`.
+/// Request of `lifecycle_msgs/GetAvailableStates`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct GetAvailableStatesRequest {
     /// ROS 2's filling of a message without fields; ROS 1 writes nothing.
     pub structure_needs_at_least_one_member: u8,
 }
 
-/// `lifecycle_msgs/GetAvailableStates, the response`.
+/// Response of `lifecycle_msgs/GetAvailableStates`.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct GetAvailableStatesResponse {
     pub available_states: Vec<State>,
 }
 
-/// `lifecycle_msgs/GetAvailableTransitions, the request`.
+/// Request of `lifecycle_msgs/GetAvailableTransitions`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct GetAvailableTransitionsRequest {
     /// ROS 2's filling of a message without fields; ROS 1 writes nothing.
     pub structure_needs_at_least_one_member: u8,
 }
 
-/// `lifecycle_msgs/GetAvailableTransitions, the response`.
+/// Response of `lifecycle_msgs/GetAvailableTransitions`.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct GetAvailableTransitionsResponse {
     pub available_transitions: Vec<TransitionDescription>,
 }
 
-/// `lifecycle_msgs/GetState, the request`.
+/// Request of `lifecycle_msgs/GetState`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct GetStateRequest {
     /// ROS 2's filling of a message without fields; ROS 1 writes nothing.
     pub structure_needs_at_least_one_member: u8,
 }
 
-/// `lifecycle_msgs/GetState, the response`.
+/// Response of `lifecycle_msgs/GetState`.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct GetStateResponse {

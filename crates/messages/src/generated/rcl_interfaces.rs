@@ -131,28 +131,28 @@ pub struct SetParametersResult {
     pub reason: String,
 }
 
-/// `rcl_interfaces/DescribeParameters, the request`.
+/// Request of `rcl_interfaces/DescribeParameters`.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct DescribeParametersRequest {
     pub names: Vec<String>,
 }
 
-/// `rcl_interfaces/DescribeParameters, the response`.
+/// Response of `rcl_interfaces/DescribeParameters`.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct DescribeParametersResponse {
     pub descriptors: Vec<ParameterDescriptor>,
 }
 
-/// `rcl_interfaces/GetParameterTypes, the request`.
+/// Request of `rcl_interfaces/GetParameterTypes`.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct GetParameterTypesRequest {
     pub names: Vec<String>,
 }
 
-/// `rcl_interfaces/GetParameterTypes, the response`.
+/// Response of `rcl_interfaces/GetParameterTypes`.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct GetParameterTypesResponse {
@@ -160,21 +160,21 @@ pub struct GetParameterTypesResponse {
     pub types: Vec<u8>,
 }
 
-/// `rcl_interfaces/GetParameters, the request`.
+/// Request of `rcl_interfaces/GetParameters`.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct GetParametersRequest {
     pub names: Vec<String>,
 }
 
-/// `rcl_interfaces/GetParameters, the response`.
+/// Response of `rcl_interfaces/GetParameters`.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct GetParametersResponse {
     pub values: Vec<ParameterValue>,
 }
 
-/// `rcl_interfaces/ListParameters, the request`.
+/// Request of `rcl_interfaces/ListParameters`.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ListParametersRequest {
@@ -187,35 +187,35 @@ impl ListParametersRequest {
     pub const DEPTH_RECURSIVE: u64 = 0;
 }
 
-/// `rcl_interfaces/ListParameters, the response`.
+/// Response of `rcl_interfaces/ListParameters`.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ListParametersResponse {
     pub result: ListParametersResult,
 }
 
-/// `rcl_interfaces/SetParameters, the request`.
+/// Request of `rcl_interfaces/SetParameters`.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SetParametersRequest {
     pub parameters: Vec<Parameter>,
 }
 
-/// `rcl_interfaces/SetParameters, the response`.
+/// Response of `rcl_interfaces/SetParameters`.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SetParametersResponse {
     pub results: Vec<SetParametersResult>,
 }
 
-/// `rcl_interfaces/SetParametersAtomically, the request`.
+/// Request of `rcl_interfaces/SetParametersAtomically`.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SetParametersAtomicallyRequest {
     pub parameters: Vec<Parameter>,
 }
 
-/// `rcl_interfaces/SetParametersAtomically, the response`.
+/// Response of `rcl_interfaces/SetParametersAtomically`.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SetParametersAtomicallyResponse {

@@ -4,28 +4,28 @@
 
 use serde::{Deserialize, Serialize};
 
-/// `std_srvs/Empty, the request`.
+/// Request of `std_srvs/Empty`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct EmptyRequest {
     /// ROS 2's filling of a message without fields; ROS 1 writes nothing.
     pub structure_needs_at_least_one_member: u8,
 }
 
-/// `std_srvs/Empty, the response`.
+/// Response of `std_srvs/Empty`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct EmptyResponse {
     /// ROS 2's filling of a message without fields; ROS 1 writes nothing.
     pub structure_needs_at_least_one_member: u8,
 }
 
-/// `std_srvs/SetBool, the request`.
+/// Request of `std_srvs/SetBool`.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SetBoolRequest {
     pub data: bool,
 }
 
-/// `std_srvs/SetBool, the response`.
+/// Response of `std_srvs/SetBool`.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SetBoolResponse {
@@ -33,14 +33,14 @@ pub struct SetBoolResponse {
     pub message: String,
 }
 
-/// `std_srvs/Trigger, the request`.
+/// Request of `std_srvs/Trigger`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct TriggerRequest {
     /// ROS 2's filling of a message without fields; ROS 1 writes nothing.
     pub structure_needs_at_least_one_member: u8,
 }
 
-/// `std_srvs/Trigger, the response`.
+/// Response of `std_srvs/Trigger`.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct TriggerResponse {

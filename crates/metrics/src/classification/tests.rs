@@ -2,7 +2,7 @@ use super::*;
 
 fn counted(pairs: &[(i64, i64)]) -> Classification {
     let mut classification = Classification::default();
-    pairs.iter().for_each(|(truth, predicted)| classification.add(*truth, *predicted));
+    pairs.iter().for_each(|(ground_truth, predicted)| classification.add(*ground_truth, *predicted));
     classification
 }
 
@@ -36,11 +36,11 @@ fn equal_scores_rank_by_class_number() {
 #[test]
 fn rejected_predictions_are_not_counted() {
     let mut classification = Classification::default();
-    let truth = Category::new(1, None);
+    let ground_truth = Category::new(1, None);
     let mut rejected = |class, confidence, probabilities: &[f32]| {
         let prediction =
             Category { probabilities: probabilities.to_vec(), ..Category::new(class, confidence) };
-        classification.update(0, &prediction, &truth).unwrap_err().to_string()
+        classification.update(0, &prediction, &ground_truth).unwrap_err().to_string()
     };
     assert!(rejected(0, None, &[1.0]).starts_with("class 1 has none of 1 scores"));
     assert_eq!(rejected(0, None, &[1.0, f32::NAN]), "score of class 1 is NaN; give numbers");
@@ -70,12 +70,13 @@ fn parts_merge_to_the_whole() {
     let samples =
         [(0, [0.5, 0.25, 0.25]), (1, [0.25, 0.0, 0.75]), (2, [0.0, 1.0, 0.0]), (2, [0.5, 0.5, 0.0])];
     let [mut whole, mut even, mut odd] = [(); 3].map(|()| Classification::default());
-    for (at, (truth, probabilities)) in samples.iter().enumerate() {
+    for (at, (ground_truth, probabilities)) in samples.iter().enumerate() {
         let best = if probabilities[1] >= 0.5 { 1 } else { 0 };
         let prediction = Category { probabilities: probabilities.to_vec(), ..Category::new(best, None) };
-        let truth = Category { description: Some("thing".into()), ..Category::new(*truth, None) };
+        let ground_truth =
+            Category { description: Some("thing".into()), ..Category::new(*ground_truth, None) };
         for part in [&mut whole, if at % 2 == 0 { &mut even } else { &mut odd }] {
-            part.update(at, &prediction, &truth).unwrap();
+            part.update(at, &prediction, &ground_truth).unwrap();
         }
     }
     odd.merge(even);

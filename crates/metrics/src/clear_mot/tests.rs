@@ -9,10 +9,10 @@ fn counted(frames: &[Places<'_>]) -> ClearMotCounts {
         (*id, [left, 0.0, left + 5.0, 5.0])
     };
     let mut metric = ClearMot::new(&TrackMatchingParams::default()).unwrap();
-    for (truth, found) in frames {
-        let truth: Vec<_> = truth.iter().map(place).collect();
+    for (ground_truth, found) in frames {
+        let ground_truth: Vec<_> = ground_truth.iter().map(place).collect();
         let found: Vec<_> = found.iter().map(place).collect();
-        metric.count(&TrackingFrame::from_boxes(&truth, &found).unwrap());
+        metric.count(&TrackingFrame::from_boxes(&ground_truth, &found).unwrap());
     }
     metric.counts()
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use opendr_engine::{Error, Result, map_in_order};
 
 use super::curve::{Curve, Ranked};
-use super::matching::{Detection, Matching, Truth};
+use super::matching::{Detection, GroundTruth, Matching};
 use super::protocol::{AREAS, AreaRange, Protocol, THRESHOLDS};
 use super::summary::{ClassOutcome, Outcome};
 
@@ -27,7 +27,7 @@ pub struct Accumulator<K> {
 #[derive(Debug, Clone, Default)]
 struct Class {
     /// Number of objects that count, in each range of area.
-    truths: [u64; AREAS],
+    ground_truths: [u64; AREAS],
     ranked: Vec<Ranked>,
 }
 
@@ -46,7 +46,7 @@ impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
 
     /// Adds the objects and detections of one class in an image, given by its index `image`.
     ///
-    /// `overlap(detection, truth)` is called only for detections within the limit.
+    /// `overlap(detection, ground truth)` is called only for detections within the limit.
     ///
     /// # Errors
     /// Returns `InvalidInput` for a score that is NaN, and errors of `overlap`; nothing is counted then.
@@ -54,17 +54,18 @@ impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
         &mut self,
         class: &K,
         image: u32,
-        truths: &[Truth],
+        ground_truths: &[GroundTruth],
         detections: &[Detection],
         overlap: impl FnMut(usize, usize) -> Result<f64>,
     ) -> Result<()> {
         self.rank(detections)?;
-        self.compare(truths.len(), overlap)?;
+        self.compare(ground_truths.len(), overlap)?;
         if !self.classes.contains_key(class) {
             self.classes.insert(class.clone(), Class::default());
         }
         let Some(kept) = self.classes.get_mut(class) else { return Ok(()) };
-        let verdicts = self.matching.verdicts(self.protocol.areas, truths, &self.sorted, &self.overlaps);
+        let verdicts =
+            self.matching.verdicts(self.protocol.areas, ground_truths, &self.sorted, &self.overlaps);
         let ranked = verdicts.iter().zip(&self.sorted).zip(0..).map(|((verdict, detection), rank)| Ranked {
             score: detection.score,
             image,
@@ -72,13 +73,13 @@ impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
             verdict: *verdict,
         });
         kept.ranked.extend(ranked);
-        for (count, area) in kept.truths.iter_mut().zip(self.protocol.areas) {
-            *count += counting(truths, area);
+        for (count, area) in kept.ground_truths.iter_mut().zip(self.protocol.areas) {
+            *count += counting(ground_truths, area);
         }
         Ok(())
     }
 
-    /// Like [`Accumulator::count`], and returns the average precision over all thresholds in this image alone; `None` if no
+    /// Counts as [`Accumulator::count`], and returns the average precision over all thresholds in this image alone; `None` if no
     /// object counts.
     ///
     /// # Errors
@@ -87,14 +88,14 @@ impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
         &mut self,
         class: &K,
         image: u32,
-        truths: &[Truth],
+        ground_truths: &[GroundTruth],
         detections: &[Detection],
         overlap: impl FnMut(usize, usize) -> Result<f64>,
     ) -> Result<Option<f64>> {
-        self.count(class, image, truths, detections, overlap)?;
+        self.count(class, image, ground_truths, detections, overlap)?;
         let ranked = self.classes.get(class).map_or(&[][..], |kept| &kept.ranked);
         let added = &ranked[ranked.len() - self.sorted.len()..];
-        let objects = counting(truths, &self.protocol.areas[0]);
+        let objects = counting(ground_truths, &self.protocol.areas[0]);
         Ok((objects > 0).then(|| Curve::of(added, 0, objects).mean()))
     }
 
@@ -118,11 +119,15 @@ impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
         Ok(())
     }
 
-    fn compare(&mut self, truths: usize, mut overlap: impl FnMut(usize, usize) -> Result<f64>) -> Result<()> {
+    fn compare(
+        &mut self,
+        ground_truths: usize,
+        mut overlap: impl FnMut(usize, usize) -> Result<f64>,
+    ) -> Result<()> {
         self.overlaps.clear();
         for detection in &self.order {
-            for truth in 0..truths {
-                self.overlaps.push(overlap(*detection, truth)?);
+            for ground_truth in 0..ground_truths {
+                self.overlaps.push(overlap(*detection, ground_truth)?);
             }
         }
         Ok(())
@@ -132,7 +137,10 @@ impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
     pub fn merge(&mut self, other: Self) {
         for (class, theirs) in other.classes {
             let ours = self.classes.entry(class).or_default();
-            ours.truths.iter_mut().zip(theirs.truths).for_each(|(ours, theirs)| *ours += theirs);
+            ours.ground_truths
+                .iter_mut()
+                .zip(theirs.ground_truths)
+                .for_each(|(ours, theirs)| *ours += theirs);
             if ours.ranked.is_empty() {
                 ours.ranked = theirs.ranked;
             } else {
@@ -161,9 +169,10 @@ impl Class {
     fn outcome(&self, protocol: &Protocol) -> ClassOutcome {
         let mut ranked = self.ranked.clone();
         ranked.sort_unstable_by(Ranked::before);
-        let curve = |at: usize| (self.truths[at] > 0).then(|| Curve::of(&ranked, at, self.truths[at]));
+        let curve =
+            |at: usize| (self.ground_truths[at] > 0).then(|| Curve::of(&ranked, at, self.ground_truths[at]));
         let curves: Vec<Option<Curve>> = (0..protocol.areas.len()).map(curve).collect();
-        ClassOutcome { truths: self.truths[0], recalls: self.recalls(protocol), curves }
+        ClassOutcome { ground_truths: self.ground_truths[0], recalls: self.recalls(protocol), curves }
     }
 
     /// Returns the recall over all thresholds for objects of all sizes, at each limit of detections.
@@ -171,13 +180,17 @@ impl Class {
         let recall = |limit: &u32| {
             let within = self.ranked.iter().filter(|ranked| ranked.rank < *limit);
             let correct: u64 = within.map(|ranked| u64::from(ranked.verdict.correct[0].count_ones())).sum();
-            (self.truths[0] > 0).then(|| correct as f64 / (self.truths[0] as usize * THRESHOLDS) as f64)
+            (self.ground_truths[0] > 0)
+                .then(|| correct as f64 / (self.ground_truths[0] as usize * THRESHOLDS) as f64)
         };
         protocol.limits.iter().map(recall).collect()
     }
 }
 
 /// Returns the number of objects that count in a range of area.
-fn counting(truths: &[Truth], area: &AreaRange) -> u64 {
-    truths.iter().filter(|truth| !truth.ignored && area.contains(truth.area)).count() as u64
+fn counting(ground_truths: &[GroundTruth], area: &AreaRange) -> u64 {
+    ground_truths
+        .iter()
+        .filter(|ground_truth| !ground_truth.ignored && area.contains(ground_truth.area))
+        .count() as u64
 }

@@ -30,8 +30,12 @@ pub(super) struct Curve {
 }
 
 impl Curve {
-    /// Computes the curve of ranked detections for `truths` objects, at least one.
-    pub(super) fn of<'a>(ranked: impl IntoIterator<Item = &'a Ranked>, area: usize, truths: u64) -> Self {
+    /// Computes the curve of ranked detections for `ground_truths` objects, at least one.
+    pub(super) fn of<'a>(
+        ranked: impl IntoIterator<Item = &'a Ranked>,
+        area: usize,
+        ground_truths: u64,
+    ) -> Self {
         let mut false_everywhere = 0u64;
         let mut false_positives = [0u64; THRESHOLDS];
         // Precision rises only at true positives, so only the number of false positives before each of them matters.
@@ -55,8 +59,8 @@ impl Curve {
         }
         let mut curve = Self { precision: [[0.0; RECALLS]; THRESHOLDS], recall: [0.0; THRESHOLDS] };
         for (bit, precision) in hit_precisions.iter_mut().enumerate() {
-            curve.recall[bit] = precision.len() as f64 / truths as f64;
-            curve.precision[bit] = interpolated(precision, truths);
+            curve.recall[bit] = precision.len() as f64 / ground_truths as f64;
+            curve.precision[bit] = interpolated(precision, ground_truths);
         }
         curve
     }
@@ -73,7 +77,7 @@ impl Curve {
 }
 
 /// Returns the highest precision at each level of recall or above, from the precision at each true positive.
-fn interpolated(precision: &mut [f64], truths: u64) -> [f64; RECALLS] {
+fn interpolated(precision: &mut [f64], ground_truths: u64) -> [f64; RECALLS] {
     let mut highest = 0.0f64;
     for precision in precision.iter_mut().rev() {
         highest = highest.max(*precision);
@@ -81,7 +85,7 @@ fn interpolated(precision: &mut [f64], truths: u64) -> [f64; RECALLS] {
     }
     let mut hit = 0;
     recalls().map(|level| {
-        while hit < precision.len() && ((hit + 1) as f64 / truths as f64) < level {
+        while hit < precision.len() && ((hit + 1) as f64 / ground_truths as f64) < level {
             hit += 1;
         }
         precision.get(hit).copied().unwrap_or_default()

@@ -7,7 +7,7 @@ use opendr_engine::{Error, Result};
 use super::accumulator::Accumulator;
 use super::decimal::f64_box;
 use super::list_accumulator::ListAccumulator;
-use super::matching::{Detection, Truth};
+use super::matching::{Detection, GroundTruth};
 use super::overlap::{box_iou, check_box};
 use super::protocol::Protocol;
 use crate::{Metric, Report};
@@ -39,7 +39,7 @@ impl Metric for CocoDetection {
     const IS_RANKING: bool = true;
     type Params = CocoDetectionParams;
     type Prediction = BoundingBoxList;
-    type Truth = BoundingBoxList;
+    type GroundTruth = BoundingBoxList;
 
     fn new(params: &CocoDetectionParams) -> Result<Self> {
         let accumulator = Accumulator::new(Protocol::objects(params.max_detections));
@@ -48,16 +48,22 @@ impl Metric for CocoDetection {
         Ok(Self { lists })
     }
 
-    fn update(&mut self, at: usize, prediction: &BoundingBoxList, truth: &BoundingBoxList) -> Result<f64> {
+    fn update(
+        &mut self,
+        at: usize,
+        prediction: &BoundingBoxList,
+        ground_truth: &BoundingBoxList,
+    ) -> Result<f64> {
         let detected = boxes(prediction, "detection")?;
-        let annotated = boxes(truth, "object")?;
+        let annotated = boxes(ground_truth, "object")?;
         let detections: Vec<_> = scored(prediction, &detected)?;
         let to_truth = |(object, bounds): (&BoundingBox, &[f64; 4])| truth_of(object, bounds[2] * bounds[3]);
-        let truths: Vec<_> = truth.boxes.iter().zip(&annotated).map(to_truth).collect();
-        let overlap =
-            |detection: &[f64; 4], truth: &[f64; 4], crowd: bool| Ok(box_iou(*detection, *truth, crowd));
-        let lists = [prediction, truth];
-        self.lists.add(image_index(at)?, lists, [&detected, &annotated], &detections, &truths, overlap)
+        let ground_truths: Vec<_> = ground_truth.boxes.iter().zip(&annotated).map(to_truth).collect();
+        let overlap = |detection: &[f64; 4], ground_truth: &[f64; 4], crowd: bool| {
+            Ok(box_iou(*detection, *ground_truth, crowd))
+        };
+        let lists = [prediction, ground_truth];
+        self.lists.add(image_index(at)?, lists, [&detected, &annotated], &detections, &ground_truths, overlap)
     }
 
     fn merge(&mut self, other: Self) {
@@ -103,9 +109,9 @@ pub(super) fn checked_score(confidence: f32) -> Result<f64> {
 }
 
 /// Creates an object of `area` square pixels, unless it has its own area.
-pub(super) fn truth_of(object: &BoundingBox, area: f64) -> Truth {
+pub(super) fn truth_of(object: &BoundingBox, area: f64) -> GroundTruth {
     let segment = object.segment.as_deref();
     let own = segment.map(|segment| f64::from(segment.area)).filter(|area| *area > 0.0);
     let crowd = segment.is_some_and(|segment| segment.iscrowd);
-    Truth { area: own.unwrap_or(area), crowd, ignored: crowd }
+    GroundTruth { area: own.unwrap_or(area), crowd, ignored: crowd }
 }

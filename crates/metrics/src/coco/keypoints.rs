@@ -8,7 +8,7 @@ use super::accumulator::Accumulator;
 use super::decimal::{f64_box, f64_from_f32};
 use super::detection::{checked_score, image_index, truth_of};
 use super::list_accumulator::quality_without_objects;
-use super::matching::{Detection, Truth};
+use super::matching::{Detection, GroundTruth};
 use super::overlap::{JOINTS, Person, check_box, keypoint_similarity};
 use super::protocol::Protocol;
 use crate::{Metric, Report};
@@ -38,20 +38,21 @@ impl Metric for CocoKeypoints {
     const IS_RANKING: bool = true;
     type Params = CocoKeypointsParams;
     type Prediction = PoseList;
-    type Truth = PoseList;
+    type GroundTruth = PoseList;
 
     fn new(params: &CocoKeypointsParams) -> Result<Self> {
         Ok(Self { accumulator: Accumulator::new(Protocol::keypoints(params.max_detections)) })
     }
 
-    fn update(&mut self, at: usize, prediction: &PoseList, truth: &PoseList) -> Result<f64> {
+    fn update(&mut self, at: usize, prediction: &PoseList, ground_truth: &PoseList) -> Result<f64> {
         let predicted = prediction.poses.iter().map(detection).collect::<Result<Vec<_>>>()?;
         let (detections, detected): (Vec<Detection>, Vec<_>) = predicted.into_iter().unzip();
-        let annotated = truth.poses.iter().map(person).collect::<Result<Vec<_>>>()?;
-        let (truths, persons): (Vec<Truth>, Vec<Person>) = annotated.into_iter().unzip();
-        let similarity =
-            |detection: usize, truth: usize| Ok(keypoint_similarity(&detected[detection], &persons[truth]));
-        let quality = self.accumulator.add(&(), image_index(at)?, &truths, &detections, similarity)?;
+        let annotated = ground_truth.poses.iter().map(person).collect::<Result<Vec<_>>>()?;
+        let (ground_truths, persons): (Vec<GroundTruth>, Vec<Person>) = annotated.into_iter().unzip();
+        let similarity = |detection: usize, ground_truth: usize| {
+            Ok(keypoint_similarity(&detected[detection], &persons[ground_truth]))
+        };
+        let quality = self.accumulator.add(&(), image_index(at)?, &ground_truths, &detections, similarity)?;
         Ok(quality.unwrap_or_else(|| quality_without_objects(&detections)))
     }
 
@@ -90,19 +91,19 @@ pub(super) fn area_around(joints: &[[f64; 2]; JOINTS]) -> f64 {
     extent(0) * extent(1)
 }
 
-fn person(pose: &Pose) -> Result<(Truth, Person)> {
+fn person(pose: &Pose) -> Result<(GroundTruth, Person)> {
     let (positions, is_detected) = joints(pose);
     let around = pose.bounding_box().unwrap_or_default().map(f64_from_f32);
     let region = pose.region.as_deref();
     let bounding_box = region.map_or(around, f64_box);
     check_box(bounding_box, "person")?;
     let box_area = bounding_box[2] * bounding_box[3];
-    let plain = Truth { area: box_area, crowd: false, ignored: false };
-    let mut truth = region.map_or(plain, |region| truth_of(region, box_area));
-    truth.ignored |= is_detected == [false; JOINTS];
+    let plain = GroundTruth { area: box_area, crowd: false, ignored: false };
+    let mut ground_truth = region.map_or(plain, |region| truth_of(region, box_area));
+    ground_truth.ignored |= is_detected == [false; JOINTS];
     let joints =
         std::array::from_fn(|at| [positions[at][0], positions[at][1], f64::from(u8::from(is_detected[at]))]);
-    Ok((truth, Person { joints, bounding_box, area: truth.area }))
+    Ok((ground_truth, Person { joints, bounding_box, area: ground_truth.area }))
 }
 
 #[cfg(test)]
@@ -123,9 +124,9 @@ mod tests {
     #[test]
     fn joints_of_other_skeletons_match_by_name() {
         let mut metric = CocoKeypoints::new(&CocoKeypointsParams::default()).unwrap();
-        let [prediction, truth] =
+        let [prediction, ground_truth] =
             [Skeleton::Opendr18, Skeleton::Coco17].map(|skeleton| vec![pose(skeleton)].into());
-        assert!((metric.update(0, &prediction, &truth).unwrap() - 1.0).abs() < 1e-9);
+        assert!((metric.update(0, &prediction, &ground_truth).unwrap() - 1.0).abs() < 1e-9);
         // A person without annotated joints is ignored.
         let mut unannotated = pose(Skeleton::Coco17);
         unannotated.keypoints.iter_mut().for_each(|keypoint| *keypoint = Keypoint::MISSING);

@@ -4,7 +4,7 @@ use opendr_engine::Result;
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes};
 
 use super::accumulator::Accumulator;
-use super::matching::{Detection, Truth};
+use super::matching::{Detection, GroundTruth};
 use crate::class_key::ClassKey;
 
 /// An accumulator of lists of boxes, with or without masks.
@@ -17,25 +17,26 @@ pub(super) struct ListAccumulator {
 }
 
 impl ListAccumulator {
-    /// Adds an image and returns the quality of its detections, 0 to 1. `overlap(detection, truth, crowd)` compares elements
+    /// Adds an image and returns the quality of its detections, 0 to 1. `overlap(detection, ground truth, crowd)` compares elements
     /// of `detected` and `annotated`.
     pub(super) fn add<S>(
         &mut self,
         at: u32,
-        [prediction, truth]: [&BoundingBoxList; 2],
+        [prediction, ground_truth]: [&BoundingBoxList; 2],
         [detected, annotated]: [&[S]; 2],
         detections: &[Detection],
-        truths: &[Truth],
+        ground_truths: &[GroundTruth],
         overlap: impl Fn(&S, &S, bool) -> Result<f64>,
     ) -> Result<f64> {
         if self.classes.is_empty() {
-            self.classes = truth.classes.clone();
+            self.classes = ground_truth.classes.clone();
         }
         let keys = |list: &BoundingBoxList| {
-            let key = |object: &BoundingBox| ClassKey::new(&object.name, &list.classes, &truth.classes);
+            let key =
+                |object: &BoundingBox| ClassKey::new(&object.name, &list.classes, &ground_truth.classes);
             list.boxes.iter().map(key).collect::<Vec<_>>()
         };
-        let (detected_keys, annotated_keys) = (sorted(keys(prediction)), sorted(keys(truth)));
+        let (detected_keys, annotated_keys) = (sorted(keys(prediction)), sorted(keys(ground_truth)));
         let mut classes: Vec<Option<&ClassKey>> = vec![None];
         if self.use_classes {
             classes = detected_keys.iter().chain(&annotated_keys).map(|(key, _)| Some(key)).collect();
@@ -52,17 +53,17 @@ impl ListAccumulator {
             };
             let (detected_indices, annotated_indices) = (of_class(&detected_keys), of_class(&annotated_keys));
             let some = |indices: &[usize]| indices.iter().map(|at| detections[*at]).collect::<Vec<_>>();
-            let truths: Vec<_> = annotated_indices.iter().map(|at| truths[*at]).collect();
+            let ground_truths: Vec<_> = annotated_indices.iter().map(|at| ground_truths[*at]).collect();
             let quality = self.accumulator.add(
                 class.unwrap_or(&ClassKey::Any),
                 at,
-                &truths,
+                &ground_truths,
                 &some(&detected_indices),
-                |detection, truth| {
+                |detection, ground_truth| {
                     overlap(
                         &detected[detected_indices[detection]],
-                        &annotated[annotated_indices[truth]],
-                        truths[truth].crowd,
+                        &annotated[annotated_indices[ground_truth]],
+                        ground_truths[ground_truth].crowd,
                     )
                 },
             )?;

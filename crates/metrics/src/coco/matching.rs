@@ -4,7 +4,7 @@ use super::protocol::{AREAS, AreaRange, THRESHOLDS, thresholds};
 
 /// An annotated object.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Truth {
+pub struct GroundTruth {
     /// Area in square pixels.
     pub area: f64,
     /// Whether it is a crowd: any number of detections may match it, and none of them counts.
@@ -47,34 +47,35 @@ pub(super) struct Matching {
 }
 
 impl Matching {
-    /// Matches `detections`, sorted by descending score; `overlaps` is `[detection][truth]`.
+    /// Matches `detections`, sorted by descending score; `overlaps` is `[detection][ground truth]`.
     ///
     /// As in pycocotools' `evaluateImg`, each detection in turn takes the free object with the largest overlap, the later of
     /// two equal ones; objects that count take precedence over ignored ones.
     pub(super) fn verdicts(
         &mut self,
         areas: &[AreaRange],
-        truths: &[Truth],
+        ground_truths: &[GroundTruth],
         detections: &[Detection],
         overlaps: &[f64],
     ) -> &[Verdict] {
         self.verdicts.clear();
         self.verdicts.resize(detections.len(), Verdict::default());
         self.candidates.clear();
-        if !truths.is_empty() {
-            let rows = overlaps.chunks_exact(truths.len()).enumerate();
+        if !ground_truths.is_empty() {
+            let rows = overlaps.chunks_exact(ground_truths.len()).enumerate();
             let enough = |row: &[f64]| row.iter().any(|overlap| *overlap >= 0.5 || overlap.is_nan());
             self.candidates.extend(rows.filter(|(_, row)| enough(row)).map(|(index, _)| index));
         }
         for (at, area) in areas.iter().enumerate().take(AREAS) {
-            let ignored = |truth: &Truth| truth.ignored || !area.contains(truth.area);
-            let unchanged = at > 0 && truths.iter().map(ignored).eq(self.ignored.iter().copied());
+            let ignored =
+                |ground_truth: &GroundTruth| ground_truth.ignored || !area.contains(ground_truth.area);
+            let unchanged = at > 0 && ground_truths.iter().map(ignored).eq(self.ignored.iter().copied());
             if unchanged {
                 self.repeat(at);
             } else {
                 self.ignored.clear();
-                self.ignored.extend(truths.iter().map(ignored));
-                self.find(at, truths, overlaps);
+                self.ignored.extend(ground_truths.iter().map(ignored));
+                self.find(at, ground_truths, overlaps);
             }
         }
         for (verdict, detection) in self.verdicts.iter_mut().zip(detections) {
@@ -96,22 +97,22 @@ impl Matching {
         }
     }
 
-    fn find(&mut self, at: usize, truths: &[Truth], overlaps: &[f64]) {
+    fn find(&mut self, at: usize, ground_truths: &[GroundTruth], overlaps: &[f64]) {
         if self.candidates.is_empty() {
             return;
         }
         let Self { order, ignored, taken, candidates, verdicts } = self;
         order.clear();
-        order.extend((0..truths.len()).filter(|truth| !ignored[*truth]));
-        order.extend((0..truths.len()).filter(|truth| ignored[*truth]));
+        order.extend((0..ground_truths.len()).filter(|ground_truth| !ignored[*ground_truth]));
+        order.extend((0..ground_truths.len()).filter(|ground_truth| ignored[*ground_truth]));
         for (bit, threshold) in thresholds().into_iter().enumerate() {
             taken.clear();
-            taken.resize(truths.len(), false);
+            taken.resize(ground_truths.len(), false);
             for index in &*candidates {
-                let row = &overlaps[index * truths.len()..][..truths.len()];
-                let Some(matched) =
-                    best(row, threshold, order, ignored, |truth| taken[truth] && !truths[truth].crowd)
-                else {
+                let row = &overlaps[index * ground_truths.len()..][..ground_truths.len()];
+                let Some(matched) = best(row, threshold, order, ignored, |ground_truth| {
+                    taken[ground_truth] && !ground_truths[ground_truth].crowd
+                }) else {
                     continue;
                 };
                 taken[matched] = true;
@@ -132,18 +133,18 @@ fn best(
     is_taken: impl Fn(usize) -> bool,
 ) -> Option<usize> {
     let (mut most, mut matched) = (threshold.min(1.0 - 1e-10), None);
-    for truth in order.iter().copied() {
-        if is_taken(truth) {
+    for ground_truth in order.iter().copied() {
+        if is_taken(ground_truth) {
             continue;
         }
-        if ignored[truth] && matched.is_some_and(|matched: usize| !ignored[matched]) {
+        if ignored[ground_truth] && matched.is_some_and(|matched: usize| !ignored[matched]) {
             break;
         }
-        if row[truth] < most {
+        if row[ground_truth] < most {
             continue;
         }
-        most = row[truth];
-        matched = Some(truth);
+        most = row[ground_truth];
+        matched = Some(ground_truth);
     }
     matched
 }

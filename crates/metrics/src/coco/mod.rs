@@ -23,7 +23,7 @@ mod tests;
 pub use accumulator::Accumulator;
 pub use detection::{CocoDetection, CocoDetectionParams};
 pub use keypoints::{CocoKeypoints, CocoKeypointsParams};
-pub use matching::{Detection, Truth};
+pub use matching::{Detection, GroundTruth};
 pub use overlap::{JOINTS, Mask, Person, box_iou, keypoint_similarity};
 pub use protocol::{AreaRange, Protocol, RECALLS, THRESHOLDS, recalls, thresholds};
 pub use segmentation::CocoSegmentation;

@@ -5,9 +5,9 @@ use opendr_engine::{Error, Result};
 
 /// Returns the intersection over union of boxes `[left, top, width, height]`; for a crowd the intersection over the area
 /// of the detection.
-pub fn box_iou(detection: [f64; 4], truth: [f64; 4], crowd: bool) -> f64 {
+pub fn box_iou(detection: [f64; 4], ground_truth: [f64; 4], crowd: bool) -> f64 {
     let [left, top, wide, high] = detection;
-    let [x, y, width, height] = truth;
+    let [x, y, width, height] = ground_truth;
     let across = (left + wide).min(x + width) - left.max(x);
     let down = (top + high).min(y + height) - top.max(y);
     if !(across > 0.0 && down > 0.0) {
@@ -35,16 +35,16 @@ impl Mask {
     ///
     /// # Errors
     /// Returns `InvalidInput` for masks of different sizes.
-    pub fn iou(&self, truth: &Self, crowd: bool) -> Result<f64> {
+    pub fn iou(&self, ground_truth: &Self, crowd: bool) -> Result<f64> {
         let [(left, right), (top, bottom)] = [0, 1].map(|axis| {
             let end = |mask: &Self| mask.extent[axis] + mask.extent[axis + 2];
-            (self.extent[axis].max(truth.extent[axis]), end(self).min(end(truth)))
+            (self.extent[axis].max(ground_truth.extent[axis]), end(self).min(end(ground_truth)))
         });
-        if self.rle.size() == truth.rle.size() && (left >= right || top >= bottom) {
+        if self.rle.size() == ground_truth.rle.size() && (left >= right || top >= bottom) {
             return Ok(0.0);
         }
-        let both = self.rle.intersection(&truth.rle)?;
-        let all = if crowd { self.area } else { self.area + truth.area - both };
+        let both = self.rle.intersection(&ground_truth.rle)?;
+        let all = if crowd { self.area } else { self.area + ground_truth.area - both };
         Ok(if both == 0 { 0.0 } else { both as f64 / all as f64 })
     }
 }
@@ -79,13 +79,13 @@ pub struct Person {
 /// Returns the object keypoint similarity: the mean over annotated joints of `exp(-d^2 / (2 s^2 k^2))`.
 ///
 /// Without annotated joints, the distance is that to the person's box, doubled.
-pub fn keypoint_similarity(detection: &[[f64; 2]; JOINTS], truth: &Person) -> f64 {
-    let annotated = truth.joints.iter().filter(|[_, _, visible]| *visible > 0.0).count();
-    let [left, top, width, height] = truth.bounding_box;
+pub fn keypoint_similarity(detection: &[[f64; 2]; JOINTS], ground_truth: &Person) -> f64 {
+    let annotated = ground_truth.joints.iter().filter(|[_, _, visible]| *visible > 0.0).count();
+    let [left, top, width, height] = ground_truth.bounding_box;
     let beside = |at: f64, start: f64, length: f64| {
         (start - length - at).max(0.0) + (at - (start + length * 2.0)).max(0.0)
     };
-    let joints = detection.iter().zip(&truth.joints).zip(SIGMAS);
+    let joints = detection.iter().zip(&ground_truth.joints).zip(SIGMAS);
     let similarities =
         joints.filter(|((_, joint), _)| annotated == 0 || joint[2] > 0.0).map(|(([x, y], joint), sigma)| {
             let [dx, dy] = match annotated {
@@ -93,7 +93,7 @@ pub fn keypoint_similarity(detection: &[[f64; 2]; JOINTS], truth: &Person) -> f6
                 _ => [x - joint[0], y - joint[1]],
             };
             let variance = (sigma * 2.0) * (sigma * 2.0);
-            (-((dx * dx + dy * dy) / variance / (truth.area + f64::EPSILON) / 2.0)).exp()
+            (-((dx * dx + dy * dy) / variance / (ground_truth.area + f64::EPSILON) / 2.0)).exp()
         });
     similarities.sum::<f64>() / if annotated == 0 { JOINTS } else { annotated } as f64
 }

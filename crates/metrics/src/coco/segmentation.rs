@@ -28,7 +28,7 @@ impl Metric for CocoSegmentation {
     const IS_RANKING: bool = true;
     type Params = CocoDetectionParams;
     type Prediction = BoundingBoxList;
-    type Truth = BoundingBoxList;
+    type GroundTruth = BoundingBoxList;
 
     fn new(params: &CocoDetectionParams) -> Result<Self> {
         let accumulator = Accumulator::new(Protocol::objects(params.max_detections));
@@ -37,19 +37,25 @@ impl Metric for CocoSegmentation {
         Ok(Self { lists })
     }
 
-    fn update(&mut self, at: usize, prediction: &BoundingBoxList, truth: &BoundingBoxList) -> Result<f64> {
-        let canvas = canvas([prediction, truth])?;
+    fn update(
+        &mut self,
+        at: usize,
+        prediction: &BoundingBoxList,
+        ground_truth: &BoundingBoxList,
+    ) -> Result<f64> {
+        let canvas = canvas([prediction, ground_truth])?;
         let (detected, annotated) =
-            (masks(prediction, canvas, "detection")?, masks(truth, canvas, "object")?);
+            (masks(prediction, canvas, "detection")?, masks(ground_truth, canvas, "object")?);
         let scored = prediction.boxes.iter().zip(&detected).map(|(object, mask)| {
             Ok(Detection { score: checked_score(object.confidence)?, area: mask.area() as f64 })
         });
         let detections = scored.collect::<Result<Vec<_>>>()?;
-        let objects = truth.boxes.iter().zip(&annotated);
-        let truths: Vec<_> = objects.map(|(object, mask)| truth_of(object, mask.area() as f64)).collect();
-        let lists = [prediction, truth];
+        let objects = ground_truth.boxes.iter().zip(&annotated);
+        let ground_truths: Vec<_> =
+            objects.map(|(object, mask)| truth_of(object, mask.area() as f64)).collect();
+        let lists = [prediction, ground_truth];
         let at = image_index(at)?;
-        self.lists.add(at, lists, [&detected, &annotated], &detections, &truths, Mask::iou)
+        self.lists.add(at, lists, [&detected, &annotated], &detections, &ground_truths, Mask::iou)
     }
 
     fn merge(&mut self, other: Self) {

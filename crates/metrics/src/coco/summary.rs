@@ -26,7 +26,7 @@ pub const NUMBERS: &[(&str, &str)] = &[
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ClassOutcome {
     /// Number of objects that count.
-    pub truths: u64,
+    pub ground_truths: u64,
     /// Recall at each limit of detections; `None` without objects.
     pub recalls: Vec<Option<f64>>,
     /// Curve in each range of area; `None` without objects.
@@ -101,12 +101,12 @@ impl<K> Outcome<K> {
     }
 
     fn table(&self, label: impl Fn(&K) -> String) -> Option<Table> {
-        let counted = self.classes.iter().filter(|(_, class)| class.truths > 0);
+        let counted = self.classes.iter().filter(|(_, class)| class.ground_truths > 0);
         let rows: Vec<_> = counted
             .map(|(class, outcome)| {
                 let number = |number: &dyn Fn(&Curve) -> f64| outcome.curves[0].as_ref().map(number);
                 let numbers = vec![
-                    Some(outcome.truths as f64),
+                    Some(outcome.ground_truths as f64),
                     number(&Curve::mean),
                     number(&|curve| curve.average(ALONE[0].0)),
                     number(&|curve| curve.average(ALONE[1].0)),
@@ -115,7 +115,7 @@ impl<K> Outcome<K> {
                 (label(class), numbers)
             })
             .collect();
-        let columns = ["truths", "map", "map50", "map75", "mar"].map(str::to_owned).to_vec();
+        let columns = ["ground_truth", "map", "map50", "map75", "mar"].map(str::to_owned).to_vec();
         (!rows.is_empty()).then(|| Table { name: "class".to_owned(), columns, rows })
     }
 

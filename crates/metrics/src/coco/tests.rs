@@ -11,16 +11,19 @@ fn count(
     at: u32,
     (annotated, detected): &ImageBoxes,
 ) -> Option<f64> {
-    let truth =
-        |(_, area, crowd): &([f64; 4], f64, bool)| Truth { area: *area, crowd: *crowd, ignored: *crowd };
-    let truths: Vec<_> = annotated.iter().map(truth).collect();
+    let ground_truth = |(_, area, crowd): &([f64; 4], f64, bool)| GroundTruth {
+        area: *area,
+        crowd: *crowd,
+        ignored: *crowd,
+    };
+    let ground_truths: Vec<_> = annotated.iter().map(ground_truth).collect();
     let detection =
         |(bounds, score): &([f64; 4], f64)| Detection { score: *score, area: bounds[2] * bounds[3] };
     let detections: Vec<_> = detected.iter().map(detection).collect();
-    let overlap = |detection: usize, truth: usize| {
-        Ok(box_iou(detected[detection].0, annotated[truth].0, annotated[truth].2))
+    let overlap = |detection: usize, ground_truth: usize| {
+        Ok(box_iou(detected[detection].0, annotated[ground_truth].0, annotated[ground_truth].2))
     };
-    accumulator.add(&class, at, &truths, &detections, overlap).unwrap()
+    accumulator.add(&class, at, &ground_truths, &detections, overlap).unwrap()
 }
 
 fn stats(images: &[ImageBoxes]) -> Vec<f64> {

@@ -14,16 +14,16 @@ const MAX_PAIRS: usize = 1 << 20;
 ///
 /// # Errors
 /// Returns `InvalidInput` for more than 2^20 pairs.
-pub(super) fn nearest(truth: &[Pose], predicted: &[Pose]) -> Result<Vec<Option<usize>>> {
-    let pairs = truth.len().saturating_mul(predicted.len());
+pub(super) fn nearest(ground_truth: &[Pose], predicted: &[Pose]) -> Result<Vec<Option<usize>>> {
+    let pairs = ground_truth.len().saturating_mul(predicted.len());
     if pairs > MAX_PAIRS {
-        let (expected, given) = (truth.len(), predicted.len());
+        let (expected, given) = (ground_truth.len(), predicted.len());
         return Err(Error::invalid_input(format!(
             "{given} predicted and {expected} true poses in an image; give at most {MAX_PAIRS} pairs"
         )));
     }
     let mut ranked = Vec::with_capacity(pairs);
-    for (row, pose) in truth.iter().enumerate() {
+    for (row, pose) in ground_truth.iter().enumerate() {
         ranked.extend(
             predicted
                 .iter()
@@ -32,7 +32,7 @@ pub(super) fn nearest(truth: &[Pose], predicted: &[Pose]) -> Result<Vec<Option<u
         );
     }
     ranked.sort_by(|one, other| one.0.total_cmp(&other.0));
-    let mut matches = vec![None; truth.len()];
+    let mut matches = vec![None; ground_truth.len()];
     let mut taken = vec![false; predicted.len()];
     for (_, row, column) in ranked {
         if matches[row].is_none() && !taken[column] {

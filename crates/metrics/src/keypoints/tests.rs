@@ -19,13 +19,13 @@ fn with(normalize: PoseSize, threshold: f64, joints: &[usize]) -> Keypoints {
 #[test]
 fn numbers_by_hand() {
     let mut keypoints = Keypoints::default();
-    let truth = [Some([0.0, 0.0]), Some([10.0, 0.0]), None];
+    let ground_truth = [Some([0.0, 0.0]), Some([10.0, 0.0]), None];
     assert_eq!(
-        keypoints.add(&truth, &[Some([3.0, 4.0]), Some([10.0, 0.0]), Some([0.0, 0.0])], 10.0).unwrap(),
+        keypoints.add(&ground_truth, &[Some([3.0, 4.0]), Some([10.0, 0.0]), Some([0.0, 0.0])], 10.0).unwrap(),
         Some(0.5)
     );
-    assert_eq!(keypoints.add(&truth[..1], &[Some([0.0, 1.0])], 10.0).unwrap(), Some(1.0));
-    assert_eq!(keypoints.add(&truth[2..], &[None], 10.0).unwrap(), None);
+    assert_eq!(keypoints.add(&ground_truth[..1], &[Some([0.0, 1.0])], 10.0).unwrap(), Some(1.0));
+    assert_eq!(keypoints.add(&ground_truth[2..], &[None], 10.0).unwrap(), None);
     // Joint 0: 0.5 and 0.1 off, joint 1: not at all.
     assert_eq!(keypoints.pck(), Some(0.75));
     assert_eq!(keypoints.pooled_pck(), Some(2.0 / 3.0));
@@ -123,10 +123,10 @@ fn poses_without_size_are_ignored() {
 fn parts_merge_to_the_whole() {
     let [mut whole, mut first, mut second] = [(); 3].map(|()| Keypoints::default());
     for at in 0..5_u8 {
-        let truth = PoseList::from(vec![in_box(pose(&[[1.0, 1.0], [2.0, 4.0]]), 8.0, 8.0)]);
+        let ground_truth = PoseList::from(vec![in_box(pose(&[[1.0, 1.0], [2.0, 4.0]]), 8.0, 8.0)]);
         let prediction = PoseList::from(vec![pose(&[[1.0, f32::from(at)], [2.0, 4.5]])]);
-        whole.update(at.into(), &prediction, &truth).unwrap();
-        if at < 2 { &mut first } else { &mut second }.update(at.into(), &prediction, &truth).unwrap();
+        whole.update(at.into(), &prediction, &ground_truth).unwrap();
+        if at < 2 { &mut first } else { &mut second }.update(at.into(), &prediction, &ground_truth).unwrap();
     }
     second.merge(first);
     assert_eq!(second.finish(), whole.finish());

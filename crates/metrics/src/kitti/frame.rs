@@ -19,7 +19,7 @@ struct Found {
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Truth {
+struct GroundTruth {
     traits: Traits,
     alpha: f64,
 }
@@ -27,7 +27,7 @@ struct Truth {
 /// A pair that some rule may match, by indices in the lists.
 #[derive(Debug, Clone, Copy)]
 struct Candidate {
-    truth: u32,
+    ground_truth: u32,
     found: u32,
     overlap: f64,
 }
@@ -38,7 +38,7 @@ pub(super) struct Frame {
     /// How well boxes of the same class overlap in space, 0 to 1.
     pub coverage: f64,
     pub has_orientations: bool,
-    truth: Vec<Truth>,
+    ground_truth: Vec<GroundTruth>,
     found: Vec<Found>,
     /// Candidates by kind of overlap, in the order of ground truth and then predictions.
     candidates: [Vec<Candidate>; 3],
@@ -54,33 +54,36 @@ pub(super) struct Matched {
 }
 
 impl Frame {
-    pub fn new(at: usize, found: &[KittiObject], truth: &[KittiObject]) -> Result<Self> {
-        if found.len().max(truth.len()) > MOST_BOXES {
+    pub fn new(at: usize, found: &[KittiObject], ground_truth: &[KittiObject]) -> Result<Self> {
+        if found.len().max(ground_truth.len()) > MOST_BOXES {
             return Err(Error::invalid_input(format!(
                 "{} predicted and {} true boxes in one image; give at most {MOST_BOXES}",
                 found.len(),
-                truth.len()
+                ground_truth.len()
             )));
         }
-        found.iter().chain(truth).try_for_each(KittiObject::check)?;
+        found.iter().chain(ground_truth).try_for_each(KittiObject::check)?;
         let mut frame = Self {
             at,
             coverage: 1.0,
             has_orientations: found.iter().all(|object| object.alpha != -10.0),
-            truth: truth.iter().map(|object| Truth { traits: object.into(), alpha: object.alpha }).collect(),
-            found: found.iter().map(|object| found_from_object(object, truth)).collect(),
+            ground_truth: ground_truth
+                .iter()
+                .map(|object| GroundTruth { traits: object.into(), alpha: object.alpha })
+                .collect(),
+            found: found.iter().map(|object| found_from_object(object, ground_truth)).collect(),
             candidates: [Vec::new(), Vec::new(), Vec::new()],
         };
-        frame.fill_overlaps(found, truth);
+        frame.fill_overlaps(found, ground_truth);
         Ok(frame)
     }
 
-    fn fill_overlaps(&mut self, found: &[KittiObject], truth: &[KittiObject]) {
+    fn fill_overlaps(&mut self, found: &[KittiObject], ground_truth: &[KittiObject]) {
         let boxes: Vec<UprightBox3D> = found.iter().map(KittiObject::upright_box).collect();
-        let mut best_of_truth = vec![0.0f64; truth.len()];
+        let mut best_of_ground_truth = vec![0.0f64; ground_truth.len()];
         let mut best_of_found = vec![0.0f64; found.len()];
-        for (row, object) in truth.iter().enumerate() {
-            if matches!(self.truth[row].traits.kind, ObjectKind::Other | ObjectKind::DontCare) {
+        for (row, object) in ground_truth.iter().enumerate() {
+            if matches!(self.ground_truth[row].traits.kind, ObjectKind::Other | ObjectKind::DontCare) {
                 continue;
             }
             let upright = object.upright_box();
@@ -94,32 +97,39 @@ impl Frame {
                 let overlaps = [box_iou(object.bbox2d, other.bbox2d), on_ground, in_space];
                 for (candidates, overlap) in self.candidates.iter_mut().zip(overlaps) {
                     if overlap > SMALLEST_LEAST_OVERLAP {
-                        candidates.push(Candidate { truth: row as u32, found: column as u32, overlap });
+                        candidates.push(Candidate {
+                            ground_truth: row as u32,
+                            found: column as u32,
+                            overlap,
+                        });
                     }
                 }
-                if self.truth[row].traits.kind == self.found[column].traits.kind {
-                    best_of_truth[row] = best_of_truth[row].max(in_space);
+                if self.ground_truth[row].traits.kind == self.found[column].traits.kind {
+                    best_of_ground_truth[row] = best_of_ground_truth[row].max(in_space);
                     best_of_found[column] = best_of_found[column].max(in_space);
                 }
             }
         }
-        let hits = best_of_truth.iter().sum::<f64>().min(best_of_found.iter().sum());
+        let hits = best_of_ground_truth.iter().sum::<f64>().min(best_of_found.iter().sum());
         let counts = |kind: ObjectKind| matches!(kind, ObjectKind::Class(_));
-        let boxes = self.truth.iter().map(|object| object.traits.kind);
+        let boxes = self.ground_truth.iter().map(|object| object.traits.kind);
         let boxes = boxes.chain(self.found.iter().map(|object| object.traits.kind));
         let union = boxes.filter(|kind| counts(*kind)).count() as f64 - hits;
         self.coverage = if union > 0.0 { (hits / union).min(1.0) } else { 1.0 };
     }
 
     pub fn positives(&self, rules: &Rules) -> usize {
-        self.truth.iter().filter(|object| rules.role_of_truth(&object.traits) == Role::Counts).count()
+        self.ground_truth
+            .iter()
+            .filter(|object| rules.role_of_ground_truth(&object.traits) == Role::Counts)
+            .count()
     }
 
     /// Appends the scores of the true positives at threshold 0: each ground-truth box matches the prediction with the highest
     /// score.
     pub fn true_scores(&self, rules: &Rules, scores: &mut Vec<f64>) {
         let mut taken = vec![false; self.found.len()];
-        for (truth, pairs) in self.candidates_by_truth(rules) {
+        for (ground_truth, pairs) in self.candidates_by_truth(rules) {
             let mut best: Option<usize> = None;
             for pair in pairs {
                 let at = pair.found as usize;
@@ -131,7 +141,7 @@ impl Frame {
             }
             let Some(best) = best else { continue };
             taken[best] = true;
-            if self.both_count(rules, truth, best) {
+            if self.both_count(rules, ground_truth, best) {
                 scores.push(self.found[best].score);
             }
         }
@@ -142,12 +152,12 @@ impl Frame {
     pub fn matched(&self, rules: &Rules, threshold: f64) -> Matched {
         let mut matched = Matched::default();
         let mut taken = vec![false; self.found.len()];
-        for (truth, pairs) in self.candidates_by_truth(rules) {
+        for (ground_truth, pairs) in self.candidates_by_truth(rules) {
             let Some(best) = self.largest_overlap(rules, threshold, pairs, &taken) else { continue };
             taken[best] = true;
-            if self.both_count(rules, truth, best) {
+            if self.both_count(rules, ground_truth, best) {
                 matched.true_positives += 1;
-                let rotation = self.truth[truth].alpha - self.found[best].alpha;
+                let rotation = self.ground_truth[ground_truth].alpha - self.found[best].alpha;
                 matched.similarity += (1.0 + rotation.cos()) / 2.0;
             }
         }
@@ -186,22 +196,25 @@ impl Frame {
         best.map(|(at, _)| at).or(ignored)
     }
 
-    fn both_count(&self, rules: &Rules, truth: usize, found: usize) -> bool {
-        rules.role_of_truth(&self.truth[truth].traits) == Role::Counts
+    fn both_count(&self, rules: &Rules, ground_truth: usize, found: usize) -> bool {
+        rules.role_of_ground_truth(&self.ground_truth[ground_truth].traits) == Role::Counts
             && rules.role_of_found(&self.found[found].traits) == Role::Counts
     }
 
     /// Returns the ground-truth boxes that take part in the matching, with their candidates.
     fn candidates_by_truth(&self, rules: &Rules) -> impl Iterator<Item = (usize, &[Candidate])> {
-        self.candidates[rules.overlap as usize].chunk_by(|a, b| a.truth == b.truth).filter_map(|pairs| {
-            let truth = pairs.first()?.truth as usize;
-            (rules.role_of_truth(&self.truth[truth].traits) != Role::Absent).then_some((truth, pairs))
-        })
+        self.candidates[rules.overlap as usize].chunk_by(|a, b| a.ground_truth == b.ground_truth).filter_map(
+            |pairs| {
+                let ground_truth = pairs.first()?.ground_truth as usize;
+                (rules.role_of_ground_truth(&self.ground_truth[ground_truth].traits) != Role::Absent)
+                    .then_some((ground_truth, pairs))
+            },
+        )
     }
 }
 
-fn found_from_object(object: &KittiObject, truth: &[KittiObject]) -> Found {
-    let regions = truth.iter().filter(|other| other.kind() == ObjectKind::DontCare);
+fn found_from_object(object: &KittiObject, ground_truth: &[KittiObject]) -> Found {
+    let regions = ground_truth.iter().filter(|other| other.kind() == ObjectKind::DontCare);
     let covers = regions.map(|region| box_ioa(object.bbox2d, region.bbox2d));
     Found {
         traits: object.into(),

@@ -82,13 +82,15 @@ impl KittiDifficulty {
         }
     }
 
-    fn counts(self, truth: &Traits) -> bool {
+    fn counts(self, ground_truth: &Traits) -> bool {
         let (occluded, truncated) = match self {
             Self::Easy => (0, 0.15),
             Self::Moderate => (1, 0.3),
             Self::Hard => (2, 0.5),
         };
-        truth.occluded <= occluded && truth.truncated <= truncated && truth.height > self.least_height()
+        ground_truth.occluded <= occluded
+            && ground_truth.truncated <= truncated
+            && ground_truth.height > self.least_height()
     }
 }
 
@@ -176,14 +178,14 @@ impl Rules {
         }
     }
 
-    pub fn role_of_truth(&self, truth: &Traits) -> Role {
-        if truth.kind == ObjectKind::Class(self.class) {
-            return if self.difficulty.counts(truth) { Role::Counts } else { Role::Ignored };
+    pub fn role_of_ground_truth(&self, ground_truth: &Traits) -> Role {
+        if ground_truth.kind == ObjectKind::Class(self.class) {
+            return if self.difficulty.counts(ground_truth) { Role::Counts } else { Role::Ignored };
         }
-        if truth.kind.is_neighbour_of(self.class) { Role::Ignored } else { Role::Absent }
+        if ground_truth.kind.is_neighbour_of(self.class) { Role::Ignored } else { Role::Absent }
     }
 
-    /// Small predictions of every class are ignored, even if they match, as in KITTI's development kit.
+    /// Returns the role of a prediction. Small predictions of every class are ignored, even if they match, as in KITTI's development kit.
     pub fn role_of_found(&self, found: &Traits) -> Role {
         if found.height.abs() < self.difficulty.least_height() {
             return Role::Ignored;

@@ -25,8 +25,8 @@ fn score_of(
     difficulty: KittiDifficulty,
 ) -> Option<KittiScore> {
     let mut metric = Kitti::default();
-    for (at, (found, truth)) in images.iter().enumerate() {
-        metric.count(at, found, truth).unwrap();
+    for (at, (found, ground_truth)) in images.iter().enumerate() {
+        metric.count(at, found, ground_truth).unwrap();
     }
     metric.scores().into_iter().find(|score| {
         score.class == KittiClass::Car
@@ -44,11 +44,11 @@ fn r40(score: &KittiScore) -> f64 {
 /// 1/1, 2/2, then 3/4 and 4/5, that is 1, 1, 0.8, 0.8. Of 40 points: (1 + 0.8 + 0.8) / 40; of 11: 1 / 11.
 #[test]
 fn precision_by_hand() {
-    let truth: Vec<_> = (0..4).map(|at| car(10.0 * f64::from(at), 0.0)).collect();
+    let ground_truth: Vec<_> = (0..4).map(|at| car(10.0 * f64::from(at), 0.0)).collect();
     let mut found: Vec<_> = (0..4).map(|at| car(10.0 * f64::from(at), 0.9 - 0.1 * f64::from(at))).collect();
     found.push(car(55.0, 0.75));
     for overlap in KittiOverlap::ALL {
-        let images = [(found.clone(), truth.clone())];
+        let images = [(found.clone(), ground_truth.clone())];
         let score = score_of(&images, overlap, KittiDifficulty::Moderate).unwrap();
         assert_eq!(score.precision[..5], [1.0, 1.0, 0.8, 0.8, 0.0]);
         let (kind, r11, r40) = score.numbers().next().unwrap();
@@ -96,14 +96,16 @@ fn difficulty_selects_ground_truth() {
     let hidden = KittiObject { occluded: 1, ..car(10.0, 0.0) };
     let cut = KittiObject { truncated: 0.5, ..car(20.0, 0.0) };
     let low = KittiObject { bbox2d: [600.0, 100.0, 680.0, 125.0], ..car(30.0, 0.0) };
-    let truth = vec![car(0.0, 0.0), hidden, cut, low];
-    let found = truth.iter().cloned().map(|object| KittiObject { score: 0.5, ..object }).collect::<Vec<_>>();
+    let ground_truth = vec![car(0.0, 0.0), hidden, cut, low];
+    let found =
+        ground_truth.iter().cloned().map(|object| KittiObject { score: 0.5, ..object }).collect::<Vec<_>>();
     // Predictions of ignored objects are not false positives; missing them does not count either.
     for (difficulty, recalled) in KittiDifficulty::ALL.into_iter().zip([1, 2, 3]) {
-        let score = score_of(&[(found.clone(), truth.clone())], KittiOverlap::Space, difficulty).unwrap();
+        let score =
+            score_of(&[(found.clone(), ground_truth.clone())], KittiOverlap::Space, difficulty).unwrap();
         assert_eq!(score.precision.iter().filter(|precision| **precision == 1.0).count(), recalled);
         let alone = vec![found[0].clone()];
-        let score = score_of(&[(alone, truth.clone())], KittiOverlap::Space, difficulty).unwrap();
+        let score = score_of(&[(alone, ground_truth.clone())], KittiOverlap::Space, difficulty).unwrap();
         assert_eq!(score.precision[0], 1.0);
     }
 }
@@ -112,9 +114,10 @@ fn difficulty_selects_ground_truth() {
 fn neighbours_and_dont_care_are_not_false_positives() {
     let of = |class: &str, x: f64| KittiObject { class: class.to_owned(), ..car(x, 0.0) };
     let found = vec![car(0.0, 0.9), car(10.0, 0.9), car(20.0, 0.9), car(30.0, 0.9)];
-    let truth = vec![car(0.0, 0.0), of("Van", 10.0), of("DontCare", 20.0), of("Truck", 30.0)];
+    let ground_truth = vec![car(0.0, 0.0), of("Van", 10.0), of("DontCare", 20.0), of("Truck", 30.0)];
     let score = |overlap| {
-        score_of(&[(found.clone(), truth.clone())], overlap, KittiDifficulty::Easy).unwrap().precision[0]
+        score_of(&[(found.clone(), ground_truth.clone())], overlap, KittiDifficulty::Easy).unwrap().precision
+            [0]
     };
     // The truck is a false positive; in bird's-eye view and in space, regions without boxes ignore nothing.
     assert_eq!((score(KittiOverlap::Image), score(KittiOverlap::Space)), (0.5, 1.0 / 3.0));
@@ -132,9 +135,9 @@ fn images_merge_in_any_order() {
         })
         .collect();
     let (mut whole, mut even, mut odd) = (Kitti::default(), Kitti::default(), Kitti::default());
-    for (at, (found, truth)) in images.iter().enumerate() {
-        whole.count(at, found, truth).unwrap();
-        if at % 2 == 0 { &mut even } else { &mut odd }.count(at, found, truth).unwrap();
+    for (at, (found, ground_truth)) in images.iter().enumerate() {
+        whole.count(at, found, ground_truth).unwrap();
+        if at % 2 == 0 { &mut even } else { &mut odd }.count(at, found, ground_truth).unwrap();
     }
     odd.merge(even);
     assert_eq!(odd.finish(), whole.finish());
@@ -152,8 +155,8 @@ fn decimals_of_the_file_are_compared_with_the_limits() {
     };
     let [object] = object::objects_from_list(&vec![found].into()).unwrap().try_into().unwrap();
     assert_eq!((object.truncated, object.bbox2d[1]), (0.15, 187.13));
-    let truth = vec![object];
-    assert!(score_of(&[(vec![], truth)], KittiOverlap::Image, KittiDifficulty::Easy).is_none());
+    let ground_truth = vec![object];
+    assert!(score_of(&[(vec![], ground_truth)], KittiOverlap::Image, KittiDifficulty::Easy).is_none());
 }
 
 #[test]

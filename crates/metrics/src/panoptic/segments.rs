@@ -31,35 +31,35 @@ pub struct PanopticMap<'a> {
 pub(super) struct Overlaps {
     /// Pixels in both segments of a pair.
     shared: HashMap<(usize, usize), u64>,
-    truth: Vec<u64>,
+    ground_truth: Vec<u64>,
     found: Vec<u64>,
     in_void: Vec<u64>,
     in_crowd: Vec<u64>,
 }
 
 impl Overlaps {
-    pub fn new(found: &PanopticMap<'_>, truth: &PanopticMap<'_>) -> Result<Self> {
-        if found.ids.len() != truth.ids.len() {
+    pub fn new(found: &PanopticMap<'_>, ground_truth: &PanopticMap<'_>) -> Result<Self> {
+        if found.ids.len() != ground_truth.ids.len() {
             return Err(Error::invalid_input(format!(
                 "{} predicted and {} true pixels; give maps of one size",
                 found.ids.len(),
-                truth.ids.len()
+                ground_truth.ids.len()
             )));
         }
-        let (indices_of_truth, indices_of_found) =
-            (indices("ground truth", truth)?, indices("prediction", found)?);
+        let (indices_of_ground_truth, indices_of_found) =
+            (indices("ground truth", ground_truth)?, indices("prediction", found)?);
         let mut overlaps = Self {
             shared: HashMap::new(),
-            truth: vec![0; truth.segments.len()],
+            ground_truth: vec![0; ground_truth.segments.len()],
             found: vec![0; found.segments.len()],
             in_void: vec![0; found.segments.len()],
             in_crowd: vec![0; found.segments.len()],
         };
-        for ((true_id, found_id), pixels) in pixels_by_pair(truth.ids, found.ids) {
-            let row = index("ground truth", &indices_of_truth, true_id)?;
+        for ((true_id, found_id), pixels) in pixels_by_pair(ground_truth.ids, found.ids) {
+            let row = index("ground truth", &indices_of_ground_truth, true_id)?;
             let column = index("prediction", &indices_of_found, found_id)?;
             if let Some(row) = row {
-                overlaps.truth[row] += pixels;
+                overlaps.ground_truth[row] += pixels;
             }
             let Some(column) = column else { continue };
             overlaps.found[column] += pixels;
@@ -67,7 +67,7 @@ impl Overlaps {
                 None => overlaps.in_void[column] += pixels,
                 Some(row) => {
                     overlaps.shared.insert((row, column), pixels);
-                    let object = truth.segments[row];
+                    let object = ground_truth.segments[row];
                     if object.is_crowd && object.class == found.segments[column].class {
                         overlaps.in_crowd[column] += pixels;
                     }
@@ -89,7 +89,7 @@ impl Overlaps {
     }
 
     pub fn true_pixels(&self, row: usize) -> u64 {
-        self.truth[row]
+        self.ground_truth[row]
     }
 
     pub fn found_pixels(&self, column: usize) -> u64 {
@@ -108,10 +108,10 @@ impl Overlaps {
 }
 
 /// Returns the number of pixels of each pair of ids. Neighbouring pixels are mostly equal, so runs are counted.
-fn pixels_by_pair(truth: &[u32], found: &[u32]) -> HashMap<(u32, u32), u64> {
+fn pixels_by_pair(ground_truth: &[u32], found: &[u32]) -> HashMap<(u32, u32), u64> {
     let mut counts = HashMap::new();
     let (mut pair, mut run) = ((VOID, VOID), 0);
-    for next in truth.iter().copied().zip(found.iter().copied()) {
+    for next in ground_truth.iter().copied().zip(found.iter().copied()) {
         if next != pair {
             *counts.entry(pair).or_default() += run;
             (pair, run) = (next, 0);

@@ -16,11 +16,11 @@ fn new() -> Panoptic {
 
 fn counted(
     found: (&[u32], &[PanopticSegment]),
-    truth: (&[u32], &[PanopticSegment]),
+    ground_truth: (&[u32], &[PanopticSegment]),
 ) -> BTreeMap<u32, (u64, u64, u64, f64)> {
     let mut metric = new();
     let map = |(ids, segments)| PanopticMap { ids, segments };
-    metric.count(&map(found), &map(truth)).unwrap();
+    metric.count(&map(found), &map(ground_truth)).unwrap();
     let numbers = |counts: &PanopticCounts| {
         (counts.true_positives, counts.false_positives, counts.false_negatives, counts.iou())
     };
@@ -31,9 +31,10 @@ fn counted(
 /// 5 to 9 (4 of 5). Person: PQ 0.75 / 1.5 = 0.5; sky: 0.8; all: 0.65.
 #[test]
 fn hand_computed() {
-    let truth = ([1, 1, 1, 1, 2, 2, 3, 3, 3, 3], [segment(1, PERSON), segment(2, PERSON), segment(3, SKY)]);
+    let ground_truth =
+        ([1, 1, 1, 1, 2, 2, 3, 3, 3, 3], [segment(1, PERSON), segment(2, PERSON), segment(3, SKY)]);
     let found = ([5, 5, 5, 0, 0, 9, 9, 9, 9, 9], [segment(5, PERSON), segment(9, SKY)]);
-    let counts = counted((&found.0, &found.1), (&truth.0, &truth.1));
+    let counts = counted((&found.0, &found.1), (&ground_truth.0, &ground_truth.1));
     assert_eq!(counts, BTreeMap::from([(PERSON, (1, 0, 1, 0.75)), (SKY, (1, 0, 0, 0.8))]));
 
     let labels = |map: &[u32], segments: &[PanopticSegment]| {
@@ -45,7 +46,8 @@ fn hand_computed() {
         Heatmap::from_labels(map.iter().map(label).collect(), &[2, 5]).unwrap()
     };
     let mut metric = new();
-    let quality = metric.update(0, &labels(&found.0, &found.1), &labels(&truth.0, &truth.1)).unwrap();
+    let quality =
+        metric.update(0, &labels(&found.0, &found.1), &labels(&ground_truth.0, &ground_truth.1)).unwrap();
     assert_eq!(quality, 1.55 / 2.5);
     let report = metric.finish();
     let near = |key: &str, expected: f64| {
@@ -81,9 +83,9 @@ fn void_is_removed_from_the_union() {
 #[test]
 fn predictions_in_void_and_crowd_are_ignored() {
     let crowd = PanopticSegment { is_crowd: true, ..segment(3, PERSON) };
-    let truth = ([3, 0, 8, 3, 8, 8], [crowd, segment(8, SKY)]);
+    let ground_truth = ([3, 0, 8, 3, 8, 8], [crowd, segment(8, SKY)]);
     let of = |found: [u32; 6], class| {
-        let counts = counted((&found, &[segment(1, class)]), (&truth.0, &truth.1));
+        let counts = counted((&found, &[segment(1, class)]), (&ground_truth.0, &ground_truth.1));
         counts.get(&class).copied().unwrap_or_default()
     };
     assert_eq!(of([1, 1, 1, 0, 0, 0], PERSON), (0, 0, 0, 0.0));
@@ -109,19 +111,19 @@ fn truth_of_thing_zero_is_a_crowd() {
 #[test]
 fn merging_does_not_depend_on_order() {
     let image = |at: u32| {
-        let truth =
+        let ground_truth =
             (0..60).map(|pixel| 7000 * u32::from(pixel < 40 + at) + 1001 * u32::from(pixel >= 40 + at));
         let found = (0..60).map(|pixel| 7000 * u32::from(pixel < 43) + 1002 * u32::from(pixel >= 43));
         (
             Heatmap::from_labels(found.collect(), &[6, 10]).unwrap(),
-            Heatmap::from_labels(truth.collect(), &[6, 10]).unwrap(),
+            Heatmap::from_labels(ground_truth.collect(), &[6, 10]).unwrap(),
         )
     };
     let (mut whole, mut parts) = (new(), [new(), new(), new()]);
     for at in 0..9 {
-        let (found, truth) = image(at);
-        whole.update(at as usize, &found, &truth).unwrap();
-        parts[at as usize % 3].update(at as usize, &found, &truth).unwrap();
+        let (found, ground_truth) = image(at);
+        whole.update(at as usize, &found, &ground_truth).unwrap();
+        parts[at as usize % 3].update(at as usize, &found, &ground_truth).unwrap();
     }
     let [mut first, second, mut third] = parts;
     third.merge(second);
@@ -132,9 +134,9 @@ fn merging_does_not_depend_on_order() {
 #[test]
 fn invalid_maps_are_rejected() {
     let one = [segment(1, SKY)];
-    let rejected = |found: (&[u32], &[PanopticSegment]), truth: (&[u32], &[PanopticSegment])| {
+    let rejected = |found: (&[u32], &[PanopticSegment]), ground_truth: (&[u32], &[PanopticSegment])| {
         let map = |(ids, segments)| PanopticMap { ids, segments };
-        new().count(&map(found), &map(truth)).is_err()
+        new().count(&map(found), &map(ground_truth)).is_err()
     };
     assert!(rejected((&[1], &one), (&[1, 1], &one)));
     assert!(rejected((&[2], &one), (&[1], &one)));
@@ -176,10 +178,10 @@ fn masks_as_labels() {
     };
     assert_eq!(labels(true), [1001, VOID_LABEL, 1000, 7001, 1002, 1000]);
     assert_eq!(labels(false), [1001, VOID_LABEL, 1002, 7001, 1003, 1002]);
-    let truth = Panoptic::truth(ValueRef::BoundingBoxList(&list)).unwrap();
+    let ground_truth = Panoptic::ground_truth(ValueRef::BoundingBoxList(&list)).unwrap();
     let mut metric = new();
-    assert_eq!(metric.update(0, &truth, &truth).unwrap(), 1.0);
-    assert_eq!(metric.update(1, &Heatmap::default(), &truth).unwrap(), 0.0);
+    assert_eq!(metric.update(0, &ground_truth, &ground_truth).unwrap(), 1.0);
+    assert_eq!(metric.update(1, &Heatmap::default(), &ground_truth).unwrap(), 0.0);
     assert_eq!(metric.counts()[&PERSON].false_negatives, 2);
     let without_mask = BoundingBoxList::from(vec![BoundingBox::default()]);
     assert!(masks::labels_from_masks(&without_mask, true).is_none());

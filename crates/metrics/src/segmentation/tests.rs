@@ -11,12 +11,14 @@ fn ignoring(ignore: Option<u32>) -> Segmentation {
 }
 
 /// The definition, pixel by pixel.
-fn by_hand(ignore: Option<u32>, truth: &[u32], predicted: &[u32], class: u32) -> ClassPixels {
+fn by_hand(ignore: Option<u32>, ground_truth: &[u32], predicted: &[u32], class: u32) -> ClassPixels {
     let mut pixels = ClassPixels::default();
-    for (truth, predicted) in truth.iter().zip(predicted).filter(|(truth, _)| Some(**truth) != ignore) {
-        pixels.truth += u64::from(*truth == class);
+    for (ground_truth, predicted) in
+        ground_truth.iter().zip(predicted).filter(|(ground_truth, _)| Some(**ground_truth) != ignore)
+    {
+        pixels.ground_truth += u64::from(*ground_truth == class);
         pixels.predicted += u64::from(*predicted == class && Some(class) != ignore);
-        pixels.hits += u64::from(*truth == class && *predicted == class);
+        pixels.hits += u64::from(*ground_truth == class && *predicted == class);
     }
     pixels
 }
@@ -38,7 +40,7 @@ fn random_maps_equal_the_definition() {
     let mut random = Random::new(7);
     for ignore in [None, Some(0), Some(2), Some(255), Some(u32::MAX)] {
         let mut segmentation = ignoring(ignore);
-        let (mut truths, mut predictions) = (Vec::new(), Vec::new());
+        let (mut ground_truths, mut predictions) = (Vec::new(), Vec::new());
         for size in [1, 15, 16, 17, 400] {
             let classes = 1 + random.below(9);
             let mut draw = |void: Option<u32>| {
@@ -52,13 +54,17 @@ fn random_maps_equal_the_definition() {
                 labels.truncate(size);
                 labels
             };
-            let (truth, prediction) = (draw(ignore), draw(ignore));
-            segmentation.add(&truth, &prediction).unwrap();
-            truths.extend(truth);
+            let (ground_truth, prediction) = (draw(ignore), draw(ignore));
+            segmentation.add(&ground_truth, &prediction).unwrap();
+            ground_truths.extend(ground_truth);
             predictions.extend(prediction);
         }
         for (class, pixels) in segmentation.scores().classes.into_iter().enumerate() {
-            assert_eq!(pixels, by_hand(ignore, &truths, &predictions, class as u32), "{class} {ignore:?}");
+            assert_eq!(
+                pixels,
+                by_hand(ignore, &ground_truths, &predictions, class as u32),
+                "{class} {ignore:?}"
+            );
         }
     }
 }
@@ -67,10 +73,10 @@ fn random_maps_equal_the_definition() {
 fn parts_merge_to_the_whole() {
     let images = [(vec![0, 1, 255], vec![0, 0, 1]), (vec![5, 5, 2], vec![5, 255, 2]), (vec![1], vec![3])];
     let [mut whole, mut first, mut second] = [(); 3].map(|()| Segmentation::default());
-    for (at, (truth, prediction)) in images.iter().enumerate() {
-        whole.update(at, &map(prediction), &map(truth)).unwrap();
+    for (at, (ground_truth, prediction)) in images.iter().enumerate() {
+        whole.update(at, &map(prediction), &map(ground_truth)).unwrap();
         let part = if at == 1 { &mut first } else { &mut second };
-        part.update(at, &map(prediction), &map(truth)).unwrap();
+        part.update(at, &map(prediction), &map(ground_truth)).unwrap();
     }
     second.merge(first);
     assert_eq!(second.finish(), whole.finish());
@@ -83,8 +89,8 @@ fn parts_merge_to_the_whole() {
 #[test]
 fn invalid_maps_are_rejected() {
     let mut segmentation = Segmentation::default();
-    let mut rejected = |prediction: &Heatmap, truth: &Heatmap| {
-        segmentation.update(0, prediction, truth).unwrap_err().to_string()
+    let mut rejected = |prediction: &Heatmap, ground_truth: &Heatmap| {
+        segmentation.update(0, prediction, ground_truth).unwrap_err().to_string()
     };
     assert!(rejected(&map(&[0]), &map(&[0, 0])).contains("cannot be compared with one of [1, 2]"));
     assert!(rejected(&map(&[0]), &map(&[1024])).contains("label 1024 is not a class index below 1024"));

@@ -61,7 +61,7 @@ fn every_transcription_and_command_has_a_text() {
         Value::from(SpeechCommand::new("stop", 1.0)),
     ];
     for value in &values {
-        assert_eq!(Transcription::truth(value.into()).unwrap().text, "stop");
+        assert_eq!(Transcription::ground_truth(value.into()).unwrap().text, "stop");
     }
     assert!(
         Transcription::prediction((&Value::from(opendr_engine::target::Category::default())).into())

@@ -70,8 +70,8 @@ fn equal_error_rate_at_the_ends() {
 #[test]
 fn predictions_without_score_are_rejected() {
     let mut verification = Verification::default();
-    let truth = Category::new(1, None);
-    assert!(verification.update(0, &Category::new(1, None), &truth).is_err());
-    assert!(verification.update(0, &Category::new(1, Some(f32::INFINITY)), &truth).is_err());
-    assert_eq!(verification.update(0, &Category::new(0, Some(0.25)), &truth).unwrap(), 0.25);
+    let ground_truth = Category::new(1, None);
+    assert!(verification.update(0, &Category::new(1, None), &ground_truth).is_err());
+    assert!(verification.update(0, &Category::new(1, Some(f32::INFINITY)), &ground_truth).is_err());
+    assert_eq!(verification.update(0, &Category::new(0, Some(0.25)), &ground_truth).unwrap(), 0.25);
 }

@@ -2,25 +2,25 @@
 
 use std::fmt;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use opendr_datasets::Problem;
-use opendr_engine::{Error, Result, ResultExt, Statistics};
-use serde::Serialize;
+use opendr_engine::{JsonFormat, Result, ResultExt, Statistics};
+use serde::{Deserialize, Serialize};
 
-/// Name of the report in the output folder.
+/// File name of the report in the output folder.
 const REPORT: &str = "report.json";
 
 /// Metrics and curves of a training, and the path of its model. `Display` prints a table.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Fitted {
     /// Name of the learner.
     pub learner: String,
     /// Environment of the training, for policies.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub environment: Option<String>,
     /// Data set of the training; empty for policies.
-    #[serde(skip_serializing_if = "String::is_empty")]
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub dataset: String,
     /// Number of training samples.
     pub samples: usize,
@@ -36,22 +36,33 @@ pub struct Fitted {
     /// Trained model; `None` when the training ended before the first one.
     pub model: Option<PathBuf>,
     /// Folder of event files and curves.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub logging_path: Option<PathBuf>,
     /// Number of skipped broken samples and annotations.
     pub skipped: u64,
     /// Descriptions of skipped samples and annotations.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub problems: Vec<Problem>,
 }
 
 impl Fitted {
+    /// Format of `report.json`. Version 2 renamed `place` of a problem to `location`.
+    pub const FORMAT: JsonFormat = JsonFormat::new("report of a training", 2);
+
+    /// Reads the report of a training by this version or an earlier one.
+    ///
+    /// # Errors
+    /// `Io`; `Format` for another file; `Unsupported` for a newer version.
+    pub fn read(path: &Path) -> Result<Self> {
+        let context = || format!("reading {}", path.display());
+        let json = fs::read(path).context(context)?;
+        Self::FORMAT.read(&json).context(context)
+    }
+
     /// Writes `report.json` into the output folder.
     pub(super) fn write(&self) -> Result<()> {
-        let json = serde_json::to_string_pretty(self)
-            .map_err(|error| Error::internal("the report cannot be written as JSON").with_source(error))?;
         let path = self.output.join(REPORT);
-        fs::write(&path, json + "\n").context(|| format!("writing {}", path.display()))
+        fs::write(&path, Self::FORMAT.to_pretty_json(self)?).context(|| format!("writing {}", path.display()))
     }
 }
 

@@ -197,7 +197,7 @@ impl Preparation<'_> {
     }
 }
 
-/// Makes a teacher, called `name`, of a loaded learner of `entry`.
+/// Creates a teacher from a loaded learner of `entry`; `name` is its name in the journal.
 ///
 /// # Errors
 /// `NotFound` when no model is loaded.

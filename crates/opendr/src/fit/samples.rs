@@ -15,7 +15,7 @@ pub type Samples<'a> = Box<dyn DatasetIterator + 'a>;
 /// Returns the type of annotation on which a learner trains: the one that its task's metric compares with.
 pub fn annotation_type(entry: &Entry) -> Option<ValueType> {
     let metric = metric_of(entry.spec.task).and_then(opendr_metrics::find).ok();
-    metric.map(|metric| metric.truth).or_else(|| entry.outputs.first().map(|output| output.value_type))
+    metric.map(|metric| metric.ground_truth).or_else(|| entry.outputs.first().map(|output| output.value_type))
 }
 
 /// Opens data sets for a learner.

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::path::PathBuf;
 
+use opendr_engine::JsonFormat;
 use serde::Serialize;
 use serde_json::Value;
 
@@ -28,6 +29,11 @@ pub struct Tuned {
     pub seconds: f64,
     /// Folder of the study, its trials and figures.
     pub output: PathBuf,
+}
+
+impl Tuned {
+    /// Format of the result as JSON.
+    pub const FORMAT: JsonFormat = JsonFormat::new("result of a search", 1);
 }
 
 impl fmt::Display for Tuned {

@@ -58,13 +58,13 @@ fn streams_do_not_mix_and_reset_forgets() {
     let Some(mut handle) = handle(&models, true) else { return };
     let video = ["freihand/00000355.jpg", "freihand/00017620.jpg"].map(|path| picture(&models, path));
     let mut other = handle.stream().unwrap();
-    let mut told = Vec::new();
+    let mut predictions = Vec::new();
     for at in 0..4 {
-        told.push(handle.infer(&video[0]).unwrap());
+        predictions.push(handle.infer(&video[0]).unwrap());
         other.infer(&video[at % 2]).unwrap();
     }
     handle.reset();
-    for answer in &told {
+    for answer in &predictions {
         assert_eq!(&handle.infer(&video[0]).unwrap(), answer);
     }
     let classes: Vec<_> = handle.classes().iter().map(str::to_owned).collect();

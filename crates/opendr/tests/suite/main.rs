@@ -10,6 +10,8 @@ mod faces;
 mod falls;
 #[cfg(all(feature = "detection", feature = "faces", feature = "pose", feature = "test-learner"))]
 mod fit;
+#[cfg(all(feature = "classification", feature = "training"))]
+mod formats;
 #[cfg(feature = "hands")]
 mod hands;
 mod models;

@@ -73,12 +73,13 @@ fn quality_on_coco() {
     let mut metric = Panoptic::new(&params).unwrap();
     for index in 0..pictures.len() {
         let sample = pictures.get(index).unwrap();
-        let (Some(Value::Image(image)), Some(Value::Heatmap(truth))) = (sample.data.first(), &sample.target)
+        let (Some(Value::Image(image)), Some(Value::Heatmap(ground_truth))) =
+            (sample.data.first(), &sample.target)
         else {
             panic!("no maps")
         };
         let [instance, _] = maps(&mut *learner, image);
-        metric.update(index, &instance, truth).unwrap();
+        metric.update(index, &instance, ground_truth).unwrap();
     }
     let report = metric.finish();
     let number = |key: &str| report.statistics.get(key).unwrap();

@@ -74,13 +74,13 @@ fn persons_of_coco_are_found() {
     let (mut found, mut there, mut both, mut any) = (0, 0, 0_u64, 0_u64);
     for index in 0..pictures.len() {
         let sample = pictures.get(index).unwrap();
-        let (Some(Value::Image(image)), Some(Value::BoundingBoxList(truth))) =
+        let (Some(Value::Image(image)), Some(Value::BoundingBoxList(ground_truth))) =
             (sample.data.first(), &sample.target)
         else {
             panic!("no masks")
         };
-        let is_person = |one: &&BoundingBox| truth.label(one) == Some("person");
-        let wanted: Vec<_> = truth.boxes.iter().filter(is_person).map(mask).collect();
+        let is_person = |one: &&BoundingBox| ground_truth.label(one) == Some("person");
+        let wanted: Vec<_> = ground_truth.boxes.iter().filter(is_person).map(mask).collect();
         let pixels = image.width() * image.height();
         if wanted.iter().flatten().filter(|pixel| **pixel).count() * 100 < pixels {
             continue;

@@ -66,17 +66,17 @@ fn poses_become_the_skeletons_that_a_network_looks_at() {
         pipeline.reset();
         let nobody = answers(&mut pipeline, &black());
         assert!(nobody.get("category").is_none() && nobody.get("poses").is_some());
-        let mut told = Vec::new();
+        let mut predictions = Vec::new();
         let items = [&video[0], &video[1], &video[0]].into_iter().zip([true, false, true]);
         pipeline
             .run(
                 items,
                 |(_, begins)| *begins,
                 |(image, _)| Ok(Ports::one(*image)),
-                |_, outputs| outputs.map(|outputs| told.push(outputs)),
+                |_, outputs| outputs.map(|outputs| predictions.push(outputs)),
             )
             .unwrap();
-        assert_eq!((Some(&told[0]), &told[2]), (first.as_ref(), &told[0]));
+        assert_eq!((Some(&predictions[0]), &predictions[2]), (first.as_ref(), &predictions[0]));
     }
 }
 

@@ -40,8 +40,8 @@ fn cars_of_simulated_streets_are_found() {
     let (streets, mut metric) = (StreetScans::new(2, 30), Kitti::default());
     for index in 0..streets.len() {
         let sample = streets.get(index).unwrap();
-        let Some(Value::BoundingBox3DList(truth)) = &sample.target else { panic!() };
-        metric.update(index, &boxes(&mut *learner, &sample.data[0]), truth).unwrap();
+        let Some(Value::BoundingBox3DList(ground_truth)) = &sample.target else { panic!() };
+        metric.update(index, &boxes(&mut *learner, &sample.data[0]), ground_truth).unwrap();
     }
     let numbers = metric.finish().statistics.scalars;
     println!("car_3d_moderate_r40 {:.3}", numbers["car_3d_moderate_r40"]);

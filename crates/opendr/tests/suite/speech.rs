@@ -149,8 +149,8 @@ fn where_nobody_speaks_no_word_is_told() {
     let learner = learner("ds_cnn", &model, params);
     let answers = streamed(&mut *learner.stream().unwrap(), &sound, 1600);
     assert!((1..=4).contains(&answers.len()), "{}", answers.len());
-    let told = answers.iter().filter_map(|answer| category(answer).description.as_deref());
-    assert!(told.clone().any(|word| word == "stop"), "{:?}", told.collect::<Vec<_>>());
+    let predictions = answers.iter().filter_map(|answer| category(answer).description.as_deref());
+    assert!(predictions.clone().any(|word| word == "stop"), "{:?}", predictions.collect::<Vec<_>>());
     for size in [111, 5000] {
         assert_eq!(streamed(&mut *learner.stream().unwrap(), &sound, size), answers);
     }
@@ -171,20 +171,20 @@ fn both_runtimes_hear_the_same() {
         Session::open_with(&Builtin, &model, Device::Cpu).unwrap(),
         Session::open_with(&*library, &model, Device::Cpu).unwrap(),
     ] {
-        let (mut state, mut told) = (vec![0.0f32; 256], Vec::new());
+        let (mut state, mut predictions) = (vec![0.0f32; 256], Vec::new());
         for window in sound.windows(576).step_by(512) {
             let inputs =
                 [TensorView::new(&[1, 576], window).unwrap(), TensorView::new(&[2, 1, 128], &state).unwrap()];
             let mut next = Vec::new();
             let ran = session.run(&inputs, |outputs| {
-                told.push(outputs[0].values::<f32>()?[0]);
+                predictions.push(outputs[0].values::<f32>()?[0]);
                 next.extend_from_slice(outputs[1].values::<f32>()?);
                 Ok(())
             });
             ran.unwrap();
             state = next;
         }
-        probabilities.push(told);
+        probabilities.push(predictions);
     }
     let apart = probabilities[0].iter().zip(&probabilities[1]).map(|(one, other)| (one - other).abs());
     let apart = apart.fold(0.0, f32::max);

@@ -26,7 +26,7 @@ fn motorcycle(models: &Models, side: &str) -> opendr::data::Image {
     vision::open(models.data(&format!("photos/motorcycle_{side}.png"))).unwrap()
 }
 
-fn truth(path: &Path) -> Vec<f32> {
+fn ground_truth(path: &Path) -> Vec<f32> {
     let mut archive = zip::ZipArchive::new(File::open(path).unwrap()).unwrap();
     let mut bytes = Vec::new();
     archive.by_index(0).unwrap().read_to_end(&mut bytes).unwrap();
@@ -45,19 +45,22 @@ fn disparities(models: &Models, params: &[(&str, ParamValue)]) -> Vec<f32> {
     found.to_vec()
 }
 
-/// Shares of pixels whose disparity is further off than 2: of all with a truth, of those that are known, of all where holes are
+/// Shares of pixels whose disparity is further off than 2: of all with a ground truth, of those that are known, of all where holes are
 /// filled.
 fn bad_pixels(models: &Models, params: &[(&str, ParamValue)]) -> [f64; 3] {
-    let truth = truth(&models.data("photos/motorcycle_disp.npz"));
+    let ground_truth = ground_truth(&models.data("photos/motorcycle_disp.npz"));
     let share = |errors: &DisparityErrors| errors.bad[1] as f64 / errors.pixels as f64;
     let found = disparities(models, params);
     // What is not known has disparity 0, and so is bad.
-    let errors = DisparityErrors::of(&truth, &found).unwrap();
-    let known: Vec<f32> =
-        truth.iter().zip(&found).map(|(truth, found)| if *found > 0.0 { *truth } else { 0.0 }).collect();
+    let errors = DisparityErrors::of(&ground_truth, &found).unwrap();
+    let known: Vec<f32> = ground_truth
+        .iter()
+        .zip(&found)
+        .map(|(ground_truth, found)| if *found > 0.0 { *ground_truth } else { 0.0 })
+        .collect();
     let of_known = DisparityErrors::of(&known, &found).unwrap();
     let filled = disparities(models, &[params, &[("fill", true.into())]].concat());
-    let filled = DisparityErrors::of(&truth, &filled).unwrap();
+    let filled = DisparityErrors::of(&ground_truth, &filled).unwrap();
     let bad = [share(&errors), share(&of_known), share(&filled)];
     println!("bad 2.0 {bad:.4?}, known {:.4}", of_known.pixels as f64 / errors.pixels as f64);
     bad

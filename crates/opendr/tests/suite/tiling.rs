@@ -56,12 +56,12 @@ fn shrunk(part: ImageView<'_>, scale: f32) -> (Vec<[u8; 3]>, usize) {
 }
 
 /// Class and box of an object.
-type Truth = Vec<(&'static str, [f32; 4])>;
+type GroundTruth = Vec<(&'static str, [f32; 4])>;
 
 /// An image, its objects of the wanted classes, and the places of all objects.
 struct Scene {
     image: Image,
-    truth: Truth,
+    ground_truth: GroundTruth,
     parts: Vec<[f32; 4]>,
 }
 
@@ -74,7 +74,7 @@ fn scene(models: &Models) -> Scene {
         (130.0 + 25.0 * (x / 500.0).sin() + 20.0 * (y / 370.0).cos()) as u8
     };
     let mut samples: Vec<u8> = (0..SIZE[0] * SIZE[1]).flat_map(|at| [level(at); 3]).collect();
-    let (mut random, mut truth, mut places) = (Random::new(1), Vec::new(), Vec::<[usize; 2]>::new());
+    let (mut random, mut ground_truth, mut places) = (Random::new(1), Vec::new(), Vec::<[usize; 2]>::new());
     let mut parts = Vec::new();
     for index in 0..pictures.len() {
         let sample = pictures.get(index).unwrap();
@@ -90,7 +90,7 @@ fn scene(models: &Models) -> Scene {
         });
         // Two per image at most, so that there are many.
         for (name, one) in usable.take(2) {
-            if truth.len() == OBJECTS {
+            if ground_truth.len() == OBJECTS {
                 break;
             }
             let long = one.width.max(one.height);
@@ -118,27 +118,27 @@ fn scene(models: &Models) -> Scene {
             }
             let x = place[0] as f32 + (one.left - left as f32) * scale;
             let y = place[1] as f32 + (one.top - top as f32) * scale;
-            truth.push((name, [x, y, x + one.width * scale, y + one.height * scale]));
+            ground_truth.push((name, [x, y, x + one.width * scale, y + one.height * scale]));
         }
     }
-    assert_eq!(truth.len(), OBJECTS);
+    assert_eq!(ground_truth.len(), OBJECTS);
     let image = Image::new(samples, SIZE[0], SIZE[1], PixelFormat::Rgb, Layout::Hwc).unwrap();
-    Scene { image, truth, parts }
+    Scene { image, ground_truth, parts }
 }
 
 fn overlap(a: [f32; 4], b: [f32; 4]) -> f32 {
     opendr::overlap::box_iou(a.map(f64::from), b.map(f64::from)) as f32
 }
 
-fn hits(found: &BoundingBoxList, truth: &Truth) -> usize {
+fn hits(found: &BoundingBoxList, ground_truth: &GroundTruth) -> usize {
     let is_found = |(name, place): &&(&str, [f32; 4])| {
         let same = |one: &&BoundingBox| found.label(one) == Some(*name);
         found.boxes.iter().filter(same).any(|one| overlap(one.corners(), *place) >= 0.5)
     };
-    truth.iter().filter(is_found).count()
+    ground_truth.iter().filter(is_found).count()
 }
 
-/// Of the boxes: those on the empty ground, and pairs that are one object told twice.
+/// Of the boxes: those on the empty ground, and pairs that are one object predicted twice.
 fn mistakes(found: &BoundingBoxList, parts: &[[f32; 4]]) -> [usize; 2] {
     let is_on_ground = |one: &&BoundingBox| {
         let [x0, y0, x1, y1] = one.corners();
@@ -156,13 +156,13 @@ fn mistakes(found: &BoundingBoxList, parts: &[[f32; 4]]) -> [usize; 2] {
 #[test]
 fn things_of_24_pixels_are_found_in_4k() {
     let Some(models) = Models::find() else { return };
-    let Scene { image, truth, parts } = scene(&models);
+    let Scene { image, ground_truth, parts } = scene(&models);
     for variant in ["nanodet/coco_416", "centernet/coco_512"] {
         let name = variant.split('/').next().unwrap();
         let Some(mut plain) = learner(&models, variant, &[]) else { return };
         let Some(mut tiled) = learner(&models, &format!("tiled_detection/{name}"), &[]) else { return };
         let (without, with) = (boxes(&mut *plain, &image), boxes(&mut *tiled, &image));
-        let (without, hit) = (hits(&without, &truth), hits(&with, &truth));
+        let (without, hit) = (hits(&without, &ground_truth), hits(&with, &ground_truth));
         // Other objects around an object in its image may be detected too.
         let [on_ground, twice] = mistakes(&with, &parts);
         let count = with.boxes.len();
@@ -173,7 +173,10 @@ fn things_of_24_pixels_are_found_in_4k() {
             hit >= 2 * without && hit * 3 >= OBJECTS,
             "{name}: {hit} of {OBJECTS}, {without} without tiles"
         );
-        assert!(on_ground <= 3 && twice == 0, "{name}: {on_ground} boxes of nothing, {twice} told twice");
+        assert!(
+            on_ground <= 3 && twice == 0,
+            "{name}: {on_ground} boxes of nothing, {twice} predicted twice"
+        );
     }
 }
 
@@ -181,12 +184,12 @@ fn things_of_24_pixels_are_found_in_4k() {
 #[test]
 fn parts_side_by_side_show_nearly_as_much() {
     let Some(models) = Models::find() else { return };
-    let Scene { image, truth, parts } = scene(&models);
+    let Scene { image, ground_truth, parts } = scene(&models);
     let wishes = [("rotation", 0.0), ("time_budget", 60_000.0)];
     let Some(mut whole) = learner(&models, "tiled_detection", &wishes[..1]) else { return };
     let Some(mut packed) = learner(&models, "tiled_detection", &wishes) else { return };
     let (all, found) = (boxes(&mut *whole, &image), boxes(&mut *packed, &image));
-    let [wanted, hit] = [&all, &found].map(|found| hits(found, &truth));
+    let [wanted, hit] = [&all, &found].map(|found| hits(found, &ground_truth));
     let [on_ground, twice] = mistakes(&found, &parts);
     println!("{hit} of {OBJECTS} in parts, {wanted} in tiles; {on_ground} of nothing, {twice} twice");
     assert!(3 * hit >= 2 * wanted && on_ground <= 3 && twice == 0, "{hit} of {wanted}, {on_ground}, {twice}");
@@ -200,7 +203,7 @@ fn parts_side_by_side_show_nearly_as_much() {
 #[test]
 fn a_few_tiles_at_a_time_find_the_same_in_the_end() {
     let Some(models) = Models::find() else { return };
-    let Scene { image, truth, .. } = scene(&models);
+    let Scene { image, ground_truth, .. } = scene(&models);
     let Some(mut at_once) = learner(&models, "tiled_detection", &[("rotation", 0.0)]) else { return };
     let Some(mut slowly) = learner(&models, "tiled_detection", &[("rotation", 0.0), ("max_tiles", 8.0)])
     else {
@@ -210,7 +213,7 @@ fn a_few_tiles_at_a_time_find_the_same_in_the_end() {
     let mut counts = Vec::new();
     for _ in 0..20 {
         let found = boxes(&mut *slowly, &image);
-        counts.push(hits(&found, &truth));
+        counts.push(hits(&found, &ground_truth));
         if found == wanted {
             break;
         }

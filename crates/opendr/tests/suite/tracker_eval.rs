@@ -16,19 +16,19 @@ fn folder(name: &str) -> PathBuf {
     let root = std::env::temp_dir().join(format!("opendr-{name}-{}", std::process::id()));
     fs::remove_dir_all(&root).ok();
     for video in 0..2 {
-        let (mut truth, mut found) = (String::new(), String::new());
+        let (mut ground_truth, mut found) = (String::new(), String::new());
         for frame in 1..=60 {
             for person in 0..2 {
                 let left = if person == 0 { 5 * frame } else { 400 - 5 * frame };
                 let top = 40 + 70 * person;
-                writeln!(truth, "{frame},{},{left},{top},40,100,1,1,1", person + 1).unwrap();
+                writeln!(ground_truth, "{frame},{},{left},{top},40,100,1,1,1", person + 1).unwrap();
                 if (frame + 5 * person + video) % 10 != 0 {
                     writeln!(found, "{frame},-1,{left},{top},40,100,0.9").unwrap();
                 }
             }
         }
         writeln!(found, "30,-1,600,300,40,100,0.8").unwrap();
-        for (file, text) in [("gt/gt.txt", truth), ("det/det.txt", found)] {
+        for (file, text) in [("gt/gt.txt", ground_truth), ("det/det.txt", found)] {
             let path = root.join(format!("train/V{video}")).join(file);
             fs::create_dir_all(path.parent().unwrap()).unwrap();
             fs::write(path, text).unwrap();
@@ -41,7 +41,7 @@ fn folder(name: &str) -> PathBuf {
 fn trackers_are_measured_on_what_was_found() {
     let Some(models) = Models::find() else { return };
     let folder = folder("tracker-eval");
-    for name in ["sort", "byte_track", "oc_sort"] {
+    for name in ["sort", "byte_track", "oc_sort", "c_biou"] {
         let entry = opendr::registry().find(name).unwrap();
         let mut learner = entry.make(&ParamMap::new(), Device::Cpu).unwrap();
         learner.load(&models.get(name).unwrap()).unwrap();

@@ -80,15 +80,15 @@ fn streams_in_pieces_of_any_size_give_the_same() {
     let rate = audio.sample_rate();
     let mut answers = Vec::new();
     for size in [1, 777, 5000] {
-        let (mut stream, mut told) = (handle.stream().unwrap(), Vec::new());
+        let (mut stream, mut predictions) = (handle.stream().unwrap(), Vec::new());
         for piece in samples.chunks(size) {
             let piece = Audio::new(piece.to_vec(), 1, rate).unwrap();
-            stream.push((&piece).into(), &mut |said| told.push(said)).unwrap();
+            stream.push((&piece).into(), &mut |said| predictions.push(said)).unwrap();
         }
-        stream.flush(&mut |said| told.push(said)).unwrap();
-        answers.push(told);
+        stream.flush(&mut |said| predictions.push(said)).unwrap();
+        answers.push(predictions);
     }
-    assert!(answers.iter().all(|told| *told == answers[0]));
+    assert!(answers.iter().all(|predictions| *predictions == answers[0]));
     let (words, parts): (Vec<_>, Vec<_>) = answers[0].iter().partition(|said| said.segments.is_empty());
     assert!(!words.is_empty() && !parts.is_empty());
     let text: String = parts.iter().map(|said| said.text.as_str()).collect();
@@ -99,13 +99,13 @@ fn streams_in_pieces_of_any_size_give_the_same() {
 #[test]
 fn an_hour_of_silence_costs_nothing() {
     let Some(handle) = whisper(&[]) else { return };
-    let (mut stream, mut told) = (handle.stream().unwrap(), 0);
+    let (mut stream, mut count) = (handle.stream().unwrap(), 0);
     let minute = Audio::new(vec![0.0005; 48_000 * 60], 1, 48_000).unwrap();
     for _ in 0..60 {
-        stream.push((&minute).into(), &mut |_| told += 1).unwrap();
+        stream.push((&minute).into(), &mut |_| count += 1).unwrap();
     }
-    stream.flush(&mut |_| told += 1).unwrap();
-    assert_eq!(told, 0);
+    stream.flush(&mut |_| count += 1).unwrap();
+    assert_eq!(count, 0);
 }
 
 #[test]

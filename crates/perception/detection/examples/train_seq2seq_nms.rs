@@ -111,18 +111,19 @@ fn main() -> Result<()> {
     let (mut ours, mut boxes) = (metric()?, 0);
     for index in 0..val_dataset.len() {
         let sample = val_dataset.get(index)?;
-        let ([Value::Image(image)], Some(Value::BoundingBoxList(truth))) = (&sample.data[..], sample.target)
+        let ([Value::Image(image)], Some(Value::BoundingBoxList(ground_truth))) =
+            (&sample.data[..], sample.target)
         else {
             return Err(Error::invalid_input("the sample is not an image with boxes"));
         };
-        let (truth, mut found) = (persons(truth), BoundingBoxList::default());
+        let (ground_truth, mut found) = (persons(ground_truth), BoundingBoxList::default());
         detector.answer(image, &mut found)?;
         let found = persons(found);
         boxes += found.boxes.len();
         for (kind, overlap, metric) in &mut greedy {
-            metric.update(index, &suppressed(&found, *kind, *overlap), &truth)?;
+            metric.update(index, &suppressed(&found, *kind, *overlap), &ground_truth)?;
         }
-        ours.update(index, &learner.infer(Seq2SeqNmsInputs { image, detections: &found })?, &truth)?;
+        ours.update(index, &learner.infer(Seq2SeqNmsInputs { image, detections: &found })?, &ground_truth)?;
     }
     println!("{} images, {boxes} boxes of persons before suppression", val_dataset.len());
     let report = |name: &str, metric: &CocoDetection| {

@@ -3,7 +3,7 @@
 //! [`AudiovisualEmotion`](multimodal_human_centric::AudiovisualEmotion) recognises emotions from voice and face,
 //! [`RgbdHandGesture`](multimodal_human_centric::RgbdHandGesture) hand gestures from colour and depth; both train with the
 //! feature `training`. Learners of faces and hands alone are in the crates `opendr-faces` and `opendr-hands`, audio features in
-//! `opendr-sound`.
+//! `opendr-audio`.
 //!
 //! Begin with `AudiovisualEmotion`.
 //!

@@ -53,7 +53,7 @@ fn main() -> Result<()> {
     let mut seconds = 0.0;
     for index in 0..streets.len() {
         let sample = streets.get(index)?;
-        let (Some(Value::PointCloudWithCalibration(scan)), Some(Value::Heatmap(truth))) =
+        let (Some(Value::PointCloudWithCalibration(scan)), Some(Value::Heatmap(ground_truth))) =
             (sample.data.first(), &sample.target)
         else {
             return Err(Error::invalid_input("the sample has no labelled scan"));
@@ -61,7 +61,7 @@ fn main() -> Result<()> {
         let begin = Instant::now();
         let found = handle.infer(Scan::from(scan))?;
         seconds += begin.elapsed().as_secs_f64();
-        metric.update(index, &found.instance, truth)?;
+        metric.update(index, &found.instance, ground_truth)?;
     }
     for (name, value) in &metric.finish().statistics.scalars {
         println!("{name} {value:.4}");

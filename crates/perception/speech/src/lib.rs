@@ -6,7 +6,7 @@
 //! [`Whisper`](speech_transcription::Whisper). [`voice_activity_detection`] has the learner
 //! [`SileroVad`](voice_activity_detection::SileroVad), and [`voice_activity`] its network and hysteresis without a learner. The
 //! feature `training` adds `fit` to the keyword spotting learners that train. MFCC features and resampling are in the crate
-//! `opendr-sound`.
+//! `opendr-audio`.
 //!
 //! Begin with `MatchboxNet` for commands or `Whisper` for sentences.
 //!

@@ -107,16 +107,20 @@ fn measure(what: &str, params: VpitParams, job: &FitJob<'_>, frames: &[Frame]) -
                     let begin = Instant::now();
                     let target = handle.infer(VpitInputs { scan: Scan::from(scan), init_box })?;
                     seconds += begin.elapsed().as_secs_f64();
-                    let truth = tracks.annotations.iter().find(|track| track.id == object.id);
-                    let Some(truth) = truth.map(|truth| &truth.bounding_box_3d) else { break };
-                    if at == 0 || truth.occluded > 1 {
+                    let ground_truth = tracks.annotations.iter().find(|track| track.id == object.id);
+                    let Some(ground_truth) = ground_truth.map(|ground_truth| &ground_truth.bounding_box_3d)
+                    else {
+                        break;
+                    };
+                    if at == 0 || ground_truth.occluded > 1 {
                         continue;
                     }
                     let Some(found) = target.annotations.first() else { continue };
                     let found = &found.bounding_box_3d;
-                    let distance =
-                        (0..3).map(|axis| (found.location[axis] - truth.location[axis]).powi(2)).sum::<f32>();
-                    success += standing(found).iou(&standing(truth));
+                    let distance = (0..3)
+                        .map(|axis| (found.location[axis] - ground_truth.location[axis]).powi(2))
+                        .sum::<f32>();
+                    success += standing(found).iou(&standing(ground_truth));
                     precision += 1.0 - f64::from(distance.sqrt().min(2.0)) / 2.0;
                     count += 1;
                 }

@@ -84,7 +84,7 @@ impl OffPolicyBase {
         })
     }
 
-    /// Makes a share of every batch demonstrations.
+    /// Sets the share of demonstrations in every batch.
     pub fn set_demonstrations(&mut self, steps: &DemonstratedSteps, share: f32) -> Result<()> {
         self.demonstrations = Some(DemonstrationReplay::new(&self.policy, steps, share)?);
         Ok(())

@@ -6,7 +6,7 @@ use opendr_kernels::Compute;
 use super::{Head, Policy, PolicyMemory};
 
 impl Policy {
-    /// The parameters of the last layer among [`Self::parameters`].
+    /// Returns the parameters of the last layer among [`Self::parameters`].
     pub fn last_layer(&self) -> std::ops::Range<usize> {
         let network = self.trunk.network();
         let first = self.extractor.parameters() + self.trunk.recurrent_parameters();
@@ -31,7 +31,7 @@ impl Policy {
         })
     }
 
-    /// The same for the parameters of [`Self::last_layer`] alone; the others of `gradients` stay as they are. It costs a fraction.
+    /// Computes the gradients of [`Self::last_layer`] alone; the others of `gradients` stay as they are. It costs a fraction.
     ///
     /// # Errors
     /// As [`Self::action_gradient`].

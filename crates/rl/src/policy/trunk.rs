@@ -136,7 +136,7 @@ impl TrunkMemory {
         self.tape.output()
     }
 
-    /// The input of a layer of the network in the last pass forward.
+    /// Returns the input of a layer in the last forward pass.
     pub fn input_of(&self, layer: usize) -> &[f32] {
         self.tape.input_of(layer)
     }

@@ -12,6 +12,8 @@ pub(crate) struct HttpUri {
 }
 
 impl HttpUri {
+    /// Parses an address.
+    ///
     /// # Errors
     /// `InvalidParam` for anything but `http://host:port`, with or without a path.
     pub fn new(text: &str) -> Result<Self> {

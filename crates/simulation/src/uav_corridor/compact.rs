@@ -28,7 +28,7 @@ pub struct CompactCorridor<E> {
 const VIEW: usize = COLUMNS + 3;
 const LEN: usize = FlightMemory::STATE + VIEW;
 
-/// The space of the observations of a [`CompactCorridor`] corridor.
+/// Returns the space of the observations of a [`CompactCorridor`] corridor.
 ///
 /// # Errors
 /// None; a space is checked when it is made.
@@ -40,7 +40,7 @@ pub fn compact_space() -> Result<Space> {
 }
 
 impl<E: Environment> CompactCorridor<E> {
-    /// `inner`, one of the corridors with two numbers as action.
+    /// Wraps `inner`, one of the corridors with two numbers as action.
     ///
     /// # Errors
     /// `Unsupported` for an environment of other actions.
@@ -129,7 +129,7 @@ pub struct CompactController<C> {
 }
 
 impl<C: CorridorController> CompactController<C> {
-    /// `controller`, which decides by columns of the depth image.
+    /// Wraps `controller`, which decides by columns of the depth image.
     pub fn new(controller: C) -> Self {
         Self { controller, sight: CorridorObservation::default() }
     }

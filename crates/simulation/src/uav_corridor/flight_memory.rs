@@ -317,8 +317,8 @@ impl FlightMemory {
         snapshot.extend_numbers(place);
         snapshot.push(self.next as u64);
         let points = self.points.iter().flatten();
-        let told = self.action.iter().chain(&self.proposal);
-        snapshot.extend_numbers(told.chain(points).map(|number| f64::from(*number)));
+        let numbers = self.action.iter().chain(&self.proposal);
+        snapshot.extend_numbers(numbers.chain(points).map(|number| f64::from(*number)));
         if self.surroundings.is_some() {
             snapshot.push(self.taken as u64);
             for glimpse in &self.glimpses {

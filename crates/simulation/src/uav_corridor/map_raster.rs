@@ -94,12 +94,12 @@ impl MapRaster {
         }
     }
 
-    /// How far a row is to the left of the middle of the corridor.
+    /// Returns the distance of a row from the middle of the corridor, positive to the left.
     pub fn side(&self, row: usize) -> f32 {
         self.offset + (row as f32 - ASIDE as f32) * CELL
     }
 
-    /// Whether the cell and all around it were seen to be free.
+    /// Returns whether the cell and its neighbours were observed to be free.
     pub fn is_clear(&self, cell: usize) -> bool {
         self.clearance[cell] > CLEAR && self.shadow[cell] < -CLEAR
     }

@@ -31,7 +31,7 @@ impl Surroundings {
     /// Numbers of its parameters: weights `[FEATURES, HIDDEN]`, biases, weights `[HIDDEN, OUTPUTS]`, biases.
     pub const PARAMETERS: usize = (Self::FEATURES + 1) * Self::HIDDEN + (Self::HIDDEN + 1) * Self::OUTPUTS;
 
-    /// With these parameters.
+    /// Creates the network with these parameters.
     ///
     /// # Errors
     /// `Format` when they are of another number or not finite.
@@ -46,12 +46,12 @@ impl Surroundings {
         )))
     }
 
-    /// All parameters.
+    /// Returns all parameters.
     pub fn parameters(&self) -> &[f32] {
         &self.parameters
     }
 
-    /// The probabilities of one cell.
+    /// Returns the probabilities of one cell.
     pub fn probabilities(&self, features: &[f32; Self::FEATURES]) -> [f32; Self::OUTPUTS] {
         let (first, rest) = self.parameters.split_at(Self::FEATURES * Self::HIDDEN);
         let (biases, rest) = rest.split_at(Self::HIDDEN);

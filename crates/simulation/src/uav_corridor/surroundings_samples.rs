@@ -20,12 +20,12 @@ pub struct SurroundingsSamples {
 const TRIED: usize = 30;
 
 impl SurroundingsSamples {
-    /// How many cells there are.
+    /// Returns the number of cells.
     pub fn len(&self) -> usize {
         self.targets.len() / Surroundings::OUTPUTS
     }
 
-    /// Whether there are none.
+    /// Returns whether there are no cells.
     pub fn is_empty(&self) -> bool {
         self.targets.is_empty()
     }

@@ -21,7 +21,7 @@ impl WeightTable {
         read(path).context(|| format!("reading weights from {}", path.display()))
     }
 
-    /// Like [`WeightTable::from_file`], for the content of a safetensors or ONNX file.
+    /// Reads as [`WeightTable::from_file`], from the content of a safetensors or ONNX file.
     ///
     /// # Errors
     /// As [`WeightTable::from_file`].

@@ -59,7 +59,7 @@ impl WeightTable {
         self.weights.iter().find(|weight| weight.name == name)
     }
 
-    /// Whether the table contains the weight `name`.
+    /// Returns whether the table contains the weight `name`.
     pub fn has(&self, name: &str) -> bool {
         self.names.contains(name)
     }

@@ -9,7 +9,7 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::environment::{Controller as _, Environment, EnvironmentSource as _, ResetOptions};
 use opendr::inference::{SessionOptions, describe};
 use opendr::learner::{AnyLearner, Entry, Ports};
-use opendr::{Error, PolicyController, Progress, Result, Unit};
+use opendr::{Error, JsonFormat, PolicyController, Progress, Result, Unit};
 use serde::Serialize;
 
 use self::workload::{Input, Workload};
@@ -51,6 +51,10 @@ pub fn grammar() -> Command {
         .after_help(EXAMPLES)
 }
 
+/// Format of the measurement as JSON. Version 2 renamed the inputs `picture` and `sound` to `image` and `audio`, and `piece_s` and
+/// `of` to `chunk_s` and `type`.
+const FORMAT: JsonFormat = JsonFormat::new("measurement", 2);
+
 #[derive(Serialize)]
 struct Measurement {
     learner: String,
@@ -89,7 +93,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         device: learner.device().to_string(),
         threads: options.thread_count()?,
         real_time_factor: match workload {
-            Workload::Sound { piece_s, .. } => Some(mean_s / piece_s),
+            Workload::Audio { chunk_s, .. } => Some(mean_s / chunk_s),
             _ => None,
         },
         workload,
@@ -112,7 +116,7 @@ fn measure_inference(
     bar: &ProgressBar,
 ) -> Result<(Workload, Vec<Timings>)> {
     let (workload, inputs) = workload::inputs(spec, entry, matches, bar)?;
-    let in_chunks = matches!(workload, Workload::Sound { .. }) && entry.capabilities.streaming;
+    let in_chunks = matches!(workload, Workload::Audio { .. }) && entry.capabilities.streaming;
     let mut frame = 0;
     let timings = measure(matches, bar, || {
         let mut ports = Ports::default();
@@ -196,16 +200,16 @@ fn percentile(timings: &[Timings], part: f64) -> Timings {
 
 fn print(measurement: &Measurement, json: bool) -> Result<()> {
     if json {
-        return stdout::print_pretty_json(measurement);
+        return stdout::print_pretty_json(FORMAT, measurement);
     }
     let Measurement { learner, runtime, workload, frames, frames_per_second, p50_ms, p99_ms, .. } =
         measurement;
     let workload = match workload {
-        Workload::Picture { source, width, height } => format!("frames of {width}x{height} ({source})"),
-        Workload::Sound { source, sample_rate, piece_s } => {
-            format!("chunks of {piece_s:.1} s at {sample_rate} Hz ({source})")
+        Workload::Image { source, width, height } => format!("frames of {width}x{height} ({source})"),
+        Workload::Audio { source, sample_rate, chunk_s } => {
+            format!("chunks of {chunk_s:.1} s at {sample_rate} Hz ({source})")
         }
-        Workload::Values { source, of, .. } => format!("inputs {of} ({source})"),
+        Workload::Values { source, value_type, .. } => format!("inputs {value_type} ({source})"),
         Workload::Environment(id) => format!("steps in {id}"),
     };
     let real_time = measurement

@@ -28,11 +28,16 @@ const CHUNKS_PER_SECOND: usize = 10;
 #[serde(rename_all = "snake_case")]
 pub enum Workload {
     /// One image, repeated.
-    Picture { source: String, width: usize, height: usize },
+    Image { source: String, width: usize, height: usize },
     /// Audio, repeated: whole, or in chunks where the learner is streaming.
-    Sound { source: String, sample_rate: u32, piece_s: f64 },
+    Audio { source: String, sample_rate: u32, chunk_s: f64 },
     /// Values of another type, in turn.
-    Values { source: String, of: &'static str, count: usize },
+    Values {
+        source: String,
+        #[serde(rename = "type")]
+        value_type: &'static str,
+        count: usize,
+    },
     /// Observations of the environment with this id.
     Environment(String),
 }
@@ -123,17 +128,17 @@ fn at_rate(audio: Audio, rate: Option<u64>) -> Result<Audio> {
 fn workload(source: String, values: Vec<Value>, entry: &'static Entry) -> Result<(Workload, Vec<Value>)> {
     Ok(match values.first() {
         Some(Value::Image(image)) => {
-            (Workload::Picture { source, width: image.width(), height: image.height() }, values)
+            (Workload::Image { source, width: image.width(), height: image.height() }, values)
         }
         Some(Value::Audio(audio)) => {
             let chunks = if entry.capabilities.streaming { chunks(audio)? } else { vec![audio.clone()] };
-            let piece_s = chunks.first().map_or(0.0, Audio::duration_s);
+            let chunk_s = chunks.first().map_or(0.0, Audio::duration_s);
             let sample_rate = audio.sample_rate();
-            (Workload::Sound { source, sample_rate, piece_s }, chunks.into_iter().map(Value::Audio).collect())
+            (Workload::Audio { source, sample_rate, chunk_s }, chunks.into_iter().map(Value::Audio).collect())
         }
         first => {
-            let of = first.map_or("nothing", |value| value.as_value_ref().value_type().name());
-            (Workload::Values { source, of, count: values.len() }, values)
+            let value_type = first.map_or("nothing", |value| value.as_value_ref().value_type().name());
+            (Workload::Values { source, value_type, count: values.len() }, values)
         }
     })
 }

@@ -41,7 +41,9 @@ TASKS = (
     "perception.speech_transcription",
     "planning.end_to_end_planning",
     "simulation.human_model_generation",
-    "utils",
+    "utils.ambiguity_measure",
+    "utils.hyperparameter_tuner",
+    "utils.io",
 )
 
 

@@ -110,7 +110,7 @@ fn same_length(column: &str, length: usize, count: usize) -> Result<()> {
 }
 
 impl BoundingBox3D {
-    /// Returns the box as arrays of one element.
+    /// Returns the box as columns of one element, as KITTI label files name them.
     pub fn kitti(&self) -> KittiColumns {
         KittiColumns::from_boxes(std::iter::once(self)).with_index()
     }

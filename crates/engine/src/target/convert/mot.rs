@@ -144,8 +144,8 @@ mod tests {
 
     #[test]
     fn files_both_ways() {
-        let truth = "1,2,10.5,20,30,40,1,7,0.5\n\n2, 2, 11, 20, 30, 40, 0, 1, 1\r\n";
-        let tracks = TrackingAnnotationList::from_mot_text(truth).unwrap();
+        let ground_truth = "1,2,10.5,20,30,40,1,7,0.5\n\n2, 2, 11, 20, 30, 40, 0, 1, 1\r\n";
+        let tracks = TrackingAnnotationList::from_mot_text(ground_truth).unwrap();
         assert_eq!(tracks.annotations.len(), 2);
         assert_eq!(tracks.annotations[0].bounding_box, BoundingBox::new(7, 10.5, 20.0, 30.0, 40.0, 1.0));
         assert_eq!(tracks.annotations[1].frame, Some(2));

@@ -73,7 +73,7 @@ pub fn scatter_nd(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     Ok(vec![ctx.emit_plain(call, Operator::new("ScatterND"), &inputs, zeros.kind(), &zeros.dims())?])
 }
 
-/// Inputs: `indices`, `output_shape`, `values`, `default_value`. Supported where there is nothing to scatter.
+/// Converts `SparseToDense`. Inputs: `indices`, `output_shape`, `values`, `default_value`. Supported where there is nothing to scatter.
 pub fn sparse_to_dense(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let (indices, shape, values) = (call.input(0)?, call.input(1)?, call.input(2)?);
     let default = &call.input(3)?.wire;

@@ -8,7 +8,7 @@ use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
 use opendr_onnx::{ElementType, Operator};
 
-/// By default ONNX, like TensorFlow, excludes the padding from averages.
+/// Converts `MaxPool` and `AvgPool`. By default ONNX, like TensorFlow, excludes the padding from averages.
 pub fn pool(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let x = call.input(0)?;
     let axes = Axes::of(call);

@@ -138,7 +138,7 @@ pub fn where_true(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     Ok(vec![ctx.emit_plain(call, operator, &[&found], ElementType::Int, &[None, rank])?])
 }
 
-/// Inputs: boxes, scores, maximum number of boxes, overlap and score thresholds; `V5` also returns the scores.
+/// Converts `NonMaxSuppression`. Inputs: boxes, scores, maximum number of boxes, overlap and score thresholds; `V5` also returns the scores.
 pub fn non_max_suppression(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let softened = call.inputs().get(5).is_some_and(|sigma| sigma.array() != Some(&Array::scalar(0.0)));
     if softened || call.attr().flag("pad_to_max_output_size") {

@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// `opendr_msgs/ImageWithDetections, ROS 1's`: An image with detected boxes.
+/// `opendr_msgs/ImageWithDetections` of ROS 1: An image with detected boxes.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ImageWithDetections {

@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// `vision_msgs/BoundingBox2D, ROS 1's`.
+/// `vision_msgs/BoundingBox2D` of ROS 1.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct BoundingBox2D {
@@ -13,7 +13,7 @@ pub struct BoundingBox2D {
     pub size_y: f64,
 }
 
-/// `vision_msgs/BoundingBox2DArray, ROS 1's`.
+/// `vision_msgs/BoundingBox2DArray` of ROS 1.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct BoundingBox2DArray {
@@ -21,7 +21,7 @@ pub struct BoundingBox2DArray {
     pub boxes: Vec<BoundingBox2D>,
 }
 
-/// `vision_msgs/Classification2D, ROS 1's`.
+/// `vision_msgs/Classification2D` of ROS 1.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Classification2D {
@@ -30,7 +30,7 @@ pub struct Classification2D {
     pub source_img: crate::sensor_msgs::Image,
 }
 
-/// `vision_msgs/Detection2D, ROS 1's`.
+/// `vision_msgs/Detection2D` of ROS 1.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Detection2D {
@@ -42,7 +42,7 @@ pub struct Detection2D {
     pub tracking_id: String,
 }
 
-/// `vision_msgs/Detection2DArray, ROS 1's`.
+/// `vision_msgs/Detection2DArray` of ROS 1.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Detection2DArray {
@@ -50,7 +50,7 @@ pub struct Detection2DArray {
     pub detections: Vec<Detection2D>,
 }
 
-/// `vision_msgs/Detection3D, ROS 1's`.
+/// `vision_msgs/Detection3D` of ROS 1.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Detection3D {
@@ -62,7 +62,7 @@ pub struct Detection3D {
     pub tracking_id: String,
 }
 
-/// `vision_msgs/Detection3DArray, ROS 1's`.
+/// `vision_msgs/Detection3DArray` of ROS 1.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Detection3DArray {
@@ -70,7 +70,7 @@ pub struct Detection3DArray {
     pub detections: Vec<Detection3D>,
 }
 
-/// `vision_msgs/ObjectHypothesis, ROS 1's`.
+/// `vision_msgs/ObjectHypothesis` of ROS 1.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ObjectHypothesis {
@@ -78,7 +78,7 @@ pub struct ObjectHypothesis {
     pub score: f64,
 }
 
-/// `vision_msgs/ObjectHypothesisWithPose, ROS 1's`.
+/// `vision_msgs/ObjectHypothesisWithPose` of ROS 1.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ObjectHypothesisWithPose {

@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// `visualization_msgs/Marker, ROS 1's`.
+/// `visualization_msgs/Marker` of ROS 1.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Marker {
@@ -45,7 +45,7 @@ impl Marker {
     pub const DELETEALL: u8 = 3;
 }
 
-/// `visualization_msgs/MarkerArray, ROS 1's`.
+/// `visualization_msgs/MarkerArray` of ROS 1.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct MarkerArray {

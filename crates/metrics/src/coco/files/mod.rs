@@ -5,12 +5,12 @@
 
 mod batches;
 mod entry;
+mod ground_truth;
 mod kind;
 mod results;
 #[cfg(test)]
 mod tests;
 mod text;
-mod truth;
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -23,9 +23,9 @@ use super::accumulator::Accumulator;
 use super::protocol::Protocol;
 use super::summary::Outcome;
 use crate::Report;
+use ground_truth::GroundTruths;
 use kind::{Boxes, Kind, Masks, Persons};
 use results::Results;
-use truth::Truths;
 
 /// A file, and the context of its errors.
 type Named<R> = (R, String);
@@ -78,7 +78,7 @@ impl CocoFiles {
         self.dispatch(open(annotations)?, open(results)?)
     }
 
-    /// Like [`CocoFiles::compare`], from readers.
+    /// Compares as [`CocoFiles::compare`], from readers.
     ///
     /// # Errors
     /// As [`CocoFiles::compare`].
@@ -100,8 +100,8 @@ impl CocoFiles {
         results: Named<impl Read>,
     ) -> Result<CocoComparison> {
         let threads = self.threads.max(1);
-        let truths = Truths::<K>::read(annotations.0, threads).context(|| annotations.1)?;
-        let results = Results::read(results.0, &truths, threads).context(|| results.1)?;
+        let ground_truths = GroundTruths::<K>::read(annotations.0, threads).context(|| annotations.1)?;
+        let results = Results::read(results.0, &ground_truths, threads).context(|| results.1)?;
         let fresh = || {
             Accumulator::new(match self.kind {
                 CocoKind::Keypoints => Protocol::keypoints(self.max_detections),
@@ -110,26 +110,26 @@ impl CocoFiles {
         };
         let by_class = self.use_classes || self.kind == CocoKind::Keypoints;
         let mut parts: Vec<_> = (0..threads).map(|_| fresh()).collect();
-        let count = truths.images() as u32;
+        let count = ground_truths.images() as u32;
         let starts = (0..count).step_by(IMAGES_PER_JOB as usize);
         map_in_order(
             &mut parts,
             starts,
             |part, start| {
                 (start..count.min(start + IMAGES_PER_JOB))
-                    .try_for_each(|at| add(part, at, &truths, &results, by_class))
+                    .try_for_each(|at| add(part, at, &ground_truths, &results, by_class))
             },
             |done| done,
         )?;
         let mut whole = fresh();
         parts.into_iter().for_each(|part| whole.merge(part));
         Ok(CocoComparison {
-            images: truths.images() as u64,
-            objects: truths.objects() as u64,
+            images: ground_truths.images() as u64,
+            objects: ground_truths.objects() as u64,
             detections: results.detections() as u64,
-            unlisted_objects: truths.unlisted,
+            unlisted_objects: ground_truths.unlisted,
             unlisted_detections: results.unlisted,
-            classes: truths.classes,
+            classes: ground_truths.classes,
             outcome: whole.finish(threads),
         })
     }
@@ -141,11 +141,11 @@ const ANY: i64 = 0;
 fn add<K: Kind>(
     part: &mut Accumulator<i64>,
     at: u32,
-    truths: &Truths<K>,
+    ground_truths: &GroundTruths<K>,
     results: &Results<K>,
     by_class: bool,
 ) -> Result<()> {
-    let mut annotated: Vec<_> = truths.of_image(at).iter().collect();
+    let mut annotated: Vec<_> = ground_truths.of_image(at).iter().collect();
     let mut detected: Vec<_> = results.of_image(at).collect();
     // pycocotools goes through the classes one after the other, even if they count as one.
     annotated.sort_by_key(|annotation| annotation.class);
@@ -164,16 +164,20 @@ fn add<K: Kind>(
         let mut objects = Vec::with_capacity(of_class_annotated.len());
         let mut matched = Vec::with_capacity(of_class_annotated.len());
         for annotation in of_class_annotated {
-            let (object, area) = K::object(&annotation.annotated, truths.size(at))
-                .context(|| format!("an annotation of image {}", truths.id(at)))?;
+            let (object, area) = K::object(&annotation.annotated, ground_truths.size(at))
+                .context(|| format!("an annotation of image {}", ground_truths.id(at)))?;
             objects.push(object);
-            matched.push(annotation.truth(area));
+            matched.push(annotation.ground_truth(area));
         }
         let detections: Vec<_> = of_class_detected.iter().map(|one| one.detection).collect();
-        part.count(&class, at, &matched, &detections, |detection, truth| {
-            K::overlap(&of_class_detected[detection].detected, &objects[truth], matched[truth].crowd)
+        part.count(&class, at, &matched, &detections, |detection, ground_truth| {
+            K::overlap(
+                &of_class_detected[detection].detected,
+                &objects[ground_truth],
+                matched[ground_truth].crowd,
+            )
         })
-        .context(|| format!("image {}", truths.id(at)))?;
+        .context(|| format!("image {}", ground_truths.id(at)))?;
     }
     Ok(())
 }

@@ -6,8 +6,8 @@ use opendr_engine::{Error, JsonPiece, JsonStream, Result, map_in_order};
 
 use super::batches::{Batch, Batches};
 use super::entry::{Entry, needed};
+use super::ground_truth::GroundTruths;
 use super::kind::Kind;
-use super::truth::Truths;
 use crate::coco::matching::Detection;
 
 /// A detection.
@@ -36,7 +36,7 @@ impl<K: Kind> Results<K> {
     ///
     /// # Errors
     /// Returns `Io`, or `Format` with line, byte and key.
-    pub(super) fn read(file: impl Read, truths: &Truths<K>, threads: usize) -> Result<Self> {
+    pub(super) fn read(file: impl Read, ground_truths: &GroundTruths<K>, threads: usize) -> Result<Self> {
         let mut json = JsonStream::new(file);
         let mut batches = Batches::new(&mut json)?;
         let first = batches.next().transpose()?;
@@ -49,7 +49,7 @@ impl<K: Kind> Results<K> {
         let work = |(): &mut (), batch: Result<Batch>| -> Result<(Vec<_>, u64)> {
             let (mut detections, mut unlisted) = (Vec::new(), 0);
             for piece in batch?.pieces() {
-                match detection(&piece, truths, boxed)? {
+                match detection(&piece, ground_truths, boxed)? {
                     Some(detection) => detections.push(detection),
                     None => unlisted += 1,
                 }
@@ -67,7 +67,7 @@ impl<K: Kind> Results<K> {
             }
         })?;
         json.end()?;
-        Ok(Self::sorted(detections, truths.images(), unlisted))
+        Ok(Self::sorted(detections, ground_truths.images(), unlisted))
     }
 
     fn sorted(detections: Vec<ScoredDetection<K::Detected>>, images: usize, unlisted: u64) -> Self {
@@ -104,23 +104,23 @@ impl<K: Kind> Results<K> {
 /// Parses a detection; `None` if the annotations do not list its category.
 fn detection<K: Kind>(
     piece: &JsonPiece<'_>,
-    truths: &Truths<K>,
+    ground_truths: &GroundTruths<K>,
     boxed: bool,
 ) -> Result<Option<ScoredDetection<K::Detected>>> {
     let mut entry = Entry::read(piece, K::FIELDS)?;
     let mut read = || {
         let id = needed(entry.image, "image_id")?;
-        let image = truths.index(id).ok_or_else(|| {
+        let image = ground_truths.index(id).ok_or_else(|| {
             Error::format(format!(
                 "image_id {id} is not among the images of the annotations; give results of these images"
             ))
         })?;
         let class = needed(entry.class, "category_id")?;
         let score = needed(entry.score, "score")?;
-        if !truths.classes.contains_key(&class) {
+        if !ground_truths.classes.contains_key(&class) {
             return Ok(None);
         }
-        let (detected, own) = K::detected(&mut entry, truths.size(image))?;
+        let (detected, own) = K::detected(&mut entry, ground_truths.size(image))?;
         let area = match entry.bounds.filter(|_| boxed) {
             Some([_, _, width, height]) => width * height,
             None => own,

@@ -26,7 +26,7 @@ pub(super) fn by_score(a: &Candidate, b: &Candidate) -> std::cmp::Ordering {
     b.score.total_cmp(&a.score).then(a.class.cmp(&b.class)).then(a.index.cmp(&b.index))
 }
 
-/// Intersection over union of two boxes `[x0, y0, x1, y1]`; 0 when both are empty.
+/// Returns the intersection over union of two boxes `[x0, y0, x1, y1]`; 0 when both are empty.
 pub fn iou(a: &[f32; 4], b: &[f32; 4]) -> f32 {
     let width = (a[2].min(b[2]) - a[0].max(b[0])).max(0.0);
     let height = (a[3].min(b[3]) - a[1].max(b[1])).max(0.0);

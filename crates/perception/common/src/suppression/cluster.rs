@@ -1,6 +1,6 @@
 use super::candidate::{Candidate, keep_unmarked, overlap};
 
-/// Fast NMS in which only kept boxes suppress others, repeated until nothing changes. A change propagates by at least one
+/// Applies Fast NMS in which only kept boxes suppress others, repeated until nothing changes. A change propagates by at least one
 /// box per pass, so there are at most as many passes as boxes; clusters are small in practice.
 pub fn suppress(candidates: &mut Vec<Candidate>, dropped: &mut Vec<bool>, limit: f32) {
     dropped.clear();

@@ -1,6 +1,6 @@
 use super::candidate::{Candidate, keep_unmarked, overlap};
 
-/// Greedy NMS: the box with the highest score drops all that overlap it, then the next that is left.
+/// Applies greedy NMS: the box with the highest score drops all that overlap it, then the next that is left.
 pub fn suppress(candidates: &mut Vec<Candidate>, dropped: &mut Vec<bool>, limit: f32, most: usize) {
     dropped.clear();
     dropped.resize(candidates.len(), false);

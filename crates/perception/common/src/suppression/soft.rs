@@ -3,7 +3,7 @@ use super::candidate::{Candidate, by_score, iou};
 /// Sigma of the Gaussian that lowers scores.
 const SIGMA: f32 = 0.5;
 
-/// The box with the highest score lowers the scores of those that overlap it, then the next by the new scores.
+/// Applies Soft-NMS: the box with the highest score lowers the scores of those that overlap it, then the next by the new scores.
 pub fn suppress(candidates: &mut Vec<Candidate>, threshold: f32, most: usize) {
     let mut done = 0;
     while done < candidates.len() && done < most {

@@ -15,7 +15,7 @@ pub struct BevCandidate {
     pub index: u32,
 }
 
-/// Greedy NMS by the IoU of footprints (rotated rectangles, exact): the box with the highest score drops all of its class
+/// Applies greedy NMS by the IoU of footprints (rotated rectangles, exact): the box with the highest score drops all of its class
 /// that overlap it by more than `overlap`, then the next that is left. At most `most` boxes are kept, highest score first.
 ///
 /// Boxes that are not finite or have no area are dropped. `dropped` is work memory. A comparison of circumscribed circles

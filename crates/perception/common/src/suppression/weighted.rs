@@ -1,6 +1,6 @@
 use super::candidate::{Candidate, by_score, overlap};
 
-/// Weighted NMS (Bazarevsky et al., BlazeFace, 2019): the box with the highest score forms a group with those that overlap
+/// Applies weighted NMS (Bazarevsky et al., BlazeFace, 2019): the box with the highest score forms a group with those that overlap
 /// it by more than `limit`, then the next that is left. `merge` receives each group, highest score first, and blends it by
 /// scores.
 ///

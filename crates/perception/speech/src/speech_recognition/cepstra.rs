@@ -1,8 +1,8 @@
 //! Input of the networks: cepstra of audio.
 
+use opendr_audio::mfcc::{Mfcc, MfccOptions};
+use opendr_audio::{AudioInput, standardise};
 use opendr_engine::{Error, Pool, Result};
-use opendr_sound::mfcc::{Mfcc, MfccOptions};
-use opendr_sound::{AudioInput, standardise};
 
 /// Number of frames in the network's input: 1.2 s of audio; longer audio is cut, shorter audio is padded.
 pub const FRAMES: usize = 40;

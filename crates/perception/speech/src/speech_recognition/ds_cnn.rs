@@ -4,6 +4,8 @@
 //! is normalised by its peak; longer than a second it is cut, shorter it is padded with silence. A stream yields a prediction
 //! twice per second, each for the last second.
 
+use opendr_audio::AudioInput;
+use opendr_audio::mfcc::{Mfcc, MfccOptions, peak_factor};
 use opendr_engine::learner::{Learner, Spec, Streaming};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
@@ -11,8 +13,6 @@ use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{ElementType, Session, TensorView};
 use opendr_perception_common::category_scores::category_from_probabilities;
-use opendr_sound::AudioInput;
-use opendr_sound::mfcc::{Mfcc, MfccOptions, peak_factor};
 
 use crate::speech_recognition::word_stream::{SpeechWindows, WordStream, WordStreamParams};
 

@@ -11,7 +11,7 @@ mod word_stream;
 pub use ds_cnn::{DsCnn, DsCnnParams};
 pub use edge_speech_nets::{EdgeSpeechNet, EdgeSpeechNets, EdgeSpeechNetsKind, EdgeSpeechNetsParams};
 pub use matchboxnet::{MatchboxNet, MatchboxNetKind, MatchboxNetParams};
-pub use opendr_sound::AudioInput;
+pub use opendr_audio::AudioInput;
 pub use quadratic_self_onn::{QuadraticSelfOnn, QuadraticSelfOnnKind, QuadraticSelfOnnParams};
 pub use word_learner::{WordKind, WordLearner, WordParams};
 pub use word_stream::{WordStream, WordStreamParams};

@@ -78,7 +78,7 @@ impl VoiceRule {
 }
 
 impl Speech {
-    /// Whether the last chunk is speech.
+    /// Returns whether the last chunk is speech.
     pub fn is_active(&self) -> bool {
         self.active
     }

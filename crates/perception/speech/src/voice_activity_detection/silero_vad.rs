@@ -6,13 +6,13 @@
 //! from `512 n` on; its class has the hysteresis of [`VoiceRule`]. Pieces of another sample rate are refused and leave the
 //! stream unchanged. [`voice_activity`](crate::voice_activity) computes start and end of speech in samples.
 
+use opendr_audio::AudioInput;
 use opendr_engine::learner::{Learner, Spec, Streaming};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Result, Task};
 use opendr_perception_common::category_scores::binary_category;
-use opendr_sound::AudioInput;
 
 use crate::voice_activity::{SAMPLE_RATE, Speech, VoiceNetwork, VoiceRule, VoiceStream};
 

@@ -1,6 +1,6 @@
 //! Tracking of objects over the frames of a video.
 //!
-//! [`Sort`], [`ByteTrack`] and [`OcSort`] take the detections of any detector; their predictions are the detector's own
+//! [`Sort`], [`ByteTrack`], [`OcSort`] and [`CBiou`] take the detections of any detector; their predictions are the detector's own
 //! boxes with the identities of the objects, from 1. Time is counted in frames. With the frames as optional inputs, the
 //! motion of the camera is compensated. Boxes that are not finite or have no area are dropped, and of more than
 //! [`MAX_BOXES`](crate::tracking::MAX_BOXES) those with the highest scores are kept. [`DeepSort`] also uses the
@@ -8,6 +8,7 @@
 //! in the first frame.
 
 mod byte_track;
+mod c_biou;
 mod deep_sort;
 mod fair_mot;
 mod inputs;
@@ -17,6 +18,7 @@ mod sort;
 mod tracks;
 
 pub use byte_track::{ByteTrack, ByteTrackParams, ByteTrackState};
+pub use c_biou::{CBiou, CBiouParams, CBiouState};
 pub use deep_sort::{DeepSort, DeepSortInputs, DeepSortParams, DeepSortState};
 pub use fair_mot::{FairMot, FairMotParams, FairMotState};
 pub use inputs::TrackerInputs;

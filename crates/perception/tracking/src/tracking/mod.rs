@@ -10,13 +10,13 @@ mod constant_velocity;
 mod height_filter;
 mod life;
 mod pairing;
-mod sound_boxes;
+mod valid_boxes;
 
 pub use area_filter::AreaFilter;
 pub use constant_velocity::{Constant, ConstantVelocity};
 pub use height_filter::HeightFilter;
 pub use pairing::SparseAssignment;
-pub use sound_boxes::{MAX_BOXES, ValidBox, valid_boxes};
+pub use valid_boxes::{MAX_BOXES, ValidBox, valid_boxes};
 
 pub(crate) use life::Life;
 

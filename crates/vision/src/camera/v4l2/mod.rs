@@ -264,9 +264,9 @@ fn pixel_format(file: &File, index: u32) -> Option<u32> {
 fn rate_of(file: &File) -> f64 {
     let mut parameters = StreamParameters::zeroed();
     parameters.kind = CAPTURE;
-    let told = ioctl(file, GET_PARAMETERS, &mut parameters).is_ok();
+    let is_known = ioctl(file, GET_PARAMETERS, &mut parameters).is_ok();
     let [over, under] = parameters.frame_time;
-    if told && over > 0 && under > 0 { f64::from(under) / f64::from(over) } else { 30.0 }
+    if is_known && over > 0 && under > 0 { f64::from(under) / f64::from(over) } else { 30.0 }
 }
 
 fn capture_buffer(index: u32) -> Buffer {

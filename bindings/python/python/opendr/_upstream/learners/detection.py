@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Optional
 
 from opendr._errors import Unsupported
-from opendr._native_learner import NativeLearner, _value
+from opendr._input_value import input_value
+from opendr._native_learner import NativeLearner
 from opendr.engine.target import BoundingBox, BoundingBoxList
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ class SingleShotDetector(NativeLearner):
     def _suppressed(self, image: Any, custom_nms: Any, arguments: dict[str, Any]) -> BoundingBoxList:
         import numpy as np
 
-        image = _value(image, "image", "Image")
+        image = input_value(image, "image", "Image")
         known = self._known(arguments, stacklevel=6)
         # No IoU exceeds 1, so all boxes are kept.
         every = {"iou_threshold": 1.0, "suppression": "hard", "max_detections": known.get("max_candidates", 400)}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from opendr._native_learner import PathLike
+from opendr._input_value import PathLike
 from opendr._native_learner_rl import NativeLearnerRL
 from opendr._upstream.arguments import by_name
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 from typing import Any, Optional, Union
 
-from opendr._native_learner import NativeLearner, PathLike
+from opendr._input_value import PathLike
+from opendr._native_learner import NativeLearner
 from opendr.engine.data import Image
 from opendr.engine.datasets import ExternalDataset, formats
 from opendr.engine.target import BoundingBoxList, Heatmap

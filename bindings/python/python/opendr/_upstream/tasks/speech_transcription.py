@@ -18,7 +18,7 @@ LEARNERS = {
         infer="audio initial_prompt",
         eval="dataset save_path_csv!csv",
         download="name download_dir>path",
-        mixin="opendr._upstream.learners.sounds:Transcription",
+        mixin="opendr._upstream.learners.audio:Transcription",
         models="tiny tiny.en base base.en small small.en medium medium.en large",
         folder="whisper_{name=tiny.en}",
         demos="demo",

@@ -35,17 +35,17 @@ pub struct GroundTruth {
 ///
 /// The IoU is that of the nearest axis-aligned rectangles on the ground, as in SECOND; every object is assigned at least the
 /// anchor with the highest IoU.
-pub fn assign_anchors(layout: &PillarLayout, truths: &[GroundTruth]) -> Vec<AnchorTarget> {
+pub fn assign_anchors(layout: &PillarLayout, ground_truths: &[GroundTruth]) -> Vec<AnchorTarget> {
     let [columns, rows] = layout.maps();
     let cells = columns * rows;
     let mut wanted = vec![AnchorTarget::Background; layout.anchors.len() * cells];
     let mut best = vec![0.0; wanted.len()];
     let mut forced = Vec::new();
-    for (number, truth) in truths.iter().enumerate() {
-        let around = corners(truth.place.center, nearest_upright(&truth.place));
+    for (number, ground_truth) in ground_truths.iter().enumerate() {
+        let around = corners(ground_truth.place.center, nearest_upright(&ground_truth.place));
         let mut own = (0.0, None);
         for (kind, anchor) in layout.anchors.iter().enumerate() {
-            if truth.class.is_some_and(|class| class != anchor.class) {
+            if ground_truth.class.is_some_and(|class| class != anchor.class) {
                 continue;
             }
             let sides = nearest_upright(&anchor.at([0.0; 2]));
@@ -53,7 +53,7 @@ pub fn assign_anchors(layout: &PillarLayout, truths: &[GroundTruth]) -> Vec<Anch
                 let [x, y] = layout.middle(column, row).map(f64::from);
                 let overlap = box_iou(around, corners([x, y, 0.0], sides));
                 let at = kind * cells + row * columns + column;
-                if truth.class.is_none() {
+                if ground_truth.class.is_none() {
                     if overlap >= ANYTHING && wanted[at] == AnchorTarget::Background {
                         wanted[at] = AnchorTarget::Ignored;
                     }

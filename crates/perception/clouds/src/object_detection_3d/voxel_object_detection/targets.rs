@@ -47,8 +47,8 @@ pub struct PillarBatch {
 const HIDDEN: i32 = 3;
 
 impl PillarBatches {
-    fn truths(&self, list: &BoundingBox3DList, scan: &Scan<'_>) -> Vec<GroundTruth> {
-        let truths = list.boxes.iter().filter_map(|found| {
+    fn ground_truths(&self, list: &BoundingBox3DList, scan: &Scan<'_>) -> Vec<GroundTruth> {
+        let ground_truths = list.boxes.iter().filter_map(|found| {
             let class = match (list.classes.label(&found.name), &found.name) {
                 (Some(label), _) => self.classes.index(label),
                 (None, Name::Label(label)) => self.classes.index(label),
@@ -64,19 +64,19 @@ impl PillarBatches {
             let class = (is_within && found.occluded < HIDDEN).then_some(class);
             is_box.then_some(GroundTruth { place, class })
         });
-        truths.collect()
+        ground_truths.collect()
     }
 
-    fn add_targets(&self, batch: &mut PillarBatch, truths: &[GroundTruth]) {
+    fn add_targets(&self, batch: &mut PillarBatch, ground_truths: &[GroundTruth]) {
         let first = batch.counts.len();
         let [columns, rows] = self.layout.maps();
-        for (at, wanted) in assign_anchors(&self.layout, truths).into_iter().enumerate() {
+        for (at, wanted) in assign_anchors(&self.layout, ground_truths).into_iter().enumerate() {
             batch.counts.push(if wanted == AnchorTarget::Ignored { 0.0 } else { 1.0 });
             let AnchorTarget::Object(object) = wanted else { continue };
             let (kind, cell) = (at / (columns * rows), at % (columns * rows));
             let middle = self.layout.middle(cell % columns, cell / columns);
             let anchor = self.layout.anchors[kind].at(middle);
-            let (offsets, back) = offsets_from_box(&truths[object].place, &anchor);
+            let (offsets, back) = offsets_from_box(&ground_truths[object].place, &anchor);
             batch.objects.push((first + at) as i64);
             batch.offsets.extend(offsets);
             batch.backs.push(back);
@@ -112,7 +112,7 @@ impl Collate for PillarBatches {
         batch.cells.extend(voxeliser.cells().iter().map(|cell| (before + *cell as usize) as i64));
         batch.statistics.extend(voxeliser.statistics().flatten());
         batch.scans += 1;
-        self.add_targets(batch, &self.truths(list, &scan));
+        self.add_targets(batch, &self.ground_truths(list, &scan));
         Ok(())
     }
 }

@@ -67,7 +67,7 @@ fn overfits_two_streets() {
     let (mut asked, mut hit) = (0, 0);
     for index in 0..2 {
         let sample = StreetScans::new(9, 2).get(index).unwrap();
-        let Some(Value::BoundingBox3DList(truth)) = &sample.target else { panic!() };
+        let Some(Value::BoundingBox3DList(ground_truth)) = &sample.target else { panic!() };
         let found = learner.infer(Scan::from(scan_of(&sample.data[0]))).unwrap();
         let near = |car: &&BoundingBox3D| {
             car.name == "Car".into()
@@ -75,7 +75,7 @@ fn overfits_two_streets() {
                 && car.location[2] < 22.0
                 && car.location[0].abs() < 10.0
         };
-        for car in truth.boxes.iter().filter(near) {
+        for car in ground_truth.boxes.iter().filter(near) {
             asked += 1;
             hit += usize::from(found.boxes.iter().any(|found| standing(found).iou(&standing(car)) > 0.5));
         }
@@ -138,7 +138,7 @@ fn hostile_clouds_never_panic() {
 
 #[test]
 fn invalid_trainings_are_refused() {
-    let folder = scratch("told");
+    let folder = scratch("report");
     let job = FitJob { device: Device::Cpu, ..FitJob::new(&folder) };
     let ahead = VoxelObjectDetection3dFitParams { ahead: 25.0, ..fit_params(1) };
     let error = trained(&ahead, &job).unwrap_err();

@@ -171,7 +171,7 @@ fn invalid_trainings_are_refused() {
             Pairs(1).classes()
         }
     }
-    let folder = scratch("told");
+    let folder = scratch("report");
     let job = FitJob { device: Device::Cpu, ..FitJob::new(&folder) };
     let dataset = DatasetRef::from(&Single as &dyn DatasetIterator);
     let error = Gem::fit(None, &GemParams::default(), &fit_params(1, 0.0), dataset, None, &job).unwrap_err();

@@ -12,7 +12,7 @@ const INSIDE: f32 = 0.01;
 
 /// A ground truth box.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TruthBox {
+pub struct GroundTruthBox {
     /// Class index.
     pub class: usize,
     /// Corners `[x0, y0, x1, y1]`, in pixels of the network's input.
@@ -62,11 +62,11 @@ impl Grid {
 
     /// Assigns cells to `boxes` and returns them in the order of their indices. A candidate of several boxes is assigned to
     /// the one that its square overlaps most.
-    pub fn positives(&self, boxes: &[TruthBox]) -> Vec<Positive> {
+    pub fn positives(&self, boxes: &[GroundTruthBox]) -> Vec<Positive> {
         let mut best: BTreeMap<usize, (f32, Positive)> = BTreeMap::new();
-        for truth in boxes {
+        for ground_truth in boxes {
             let candidates: Vec<Candidate> =
-                self.levels.iter().flat_map(|level| level.nearest(truth)).collect();
+                self.levels.iter().flat_map(|level| level.nearest(ground_truth)).collect();
             let enough = mean_and_deviation(&candidates);
             for Candidate { overlap, positive, inside, .. } in candidates {
                 let taken = best.get(&positive.cell).is_some_and(|(other, _)| *other >= overlap);
@@ -91,9 +91,9 @@ struct Candidate {
 
 impl GridLevel {
     /// Returns the [`NEAREST`] cells of this level.
-    fn nearest(self, truth: &TruthBox) -> Vec<Candidate> {
+    fn nearest(self, ground_truth: &GroundTruthBox) -> Vec<Candidate> {
         let reach = NEAREST as f32 / 2.0 + 1.0;
-        let [x0, y0, x1, y1] = truth.corners;
+        let [x0, y0, x1, y1] = ground_truth.corners;
         // The window contains the nearest cells: none further away can be among them.
         let window = |low: f32, high: f32| {
             let middle = (low + high) / (2.0 * self.stride);
@@ -105,25 +105,25 @@ impl GridLevel {
         let (columns, rows) = (window(x0, x1), window(y0, y1));
         let cells = rows.flat_map(|row| columns.clone().map(move |column| (row, column)));
         let mut candidates: Vec<Candidate> =
-            cells.map(|(row, column)| self.candidate(row, column, truth)).collect();
+            cells.map(|(row, column)| self.candidate(row, column, ground_truth)).collect();
         candidates.sort_by(|a, b| a.far.total_cmp(&b.far).then(a.positive.cell.cmp(&b.positive.cell)));
         candidates.truncate(NEAREST);
         candidates
     }
 
-    fn candidate(self, row: usize, column: usize, truth: &TruthBox) -> Candidate {
-        let [x0, y0, x1, y1] = truth.corners;
+    fn candidate(self, row: usize, column: usize, ground_truth: &GroundTruthBox) -> Candidate {
+        let [x0, y0, x1, y1] = ground_truth.corners;
         let (x, y) = ((column as f32 + 0.5) * self.stride, (row as f32 + 0.5) * self.stride);
         let half = SQUARE * self.stride / 2.0;
         let sides = [x - x0, y - y0, x1 - x, y1 - y];
         let (far_x, far_y) = (x - (x0 + x1) / 2.0, y - (y0 + y1) / 2.0);
         Candidate {
             far: far_x * far_x + far_y * far_y,
-            overlap: overlap([x - half, y - half, x + half, y + half], truth.corners),
+            overlap: overlap([x - half, y - half, x + half, y + half], ground_truth.corners),
             inside: sides.iter().all(|side| *side > INSIDE),
             positive: Positive {
                 cell: self.first + row * self.columns + column,
-                class: truth.class,
+                class: ground_truth.class,
                 distances: sides.map(|side| side / self.stride),
             },
         }
@@ -157,7 +157,7 @@ mod tests {
     fn a_box_is_assigned_to_cells_of_its_size_within_it() {
         for (side, expected_level) in [(60.0, 0), (130.0, 1), (260.0, 2)] {
             let corners = [100.0, 80.0, 100.0 + side, 80.0 + side];
-            let positives = grid().positives(&[TruthBox { class: 3, corners }]);
+            let positives = grid().positives(&[GroundTruthBox { class: 3, corners }]);
             assert!(!positives.is_empty() && positives.len() <= 3 * NEAREST);
             let first = [0, 2704, 3380, 3549];
             let at_level = positives
@@ -176,7 +176,7 @@ mod tests {
     fn distances_lead_back_to_the_box() {
         let corners = [100.0, 80.0, 230.0, 190.0];
         for Positive { cell, distances: [left, top, right, bottom], .. } in
-            grid().positives(&[TruthBox { class: 0, corners }])
+            grid().positives(&[GroundTruthBox { class: 0, corners }])
         {
             let (stride, columns, first) = match cell {
                 0..2704 => (8.0, 52, 0),
@@ -192,8 +192,8 @@ mod tests {
 
     #[test]
     fn a_cell_takes_the_box_that_it_overlaps_most() {
-        let small = TruthBox { class: 0, corners: [170.0, 170.0, 240.0, 240.0] };
-        let large = TruthBox { class: 1, corners: [100.0, 100.0, 310.0, 310.0] };
+        let small = GroundTruthBox { class: 0, corners: [170.0, 170.0, 240.0, 240.0] };
+        let large = GroundTruthBox { class: 1, corners: [100.0, 100.0, 310.0, 310.0] };
         let alone = grid().positives(&[small]).len();
         let both = grid().positives(&[large, small]);
         assert_eq!(both.iter().filter(|positive| positive.class == 0).count(), alone);
@@ -206,7 +206,11 @@ mod tests {
     #[test]
     fn boxes_outside_have_no_cells() {
         assert!(grid().positives(&[]).is_empty());
-        assert!(grid().positives(&[TruthBox { class: 0, corners: [900.0, 900.0, 950.0, 980.0] }]).is_empty());
+        assert!(
+            grid()
+                .positives(&[GroundTruthBox { class: 0, corners: [900.0, 900.0, 950.0, 980.0] }])
+                .is_empty()
+        );
         assert_eq!(grid().cells(), 3549);
     }
 }

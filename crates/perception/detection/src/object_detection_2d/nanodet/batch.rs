@@ -6,7 +6,7 @@ use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes, Name};
 use opendr_engine::{Error, Result, Value};
 use opendr_vision::InputGeometry;
 
-use super::assignment::{Grid, Positive, TruthBox};
+use super::assignment::{Grid, GroundTruthBox, Positive};
 use super::{STRIDES, preprocess};
 
 /// Side below which boxes are ignored, in pixels of the network's input.
@@ -32,7 +32,7 @@ impl Batches {
         Self { pictures: ImageBatches::new(preprocess(side)), grid: Grid::new(side, &STRIDES), classes }
     }
 
-    fn truth_boxes(&self, boxes: &BoundingBoxList, geometry: &InputGeometry) -> Result<Vec<TruthBox>> {
+    fn truth_boxes(&self, boxes: &BoundingBoxList, geometry: &InputGeometry) -> Result<Vec<GroundTruthBox>> {
         let mut truth_boxes = Vec::with_capacity(boxes.boxes.len());
         for found in &boxes.boxes {
             if found.segment.as_ref().is_some_and(|segment| segment.iscrowd) {
@@ -43,7 +43,7 @@ impl Batches {
             let ([x0, y0], [x1, y1]) =
                 (geometry.input_from_image([x0, y0]), geometry.input_from_image([x1, y1]));
             if x1 - x0 >= SMALLEST && y1 - y0 >= SMALLEST {
-                truth_boxes.push(TruthBox { class, corners: [x0, y0, x1, y1] });
+                truth_boxes.push(GroundTruthBox { class, corners: [x0, y0, x1, y1] });
             }
         }
         Ok(truth_boxes)

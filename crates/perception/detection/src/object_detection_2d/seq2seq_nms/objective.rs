@@ -209,8 +209,10 @@ impl Collate for BoxBatches {
     }
 
     fn add(&self, batch: &mut BoxBatch, sample: Sample) -> Result<()> {
-        let ([Value::Image(image), Value::BoundingBoxList(found)], Some(Value::BoundingBoxList(truth))) =
-            (&sample.data[..], &sample.target)
+        let (
+            [Value::Image(image), Value::BoundingBoxList(found)],
+            Some(Value::BoundingBoxList(ground_truth)),
+        ) = (&sample.data[..], &sample.target)
         else {
             return Err(Error::invalid_input(
                 "the sample is not an image with detections, annotated with boxes of its objects; give such \
@@ -219,8 +221,8 @@ impl Collate for BoxBatches {
         };
         let mut picture = PictureBoxes::default();
         self.choice.choose(found, &self.classes, &mut picture.boxes, &mut Vec::new());
-        for object in &truth.boxes {
-            let Some(class) = class_of(truth, object, &self.classes) else { continue };
+        for object in &ground_truth.boxes {
+            let Some(class) = class_of(ground_truth, object, &self.classes) else { continue };
             if object.segment.as_ref().is_some_and(|segment| segment.iscrowd) {
                 picture.crowds.push(object.corners());
             } else {

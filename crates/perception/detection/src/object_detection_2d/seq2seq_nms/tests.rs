@@ -29,8 +29,8 @@ impl DatasetIterator for Boards {
     }
 
     fn get(&self, index: usize) -> Result<Sample> {
-        let (image, found, truth) = boards(index);
-        Ok(Sample { data: vec![image.into(), found.into()], target: Some(truth.into()) })
+        let (image, found, ground_truth) = boards(index);
+        Ok(Sample { data: vec![image.into(), found.into()], target: Some(ground_truth.into()) })
     }
 
     fn classes(&self) -> Classes {
@@ -41,7 +41,7 @@ impl DatasetIterator for Boards {
 fn boards(index: usize) -> (Image, BoundingBoxList, BoundingBoxList) {
     let mut random = Random::from_key([5, index as u64]);
     let mut levels = vec![60u8; WIDTH * HEIGHT * 3];
-    let (mut found, mut truth) = (Vec::new(), Vec::new());
+    let (mut found, mut ground_truth) = (Vec::new(), Vec::new());
     for left in [random.below(20), 80 + random.below(20)] {
         let (top, width, height) = (random.below(30), 40 + random.below(15), 60 + random.below(25));
         for (row, column) in
@@ -50,7 +50,7 @@ fn boards(index: usize) -> (Image, BoundingBoxList, BoundingBoxList) {
             levels[(row * WIDTH + column) * 3..][..3].fill(if row % 8 < 4 { 240 } else { 20 });
         }
         let [x, y, w, h] = [left, top, width, height].map(|side| side as f32);
-        truth.push(BoundingBox::new(0, x, y, w, h, 1.0));
+        ground_truth.push(BoundingBox::new(0, x, y, w, h, 1.0));
         for _ in 0..5 {
             let mut near = |side: f32| side * (random.below(21) as f32 / 100.0 - 0.1);
             let corner = [x + near(w), y + near(h), w + near(w), h + near(h)];
@@ -63,7 +63,7 @@ fn boards(index: usize) -> (Image, BoundingBoxList, BoundingBoxList) {
     }
     let classes: Classes = ["board"].into_iter().collect();
     let list = |boxes: Vec<BoundingBox>| BoundingBoxList { classes: classes.clone(), ..boxes.into() };
-    (Image::from_rgb8(levels, WIDTH, HEIGHT).unwrap(), list(found), list(truth))
+    (Image::from_rgb8(levels, WIDTH, HEIGHT).unwrap(), list(found), list(ground_truth))
 }
 
 fn fit_params(epochs: usize, lr: f64) -> Seq2SeqNmsFitParams {
@@ -127,10 +127,10 @@ fn duplicates_and_false_detections_are_suppressed() {
     // Boards outside the training set.
     let (mut right, mut kept) = (0, 0);
     for index in 100..110 {
-        let (image, detections, truth) = boards(index);
+        let (image, detections, ground_truth) = boards(index);
         let found = learner.infer(Seq2SeqNmsInputs { image: &image, detections: &detections }).unwrap();
         kept += found.boxes.len();
-        right += truth
+        right += ground_truth
             .boxes
             .iter()
             .filter(|board| found.boxes.iter().any(|found| iou(&found.corners(), &board.corners()) > 0.5))
@@ -211,8 +211,8 @@ fn samples_without_candidates_are_refused() {
         }
 
         fn get(&self, index: usize) -> Result<Sample> {
-            let (image, _, truth) = boards(index);
-            Ok(Sample { data: vec![Value::from(image)], target: Some(truth.into()) })
+            let (image, _, ground_truth) = boards(index);
+            Ok(Sample { data: vec![Value::from(image)], target: Some(ground_truth.into()) })
         }
 
         fn classes(&self) -> Classes {

@@ -20,7 +20,7 @@ use super::{SingleShotDetector, SingleShotDetectorParams};
 use crate::object_detection_2d::selected_classes;
 
 opendr_engine::choices! {
-    /// MobileNetV1, by the multiple of the paper's channels.
+    /// Width of the MobileNetV1 backbone, as a multiple of the paper's channels.
     pub enum Backbone {
         /// 0.75 times the paper's channels, as PoseNet's, whose weights fit.
         MobileNet075 = "mobilenet0.75",

@@ -177,7 +177,7 @@ fn training_resumes_from_a_container_with_the_same_or_other_classes() {
 
 #[test]
 fn invalid_trainings_are_refused() {
-    let folder = scratch("told");
+    let folder = scratch("report");
     let job = FitJob { device: Device::Cpu, ..FitJob::new(&folder) };
     let classes = SingleShotDetectorFitParams { classes: vec!["green".to_owned()], ..fit_params(1) };
     let error = trained(None, &classes, &job).unwrap_err();

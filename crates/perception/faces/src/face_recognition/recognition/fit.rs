@@ -128,7 +128,7 @@ fn references(
     let with_face = with_face?;
     let mut statistics = Statistics::default();
     statistics.set("persons", gallery.names().len() as f64);
-    statistics.set("pictures", with_face as f64);
+    statistics.set("images", with_face as f64);
     statistics.set("without_face", (dataset.len() - with_face) as f64);
     if !job.progress.stopped() {
         write(base, &gallery, job)?;

@@ -2,18 +2,21 @@
 
 use opendr_engine::model::Model;
 use opendr_engine::target::Classes;
-use opendr_engine::{Error, Result};
+use opendr_engine::{Error, JsonFormat, Result, ResultExt as _};
 use serde::{Deserialize, Serialize};
 
 /// File name of the number of images per class.
 const HEADER: &str = "gallery.json";
+/// Format of that file. Version 2 renamed `pictures` to `images`.
+const FORMAT: JsonFormat = JsonFormat::new("gallery of persons", 2);
 /// File name of their embeddings, one after the other: 32-bit floats, little-endian.
 const EMBEDDINGS: &str = "gallery.f32";
 
 #[derive(Serialize, Deserialize)]
 struct Header {
     dimension: usize,
-    pictures: Vec<usize>,
+    #[serde(alias = "pictures")]
+    images: Vec<usize>,
 }
 
 /// Persons with the embeddings of their images.
@@ -58,27 +61,26 @@ impl Gallery {
     }
 
     fn from_bytes(header: &[u8], embeddings: &[u8], names: &Classes, dimension: usize) -> Result<Self> {
-        let header: Header = serde_json::from_slice(header)
-            .map_err(|error| Error::format(format!("{HEADER} is not a valid gallery")).with_source(error))?;
+        let header: Header = FORMAT.read(header).context(|| HEADER.to_owned())?;
         if header.dimension != dimension {
             return Err(Error::format(format!(
                 "the gallery has embeddings of length {}, the network has {dimension}; store the references again with fit",
                 header.dimension
             )));
         }
-        let sum = header.pictures.iter().try_fold(0usize, |sum, count| sum.checked_add(*count));
+        let sum = header.images.iter().try_fold(0usize, |sum, count| sum.checked_add(*count));
         let bytes = sum.and_then(|sum| sum.checked_mul(4 * dimension));
-        if bytes != Some(embeddings.len()) || header.pictures.len() != names.len() {
+        if bytes != Some(embeddings.len()) || header.images.len() != names.len() {
             return Err(Error::format(format!(
                 "the gallery has {} bytes of embeddings and {} names for {:?} images of {} persons; store the references again with fit",
                 embeddings.len(),
                 names.len(),
                 sum,
-                header.pictures.len()
+                header.images.len()
             )));
         }
         let mut numbers = embeddings.as_chunks::<4>().0.iter().map(|bytes| f32::from_le_bytes(*bytes));
-        let persons = names.iter().zip(&header.pictures).map(|(name, count)| {
+        let persons = names.iter().zip(&header.images).map(|(name, count)| {
             let mut embeddings: Vec<f32> = numbers.by_ref().take(count * dimension).collect();
             let sound = embeddings.chunks_exact_mut(dimension.max(1)).all(normalise);
             let error =
@@ -114,10 +116,9 @@ impl Gallery {
 impl Gallery {
     /// Returns the files of the container, whose classes are the persons.
     pub fn to_files(&self) -> Result<[(&'static str, Vec<u8>); 2]> {
-        let pictures = self.persons.iter().map(|person| person.embeddings.len() / self.dimension.max(1));
-        let header = Header { dimension: self.dimension, pictures: pictures.collect() };
-        let header = serde_json::to_vec(&header)
-            .map_err(|error| Error::internal("the gallery cannot be serialised").with_source(error))?;
+        let images = self.persons.iter().map(|person| person.embeddings.len() / self.dimension.max(1));
+        let header = Header { dimension: self.dimension, images: images.collect() };
+        let header = FORMAT.to_json(&header)?.into_bytes();
         let numbers = self.persons.iter().flat_map(|person| &person.embeddings);
         Ok([(HEADER, header), (EMBEDDINGS, numbers.flat_map(|number| number.to_le_bytes()).collect())])
     }
@@ -175,6 +176,11 @@ mod tests {
             Gallery::from_bytes(header, embeddings, &names.iter().copied().collect(), dimension)
         };
         assert_eq!(read(&header, &embeddings, &["ann", "bob"], 2).unwrap(), gallery());
+        let former = br#"{"dimension": 2, "pictures": [2, 1]}"#;
+        assert_eq!(read(former, &embeddings, &["ann", "bob"], 2).unwrap(), gallery());
+        let newer = br#"{"format_version": 3, "dimension": 2}"#;
+        let error = read(newer, &embeddings, &["ann", "bob"], 2).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::Unsupported, "{error}");
         let huge = br#"{"dimension": 2, "pictures": [18446744073709551615, 18446744073709551615]}"#;
         for (header, embeddings, names, dimension) in [
             (&header[..], &embeddings[..], &["ann"][..], 2),

@@ -1,10 +1,10 @@
 //! Input of the network from audio and video.
 
+use opendr_audio::mfcc::{Mfcc, MfccOptions};
+use opendr_audio::{AudioInput, standardise};
 use opendr_engine::data::{Audio, Video};
 use opendr_engine::{Pool, Result};
 use opendr_perception_common::clip_frames::ClipFrames;
-use opendr_sound::mfcc::{Mfcc, MfccOptions};
-use opendr_sound::{AudioInput, standardise};
 
 use super::params::AudiovisualEmotionParams;
 

@@ -37,7 +37,7 @@ impl DatasetIterator for Boards {
 
     fn get(&self, index: usize) -> Result<Sample> {
         let mut random = Random::new(index as u64);
-        let (mut points, mut truth) = (Vec::new(), Vec::new());
+        let (mut points, mut ground_truth) = (Vec::new(), Vec::new());
         for row in 0..ROWS {
             for column in 0..COLUMNS {
                 let (elevation, azimuth) = (0.1 - row as f32 * 0.0125, 0.38 - column as f32 * 0.025);
@@ -50,12 +50,15 @@ impl DatasetIterator for Boards {
                     distance * elevation,
                     level,
                 ]);
-                truth.push(if is_board { 1001 + ((column + 2 * index) / 16) as u32 } else { 0 });
+                ground_truth.push(if is_board { 1001 + ((column + 2 * index) / 16) as u32 } else { 0 });
             }
         }
-        let cloud = PointCloud::new(points, [truth.len(), 4])?;
-        let count = truth.len();
-        Ok(Sample { data: vec![cloud.into()], target: Some(Heatmap::from_labels(truth, &[count])?.into()) })
+        let cloud = PointCloud::new(points, [ground_truth.len(), 4])?;
+        let count = ground_truth.len();
+        Ok(Sample {
+            data: vec![cloud.into()],
+            target: Some(Heatmap::from_labels(ground_truth, &[count])?.into()),
+        })
     }
 
     fn classes(&self) -> Classes {
@@ -101,12 +104,16 @@ fn infer_loads_the_model_of_fit_and_boards_are_objects() {
     let mut handle = Handle::<EfficientLps>::new(EfficientLpsParams::default(), Device::Cpu).unwrap();
     handle.load(job.model()).unwrap();
     let Sample { data, target } = Boards.get(2).unwrap();
-    let (Some(Value::PointCloud(cloud)), Some(Value::Heatmap(truth))) = (data.first(), &target) else {
+    let (Some(Value::PointCloud(cloud)), Some(Value::Heatmap(ground_truth))) = (data.first(), &target) else {
         panic!()
     };
     let found = handle.infer(Scan::from(cloud)).unwrap();
     let (instances, classes) = (labels(&found.instance), labels(&found.semantic));
-    let right = labels(truth).iter().zip(classes).filter(|(truth, class)| *truth / 1000 == **class).count();
+    let right = labels(ground_truth)
+        .iter()
+        .zip(classes)
+        .filter(|(ground_truth, class)| *ground_truth / 1000 == **class)
+        .count();
     assert!(right * 100 > 93 * cloud.len(), "{right} of {}", cloud.len());
     let mut boards: Vec<u32> =
         instances.iter().copied().filter(|label| (1001..2000).contains(label)).collect();

@@ -9,6 +9,7 @@ mod objective;
 #[cfg(feature = "training")]
 mod trainable;
 
+use opendr_audio::AudioInput;
 use opendr_engine::learner::{Learner, Spec, Streaming};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
@@ -16,7 +17,6 @@ use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result};
 use opendr_inference::{Session, TensorView};
 use opendr_perception_common::category_scores::category_from_logits;
-use opendr_sound::AudioInput;
 
 use crate::speech_recognition::cepstra::{FRAMES, FrontEnd};
 use crate::speech_recognition::word_stream::{SpeechWindows, WordStream, WordStreamParams};

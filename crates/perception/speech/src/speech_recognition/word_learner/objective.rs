@@ -1,6 +1,7 @@
 //! Augmentation, batches, loss and container.
 
 use burn::tensor::Device;
+use opendr_audio::AudioInput;
 use opendr_datasets::augment::{
     AudioGain, AudioNoise, AudioShift, Augment, OtherSamples, Pipeline, SpecAugment,
 };
@@ -13,7 +14,6 @@ use opendr_engine::target::Classes;
 use opendr_engine::{Error, Random, Result, Value};
 use opendr_perception_common::labelled::{LabelledBatch, class_of};
 use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
-use opendr_sound::AudioInput;
 use opendr_training::export::{self, Input};
 use opendr_training::{Container, Loss, Objective};
 

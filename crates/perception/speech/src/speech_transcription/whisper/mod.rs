@@ -25,12 +25,12 @@ mod tests;
 pub use model::{Whisper, WhisperParams};
 pub use stream::WhisperStream;
 
+use opendr_audio::AudioInput;
+use opendr_audio::resampler::resampled;
 use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
 use opendr_engine::target::WhisperTranscription;
 use opendr_engine::{Device, Pool, Result, Task};
-use opendr_sound::AudioInput;
-use opendr_sound::resampler::resampled;
 
 use network::Network;
 use spectrogram::{RATE, SpectrogramMaker};

@@ -1,7 +1,7 @@
 //! Log-mel spectrogram, the input of Whisper.
 
+use opendr_audio::mfcc::{Mfcc, MfccOptions};
 use opendr_engine::Result;
-use opendr_sound::mfcc::{Mfcc, MfccOptions};
 
 /// Sample rate in Hz.
 pub const RATE: u32 = 16_000;

@@ -1,10 +1,10 @@
 //! Transcription of a stream of audio.
 
+use opendr_audio::AudioInput;
+use opendr_audio::resampler::Resampler;
 use opendr_engine::Result;
 use opendr_engine::learner::Streaming;
 use opendr_engine::target::WhisperTranscription;
-use opendr_sound::AudioInput;
-use opendr_sound::resampler::Resampler;
 
 use super::model::Whisper;
 use super::phrases::{Phrases, Step};

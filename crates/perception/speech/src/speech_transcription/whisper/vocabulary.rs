@@ -92,7 +92,7 @@ impl Vocabulary {
         })
     }
 
-    /// Whether the model is multilingual.
+    /// Returns whether the model is multilingual.
     pub fn is_multilingual(&self) -> bool {
         !self.languages.is_empty()
     }

@@ -76,9 +76,12 @@ fn cars_of_a_drive_are_followed() {
             let output = learner.infer(VpitInputs { scan: Scan::from(scan), init_box }).unwrap();
             let [followed_car] = &output.annotations[..] else { panic!("{output:?}") };
             assert_eq!((followed_car.id, followed_car.frame), (0, Some(at as i64 + 1)));
-            let Some(truth) = box_of(tracks, car.id).filter(|truth| truth.occluded < 2) else { continue };
+            let Some(ground_truth) = box_of(tracks, car.id).filter(|ground_truth| ground_truth.occluded < 2)
+            else {
+                continue;
+            };
             let offset =
-                [0, 2].map(|axis| followed_car.bounding_box_3d.location[axis] - truth.location[axis]);
+                [0, 2].map(|axis| followed_car.bounding_box_3d.location[axis] - ground_truth.location[axis]);
             if at == 0 {
                 assert!(offset[0].hypot(offset[1]) < 1e-3, "{offset:?}");
             } else {
@@ -152,7 +155,7 @@ fn hostile_clouds_never_panic() {
 
 #[test]
 fn invalid_trainings_are_refused() {
-    let folder = scratch("told");
+    let folder = scratch("report");
     let job = FitJob { device: Device::Cpu, ..FitJob::new(&folder) };
     let scans = StreetScans::new(1, 2);
     let scans: DatasetRef<'_> = (&scans as &dyn DatasetIterator).into();

@@ -1,0 +1,140 @@
+"""Inference of the native learners."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, ClassVar
+
+from opendr._errors import InternalError, InvalidInput
+from opendr._input_value import input_value
+from opendr._native_arguments import NativeArguments
+
+
+class NativeInference(NativeArguments):
+    """A learner of the registry that returns predictions."""
+
+    def infer(self, *inputs: Any, **arguments: Any) -> Any:
+        """Returns the prediction for one input, or for each of several.
+
+        Args:
+            inputs: The inputs, in the order of the learner's ports; also by name. An image may be an ``Image``, an
+                array (layout guessed by the rule of ``Image``), or the path of a file; the same holds for audio (WAVE),
+                time series (CSV, NPY) and scans (KITTI). For a list of inputs the result is a list of predictions, for
+                an iterator such as a ``Source`` an iterator of predictions.
+            arguments: Inputs by name, and live parameters for this call only.
+
+        Returns:
+            The prediction, with the time stamp and frame id of the input; a named tuple where the learner has several
+            outputs.
+
+        Raises:
+            FileNotFoundError: Nothing is loaded yet, or a file does not exist.
+            TypeError: An argument is of another type than the learner takes.
+            ValueError: A value is out of range.
+            opendr.InternalError: The network returned NaN or an infinite number; the message says where.
+        """
+        ports, overrides = self._arguments(inputs, arguments)
+        first = ports.get(self._entry["ports"][0]["name"])
+        if isinstance(first, Iterator):
+            return self._infer_each(ports, overrides)
+        if isinstance(first, (list, tuple)):
+            init = {port["name"] for port in self._entry["ports"] if port["init"]}
+            items = {name: value for name, value in ports.items() if name not in init}
+            lengths = {name: len(value) for name, value in items.items() if isinstance(value, (list, tuple))}
+            if len(set(lengths.values())) > 1:
+                raise ValueError(f"the inputs have different lengths: {lengths}; give the same number of each")
+            return list(self._infer_each(ports, overrides))
+        return self._infer_one(self._handle, ports, overrides)
+
+    def reset(self) -> None:
+        """Resets the state: the next input begins a new stream."""
+        self._handle.reset()
+
+    def stream(self) -> Stream:
+        """Returns a stream with its own state over the same model, for another camera or thread.
+
+        Raises:
+            FileNotFoundError: No model is loaded.
+        """
+        return Stream(self)
+
+    def push(self, *piece: Any, **named: Any) -> list[Any]:
+        """Processes the next chunk of the input and returns the predictions that are ready.
+
+        Raises:
+            opendr.Unsupported: The learner does not process its input in chunks.
+        """
+        ports, _ = self._arguments(piece, named)
+        return [self._prediction(outputs) for outputs in self._handle.push(self._values(ports))]
+
+    def flush(self) -> list[Any]:
+        """Ends an input that was given in chunks and returns the remaining predictions.
+
+        Raises:
+            opendr.Unsupported: The learner does not process its input in chunks.
+        """
+        return [self._prediction(outputs) for outputs in self._handle.push(None)]
+
+    def _infer_each(self, ports: dict[str, Any], overrides: dict[str, Any]) -> Iterator[Any]:
+        """Yields the prediction for each input of the first port. Other ports that are lists or iterators advance with it;
+        init ports are given with the first input."""
+        table = self._entry["ports"]
+        several = {
+            port["name"]: iter(ports[port["name"]])
+            for port in table
+            if isinstance(ports.get(port["name"]), (list, tuple, Iterator)) and not port["init"]
+        }
+        same = {name: value for name, value in ports.items() if name not in several}
+        for items in zip(*several.values()):
+            yield self._infer_one(self._handle, {**same, **dict(zip(several, items))}, overrides)
+            same = {port["name"]: same[port["name"]] for port in table if port["name"] in same and not port["init"]}
+
+    def _infer_one(self, handle: Any, ports: dict[str, Any], overrides: dict[str, Any]) -> Any:
+        outputs = handle.infer(self._values(ports), overrides) if overrides else handle.infer(self._values(ports))
+        return self._prediction(outputs)
+
+    def _values(self, ports: dict[str, Any]) -> dict[str, Any]:
+        types = {port["name"]: port["type"] for port in self._entry["ports"]}
+        return {name: input_value(value, name, types[name]) for name, value in ports.items()}
+
+    def _prediction(self, outputs: list[Any]) -> Any:
+        from opendr._schema import target_from_json
+
+        try:
+            targets = [target_from_json(json, array) for _, json, array in outputs]
+        except InvalidInput as error:
+            raise InternalError(
+                f"{self._entry['name']} returned an invalid target: {error}; check the model and its input"
+            ) from error
+        return targets[0] if len(targets) == 1 else self._outputs(*targets)
+
+    #: The named tuple of several outputs.
+    _outputs: ClassVar[Any] = None
+
+
+class Stream:
+    """A stream with its own state over the model of a learner."""
+
+    def __init__(self, learner: NativeInference) -> None:
+        self._learner = learner
+        self._stream = learner._handle.stream()
+
+    def infer(self, *inputs: Any, **named: Any) -> Any:
+        """Returns the prediction for one input, as ``infer`` of the learner."""
+        ports, overrides = self._learner._arguments(inputs, named)
+        if overrides:
+            raise TypeError(f"a stream has no parameters ({', '.join(overrides)}); set them on the learner")
+        return self._learner._infer_one(self._stream, ports, {})
+
+    def push(self, *piece: Any, **named: Any) -> list[Any]:
+        """Processes the next chunk of the input, as ``push`` of the learner."""
+        ports, _ = self._learner._arguments(piece, named)
+        return [self._learner._prediction(outputs) for outputs in self._stream.push(self._learner._values(ports))]
+
+    def flush(self) -> list[Any]:
+        """Ends an input that was given in chunks and returns the remaining predictions."""
+        return [self._learner._prediction(outputs) for outputs in self._stream.push(None)]
+
+    def reset(self) -> None:
+        """Resets the state."""
+        self._stream.reset()
