@@ -1,8 +1,9 @@
 //! `opendr eval`: evaluates a learner on a data set, or a policy in an environment.
 
 mod active;
+mod report_file;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::dataset::{DatasetIterator, DatasetRef};
@@ -13,7 +14,7 @@ use opendr::learner::Entry;
 use opendr::metrics::{self, MetricEntry};
 use opendr::params::ParamMap;
 use opendr::rl::EvaluationProtocol;
-use opendr::{Error, JsonFormat, Pipeline, PolicyEvaluation, Progress, Result};
+use opendr::{JsonFormat, Pipeline, Progress, Result};
 
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
@@ -157,20 +158,9 @@ fn in_environment(
         stdout::print(report.to_string().trim_end())?;
     }
     if let Some(folder) = matches.get_one::<PathBuf>("out") {
-        bar.note(&format!("written: {}", written_report(&report, folder)?.display()));
+        bar.note(&format!("written: {}", report_file::write(POLICY_REPORT, &report, folder)?.display()));
     }
     Ok(Outcome::Done)
-}
-
-/// Writes the evaluation of a policy as `report.json` and returns its path.
-fn written_report(report: &PolicyEvaluation, folder: &Path) -> Result<PathBuf> {
-    let path = folder.join("report.json");
-    let text = serde_json::to_string_pretty(report)
-        .map_err(|error| Error::internal("the report cannot be written as JSON").with_source(error))?;
-    std::fs::create_dir_all(folder)
-        .and_then(|()| std::fs::write(&path, text + "\n"))
-        .map_err(|error| Error::io(format!("writing {}", path.display())).with_source(error))?;
-    Ok(path)
 }
 
 /// Returns the metric's parameters that the user set.

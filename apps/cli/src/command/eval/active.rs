@@ -8,12 +8,14 @@ use opendr::active::{
     compare, episode_strip,
 };
 use opendr::learner::Entry;
-use opendr::{Error, Progress as _, Result, Unit};
+use opendr::{JsonFormat, Progress as _, Result, Unit};
 
+use super::report_file;
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
 use crate::{environment_flags, learner_flags, loading, stdout};
 
+const COMPARISON: JsonFormat = JsonFormat::new("comparison of camera policies", 1);
 /// Number of episodes by default, and of those that calibrate the belief for another recogniser.
 const EPISODES: u64 = 500;
 const CALIBRATION_EPISODES: u64 = 1000;
@@ -42,21 +44,20 @@ pub fn run(spec: &str, entry: &'static Entry, matches: &ArgMatches, bar: &Progre
         container.model = calibrated(&container.model, &scene, CALIBRATION_EPISODES)?;
     }
     let episodes = matches.get_one("episodes").copied().unwrap_or(EPISODES);
+    let first_seed = matches.get_one("first-seed").copied().unwrap_or(FIRST_EVALUATION_SEED);
     bar.begin("episodes", Some(CAMERA_POLICIES * episodes), Unit::Items);
-    let comparison = compare(scene()?, &container.model, FIRST_EVALUATION_SEED, episodes, bar);
+    let comparison = compare(scene()?, &container.model, first_seed, episodes, bar);
     bar.end();
     let comparison = comparison?;
     if let Some(folder) = matches.get_one::<PathBuf>("out") {
         std::fs::create_dir_all(folder)?;
-        let strip = episode_strip(scene()?, &container.model, FIRST_EVALUATION_SEED, STRIP_ROWS)?;
+        let strip = episode_strip(scene()?, &container.model, first_seed, STRIP_ROWS)?;
         opendr::vision::save(&strip, folder.join("episodes.png"))?;
-        let report = serde_json::to_string_pretty(&comparison)
-            .map_err(|error| Error::internal("the report has no JSON form").with_source(error))?;
-        std::fs::write(folder.join("report.json"), report)?;
+        report_file::write(COMPARISON, &comparison, folder)?;
         bar.note(&format!("written: episodes.png and report.json in {}", folder.display()));
     }
     if matches.get_flag("json") {
-        stdout::print_json(&comparison)?;
+        stdout::print_json(COMPARISON, &comparison)?;
     } else {
         stdout::print(format_args!("{spec} in {}, {episodes} episodes\n", source.id()))?;
         stdout::print(comparison.to_string().trim_end())?;

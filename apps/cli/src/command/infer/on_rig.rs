@@ -13,11 +13,13 @@ use opendr::model::Model;
 use opendr::rig::ViewRig;
 use opendr::simulation::{RegisteredSource, Registry};
 use opendr::target::ActionBase as _;
-use opendr::{Error, Result};
+use opendr::{Error, JsonFormat, Result};
 
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
 use crate::{environment_flags, learner_flags, loading, stdout};
+
+const EPISODE: JsonFormat = JsonFormat::new("episode of a moving camera", 1);
 
 pub const RIG: &str = "rig";
 const CAMERA_POLICY: &str = "camera-policy";
@@ -62,7 +64,7 @@ pub fn run(
         opendr::vision::save(&strip_of_views(&run)?, path)?;
     }
     if matches.contains_id("json") {
-        stdout::print_json(&run)?;
+        stdout::print_json(EPISODE, &run)?;
     } else {
         print(&run, learner.as_ref())?;
     }
