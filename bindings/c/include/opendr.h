@@ -3299,6 +3299,8 @@ static inline opendr_status opendr_infer_whisper(const opendr_learner *learner,
  * Parameters:
  *   deterministic (a bool, live, default true): Whether the policy takes its most likely actions instead of sampling.
  *   seed (an int, default 0): Seed of sampled actions, at the start of a stream.
+ *   shield (a str, default none): Name of the safety rule that decides which actions are replaced (`opendr sim priors` lists the rules); none disables the shield.
+ *   shield_prior (a str, default none): Name of the prior that acts instead, in its newest version; none means the policy's own prior.
  *
  * Inputs:
  *   observation (Observation)
@@ -3333,6 +3335,8 @@ static inline opendr_status opendr_infer_ppo(const opendr_learner *learner,
  * Parameters:
  *   deterministic (a bool, live, default true): Whether the policy takes its most likely actions instead of sampling.
  *   seed (an int, default 0): Seed of sampled actions, at the start of a stream.
+ *   shield (a str, default none): Name of the safety rule that decides which actions are replaced (`opendr sim priors` lists the rules); none disables the shield.
+ *   shield_prior (a str, default none): Name of the prior that acts instead, in its newest version; none means the policy's own prior.
  *
  * Inputs:
  *   observation (Observation)
@@ -3367,6 +3371,8 @@ static inline opendr_status opendr_infer_sac(const opendr_learner *learner,
  * Parameters:
  *   deterministic (a bool, live, default true): Whether the policy takes its most likely actions instead of sampling.
  *   seed (an int, default 0): Seed of sampled actions, at the start of a stream.
+ *   shield (a str, default none): Name of the safety rule that decides which actions are replaced (`opendr sim priors` lists the rules); none disables the shield.
+ *   shield_prior (a str, default none): Name of the prior that acts instead, in its newest version; none means the policy's own prior.
  *
  * Inputs:
  *   observation (Observation)
@@ -3401,6 +3407,8 @@ static inline opendr_status opendr_infer_td3(const opendr_learner *learner,
  * Parameters:
  *   deterministic (a bool, live, default true): Whether the policy takes its most likely actions instead of sampling.
  *   seed (an int, default 0): Seed of sampled actions, at the start of a stream.
+ *   shield (a str, default none): Name of the safety rule that decides which actions are replaced (`opendr sim priors` lists the rules); none disables the shield.
+ *   shield_prior (a str, default none): Name of the prior that acts instead, in its newest version; none means the policy's own prior.
  *
  * Inputs:
  *   observation (Observation)
@@ -3435,6 +3443,8 @@ static inline opendr_status opendr_infer_dqn(const opendr_learner *learner,
  * Parameters:
  *   deterministic (a bool, live, default true): Whether the policy takes its most likely actions instead of sampling.
  *   seed (an int, default 0): Seed of sampled actions, at the start of a stream.
+ *   shield (a str, default none): Name of the safety rule that decides which actions are replaced (`opendr sim priors` lists the rules); none disables the shield.
+ *   shield_prior (a str, default none): Name of the prior that acts instead, in its newest version; none means the policy's own prior.
  *
  * Inputs:
  *   observation (Observation)
@@ -3469,6 +3479,8 @@ static inline opendr_status opendr_infer_residual_ppo(const opendr_learner *lear
  * Parameters:
  *   deterministic (a bool, live, default true): Whether the policy takes its most likely actions instead of sampling.
  *   seed (an int, default 0): Seed of sampled actions, at the start of a stream.
+ *   shield (a str, default none): Name of the safety rule that decides which actions are replaced (`opendr sim priors` lists the rules); none disables the shield.
+ *   shield_prior (a str, default none): Name of the prior that acts instead, in its newest version; none means the policy's own prior.
  *
  * Inputs:
  *   observation (Observation)
@@ -3503,6 +3515,8 @@ static inline opendr_status opendr_infer_residual_sac(const opendr_learner *lear
  * Parameters:
  *   deterministic (a bool, live, default true): Whether the policy takes its most likely actions instead of sampling.
  *   seed (an int, default 0): Seed of sampled actions, at the start of a stream.
+ *   shield (a str, default none): Name of the safety rule that decides which actions are replaced (`opendr sim priors` lists the rules); none disables the shield.
+ *   shield_prior (a str, default none): Name of the prior that acts instead, in its newest version; none means the policy's own prior.
  *
  * Inputs:
  *   observation (Observation)

@@ -113,6 +113,7 @@ fn training_does_not_depend_on_the_number_of_threads() {
         n_steps: 64,
         batch_size: 64,
         surroundings_flights: 4,
+        foresight_flights: 2,
         ..Default::default()
     };
     params.training.total_timesteps = 256;
@@ -125,9 +126,13 @@ fn training_does_not_depend_on_the_number_of_threads() {
         assert_eq!(statistics.get("steps"), Some(256.0));
         assert_eq!(flight(&mut learner).first().unwrap().len(), 2);
         let model = Model::open(output.join("model")).unwrap();
-        [POLICY_FILE, "surroundings.f32"].map(|name| model.file(name).unwrap())
+        [POLICY_FILE, "surroundings.f32", "foresight.f32"].map(|name| model.file(name).unwrap())
     });
     assert!(policies[0] == policies[1]);
+    // A foresight needs surroundings.
+    let alone = EndToEndPlanningFitParams { surroundings_flights: 0, ..params.clone() };
+    let error = handle().fit_in(&alone, &corridor, None, &FitJob::new(&folder.0.join("alone"))).unwrap_err();
+    assert!(error.to_string().contains("surroundings_flights"), "{error}");
     // Another environment is refused before anything is learnt.
     params.surroundings_flights = 1_000_000;
     let cart = || make("CartPole-v1");
