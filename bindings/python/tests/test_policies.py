@@ -5,7 +5,7 @@ import numpy as np
 import opendr
 import pytest
 from opendr import _opendr, priors
-from opendr.control.reinforcement_learning import PpoLearner, SacLearner
+from opendr.control.reinforcement_learning import PpoLearner, ResidualPpoLearner, SacLearner
 from opendr.engine.data import Observation
 from opendr.engine.learners import LearnerRL
 from opendr.engine.target import RlTarget
@@ -48,6 +48,11 @@ def test_pretrained_policies(entry, tmp_path):
     learner = cls(device="cpu")
     with pytest.raises(FileNotFoundError, match=r"download\(\).*load\(\).*fit\(\)"):
         learner.infer(np.zeros(1))
+    if entry["name"].startswith("residual_"):
+        # A correction belongs to a prior of the user's choice.
+        with pytest.raises(opendr.NotFound, match="no pretrained weights"):
+            learner.load()
+        return
     assert learner.load() is True and learner.is_ready
     numbers = learner.eval(episodes=3)
     assert numbers["episodes"] == 3
@@ -129,7 +134,7 @@ def test_a_function_is_a_prior(tmp_path):
         priors.register("test-damping", 1, damp)
     with pytest.raises(TypeError):
         priors.register("test-number", 1, 3)
-    learner = opendr.learner("residual_ppo")
+    learner = ResidualPpoLearner()
     steps = {"total_timesteps": 256, "n_steps": 64, "n_envs": 1, "n_eval_episodes": 1}
     learner.fit("Pendulum-v1", prior="test-damping", out=tmp_path / "run", silent=True, **steps)
     numbers = learner.eval(episodes=2)
@@ -142,5 +147,5 @@ def test_a_function_is_a_prior(tmp_path):
     # An exception of the function is one of the training.
     priors.register("test-broken", 1, lambda seen: [])
     with pytest.raises(ValueError, match="0 numbers"):
-        broken = opendr.learner("residual_ppo")
+        broken = ResidualPpoLearner()
         broken.fit("Pendulum-v1", prior="test-broken", out=tmp_path / "broken", silent=True, **steps)

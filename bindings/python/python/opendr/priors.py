@@ -1,10 +1,10 @@
 """Prior controllers that policies start from, learn from, or are shielded by (docs/priors.md).
 
-    import opendr
     from opendr import priors
+    from opendr.control.reinforcement_learning import ResidualSacLearner
 
     priors.register("mine", 1, lambda seen: [-2.0 * seen[1] - 0.5 * seen[2]], "damps the pendulum of Pendulum-v1")
-    learner = opendr.learner("residual_sac")
+    learner = ResidualSacLearner()
     learner.fit("Pendulum-v1", prior="mine", total_timesteps=5000)
 
 A policy names its prior with the version: register the same one before the policy is loaded.
