@@ -8,7 +8,6 @@ use crate::raycast::Vector;
 
 /// Appearance of a face. Lengths are shares of the head's radius, seen from the front: y to the left, z up.
 struct Face {
-    half: Vector,
     skin: [f32; 3],
     eyes: Eyes,
     nose: [f32; 2],
@@ -36,6 +35,8 @@ struct Mark {
     colour: [f32; 3],
 }
 
+/// Radii of every head: its outline must not identify a person.
+const HALF: Vector = [0.82, 0.73, 0.92];
 const HAIR: [f32; 3] = [0.16, 0.11, 0.08];
 const WHITE: [f32; 3] = [0.93, 0.93, 0.9];
 
@@ -51,7 +52,6 @@ impl Face {
     fn new(random: &mut Random) -> Self {
         let mut range = |low: f32, high: f32| random.uniform(low, high);
         let tone = range(0.6, 1.15);
-        let half = [range(0.8, 0.84), range(0.7, 0.76), range(0.9, 0.94)];
         let skin = [0.8 * tone, range(0.52, 0.7) * tone, range(0.35, 0.6) * tone];
         let eyes = Eyes {
             aside: range(0.24, 0.38),
@@ -72,7 +72,7 @@ impl Face {
         let beard = if random.chance(0.35) { random.uniform(0.4, 0.9) } else { 0.0 };
         let moustache = if random.chance(0.3) { random.uniform(0.5, 1.0) } else { 0.0 };
         let glasses = random.chance(0.25);
-        Self { half, skin, eyes, nose, mouth, lips, hairline, beard, moustache, glasses, marks }
+        Self { skin, eyes, nose, mouth, lips, hairline, beard, moustache, glasses, marks }
     }
 
     /// The colour on the front at a place.
@@ -113,16 +113,15 @@ impl Form for Face {
     fn radius(&self, direction: Vector) -> f32 {
         let [x, y, z] = direction;
         let nose = front(x) * bump([y, z], [0.0, self.nose[1]], [self.nose[0] + 0.04, 0.3]);
-        ellipsoid(self.half, direction) + 0.16 * nose + 0.12 * ears(direction)
+        ellipsoid(HALF, direction) + 0.16 * nose + 0.12 * ears(direction)
     }
 
     fn colour(&self, direction: Vector) -> [f32; 3] {
         let [x, y, z] = direction;
-        // Hair covers the back and the top; below it the neck.
+        // Hair covers all but the front: skin at the back would identify a person.
         let hair = step(z - 0.9 * x, self.hairline - 0.55, self.hairline - 0.45).max(step(z, 0.8, 0.85));
-        let hair = if x < 0.0 { 1.0 - step(-z, 0.55, 0.65) } else { hair };
-        let face = mix(self.skin, self.face_colour(y, z), front(x));
-        mix(mix(face, HAIR, hair), self.skin, ears(direction))
+        let face = mix(self.face_colour(y, z), HAIR, hair);
+        mix(HAIR, face, front(x))
     }
 }
 
