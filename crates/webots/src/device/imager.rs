@@ -95,8 +95,7 @@ impl Imager {
         let Some(path) = &self.file else { return Ok(()) };
         let size = self.elements() * ELEMENT;
         self.image.resize(size, 0);
-        let read =
-            File::open(path).and_then(|mut file| file.read_exact(&mut self.image));
+        let read = File::open(path).and_then(|mut file| file.read_exact(&mut self.image));
         read.map_err(|error| {
             Error::io(format!("cannot read the image {}", path.display())).with_source(error)
         })
