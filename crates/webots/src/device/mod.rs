@@ -53,7 +53,7 @@ impl Device {
         let state = match kind {
             None => State::Unknown(node),
             Some(kind) if kind.is_motor() => State::Motor(Motor::new(kind)),
-            Some(kind) if kind.is_imager() => State::Imager(Imager::new(kind, version)),
+            Some(kind) if kind.is_imager() => State::Imager(Imager::new(kind)),
             Some(DeviceKind::Emitter) => State::Emitter(Emitter::default()),
             Some(DeviceKind::Receiver) => State::Receiver(Receiver::default()),
             Some(kind) => State::Sensor(Sensor::new(kind)),
