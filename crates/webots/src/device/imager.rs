@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use opendr_engine::{Error, Result};
 
-use super::CONFIGURE;
+use super::opcodes::{CONFIGURE, write_period};
 use crate::incoming::receive;
 use crate::kind::DeviceKind;
 use crate::reader::Reader;
@@ -99,7 +99,7 @@ impl Imager {
     }
 
     pub(super) fn write(&mut self, request: &mut Request) {
-        super::write_period(&mut self.new_period, request);
+        write_period(&mut self.new_period, request);
     }
 
     pub(super) fn answer(&mut self, command: u8, reader: &mut Reader<'_>) -> Result<bool> {
