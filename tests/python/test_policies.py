@@ -45,6 +45,24 @@ def test_environments_are_listed(opendr):
     assert "--env-param max_obstacles=6 [0 to 15]" in one and "truncated    after 100 steps" in one
 
 
+def test_worlds_are_exported_for_webots(opendr, tmp_path):
+    world = tmp_path / "world.wbt"
+    done = opendr.run("sim", "export", "CartPole-v1", world, "--seed", "3")
+    assert done.returncode == 0, done.stderr
+    text = world.read_text()
+    assert text.startswith("#VRML_SIM R2023b utf8") and 'title "CartPole-v1, seed 3' in text
+    done = opendr.run("sim", "export", "SphereView-Face-v1", world)
+    assert done.returncode not in (0, 101) and "textures" in done.stderr
+
+
+def test_a_robot_in_webots_is_an_environment_beside_the_others(opendr):
+    assert "Webots-v0" in opendr.run("sim", "list").stdout
+    assert "--env-param url=" in opendr.run("sim", "list", "Webots-v0").stdout
+    for params, word in [([], "no address"), (["--env-param", "url=tcp://127.0.0.1:9/robot"], "cannot connect to Webots")]:
+        done = opendr.run("sim", "view", "Webots-v0", *params)
+        assert done.returncode not in (0, 101) and word in done.stderr, done.stderr
+
+
 def test_wrong_use_is_told(opendr, tmp_path):
     for arguments, word in [
         (["fit", "ppo"], "--env"),

@@ -3,7 +3,7 @@
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::learner::{AnyLearner, Entry};
 use opendr::params::ParamMap;
-use opendr::simulation::{RegisteredSource, Registry};
+use opendr::simulation::RegisteredSource;
 use opendr::{Error, Result, ValueType};
 
 use crate::dataset_flags;
@@ -87,7 +87,7 @@ pub fn named(matches: &ArgMatches, learner: Option<&dyn AnyLearner>) -> Result<R
             "no environment; name one by --env, such as --env CartPole-v1 (see \"opendr sim list\")",
         )
     })?;
-    RegisteredSource::new(&id, &params(&id, matches)?)
+    opendr::environments::source(&id, &params(&id, matches)?)
 }
 
 /// Returns the environment's parameters that the user set.
@@ -95,7 +95,7 @@ pub fn named(matches: &ArgMatches, learner: Option<&dyn AnyLearner>) -> Result<R
 /// # Errors
 /// `InvalidParam` for an unknown parameter or a value of another type.
 pub fn params(id: &str, matches: &ArgMatches) -> Result<ParamMap> {
-    let registration = Registry::builtin().get(id)?;
+    let registration = opendr::environments::registration(id)?;
     let given = matches.get_many::<String>(ENV_PARAM).into_iter().flatten();
     given
         .map(|text| crate::named_value::parse(ENV_PARAM, text, registration.id(), registration.fields()))

@@ -112,7 +112,7 @@ pub(crate) unsafe fn source_of(id: *const c_char, params_json: *const c_char) ->
     let params: ParamMap = serde_json::from_str(params).map_err(|error| {
         Error::invalid_param("the parameters of an environment are not a JSON object").with_source(error)
     })?;
-    RegisteredSource::new(id, &params)
+    opendr::environments::source(id, &params)
 }
 
 /// Creates an environment, e.g. "CartPole-v1".

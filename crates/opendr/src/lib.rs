@@ -44,6 +44,7 @@
 //! ```
 
 mod by_name;
+pub mod environments;
 mod export;
 mod fit;
 mod pipeline;
@@ -95,6 +96,8 @@ pub use opendr_speech::{speech_recognition, speech_transcription, voice_activity
 pub use opendr_stereo::stereo_matching;
 #[cfg(feature = "tracking")]
 pub use opendr_tracking::{object_tracking_2d, object_tracking_3d, tracking};
+#[cfg(feature = "webots")]
+pub use opendr_webots as webots;
 pub use pipeline::Pipeline;
 pub use policy_evaluation::{
     PolicyController, PolicyEvaluation, evaluate_learner, evaluate_policy, training_environment,

@@ -25,6 +25,11 @@ impl RegisteredSource {
         Ok(source)
     }
 
+    /// Selects an environment that is not built in, such as a robot in another simulator. It is created by [`Self::make`] only.
+    pub fn of(registration: Registration, params: &ParamMap) -> Self {
+        Self { registration, params: params.clone() }
+    }
+
     /// Returns name and version.
     pub fn id(&self) -> &str {
         self.registration.id()

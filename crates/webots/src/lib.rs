@@ -3,11 +3,13 @@
 //! - [`WebotsLink`] is the connection of an external controller: [`NativeLink`] speaks the wire protocol of the versions in
 //!   [`Version`] and needs no installation; with the feature `webots-library`, `LibraryLink` loads the user's `libController`.
 //! - [`WebotsEnvironment`] makes a robot an environment: its motors are the actions, its sensors the observations.
+//! - [`export()`] writes the worlds of `opendr-simulation` as world files of Webots.
 //!
 //! Nothing of this crate was run against Webots itself: `docs/webots.md` says what was run against what.
 
 mod device;
 mod environment;
+mod export;
 mod incoming;
 mod kind;
 #[cfg(feature = "webots-library")]
@@ -21,6 +23,7 @@ mod url;
 mod version;
 
 pub use environment::{ID, LinkKind, WebotsEnvironment, WebotsParams, registration};
+pub use export::export;
 pub use kind::DeviceKind;
 #[cfg(feature = "webots-library")]
 pub use library::LibraryLink;

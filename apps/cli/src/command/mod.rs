@@ -19,6 +19,8 @@ mod ros;
 mod runtime;
 mod score;
 mod sim;
+#[cfg(feature = "webots")]
+mod sim_export;
 mod tune;
 
 use std::ffi::{OsStr, OsString};

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use opendr::environment::{Controller, Environment, EnvironmentSource, ResetOptions, Space, Step};
 use opendr::rl::prior::{Prior, PriorId, SafetyRule};
-use opendr::simulation::{Recording, RegisteredSource, Registry};
+use opendr::simulation::{Recording, Registry};
 use opendr::{Error, PolicyController, Progress, Random, Result, Unit};
 
 use crate::exit::Outcome;
@@ -19,7 +19,8 @@ Examples:
   opendr sim priors                                             list the prior controllers
   opendr sim view CartPole-v1                                   an episode of random actions, as CartPole-v1.gif
   opendr sim view CartPole-v1 --learner ppo --out cart.mp4      an episode of a policy (mp4 needs ffmpeg)
-  opendr sim view UavDepthCorridor-v1 --env-param max_obstacles=10 --seed 7 --out flight.png";
+  opendr sim view UavDepthCorridor-v1 --env-param max_obstacles=10 --seed 7 --out flight.png
+  opendr sim export UavDepthCorridor-v1 flight.wbt --seed 7     the world of an episode, for Webots";
 
 const ID: &str = "id";
 
@@ -68,6 +69,8 @@ pub fn grammar() -> Command {
                 Arg::new(ID).value_name("ID").help("List the spaces and parameters of this environment"),
             ),
             view,
+            #[cfg(feature = "webots")]
+            super::sim_export::grammar(),
         ])
         .after_help(EXAMPLES)
 }
@@ -77,6 +80,8 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         Some(("list", matches)) => list(matches),
         Some(("view", matches)) => view(matches),
         Some(("priors", _)) => priors(),
+        #[cfg(feature = "webots")]
+        Some(("export", matches)) => super::sim_export::run(matches),
         _ => Ok(Outcome::Done),
     }
 }
@@ -88,16 +93,23 @@ fn list(matches: &ArgMatches) -> Result<Outcome> {
             let spec = registry.get(id)?.make(&Default::default())?.spec().clone();
             stdout::print(format_args!("{id:28} observation {}, action {}", spec.observation, spec.action))?;
         }
+        for external in opendr::environments::external() {
+            stdout::print(format_args!("{:28} spaces of the robot that it is connected to", external.id()))?;
+        }
         return Ok(Outcome::Done);
     };
-    let registration = registry.get(id)?;
-    let spec = registration.make(&Default::default())?.spec().clone();
-    stdout::print(format_args!(
-        "{}\n  observation  {}\n  action       {}",
-        spec.id, spec.observation, spec.action
-    ))?;
-    if let Some(limit) = spec.max_episode_steps {
-        stdout::print(format_args!("  truncated    after {limit} steps"))?;
+    let registration = opendr::environments::registration(id)?;
+    if registry.get(registration.id()).is_ok() {
+        let spec = registration.make(&Default::default())?.spec().clone();
+        stdout::print(format_args!(
+            "{}\n  observation  {}\n  action       {}",
+            spec.id, spec.observation, spec.action
+        ))?;
+        if let Some(limit) = spec.max_episode_steps {
+            stdout::print(format_args!("  truncated    after {limit} steps"))?;
+        }
+    } else {
+        stdout::print(format_args!("{}\n  spaces of the robot that it is connected to", registration.id()))?;
     }
     for field in registration.fields() {
         let range = field.range.map(|range| {
@@ -128,7 +140,7 @@ fn priors() -> Result<Outcome> {
 fn view(matches: &ArgMatches) -> Result<Outcome> {
     let bar = ProgressBar::new(matches.get_flag("quiet"));
     let id = matches.get_one::<String>(ID).map_or("", String::as_str);
-    let source = RegisteredSource::new(id, &environment_flags::params(id, matches)?)?;
+    let source = opendr::environments::source(id, &environment_flags::params(id, matches)?)?;
     let mut environment = source.make()?;
     let first = matches.get_one::<u64>("seed").copied().unwrap_or(0);
     let mut acting: Box<dyn Controller> = match matches.get_one::<String>("learner") {

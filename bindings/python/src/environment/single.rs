@@ -1,7 +1,6 @@
 //! The class `Environment` of Python: a single environment.
 
 use opendr::environment::{Environment as World, EnvironmentSpec, Info, ResetOptions};
-use opendr::simulation::Registry;
 use opendr::simulation::wrappers::Checked;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -53,7 +52,7 @@ impl Environment {
     #[new]
     fn new(py: Python<'_>, id: &str, params: &Bound<'_, PyDict>) -> PyResult<Self> {
         let params = params_from_python(params)?;
-        let world = py.detach(|| Registry::builtin().get(id)?.make(&params)).to_python(py)?;
+        let world = py.detach(|| opendr::environments::registration(id)?.make(&params)).to_python(py)?;
         Self::of(py, world)
     }
 

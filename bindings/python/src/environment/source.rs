@@ -25,7 +25,7 @@ impl GivenEnvironments {
             return Ok(Self::Function(object.clone().unbind()));
         };
         let params = params_from_python(&params)?;
-        RegisteredSource::new(&id, &params).to_python(object.py()).map(Self::Registered)
+        opendr::environments::source(&id, &params).to_python(object.py()).map(Self::Registered)
     }
 }
 

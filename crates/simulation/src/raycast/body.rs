@@ -69,6 +69,11 @@ impl Body {
         self.position
     }
 
+    /// Returns the axes of the body's frame, in world coordinates.
+    pub fn axes(&self) -> [Vector; 3] {
+        self.body_from_world
+    }
+
     /// Returns the label.
     pub fn label(&self) -> u16 {
         self.label

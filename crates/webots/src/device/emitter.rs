@@ -4,7 +4,8 @@ use std::collections::VecDeque;
 
 use opendr_engine::{Error, Result};
 
-use super::{CONFIGURE, channels};
+use super::channels;
+use super::opcodes::CONFIGURE;
 use crate::reader::Reader;
 use crate::request::Request;
 

@@ -6,16 +6,14 @@ use std::path::PathBuf;
 
 use opendr_engine::{Error, Result};
 
-use super::CONFIGURE;
+use super::opcodes::{CONFIGURE, write_period};
 use crate::incoming::receive;
 use crate::kind::DeviceKind;
 use crate::reader::Reader;
 use crate::request::Request;
-use crate::version::Version;
 
 const RECONFIGURE: u8 = 7;
 const MEMORY_MAPPED_FILE: u8 = 8;
-const SET_EXPOSURE: u8 = 6;
 /// Bytes of a pixel (BGRA) and of a range (f32).
 const ELEMENT: usize = 4;
 /// Bytes of a point of a lidar's cloud, which follows the ranges.
@@ -38,13 +36,10 @@ pub(crate) struct Imager {
     /// Where Webots writes the images, on one machine.
     file: Option<PathBuf>,
     new_period: Option<u16>,
-    /// The library of R2023a sends the exposure of a camera with its first request.
-    new_exposure: Option<f64>,
-    sends_exposure: bool,
 }
 
 impl Imager {
-    pub(super) fn new(kind: DeviceKind, version: Version) -> Self {
+    pub(super) fn new(kind: DeviceKind) -> Self {
         Self {
             kind,
             width: 0,
@@ -55,8 +50,6 @@ impl Imager {
             image: Vec::new(),
             file: None,
             new_period: None,
-            new_exposure: None,
-            sends_exposure: !version.is_stated(),
         }
     }
 
@@ -95,8 +88,7 @@ impl Imager {
         let Some(path) = &self.file else { return Ok(()) };
         let size = self.elements() * ELEMENT;
         self.image.resize(size, 0);
-        let read =
-            File::open(path).and_then(|mut file| file.read_exact(&mut self.image));
+        let read = File::open(path).and_then(|mut file| file.read_exact(&mut self.image));
         read.map_err(|error| {
             Error::io(format!("cannot read the image {}", path.display())).with_source(error)
         })
@@ -107,11 +99,7 @@ impl Imager {
     }
 
     pub(super) fn write(&mut self, request: &mut Request) {
-        super::write_period(&mut self.new_period, request);
-        if let Some(exposure) = self.new_exposure.take() {
-            request.u8(SET_EXPOSURE);
-            request.f64(exposure);
-        }
+        write_period(&mut self.new_period, request);
     }
 
     pub(super) fn answer(&mut self, command: u8, reader: &mut Reader<'_>) -> Result<bool> {
@@ -139,8 +127,8 @@ impl Imager {
             DeviceKind::Camera => {
                 let (_min_view, _max_view) = (reader.f64()?, reader.f64()?);
                 let (_recognition, _segmentation) = (reader.u8()?, reader.u8()?);
-                self.new_exposure = Some(reader.f64()?).filter(|_| self.sends_exposure);
-                reader.fill(&mut [0.0; 4])?;
+                // Exposure, focal length, focal distance and its limits.
+                reader.fill(&mut [0.0; 5])?;
             }
             DeviceKind::Lidar => {
                 self.max_range = reader.f64()?;

@@ -4,6 +4,7 @@ mod channels;
 mod emitter;
 mod imager;
 mod motor;
+mod opcodes;
 mod receiver;
 mod sensor;
 
@@ -17,13 +18,10 @@ use crate::version::Version;
 pub(crate) use emitter::Emitter;
 pub(crate) use imager::Imager;
 pub(crate) use motor::Motor;
+pub(crate) use opcodes::CONFIGURE;
+use opcodes::write_period;
 pub(crate) use receiver::Receiver;
 pub(crate) use sensor::Sensor;
-
-/// Opcode of a configuration, in both directions of a device.
-pub(crate) const CONFIGURE: u8 = 0;
-/// Opcode that sets the sampling period.
-const SET_SAMPLING_PERIOD: u8 = 1;
 
 /// A device.
 #[derive(Debug, Clone)]
@@ -53,7 +51,7 @@ impl Device {
         let state = match kind {
             None => State::Unknown(node),
             Some(kind) if kind.is_motor() => State::Motor(Motor::new(kind)),
-            Some(kind) if kind.is_imager() => State::Imager(Imager::new(kind, version)),
+            Some(kind) if kind.is_imager() => State::Imager(Imager::new(kind)),
             Some(DeviceKind::Emitter) => State::Emitter(Emitter::default()),
             Some(DeviceKind::Receiver) => State::Receiver(Receiver::default()),
             Some(kind) => State::Sensor(Sensor::new(kind)),
@@ -125,12 +123,5 @@ impl Device {
             }
         }
         Ok(())
-    }
-}
-
-fn write_period(new_period: &mut Option<u16>, request: &mut Request) {
-    if let Some(period) = new_period.take() {
-        request.u8(SET_SAMPLING_PERIOD);
-        request.u16(period);
     }
 }

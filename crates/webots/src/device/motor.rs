@@ -2,7 +2,7 @@
 
 use opendr_engine::Result;
 
-use super::CONFIGURE;
+use super::opcodes::CONFIGURE;
 use crate::kind::DeviceKind;
 use crate::reader::Reader;
 use crate::request::Request;

@@ -4,7 +4,8 @@ use std::collections::VecDeque;
 
 use opendr_engine::{Error, Result};
 
-use super::{CONFIGURE, channels};
+use super::channels;
+use super::opcodes::{CONFIGURE, write_period};
 use crate::reader::Reader;
 use crate::request::Request;
 
@@ -38,7 +39,7 @@ impl Receiver {
     }
 
     pub(super) fn write(&mut self, request: &mut Request) {
-        super::write_period(&mut self.new_period, request);
+        write_period(&mut self.new_period, request);
     }
 
     pub(super) fn answer(&mut self, command: u8, reader: &mut Reader<'_>) -> Result<bool> {

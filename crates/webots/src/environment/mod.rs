@@ -7,6 +7,6 @@ mod reward;
 mod robot_environment;
 mod sensors;
 
-pub use options::{LinkKind, WebotsParams};
-pub use registration::{ID, registration};
+pub use options::{ID, LinkKind, WebotsParams};
+pub use registration::registration;
 pub use robot_environment::WebotsEnvironment;

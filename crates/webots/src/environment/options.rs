@@ -2,6 +2,9 @@
 
 use opendr_engine::params::Params;
 
+/// Name and version of the environment.
+pub const ID: &str = "Webots-v0";
+
 opendr_engine::choices! {
     /// How to connect.
     pub enum LinkKind {

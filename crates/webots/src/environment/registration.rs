@@ -8,15 +8,12 @@ use opendr_engine::{Error, Result};
 use opendr_simulation::Registration;
 use opendr_simulation::wrappers::{Checked, TimeLimit};
 
-use super::options::{LinkKind, WebotsParams};
+use super::options::{ID, LinkKind, WebotsParams};
 use super::robot_environment::WebotsEnvironment;
 use crate::link::WebotsLink;
 use crate::native::NativeLink;
 use crate::url::ControllerUrl;
 use crate::version::Version;
-
-/// Name and version of the environment.
-pub const ID: &str = "Webots-v0";
 
 /// Returns the entry of the registry: it connects to Webots when it creates an environment.
 pub fn registration() -> Registration {

@@ -5,8 +5,7 @@ use opendr_engine::environment::{Environment, EnvironmentSpec, Info, ResetOption
 use opendr_engine::{Error, Result};
 
 use super::actuators::Actuators;
-use super::options::WebotsParams;
-use super::registration::ID;
+use super::options::{ID, WebotsParams};
 use super::reward::Rewards;
 use super::sensors::Sensors;
 use crate::link::{StepEnd, WebotsLink};

@@ -29,6 +29,8 @@ pub struct NativeLink<S: Write = Stream> {
     request: Request,
     /// Messages of the robot itself for the next request.
     pub(super) due: Request,
+    /// New values of fields, which wait for the next step.
+    pub(super) new_values: Request,
     data: Data,
     steps: u64,
     is_lost: bool,
@@ -49,6 +51,7 @@ impl<S: Read + Write + Send> NativeLink<S> {
             },
             request: Request::default(),
             due: Request::default(),
+            new_values: Request::default(),
             data: Data::default(),
             steps: 0,
             is_lost: false,
@@ -80,9 +83,15 @@ impl<S: Read + Write + Send> NativeLink<S> {
         // Until the exchange is complete, requests and answers may be out of step.
         self.is_lost = true;
         self.request.begin(step_ms);
-        let due = &mut self.due;
-        self.request.device(0, |request| request.data(due.raw()));
-        due.clear();
+        let (due, new_values) = (&mut self.due, &mut self.new_values);
+        self.request.device(0, |request| {
+            request.data(due.raw());
+            due.clear();
+            if step_ms > 0 {
+                request.data(new_values.raw());
+                new_values.clear();
+            }
+        });
         for (tag, device) in (1..).zip(&mut self.robot.devices) {
             self.request.device(tag, |request| device.write(step_ms, request));
         }

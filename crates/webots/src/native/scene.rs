@@ -19,7 +19,7 @@ const REGENERATED: u8 = 19;
 const COUNT_CHANGED: u8 = 20;
 const NODE_REMOVED: u8 = 97;
 
-/// The last answer of each kind; taken by whoever asked.
+/// The last answer of each kind; taken by the request that asked for it.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Scene {
     is_configured: bool,

@@ -73,12 +73,12 @@ impl<S: Read + Write + Send> Supervisor for NativeLink<S> {
     fn set_value(&mut self, field: FieldRef, value: &FieldValue) -> Result<()> {
         self.check_scene_requests()?;
         value.check(field.kind)?;
-        self.due.u8(SET_VALUE);
-        self.due.u32(field.node as u32);
-        self.due.u32(field.id as u32);
-        self.due.u32(field.kind as u32);
-        self.due.u32(SINGLE);
-        write_value(value, &mut self.due);
+        self.new_values.u8(SET_VALUE);
+        self.new_values.u32(field.node as u32);
+        self.new_values.u32(field.id as u32);
+        self.new_values.u32(field.kind as u32);
+        self.new_values.u32(SINGLE);
+        write_value(value, &mut self.new_values);
         Ok(())
     }
 

@@ -4,7 +4,6 @@ use clap::{Arg, ArgMatches, Command, value_parser};
 use opendr::environment::EnvironmentSource as _;
 use opendr::rl::observation_from_numbers;
 use opendr::ros::{EnvironmentNode, EnvironmentOptions, Graph, Names, Ros1Node, RosArgs};
-use opendr::simulation::RegisteredSource;
 use opendr::{Error, Result};
 
 use super::participant::{self, start_ros2};
@@ -58,7 +57,7 @@ pub fn grammar() -> Command {
 pub fn run(ros: Ros, matches: &ArgMatches) -> Result<Outcome> {
     let text = |id: &str| matches.get_one::<String>(id).map(String::as_str);
     let id = text("id").unwrap_or_default();
-    let source = RegisteredSource::new(id, &environment_flags::params(id, matches)?)?;
+    let source = opendr::environments::source(id, &environment_flags::params(id, matches)?)?;
     let words: Vec<&str> =
         matches.get_many::<String>(ROS_ARGS).into_iter().flatten().map(String::as_str).collect();
     // ROS names cannot contain dashes.

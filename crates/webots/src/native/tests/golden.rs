@@ -36,7 +36,9 @@ fn both_layouts_are_byte_for_byte_those_of_the_table() {
             assert_eq!(values, numbers);
         }
         assert_eq!(link.image(3).unwrap(), [0, 1, 2, 3, 4, 5, 6, 7]);
-        let ranges = |device: usize| link.image(device).unwrap().as_chunks().0.iter().map(|four| f32::from_le_bytes(*four));
+        let ranges = |device: usize| {
+            link.image(device).unwrap().as_chunks().0.iter().map(|four| f32::from_le_bytes(*four))
+        };
         assert!(ranges(4).eq([0.25, 0.5, 0.75, f32::INFINITY]) && ranges(5).eq([1.0, 2.0, 3.0, 4.0]));
         let mut packet = Vec::new();
         assert!(link.receive(12, &mut packet).unwrap() && packet == b"ok");

@@ -1,0 +1,72 @@
+//! Exported worlds are well-formed, and state the episode.
+
+use opendr_engine::ErrorKind;
+use opendr_engine::params::{ParamMap, ParamValue};
+use opendr_simulation::Registry;
+
+use super::export;
+
+/// Checks brackets and texts, and that every number is finite.
+fn check(world: &str) {
+    let mut open = Vec::new();
+    let mut letters = world.chars();
+    while let Some(letter) = letters.next() {
+        match letter {
+            '#' => drop(letters.find(|letter| *letter == '\n')),
+            '"' => assert!(letters.any(|letter| letter == '"')),
+            '{' | '[' => open.push(letter),
+            '}' => assert_eq!(open.pop(), Some('{')),
+            ']' => assert_eq!(open.pop(), Some('[')),
+            _ => {}
+        }
+    }
+    assert!(open.is_empty());
+    assert!(!world.contains("NaN") && !world.split_whitespace().any(|word| word == "inf"));
+}
+
+#[test]
+fn every_world_with_known_bodies_is_exported() {
+    for id in Registry::builtin().ids() {
+        match export(id, &ParamMap::new(), 3) {
+            Ok(world) => {
+                check(&world);
+                assert!(world.starts_with("#VRML_SIM R2023b utf8\n"), "{id}");
+                assert!(
+                    world.contains(&format!("title \"{id}, seed 3"))
+                        && world.contains("controller \"<extern>\"")
+                );
+                assert_eq!(world, export(id, &ParamMap::new(), 3).unwrap());
+                assert_ne!(world, export(id, &ParamMap::new(), 4).unwrap(), "{id}");
+            }
+            Err(error) => {
+                assert_eq!(error.kind(), ErrorKind::Unsupported, "{error}");
+                assert!(id.starts_with("SphereView-"), "{id}: {error}");
+            }
+        }
+    }
+    assert_eq!(export("Walker-v1", &ParamMap::new(), 0).unwrap_err().kind(), ErrorKind::NotFound);
+}
+
+#[test]
+fn parameters_and_variants_change_the_world() {
+    let with =
+        |id: &str, name: &str, value: ParamValue| export(id, &ParamMap::from([(name.to_owned(), value)]), 1);
+    assert!(with("Pendulum-v1", "g", ParamValue::Float(3.5)).unwrap().contains("gravity 3.5\n"));
+    let solids = |world: &str| world.matches("boundingObject").count();
+    let dense = export("UavDepthCorridor-dense-v1", &ParamMap::new(), 1).unwrap();
+    assert!((9..=13).contains(&solids(&dense)), "{}", solids(&dense));
+    let few = with("UavDepthCorridor-v1", "max_obstacles", ParamValue::Int(2)).unwrap();
+    // Two obstacles, the ground, and two walls or none.
+    assert!([3, 5].contains(&solids(&few)), "{}", solids(&few));
+    assert!(with("Pendulum-v1", "gg", ParamValue::Int(1)).is_err());
+}
+
+#[test]
+fn the_initial_state_is_that_of_the_episode() {
+    let mut cart = opendr_simulation::make("CartPole-v1").unwrap();
+    let mut state = [0.0; 4];
+    cart.reset(Some(9), &ParamMap::new(), &mut state).unwrap();
+    let world = export("CartPole-v1", &ParamMap::new(), 9).unwrap();
+    assert!(world.contains(&format!("position {}\n", f64::from(state[0]))));
+    assert!(world.contains(&format!("rotation 0 1 0 {}\n", f64::from(state[2]))));
+}
