@@ -22,6 +22,7 @@ import onnxruntime
 import torch
 
 SIDE = 64
+IOU = 0.5
 CLASSES = ["ball", "cone", "door"]
 
 
@@ -34,15 +35,18 @@ def image(width, height):
 def randomise(model, seed, density=0.5):
     """Sparse weights of one magnitude per layer, which make scores differ and compress well."""
     generator = torch.Generator().manual_seed(seed)
-    for parameter in model.parameters():
-        if parameter.dim() > 1:
+    for name, parameter in model.named_parameters():
+        if name.endswith("bias"):
+            # Ultralytics gives boxes a positive size, and classes a bias that depends on their number.
+            parameter.data.fill_(3.0 if ".cv2." in name and name.endswith(".2.bias") else 0.0)
+        elif parameter.dim() > 1:
             fan_in = parameter[0].numel()
             kept = torch.rand(parameter.shape, generator=generator) < density
             signs = torch.rand(parameter.shape, generator=generator).sub(0.5).sign()
             parameter.data = kept * signs * (2 / (fan_in * density)) ** 0.5
 
 
-def write(folder, name, onnx, detections, size, threshold, iou=0.65, params=None, classes=()):
+def write(folder, name, onnx, detections, size, threshold, iou=IOU, params=None, classes=()):
     """Writes a container and its detections; `detections` are rows of x0, y0, x1, y1, score, class in image pixels."""
     onnx = Path(onnx).read_bytes()
     entry = {"name": "model.onnx", "size": len(onnx), "sha256": hashlib.sha256(onnx).hexdigest()}
@@ -62,6 +66,12 @@ def write(folder, name, onnx, detections, size, threshold, iou=0.65, params=None
     expected = {"image": size, "threshold": threshold, "iou_threshold": iou, "detections": rows}
     (folder / f"{name}.json").write_text(json.dumps(expected) + "\n")
     print(f"{name}: {len(rows)} detections, {(folder / f'{name}.zip').stat().st_size} bytes")
+
+
+def threshold_for(scores, count):
+    """A threshold that `count` scores reach, halfway between two of them."""
+    ordered = scores.flatten().sort(descending=True).values
+    return float(ordered[count - 1 : count + 1].mean())
 
 
 def outputs_of(onnx, **inputs):
@@ -87,8 +97,8 @@ def ultralytics(folder):
         ("yolo", "detect", {}, {}),
         ("yolo_segment", "segment", {}, {}),
         ("yolo_pose", "pose", {}, {}),
-        ("yolo_end_to_end", "detect", {"end2end": True}, {}),
-        ("yolo_nms", "detect", {}, {"nms": True, "conf": 0.5, "iou": 0.65}),
+        ("yolo_end_to_end", "detect", {"end2end": True}, {"nms": False}),
+        ("yolo_nms", "detect", {}, {"nms": True, "conf": 0.3, "iou": IOU}),
     ]
     width, height = SIDE, SIDE * 3 // 4
     rgb = image(width, height)
@@ -104,11 +114,13 @@ def ultralytics(folder):
         model.model.names = dict(enumerate(CLASSES))
         onnx = model.export(format="onnx", imgsz=SIDE, simplify=False, opset=17, **export)
         rows = torch.from_numpy(outputs_of(onnx, images=tensor)[0])
-        threshold = 0.5
         if options or export:
-            kept = rows[0][rows[0][:, 4] > threshold]
+            scores = rows[0, :, 4]
+            threshold = threshold_for(scores, min(12, int((scores > 0).sum()) - 1))
+            kept = rows[0][scores > threshold]
         else:
-            kept = non_max_suppression(rows, threshold, 0.65, nc=3)[0]
+            threshold = threshold_for(rows[0, 4:7].amax(0), 60)
+            kept = non_max_suppression(rows, threshold, IOU, nc=3)[0]
         kept[:, :4] = scale_boxes((SIDE, SIDE), kept[:, :4], (height, width))
         write(folder, name, onnx, kept[:, :6], [width, height], threshold)
 
@@ -121,9 +133,9 @@ def ultralytics(folder):
     onnx = model.export(format="onnx", imgsz=SIDE, simplify=False, opset=17)
     square = np.ascontiguousarray(image(SIDE, SIDE).transpose(2, 0, 1)[None].astype(np.float32) / 255)
     rows = torch.from_numpy(outputs_of(onnx, images=square)[0])[0]
-    scores, classes = rows[:, 4:].max(-1)
+    scores, classes = rows[:, 4], rows[:, 5]
     boxes = xywh2xyxy(rows[:, :4]) * SIDE
-    threshold = float(scores.median())
+    threshold = threshold_for(scores, 8)
     kept = torch.cat([boxes.clamp(0, SIDE), scores[:, None], classes[:, None].float()], 1)[scores > threshold]
     write(folder, "rtdetr_ultralytics", onnx, kept, [SIDE, SIDE], threshold)
 
@@ -181,7 +193,7 @@ def transformers(folder):
         use_timm_backbone=False, use_pretrained_backbone=False, backbone=None, backbone_config=backbone, num_labels=3,
         num_queries=20, encoder_in_channels=[8, 16, 16], encoder_hidden_dim=16, feat_strides=[8, 16, 32],
         decoder_in_channels=[16, 16, 16], decoder_layers=1, encoder_attention_heads=2, decoder_attention_heads=2,
-        hidden_expansion=1.0, anchor_image_size=[SIDE, SIDE], eval_size=[SIDE, SIDE], **small,
+        hidden_expansion=1.0, anchor_image_size=[SIDE, SIDE], **small,
     )
     cases = [
         ("detr", DetrForObjectDetection, detr, DetrImageProcessor(), normalised),
@@ -208,7 +220,7 @@ def transformers(folder):
         logits, boxes = (torch.from_numpy(one) for one in outputs_of(f"{name}.onnx", pixel_values=pixels.numpy()))
         found = type("Found", (), {"logits": logits, "pred_boxes": boxes})()
         scores = processor.post_process_object_detection(found, 0.0, [(SIDE, SIDE)])[0]["scores"]
-        threshold = round(float(scores.quantile(0.6)), 3)
+        threshold = threshold_for(scores, 8)
         found = processor.post_process_object_detection(found, threshold, [(SIDE, SIDE)])[0]
         rows = [found["boxes"].clamp(0, SIDE), found["scores"][:, None], found["labels"][:, None]]
         write(folder, name, f"{name}.onnx", torch.cat(rows, 1), [SIDE, SIDE], threshold)
