@@ -3,8 +3,8 @@ detections of the packages' own post-processing on one image.
 
     python tests/extended/detector_fixtures.py crates/perception/detection/tests/imported
 
-It needs torch, torchvision, ultralytics, transformers, onnx and onnxruntime, and downloads nothing. Each fixture is a container
-NAME.zip and the detections NAME.json. The packages' code is run, not copied; no weights of theirs are involved.
+It needs torch, torchvision, ultralytics, transformers, YOLOX from its repository, onnx and onnxruntime, and downloads nothing. Each
+fixture is a container NAME.zip and the detections NAME.json; that of YOLOX is the model of the test data (OPENDR_TEST_DATA). The packages' code is run, not copied; no weights of theirs are involved.
 """
 
 import hashlib
@@ -140,6 +140,31 @@ def ultralytics(folder):
     write(folder, "rtdetr_ultralytics", onnx, kept, [SIDE, SIDE], threshold)
 
 
+def yolox(folder):
+    """The detections of YOLOX-nano in photos of the test data, cut to the network's input so that nothing is resized."""
+    import cv2
+    from yolox.utils.boxes import postprocess
+    from yolox.utils.demo_utils import demo_postprocess
+
+    data = Path(os.environ["OPENDR_TEST_DATA"])
+    threshold, iou, side, photos = 0.05, 0.45, 416, {}
+    for name in ("astronaut.png", "chelsea.png", "coffee.png", "motorcycle_left.png"):
+        photo = cv2.imread(str(data / "data/photos" / name))[:side, :side]
+        height, width = photo.shape[:2]
+        padded = np.full((side, side, 3), 114, np.uint8)
+        padded[:height, :width] = photo
+        tensor = padded.transpose(2, 0, 1)[None].astype(np.float32)
+        rows = demo_postprocess(outputs_of(data / "models/found/yolox_nano.onnx", images=tensor)[0], (side, side))
+        found = postprocess(torch.from_numpy(rows), 80, threshold, iou)[0]
+        found[:, [0, 2]] = found[:, [0, 2]].clamp(0, width)
+        found[:, [1, 3]] = found[:, [1, 3]].clamp(0, height)
+        found[:, 4] *= found[:, 5]
+        photos[name] = [[round(float(value), 5) for value in row] for row in found[:, [0, 1, 2, 3, 4, 6]]]
+        print(f"yolox {name}: {len(photos[name])} detections")
+    expected = {"threshold": threshold, "iou_threshold": iou, "photos": photos}
+    (folder / "yolox_nano.json").write_text(json.dumps(expected) + "\n")
+
+
 def torchvision(folder):
     from torchvision.models.detection import RetinaNet
     from torchvision.models.detection.anchor_utils import AnchorGenerator
@@ -158,9 +183,10 @@ def torchvision(folder):
     torch.onnx.export(model, ([rgb],), "retinanet.onnx", opset_version=17, dynamo=False, **names)
     with torch.no_grad():
         found = model([rgb])[0]
-    kept = found["scores"] > 0.35
+    threshold = threshold_for(found["scores"], 30)
+    kept = found["scores"] > threshold
     rows = [found["boxes"], found["scores"][:, None], found["labels"][:, None]]
-    write(folder, "torchvision_retinanet", "retinanet.onnx", torch.cat(rows, 1)[kept], [SIDE, SIDE], 0.35)
+    write(folder, "torchvision_retinanet", "retinanet.onnx", torch.cat(rows, 1)[kept], [SIDE, SIDE], threshold)
 
 
 def transformers(folder):
@@ -232,7 +258,7 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as scratch:
         os.chdir(scratch)
-        for package in (ultralytics, torchvision, transformers):
+        for package in (ultralytics, yolox, torchvision, transformers):
             if not wanted or package.__name__ in wanted:
                 package(folder)
 
