@@ -3,8 +3,8 @@ detections of the packages' own post-processing on one image.
 
     python tests/extended/detector_fixtures.py crates/perception/detection/tests/imported
 
-It needs torch, torchvision, ultralytics, transformers, onnx and onnxruntime, and downloads nothing. Each fixture is a container
-NAME.zip and the detections NAME.json. The packages' code is run, not copied; no weights of theirs are involved.
+It needs torch, torchvision, ultralytics, transformers, YOLOX from its repository, onnx and onnxruntime, and downloads nothing. Each
+fixture is a container NAME.zip and the detections NAME.json; that of YOLOX is the model of the test data (OPENDR_TEST_DATA). The packages' code is run, not copied; no weights of theirs are involved.
 """
 
 import hashlib
@@ -22,6 +22,7 @@ import onnxruntime
 import torch
 
 SIDE = 64
+IOU = 0.5
 CLASSES = ["ball", "cone", "door"]
 
 
@@ -34,15 +35,18 @@ def image(width, height):
 def randomise(model, seed, density=0.5):
     """Sparse weights of one magnitude per layer, which make scores differ and compress well."""
     generator = torch.Generator().manual_seed(seed)
-    for parameter in model.parameters():
-        if parameter.dim() > 1:
+    for name, parameter in model.named_parameters():
+        if name.endswith("bias"):
+            # Ultralytics gives boxes a positive size, and classes a bias that depends on their number.
+            parameter.data.fill_(3.0 if ".cv2." in name and name.endswith(".2.bias") else 0.0)
+        elif parameter.dim() > 1:
             fan_in = parameter[0].numel()
             kept = torch.rand(parameter.shape, generator=generator) < density
             signs = torch.rand(parameter.shape, generator=generator).sub(0.5).sign()
             parameter.data = kept * signs * (2 / (fan_in * density)) ** 0.5
 
 
-def write(folder, name, onnx, detections, size, threshold, iou=0.65, params=None, classes=()):
+def write(folder, name, onnx, detections, size, threshold, iou=IOU, params=None, classes=()):
     """Writes a container and its detections; `detections` are rows of x0, y0, x1, y1, score, class in image pixels."""
     onnx = Path(onnx).read_bytes()
     entry = {"name": "model.onnx", "size": len(onnx), "sha256": hashlib.sha256(onnx).hexdigest()}
@@ -62,6 +66,12 @@ def write(folder, name, onnx, detections, size, threshold, iou=0.65, params=None
     expected = {"image": size, "threshold": threshold, "iou_threshold": iou, "detections": rows}
     (folder / f"{name}.json").write_text(json.dumps(expected) + "\n")
     print(f"{name}: {len(rows)} detections, {(folder / f'{name}.zip').stat().st_size} bytes")
+
+
+def threshold_for(scores, count):
+    """A threshold that `count` scores reach, halfway between two of them."""
+    ordered = scores.flatten().sort(descending=True).values
+    return float(ordered[count - 1 : count + 1].mean())
 
 
 def outputs_of(onnx, **inputs):
@@ -87,8 +97,8 @@ def ultralytics(folder):
         ("yolo", "detect", {}, {}),
         ("yolo_segment", "segment", {}, {}),
         ("yolo_pose", "pose", {}, {}),
-        ("yolo_end_to_end", "detect", {"end2end": True}, {}),
-        ("yolo_nms", "detect", {}, {"nms": True, "conf": 0.5, "iou": 0.65}),
+        ("yolo_end_to_end", "detect", {"end2end": True}, {"nms": False}),
+        ("yolo_nms", "detect", {}, {"nms": True, "conf": 0.3, "iou": IOU}),
     ]
     width, height = SIDE, SIDE * 3 // 4
     rgb = image(width, height)
@@ -104,11 +114,13 @@ def ultralytics(folder):
         model.model.names = dict(enumerate(CLASSES))
         onnx = model.export(format="onnx", imgsz=SIDE, simplify=False, opset=17, **export)
         rows = torch.from_numpy(outputs_of(onnx, images=tensor)[0])
-        threshold = 0.5
         if options or export:
-            kept = rows[0][rows[0][:, 4] > threshold]
+            scores = rows[0, :, 4]
+            threshold = threshold_for(scores, min(12, int((scores > 0).sum()) - 1))
+            kept = rows[0][scores > threshold]
         else:
-            kept = non_max_suppression(rows, threshold, 0.65, nc=3)[0]
+            threshold = threshold_for(rows[0, 4:7].amax(0), 60)
+            kept = non_max_suppression(rows, threshold, IOU, nc=3)[0]
         kept[:, :4] = scale_boxes((SIDE, SIDE), kept[:, :4], (height, width))
         write(folder, name, onnx, kept[:, :6], [width, height], threshold)
 
@@ -121,11 +133,36 @@ def ultralytics(folder):
     onnx = model.export(format="onnx", imgsz=SIDE, simplify=False, opset=17)
     square = np.ascontiguousarray(image(SIDE, SIDE).transpose(2, 0, 1)[None].astype(np.float32) / 255)
     rows = torch.from_numpy(outputs_of(onnx, images=square)[0])[0]
-    scores, classes = rows[:, 4:].max(-1)
+    scores, classes = rows[:, 4], rows[:, 5]
     boxes = xywh2xyxy(rows[:, :4]) * SIDE
-    threshold = float(scores.median())
+    threshold = threshold_for(scores, 8)
     kept = torch.cat([boxes.clamp(0, SIDE), scores[:, None], classes[:, None].float()], 1)[scores > threshold]
     write(folder, "rtdetr_ultralytics", onnx, kept, [SIDE, SIDE], threshold)
+
+
+def yolox(folder):
+    """The detections of YOLOX-nano in photos of the test data, cut to the network's input so that nothing is resized."""
+    import cv2
+    from yolox.utils.boxes import postprocess
+    from yolox.utils.demo_utils import demo_postprocess
+
+    data = Path(os.environ["OPENDR_TEST_DATA"])
+    threshold, iou, side, photos = 0.05, 0.45, 416, {}
+    for name in ("astronaut.png", "chelsea.png", "coffee.png", "motorcycle_left.png"):
+        photo = cv2.imread(str(data / "data/photos" / name))[:side, :side]
+        height, width = photo.shape[:2]
+        padded = np.full((side, side, 3), 114, np.uint8)
+        padded[:height, :width] = photo
+        tensor = padded.transpose(2, 0, 1)[None].astype(np.float32)
+        rows = demo_postprocess(outputs_of(data / "models/found/yolox_nano.onnx", images=tensor)[0], (side, side))
+        found = postprocess(torch.from_numpy(rows), 80, threshold, iou)[0]
+        found[:, [0, 2]] = found[:, [0, 2]].clamp(0, width)
+        found[:, [1, 3]] = found[:, [1, 3]].clamp(0, height)
+        found[:, 4] *= found[:, 5]
+        photos[name] = [[round(float(value), 5) for value in row] for row in found[:, [0, 1, 2, 3, 4, 6]]]
+        print(f"yolox {name}: {len(photos[name])} detections")
+    expected = {"threshold": threshold, "iou_threshold": iou, "photos": photos}
+    (folder / "yolox_nano.json").write_text(json.dumps(expected) + "\n")
 
 
 def torchvision(folder):
@@ -146,9 +183,10 @@ def torchvision(folder):
     torch.onnx.export(model, ([rgb],), "retinanet.onnx", opset_version=17, dynamo=False, **names)
     with torch.no_grad():
         found = model([rgb])[0]
-    kept = found["scores"] > 0.35
+    threshold = threshold_for(found["scores"], 30)
+    kept = found["scores"] > threshold
     rows = [found["boxes"], found["scores"][:, None], found["labels"][:, None]]
-    write(folder, "torchvision_retinanet", "retinanet.onnx", torch.cat(rows, 1)[kept], [SIDE, SIDE], 0.35)
+    write(folder, "torchvision_retinanet", "retinanet.onnx", torch.cat(rows, 1)[kept], [SIDE, SIDE], threshold)
 
 
 def transformers(folder):
@@ -181,7 +219,7 @@ def transformers(folder):
         use_timm_backbone=False, use_pretrained_backbone=False, backbone=None, backbone_config=backbone, num_labels=3,
         num_queries=20, encoder_in_channels=[8, 16, 16], encoder_hidden_dim=16, feat_strides=[8, 16, 32],
         decoder_in_channels=[16, 16, 16], decoder_layers=1, encoder_attention_heads=2, decoder_attention_heads=2,
-        hidden_expansion=1.0, anchor_image_size=[SIDE, SIDE], eval_size=[SIDE, SIDE], **small,
+        hidden_expansion=1.0, anchor_image_size=[SIDE, SIDE], **small,
     )
     cases = [
         ("detr", DetrForObjectDetection, detr, DetrImageProcessor(), normalised),
@@ -208,7 +246,7 @@ def transformers(folder):
         logits, boxes = (torch.from_numpy(one) for one in outputs_of(f"{name}.onnx", pixel_values=pixels.numpy()))
         found = type("Found", (), {"logits": logits, "pred_boxes": boxes})()
         scores = processor.post_process_object_detection(found, 0.0, [(SIDE, SIDE)])[0]["scores"]
-        threshold = round(float(scores.quantile(0.6)), 3)
+        threshold = threshold_for(scores, 8)
         found = processor.post_process_object_detection(found, threshold, [(SIDE, SIDE)])[0]
         rows = [found["boxes"].clamp(0, SIDE), found["scores"][:, None], found["labels"][:, None]]
         write(folder, name, f"{name}.onnx", torch.cat(rows, 1), [SIDE, SIDE], threshold)
@@ -220,7 +258,7 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as scratch:
         os.chdir(scratch)
-        for package in (ultralytics, torchvision, transformers):
+        for package in (ultralytics, yolox, torchvision, transformers):
             if not wanted or package.__name__ in wanted:
                 package(folder)
 

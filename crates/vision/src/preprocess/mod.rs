@@ -281,7 +281,7 @@ impl Preprocess {
     fn write<T: InputSample>(&self, source: &Source<'_>, plan: &Plan, placement: Placement, out: &mut [T]) {
         let pad = self.letterbox.map_or(0.0, |(_, pad)| pad);
         let padding = std::array::from_fn(|c| pad * self.scale[c] + self.bias[c]);
-        let Placement { x, y, width, height } = placement;
+        let Placement { x, y, width, height, .. } = placement;
         let columns = self.size[0];
         self.for_each_row(out, width * height, |number, mut row| {
             if number < y || number >= y + height {

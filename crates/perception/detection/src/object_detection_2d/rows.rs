@@ -83,6 +83,55 @@ impl<'a> Rows<'a> {
     }
 }
 
+/// What becomes a candidate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Selection {
+    /// Score below which nothing does.
+    pub(super) threshold: f32,
+    /// Whether every class of a row that reaches the threshold does, or only the class with the highest score.
+    pub(super) multi_label: bool,
+}
+
+/// The class scores of rows: `count` fields from `first` on.
+#[derive(Clone, Copy)]
+pub(super) struct ClassScores<'a> {
+    pub(super) rows: Rows<'a>,
+    pub(super) first: usize,
+    pub(super) count: usize,
+}
+
+impl Selection {
+    /// Adds the candidates of a row whose highest class value and class are `best`; `score` maps a class's value to its score.
+    pub(super) fn add(
+        self,
+        classes: &ClassScores<'_>,
+        row: usize,
+        (best, class): (f32, u32),
+        score: impl Fn(f32) -> f32,
+        corners: impl FnOnce() -> [f32; 4],
+        candidates: &mut Vec<Candidate>,
+    ) {
+        let best = score(best);
+        // False for NaN too.
+        if !(best >= self.threshold) {
+            return;
+        }
+        let (corners, index) = (corners(), row as u32);
+        if !self.multi_label {
+            return candidates.push(Candidate { corners, score: best, class, index });
+        }
+        let ClassScores { rows, first, count } = classes;
+        let scores = (0..*count).map(|class| (class, score(rows.at(row, first + class))));
+        let reach = scores.filter(|(_, score)| *score >= self.threshold);
+        candidates.extend(reach.map(|(class, score)| Candidate {
+            corners,
+            score,
+            class: class as u32,
+            index,
+        }));
+    }
+}
+
 /// Decodes rows of YOLOX: one per cell of the levels with `strides`, with box centres relative to the cell in strides, logarithms of
 /// sizes in strides, objectness and class scores. Corners are in pixels of the network's input of `size`.
 ///
@@ -92,7 +141,7 @@ pub(super) fn decode_grid(
     rows: &Rows<'_>,
     [width, height]: [usize; 2],
     strides: &[usize],
-    threshold: f32,
+    selection: Selection,
     best: &mut Vec<(f32, u32)>,
     candidates: &mut Vec<Candidate>,
 ) -> Result<()> {
@@ -104,23 +153,24 @@ pub(super) fn decode_grid(
             rows.fields()
         )));
     }
-    rows.best(5, rows.fields() - 5, best);
+    let classes = ClassScores { rows: *rows, first: 5, count: rows.fields() - 5 };
+    rows.best(classes.first, classes.count, best);
     let mut row = 0;
     for stride in strides {
         let columns = width / stride;
         for cell in 0..columns * (height / stride) {
-            let (class_score, class) = best[row];
-            let score = class_score * rows.at(row, 4);
-            if score >= threshold {
+            let objectness = rows.at(row, 4);
+            let score = |class_score: f32| class_score * objectness;
+            let corners = || {
                 let [x, y, log_width, log_height] = rows.corners(row, 0);
                 let stride = *stride as f32;
                 let x = (x + (cell % columns) as f32) * stride;
                 let y = (y + (cell / columns) as f32) * stride;
                 let (half_width, half_height) =
                     (log_width.exp() * stride / 2.0, log_height.exp() * stride / 2.0);
-                let corners = [x - half_width, y - half_height, x + half_width, y + half_height];
-                candidates.push(Candidate { corners, score, class, index: row as u32 });
-            }
+                [x - half_width, y - half_height, x + half_width, y + half_height]
+            };
+            selection.add(&classes, row, best[row], score, corners, candidates);
             row += 1;
         }
     }
@@ -156,11 +206,14 @@ mod tests {
         values[41 * 7..].copy_from_slice(&[0.5, 0.5, 0.0, 2.0_f32.ln(), 0.5, 0.2, 0.8]);
         let rows = Rows::of(&TensorView::new(&[1, 42, 7], &values).unwrap(), false).unwrap();
         let mut candidates = Vec::new();
-        decode_grid(&rows, [64, 32], &[8, 16, 32], 0.3, &mut Vec::new(), &mut candidates).unwrap();
+        let selection = Selection { threshold: 0.3, multi_label: false };
+        decode_grid(&rows, [64, 32], &[8, 16, 32], selection, &mut Vec::new(), &mut candidates).unwrap();
         let [found] = candidates[..] else { panic!("{candidates:?}") };
         assert_eq!((found.class, found.score, found.index), (1, 0.4, 41));
         let wanted = [32.0, -16.0, 64.0, 48.0];
         assert!(found.corners.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() < 1e-4));
-        assert!(decode_grid(&rows, [64, 64], &[8, 16, 32], 0.3, &mut Vec::new(), &mut candidates).is_err());
+        assert!(
+            decode_grid(&rows, [64, 64], &[8, 16, 32], selection, &mut Vec::new(), &mut candidates).is_err()
+        );
     }
 }

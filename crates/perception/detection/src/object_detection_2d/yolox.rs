@@ -14,7 +14,7 @@ use opendr_perception_common::image_network::{ImageNetwork, preprocess_from_inpu
 use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
 use opendr_vision::{ChannelOrder, LetterboxAlign};
 
-use super::rows::{Rows, decode_grid};
+use super::rows::{Rows, Selection, decode_grid};
 
 /// Parameters of [`Yolox`].
 #[derive(Debug, Clone, Params)]
@@ -28,6 +28,9 @@ pub struct YoloxParams {
     /// Maximum number of boxes per image.
     #[param(default = 100, range = 1..=1000, live)]
     pub max_detections: usize,
+    /// Whether a cell may be a detection of several classes, or of that with the highest score only.
+    #[param(default = true, live)]
+    pub multi_label: bool,
     /// Method of non-maximum suppression.
     #[param(live)]
     pub suppression: SuppressionKind,
@@ -65,7 +68,7 @@ impl Learner for Yolox {
     fn load(model: &Model, params: YoloxParams, device: Device) -> Result<Self> {
         let network = ImageNetwork::open_file(model, "model.onnx", device, |input| {
             let preprocess = preprocess_from_input(input)?;
-            Ok(preprocess.letterbox(LetterboxAlign::TopLeft, PADDING).order(ChannelOrder::Bgr))
+            Ok(preprocess.letterbox(LetterboxAlign::TopLeftTruncated, PADDING).order(ChannelOrder::Bgr))
         })?;
         Ok(Self { params, classes: model.classes().clone(), network, scratch: Pool::default() })
     }
@@ -84,13 +87,14 @@ impl Learner for Yolox {
 
     fn infer_into(&self, _: &mut (), image: &Image, boxes: &mut BoundingBoxList) -> Result<()> {
         let Scratch { best, candidates, marks } = &mut *self.scratch.take();
-        let YoloxParams { threshold, iou_threshold, max_detections, suppression } = self.params;
+        let YoloxParams { threshold, iou_threshold, max_detections, multi_label, suppression } = self.params;
         let suppression =
             Suppression { kind: suppression, iou_threshold, threshold, max_boxes: max_detections };
+        let selection = Selection { threshold, multi_label };
         candidates.clear();
         self.network.run(image, |outputs, geometry| {
             let rows = Rows::of(&outputs[0], false)?;
-            decode_grid(&rows, self.network.size(), &STRIDES, threshold, best, candidates)?;
+            decode_grid(&rows, self.network.size(), &STRIDES, selection, best, candidates)?;
             suppression.run(candidates, marks);
             boxes_from_candidates(boxes, candidates, geometry, &self.classes);
             Ok(())

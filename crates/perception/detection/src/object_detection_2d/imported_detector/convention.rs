@@ -62,7 +62,7 @@ const YOLO: Convention = Convention {
 /// Candidates of YOLOX that are decoded by the network.
 const YOLOX: Convention = Convention {
     objectness: Objectness::Present,
-    resize: InputResize::TopLeft,
+    resize: InputResize::TopLeftTruncated,
     colour: InputColour::Bgr,
     levels: InputLevels::Bytes,
     ..YOLO
@@ -126,16 +126,25 @@ fn ultralytics(facts: &Facts) -> Result<Option<Convention>> {
     let is_final = facts.metadata("end2end") == "True"
         || facts.metadata("args").contains("'nms': True")
         || facts.has_operator("NonMaxSuppression");
+    let is_rt_detr = facts.metadata("head") == "RTDETRDecoder";
     let listed = Convention { row_order: RowOrder::BoxScoreClass, ..YOLO_DETECTIONS };
     let few = rows.is_some_and(|rows| rows <= MAX_DETECTIONS);
+    let queries = Convention {
+        layout: OutputLayout::Queries,
+        unit: BoxUnit::Fractions,
+        resize: InputResize::Stretch,
+        ..YOLO
+    };
     Ok(match fields {
         _ if is_final => Some(listed),
-        Some(fields) if few && fields == count + 4 && fields != 6 => Some(Convention {
+        Some(6) if is_rt_detr && count != 2 => Some(Convention {
+            boxes: BoxFormat::Cxcywh,
             unit: BoxUnit::Fractions,
             resize: InputResize::Stretch,
-            layout: OutputLayout::Queries,
-            ..YOLO
+            ..listed
         }),
+        Some(fields) if is_rt_detr && fields == count + 4 && fields != 6 => Some(queries),
+        Some(fields) if few && fields == count + 4 && fields != 6 => Some(queries),
         Some(6) if few && count != 2 => Some(listed),
         Some(6) if few => None,
         Some(fields) if fields == count + 5 => Some(Convention { objectness: Objectness::Present, ..YOLO }),

@@ -7,7 +7,7 @@ use opendr_perception_common::suppression::Candidate;
 use super::convention::Convention;
 use super::params::{BoxFormat, BoxUnit, Objectness, OutputLayout, RowOrder, ScoreFormat};
 use super::roles::Roles;
-use crate::object_detection_2d::rows::{Rows, cells_of, decode_grid};
+use crate::object_detection_2d::rows::{ClassScores, Rows, Selection, cells_of, decode_grid};
 
 /// Strides of the levels of a network whose boxes are relative to their cells.
 const STRIDES: [usize; 4] = [8, 16, 32, 64];
@@ -38,9 +38,10 @@ impl Decoder {
     pub(super) fn run(
         &self,
         outputs: &[TensorView<'_>],
-        threshold: f32,
+        selection: Selection,
         scratch: &mut Scratch,
     ) -> Result<()> {
+        let threshold = selection.threshold;
         scratch.candidates.clear();
         match (self.roles, self.convention.layout) {
             (Roles::Lists { boxes, scores, labels, count }, _) => {
@@ -56,17 +57,17 @@ impl Decoder {
                 self.check_classes(rows.fields().saturating_sub(5))?;
                 let three = rows.len() == cells_of(self.size, &STRIDES[..3]);
                 let strides = if three { &STRIDES[..3] } else { &STRIDES[..] };
-                decode_grid(&rows, self.size, strides, threshold, &mut scratch.best, &mut scratch.candidates)
+                decode_grid(&rows, self.size, strides, selection, &mut scratch.best, &mut scratch.candidates)
             }
             (Roles::Rows { output, transposed }, _) => {
                 let rows = Rows::of(&outputs[output], transposed)?;
                 let first = if self.has_objectness() { 5 } else { 4 };
-                self.scored(&rows, &rows, first, threshold, scratch)
+                self.scored(&rows, &rows, first, selection, scratch)
             }
             (Roles::Split { boxes, scores, transposed }, _) => {
                 let (boxes, scores) =
                     (Rows::of(&outputs[boxes], false)?, Rows::of(&outputs[scores], transposed)?);
-                self.scored(&boxes, &scores, 0, threshold, scratch)
+                self.scored(&boxes, &scores, 0, selection, scratch)
             }
         }
     }
@@ -81,7 +82,7 @@ impl Decoder {
         boxes: &Rows<'_>,
         scores: &Rows<'_>,
         first: usize,
-        threshold: f32,
+        selection: Selection,
         Scratch { best, candidates, .. }: &mut Scratch,
     ) -> Result<()> {
         let fields = scores.fields().saturating_sub(first);
@@ -102,41 +103,32 @@ impl Decoder {
             }
             classes => return Err(self.wrong_classes(fields, classes)),
         };
+        // A query of logistic functions may be an object of several classes.
         let is_query = self.convention.layout == OutputLayout::Queries;
-        if is_query && self.convention.scores == ScoreFormat::Sigmoid {
-            // A query may be an object of several classes.
-            for row in 0..boxes.len() {
-                for class in 0..count {
-                    let score = logistic(scores.at(row, first + class));
-                    if score >= threshold {
-                        let corners = self.corners(boxes.corners(row, 0));
-                        candidates.push(Candidate { corners, score, class: class as u32, index: row as u32 });
-                    }
-                }
-            }
-            return Ok(());
-        }
+        let multi_label = selection.multi_label || is_query && self.convention.scores == ScoreFormat::Sigmoid;
+        let selection = Selection { multi_label, ..selection };
         scores.best(first, count, best);
-        for (row, (value, class)) in best.iter().copied().enumerate() {
-            let mut score = match self.convention.scores {
-                ScoreFormat::Sigmoid => logistic(value),
+        let classes = ClassScores { rows: *scores, first, count };
+        for (row, best) in best.iter().copied().enumerate() {
+            let corners = || self.corners(boxes.corners(row, 0));
+            let add = |score: &dyn Fn(f32) -> f32, candidates: &mut Vec<Candidate>| {
+                selection.add(&classes, row, best, score, corners, candidates);
+            };
+            let objectness = if first == 5 { scores.at(row, 4) } else { 1.0 };
+            match self.convention.scores {
+                ScoreFormat::Auto | ScoreFormat::Probabilities => {
+                    add(&|value| value * objectness, candidates)
+                }
+                ScoreFormat::Sigmoid => {
+                    let objectness = if first == 5 { logistic(objectness) } else { 1.0 };
+                    add(&|value| logistic(value) * objectness, candidates);
+                }
                 ScoreFormat::Softmax => {
                     let all = (0..fields).map(|field| scores.at(row, first + field));
                     let highest = all.clone().fold(f32::NEG_INFINITY, f32::max);
-                    (value - highest).exp() / all.map(|logit| (logit - highest).exp()).sum::<f32>()
+                    let sum: f32 = all.map(|logit| (logit - highest).exp()).sum();
+                    add(&|value| (value - highest).exp() / sum, candidates);
                 }
-                ScoreFormat::Auto | ScoreFormat::Probabilities => value,
-            };
-            if first == 5 {
-                let objectness = scores.at(row, 4);
-                score *= match self.convention.scores {
-                    ScoreFormat::Sigmoid => logistic(objectness),
-                    _ => objectness,
-                };
-            }
-            if score >= threshold {
-                let corners = self.corners(boxes.corners(row, 0));
-                candidates.push(Candidate { corners, score, class, index: row as u32 });
             }
         }
         Ok(())

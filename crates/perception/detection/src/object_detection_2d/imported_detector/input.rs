@@ -198,6 +198,7 @@ fn preprocess(image: &ImageInput, convention: &Convention) -> Preprocess {
     match convention.resize {
         InputResize::Letterbox => base.letterbox(LetterboxAlign::Centre, padding),
         InputResize::TopLeft => base.letterbox(LetterboxAlign::TopLeft, padding),
+        InputResize::TopLeftTruncated => base.letterbox(LetterboxAlign::TopLeftTruncated, padding),
         InputResize::Auto | InputResize::Stretch => base.stretch(),
     }
 }

@@ -34,6 +34,8 @@ use facts::Facts;
 use input::{ImageInput, Network};
 use roles::Roles;
 
+use super::rows::Selection;
+
 /// A loaded detector of another tool.
 pub struct ImportedDetector {
     params: ImportedDetectorParams,
@@ -87,7 +89,7 @@ impl Learner for ImportedDetector {
 
     fn infer_into(&self, _: &mut (), image: &Image, boxes: &mut BoundingBoxList) -> Result<()> {
         let scratch = &mut *self.scratch.take();
-        let ImportedDetectorParams { threshold, max_detections, suppression, .. } = self.params;
+        let ImportedDetectorParams { threshold, max_detections, multi_label, suppression, .. } = self.params;
         let suppression = Suppression {
             kind: suppression,
             iou_threshold: self.iou_threshold(),
@@ -98,7 +100,7 @@ impl Learner for ImportedDetector {
             if outputs.is_empty() {
                 return Err(Error::format("the network has no outputs"));
             }
-            self.decoder.run(outputs, threshold, scratch)?;
+            self.decoder.run(outputs, Selection { threshold, multi_label }, scratch)?;
             suppression.run(&mut scratch.candidates, &mut scratch.marks);
             boxes_from_candidates(boxes, &scratch.candidates, geometry, &self.classes);
             Ok(())

@@ -98,6 +98,8 @@ opendr_engine::choices! {
         Letterbox = "letterbox",
         /// The aspect ratio is kept; padding on the right and at the bottom.
         TopLeft = "top_left",
+        /// The same, with truncated sides (YOLOX).
+        TopLeftTruncated = "top_left_truncated",
         /// The whole input is filled.
         Stretch = "stretch",
     }
@@ -143,6 +145,9 @@ pub struct ImportedDetectorParams {
     /// Maximum number of boxes per image.
     #[param(default = 300, range = 1..=1000, live)]
     pub max_detections: usize,
+    /// Whether a candidate may be a detection of several classes, or of that with the highest score only.
+    #[param(default = false, live)]
+    pub multi_label: bool,
     /// Method of non-maximum suppression of candidates.
     #[param(live)]
     pub suppression: SuppressionKind,

@@ -78,7 +78,11 @@ fn detection_rows(facts: &Facts) -> Option<Roles> {
 }
 
 fn split(facts: &Facts) -> Option<Roles> {
-    let boxes = facts.only_output(|output| output.dims.len() == 3 && has_fields(output, 4))?;
+    let is_boxes = |output: &TensorInfo| output.dims.len() == 3 && has_fields(output, 4);
+    let is_named = |output: &TensorInfo| output.name.contains("box") || output.name.contains("dets");
+    let boxes = facts
+        .only_output(|output| is_boxes(output) && is_named(output))
+        .or_else(|| facts.only_output(is_boxes))?;
     let scores = facts.only_output(|output| {
         is_float(output) && output.dims.len() == 3 && output.name != facts.outputs[boxes].name
     })?;

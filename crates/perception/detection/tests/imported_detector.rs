@@ -1,0 +1,157 @@
+//! Detectors that other packages exported, beside the packages' own post-processing.
+//!
+//! `tests/extended/detector_fixtures.py` writes the fixtures: small networks with random weights.
+
+#![allow(clippy::unwrap_used)]
+
+use std::path::{Path, PathBuf};
+
+use opendr_detection::object_detection_2d::{
+    ImportedDetector, ImportedDetectorParams, OutputLayout, Yolox, YoloxParams,
+};
+use opendr_engine::data::{Image, PixelFormat};
+use opendr_engine::learner::Handle;
+use opendr_engine::target::{BoundingBox, Name};
+use opendr_engine::{Device, ErrorKind};
+use opendr_perception_testing::learner_checks::check_trained_learner;
+use opendr_perception_testing::test_models::{container, test_data};
+
+/// Largest difference of an edge in pixels, or of a score.
+const TOLERANCE: f32 = 1e-3;
+
+fn fixture(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/imported").join(name)
+}
+
+/// The image of `detector_fixtures.py`.
+fn image(width: usize, height: usize) -> Image {
+    let level = |x: usize, y: usize, c: usize| ((x * 5 + y * 11 + c * 71 + x * y / 7) % 256) as u8;
+    let rows = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    let pixels = rows.flat_map(|(x, y)| (0..3).map(move |c| level(x, y, c))).collect();
+    Image::from_rgb8(pixels, width, height).unwrap()
+}
+
+fn row(found: &BoundingBox) -> [f32; 6] {
+    let [left, top, right, bottom] = found.corners();
+    let Name::Index(class) = found.name else { panic!("{found:?}") };
+    [left, top, right, bottom, found.confidence, class as f32]
+}
+
+fn json(name: &str) -> serde_json::Value {
+    serde_json::from_slice(&std::fs::read(fixture(&format!("{name}.json"))).unwrap()).unwrap()
+}
+
+fn number(value: &serde_json::Value) -> f32 {
+    value.as_f64().unwrap() as f32
+}
+
+/// Compares the detections of a fixture with those of its package.
+fn compare(name: &str, layout: OutputLayout, classes: &[&str]) {
+    let expected = json(name);
+    let params = ImportedDetectorParams {
+        threshold: number(&expected["threshold"]),
+        iou_threshold: number(&expected["iou_threshold"]),
+        ..ImportedDetectorParams::default()
+    };
+    let mut detector = Handle::<ImportedDetector>::new(params, Device::Cpu).unwrap();
+    detector.load(fixture(&format!("{name}.zip"))).unwrap();
+    assert_eq!(detector.params().layout, layout, "{name}");
+    assert_eq!(detector.classes().iter().collect::<Vec<_>>(), classes, "{name}");
+    let [width, height] = [0, 1].map(|side| expected["image"][side].as_u64().unwrap() as usize);
+    let found = detector.infer(&image(width, height)).unwrap().boxes;
+    assert_same(name, &found, &expected["detections"]);
+}
+
+/// Compares boxes with rows of `x0, y0, x1, y1, score, class` in any order.
+fn assert_same(name: &str, found: &[BoundingBox], rows: &serde_json::Value) {
+    let rows = rows.as_array().unwrap();
+    let mut wanted: Vec<[f32; 6]> =
+        rows.iter().map(|row| std::array::from_fn(|index| number(&row[index]))).collect();
+    // Boxes that a package clips to nothing are none.
+    wanted.retain(|row| row[2] > row[0] && row[3] > row[1]);
+    assert_eq!(found.len(), wanted.len(), "{name}: {found:?} instead of {wanted:?}");
+    assert!(!wanted.is_empty(), "{name}");
+    for found in found.iter().map(row) {
+        // Detections of equal scores have no order.
+        let close = |wanted: &[f32; 6]| found.iter().zip(wanted).all(|(a, b)| (a - b).abs() <= TOLERANCE);
+        let at = wanted.iter().position(close);
+        wanted.remove(at.unwrap_or_else(|| panic!("{name}: {found:?} is not one of {wanted:?}")));
+    }
+}
+
+const NAMES: &[&str] = &["ball", "cone", "door"];
+
+#[test]
+fn yolo_candidates() {
+    for name in ["yolo", "yolo_segment", "yolo_pose"] {
+        compare(name, OutputLayout::Candidates, NAMES);
+    }
+}
+
+#[test]
+fn yolo_end_to_end() {
+    compare("yolo_end_to_end", OutputLayout::Detections, NAMES);
+}
+
+#[test]
+fn yolo_with_suppression() {
+    compare("yolo_nms", OutputLayout::Detections, NAMES);
+}
+
+#[test]
+fn rt_detr_of_ultralytics() {
+    compare("rtdetr_ultralytics", OutputLayout::Detections, NAMES);
+}
+
+#[test]
+fn torchvision() {
+    compare("torchvision_retinanet", OutputLayout::Detections, &[]);
+}
+
+#[test]
+fn detr_of_transformers() {
+    compare("detr", OutputLayout::Queries, &[]);
+    compare("rt_detr", OutputLayout::Queries, &[]);
+}
+
+#[test]
+fn yolox_nano() {
+    let classes: String = (0..80).map(|class| format!("{class}\n")).collect();
+    let Some(model) = container("yolox", "found/yolox_nano.onnx", &classes) else { return };
+    let expected = json("yolox_nano");
+    let (threshold, iou_threshold) = (number(&expected["threshold"]), number(&expected["iou_threshold"]));
+    let params = YoloxParams { threshold, iou_threshold, multi_label: false, ..YoloxParams::default() };
+    let mut detector = Handle::<Yolox>::new(params, Device::Cpu).unwrap();
+    detector.load(&model).unwrap();
+    for (photo, rows) in expected["photos"].as_object().unwrap() {
+        let whole = opendr_vision::open(test_data("data/photos").unwrap().join(photo)).unwrap();
+        let part = whole.view().crop(0, 0, 416, 416).unwrap();
+        let pixels = part.hwc_u8(PixelFormat::Rgb);
+        let part = Image::from_rgb8(pixels, part.width(), part.height()).unwrap();
+        let found = detector.infer(&part).unwrap().boxes;
+        assert_same(photo, &found, rows);
+    }
+    std::fs::remove_dir_all(model).ok();
+}
+
+#[test]
+fn it_is_a_learner() {
+    let scratch = std::env::temp_dir().join(format!("opendr-imported-{}", std::process::id()));
+    let calls = [[64, 48], [80, 80], [31, 90]].map(|[width, height]| vec![image(width, height).into()]);
+    check_trained_learner::<ImportedDetector>(&fixture("yolo.zip"), &scratch, calls.into());
+    std::fs::remove_dir_all(&scratch).ok();
+}
+
+#[test]
+fn what_is_not_recognised_names_its_parameter() {
+    // Six values without metadata, and fewer rows than the input has cells: queries of two classes, or detections.
+    let params =
+        ImportedDetectorParams { layout: OutputLayout::Queries, ..ImportedDetectorParams::default() };
+    let mut detector = Handle::<ImportedDetector>::new(params, Device::Cpu).unwrap();
+    let error = detector.load(fixture("yolo.zip")).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::Unsupported);
+    let text = format!("{error:#}");
+    for word in ["set ", "boxes", "unit", "scores", "resize", "levels", "output0: f32[1, 7, 84]"] {
+        assert!(text.contains(word), "{word}: {text}");
+    }
+}
