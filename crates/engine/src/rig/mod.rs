@@ -1,4 +1,4 @@
-//! Cameras that move: rigs that carry out an [`Action`](crate::target::Action) and take a picture.
+//! Cameras that move: rigs that carry out an [`Action`](crate::target::Action) and take an image.
 //!
 //! A rig moves on a sphere around its subject. An action is relative: each of its 1 to 4 numbers is a share, in [-1, 1],
 //! of the step that the rig states for that axis.
@@ -33,7 +33,7 @@ pub trait ViewRig {
     /// `InvalidInput` for an action with another number of axes than the rig has, and those of the device.
     fn apply(&mut self, action: &Action) -> Result<Achieved>;
 
-    /// Takes a picture from where the camera is.
+    /// Takes an image from where the camera is.
     ///
     /// # Errors
     /// Those of the camera.

@@ -12,7 +12,7 @@ use super::{CorridorController, CorridorObservation, FlightMemory, RANGE};
 /// A corridor that shows the drone's state and the last picture in 16 columns, and whose actions are those of the corridor. It holds
 /// nothing of a map or a planner: what priors are measured in.
 ///
-/// Observations are the [`FlightMemory::STATE`] numbers of the state, then the smallest depth in each of 16 columns of the picture as a
+/// Observations are the [`FlightMemory::STATE`] numbers of the state, then the smallest depth in each of 16 columns of the image as a
 /// share of its range, then the way to the target in metres.
 #[derive(Debug, Clone)]
 pub struct CompactCorridor<E> {

@@ -2,7 +2,7 @@
 
 use super::{HALF_TRACK, HALF_WIDTH, RANGE, SIDE};
 
-/// A picture of the depth camera at the height of the flight, and from where it was taken.
+/// An image of the depth camera at the height of the flight, and from where it was taken.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Glimpse {
     pub place: [f32; 2],
@@ -16,7 +16,7 @@ pub(super) struct Glimpse {
 /// What is known of each cell: how near the nearest seen point is, and how far behind a front it lies.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct MapRaster {
-    /// Metres behind the front in the picture in which that is least; below zero before it; NaN in no picture.
+    /// Metres behind the front in the image in which that is least; below zero before it; NaN in no picture.
     shadow: Vec<f32>,
     /// Metres to the nearest point, at most [`FAR`].
     clearance: Vec<f32>,
@@ -130,7 +130,7 @@ pub(super) fn centre(cell: usize) -> [f32; 2] {
 }
 
 impl Glimpse {
-    /// How far behind the nearest front a place lies; none where the picture does not show its direction.
+    /// How far behind the nearest front a place lies; none where the image does not show its direction.
     fn behind_front(&self, [x, y]: [f32; 2]) -> Option<f32> {
         let (east, north) = (x - self.place[0], y - self.place[1]);
         let ahead = self.cosine * east + self.sine * north;
@@ -160,7 +160,7 @@ mod tests {
     #[test]
     fn fronts_throw_shadows() {
         let mut glimpse = Glimpse { place: [7.0, 1.0], ..Glimpse::default() };
-        // A thing 3 m ahead in the left half of the picture.
+        // A thing 3 m ahead in the left half of the image.
         glimpse.ahead[..SIDE / 2].fill(3.0);
         let mut raster = MapRaster::default();
         raster.draw(&[glimpse], &[[3.0, 0.6]], [7.0, 1.0]);
