@@ -615,12 +615,12 @@ enum opendr_status opendr_fit(const struct opendr_learner *learner,
 // "params" (of the training), "out", "logging_path", "resume"; NULL uses the defaults. progress and report are the same as
 // for opendr_fit.
 enum opendr_status opendr_fit_policy(const struct opendr_learner *learner,
-                                 const char *id,
-                                 const char *env_params_json,
-                                 const char *options_json,
-                                 opendr_progress progress,
-                                 void *context,
-                                 struct opendr_string **report);
+                                     const char *id,
+                                     const char *env_params_json,
+                                     const char *options_json,
+                                     opendr_progress progress,
+                                     void *context,
+                                     struct opendr_string **report);
 
 // Loads a learner, e.g. "nanodet" or "yunet/320".
 //
@@ -697,8 +697,8 @@ enum opendr_status opendr_network_open(const char *path,
 // Opens the network of a loaded learner again, on the learner's device, to run it without the learner's pre- and
 // post-processing. file is the same as for opendr_network_open(); the learner may be freed.
 enum opendr_status opendr_learner_network(const struct opendr_learner *learner,
-                                     const char *file,
-                                     struct opendr_network **network);
+                                          const char *file,
+                                          struct opendr_network **network);
 
 // Runs a network. Each input is given once, by its name or, where that is NULL, by its position. tensors receives the outputs
 // in the network's order, which must be freed.
@@ -946,6 +946,11 @@ enum opendr_status opendr_value_free(struct opendr_value **value);
 #ifdef __cplusplus
 }  // extern "C"
 #endif  // __cplusplus
+
+/* Names from before 0.1, deprecated; they compile until 1.0. */
+#define opendr_fit_in opendr_fit_policy
+#define opendr_network_of opendr_learner_network
+#define opendr_samples opendr_sample_type
 
 /*
  * Functions of each data and target type X: opendr_X_free(), opendr_X_copy(), opendr_X_to_text(), opendr_X_stamp(),

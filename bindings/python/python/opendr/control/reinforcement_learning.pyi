@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 
 from numpy.typing import ArrayLike, NDArray
-from opendr._native_learner import PathLike
+from opendr._input_value import PathLike
 from opendr._native_learner_rl import NativeLearnerRL
 from opendr.engine.data import Observation
 from opendr.engine.target import RlTarget

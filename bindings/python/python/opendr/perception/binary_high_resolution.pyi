@@ -11,7 +11,7 @@ from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 from numpy.typing import ArrayLike, NDArray
 from opendr._upstream.drawing import visualize as visualize
 from opendr._upstream.segmentation_datasets import HighResolutionDataset as HighResolutionDataset
-from opendr._native_learner import PathLike
+from opendr._input_value import PathLike
 from opendr._upstream.learners.scenes import HighResolution
 from opendr.engine.data import Image
 from opendr.engine.datasets import Dataset

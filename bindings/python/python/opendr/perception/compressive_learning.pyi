@@ -9,7 +9,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 
 from numpy.typing import ArrayLike, NDArray
-from opendr._native_learner import NativeLearner, PathLike
+from opendr._input_value import PathLike
+from opendr._native_learner import NativeLearner
 from opendr.engine.data import Image
 from opendr.engine.datasets import Dataset
 from opendr.engine.learners import Learner

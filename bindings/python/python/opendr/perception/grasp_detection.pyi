@@ -11,7 +11,8 @@ from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 from numpy.typing import ArrayLike, NDArray
 from opendr._drawing import draw as draw
 from opendr._drawing import get_bbox as get_bbox
-from opendr._native_learner import NativeLearner, PathLike
+from opendr._input_value import PathLike
+from opendr._native_learner import NativeLearner
 from opendr.engine.data import Image
 from opendr.engine.target import PoseList
 

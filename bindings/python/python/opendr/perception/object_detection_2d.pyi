@@ -24,7 +24,8 @@ from opendr._upstream.suppression import ClusterNMS as ClusterNMS
 from opendr._upstream.suppression import FastNMS as FastNMS
 from opendr._upstream.suppression import NMSCustom as NMSCustom
 from opendr._upstream.suppression import SoftNMS as SoftNMS
-from opendr._native_learner import NativeLearner, PathLike
+from opendr._input_value import PathLike
+from opendr._native_learner import NativeLearner
 from opendr._upstream.learners.detection import Seq2SeqNms, SingleShotDetector
 from opendr.engine.data import Image
 from opendr.engine.datasets import Dataset

@@ -11,7 +11,8 @@ from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 from numpy.typing import ArrayLike, NDArray
 from opendr._upstream.space_datasets import KittiDataset as KittiDataset
 from opendr._upstream.space_datasets import LabeledPointCloudsDatasetIterator as LabeledPointCloudsDatasetIterator
-from opendr._native_learner import NativeLearner, PathLike
+from opendr._input_value import PathLike
+from opendr._native_learner import NativeLearner
 from opendr.engine.data import PointCloud
 from opendr.engine.datasets import Dataset
 from opendr.engine.learners import Learner

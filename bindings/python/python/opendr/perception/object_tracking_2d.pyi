@@ -16,7 +16,8 @@ from opendr._upstream.tracking_datasets import MotDataset as MotDataset
 from opendr._upstream.tracking_datasets import MotDatasetIterator as MotDatasetIterator
 from opendr._upstream.tracking_datasets import RawMotDatasetIterator as RawMotDatasetIterator
 from opendr._upstream.tracking_datasets import RawMotWithDetectionsDatasetIterator as RawMotWithDetectionsDatasetIterator
-from opendr._native_learner import NativeLearner, PathLike
+from opendr._input_value import PathLike
+from opendr._native_learner import NativeLearner
 from opendr._upstream.learners.tracking import DeepSort, NumberedFrames, SingleObject
 from opendr.engine.data import Image
 from opendr.engine.datasets import Dataset

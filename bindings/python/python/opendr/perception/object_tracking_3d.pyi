@@ -11,7 +11,7 @@ from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 from numpy.typing import ArrayLike, NDArray
 from opendr._upstream.space_datasets import KittiTrackingDatasetIterator as KittiTrackingDatasetIterator
 from opendr._upstream.space_datasets import LabeledTrackingPointCloudsDatasetIterator as LabeledTrackingPointCloudsDatasetIterator
-from opendr._native_learner import PathLike
+from opendr._input_value import PathLike
 from opendr._upstream.learners.tracking import BoxesInSpace, Vpit
 from opendr.engine.data import PointCloud
 from opendr.engine.datasets import Dataset

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from opendr._upstream.segmentation_datasets import CityscapesDataset as CityscapesDataset
 from opendr._upstream.segmentation_datasets import KittiDataset as KittiDataset
 from opendr._upstream.segmentation_datasets import SemanticKittiDataset as SemanticKittiDataset
-from opendr._native_learner import NativeLearner, PathLike
+from opendr._input_value import PathLike
+from opendr._native_learner import NativeLearner
 from opendr._upstream.learners.scenes import PanopticPictures
 from opendr.engine.data import Image, PointCloud
 from opendr.engine.datasets import Dataset

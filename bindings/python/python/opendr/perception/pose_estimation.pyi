@@ -13,7 +13,8 @@ from opendr._drawing import draw as draw
 from opendr._drawing import get_bbox as get_bbox
 from opendr._upstream.pose_datasets import CocoTrainDataset as CocoTrainDataset
 from opendr._upstream.pose_datasets import CocoValDataset as CocoValDataset
-from opendr._native_learner import NativeLearner, PathLike
+from opendr._input_value import PathLike
+from opendr._native_learner import NativeLearner
 from opendr._upstream.learners.people import HighResolutionPoses
 from opendr.engine.data import Image
 from opendr.engine.datasets import Dataset

@@ -10,7 +10,8 @@ from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 
 from numpy.typing import ArrayLike, NDArray
 from opendr._upstream.segmentation_datasets import CamVidDataset as CamVidDataset
-from opendr._native_learner import NativeLearner, PathLike
+from opendr._input_value import PathLike
+from opendr._native_learner import NativeLearner
 from opendr.engine.data import Image
 from opendr.engine.datasets import Dataset
 from opendr.engine.learners import Learner
