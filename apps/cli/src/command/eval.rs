@@ -11,7 +11,7 @@ use opendr::learner::Entry;
 use opendr::metrics::{self, MetricEntry};
 use opendr::params::ParamMap;
 use opendr::rl::EvaluationProtocol;
-use opendr::{Pipeline, PolicyController, Progress, Result, Statistics};
+use opendr::{Error, Pipeline, PolicyController, Progress, Result, Statistics};
 
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
@@ -28,6 +28,7 @@ Examples:
   opendr eval nanodet MOT17/train/ --then byte_track           a pipeline, by its last learner's metric
   opendr eval LEARNER mine/ --classes lorry=truck,tram=train   classes whose names differ
   opendr eval ppo --env CartPole-v1 --episodes 500             a policy in an environment
+  opendr eval td3/quad_track --env QuadTrack-v1 --online       ... adapted in flight, beside frozen and conventional
 
 An interrupted evaluation with --out resumes when the same command runs again.";
 
@@ -50,6 +51,7 @@ pub fn grammar() -> Command {
                 .value_name("N")
                 .help("Stop after the first N samples"),
         )
+        .args(super::online::flags())
         .args(loading::flags())
         .after_help(EXAMPLES)
 }
@@ -83,6 +85,12 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let bar = ProgressBar::new(matches.get_flag("quiet"));
     if environment_flags::is_policy(entry) {
         return in_environment(spec, entry, matches, &bar);
+    }
+    if super::online::is_online(matches) {
+        return Err(Error::invalid_param(format!(
+            "--online adapts policies, and {} acts in no environment; leave it out",
+            entry.spec.name
+        )));
     }
     let mut options = EvalOptions {
         metric: matches.get_one("metric").cloned(),
@@ -126,12 +134,15 @@ fn in_environment(
 ) -> Result<Outcome> {
     let learner = loading::load(spec, &learner_flags::params(entry, matches)?, matches, bar)?;
     let source = environment_flags::source(matches, Some(learner.as_ref()))?;
-    let mut environment = source.make()?;
-    let mut acting = PolicyController::new(learner.stream()?, entry, environment.spec())?;
     let mut protocol = EvaluationProtocol::default();
     if let Some(episodes) = matches.get_one::<u64>("episodes") {
         protocol.episodes = *episodes;
     }
+    if super::online::is_online(matches) {
+        return super::online::evaluate(learner.as_ref(), &source, &protocol, matches, bar);
+    }
+    let mut environment = source.make()?;
+    let mut acting = PolicyController::new(learner.stream()?, entry, environment.spec())?;
     let report = opendr::evaluate_policy(&mut acting, environment.as_mut(), &protocol, bar)?;
     let statistics = Statistics::from(&report);
     if matches.get_flag("json") {

@@ -12,6 +12,7 @@ mod fit;
 mod import;
 mod infer;
 mod models;
+mod online;
 mod optimize;
 #[cfg(feature = "ros")]
 mod ros;
