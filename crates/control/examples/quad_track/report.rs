@@ -72,7 +72,7 @@ fn with_plant(pairs: &[(&str, f64)], settings: &Settings) -> ResetOptions {
 
 pub fn run(settings: &Settings) -> Result<()> {
     let begun = Instant::now();
-    let bases: Vec<_> = (0..settings.seeds).map(|seed| train(seed)).collect::<Result<_>>()?;
+    let bases: Vec<_> = (0..settings.seeds).map(train).collect::<Result<_>>()?;
     for (seed, base) in bases.iter().enumerate() {
         println!(
             "base {seed}: imitates to {:.3} m/s^2 RMS; its last layer explains {:.3?} of the reference",
