@@ -270,6 +270,13 @@ impl Handle {
     }
 }
 
+impl Handle {
+    /// Calls `work` with the learner. Callers have released the GIL.
+    pub fn with_learner<R>(&self, work: impl FnOnce(&dyn AnyLearner) -> R) -> R {
+        work(lock(&self.learner).as_ref())
+    }
+}
+
 #[pymethods]
 impl Stream {
     /// Returns the outputs for inputs by port name.

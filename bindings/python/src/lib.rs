@@ -20,6 +20,7 @@ mod evaluate;
 mod handle;
 mod header;
 mod metric;
+mod online;
 mod param;
 mod pixels;
 mod plugin;
@@ -51,6 +52,7 @@ fn _opendr(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<environment::Environment>()?;
     module.add_class::<environment::VectorEnvironment>()?;
     module.add_class::<environment::SharedArray>()?;
+    module.add_class::<online::OnlineAdapter>()?;
     module.add_class::<study::Study>()?;
     #[cfg(feature = "ros")]
     for function in [

@@ -3,7 +3,7 @@
 //!
 //! CMA-ES of `opendr-tuning` minimises the RMS error of eight nominal flights of 40 s each, from 5 s on.
 
-use opendr_control::{PidGains, TrackingLayout, TrackingPid};
+use opendr_control::{PidGains, TrackingPid};
 use opendr_engine::environment::{Controller as _, Environment as _, ResetOptions};
 use opendr_engine::{Error, Result};
 use opendr_simulation::RegisteredEnvironment as _;
@@ -48,7 +48,8 @@ fn gains(trial: &Trial<'_>, axis: &str) -> Result<PidGains> {
 /// The RMS error of nominal flights, metres.
 fn flights(trial: &Trial<'_>) -> Result<f64> {
     let (horizontal, vertical) = (gains(trial, "horizontal")?, gains(trial, "vertical")?);
-    let layout = TrackingLayout::QUAD_TRACK;
+    let spec = QuadTrack::new(&QuadTrackParams::default())?.spec().clone();
+    let layout = spec.tracking.as_ref().ok_or_else(|| Error::internal("no tracking task"))?.layout;
     let mut pid = TrackingPid::new(layout, &[horizontal, horizontal, vertical], CONTROL_PERIOD)?;
     let mut track = QuadTrack::new(&QuadTrackParams::default())?;
     let (mut observation, mut action) = (vec![0.0; layout.len], [0.0; 3]);

@@ -1,7 +1,7 @@
 //! Classical controllers, and online fine-tuning of policies with guard, monitor and rollback.
 //!
 //! [`Pid`] and [`Lqr`] are feedback laws for one axis and for a linear model; [`TrackingPid`] and [`TrackingLqr`] run them on the
-//! observations of an environment, whose places a [`TrackingLayout`] states. All are
+//! observations of an environment, whose places a [`TrackingTask`](opendr_engine::environment::TrackingTask) states. All are
 //! [`Controller`](opendr_engine::environment::Controller)s. [`online`] adapts a pre-trained policy while it controls.
 //!
 //! Not here: policies and their training (`opendr-rl`), environments such as `QuadTrack-v1` (`opendr-simulation`).
@@ -15,14 +15,12 @@
 //! # Ok::<_, opendr_engine::Error>(())
 //! ```
 
-mod layout;
 mod lqr;
 mod matrix;
 pub mod online;
 mod pid;
 mod tracking;
 
-pub use layout::TrackingLayout;
 pub use lqr::Lqr;
 pub use pid::{Pid, PidGains};
 pub use tracking::{TrackingLqr, TrackingPid};

@@ -54,11 +54,6 @@ impl Pid {
         &self.gains
     }
 
-    /// Sets the integral's gain to 0.
-    pub(crate) fn drop_integral(&mut self) {
-        (self.gains.ki, self.integral) = (0.0, 0.0);
-    }
-
     /// Forgets integral and derivative.
     pub fn reset(&mut self) {
         (self.integral, self.derivative, self.previous) = (0.0, 0.0, None);

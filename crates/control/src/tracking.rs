@@ -1,9 +1,9 @@
 //! Feedback laws on the observations of a tracking task.
 
-use opendr_engine::environment::Controller;
+use opendr_engine::environment::{Controller, TrackingLayout, TrackingTask};
 use opendr_engine::{Error, Result};
 
-use crate::{Lqr, Pid, PidGains, TrackingLayout};
+use crate::{Lqr, Pid, PidGains};
 
 /// One [`Pid`] for each axis, with feed-forward where the layout has it. With `ki = 0` it has no memory but the filter of the
 /// derivative.
@@ -39,13 +39,21 @@ impl TrackingPid {
         Ok(Self { layout, axes })
     }
 
-    /// The same gains without their integral: a law of the present error alone, which a network without memory can imitate.
-    #[must_use]
-    pub fn without_integral(mut self) -> Self {
-        for axis in &mut self.axes {
-            axis.drop_integral();
-        }
-        self
+    /// The conventional law of a task, for commands within bounds: proportional and derivative gains without a filter, a law of the
+    /// present observation alone, which a network without memory can imitate.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn conventional(task: &TrackingTask, low: &[f32], high: &[f32]) -> Result<Self> {
+        let limits = low.iter().zip(high).map(|(low, high)| f64::from(low.abs().max(high.abs())).min(1e9));
+        let gains = task.axes.iter().zip(limits).map(|(axis, limit)| PidGains {
+            kp: axis.stiffness,
+            ki: 0.0,
+            kd: axis.damping,
+            filter: 0.0,
+            limit,
+        });
+        Self::new(task.layout, &gains.collect::<Vec<_>>(), task.period)
     }
 }
 
@@ -114,6 +122,7 @@ mod tests {
             axes: 2,
             error: 0,
             rate: 2,
+            reference: [4, 2],
         };
         let gains = [2.0, 3.0].map(|kp| PidGains { kp, kd: 1.0, filter: 0.0, ..PidGains::default() });
         let mut pid = TrackingPid::new(layout, &gains, 0.01).unwrap();

@@ -47,6 +47,7 @@ mod by_name;
 pub mod environments;
 mod export;
 mod fit;
+mod online;
 mod pipeline;
 mod policy_evaluation;
 mod registry;
@@ -61,6 +62,7 @@ pub use fit::{
     DatasetOpener, FitData, FitEnvironments, FitOptions, Fitted, check_fit, fit, fit_active, fit_policy,
     teacher, teacher_with,
 };
+pub use online::{OnlineReport, OnlineTuning, TrackingResult};
 #[cfg(feature = "actions")]
 pub use opendr_actions::{activity_recognition, skeleton_based_action_recognition};
 pub use opendr_audio::{mfcc, resampler};
@@ -106,7 +108,7 @@ pub use registry::registry;
 pub use smaller::optimize_loaded;
 pub use tune::{LearnerTraining, MakeLearner, TuneData, TuneOptions, Tuned, search_space, tune};
 pub use {
-    opendr_active as active, opendr_datasets as datasets, opendr_evaluation as evaluation,
+    opendr_active as active, opendr_control as control, opendr_datasets as datasets, opendr_evaluation as evaluation,
     opendr_inference as inference, opendr_metrics as metrics, opendr_optimize as optimize,
     opendr_planning as planning, opendr_rl as rl, opendr_simulation as simulation, opendr_tuning as tuning,
     opendr_vision as vision, opendr_zoo as zoo,

@@ -14,7 +14,7 @@ use opendr::learner::Entry;
 use opendr::metrics::{self, MetricEntry};
 use opendr::params::ParamMap;
 use opendr::rl::EvaluationProtocol;
-use opendr::{JsonFormat, Pipeline, Progress, Result};
+use opendr::{Error, JsonFormat, Pipeline, Progress, Result};
 
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
@@ -33,6 +33,7 @@ Examples:
   opendr eval ppo --env CartPole-v1 --episodes 500             a policy in an environment
   opendr eval residual_ppo --model runs/mine/model             prior, policy and both on the same episodes
   opendr eval active_face_recognition --model MODEL --episodes 500   a moving camera, beside baselines
+  opendr eval td3/quad_track --env QuadTrack-v1 --online       ... adapted in flight, beside frozen and conventional
 
 An interrupted evaluation with --out resumes when the same command runs again.";
 
@@ -58,6 +59,7 @@ pub fn grammar() -> Command {
                 .value_name("N")
                 .help("Stop after the first N samples"),
         )
+        .args(super::online::flags())
         .args(loading::flags())
         .after_help(EXAMPLES)
 }
@@ -99,6 +101,12 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     }
     if environment_flags::is_active(entry) {
         return active::run(spec, entry, matches, &bar);
+    }
+    if super::online::is_online(matches) {
+        return Err(Error::invalid_param(format!(
+            "--online adapts policies, and {} acts in no environment; leave it out",
+            entry.spec.name
+        )));
     }
     let mut options = EvalOptions {
         metric: matches.get_one("metric").cloned(),
@@ -142,7 +150,6 @@ fn in_environment(
 ) -> Result<Outcome> {
     let learner = loading::load(spec, &learner_flags::params(entry, matches)?, matches, bar)?;
     let source = environment_flags::source(matches, Some(learner.as_ref()))?;
-    let mut environment = source.make()?;
     let mut protocol = EvaluationProtocol::default();
     if let Some(episodes) = matches.get_one::<u64>("episodes") {
         protocol.episodes = *episodes;
@@ -150,6 +157,10 @@ fn in_environment(
     if let Some(seed) = matches.get_one::<u64>("first-seed") {
         protocol.first_seed = *seed;
     }
+    if super::online::is_online(matches) {
+        return super::online::evaluate(learner.as_ref(), &source, &protocol, matches, bar);
+    }
+    let mut environment = source.make()?;
     let report = opendr::evaluate_learner(learner.as_ref(), entry, environment.as_mut(), &protocol, bar)?;
     if matches.get_flag("json") {
         stdout::print_json(POLICY_REPORT, &report)?;

@@ -12,6 +12,7 @@ mod fit;
 mod import;
 mod infer;
 mod models;
+mod online;
 mod optimize;
 mod report;
 #[cfg(feature = "ros")]

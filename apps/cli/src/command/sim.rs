@@ -19,6 +19,7 @@ Examples:
   opendr sim priors                                             list the prior controllers
   opendr sim view CartPole-v1                                   an episode of random actions, as CartPole-v1.gif
   opendr sim view CartPole-v1 --learner ppo --out cart.mp4      an episode of a policy (mp4 needs ffmpeg)
+  opendr sim view QuadTrack-v1 --learner td3/quad_track --online --rate 10 --env-param mass_factor=1.3
   opendr sim view UavDepthCorridor-v1 --env-param max_obstacles=10 --seed 7 --out flight.png
   opendr sim export UavDepthCorridor-v1 flight.wbt --seed 7     the world of an episode, for Webots";
 
@@ -58,6 +59,7 @@ pub fn grammar() -> Command {
                 .help("Frames per second [default: 30]"),
             environment_flags::param_flag(),
         ])
+        .args(super::online::flags().map(|flag| flag.requires("learner")))
         .args(loading::flags());
     Command::new("sim")
         .about("List the environments and priors of reinforcement learning and record videos of them")
@@ -141,8 +143,17 @@ fn view(matches: &ArgMatches) -> Result<Outcome> {
     let bar = ProgressBar::new(matches.get_flag("quiet"));
     let id = matches.get_one::<String>(ID).map_or("", String::as_str);
     let source = opendr::environments::source(id, &environment_flags::params(id, matches)?)?;
-    let mut environment = source.make()?;
     let first = matches.get_one::<u64>("seed").copied().unwrap_or(0);
+    let default = PathBuf::from(format!("{}.gif", source.id()));
+    let out = matches.get_one::<PathBuf>("out").unwrap_or(&default);
+    let rate = matches.get_one::<f64>("rate").copied().unwrap_or(30.0);
+    if let (true, Some(spec)) = (super::online::is_online(matches), matches.get_one::<String>("learner")) {
+        let learner = loading::load(spec, &Default::default(), matches, &bar)?;
+        super::online::record(learner.as_ref(), &source, first, out, rate, matches, &bar)?;
+        bar.note(&format!("written: {}", written_files(out)));
+        return Ok(Outcome::Done);
+    }
+    let mut environment = source.make()?;
     let mut acting: Box<dyn Controller> = match matches.get_one::<String>("learner") {
         Some(spec) => {
             let learner = loading::load(spec, &Default::default(), matches, &bar)?;
@@ -150,9 +161,6 @@ fn view(matches: &ArgMatches) -> Result<Outcome> {
         }
         None => random_controller(environment.spec().action.clone(), first),
     };
-    let default = PathBuf::from(format!("{}.gif", source.id()));
-    let out = matches.get_one::<PathBuf>("out").unwrap_or(&default);
-    let rate = matches.get_one::<f64>("rate").copied().unwrap_or(30.0);
     let mut film = Recording::create(out, rate)?;
     let episodes = matches.get_one::<u64>("episodes").copied().unwrap_or(1);
     bar.begin("episodes", Some(episodes), Unit::Items);

@@ -2,10 +2,10 @@
 
 use std::ops::ControlFlow;
 
-use opendr_control::online::{AdaptablePolicy as _, Envelope, NeuralPolicy, OnlineAdapter, Preconditioner};
-use opendr_control::{PidGains, TrackingLayout, TrackingPid};
-use opendr_engine::environment::{Controller, Environment as _, EnvironmentSpec, ResetOptions};
-use opendr_engine::{Random, Result};
+use opendr_control::online::{Calibration, NeuralPolicy, OnlineAdapter};
+use opendr_control::{PidGains, TrackingPid};
+use opendr_engine::environment::{Controller, Environment as _, EnvironmentSpec, ResetOptions, TrackingTask};
+use opendr_engine::{Error, Random, Result};
 use opendr_kernels::Compute;
 use opendr_rl::{
     BehaviourCloningConfig, Bounds, Demonstrations, Head, NetworkConfig, ParameterInit, Policy,
@@ -16,63 +16,44 @@ use opendr_simulation::quad_track::{CONTROL_PERIOD, MAX_ACCELERATION, QuadTrack,
 
 use crate::settings::Settings;
 
-const LAYOUT: TrackingLayout = TrackingLayout::QUAD_TRACK;
-
 /// Gains on the nominal plant, by `cargo run --release -p opendr-control --example tune_pid 400`.
 const HORIZONTAL: PidGains = PidGains { kp: 8.344, ki: 0.384, kd: 5.199, filter: 0.00427, limit: 8.0 };
 const VERTICAL: PidGains = PidGains { kp: 15.449, ki: 0.0732, kd: 2.909, filter: 0.0399, limit: 8.0 };
+
+pub fn task(spec: &EnvironmentSpec) -> Result<&TrackingTask> {
+    spec.tracking.as_ref().ok_or_else(|| Error::internal("QuadTrack-v1 states no tracking task"))
+}
+
 pub fn tuned_pid() -> Result<TrackingPid> {
-    TrackingPid::new(LAYOUT, &[HORIZONTAL, HORIZONTAL, VERTICAL], CONTROL_PERIOD)
-}
-
-/// The tuned gains without integral and filter: a law of the present observation, which the network imitates.
-pub fn conventional() -> Result<TrackingPid> {
-    let gains = [HORIZONTAL, HORIZONTAL, VERTICAL].map(|gains| PidGains { filter: 0.0, ..gains });
-    Ok(TrackingPid::new(LAYOUT, &gains, CONTROL_PERIOD)?.without_integral())
-}
-
-/// The network as it was trained.
-pub struct Frozen(pub NeuralPolicy);
-
-impl Controller for Frozen {
-    fn act(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()> {
-        self.0.act(observation, action)
-    }
+    let spec = QuadTrack::new(&QuadTrackParams::default())?.spec().clone();
+    TrackingPid::new(task(&spec)?.layout, &[HORIZONTAL, HORIZONTAL, VERTICAL], CONTROL_PERIOD)
 }
 
 pub struct Base {
     pub policy: NeuralPolicy,
-    pub envelope: Envelope,
     pub spec: EnvironmentSpec,
-    pub preconditioner: Preconditioner,
+    pub calibration: Calibration,
     /// RMS difference of the imitation's commands, m/s^2.
     pub difference: f64,
 }
 
 impl Base {
     pub fn adapter(&self, settings: &Settings) -> Result<OnlineAdapter<NeuralPolicy>> {
-        let envelope = Some(self.envelope.clone());
-        let conventional = conventional()?;
-        OnlineAdapter::new(
-            self.policy.clone(),
-            conventional,
-            LAYOUT,
-            &self.spec.action,
-            envelope,
-            settings.params.clone(),
-        )?
-        .with_preconditioner(self.preconditioner.clone())
+        let Calibration { envelope, features } = self.calibration.clone();
+        OnlineAdapter::new(self.policy.clone(), &self.spec, Some(envelope), settings.params.clone())?
+            .with_features(features)
     }
 }
 
 /// Trains a network to imitate the conventional law on nominal flights, with errors and references spread about those that occur.
-pub fn train(seed: u64, settings: &Settings) -> Result<Base> {
+pub fn train(seed: u64) -> Result<Base> {
     let mut track = QuadTrack::new(&QuadTrackParams::default())?;
     let spec = track.spec().clone();
-    let (observations, actions, visited) = imitated(&mut track, seed)?;
-    let envelope = Envelope::of(&observations, LAYOUT.len, 0.0)?;
+    let (observations, actions) = imitated(&mut track, seed)?;
     let bounds = Bounds { low: vec![-MAX_ACCELERATION; 3], high: vec![MAX_ACCELERATION; 3] };
-    let mut policy = Policy::new(&spec, Head::Squashed(bounds), &NetworkConfig::default(), Some(10.0))?;
+    // One wide layer: its units still reproduce every number of the reference, which a second layer mixes with the errors.
+    let network = NetworkConfig { net_arch: vec![128], ..NetworkConfig::default() };
+    let mut policy = Policy::new(&spec, Head::Squashed(bounds), &network, Some(10.0))?;
     policy.initialise(ParameterInit::Orthogonal(0.1), 0.0, &mut Random::from_key([seed, 3]));
     let demonstrations = Demonstrations::new(&spec, observations, actions)?;
     let compute = Compute::single();
@@ -88,16 +69,17 @@ pub fn train(seed: u64, settings: &Settings) -> Result<Base> {
     }
     let difference = f64::from(MAX_ACCELERATION) * (loss / 3.0).sqrt();
     let policy = NeuralPolicy::new(policy)?;
-    let weights = [settings.ridge, settings.constant];
-    let preconditioner = Preconditioner::of(&mut policy.clone(), &visited, &LAYOUT, true, weights)?;
-    Ok(Base { policy, envelope, spec, difference, preconditioner })
+    let calibration = Calibration::fly(&policy, &mut track)?;
+    Ok(Base { policy, spec, difference, calibration })
 }
 
 /// Observations of nominal flights with spread errors, and the conventional law's commands.
-fn imitated(track: &mut QuadTrack, seed: u64) -> Result<(Vec<f32>, Vec<f32>, Vec<f32>)> {
-    let (mut law, mut random) = (conventional()?, Random::from_key([seed, 1]));
-    let (mut observation, mut action) = (vec![0.0; LAYOUT.len], [0.0; 3]);
-    let (mut observations, mut actions, mut visited) = (Vec::new(), Vec::new(), Vec::new());
+fn imitated(track: &mut QuadTrack, seed: u64) -> Result<(Vec<f32>, Vec<f32>)> {
+    let spec = track.spec().clone();
+    let mut law = TrackingPid::conventional(task(&spec)?, &[-MAX_ACCELERATION; 3], &[MAX_ACCELERATION; 3])?;
+    let mut random = Random::from_key([seed, 1]);
+    let (mut observation, mut action) = (vec![0.0; spec.observation.len()], [0.0; 3]);
+    let (mut observations, mut actions) = (Vec::new(), Vec::new());
     for flight in 0..12 {
         track.reset(Some(5000 + 100 * seed + flight), &ResetOptions::new(), &mut observation)?;
         for _ in 0..4000 {
@@ -113,10 +95,9 @@ fn imitated(track: &mut QuadTrack, seed: u64) -> Result<(Vec<f32>, Vec<f32>, Vec
             law.act(&spread, &mut label)?;
             observations.extend_from_slice(&spread);
             actions.extend_from_slice(&label);
-            visited.extend_from_slice(&observation);
             law.act(&observation, &mut action)?;
             track.step(&action, &mut observation)?;
         }
     }
-    Ok((observations, actions, visited))
+    Ok((observations, actions))
 }

@@ -13,7 +13,7 @@ use opendr_simulation::quad_track::{QuadTrack, QuadTrackParams};
 pub struct Flight {
     /// RMS of the distance to the reference in the last 20 s, metres.
     pub last: f64,
-    /// Seconds from the change until the RMS of 2 s is below twice that before it, and stays there.
+    /// Seconds from the change until the RMS of 2 s is at most twice that of the 10 s before it.
     pub recovery: f64,
     pub lost: bool,
 }
@@ -45,11 +45,11 @@ pub fn fly(
         (span.iter().map(|error| error * error).sum::<f64>() / span.len().max(1) as f64).sqrt()
     };
     let before = rms(10 * RATE, 20 * RATE);
-    let seconds =
-        (40..120).rev().take_while(|half| rms(half * RATE / 2, half * RATE / 2 + 2 * RATE) <= 2.0 * before);
+    let recovered = |half: &usize| rms(half * RATE / 2, half * RATE / 2 + 2 * RATE) <= 2.0 * before;
+    let recovery = (40..116).find(recovered).map_or(40.0, |half| 0.5 * (half - 40) as f64);
     Ok(Flight {
         last: if lost { f64::INFINITY } else { rms(40 * RATE, 60 * RATE) },
-        recovery: 40.0 - 0.5 * seconds.count() as f64,
+        recovery: if lost { 40.0 } else { recovery },
         lost,
     })
 }

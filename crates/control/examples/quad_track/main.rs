@@ -3,22 +3,23 @@
 //!
 //! Trains the base network by imitation of the tuned conventional law on the nominal plant, then flies every case with the frozen
 //! network, the tuned PID and the adapted network. `episodes`, `seeds` and `plants` set the size of the protocol (500, 5 and 1000),
-//! `film=FILE.gif` writes a film of one flight instead; `plant.NAME` sets an option of the environment for
+//! `video=FILE.gif` writes a video of one flight instead, `policy=FILE` the base network of seed 0; `plant.NAME` sets an option of the environment for
 //! every flight, and every other name is a parameter of the adaptation.
 
 mod base;
 mod cases;
-mod film;
 mod flight;
 mod report;
 mod settings;
+mod video;
 
 use opendr_engine::Result;
 
 fn main() -> Result<()> {
     let settings = settings::Settings::parse(std::env::args().skip(1))?;
-    match &settings.film {
-        Some(path) => film::write(path, &settings),
-        None => report::run(&settings),
+    match (&settings.video, &settings.policy) {
+        (Some(path), _) => video::write(path, &settings),
+        (None, Some(path)) => base::train(0)?.policy.policy().save(path.as_ref()),
+        (None, None) => report::run(&settings),
     }
 }

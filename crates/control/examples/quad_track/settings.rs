@@ -1,6 +1,6 @@
 //! What the command line sets.
 
-use opendr_control::online::{AdaptationParams, LearningSignal};
+use opendr_control::online::AdaptationParams;
 use opendr_engine::params::{ParamValue, Params as _};
 use opendr_engine::{Error, Result};
 
@@ -12,10 +12,9 @@ pub struct Settings {
     pub first_seed: u64,
     /// One case of the protocol alone.
     pub case: Option<usize>,
-    pub film: Option<String>,
-    /// Of the preconditioner.
-    pub ridge: f64,
-    pub constant: f64,
+    pub video: Option<String>,
+    /// File to which the base network of seed 0 is written.
+    pub policy: Option<String>,
     pub params: AdaptationParams,
     /// Options of the environment for every flight.
     pub plant: Vec<(String, f64)>,
@@ -23,18 +22,15 @@ pub struct Settings {
 
 impl Settings {
     pub fn parse(arguments: impl Iterator<Item = String>) -> Result<Self> {
-        let params =
-            AdaptationParams { signal: LearningSignal::ReferenceModel, ..AdaptationParams::default() };
         let mut settings = Self {
             episodes: 500,
             seeds: 5,
             plants: 1000,
             first_seed: 1_000_000,
             case: None,
-            film: None,
-            ridge: 0.01,
-            constant: 5.0,
-            params,
+            video: None,
+            policy: None,
+            params: AdaptationParams::default(),
             plant: Vec::new(),
         };
         for argument in arguments {
@@ -48,9 +44,8 @@ impl Settings {
                 "plants" => settings.plants = real()? as u64,
                 "first_seed" => settings.first_seed = real()? as u64,
                 "case" => settings.case = Some(real()? as usize),
-                "ridge" => settings.ridge = real()?,
-                "constant" => settings.constant = real()?,
-                "film" => settings.film = Some(text.to_owned()),
+                "video" => settings.video = Some(text.to_owned()),
+                "policy" => settings.policy = Some(text.to_owned()),
                 _ if name.starts_with("plant.") => {
                     settings.plant.push((name["plant.".len()..].to_owned(), real()?));
                 }

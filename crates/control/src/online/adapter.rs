@@ -1,168 +1,144 @@
 //! The adapter: a controller that learns at every step.
 
-use opendr_engine::environment::{Controller, Space};
+use opendr_engine::environment::{Controller, EnvironmentSpec, TrackingTask};
 use opendr_engine::params::Params as _;
 use opendr_engine::{Error, Result};
 
-use super::step::{bounded_step, norm};
+use super::estimator::AxisEstimator;
+use super::features::Inputs;
+use super::phase::Phase;
+use super::requirements::{tracking_bounds, tracking_task};
 use super::{
-    AdaptablePolicy, AdaptationParams, Envelope, EventKind, EventLog, FreezeReason, LearningSignal, Monitor,
-    Preconditioner, Verdict,
+    AdaptablePolicy, AdaptationParams, Envelope, EventKind, EventLog, FreezeReason, Monitor,
+    ReferenceFeatures, Verdict,
 };
-use crate::TrackingLayout;
+use crate::TrackingPid;
 
 /// A policy that is adapted while it controls.
 ///
 /// It is deterministic: the same observations give the same commands and the same parameters, bit for bit. After the first step it
 /// allocates nothing.
 pub struct OnlineAdapter<P> {
-    layout: TrackingLayout,
-    params: AdaptationParams,
-    base: P,
-    adapted: P,
-    conventional: Box<dyn Controller + Send>,
+    pub(super) task: TrackingTask,
+    pub(super) params: AdaptationParams,
+    pub(super) base: P,
+    pub(super) adapted: P,
+    conventional: TrackingPid,
     envelope: Option<Envelope>,
-    preconditioner: Option<Preconditioner>,
+    features: ReferenceFeatures,
+    estimators: Vec<AxisEstimator>,
     bounds: [Vec<f32>; 2],
     monitor: Monitor,
-    log: EventLog,
-    /// The last good parameters, where there were any.
+    pub(super) log: EventLog,
+    /// The last good weights, where there were any.
     snapshot: Vec<f32>,
     buffers: Buffers,
     recording: Vec<f32>,
     /// -1 for a flipped signal, else 1.
     sign: f32,
-    phase: Phase,
+    pub(super) phase: Phase,
 }
 
 /// Memory of a step, used again.
 struct Buffers {
-    /// The last observations, as a ring.
-    recent: Vec<f32>,
-    /// Filtered sums of error and rate.
-    sums: Vec<f32>,
-    signals: Vec<f32>,
-    /// Velocities of the reference model.
-    model: Vec<f32>,
-    /// Its feedback behind the lag.
-    feedback: Vec<f32>,
-    gradients: Vec<f32>,
-    /// Preconditioned gradients of the last layer.
-    direction: Vec<f32>,
-    product: Vec<f32>,
-    /// Commands: of now, of the base, of the conventional controller, of the delayed observation.
+    inputs: Inputs,
+    last_inputs: Vec<f32>,
+    features: Vec<f32>,
+    /// Weights of all axes, `[axes, features]`.
+    weights: Vec<f32>,
+    /// The observation, with the errors of the last measurement where the estimate was not renewed.
+    held: Vec<f32>,
+    /// The observation without its errors.
+    reference: Vec<f32>,
+    /// Commands: of now, of the base, of the base without errors, of the conventional controller.
     adapted: Vec<f32>,
     base: Vec<f32>,
+    without_errors: Vec<f32>,
     conventional: Vec<f32>,
-    delayed: Vec<f32>,
     /// By how much the guard cut the last command.
     cut: Vec<f32>,
-}
-
-/// Where an adaptation stands.
-#[derive(Debug, Clone, Copy, Default)]
-struct Phase {
-    step: u64,
-    /// Steps since the last reset.
-    of_episode: u64,
-    updates: u64,
-    frozen: Option<FreezeReason>,
-    guarded: bool,
-    /// Step until which learning pauses after a rollback.
-    paused_until: u64,
-    paused: bool,
-    strikes: u32,
-    disarmed: bool,
-    has_snapshot: bool,
+    /// Feed-forward commands, as old as the observed velocity.
+    feedforward: Vec<f32>,
 }
 
 /// Events that are kept.
 const EVENTS: usize = 4096;
 
 impl<P: AdaptablePolicy> OnlineAdapter<P> {
-    /// An adapter around `base`, whose commands are held near those of `conventional`. `action` is the environment's action space;
-    /// outside `envelope`, where one is given, nothing is learned.
+    /// An adapter around `base` for the tracking task of an environment. Outside `envelope`, where one is given, nothing is learned
+    /// and the conventional law of the task acts.
     ///
     /// # Errors
-    /// `InvalidParam` for parameters out of range and a layout that does not fit the action space, else those of the policy.
+    /// `Unsupported` for an environment without a tracking task or a box of actions and for a policy that cannot be adapted,
+    /// `InvalidParam` for parameters out of range, else those of the policy.
     pub fn new(
         base: P,
-        conventional: impl Controller + Send + 'static,
-        layout: TrackingLayout,
-        action: &Space,
+        spec: &EnvironmentSpec,
         envelope: Option<Envelope>,
         params: AdaptationParams,
     ) -> Result<Self> {
-        layout.check()?;
+        let task = tracking_task(spec)?.clone();
+        task.check()?;
         params.check()?;
-        let Space::Box { low, high, .. } = action else {
-            return Err(Error::invalid_param(format!(
-                "actions are {action}; online adaptation needs a box of numbers"
-            )));
-        };
-        if low.len() != layout.axes {
-            return Err(Error::invalid_param(format!(
-                "the layout has {} axes and an action {} numbers; make them equal",
-                layout.axes,
-                low.len()
-            )));
-        }
-        let delay = (params.delay / params.period).round() as usize;
-        let (axes, count) = (layout.axes, base.parameters().len());
-        let buffers = Buffers {
-            recent: vec![0.0; (delay + 1) * layout.len],
-            sums: vec![0.0; axes],
-            signals: vec![0.0; axes],
-            model: vec![0.0; axes],
-            feedback: vec![0.0; axes],
-            gradients: vec![0.0; count],
-            direction: Vec::new(),
-            product: Vec::new(),
-            adapted: vec![0.0; axes],
-            base: vec![0.0; axes],
-            conventional: vec![0.0; axes],
-            delayed: vec![0.0; axes],
-            cut: vec![0.0; axes],
-        };
+        let (low, high) = tracking_bounds(spec, &task)?;
+        let (layout, axes) = (task.layout, task.axes.len());
         let mut adapted = base.clone();
-        // The policy makes its buffers here, so that the first update allocates nothing either.
-        let (zeros, mut action) = (vec![0.0; layout.len], vec![0.0; axes]);
-        adapted.act(&zeros, &mut action)?;
-        for last_layer_only in [true, false] {
-            adapted.backward(&vec![0.0; axes], last_layer_only, &mut vec![0.0; count])?;
-        }
-        Ok(Self {
-            layout,
-            monitor: Monitor::new(params.monitor, axes, f64::from(params.period)),
-            adapted,
-            conventional: Box::new(conventional),
+        let features = ReferenceFeatures::constant(&mut adapted, &layout)?;
+        let mut adapter = Self {
+            conventional: TrackingPid::conventional(&task, low, high)?,
+            monitor: Monitor::new(params.monitor, &task),
+            buffers: Buffers {
+                inputs: Inputs::new(&adapted, &layout),
+                last_inputs: vec![0.0; base.last_layer().len() / base.outputs().max(1)],
+                features: Vec::new(),
+                weights: Vec::new(),
+                held: vec![0.0; layout.len],
+                reference: vec![0.0; layout.len],
+                adapted: vec![0.0; axes],
+                base: vec![0.0; axes],
+                without_errors: vec![0.0; axes],
+                conventional: vec![0.0; axes],
+                cut: vec![0.0; axes],
+                feedforward: vec![0.0; axes],
+            },
             envelope,
-            preconditioner: None,
-            bounds: [low.clone(), high.clone()],
+            estimators: Vec::new(),
+            bounds: [low.to_vec(), high.to_vec()],
             log: EventLog::new(EVENTS),
-            snapshot: base.parameters().to_vec(),
-            buffers,
+            snapshot: Vec::new(),
             recording: Vec::new(),
             sign: 1.0,
             phase: Phase::default(),
+            features: features.clone(),
+            task,
+            adapted,
             base,
             params,
-        })
+        };
+        adapter.set_features(features);
+        Ok(adapter)
     }
 
-    /// Adapts the last layer alone, along gradients times this matrix.
+    /// Adapts these features of the reference beside constant loads.
     ///
     /// # Errors
-    /// `InvalidParam` where it belongs to another network.
-    pub fn with_preconditioner(mut self, preconditioner: Preconditioner) -> Result<Self> {
-        let count = self.base.last_layer().len();
-        if !preconditioner.fits(count, self.layout.axes) {
-            return Err(Error::invalid_param("a preconditioner of another network; make one from this base"));
+    /// `InvalidParam` where they belong to another network.
+    pub fn with_features(mut self, features: ReferenceFeatures) -> Result<Self> {
+        if !features.fits(self.base.last_layer().len(), self.base.outputs()) {
+            return Err(Error::invalid_param("features of another network; make them from this base"));
         }
-        self.buffers.direction = vec![0.0; count];
-        self.buffers.product = vec![0.0; count / self.layout.axes];
-        self.preconditioner = Some(preconditioner);
+        self.set_features(features);
         Ok(self)
+    }
+
+    fn set_features(&mut self, features: ReferenceFeatures) {
+        let (count, period) = (features.count(), self.task.period as f32);
+        let axis = |response: f64| AxisEstimator::new(&self.params, count, response as f32, period);
+        self.estimators = self.task.axes.iter().map(|own| axis(own.response)).collect();
+        self.buffers.features = vec![0.0; count];
+        self.buffers.weights = vec![0.0; count * self.task.axes.len()];
+        self.snapshot = self.buffers.weights.clone();
+        self.features = features;
     }
 
     /// The frozen policy.
@@ -180,6 +156,11 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
         &self.params
     }
 
+    /// Numbers of an action.
+    pub fn axes(&self) -> usize {
+        self.task.axes.len()
+    }
+
     /// What happened so far.
     pub fn log(&self) -> &EventLog {
         &self.log
@@ -195,10 +176,14 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
         [self.phase.step, self.phase.updates]
     }
 
-    /// Distance of the parameters from the base (Euclidean norm).
+    /// Weights of the features, `[axes, features]`; 0 for the base.
+    pub fn weights(&self) -> &[f32] {
+        &self.buffers.weights
+    }
+
+    /// Norm of the weights: about by how much the commands were changed.
     pub fn distance(&self) -> f32 {
-        let pairs = self.adapted.parameters().iter().zip(self.base.parameters());
-        norm(pairs.map(|(adapted, base)| adapted - base))
+        norm(&self.buffers.weights)
     }
 
     /// Whether learning was switched off after repeated rollbacks.
@@ -214,29 +199,24 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
 
     /// Restores the base and forgets snapshots.
     pub fn restore_base(&mut self) {
-        self.adapted.parameters_mut().copy_from_slice(self.base.parameters());
+        self.buffers.weights.fill(0.0);
+        self.spread_weights();
         self.phase.has_snapshot = false;
         self.monitor.restart();
     }
 
-    /// Sets the parameters, drawn to within the radius around the base.
-    pub(super) fn restore_parameters(&mut self, parameters: &[f32]) -> Result<()> {
-        if parameters.len() != self.base.parameters().len() {
+    /// Sets the weights, drawn to within the radius.
+    pub(super) fn restore_weights(&mut self, weights: &[f32]) -> Result<()> {
+        if weights.len() != self.buffers.weights.len() || weights.iter().any(|weight| !weight.is_finite()) {
             return Err(Error::invalid_input(format!(
-                "{} parameters for a network of {}; load a model of this network",
-                parameters.len(),
-                self.base.parameters().len()
+                "{} weights for an adapter of {}; load a model that was adapted with the same features",
+                weights.len(),
+                self.buffers.weights.len()
             )));
         }
-        let own = self.adapted.parameters_mut();
-        own.copy_from_slice(parameters);
-        bounded_step(
-            own,
-            self.base.parameters(),
-            &self.buffers.gradients,
-            0.0,
-            [0.0, 0.0, self.params.radius],
-        );
+        let kept = (self.params.radius / norm(weights)).min(1.0);
+        self.buffers.weights.iter_mut().zip(weights).for_each(|(own, weight)| *own = kept * weight);
+        self.spread_weights();
         self.monitor.restart();
         Ok(())
     }
@@ -250,7 +230,7 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
 
     /// Keeps the observations of the next `steps` steps for [`Self::recording`].
     pub fn record(&mut self, steps: usize) {
-        self.recording = Vec::with_capacity(steps.saturating_mul(self.layout.len));
+        self.recording = Vec::with_capacity(steps.saturating_mul(self.task.layout.len));
     }
 
     /// The observations of the recorded steps, row after row. A fresh adapter that acts on them learns the same, bit for bit, and
@@ -264,15 +244,17 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
     /// # Errors
     /// Those of [`Controller::act`].
     pub fn replay(&mut self, recording: &[f32]) -> Result<()> {
-        let mut action = vec![0.0; self.layout.axes];
-        recording.chunks_exact(self.layout.len).try_for_each(|observation| self.act(observation, &mut action))
+        let mut action = vec![0.0; self.task.axes.len()];
+        let rows = recording.chunks_exact(self.task.layout.len);
+        rows.into_iter().try_for_each(|observation| self.act(observation, &mut action))
     }
 
     /// Why nothing may be learned from an observation, if so.
     fn freeze_reason(&self, observation: &[f32]) -> Option<FreezeReason> {
-        if self.layout.age(observation) > self.params.max_age {
+        let layout = &self.task.layout;
+        if layout.age(observation) > self.params.max_age {
             Some(FreezeReason::Stale)
-        } else if self.layout.saturated(observation) {
+        } else if layout.saturated(observation) {
             Some(FreezeReason::Saturated)
         } else if self.envelope.as_ref().is_some_and(|envelope| !envelope.contains(observation)) {
             Some(FreezeReason::OutsideEnvelope)
@@ -281,132 +263,98 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
         }
     }
 
-    /// Whether this step may learn; freezes and resumptions go to the log.
-    fn may_learn(&mut self, observation: &[f32]) -> bool {
-        let reason = self.freeze_reason(observation);
-        let Phase { step, frozen, paused_until, paused, .. } = self.phase;
-        let pauses = step < paused_until;
-        match (frozen, reason) {
-            (None, Some(reason)) => self.log.push(step, EventKind::Frozen(reason)),
-            (Some(_), None) => self.log.push(step, EventKind::Resumed),
-            _ if paused && !pauses && !self.phase.disarmed => self.log.push(step, EventKind::Resumed),
-            _ => (),
-        }
-        (self.phase.frozen, self.phase.paused) = (reason, pauses);
-        let delay = (self.buffers.recent.len() / self.layout.len) as u64;
-        reason.is_none() && !pauses && !self.phase.disarmed && self.phase.of_episode >= delay
-    }
-
-    /// Keeps good parameters, restores them when the monitor finds the present ones worse.
-    fn supervise(&mut self, observation: &[f32]) -> Result<()> {
-        let errors = self.layout.errors(observation);
-        let verdict = self.monitor.observe(errors, &self.buffers.adapted, &self.buffers.base);
-        let (step, kind) = match verdict {
-            Verdict::Undecided => return Ok(()),
+    /// Keeps good weights, restores them when the monitor finds the present ones worse.
+    fn supervise(&mut self, observation: &[f32]) {
+        let errors = self.task.layout.errors(observation);
+        let step = self.phase.step;
+        match self.monitor.observe(errors, &self.buffers.adapted, &self.buffers.base) {
+            Verdict::Undecided => (),
             Verdict::Good => {
-                self.snapshot.copy_from_slice(self.adapted.parameters());
+                self.snapshot.copy_from_slice(&self.buffers.weights);
                 self.monitor.count_good_again();
                 (self.phase.strikes, self.phase.has_snapshot) = (0, true);
-                (self.phase.step, EventKind::Snapshot)
+                self.log.push(step, EventKind::Snapshot);
             }
-            Verdict::Worse => {
-                // Restored once: where it is worse, too, the base follows.
-                let (parameters, kind) = match std::mem::take(&mut self.phase.has_snapshot) {
-                    true => (&self.snapshot[..], EventKind::RolledBackToSnapshot),
-                    false => (self.base.parameters(), EventKind::RolledBackToBase),
-                };
-                self.adapted.parameters_mut().copy_from_slice(parameters);
-                let pause = self.params.monitor.pause / f64::from(self.params.period);
-                let pause = pause * f64::from(1u32 << self.phase.strikes.min(16));
-                self.phase.paused_until = self.phase.step + pause as u64;
-                self.phase.strikes += 1;
-                self.monitor.restart();
-                (self.phase.step, kind)
-            }
+            Verdict::Worse => self.roll_back(),
+        }
+    }
+
+    /// Restores the last good weights, once: where these are worse, too, the base follows.
+    fn roll_back(&mut self) {
+        let step = self.phase.step;
+        let kind = if std::mem::take(&mut self.phase.has_snapshot) {
+            self.buffers.weights.copy_from_slice(&self.snapshot);
+            EventKind::RolledBackToSnapshot
+        } else {
+            self.buffers.weights.fill(0.0);
+            EventKind::RolledBackToBase
         };
         self.log.push(step, kind);
+        self.phase.pause(&self.params.monitor, self.task.period);
         if self.phase.strikes >= self.params.monitor.strikes && !self.phase.disarmed {
             self.phase.disarmed = true;
-            self.adapted.parameters_mut().copy_from_slice(self.base.parameters());
+            self.buffers.weights.fill(0.0);
             self.log.push(step, EventKind::Disarmed);
         }
-        Ok(())
+        self.spread_weights();
+        self.monitor.restart();
     }
 
-    /// Writes the learning signals; whether there is one.
-    fn signals(&mut self, observation: &[f32]) -> bool {
-        let AdaptationParams { signal, rate_weight, observer, scale, dead_zone, filter, period, .. } =
-            self.params;
-        let (errors, rates) = (self.layout.errors(observation), self.layout.rates(observation));
-        let first = self.phase.of_episode == 0;
-        let lag = self.params.monitor.lag as f32;
-        let Buffers { sums, signals, model, feedback, base, cut, .. } = &mut self.buffers;
-        let mut any = false;
-        for axis in 0..self.layout.axes {
-            let sum = match signal {
-                LearningSignal::ReferenceModel => {
-                    let velocity = self.layout.velocity(observation, axis);
-                    // The feedback reaches the plant late, as it does without a disturbance.
-                    let feedforward = self.layout.feedforward(observation, axis);
-                    feedback[axis] += (base[axis] - feedforward - feedback[axis]) * (period / (lag + period));
-                    let moved = model[axis] + (feedforward + feedback[axis]) * period;
-                    let lacking = if first { 0.0 } else { moved - velocity };
-                    model[axis] = velocity + lacking * (1.0 - observer * period).max(0.0);
-                    lacking
-                }
-                LearningSignal::ExpertRule | LearningSignal::FeedbackError => {
-                    errors[axis] + rate_weight * rates[axis]
-                }
-            };
-            sums[axis] += (sum - sums[axis]) * (period / (filter + period));
-            let value = self.sign * signal.value(sums[axis], scale, dead_zone);
+    /// Writes the weights into estimators and network.
+    fn spread_weights(&mut self) {
+        let count = self.features.count();
+        for (axis, weights) in self.estimators.iter_mut().zip(self.buffers.weights.chunks_exact(count)) {
+            axis.weights.copy_from_slice(weights);
+        }
+        let range = self.base.last_layer();
+        let base = &self.base.parameters()[range.clone()];
+        self.features.apply(base, &self.buffers.weights, &mut self.adapted.parameters_mut()[range]);
+    }
+
+    /// Takes in the observed velocities.
+    fn observe(&mut self, observation: &[f32], fresh: bool) {
+        let (layout, period) = (self.task.layout, self.task.period as f32);
+        for (at, axis) in self.estimators.iter_mut().enumerate() {
+            let velocity = layout.velocity(observation, at);
+            axis.observe(velocity, self.params.observer, period, fresh);
+        }
+    }
+
+    /// Starts the lag of the feed-forward commands.
+    fn start(&mut self, observation: &[f32]) {
+        for (at, feedforward) in self.buffers.feedforward.iter_mut().enumerate() {
+            *feedforward = self.task.layout.feedforward(observation, at);
+        }
+    }
+
+    /// Moves the weights, within the limits of a step and of the distance.
+    fn learn(&mut self) {
+        let (params, count) = (&self.params, self.features.count());
+        let weights = &mut self.buffers.weights;
+        for (axis, cut) in self.estimators.iter_mut().zip(&self.buffers.cut) {
             // What the guard cuts off must not be asked for more and more.
-            signals[axis] = if cut[axis] * value > 0.0 { 0.0 } else { value };
-            any |= signals[axis] != 0.0;
-        }
-        any
-    }
-
-    /// Moves the parameters so that the command of a delay ago would have been different by the signal.
-    fn learn(&mut self) -> Result<()> {
-        let Self { adapted, base, buffers, params, layout, phase, preconditioner, .. } = self;
-        let Buffers { recent, signals, gradients, direction, product, delayed, .. } = buffers;
-        let slots = (recent.len() / layout.len) as u64;
-        // The slot that this step's observation will overwrite is the oldest.
-        let oldest = (phase.of_episode % slots) as usize * layout.len;
-        let observation = &mut recent[oldest..oldest + layout.len];
-        if params.reference_only {
-            layout.clear_errors(observation);
-        }
-        adapted.act(observation, delayed)?;
-        let last_only = params.last_layer_only || preconditioner.is_some();
-        let range = if last_only { adapted.last_layer() } else { 0..gradients.len() };
-        gradients[range.clone()].fill(0.0);
-        adapted.backward(signals, last_only, gradients)?;
-        let gradients = &gradients[range.clone()];
-        let along = match preconditioner {
-            None => gradients,
-            Some(preconditioner) => {
-                preconditioner.apply(gradients, direction, product);
-                direction
+            if *cut == 0.0 {
+                axis.learn(params, self.task.period as f32, self.sign);
             }
-        };
-        let change: f32 = gradients.iter().zip(along).map(|(gradient, along)| gradient * along).sum();
-        let wanted: f32 = signals.iter().map(|signal| signal * signal).sum();
-        if change <= 1e-12 * wanted || !change.is_finite() {
-            return Ok(());
         }
-        // The command then changes by about rate x signal x period.
-        let factor = params.rate * params.period * wanted / change;
-        let limits = [params.step_limit, params.leak * params.period, params.radius];
-        let parameters = &mut adapted.parameters_mut()[range.clone()];
-        bounded_step(parameters, &base.parameters()[range], along, factor, limits);
-        phase.updates += 1;
-        Ok(())
+        let estimated = || self.estimators.iter().flat_map(|axis| &axis.weights);
+        let step: f32 = estimated().zip(&*weights).map(|(new, old)| (new - old) * (new - old)).sum();
+        let share = (params.step_limit / step.sqrt()).min(1.0);
+        if !step.is_finite() || !share.is_finite() {
+            // No distance, or numbers that overflowed: the weights stay.
+            return self.spread_weights();
+        }
+        estimated().zip(&mut *weights).for_each(|(new, old)| *old += share * (new - *old));
+        let kept = (params.radius / norm(weights)).min(1.0);
+        weights.iter_mut().for_each(|weight| *weight *= kept);
+        debug_assert_eq!(weights.len(), count * self.estimators.len());
+        self.spread_weights();
+        self.phase.updates += 1;
     }
 
-    /// Writes the command of the adapted policy, held near the conventional one and within the action space.
-    fn command(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()> {
+    /// Writes the command of the adapted policy, held near the conventional one and within the action space; outside the envelope
+    /// the conventional one, shifted by the load.
+    fn command(&mut self, observation: &[f32], outside: bool, action: &mut [f32]) -> Result<()> {
         let Buffers { adapted, base, conventional, cut, .. } = &mut self.buffers;
         self.conventional.act(observation, conventional)?;
         self.base.act(observation, base)?;
@@ -414,6 +362,10 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
         let band = self.params.band;
         let mut guarded = false;
         for axis in 0..adapted.len() {
+            if outside {
+                base[axis] = conventional[axis];
+                adapted[axis] = conventional[axis] + self.estimators[axis].weights[0];
+            }
             let held = adapted[axis].clamp(conventional[axis] - band, conventional[axis] + band);
             let held = held.clamp(self.bounds[0][axis], self.bounds[1][axis]);
             cut[axis] = adapted[axis] - held;
@@ -426,37 +378,97 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
         self.phase.guarded = guarded;
         Ok(())
     }
+
+    /// Takes in what the command of this step consists of.
+    fn keep_command(&mut self, observation: &[f32]) -> Result<()> {
+        let layout = self.task.layout;
+        let Buffers { inputs, last_inputs, features, reference, base, without_errors, feedforward, .. } =
+            &mut self.buffers;
+        inputs.of_last_act(&mut self.adapted)?;
+        inputs.write(last_inputs);
+        self.features.write(last_inputs, features);
+        reference.copy_from_slice(observation);
+        layout.clear_errors(reference);
+        self.base.act(reference, without_errors)?;
+        let period = self.task.period as f32;
+        let share = period / (layout.age(observation).min(self.params.max_age) + period);
+        for (at, axis) in self.estimators.iter_mut().enumerate() {
+            feedforward[at] += share * (layout.feedforward(observation, at) - feedforward[at]);
+            let feedback = base[at] - without_errors[at];
+            axis.command(feedforward[at], feedback, features, inputs.slopes()[at], period);
+        }
+        Ok(())
+    }
+}
+
+fn norm(numbers: &[f32]) -> f32 {
+    numbers.iter().map(|number| number * number).sum::<f32>().sqrt()
+}
+
+impl<P: AdaptablePolicy> OnlineAdapter<P> {
+    /// Takes over an observation. While the estimate is not renewed it keeps the last errors: an extrapolated velocity drifts from
+    /// the reference's, and the feedback would answer to that.
+    fn hold(&mut self, observation: &[f32], held: &mut [f32]) {
+        let layout = &self.task.layout;
+        let age = layout.age(observation);
+        let grown = f64::from(age - self.phase.age) > 0.5 * self.task.period;
+        let renewed = !grown || self.phase.of_episode == 0;
+        let kept = [layout.error..layout.error + layout.axes, layout.rate..layout.rate + layout.axes];
+        for (at, (held, number)) in held.iter_mut().zip(observation).enumerate() {
+            if renewed || !kept.iter().any(|range| range.contains(&at)) {
+                *held = *number;
+            }
+        }
+        (self.phase.age, self.phase.stale) = (age, !renewed);
+    }
+
+    /// Learns from an observation and writes the command for it.
+    fn act_on(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()> {
+        self.supervise(observation);
+        let reason = self.freeze_reason(observation);
+        let (stale, first) = (self.phase.stale, self.phase.of_episode == 0);
+        self.observe(observation, !stale && !self.phase.was_stale && !first);
+        self.phase.was_stale = stale;
+        if first {
+            self.start(observation);
+        }
+        if self.phase.may_learn(reason, self.params.settle, self.task.period, &mut self.log) && !stale {
+            self.learn();
+        }
+        self.command(observation, reason == Some(FreezeReason::OutsideEnvelope), action)?;
+        self.keep_command(observation)?;
+        self.phase.advance();
+        Ok(())
+    }
 }
 
 impl<P: AdaptablePolicy> Controller for OnlineAdapter<P> {
     /// Another episode: what was learned stays, the past of the last one is forgotten.
     fn reset(&mut self) {
         self.conventional.reset();
-        self.buffers.sums.fill(0.0);
-        self.buffers.feedback.fill(0.0);
+        self.estimators.iter_mut().for_each(AxisEstimator::reset);
         self.buffers.cut.fill(0.0);
         self.buffers.adapted.fill(0.0);
         self.buffers.base.fill(0.0);
-        self.monitor = Monitor::new(self.params.monitor, self.layout.axes, f64::from(self.params.period));
-        self.phase.of_episode = 0;
+        self.monitor.reset();
+        self.phase.begin_episode();
     }
 
     fn act(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()> {
-        self.layout.check_lengths(observation, action)?;
+        self.task.layout.check_lengths(observation, action)?;
+        if let Some(place) = observation.iter().position(|number| !number.is_finite()) {
+            return Err(Error::invalid_input(format!(
+                "number {place} of the observation is {}; nothing is learned from it and no command follows from it",
+                observation[place]
+            )));
+        }
         if self.recording.len() + observation.len() <= self.recording.capacity() {
             self.recording.extend_from_slice(observation);
         }
-        self.supervise(observation)?;
-        let signalled = self.signals(observation);
-        if self.may_learn(observation) && signalled {
-            self.learn()?;
-        }
-        self.command(observation, action)?;
-        let slots = (self.buffers.recent.len() / self.layout.len) as u64;
-        let slot = (self.phase.of_episode % slots) as usize * self.layout.len;
-        self.buffers.recent[slot..slot + self.layout.len].copy_from_slice(observation);
-        self.phase.step += 1;
-        self.phase.of_episode += 1;
-        Ok(())
+        let mut held = std::mem::take(&mut self.buffers.held);
+        self.hold(observation, &mut held);
+        let acted = self.act_on(&held, action);
+        self.buffers.held = held;
+        acted
     }
 }

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use opendr_engine::model::{Manifest, Model, ModelWriter, Sha256};
 use opendr_engine::{Error, Result};
-use opendr_rl::{POLICY_FILE, Policy};
+use opendr_rl::POLICY_FILE;
 use serde::{Deserialize, Serialize};
 
-use super::{AdaptablePolicy as _, NeuralPolicy, OnlineAdapter};
+use super::{NeuralPolicy, OnlineAdapter};
 
 /// The file of a model that states how it was adapted.
 pub const ADAPTATION: &str = "adaptation.json";
@@ -25,8 +25,8 @@ pub struct Adaptation {
     pub steps: u64,
     /// Steps in which the parameters learned.
     pub updates: u64,
-    /// Distance of the parameters from the base (Euclidean norm).
-    pub distance: f32,
+    /// Weights of the features, `[axes, features]`.
+    pub weights: Vec<f32>,
 }
 
 impl OnlineAdapter<NeuralPolicy> {
@@ -49,7 +49,7 @@ impl OnlineAdapter<NeuralPolicy> {
             unix_time,
             steps,
             updates,
-            distance: self.distance(),
+            weights: self.weights().to_vec(),
         };
         let mut manifest = Manifest::new("", "adapted");
         manifest.lineage.source = format!("policy {base}, adapted online on {adapted_on}");
@@ -75,8 +75,7 @@ impl OnlineAdapter<NeuralPolicy> {
                 adaptation.base
             )));
         }
-        let policy = Policy::from_bytes(&model.file(POLICY_FILE)?)?;
-        self.restore_parameters(NeuralPolicy::new(policy)?.parameters())?;
+        self.restore_weights(&adaptation.weights)?;
         Ok(adaptation)
     }
 }

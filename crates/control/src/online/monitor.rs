@@ -1,19 +1,13 @@
 //! Whether the adaptation is better than the base would be.
 
+use opendr_engine::environment::TrackingTask;
 use opendr_engine::params::Params;
+
+use super::response::{Response, Stages};
 
 /// Parameters of a [`Monitor`].
 #[derive(Debug, Clone, Copy, PartialEq, Params)]
 pub struct MonitorParams {
-    /// Stiffness of the position loop that the base closes.
-    #[param(default = 8.0, range = 0.0..=1e6, unit = "1/s^2")]
-    pub stiffness: f64,
-    /// Damping of that loop.
-    #[param(default = 5.0, range = 0.0..=1e6, unit = "1/s")]
-    pub damping: f64,
-    /// Time constant from a command to the acceleration.
-    #[param(default = 0.25, range = 0.0..=10.0, unit = "s")]
-    pub lag: f64,
     /// Time over which costs are averaged.
     #[param(default = 1.5, range = 0.01..=1000.0, unit = "s")]
     pub window: f64,
@@ -43,6 +37,7 @@ pub struct MonitorParams {
 pub struct Monitor {
     params: MonitorParams,
     period: f64,
+    loops: Vec<(Response, [f64; 2])>,
     axes: Vec<Displacement>,
     /// Running means of squared errors: adapted, base.
     costs: [f64; 2],
@@ -53,8 +48,8 @@ pub struct Monitor {
 
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Displacement {
-    /// The difference of the commands behind the lag.
-    push: f64,
+    /// The difference of the commands behind the response of the plant.
+    push: Stages,
     speed: f64,
     way: f64,
 }
@@ -71,20 +66,33 @@ pub enum Verdict {
 }
 
 impl Monitor {
-    /// A monitor of so many axes that is called every `period` seconds.
-    pub fn new(params: MonitorParams, axes: usize, period: f64) -> Self {
-        let axes = vec![Displacement::default(); axes];
-        Self { params, period, axes, costs: [0.0; 2], since: 0.0, good_for: 0.0 }
+    /// A monitor of a task whose base closes about the conventional loop.
+    pub fn new(params: MonitorParams, task: &TrackingTask) -> Self {
+        let period = task.period;
+        let loops = task.axes.iter().map(|axis| {
+            let response = Response::new(axis.response as f32, 0.0, period as f32);
+            (response, [axis.stiffness, axis.damping])
+        });
+        let axes = vec![Displacement::default(); task.axes.len()];
+        Self { params, period, loops: loops.collect(), axes, costs: [0.0; 2], since: 0.0, good_for: 0.0 }
+    }
+
+    /// Forgets the past of the last episode.
+    pub fn reset(&mut self) {
+        self.axes.fill(Displacement::default());
+        (self.costs, self.since, self.good_for) = ([0.0; 2], 0.0, 0.0);
     }
 
     /// Takes in the errors of this step and the commands of the last one, adapted and base.
     pub fn observe(&mut self, errors: &[f32], adapted: &[f32], base: &[f32]) -> Verdict {
-        let MonitorParams { stiffness, damping, lag, window, tolerance, floor, .. } = self.params;
+        let MonitorParams { window, tolerance, floor, .. } = self.params;
         let mut squares = [0.0; 2];
-        for (at, axis) in self.axes.iter_mut().enumerate() {
-            let push = f64::from(adapted[at]) - f64::from(base[at]);
-            axis.push += (push - axis.push) * (self.period / (lag + self.period));
-            axis.speed += (axis.push - damping * axis.speed - stiffness * axis.way) * self.period;
+        for (at, (axis, (response, [stiffness, damping]))) in
+            self.axes.iter_mut().zip(&self.loops).enumerate()
+        {
+            response.advance(&mut axis.push, adapted[at] - base[at]);
+            let push = f64::from(axis.push[1]);
+            axis.speed += (push - damping * axis.speed - stiffness * axis.way) * self.period;
             axis.way += axis.speed * self.period;
             let error = f64::from(errors[at]);
             squares[0] += error * error;
@@ -121,15 +129,33 @@ impl Monitor {
 
 #[cfg(test)]
 mod tests {
+    use opendr_engine::environment::{TrackingAxis, TrackingLayout};
+
     use super::*;
 
     /// A plant of one axis with a load, flown by the base plus a push.
     fn fly(push: f64, load: f64) -> (Verdict, [f64; 2]) {
-        let params = MonitorParams { lag: 0.0, stiffness: 5.0, damping: 6.0, ..MonitorParams::default() };
-        let mut monitor = Monitor::new(params, 1, 0.01);
+        let (stiffness, damping) = (5.0, 6.0);
+        let layout = TrackingLayout {
+            len: 2,
+            axes: 1,
+            error: 0,
+            rate: 1,
+            reference: [0, 0],
+            velocity: None,
+            feedforward: None,
+            age: None,
+            saturated: None,
+        };
+        let task = TrackingTask {
+            layout,
+            period: 0.01,
+            axes: vec![TrackingAxis { response: 0.0, stiffness, damping }],
+        };
+        let mut monitor = Monitor::new(MonitorParams::default(), &task);
         let (mut position, mut speed, mut verdict) = (0.0, 0.0, Verdict::Undecided);
         for _ in 0..1000 {
-            let base = -params.stiffness * position - params.damping * speed;
+            let base = -stiffness * position - damping * speed;
             speed += (base + push + load) * 0.01;
             position += speed * 0.01;
             verdict = monitor.observe(&[-position as f32], &[(base + push) as f32], &[base as f32]);

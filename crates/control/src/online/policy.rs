@@ -2,11 +2,12 @@
 
 use std::ops::Range;
 
+use opendr_engine::environment::Controller;
 use opendr_engine::{Error, Result};
 use opendr_kernels::Compute;
 use opendr_rl::{ActionMode, Policy, PolicyMemory};
 
-/// A policy with commands that are differentiable in its parameters, or in those of its last layer.
+/// A policy with commands that are differentiable in the parameters of its last layer.
 pub trait AdaptablePolicy: Clone {
     /// All parameters.
     fn parameters(&self) -> &[f32];
@@ -17,18 +18,21 @@ pub trait AdaptablePolicy: Clone {
     /// The parameters of the last layer among all.
     fn last_layer(&self) -> Range<usize>;
 
+    /// Outputs of the last layer: those of the commands come first (others, such as deviations, are left as they are).
+    fn outputs(&self) -> usize;
+
     /// Writes the action for an observation, and keeps what [`Self::backward`] needs.
     ///
     /// # Errors
     /// `InvalidInput` for an observation of another space.
     fn act(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()>;
 
-    /// Adds to `gradients` those of all parameters, from the gradient of the action that the last [`Self::act`] wrote; with
-    /// `last_layer_only` those outside [`Self::last_layer`] may be left as they are.
+    /// Adds to `gradients` those of [`Self::last_layer`], from the gradient of the action that the last [`Self::act`] wrote; those of
+    /// other parameters may be left as they are. The layer is dense, `[inputs, outputs]`, its last row the biases.
     ///
     /// # Errors
     /// `InvalidInput` where a length does not fit.
-    fn backward(&mut self, daction: &[f32], last_layer_only: bool, gradients: &mut [f32]) -> Result<()>;
+    fn backward(&mut self, daction: &[f32], gradients: &mut [f32]) -> Result<()>;
 }
 
 /// A policy of `opendr-rl` whose actions are numbers, with the memory in which it acts.
@@ -72,14 +76,22 @@ impl AdaptablePolicy for NeuralPolicy {
         self.policy.last_layer()
     }
 
+    fn outputs(&self) -> usize {
+        self.policy.head().outputs()
+    }
+
     fn act(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()> {
         self.policy.act(&self.compute, observation, ActionMode::Deterministic, &mut self.memory, action)
     }
 
-    fn backward(&mut self, daction: &[f32], last_layer_only: bool, gradients: &mut [f32]) -> Result<()> {
-        match last_layer_only {
-            true => self.policy.last_layer_gradient(daction, &mut self.memory, gradients),
-            false => self.policy.action_gradient(&self.compute, daction, &mut self.memory, gradients),
-        }
+    fn backward(&mut self, daction: &[f32], gradients: &mut [f32]) -> Result<()> {
+        self.policy.last_layer_gradient(daction, &mut self.memory, gradients)
+    }
+}
+
+/// The frozen policy as a controller.
+impl Controller for NeuralPolicy {
+    fn act(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()> {
+        AdaptablePolicy::act(self, observation, action)
     }
 }

@@ -1,22 +1,20 @@
 //! Online adaptation on `QuadTrack-v1`, around a network that was not trained: its adapter keeps the limits all the same.
 
 use opendr_control::online::{
-    AdaptablePolicy, AdaptationParams, EventKind, FreezeReason, LearningSignal, MonitorParams, NeuralPolicy,
-    OnlineAdapter, Preconditioner,
+    AdaptablePolicy, AdaptationParams, Calibration, EventKind, FreezeReason, NeuralPolicy, OnlineAdapter,
 };
-use opendr_control::{PidGains, TrackingLayout, TrackingPid};
-use opendr_engine::environment::{Controller, Environment as _, ResetOptions};
-use opendr_engine::{Random, Result};
+use opendr_control::{PidGains, TrackingPid};
+use opendr_engine::environment::{Controller, Environment as _, EnvironmentSpec, ResetOptions, Space};
+use opendr_engine::{ErrorKind, Random, Result};
 use opendr_rl::{Bounds, Head, NetworkConfig, ParameterInit, Policy};
 use opendr_simulation::RegisteredEnvironment as _;
 use opendr_simulation::quad_track::{CONTROL_PERIOD, QuadTrack, QuadTrackParams};
 use opendr_test_allocator::allocations_of_thread;
 
-const LAYOUT: TrackingLayout = TrackingLayout::QUAD_TRACK;
-
 fn law() -> TrackingPid {
+    let spec = QuadTrack::new(&QuadTrackParams::default()).unwrap().spec().clone();
     let gains = PidGains { kp: 5.0, kd: 5.0, filter: 0.0, limit: 8.0, ..PidGains::default() };
-    TrackingPid::new(LAYOUT, &[gains; 3], CONTROL_PERIOD).unwrap()
+    TrackingPid::new(spec.tracking.unwrap().layout, &[gains; 3], CONTROL_PERIOD).unwrap()
 }
 
 /// The law plus a constant for each axis, its only parameters: what a policy of a user's own can be.
@@ -39,27 +37,26 @@ impl AdaptablePolicy for Trimmed {
         0..3
     }
 
+    fn outputs(&self) -> usize {
+        3
+    }
+
     fn act(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()> {
         self.law.act(observation, action)?;
         action.iter_mut().zip(&self.trim).for_each(|(action, trim)| *action += trim);
         Ok(())
     }
 
-    fn backward(&mut self, daction: &[f32], _: bool, gradients: &mut [f32]) -> Result<()> {
+    fn backward(&mut self, daction: &[f32], gradients: &mut [f32]) -> Result<()> {
         gradients.iter_mut().zip(daction).for_each(|(gradient, own)| *gradient += own);
         Ok(())
     }
 }
 
-fn params() -> AdaptationParams {
-    let monitor = MonitorParams { stiffness: 5.0, damping: 5.0, ..MonitorParams::default() };
-    AdaptationParams { monitor, rate: 2.0, signal: LearningSignal::ExpertRule, ..AdaptationParams::default() }
-}
-
 fn adapter(params: AdaptationParams) -> (OnlineAdapter<Trimmed>, QuadTrack) {
     let track = QuadTrack::new(&QuadTrackParams::default()).unwrap();
     let base = Trimmed { law: law(), trim: [0.0; 3] };
-    let adapter = OnlineAdapter::new(base, law(), LAYOUT, &track.spec().action, None, params).unwrap();
+    let adapter = OnlineAdapter::new(base, track.spec(), None, params).unwrap();
     (adapter, track)
 }
 
@@ -86,7 +83,7 @@ fn fly(controller: &mut dyn Controller, track: &mut QuadTrack, pairs: &[(&str, f
 
 #[test]
 fn a_load_is_learned_and_logged() {
-    let (mut adapter, mut track) = adapter(params());
+    let (mut adapter, mut track) = adapter(AdaptationParams::default());
     let heavy = [("mass_factor", 1.3)];
     let frozen = fly(&mut law(), &mut track, &heavy);
     let adapted = fly(&mut adapter, &mut track, &heavy);
@@ -102,7 +99,7 @@ fn a_load_is_learned_and_logged() {
 #[test]
 fn a_wrong_signal_is_rolled_back() {
     for pairs in [&[][..], &[("mass_factor", 1.3)], &[("wind", 5.0)]] {
-        let (adapter, mut track) = adapter(params());
+        let (adapter, mut track) = adapter(AdaptationParams::default());
         let frozen = fly(&mut law(), &mut track, pairs);
         let mut flipped = adapter.with_flipped_signal();
         let error = fly(&mut flipped, &mut track, pairs);
@@ -114,12 +111,16 @@ fn a_wrong_signal_is_rolled_back() {
 
 #[test]
 fn commands_stay_in_the_band() {
-    let (mut adapter, mut track) = adapter(AdaptationParams { band: 0.5, rate: 20.0, ..params() });
+    let (mut adapter, mut track) = adapter(AdaptationParams { band: 0.5, ..AdaptationParams::default() });
+    let task = track.spec().tracking.clone().unwrap();
+    let mut law = TrackingPid::conventional(&task, &[-8.0; 3], &[8.0; 3]).unwrap();
     let (mut seen, mut action, mut conventional) = ([0.0; 17], [0.0; 3], [0.0; 3]);
-    track.reset(Some(1), &options(&[("mass_factor", 1.4), ("change_at", 0.0)]), &mut seen).unwrap();
+    // Without a delay or a failure every estimate is new: the law acts on what the adapter acts on.
+    let changes = [("mass_factor", 1.4), ("change_at", 0.0), ("estimate_delay", 0.0), ("dropouts", 0.0)];
+    track.reset(Some(1), &options(&changes), &mut seen).unwrap();
     for _ in 0..1000 {
         adapter.act(&seen, &mut action).unwrap();
-        law().act(&seen, &mut conventional).unwrap();
+        law.act(&seen, &mut conventional).unwrap();
         for axis in 0..3 {
             assert!((action[axis] - conventional[axis]).abs() < 0.5 + 1e-4);
         }
@@ -131,7 +132,7 @@ fn commands_stay_in_the_band() {
 
 #[test]
 fn a_recording_is_learned_again_bit_for_bit() {
-    let (mut flown, mut track) = adapter(params());
+    let (mut flown, mut track) = adapter(AdaptationParams::default());
     flown.record(10_000);
     let (mut seen, mut action) = ([0.0; 17], [0.0; 3]);
     track.reset(Some(1), &options(&[("wind", 5.0), ("change_at", 1.0)]), &mut seen).unwrap();
@@ -139,7 +140,7 @@ fn a_recording_is_learned_again_bit_for_bit() {
         flown.act(&seen, &mut action).unwrap();
         track.step(&action, &mut seen).unwrap();
     }
-    let (mut again, _) = adapter(params());
+    let (mut again, _) = adapter(AdaptationParams::default());
     again.replay(flown.recording()).unwrap();
     assert_eq!((again.adapted().trim, again.log()), (flown.adapted().trim, flown.log()));
     assert!(flown.distance() > 0.0);
@@ -153,53 +154,73 @@ fn network(track: &QuadTrack) -> NeuralPolicy {
     NeuralPolicy::new(policy).unwrap()
 }
 
-/// With every learning signal, and with the preconditioner, as the protocol flies.
+/// With features of the reference, as the protocol flies.
 #[test]
 fn steps_allocate_nothing() {
     let mut track = QuadTrack::new(&QuadTrackParams::default()).unwrap();
+    let policy = network(&track);
+    let Calibration { envelope, features } = Calibration::fly(&policy, &mut track).unwrap();
+    let mut adapter =
+        OnlineAdapter::new(policy, track.spec(), Some(envelope), AdaptationParams::default()).unwrap();
+    adapter = adapter.with_features(features).unwrap();
     let (mut seen, mut action) = ([0.0; 17], [0.0; 3]);
     let heavy = options(&[("mass_factor", 1.3), ("change_at", 1.0)]);
-    let mut flown = Vec::new();
-    track.reset(Some(2), &options(&[]), &mut seen).unwrap();
-    for _ in 0..500 {
-        law().act(&seen, &mut action).unwrap();
-        flown.extend_from_slice(&seen);
+    track.reset(Some(1), &heavy, &mut seen).unwrap();
+    let mut before = 0;
+    for step in 0..2000 {
+        if step == 1 {
+            before = allocations_of_thread();
+        }
+        adapter.act(&seen, &mut action).unwrap();
         track.step(&action, &mut seen).unwrap();
     }
-    let preconditioner =
-        Preconditioner::of(&mut network(&track), &flown, &LAYOUT, true, [0.01, 5.0]).unwrap();
-    for (signal, preconditioned) in [
-        (LearningSignal::ExpertRule, false),
-        (LearningSignal::FeedbackError, false),
-        (LearningSignal::ReferenceModel, false),
-        (LearningSignal::ReferenceModel, true),
-    ] {
-        let params = AdaptationParams { band: 0.5, signal, ..params() };
-        let mut adapter =
-            OnlineAdapter::new(network(&track), law(), LAYOUT, &track.spec().action, None, params).unwrap();
-        if preconditioned {
-            adapter = adapter.with_preconditioner(preconditioner.clone()).unwrap();
-        }
-        track.reset(Some(1), &heavy, &mut seen).unwrap();
-        let mut before = 0;
-        for step in 0..2000 {
-            if step == 1 {
-                before = allocations_of_thread();
-            }
-            adapter.act(&seen, &mut action).unwrap();
-            track.step(&action, &mut seen).unwrap();
-        }
-        let after = allocations_of_thread();
-        assert!(adapter.steps()[1] > 300, "{signal:?}: {:?}", adapter.steps());
-        assert_eq!(after - before, 0, "{signal:?} {preconditioned}");
-    }
+    let after = allocations_of_thread();
+    assert_eq!(after - before, 0);
+    assert!(adapter.steps()[1] > 300, "{:?}", adapter.steps());
+}
+
+/// Policies and environments that cannot be adapted are refused, and the error says why.
+#[test]
+fn what_cannot_be_adapted_is_refused() {
+    let track = QuadTrack::new(&QuadTrackParams::default()).unwrap();
+    let refused = |policy: NeuralPolicy, spec: &EnvironmentSpec| {
+        let error = OnlineAdapter::new(policy, spec, None, AdaptationParams::default()).err().unwrap();
+        assert_eq!(error.kind(), ErrorKind::Unsupported, "{error}");
+        error.to_string()
+    };
+    let mut spec = track.spec().clone();
+    spec.tracking = None;
+    assert!(refused(network(&track), &spec).contains("states no tracking task"));
+    let mut spec = track.spec().clone();
+    spec.action = Space::symmetric(&[8.0; 4]);
+    assert!(refused(network(&track), &spec).contains("a box of 3 numbers"));
+    let choices = Head::Categorical { counts: vec![2, 2, 2], start: 0 };
+    let policy = Policy::new(track.spec(), choices, &NetworkConfig::default(), None).unwrap();
+    assert!(refused(NeuralPolicy::new(policy).unwrap(), track.spec()).contains("no gradient"));
+}
+
+/// An observation with a number that is none changes nothing.
+#[test]
+fn broken_observations_are_refused() {
+    let (mut adapter, mut track) = adapter(AdaptationParams::default());
+    let (mut seen, mut action) = ([0.0; 17], [0.0; 3]);
+    track.reset(Some(1), &options(&[]), &mut seen).unwrap();
+    adapter.act(&seen, &mut action).unwrap();
+    let mut broken = seen;
+    broken[4] = f32::NAN;
+    assert_eq!(adapter.act(&broken, &mut action).unwrap_err().kind(), ErrorKind::InvalidInput);
+    assert!(adapter.act(&seen[1..], &mut action).is_err());
+    let steps = adapter.steps();
+    adapter.act(&seen, &mut action).unwrap();
+    assert_eq!(adapter.steps()[0], steps[0] + 1);
+    assert!(action.iter().all(|command| command.is_finite()));
 }
 
 #[test]
 fn adapted_policies_are_models_of_their_own() {
     let mut track = QuadTrack::new(&QuadTrackParams::default()).unwrap();
     let make = |track: &QuadTrack| {
-        OnlineAdapter::new(network(track), law(), LAYOUT, &track.spec().action, None, params()).unwrap()
+        OnlineAdapter::new(network(track), track.spec(), None, AdaptationParams::default()).unwrap()
     };
     let mut adapter = make(&track);
     let (mut seen, mut action) = ([0.0; 17], [0.0; 3]);

@@ -6,6 +6,7 @@ mod info;
 mod snapshot;
 mod space;
 mod spec;
+mod tracking;
 
 use crate::data::Image;
 use crate::{Error, Result};
@@ -16,6 +17,7 @@ pub use info::Info;
 pub use snapshot::{Snapshot, StateReader};
 pub use space::{Dtype, Space};
 pub use spec::EnvironmentSpec;
+pub use tracking::{TrackingAxis, TrackingLayout, TrackingTask};
 
 /// Options of a reset, e.g. `low` and `high` of the initial state.
 pub type ResetOptions = crate::params::ParamMap;

@@ -1,6 +1,6 @@
 //! Description of an environment.
 
-use super::Space;
+use super::{Space, TrackingTask};
 
 /// Name, spaces and limits of an environment.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,6 +17,8 @@ pub struct EnvironmentSpec {
     pub reward_range: (f64, f64),
     /// Mean return at which the task counts as solved.
     pub reward_threshold: Option<f64>,
+    /// The tracking task, if the environment is one.
+    pub tracking: Option<TrackingTask>,
 }
 
 impl EnvironmentSpec {
@@ -29,6 +31,7 @@ impl EnvironmentSpec {
             max_episode_steps: None,
             reward_range: (f64::NEG_INFINITY, f64::INFINITY),
             reward_threshold: None,
+            tracking: None,
         }
     }
 
@@ -50,6 +53,13 @@ impl EnvironmentSpec {
     #[must_use]
     pub fn with_reward_threshold(mut self, threshold: f64) -> Self {
         self.reward_threshold = Some(threshold);
+        self
+    }
+
+    /// States the tracking task.
+    #[must_use]
+    pub fn with_tracking(mut self, task: TrackingTask) -> Self {
+        self.tracking = Some(task);
         self
     }
 }

@@ -5,18 +5,13 @@ use opendr_engine::environment::{
     Environment, EnvironmentSpec, Info, ResetOptions, Snapshot, Space, StateReader, Step,
 };
 use opendr_engine::params::Params as _;
-use opendr_engine::{Error, Random, Result};
+use opendr_engine::{Error, Result};
 
-use super::estimator::Estimator;
-use super::plant::{Condition, Plant};
-use super::reference::{Motion, Reference};
-use super::turbulence::Turbulence;
-use super::{
-    CONTROL_PERIOD, LONGEST_DELAY, MAX_ACCELERATION, OBSERVATION_LEN, QuadTrackParams, SUBSTEPS, TIME_STEP,
-};
+use super::episode::{Episode, Place};
+use super::tracking::tracking;
+use super::{MAX_ACCELERATION, OBSERVATION_LEN, QuadTrackParams};
 use crate::classic_control::{check_length, not_begun};
-use crate::multirotor::{MASS, Vector, dot, minus, numbers};
-use crate::sine_cosine::sine_cosine;
+use crate::multirotor::Vector;
 use crate::{NumpyRandom, RegisteredEnvironment};
 
 /// `QuadTrack-v1`: track a moving reference while the plant changes at 20 s.
@@ -35,37 +30,6 @@ pub struct QuadTrack {
     path: Vec<Vector>,
 }
 
-/// Everything that decides the future.
-#[derive(Debug, Clone)]
-pub(super) struct Episode {
-    pub options: QuadTrackParams,
-    place: Place,
-    pub reference: Reference,
-    pub plant: Plant,
-    estimator: Estimator,
-    gusts: Turbulence,
-    /// Direction of the wind as cosine and sine.
-    wind_from: [f64; 2],
-    weak_motor: usize,
-    /// The last commands, newest first.
-    commands: [Vector; LONGEST_DELAY + 2],
-}
-
-/// All random numbers follow from it.
-#[derive(Debug, Clone, Copy)]
-struct Place {
-    stream: u64,
-    episode: u64,
-    step: u64,
-}
-
-/// What random numbers are for.
-#[derive(Clone, Copy)]
-enum Purpose {
-    Episode,
-    Step,
-}
-
 /// Distance to the reference at which an episode is lost, metres.
 const LOST: f64 = 20.0;
 
@@ -78,7 +42,8 @@ impl RegisteredEnvironment for QuadTrack {
         let seen = Space::symmetric(&[f32::INFINITY; OBSERVATION_LEN]);
         let spec = EnvironmentSpec::new(Self::ID, seen, Space::symmetric(&[MAX_ACCELERATION; 3]))
             .with_max_episode_steps(u32::try_from(params.steps()).unwrap_or(u32::MAX))
-            .with_reward_range(-LOST * LOST, 0.0);
+            .with_reward_range(-LOST * LOST, 0.0)
+            .with_tracking(tracking());
         Ok(Self { spec, params, episode: None, path: Vec::new() })
     }
 }
@@ -97,124 +62,6 @@ impl QuadTrack {
     /// Position of the reference, metres; none before the first reset.
     pub fn reference(&self) -> Option<[f64; 3]> {
         self.episode.as_ref().map(|episode| episode.reference.at(episode.time()).position)
-    }
-
-    /// True positions since the last [`Environment::reset`].
-    pub(super) fn path(&self) -> &[Vector] {
-        &self.path
-    }
-
-    pub(super) fn episode(&self) -> Option<&Episode> {
-        self.episode.as_ref()
-    }
-}
-
-impl Place {
-    fn random(self, purpose: Purpose) -> Random {
-        Random::from_key([self.stream, self.episode, self.step, purpose as u64])
-    }
-}
-
-impl Episode {
-    fn begin(options: QuadTrackParams, place: Place) -> Self {
-        let mut random = place.random(Purpose::Episode);
-        let reference = Reference::draw(options.reference, options.speed, &mut random);
-        let (sine, cosine) = sine_cosine(std::f64::consts::TAU * random.unit());
-        let (weak_motor, gusts) = (random.below(4), Turbulence::settled(&mut random));
-        let motion = reference.at(0.0);
-        Self {
-            options,
-            place,
-            plant: Plant::on(&motion),
-            estimator: Estimator::new(motion.position, motion.velocity),
-            reference,
-            gusts,
-            wind_from: [cosine, sine],
-            weak_motor,
-            commands: [motion.acceleration; LONGEST_DELAY + 2],
-        }
-    }
-
-    pub fn time(&self) -> f64 {
-        CONTROL_PERIOD * self.place.step as f64
-    }
-
-    /// Whether the disturbance has begun.
-    pub fn changed(&self) -> bool {
-        self.time() >= self.options.change_at
-    }
-
-    /// The wind of now, m/s.
-    pub fn wind(&self) -> Vector {
-        self.gusts.wind(self.mean_wind(), self.wind_from, self.options.turbulence)
-    }
-
-    fn mean_wind(&self) -> f64 {
-        if self.changed() { self.options.wind.max(self.options.breeze) } else { self.options.breeze }
-    }
-
-    fn condition(&self) -> Condition {
-        let options = &self.options;
-        let nominal = Condition {
-            mass: MASS,
-            drag: 1.0,
-            motors: [1.0; 4],
-            rotor_lag: options.rotor_lag,
-            wind: self.wind(),
-        };
-        if !self.changed() {
-            return nominal;
-        }
-        let mut motors = [1.0; 4];
-        if let Some(motor) = motors.get_mut(self.weak_motor) {
-            *motor -= options.motor_loss;
-        }
-        Condition { mass: MASS * options.mass_factor, drag: options.drag_factor, motors, ..nominal }
-    }
-
-    fn advance(&mut self, command: Vector) {
-        self.commands.rotate_right(1);
-        self.commands[0] = command;
-        let condition = self.condition();
-        let delay = (self.options.actuation_delay / TIME_STEP).round() as usize;
-        for substep in 0..SUBSTEPS {
-            // The command that was given `delay` steps of the physics ago.
-            let age = (delay + SUBSTEPS - 1).saturating_sub(substep) / SUBSTEPS;
-            let command = self.commands[age.min(LONGEST_DELAY + 1)];
-            self.plant.advance(command, &condition);
-        }
-        self.place.step += 1;
-        let mut random = self.place.random(Purpose::Step);
-        self.gusts.advance(self.mean_wind(), &mut random);
-        let state = [self.plant.position, self.plant.velocity];
-        self.estimator.advance(state, &self.options, &mut random);
-    }
-
-    /// The reference of now.
-    pub fn motion(&self) -> Motion {
-        self.reference.at(self.time())
-    }
-
-    fn observe(&self, observation: &mut [f32]) {
-        let [position, velocity] = self.estimator.state();
-        let motion = self.motion();
-        let vectors = [
-            minus(motion.position, position, 1.0),
-            minus(motion.velocity, velocity, 1.0),
-            motion.velocity,
-            motion.acceleration,
-            motion.jerk,
-        ];
-        let rest = [self.estimator.age, f64::from(u8::from(self.plant.saturated))];
-        for (seen, number) in observation.iter_mut().zip(vectors.into_iter().flatten().chain(rest)) {
-            *seen = number as f32;
-        }
-    }
-
-    /// True distance to the reference, metres.
-    fn distance(&self) -> f64 {
-        let away = minus(self.motion().position, self.plant.position, 1.0);
-        dot(away, away).sqrt()
     }
 }
 
@@ -265,36 +112,19 @@ impl Environment for QuadTrack {
 
     fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
         let episode = self.episode.as_ref().ok_or_else(|| not_begun(&self.spec))?;
-        let Place { stream, episode: number, step } = episode.place;
-        [stream, number, step].into_iter().for_each(|word| snapshot.push(word));
-        snapshot.extend_numbers(episode.options.numbers());
-        episode.plant.save(snapshot);
-        episode.estimator.save(snapshot);
-        episode.gusts.save(snapshot);
-        snapshot.extend_numbers(episode.commands.into_iter().flatten());
+        episode.save(snapshot);
         Ok(())
     }
 
     fn load_state(&mut self, state: &mut StateReader<'_>) -> Result<()> {
-        let [stream, number, step] = [state.word()?, state.word()?, state.word()?];
-        let options = QuadTrackParams::from_numbers(numbers(state)?)?;
-        let mut episode = Episode::begin(options, Place { stream, episode: number, step: 0 });
-        episode.place.step = step;
-        episode.plant = Plant::load(state)?;
-        episode.estimator = Estimator::load(state)?;
-        episode.gusts = Turbulence::load(state)?;
-        for command in &mut episode.commands {
-            *command = numbers(state)?;
-        }
+        let episode = Episode::load(state)?;
         self.path = vec![episode.plant.position];
         self.episode = Some(episode);
         Ok(())
     }
 
     fn render(&mut self) -> Result<Option<Image>> {
-        if self.episode.is_none() {
-            return Err(not_begun(&self.spec));
-        }
-        super::picture::picture(self).map(Some)
+        let episode = self.episode.as_ref().ok_or_else(|| not_begun(&self.spec))?;
+        super::view::draw(episode, &self.path).map(Some)
     }
 }

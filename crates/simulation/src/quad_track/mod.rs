@@ -5,14 +5,16 @@
 //! acceleration. At a chosen time the mass, the drag, the wind or the strength of one motor changes.
 
 mod environment;
+mod episode;
 mod estimator;
 mod options;
-mod picture;
 mod plant;
 mod reference;
 #[cfg(test)]
 mod tests;
+mod tracking;
 mod turbulence;
+mod view;
 
 pub use environment::QuadTrack;
 pub use options::{QuadTrackParams, ReferencePath};

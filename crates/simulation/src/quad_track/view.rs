@@ -1,10 +1,11 @@
-//! A picture of the flight from above and from the side, with the reference, the path so far and the wind.
+//! A view of the flight from above and from the side, with the reference, the path so far and the wind.
 
 use opendr_engine::Result;
 use opendr_engine::data::Image;
 use opendr_vision::draw::{Colour, Point};
 
-use super::{CONTROL_PERIOD, QuadTrack};
+use super::CONTROL_PERIOD;
+use super::episode::Episode;
 use crate::drawing::{BLACK, Drawing};
 use crate::multirotor::{Vector, plus};
 
@@ -25,17 +26,15 @@ const PATH: Colour = [30, 90, 200];
 const CHANGED: Colour = [210, 60, 40];
 
 /// 480 x 640 pixels; the path is blue, and red from the moment when the plant changes.
-pub(super) fn picture(track: &QuadTrack) -> Result<Image> {
+pub(super) fn draw(episode: &Episode, path: &[Vector]) -> Result<Image> {
     let mut drawing = Drawing::new(WIDTH, TOP + SIDE)?;
-    let Some(episode) = track.episode() else { return Ok(drawing.finish()) };
     drawing.line([0.0, SIDE as f32], [WIDTH as f32, SIDE as f32], 1.0, [200; 3]);
     let places: [fn(Vector) -> Point; 2] = [from_above, from_aside];
-    let now = track.time();
+    let now = episode.time();
     for place in places {
         let at = |step: i32| place(episode.reference.at(now + 0.05 * f64::from(step)).position);
         let ahead = (SHOWN / 0.05) as i32;
         (-ahead..0).for_each(|step| drawing.line(at(step), at(step + 1), 1.0, REFERENCE));
-        let path = track.path();
         let last = path.len().saturating_sub(1);
         let first = last.saturating_sub((SHOWN / CONTROL_PERIOD) as usize);
         let steps: Vec<usize> = (first..=last).rev().step_by(4).collect();
