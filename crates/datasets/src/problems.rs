@@ -99,14 +99,19 @@ pub struct Problems {
 }
 
 impl Problems {
+    /// Skips broken parts if `skip_broken`, else makes the first problem an error.
+    pub fn new(skip_broken: bool) -> Self {
+        Self { skip: skip_broken, ..Self::default() }
+    }
+
     /// Makes the first problem an error.
     pub fn strict() -> Self {
-        Self::default()
+        Self::new(false)
     }
 
     /// Skips broken parts, which are counted and listed.
     pub fn skipping() -> Self {
-        Self { skip: true, ..Self::default() }
+        Self::new(true)
     }
 
     /// Returns whether broken parts are skipped.

@@ -57,8 +57,7 @@ mod tune;
 pub use by_name::{download, learner, learner_with};
 pub use export::{export, network};
 pub use fit::{
-    DatasetOpener, FitData, FitEnvironments, FitOptions, Fitted, check_fit, fit, fit_policy, teacher,
-    teacher_with,
+    FitData, FitEnvironments, FitOptions, Fitted, check_fit, fit, fit_policy, teacher, teacher_with,
 };
 #[cfg(feature = "actions")]
 pub use opendr_actions::{activity_recognition, skeleton_based_action_recognition};
