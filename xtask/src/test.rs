@@ -167,23 +167,24 @@ fn suites(
     let mut parity =
         suite("parity of all surfaces", &environments.package, &["tests/parity"], &[programs, module]);
     parity::prepare(&mut parity.command, &prefix)?;
+    // The longest first, so that neither lane ends long before the other.
     let suites = vec![
-        suite(
-            "tests of recordings with reference tools",
-            &environments.references,
-            &["tests/bags"],
-            &[programs],
-        ),
+        of_package,
+        of_c,
+        suite("tests of the command", &environments.outside, &["tests/python"], &[programs]),
+        parity,
         suite(
             "tests against reference tools",
             &environments.references,
             &["tests/metrics", "tests/datasets", "tests/training", "tests/simulation"],
             &[programs],
         ),
-        of_package,
-        suite("tests of the command", &environments.outside, &["tests/python"], &[programs]),
-        parity,
-        of_c,
+        suite(
+            "tests of recordings with reference tools",
+            &environments.references,
+            &["tests/bags"],
+            &[programs],
+        ),
     ];
     let of_ros = environments.ros.suites(&package, |command| environment.apply(command), &[programs, module]);
     Ok((suites, of_ros.into()))

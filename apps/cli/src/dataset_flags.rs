@@ -65,7 +65,7 @@ pub fn skip_broken(matches: &ArgMatches) -> bool {
 
 /// Returns the problem list of the command, which skips broken samples or fails at the first.
 pub fn problems(matches: &ArgMatches) -> Problems {
-    if skip_broken(matches) { Problems::skipping() } else { Problems::strict() }
+    Problems::new(skip_broken(matches))
 }
 
 /// Prints the problems.

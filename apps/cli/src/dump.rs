@@ -7,6 +7,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use opendr::atomic_file::replace_file;
 use opendr::data::PixelFormat;
 use opendr::datasets::{NpyElement, npy_from_values};
 use opendr::inference::recording::{self, RecordedTensor, Recording};
@@ -102,12 +103,10 @@ impl Dump {
         self.write_index()
     }
 
-    /// Writes `dump.json` beside and then in place of the last one, so that Ctrl-C leaves a whole file.
+    /// Replaces `dump.json` as a whole, so that Ctrl-C leaves a complete file.
     fn write_index(&self) -> Result<()> {
-        let (partial, path) = (self.folder.join("dump.json.part"), self.folder.join("dump.json"));
-        let index = FORMAT.to_pretty_json(&json!({"items": self.items}))?;
-        fs::write(&partial, index).context(|| format!("writing {}", partial.display()))?;
-        fs::rename(&partial, &path).context(|| format!("writing {}", path.display()))
+        let path = self.folder.join("dump.json");
+        replace_file(&path, FORMAT.to_pretty_json(&json!({"items": self.items}))?.as_bytes())
     }
 }
 
@@ -206,8 +205,12 @@ fn statistics(values: impl Iterator<Item = f64>) -> Json {
 }
 
 fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
+    fs::write(path, json_text(path, value)?).context(|| format!("writing {}", path.display()))
+}
+
+fn json_text(path: &Path, value: &impl Serialize) -> Result<String> {
     let text = serde_json::to_string_pretty(value).map_err(|error| {
         Error::internal(format!("{} cannot be written as JSON", path.display())).with_source(error)
     })?;
-    fs::write(path, text + "\n").context(|| format!("writing {}", path.display()))
+    Ok(text + "\n")
 }

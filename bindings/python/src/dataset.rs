@@ -36,7 +36,7 @@ impl Dataset {
         target: Option<&str>,
         skip_broken: bool,
     ) -> PyResult<Self> {
-        let problems = problems(skip_broken);
+        let problems = Problems::new(skip_broken);
         let target = target.map(target_type).transpose().to_python(py)?;
         let external = ExternalDataset::new(path, dataset_type);
         let options = OpenOptions { split, target };
@@ -169,10 +169,6 @@ pub fn type_of(object: &Bound<'_, PyAny>) -> PyResult<ValueType> {
 /// Returns the value types of the ports.
 pub fn types_of_ports(ports: &[Port]) -> Vec<ValueType> {
     ports.iter().map(|port| port.value_type).collect()
-}
-
-fn problems(skip_broken: bool) -> Problems {
-    if skip_broken { Problems::skipping() } else { Problems::strict() }
 }
 
 fn target_type(name: &str) -> Result<ValueType> {

@@ -24,10 +24,7 @@ fn main() -> Result<()> {
         Some(name) => Some(type_called(&name)?),
         None => None,
     };
-    let problems = match arguments.iter().any(|argument| argument == "--skip-broken") {
-        true => Problems::skipping(),
-        false => Problems::strict(),
-    };
+    let problems = Problems::new(arguments.iter().any(|argument| argument == "--skip-broken"));
     let options = OpenOptions { split: after("--split"), target };
     let dataset = |format: &str, path: &str| open(&ExternalDataset::new(path, format), &options, &problems);
     let words: Vec<&str> =

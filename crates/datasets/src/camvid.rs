@@ -184,7 +184,7 @@ impl Format for CamVid {
         }
     }
 
-    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
+    fn read_index(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         let [pictures, masks] = folders(path, options.split.as_deref()).ok_or_else(|| {
             let split = options.split.as_deref().unwrap_or("val");
             let path = path.display();

@@ -130,7 +130,7 @@ impl Format for Cityscapes {
         }
     }
 
-    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
+    fn read_index(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         let pictures = path.join("leftImg8bit");
         let there = folders_in(&pictures);
         let usual = SPLITS.iter().find(|split| there.iter().any(|name| name == *split)).copied();

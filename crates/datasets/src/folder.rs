@@ -1,9 +1,10 @@
 //! Access to the files of a data set, limited to its folder.
 
 use std::fs::{self, File};
-use std::io::{Read, Write};
+use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 
+use opendr_engine::atomic_file::replace_file;
 use opendr_engine::data::Image;
 use opendr_engine::{Error, Result, ResultExt};
 use opendr_vision::Encoder;
@@ -119,16 +120,10 @@ pub(crate) fn read_bytes(path: &Path, limit: u64) -> Result<Vec<u8>> {
 /// # Errors
 /// `Io` if it cannot be written.
 pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
-    let write = || {
-        if let Some(folder) = path.parent() {
-            fs::create_dir_all(folder)?;
-        }
-        let mut unfinished = path.as_os_str().to_owned();
-        unfinished.push(".part");
-        File::create(&unfinished)?.write_all(bytes)?;
-        fs::rename(&unfinished, path)
-    };
-    write().context(|| format!("writing {}", path.display()))
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder).context(|| format!("writing {}", path.display()))?;
+    }
+    replace_file(path, bytes)
 }
 
 /// Writes an image to `to`: as a copy of the file `from` (a hard link if `link`) if it has the same format,

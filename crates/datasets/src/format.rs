@@ -30,9 +30,25 @@ pub trait Format: DatasetIterator + Sized + 'static {
     /// Opens the data set.
     ///
     /// # Errors
+    /// `InvalidInput` if `options` ask for a target type that the format does not have; else as [`Format::read_index`].
+    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
+        match options.target {
+            Some(other) if !Self::TARGETS.contains(&other) => Err(Error::invalid_input(format!(
+                "a data set of format {} has {}, not {}; choose another target type, or name another format",
+                Self::NAME,
+                names_of_types(Self::TARGETS),
+                other.name()
+            ))),
+            _ => Self::read_index(path, options, problems),
+        }
+    }
+
+    /// Opens the data set with the target type of `options`, which is one of [`Format::TARGETS`].
+    ///
+    /// # Errors
     /// `NotFound` if `path` is not such a data set, with what is missing; `Format` for broken files, unless
     /// `problems` skips them.
-    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self>;
+    fn read_index(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self>;
 
     /// Writes any data set in this format.
     ///
@@ -51,6 +67,11 @@ pub trait Format: DatasetIterator + Sized + 'static {
             Self::NAME
         )))
     }
+}
+
+/// Returns the names of target types for a message.
+pub(crate) fn names_of_types(types: &[ValueType]) -> String {
+    types.iter().map(|target| target.name()).collect::<Vec<_>>().join(" or ")
 }
 
 /// Options of reading a data set.

@@ -104,11 +104,7 @@ impl Format for Hands {
         }
     }
 
-    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
-        if let Some(other) = options.target.filter(|target| !Self::TARGETS.contains(target)) {
-            let message = format!("gestures are read as Category, not as {}", other.name());
-            return Err(Error::unsupported(message));
-        }
+    fn read_index(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         let split = options.split.as_deref();
         let subjects = subjects(path);
         let (gestures, classes) = match subjects.is_empty() {

@@ -142,7 +142,7 @@ impl Format for ImageNet {
         Recognition::No("two or more folders with images, one for each class".into())
     }
 
-    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
+    fn read_index(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         let root = part(path, options.split.as_deref())?;
         let words = words(path, &root)?;
         let dataset = match map_file(&root) {

@@ -76,7 +76,7 @@ impl Format for Kinetics {
         Recognition::No("two or more folders with clips, one for each class".into())
     }
 
-    fn open(path: &Path, options: &OpenOptions, _: &Problems) -> Result<Self> {
+    fn read_index(path: &Path, options: &OpenOptions, _: &Problems) -> Result<Self> {
         let root = part_folder(path, options.split.as_deref(), &SPLITS)?.unwrap_or_else(|| path.to_owned());
         let clips = ClassFolders::new(root, clips_in, |folder| folder);
         if clips.samples.is_empty() {

@@ -77,20 +77,6 @@ fn png_shape(path: &Path) -> Option<[usize; 2]> {
     Some([side(20)?, side(16)?])
 }
 
-/// Returns the selected target type, which must be one of `targets`, or the first of them.
-fn wanted_target(wanted: Option<ValueType>, targets: &[ValueType]) -> Result<ValueType> {
-    let first = targets.first().copied().unwrap_or(ValueType::BoundingBox3DList);
-    match wanted {
-        None => Ok(first),
-        Some(target) if targets.contains(&target) => Ok(target),
-        Some(other) => {
-            let names: Vec<_> = targets.iter().map(|target| target.name()).collect();
-            let (other, names) = (other.name(), names.join(" and "));
-            Err(Error::unsupported(format!("the labels can be read as {names}, not as {other}")))
-        }
-    }
-}
-
 /// Returns the folder that contains `folders`: `path` itself or its part.
 fn folder_with(path: &Path, wanted: Option<&str>, folders: &[&str]) -> Result<Option<PathBuf>> {
     let has = |folder: &Path| folders.iter().any(|name| folder.join(name).is_dir());

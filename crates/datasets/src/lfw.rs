@@ -102,11 +102,7 @@ impl Format for Lfw {
         }
     }
 
-    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
-        if let Some(other) = options.target.filter(|target| !Self::TARGETS.contains(target)) {
-            let message = format!("pairs are read as Category, not as {}", other.name());
-            return Err(Error::unsupported(message));
-        }
+    fn read_index(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         let lists = lists(path);
         let split = options.split.as_deref();
         let fold = split.and_then(|split| split.parse::<u32>().ok());

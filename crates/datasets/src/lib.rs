@@ -95,7 +95,7 @@ pub use problems::{Location, Problem, Problems};
 pub use recognition::Recognition;
 #[cfg(feature = "recordings")]
 pub use recording::AnnotatedRecording;
-pub use registry::{find_format, format_of, formats, open, recognise};
+pub use registry::{find_format, format_of, formats, open, open_for, recognise};
 pub use skeleton::{NtuFile, Skeletons, open_ntu, skeleton_from_ntu};
 pub use speech_commands::{SpeechCommands, SpeechSplit, speaker_of_clip, split_of_clip};
 pub use stats::{ClassCount, DatasetStats, Spread};

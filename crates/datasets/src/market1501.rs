@@ -140,11 +140,7 @@ impl Format for Market1501 {
         }
     }
 
-    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
-        if let Some(other) = options.target.filter(|target| !Self::TARGETS.contains(target)) {
-            let message = format!("persons are read as Category, not as {}", other.name());
-            return Err(Error::unsupported(message));
-        }
+    fn read_index(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         let wanted = match options.split.as_deref() {
             Some("train") => Some("bounding_box_train"),
             Some("test" | "gallery") => Some("bounding_box_test"),

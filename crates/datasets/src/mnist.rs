@@ -134,13 +134,7 @@ impl Format for Mnist {
         }
     }
 
-    fn open(path: &Path, options: &OpenOptions, _: &Problems) -> Result<Self> {
-        if let Some(other) = options.target.filter(|target| !Self::TARGETS.contains(target)) {
-            return Err(Error::unsupported(format!(
-                "the images are read as Category, not as {}",
-                other.name()
-            )));
-        }
+    fn read_index(path: &Path, options: &OpenOptions, _: &Problems) -> Result<Self> {
         let split = options.split.as_deref();
         let mut parts =
             PARTS.iter().filter(|(name, start)| split.is_none_or(|split| [*name, *start].contains(&split)));

@@ -159,16 +159,8 @@ impl Format for Mot {
         }
     }
 
-    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
-        let target = match options.target {
-            None => ValueType::TrackingAnnotationList,
-            Some(target) if Self::TARGETS.contains(&target) => target,
-            Some(other) => {
-                let message =
-                    format!("MOT is read as tracks or boxes, not as {}; choose one of these", other.name());
-                return Err(Error::unsupported(message));
-            }
-        };
+    fn read_index(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
+        let target = options.target.unwrap_or(ValueType::TrackingAnnotationList);
         let part = part_folder(path, options.split.as_deref(), &PARTS)?;
         let root = part.as_deref().unwrap_or(path);
         let folders: Vec<_> = candidates(root).into_iter().filter(|folder| is_sequence(folder)).collect();

@@ -99,14 +99,19 @@ pub struct Problems {
 }
 
 impl Problems {
+    /// Creates a list that skips and counts broken parts if `skip_broken`, else one whose first problem is an error.
+    pub fn new(skip_broken: bool) -> Self {
+        Self { skip: skip_broken, ..Self::default() }
+    }
+
     /// Creates a list of problems whose first one is an error.
     pub fn strict() -> Self {
-        Self::default()
+        Self::new(false)
     }
 
     /// Skips broken parts, which are counted and listed.
     pub fn skipping() -> Self {
-        Self { skip: true, ..Self::default() }
+        Self::new(true)
     }
 
     /// Returns whether broken parts are skipped.

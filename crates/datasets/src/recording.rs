@@ -249,7 +249,7 @@ impl Format for AnnotatedRecording {
         }
     }
 
-    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
+    fn read_index(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         let recording = Recording::open(path)?;
         let named: Vec<&str> = options.split.iter().flat_map(|split| split.split(',')).collect();
         let types = options.target.as_ref().map_or(Self::TARGETS, std::slice::from_ref);

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use opendr_engine::dataset::{DatasetIterator, ExternalDataset};
-use opendr_engine::{Error, Result};
+use opendr_engine::{Error, Result, ValueType};
 
+use crate::format::names_of_types;
 use crate::{FormatEntry, OpenOptions, Problems, Recognition};
 
 /// Returns all formats. If several recognise a path, the first one is used.
@@ -95,4 +96,28 @@ pub fn open(
     problems: &Problems,
 ) -> Result<Box<dyn DatasetIterator>> {
     (format_of(dataset)?.open)(dataset.path(), options, problems)
+}
+
+/// Opens a data set for `user`, a learner, metric or format, with the first type of annotation of its format that is `accepted`.
+///
+/// # Errors
+/// `InvalidInput` if the format has none of the types; else as [`open`].
+pub fn open_for(
+    user: &str,
+    accepted: &[ValueType],
+    dataset: &ExternalDataset,
+    split: Option<String>,
+    problems: &Problems,
+) -> Result<Box<dyn DatasetIterator>> {
+    let format = format_of(dataset)?;
+    let target = format.targets.iter().find(|target| accepted.contains(target)).copied();
+    if target.is_none() {
+        let (needed, has) = (names_of_types(accepted), names_of_types(format.targets));
+        return Err(Error::invalid_input(format!(
+            "{user} needs the annotations {needed}, but a data set of format {} has {has}; use another data set, or name \
+             another format",
+            format.name
+        )));
+    }
+    (format.open)(dataset.path(), &OpenOptions { split, target }, problems)
 }

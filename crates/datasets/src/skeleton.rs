@@ -121,11 +121,7 @@ impl Format for Skeletons {
         }
     }
 
-    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
-        if let Some(other) = options.target.filter(|target| !Self::TARGETS.contains(target)) {
-            let message = format!("skeletons are read as Category, not as {}", other.name());
-            return Err(Error::unsupported(message));
-        }
+    fn read_index(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         let names = class_names(path);
         let split = options.split.as_deref();
         let files = ntu::files(path);

@@ -111,16 +111,8 @@ impl Format for SpeechCommands {
         }
     }
 
-    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
-        let target = match options.target {
-            None => ValueType::Category,
-            Some(target) if Self::TARGETS.contains(&target) => target,
-            Some(other) => {
-                let message =
-                    format!("words can be read as Category and SpeechCommand, not as {}", other.name());
-                return Err(Error::unsupported(message));
-            }
-        };
+    fn read_index(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
+        let target = options.target.unwrap_or(ValueType::Category);
         let words: Vec<_> = folders_in(path).into_iter().filter(|word| word != NOISE).collect();
         let lists = Lists::open(path, problems)?;
         let part = options.split.as_deref().map(SpeechSplit::from_name).transpose()?;

@@ -141,11 +141,7 @@ impl Format for Ucr {
         }
     }
 
-    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
-        if let Some(other) = options.target.filter(|target| !Self::TARGETS.contains(target)) {
-            let message = format!("time series are read as Category, not as {}", other.name());
-            return Err(Error::unsupported(message));
-        }
+    fn read_index(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         let files = candidates(path);
         let part_of = |file: &PathBuf| name_of(file).to_lowercase();
         let with = |part: &str| files.iter().find(|file| part_of(file).contains(&format!("_{part}.")));

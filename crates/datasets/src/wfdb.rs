@@ -141,11 +141,7 @@ impl Format for Wfdb {
     }
 
     /// Opens records; `split` is the name of a list of records, instead of `RECORDS`.
-    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
-        if let Some(other) = options.target.filter(|target| !Self::TARGETS.contains(target)) {
-            let message = format!("beats are read as Category, not as {}", other.name());
-            return Err(Error::unsupported(message));
-        }
+    fn read_index(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         let mut records = list(path, options.split.as_deref(), problems)?;
         let mut known = Vec::with_capacity(records.len());
         for record in &records {

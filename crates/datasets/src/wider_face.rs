@@ -146,7 +146,7 @@ impl Format for WiderFace {
         }
     }
 
-    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
+    fn read_index(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         let there = SPLITS.iter().copied().find(|split| list_of(path, split).is_file());
         let split = options.split.as_deref().or(there).unwrap_or("val");
         let list = list_of(path, split);

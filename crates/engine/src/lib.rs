@@ -51,6 +51,7 @@ mod task;
 mod value;
 
 pub mod assignment;
+pub mod atomic_file;
 pub mod data;
 pub mod dataset;
 pub mod environment;

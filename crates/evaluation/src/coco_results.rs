@@ -5,7 +5,8 @@ use std::io::Read;
 use std::path::Path;
 use std::time::Instant;
 
-use opendr_datasets::{Coco, OpenOptions};
+use opendr_datasets::{Coco, Format as _, OpenOptions, find_format};
+use opendr_engine::dataset::ExternalDataset;
 use opendr_engine::params::{ParamMap, ParamValue};
 use opendr_engine::{Error, Result, ResultExt};
 use opendr_metrics::MetricEntry;
@@ -20,16 +21,25 @@ const HEAD: u64 = 4096;
 /// about as fast as reading them.
 ///
 /// # Errors
-/// `Unsupported` for a metric that is not COCO's; `NotFound` without annotations; `Format` with the position in the file.
+/// `InvalidParam` when the data set has another format; `Unsupported` for a metric that is not COCO's; `NotFound` without
+/// annotations; `Format` with the position in the file.
 pub fn score_coco_results(
     metric: &MetricEntry,
     params: &ParamMap,
     results: &Path,
-    dataset: &Path,
+    dataset: &ExternalDataset,
     split: Option<String>,
     threads: usize,
 ) -> Result<Outcome> {
     let begun = Instant::now();
+    let format = dataset.dataset_type();
+    if !["", "auto"].contains(&format) && find_format(format)?.name != Coco::NAME {
+        return Err(Error::invalid_param(format!(
+            "{} has COCO results, which are compared with a data set of format {}, not {format}",
+            results.display(),
+            Coco::NAME
+        )));
+    }
     let kind = match metric.name {
         "coco_detection" => CocoKind::Boxes,
         "coco_segmentation" => CocoKind::Masks,
@@ -43,7 +53,7 @@ pub fn score_coco_results(
     // Checks the parameters.
     metric.make(params)?;
     let options = OpenOptions { split, target: Some(metric.ground_truth) };
-    let annotations = Coco::annotation_file(dataset, &options)?;
+    let annotations = Coco::annotation_file(dataset.path(), &options)?;
     let mut files = CocoFiles { threads, ..CocoFiles::new(kind) };
     if let Some(ParamValue::Bool(use_classes)) = params.get("use_classes") {
         files.use_classes = *use_classes;

@@ -5,10 +5,11 @@ use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use opendr_datasets::{Problem, Problems};
-use opendr_engine::dataset::DatasetIterator;
+use opendr_datasets::{Problem, Problems, open_for};
+use opendr_engine::dataset::{DatasetIterator, ExternalDataset};
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, ResultExt, Value, ValueType};
+use opendr_metrics::MetricEntry;
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
@@ -28,6 +29,26 @@ pub enum FilePredictions {
 }
 
 impl FilePredictions {
+    /// Opens predictions for the samples of `dataset`: lines of JSON (`.jsonl`), or a data set of the format `format` whose annotations
+    /// are of the type that `metric` compares.
+    ///
+    /// # Errors
+    /// As [`Lines::open`] and [`open_for`].
+    pub fn open(
+        path: &Path,
+        format: &str,
+        metric: &MetricEntry,
+        dataset: &dyn DatasetIterator,
+        problems: &Problems,
+    ) -> Result<Self> {
+        if path.extension().is_some_and(|extension| extension == "jsonl") {
+            return Ok(Self::Lines(Lines::open(path, dataset, problems)?));
+        }
+        let external = ExternalDataset::new(path, format);
+        let predictions = open_for(metric.name, &[metric.prediction], &external, None, problems)?;
+        Ok(Self::from_dataset(predictions, dataset))
+    }
+
     /// Uses the annotations of `predictions` as predictions for the samples of `dataset` of the same names.
     pub fn from_dataset(predictions: Box<dyn DatasetIterator>, dataset: &dyn DatasetIterator) -> Self {
         let names = SampleNames::of(dataset);

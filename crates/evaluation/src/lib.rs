@@ -22,6 +22,7 @@
 mod bootstrap;
 mod classes;
 mod coco_results;
+mod dataset_opener;
 mod evaluation;
 mod file_predictions;
 mod journal;
@@ -39,6 +40,7 @@ mod teacher;
 pub use bootstrap::Interval;
 pub use classes::{ByNumber, ClassMap, ClassMatching, ClassPair, ClassReport, MapLabels, MatchedBy};
 pub use coco_results::{is_coco_results, score_coco_results};
+pub use dataset_opener::{DatasetOpener, Samples, annotation_type};
 pub use evaluation::Evaluation;
 pub use file_predictions::{FilePredictions, Lines};
 pub use journal::PREDICTIONS_FORMAT;

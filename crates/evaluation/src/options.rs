@@ -87,7 +87,7 @@ impl EvalOptions {
         metric: &'static MetricEntry,
         dataset: DatasetRef<'a>,
     ) -> Result<EvalJob<'a>> {
-        let problems = if self.skip_broken { Problems::skipping() } else { Problems::strict() };
+        let problems = Problems::new(self.skip_broken);
         let (name, dataset): (_, Box<dyn DatasetIterator + 'a>) = match dataset {
             DatasetRef::External(external) => {
                 let name = external.path().display().to_string();

@@ -108,6 +108,11 @@ impl Data {
     }
 }
 
+/// Returns the bytes of all values in order.
+pub(crate) fn bytes_of<T: Copy, const N: usize>(values: &[T], bytes: impl Fn(T) -> [u8; N]) -> Vec<u8> {
+    values.iter().map(|value| bytes(*value)).collect::<Vec<_>>().into_flattened()
+}
+
 /// Dimensions and elements; the number of elements always matches the dimensions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Array {
@@ -204,12 +209,12 @@ impl Array {
     /// `Internal` for partial data, which cannot be written.
     pub fn to_tensor(&self, name: &str) -> Result<TensorProto> {
         let raw_data = match &self.data {
-            Data::Float(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
-            Data::Int(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
+            Data::Float(values) => bytes_of(values, |value| value.to_le_bytes()),
+            Data::Int(values) => bytes_of(values, |value| value.to_le_bytes()),
             Data::Bool(values) => values.iter().map(|&value| u8::from(value)).collect(),
             Data::Int8(values) => values.iter().map(|value| value.cast_unsigned()).collect(),
             Data::UInt8(values) => values.clone(),
-            Data::Int32(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
+            Data::Int32(values) => bytes_of(values, |value| value.to_le_bytes()),
             Data::Partial(_) => return Err(Error::internal(format!("shape {name:?} has unknown elements"))),
         };
         Ok(TensorProto {

@@ -59,8 +59,7 @@ mod tune;
 pub use by_name::{download, learner, learner_with};
 pub use export::{export, network};
 pub use fit::{
-    DatasetOpener, FitData, FitEnvironments, FitOptions, Fitted, check_fit, fit, fit_active, fit_policy,
-    teacher, teacher_with,
+    FitData, FitEnvironments, FitOptions, Fitted, check_fit, fit, fit_active, fit_policy, teacher, teacher_with,
 };
 pub use online::{OnlineReport, OnlineTuning, TrackingResult};
 #[cfg(feature = "actions")]

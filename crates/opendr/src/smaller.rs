@@ -8,9 +8,8 @@ use opendr_engine::dataset::{DatasetIterator, DatasetRef};
 use opendr_engine::learner::{AnyLearner, Entry};
 use opendr_engine::params::{ParamMap, Params};
 use opendr_engine::{Progress, Result, ResultExt};
+use opendr_evaluation::DatasetOpener;
 use opendr_optimize::{OptimizeJob, OptimizeOptions, Report};
-
-use crate::DatasetOpener;
 
 /// Name of the temporary copy of the original model.
 const ORIGINAL: &str = "original";
@@ -30,7 +29,7 @@ pub fn optimize_loaded(
 ) -> Result<Report> {
     let options = OptimizeOptions::from_map(options)?;
     let problems = Problems::strict();
-    let opening = |annotated| DatasetOpener { entry, annotated, problems: &problems, progress };
+    let opening = |annotated| DatasetOpener::new(entry, annotated, &problems, progress);
     let calibration = calibration.map(|dataset| opening(false).open_training(dataset, None)).transpose()?;
     let validation = validation.map(|dataset| opening(true).open_validation(dataset, None)).transpose()?;
     let mut original = output.as_os_str().to_owned();

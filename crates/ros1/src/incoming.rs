@@ -32,9 +32,9 @@ pub(crate) fn start(graph: &Arc<Graph>, listener: TcpListener, serve: Serve) -> 
             std::net::Ipv6Addr::LOCALHOST.into()
         });
     }
-    graph.tasks.listens(address);
+    graph.context.tasks.listens(address);
     let graph = Arc::clone(graph);
-    let tasks = Arc::clone(&graph.tasks);
+    let tasks = Arc::clone(&graph.context.tasks);
     tasks.spawn("accept", move |cancel| accept(&graph, &listener, serve, cancel))?;
     Ok(())
 }
@@ -52,13 +52,13 @@ fn accept(graph: &Arc<Graph>, listener: &TcpListener, serve: Serve, cancel: &Can
         }
         if open.fetch_add(1, Ordering::AcqRel) >= MOST_CONNECTIONS {
             open.fetch_sub(1, Ordering::AcqRel);
-            graph.problem(Error::unsupported(format!(
+            graph.context.problem(Error::unsupported(format!(
                 "more than {MOST_CONNECTIONS} simultaneous connections; one was closed"
             )));
             continue;
         }
         let (served, count) = (Arc::clone(graph), Counted(Arc::clone(&open)));
-        let started = graph.tasks.spawn("connection", move |cancel| {
+        let started = graph.context.tasks.spawn("connection", move |cancel| {
             let _count = count;
             stream.set_nodelay(true).ok();
             keep_alive(&stream);
@@ -68,7 +68,7 @@ fn accept(graph: &Arc<Graph>, listener: &TcpListener, serve: Serve, cancel: &Can
         if let Err(error) = started
             && !cancel.is_cancelled()
         {
-            graph.problem(error);
+            graph.context.problem(error);
         }
     }
 }
@@ -89,7 +89,7 @@ fn report(graph: &Graph, stream: &TcpStream, cancel: &Cancel, ended: Result<()>)
         && !cancel.is_cancelled()
     {
         let peer = stream.peer_addr().map(|address| address.to_string());
-        graph.problem(error.context(format!("serving {}", peer.as_deref().unwrap_or("a peer"))));
+        graph.context.problem(error.context(format!("serving {}", peer.as_deref().unwrap_or("a peer"))));
     }
 }
 
@@ -111,14 +111,14 @@ pub(crate) fn serve_tcpros(graph: &Arc<Graph>, stream: &TcpStream, cancel: &Canc
     if let Some(name) = header.get("service") {
         let service = lock(&graph.services).get(name).cloned();
         match service {
-            Some(service) => service.serve(graph, &header, stream),
-            None => unknown(format!("{} offers no service {name:.200}", graph.names.node())),
+            Some(service) => service.serve(&graph.context, &header, stream),
+            None => unknown(format!("{} offers no service {name:.200}", graph.context.names.node())),
         }
     } else if let Some(topic) = header.get("topic") {
         let publication = lock(&graph.publications).get(topic).cloned();
         match publication {
-            Some(publication) => publication.serve(graph, &header, stream, cancel),
-            None => unknown(format!("{} does not publish {topic:.200}", graph.names.node())),
+            Some(publication) => publication.serve(&graph.context, &header, stream, cancel),
+            None => unknown(format!("{} does not publish {topic:.200}", graph.context.names.node())),
         }
     } else {
         Header::error("the header names neither a topic nor a service").write(stream)?;

@@ -32,6 +32,7 @@
 
 mod arguments;
 mod connection;
+mod context;
 mod graph;
 mod host;
 mod http;

@@ -21,14 +21,14 @@ const ANSWER_TIME: Duration = Duration::from_secs(2);
 
 /// Starts the thread that checks whether the master knows the node.
 pub(crate) fn start(graph: &Arc<Graph>) -> Result<()> {
-    let tasks = Arc::clone(&graph.tasks);
+    let tasks = Arc::clone(&graph.context.tasks);
     let graph = Arc::clone(graph);
     tasks.spawn("master", move |cancel| {
         let mut known = Known::default();
         known.check(&graph).ok();
         while !cancel.wait(INTERVAL) {
             if let Err(error) = known.check(&graph) {
-                graph.problem(error);
+                graph.context.problem(error);
             }
         }
     })?;
@@ -45,7 +45,7 @@ struct Known {
 
 impl Known {
     fn check(&mut self, graph: &Graph) -> Result<()> {
-        let pid = match graph.master.call_within("getPid", &[], ANSWER_TIME) {
+        let pid = match graph.context.master.call_within("getPid", &[], ANSWER_TIME) {
             Ok(pid) => pid,
             Err(_) if self.lost => return Ok(()),
             Err(error) => {
@@ -54,7 +54,7 @@ impl Known {
             }
         };
         let other = self.pid.as_ref().is_some_and(|before| *before != pid);
-        let missed = graph.unregistered.swap(false, Ordering::AcqRel);
+        let missed = graph.context.unregistered.swap(false, Ordering::AcqRel);
         self.pid = Some(pid);
         if std::mem::take(&mut self.lost) || other || missed || !is_known(graph)? {
             graph.register_all();
@@ -76,13 +76,13 @@ fn is_known(graph: &Graph) -> Result<bool> {
     if nothing {
         return Ok(true);
     }
-    match graph.master.call_within("lookupNode", &[graph.names.node().into()], ANSWER_TIME) {
-        Ok(uri) if uri.as_str() == Some(&graph.api_uri) => Ok(true),
+    match graph.context.master.call_within("lookupNode", &[graph.context.names.node().into()], ANSWER_TIME) {
+        Ok(uri) if uri.as_str() == Some(&graph.context.api_uri) => Ok(true),
         // The master shuts this node down when another takes its name.
         Ok(uri) => Err(Error::unsupported(format!(
             "another node at {} has the name {}; give each node its own name",
             uri.as_str().unwrap_or("an unknown address"),
-            graph.names.node()
+            graph.context.names.node()
         ))),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(false),
         Err(error) => Err(error),

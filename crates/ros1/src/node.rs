@@ -2,12 +2,13 @@
 
 use std::fmt;
 use std::net::TcpListener;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32};
-use std::sync::{Arc, Condvar, Mutex};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use opendr_engine::{Error, ErrorKind, Result, ResultExt};
 
+use crate::context::Context;
 use crate::graph::Graph;
 use crate::host::{bind_address, host};
 use crate::http::{HttpUri, host_in_uri};
@@ -46,7 +47,7 @@ impl Node {
         let api_uri = format!("http://{}:{}/", host_in_uri(&host), api.local_addr()?.port());
         let master = Master::new(uri, names.node());
         wait_for_master(&master, options.wait_for_master)?;
-        let graph = Arc::new(Graph {
+        let context = Context {
             names,
             master,
             api_uri,
@@ -54,18 +55,12 @@ impl Node {
             host,
             max_message_bytes: options.max_message_bytes,
             tasks: Arc::new(Tasks::default()),
-            publications: Mutex::default(),
-            subscriptions: Mutex::default(),
-            services: Mutex::default(),
-            watches: Mutex::default(),
             unregistered: AtomicBool::new(false),
             on_problem: options.on_problem,
-            on_shutdown: options.on_shutdown,
             next_id: AtomicU32::new(1),
             ending: AtomicBool::new(false),
-            ended: Mutex::new(false),
-            has_ended: Condvar::new(),
-        });
+        };
+        let graph = Arc::new(Graph::new(context, options.on_shutdown));
         // From here on, an error drops the node and ends its threads.
         let node = Self { graph };
         incoming::start(&node.graph, api, incoming::serve_api)?;
@@ -79,12 +74,12 @@ impl Node {
 
     /// Returns the node's full name.
     pub fn name(&self) -> &str {
-        self.graph.names.node()
+        self.graph.context.names.node()
     }
 
     /// Returns the URI of the node's XML-RPC server.
     pub fn uri(&self) -> &str {
-        &self.graph.api_uri
+        &self.graph.context.api_uri
     }
 
     /// Resolves `name` to its full name in this node, after remapping.
@@ -92,7 +87,7 @@ impl Node {
     /// # Errors
     /// `InvalidParam` for an invalid name.
     pub fn resolve(&self, name: &str) -> Result<String> {
-        self.graph.names.resolve(name)
+        self.graph.context.names.resolve(name)
     }
 
     /// Advertises `topic`. Several publishers of one topic and type share the connections.
@@ -144,7 +139,7 @@ impl Node {
     /// # Errors
     /// `InvalidParam` for an invalid name.
     pub fn client(&self, service: &str, kind: ServiceType) -> Result<ServiceClient> {
-        Ok(ServiceClient::new(&self.graph, self.resolve(service)?, kind))
+        Ok(ServiceClient::new(&self.graph.context, self.resolve(service)?, kind))
     }
 
     /// Waits until `service` responds.
@@ -153,7 +148,7 @@ impl Node {
     /// The last error, if it does not respond within `time`.
     pub fn wait_for_service(&self, service: &str, time: Duration) -> Result<()> {
         let name = self.resolve(service)?;
-        retry(time, || probe(&self.graph, &name)).context(|| format!("waiting for service {name}"))
+        retry(time, || probe(&self.graph.context, &name)).context(|| format!("waiting for service {name}"))
     }
 
     /// Returns the currently published topics with their types.
@@ -161,7 +156,7 @@ impl Node {
     /// # Errors
     /// `Network` without a master.
     pub fn published_topics(&self) -> Result<Vec<(String, String)>> {
-        let answer = self.graph.master.call("getPublishedTopics", &["".into()])?;
+        let answer = self.graph.context.master.call("getPublishedTopics", &["".into()])?;
         let pair = |value: &crate::ParameterValue| match value.as_list()? {
             [topic, kind] => Some((topic.as_str()?.to_owned(), kind.as_str()?.to_owned())),
             _ => None,
@@ -172,7 +167,7 @@ impl Node {
 
     /// Returns whether the node has been shut down, or is shutting down: by its owner, `rosnode kill`, or another node of its name.
     pub fn is_shut_down(&self) -> bool {
-        self.graph.is_ended()
+        self.graph.context.is_ended()
     }
 
     /// Waits for the shutdown of the node.

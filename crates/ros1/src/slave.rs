@@ -26,8 +26,8 @@ pub(crate) fn answer(
     let value = match method {
         "getBusStats" => Ok(bus_stats(graph)),
         "getBusInfo" => Ok(bus_info(graph)),
-        "getMasterUri" => Ok(graph.master.uri.to_string().into()),
-        "getName" => Ok(graph.names.node().into()),
+        "getMasterUri" => Ok(graph.context.master.uri.to_string().into()),
+        "getName" => Ok(graph.context.names.node().into()),
         "getPid" => Ok(i32::try_from(std::process::id()).unwrap_or(0).into()),
         "getSubscriptions" => Ok(subscriptions(graph)),
         "getPublications" => Ok(publications(graph)),
@@ -78,11 +78,11 @@ fn bus_stats(graph: &Graph) -> ParameterValue {
                 count(link.id.into()),
                 count(link.received_bytes.load(Ordering::Relaxed)),
                 count(link.received_messages.load(Ordering::Relaxed)),
-                count(subscribed.inbox.dropped.load(Ordering::Relaxed)),
+                count(subscribed.wanted.inbox.dropped.load(Ordering::Relaxed)),
                 link.connected.load(Ordering::Relaxed).into(),
             ])
         });
-        list([subscribed.topic.as_str().into(), list(each)])
+        list([subscribed.wanted.topic.as_str().into(), list(each)])
     });
     let (mut requests, mut received, mut sent) = (0, 0, 0);
     for service in lock(&graph.services).values() {
@@ -109,7 +109,14 @@ fn bus_info(graph: &Graph) -> ParameterValue {
     for subscribed in all_subscribed(graph) {
         for link in subscribed.links() {
             let connected = link.connected.load(Ordering::Relaxed);
-            connections.push(row(link.id, &link.uri, "i", &subscribed.topic, connected, &lock(&link.ends)));
+            connections.push(row(
+                link.id,
+                &link.uri,
+                "i",
+                &subscribed.wanted.topic,
+                connected,
+                &lock(&link.ends),
+            ));
         }
     }
     list(connections)
@@ -118,7 +125,7 @@ fn bus_info(graph: &Graph) -> ParameterValue {
 fn subscriptions(graph: &Graph) -> ParameterValue {
     let mut pairs: Vec<_> = all_subscribed(graph)
         .iter()
-        .map(|subscribed| (subscribed.topic.clone(), subscribed.kind.name.clone()))
+        .map(|subscribed| (subscribed.wanted.topic.clone(), subscribed.wanted.kind.name.clone()))
         .collect();
     pairs.sort();
     pairs.dedup();
@@ -150,7 +157,7 @@ fn publisher_update(graph: &Graph, topic: &str, publishers: Option<&ParameterVal
     let publishers = publishers.and_then(|value| uris(value).ok());
     let publishers = publishers.ok_or((-1, "publisherUpdate needs a topic and addresses".to_owned()))?;
     for subscribed in all_subscribed(graph) {
-        if subscribed.topic == topic {
+        if subscribed.wanted.topic == topic {
             subscribed.update(&publishers);
         }
     }
@@ -159,7 +166,7 @@ fn publisher_update(graph: &Graph, topic: &str, publishers: Option<&ParameterVal
 
 fn request_topic(graph: &Graph, topic: &str, protocols: Option<&ParameterValue>) -> Answer {
     if !lock(&graph.publications).contains_key(topic) {
-        return Err((-1, format!("{} does not publish {topic:.200}", graph.names.node())));
+        return Err((-1, format!("{} does not publish {topic:.200}", graph.context.names.node())));
     }
     let is_tcp = |protocol: &ParameterValue| {
         protocol.as_list().and_then(<[_]>::first).and_then(ParameterValue::as_str) == Some("TCPROS")
@@ -167,5 +174,5 @@ fn request_topic(graph: &Graph, topic: &str, protocols: Option<&ParameterValue>)
     if !protocols.and_then(ParameterValue::as_list).is_some_and(|all| all.iter().any(is_tcp)) {
         return Err((0, "this node supports only TCPROS".to_owned()));
     }
-    Ok(list(["TCPROS".into(), graph.host.as_str().into(), i32::from(graph.tcp_port).into()]))
+    Ok(list(["TCPROS".into(), graph.context.host.as_str().into(), i32::from(graph.context.tcp_port).into()]))
 }

@@ -1,11 +1,11 @@
-//! `fit` of a learner: opens data sets by format, validates with the task's metric.
+//! `fit` of a learner, validated with the metric of its task.
 
 use std::path::Path;
 
-use opendr_datasets::{OpenOptions, Problems, draw_sample};
+use opendr_datasets::{Problems, draw_sample};
 use opendr_engine::data::Image;
 use opendr_engine::dataset::{DatasetIterator, DatasetRef};
-use opendr_engine::learner::{AnyLearner, Entry, FitJob, Learner, Ports, Probe, Targets};
+use opendr_engine::learner::{AnyLearner, Entry, FitJob, Learner, Ports, Probe};
 use opendr_engine::params::Params;
 use opendr_engine::{Device, Error, Result, Statistics};
 use opendr_evaluation::{Evaluation, Subject, metric_of, open_for_metric};
@@ -14,24 +14,6 @@ use opendr_vision::draw;
 
 use crate::training::Score;
 use crate::{Objective, TrainingParams, fit_network};
-
-/// Opens the training data set of a learner, with targets of the learner's target type.
-///
-/// # Errors
-/// `InvalidInput` when the format has no such targets; the errors of the reader.
-pub fn open_for_training<'a, L: Learner>(
-    dataset: DatasetRef<'a>,
-    job: &FitJob<'_>,
-) -> Result<Box<dyn DatasetIterator + 'a>> {
-    match dataset {
-        DatasetRef::Iterator(dataset) => Ok(Box::new(dataset)),
-        DatasetRef::External(external) => {
-            let target = L::Target::OUTPUTS.first().map(|output| output.value_type);
-            let problems = if job.skip_broken { Problems::skipping() } else { Problems::strict() };
-            opendr_datasets::open(external, &OpenOptions { split: None, target }, &problems)
-        }
-    }
-}
 
 /// Trains the network of a learner on `dataset`. With validation data, it keeps the network with the best value of the task's
 /// metric, measured through the learner.

@@ -27,6 +27,7 @@ mod kept_heap;
 pub mod layers;
 mod memory;
 mod objective;
+mod opening;
 mod optimizer;
 mod params;
 mod schedule;
@@ -35,8 +36,9 @@ mod training_state;
 pub mod weights;
 
 pub use device::training_device;
-pub use fit_learner::{fit_learner, open_for_training};
+pub use fit_learner::fit_learner;
 pub use objective::{Container, Loss, Objective};
+pub use opening::{open_accepted, open_for_training, open_for_validation};
 pub use params::{OptimizerKind, ScheduleKind, TrainingParams};
 pub use schedule::Schedule;
 pub use training::{Score, Validate, fit_network, seeded_device};

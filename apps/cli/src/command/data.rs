@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::dataset::{DatasetIterator, Subset};
 use opendr::datasets::{self, DatasetStats, OpenOptions, Problems, WriteOptions};
-use opendr::{Error, JsonFormat, Progress, Result, inference};
+use opendr::{JsonFormat, Progress, Result, inference};
 
 use crate::exit::Outcome;
 use crate::progress_bar::{ProgressBar, interrupted};
@@ -169,32 +169,11 @@ fn convert(matches: &ArgMatches) -> Result<Outcome> {
     let to = datasets::find_format(matches.get_one::<String>("to").map_or("", String::as_str))?;
     let output = matches.get_one::<PathBuf>("output").cloned().unwrap_or_default();
     let external = dataset_flags::external(matches);
-    let options = OpenOptions { split: dataset_flags::split(matches), target: common_target(&external, to)? };
-    let dataset = datasets::open(&external, &options, &problems)?;
+    let split = dataset_flags::split(matches);
+    let dataset = datasets::open_for(to.name, to.targets, &external, split, &problems)?;
     let options = WriteOptions { split: matches.get_one("as").cloned(), link: matches.get_flag("link") };
     (to.write)(dataset.as_ref(), &output, &options, &problems, &bar)?;
     dataset_flags::print_problems(&problems)?;
     bar.note(&format!("{} samples written into {}", dataset.len(), output.display()));
     Ok(outcome(&problems))
-}
-
-/// Returns the first target type that both formats support.
-fn common_target(
-    from: &opendr::dataset::ExternalDataset,
-    to: &datasets::FormatEntry,
-) -> Result<Option<opendr::ValueType>> {
-    let from = datasets::format_of(from)?;
-    let both = from.targets.iter().find(|target| to.targets.contains(target));
-    both.map(|target| Some(*target)).ok_or_else(|| {
-        let names = |format: &datasets::FormatEntry| {
-            format.targets.iter().map(|target| target.name()).collect::<Vec<_>>().join(" or ")
-        };
-        Error::invalid_input(format!(
-            "{} contains {}, but {} stores {}; choose a format with a common type (\"opendr data formats --json\")",
-            from.name,
-            names(from),
-            to.name,
-            names(to)
-        ))
-    })
 }

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, value_parser};
 use opendr::dataset::ExternalDataset;
+use opendr::evaluation::DatasetOpener;
 use opendr::model::Model;
 use opendr::optimize::{OptimizeJob, OptimizeOptions, Report};
 use opendr::params::{Field, ParamValue, Params};
-use opendr::{DatasetOpener, Progress, Result};
+use opendr::{Progress, Result};
 
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
@@ -98,7 +99,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let entry = loading::entry(&Model::open(&path)?.manifest().learner)?;
     let options = options(matches)?;
     let problems = dataset_flags::problems(matches);
-    let opening = |annotated| DatasetOpener { entry, annotated, problems: &problems, progress: &bar };
+    let opening = |annotated| DatasetOpener::new(entry, annotated, &problems, &bar);
     let [images, dataset] = ["calibration", "validation"].map(|name| external(name, matches));
     let split = |name| matches.get_one::<String>(data_ids(name)[2]).map(String::as_str);
     let calibration =

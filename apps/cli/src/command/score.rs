@@ -1,13 +1,10 @@
 //! `opendr score`: evaluates a file of predictions against a data set.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Arg, ArgMatches, Command, value_parser};
-use opendr::dataset::ExternalDataset;
-use opendr::datasets::{self, OpenOptions, Problems};
-use opendr::evaluation::{self, ClassMatching, Evaluation, FilePredictions, Lines, Subject};
-use opendr::metrics::{self, MetricEntry};
-use opendr::{Error, Result, inference};
+use opendr::evaluation::{self, ClassMatching, Evaluation, FilePredictions, Subject};
+use opendr::{Error, Result, datasets, inference, metrics};
 
 use crate::command::eval;
 use crate::exit::Outcome;
@@ -60,21 +57,18 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     if evaluation::is_coco_results(&path)? {
         let params = eval::metric_params(metric, matches)?;
         let threads = inference::default_threads()?;
-        let mut outcome =
-            evaluation::score_coco_results(metric, &params, &path, external.path(), split, threads)?;
+        let mut outcome = evaluation::score_coco_results(metric, &params, &path, &external, split, threads)?;
         if let Some(folder) = matches.get_one::<PathBuf>("out") {
             outcome.write_report(folder)?;
         }
         return eval::print_outcome(&outcome, matches, &problems, &bar);
     }
     let dataset = evaluation::open_for_metric(metric, &external, split, &problems)?;
-    let predictions = match path.extension().and_then(|extension| extension.to_str()) {
-        Some("jsonl") => FilePredictions::Lines(Lines::open(&path, dataset.as_ref(), &problems)?),
-        _ => FilePredictions::from_dataset(
-            open(&path, &external, metric, matches, &problems)?,
-            dataset.as_ref(),
-        ),
+    let format = match matches.get_one::<String>("predictions-format") {
+        Some(format) => format,
+        None => datasets::format_of(&external)?.name,
     };
+    let predictions = FilePredictions::open(&path, format, metric, dataset.as_ref(), &problems)?;
     let subject = Subject { learner: path.display().to_string(), ..Subject::default() };
     let evaluation = Evaluation {
         dataset: external.path().display().to_string(),
@@ -89,20 +83,4 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     };
     let outcome = evaluation.score(&predictions, dataset.as_ref())?;
     eval::print_outcome(&outcome, matches, &problems, &bar)
-}
-
-/// Opens the predictions as a data set.
-fn open(
-    path: &Path,
-    ground_truth: &ExternalDataset,
-    metric: &MetricEntry,
-    matches: &ArgMatches,
-    problems: &Problems,
-) -> Result<Box<dyn opendr::dataset::DatasetIterator>> {
-    let format = match matches.get_one::<String>("predictions-format") {
-        Some(format) => format,
-        None => datasets::format_of(ground_truth)?.name,
-    };
-    let options = OpenOptions { split: None, target: Some(metric.prediction) };
-    datasets::open(&ExternalDataset::new(path, format), &options, problems)
 }

@@ -110,7 +110,7 @@ impl Format for CocoInfrared {
         }
     }
 
-    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
+    fn read_index(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         let coco = Coco::open(path, options, problems)?;
         let folder = folder_of(path).ok_or_else(|| {
             Error::not_found(format!("{} has no folder {FOLDER:?} with infrared images", path.display()))

@@ -203,18 +203,12 @@ impl Format for Coco {
         }
     }
 
-    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
+    fn read_index(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         let file = &Self::annotation_file(path, options)?;
         let target = match options.target {
+            Some(target) => target,
             None if locate::name_begins(file, &["person_keypoints_"]) => ValueType::PoseList,
-            None | Some(ValueType::BoundingBoxList) => ValueType::BoundingBoxList,
-            Some(ValueType::PoseList) => ValueType::PoseList,
-            Some(other) => {
-                let other = other.name();
-                return Err(Error::unsupported(format!(
-                    "COCO annotations are read as boxes or poses, not as {other}"
-                )));
-            }
+            None => ValueType::BoundingBoxList,
         };
         let index = Index::new::<AnnotationRecord>(file, problems)?;
         let source = Source::new(file)?;

@@ -225,7 +225,7 @@ impl Format for CocoPanoptic {
         }
     }
 
-    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
+    fn read_index(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         let mut files = locate::annotation_files(path);
         files.retain(|file| is_panoptic(file));
         if files.is_empty() {
@@ -234,16 +234,7 @@ impl Format for CocoPanoptic {
         }
         let file =
             locate::choose(&files, options.split.as_deref(), &[]).context(|| path.display().to_string())?;
-        let target = match options.target {
-            None | Some(ValueType::BoundingBoxList) => ValueType::BoundingBoxList,
-            Some(ValueType::Heatmap) => ValueType::Heatmap,
-            Some(other) => {
-                let other = other.name();
-                return Err(Error::unsupported(format!(
-                    "panoptic masks are read as boxes or label maps, not as {other}"
-                )));
-            }
-        };
+        let target = options.target.unwrap_or(ValueType::BoundingBoxList);
         let index = Index::new::<Record>(file, problems)?;
         if target == ValueType::Heatmap && index.categories.ids().len() > IGNORED as usize {
             return Err(Error::unsupported("label maps support at most 255 categories; read boxes instead"));

@@ -9,7 +9,7 @@ use opendr_engine::{Error, Header, Progress, Result, Value, ValueType};
 use crate::fields::lines;
 use crate::folder::{PICTURES, files_in, past_end, path_inside, read_text};
 use crate::kitti::labels::{flat_from_boxes, object_from_line};
-use crate::kitti::{Scene, folder_with, wanted_target, write};
+use crate::kitti::{Scene, folder_with, write};
 use crate::{Format, OpenOptions, Problem, Problems, Recognition, WriteOptions};
 
 const FOLDERS: [&str; 3] = ["label_2", "image_2", "velodyne"];
@@ -166,8 +166,8 @@ impl Format for Kitti {
         }
     }
 
-    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
-        let target = wanted_target(options.target, Self::TARGETS)?;
+    fn read_index(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
+        let target = options.target.unwrap_or(ValueType::BoundingBox3DList);
         let part = options.split.as_deref();
         let root = folder_with(path, part, &FOLDERS)?.ok_or_else(|| {
             Error::not_found(format!("no KITTI data in {}; the layout is {}", path.display(), Self::LAYOUT))

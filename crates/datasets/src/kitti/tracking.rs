@@ -12,7 +12,7 @@ use opendr_engine::{Error, Header, Result, Value, ValueType};
 use crate::fields::lines;
 use crate::folder::{PICTURES, files_in, folders_in, past_end, read_text};
 use crate::kitti::labels::{MAX_FRAMES, flat_from_boxes, track_from_line};
-use crate::kitti::{Scene, folder_with, wanted_target};
+use crate::kitti::{Scene, folder_with};
 use crate::{Format, OpenOptions, Problem, Problems, Recognition};
 
 const FOLDERS: [&str; 3] = ["label_02", "image_02", "velodyne"];
@@ -204,8 +204,8 @@ impl Format for KittiTracking {
         }
     }
 
-    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
-        let target = wanted_target(options.target, Self::TARGETS)?;
+    fn read_index(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
+        let target = options.target.unwrap_or(ValueType::TrackingAnnotation3DList);
         let root = folder_with(path, options.split.as_deref(), &FOLDERS)?.ok_or_else(|| {
             Error::not_found(format!("no KITTI tracks in {}; the layout is {}", path.display(), Self::LAYOUT))
         })?;

@@ -160,18 +160,12 @@ impl Format for Voc {
         layout::recognise(path)
     }
 
-    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
+    fn read_index(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         let layout = Layout::new(path)?;
         let target = match options.target {
+            Some(target) => target,
             None if layout.has_annotations() => ValueType::BoundingBoxList,
-            None | Some(ValueType::Heatmap) => ValueType::Heatmap,
-            Some(ValueType::BoundingBoxList) => ValueType::BoundingBoxList,
-            Some(other) => {
-                let other = other.name();
-                return Err(Error::unsupported(format!(
-                    "VOC annotations are read as boxes or masks, not as {other}"
-                )));
-            }
+            None => ValueType::Heatmap,
         };
         let masks = target == ValueType::Heatmap;
         let names = layout.names(options.split.as_deref(), masks, problems)?;

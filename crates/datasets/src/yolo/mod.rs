@@ -118,7 +118,7 @@ impl Format for Yolo {
         }
     }
 
-    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
+    fn read_index(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         let layout = Layout::new(path, options.split.as_deref(), problems)?;
         let yolo = Self { layout };
         let labelled = (0..yolo.len()).any(|index| yolo.label_path(index).is_ok_and(|file| file.is_file()));

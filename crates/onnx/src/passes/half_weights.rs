@@ -5,6 +5,7 @@
 
 use std::collections::HashSet;
 
+use crate::array::bytes_of;
 use crate::half::half_from_float;
 use crate::proto::{DataType, GraphProto, NodeProto};
 use crate::{Array, Operator};
@@ -39,7 +40,7 @@ pub fn weights_to_fp16(graph: &mut GraphProto) -> usize {
         });
         tensor.data_type = DataType::Float16 as i32;
         tensor.float_data.clear();
-        tensor.raw_data = floats.iter().flat_map(|value| half_from_float(*value).to_le_bytes()).collect();
+        tensor.raw_data = bytes_of(floats, |value| half_from_float(value).to_le_bytes());
     }
     let count = casts.len();
     graph.node.splice(0..0, casts);

@@ -4,26 +4,23 @@ mod fitted;
 mod in_environment;
 mod options;
 mod run_folder;
-mod samples;
 
 use std::path::Path;
 use std::time::Instant;
 
 use opendr_datasets::Problems;
-use opendr_engine::dataset::{DatasetIterator, DatasetRef, ExternalDataset};
+use opendr_engine::dataset::{DatasetIterator, DatasetRef, ExternalDataset, Subset};
 use opendr_engine::learner::{AnyLearner, Entry, FitJob};
 use opendr_engine::params::{ParamMap, ParamValue};
 use opendr_engine::{Device, Error, Progress, Result, Statistics};
-use opendr_evaluation::{Distillation, Teacher};
+use opendr_evaluation::{DatasetOpener, Distillation, Samples, Teacher, annotation_type};
 use opendr_inference as inference;
 
 pub use fitted::Fitted;
 pub use in_environment::{FitEnvironments, fit_active, fit_policy};
 pub use options::FitOptions;
-pub use samples::{DatasetOpener, Samples};
 
 use crate::{learner_with, registry};
-use samples::{annotation_type, limited};
 
 /// Default score below which a teacher's predictions are dropped.
 const TEACHER_THRESHOLD: f32 = 0.5;
@@ -136,7 +133,7 @@ struct Preparation<'a> {
 
 impl Preparation<'_> {
     fn opening(&self, annotated: bool) -> DatasetOpener<'_> {
-        DatasetOpener { entry: self.entry, annotated, problems: self.problems, progress: self.progress }
+        DatasetOpener::new(self.entry, annotated, self.problems, self.progress)
     }
 
     /// Opens the validation samples: `val`, else the validation split of the training data, if one is named.
@@ -167,7 +164,8 @@ impl Preparation<'_> {
         let name = self.options.name.clone().unwrap_or(path);
         let samples =
             self.opening(teacher.is_none()).open_training(dataset, self.options.split.as_deref())?;
-        let mut samples = limited(samples, self.options.limit);
+        let limit = self.options.limit.unwrap_or(usize::MAX);
+        let mut samples: Samples<'d> = Box::new(Subset::first(samples, limit));
         run_folder::make(self.output)?;
         self.progress.note(&format!("output: {}", self.output.display()));
         if let Some(teacher) = teacher {
@@ -184,7 +182,7 @@ impl Preparation<'_> {
     fn lesson(&self, dataset: String) -> Result<Distillation<'_>> {
         Ok(Distillation {
             dataset,
-            annotation_type: annotation_type(self.entry)
+            annotation_type: annotation_type(&self.entry.spec, self.entry.outputs)
                 .ok_or_else(|| Error::internal("a learner without outputs"))?,
             threshold: self.options.teacher_threshold.unwrap_or(TEACHER_THRESHOLD),
             classes: self.options.teacher_classes.iter().cloned().collect(),

@@ -55,6 +55,6 @@ impl FitOptions {
     }
 
     pub(super) fn problems(&self) -> Problems {
-        if self.skip_broken { Problems::skipping() } else { Problems::strict() }
+        Problems::new(self.skip_broken)
     }
 }

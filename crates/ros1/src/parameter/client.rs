@@ -12,7 +12,7 @@ impl Node {
     /// # Errors
     /// `NotFound` when it is not set, `InvalidParam` for an invalid name, `Network` without a master.
     pub fn parameter(&self, key: &str) -> Result<ParameterValue> {
-        self.graph.master.call("getParam", &[self.resolve(key)?.into()])
+        self.graph.context.master.call("getParam", &[self.resolve(key)?.into()])
     }
 
     /// Returns the parameter `key`, or `None` when it is not set.
@@ -32,7 +32,7 @@ impl Node {
     /// # Errors
     /// `InvalidInput` for text that XML cannot hold, else as [`Node::parameter`].
     pub fn set_parameter(&self, key: &str, value: impl Into<ParameterValue>) -> Result<()> {
-        self.graph.master.call("setParam", &[self.resolve(key)?.into(), value.into()]).map(|_| ())
+        self.graph.context.master.call("setParam", &[self.resolve(key)?.into(), value.into()]).map(|_| ())
     }
 
     /// Returns whether the parameter `key` is set.
@@ -40,7 +40,7 @@ impl Node {
     /// # Errors
     /// As [`Node::parameter`].
     pub fn has_parameter(&self, key: &str) -> Result<bool> {
-        let answer = self.graph.master.call("hasParam", &[self.resolve(key)?.into()])?;
+        let answer = self.graph.context.master.call("hasParam", &[self.resolve(key)?.into()])?;
         answer.as_bool().ok_or_else(|| Error::format("hasParam of the master did not return a Boolean"))
     }
 
@@ -49,7 +49,7 @@ impl Node {
     /// # Errors
     /// As [`Node::parameter`].
     pub fn delete_parameter(&self, key: &str) -> Result<()> {
-        self.graph.master.call("deleteParam", &[self.resolve(key)?.into()]).map(|_| ())
+        self.graph.context.master.call("deleteParam", &[self.resolve(key)?.into()]).map(|_| ())
     }
 
     /// Returns the full name of the nearest parameter `key`, searched from the node's namespace upwards.
@@ -57,8 +57,8 @@ impl Node {
     /// # Errors
     /// As [`Node::parameter`].
     pub fn search_parameter(&self, key: &str) -> Result<Option<String>> {
-        self.graph.names.resolve(key)?;
-        match self.graph.master.call_within("searchParam", &[key.into()], CALL_TIME) {
+        self.graph.context.names.resolve(key)?;
+        match self.graph.context.master.call_within("searchParam", &[key.into()], CALL_TIME) {
             Ok(found) => Ok(found.as_str().map(str::to_owned)),
             Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
             Err(error) => Err(error),
@@ -70,7 +70,7 @@ impl Node {
     /// # Errors
     /// `Network` without a master.
     pub fn parameter_names(&self) -> Result<Vec<String>> {
-        self.graph.master.call_for_texts("getParamNames", &[])
+        self.graph.context.master.call_for_texts("getParamNames", &[])
     }
 
     /// Calls `changed` with the full name and the new value whenever `key` or a parameter below it changes; a deleted parameter is an

@@ -1,17 +1,16 @@
-//! Notification of parameter changes.
+//! Watched parameters.
 
 use std::collections::BTreeMap;
-use std::fmt;
-use std::sync::{Arc, Mutex};
+use std::sync::Mutex;
 
-use opendr_engine::{Error, Result};
+use opendr_engine::Result;
 
 use crate::ParameterValue;
-use crate::graph::Graph;
+use crate::context::Context;
 use crate::lock::lock;
-use crate::name::canonical;
 
-type Changed = Box<dyn Fn(&str, &ParameterValue) + Send + Sync>;
+/// The owner's function for a parameter's changes.
+pub(super) type Changed = Box<dyn Fn(&str, &ParameterValue) + Send + Sync>;
 
 /// A watched parameter.
 pub(crate) struct Watch {
@@ -22,68 +21,26 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
+    pub(super) fn new(key: &str, changed: Changed) -> Self {
+        Self { key: key.to_owned(), changed, calling: Mutex::default() }
+    }
+
     /// Subscribes to the parameter at the master.
-    pub fn register(&self, graph: &Graph) -> Result<ParameterValue> {
-        let params = [graph.api_uri.as_str().into(), self.key.as_str().into()];
-        let value = graph.register("subscribeParam", &params)?;
+    pub fn register(&self, context: &Context) -> Result<ParameterValue> {
+        let params = [context.api_uri.as_str().into(), self.key.as_str().into()];
+        let value = context.register("subscribeParam", &params)?;
         Ok(value.unwrap_or_else(|| ParameterValue::Struct(BTreeMap::new())))
     }
-}
 
-/// Notifies every watch of `key` or of a namespace that contains it.
-pub(crate) fn notify(graph: &Graph, key: &str, value: &ParameterValue) {
-    let key = canonical(key);
-    let watches: Vec<_> = lock(&graph.watches).clone();
-    for watch in watches {
-        let below = key.strip_prefix(&watch.key).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'));
-        if below || watch.key == "/" {
-            let _calling = lock(&watch.calling);
-            graph.guarded("the owner's function for parameters", || (watch.changed)(&key, value));
-        }
-    }
-}
-
-/// Handle of a watched parameter; dropping it ends the watch.
-pub struct ParameterWatch {
-    graph: Arc<Graph>,
-    watch: Arc<Watch>,
-}
-
-impl ParameterWatch {
-    pub(crate) fn new(graph: &Arc<Graph>, key: &str, changed: Changed) -> Result<(Self, ParameterValue)> {
-        let watch = Arc::new(Watch { key: key.to_owned(), changed, calling: Mutex::default() });
-        let mut watches = lock(&graph.watches);
-        if graph.is_ended() {
-            return Err(Error::network("the node was shut down; create a new one"));
-        }
-        watches.push(Arc::clone(&watch));
-        drop(watches);
-        let handle = Self { graph: Arc::clone(graph), watch };
-        let value = handle.watch.register(graph)?;
-        Ok((handle, value))
+    /// Returns whether the parameter `key` is this one or below it.
+    pub(super) fn contains(&self, key: &str) -> bool {
+        let rest = key.strip_prefix(&self.key);
+        self.key == "/" || rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
     }
 
-    /// Returns the parameter's full name.
-    pub fn key(&self) -> &str {
-        &self.watch.key
-    }
-}
-
-impl Drop for ParameterWatch {
-    fn drop(&mut self) {
-        let mut watches = lock(&self.graph.watches);
-        watches.retain(|other| !Arc::ptr_eq(other, &self.watch));
-        let others = watches.iter().any(|other| other.key == self.watch.key);
-        drop(watches);
-        if !others {
-            self.graph
-                .unregister("unsubscribeParam", &[self.graph.api_uri.as_str().into(), self.key().into()]);
-        }
-    }
-}
-
-impl fmt::Debug for ParameterWatch {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("ParameterWatch").field(&self.key()).finish()
+    /// Calls the owner's function.
+    pub(super) fn notify(&self, context: &Context, key: &str, value: &ParameterValue) {
+        let _calling = lock(&self.calling);
+        context.guarded("the owner's function for parameters", || (self.changed)(key, value));
     }
 }

@@ -11,7 +11,7 @@ use opendr_engine::{Error, Result, ResultExt};
 use super::ANSWER_TIME;
 use crate::ServiceType;
 use crate::connection::{HANDSHAKE_TIME, Timed, connect};
-use crate::graph::Graph;
+use crate::context::Context;
 use crate::http::HttpUri;
 use crate::lock::lock;
 use crate::tcpros::{Header, read_body, read_length, write_frame};
@@ -19,7 +19,7 @@ use crate::types::agree;
 
 /// Client of one service, over a persistent connection that is renewed after a restart of the service.
 pub struct ServiceClient {
-    graph: Arc<Graph>,
+    context: Arc<Context>,
     name: String,
     kind: ServiceType,
     time: Duration,
@@ -28,8 +28,8 @@ pub struct ServiceClient {
 
 impl ServiceClient {
     /// Creates a client of the service with the full name `name`.
-    pub(crate) fn new(graph: &Arc<Graph>, name: String, kind: ServiceType) -> Self {
-        Self { graph: Arc::clone(graph), name, kind, time: ANSWER_TIME, connection: Mutex::default() }
+    pub(crate) fn new(context: &Arc<Context>, name: String, kind: ServiceType) -> Self {
+        Self { context: Arc::clone(context), name, kind, time: ANSWER_TIME, connection: Mutex::default() }
     }
 
     /// Sets the time limit of a response (default: a minute).
@@ -64,9 +64,9 @@ impl ServiceClient {
     }
 
     fn open(&self, persistent: bool) -> Result<TcpStream> {
-        let stream = connect_to(&self.graph, &self.name)?;
+        let stream = connect_to(&self.context, &self.name)?;
         Header::new([
-            ("callerid", self.graph.names.node()),
+            ("callerid", self.context.names.node()),
             ("service", &self.name),
             ("type", &self.kind.name),
             ("md5sum", &self.kind.md5sum),
@@ -101,10 +101,10 @@ impl ServiceClient {
         let length = read_length(&mut reader).map_err(broken)?;
         let length =
             length.ok_or_else(|| Error::network("the service disconnected within its response"))? as usize;
-        if length > self.graph.max_message_bytes {
+        if length > self.context.max_message_bytes {
             return Err(Error::format(format!(
                 "the response has {length} bytes; at most {} are allowed (NodeOptions::max_message_bytes)",
-                self.graph.max_message_bytes
+                self.context.max_message_bytes
             )));
         }
         let mut answer = Vec::new();
@@ -127,15 +127,15 @@ fn is_usable(stream: &TcpStream) -> bool {
 }
 
 /// Checks that the service `name` responds.
-pub(crate) fn probe(graph: &Graph, name: &str) -> Result<()> {
-    let stream = connect_to(graph, name)?;
-    let caller = graph.names.node();
+pub(crate) fn probe(context: &Context, name: &str) -> Result<()> {
+    let stream = connect_to(context, name)?;
+    let caller = context.names.node();
     Header::new([("callerid", caller), ("service", name), ("md5sum", "*"), ("probe", "1")]).write(&stream)?;
     Header::read(&mut Timed::new(&stream, HANDSHAKE_TIME)).map(|_| ())
 }
 
-fn connect_to(graph: &Graph, name: &str) -> Result<TcpStream> {
-    let uri = graph.master.call("lookupService", &[name.into()])?;
+fn connect_to(context: &Context, name: &str) -> Result<TcpStream> {
+    let uri = context.master.call("lookupService", &[name.into()])?;
     let uri = uri.as_str().unwrap_or_default();
     let place = HttpUri::parse(uri, "rosrpc://")
         .ok_or_else(|| Error::format(format!("the master returned {uri:.200?}, which is not an address")))?;

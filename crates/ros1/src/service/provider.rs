@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use opendr_engine::{Error, Result};
 
 use crate::ServiceType;
-use crate::graph::Graph;
+use crate::context::Context;
 use crate::tcpros::{Header, read_body, read_length, write_frame};
 use crate::types::agree;
 
@@ -38,13 +38,14 @@ impl Service {
     }
 
     /// Registers the service with the master.
-    pub fn register(&self, graph: &Graph) -> Result<()> {
-        let params = [self.name.as_str().into(), graph.service_uri().into(), graph.api_uri.as_str().into()];
-        graph.register("registerService", &params).map(|_| ())
+    pub fn register(&self, context: &Context) -> Result<()> {
+        let params =
+            [self.name.as_str().into(), context.service_uri().into(), context.api_uri.as_str().into()];
+        context.register("registerService", &params).map(|_| ())
     }
 
     /// Serves the client that sent `header`: once, or until it disconnects if it requested a persistent connection.
-    pub fn serve(&self, graph: &Graph, header: &Header, stream: &TcpStream) -> Result<()> {
+    pub fn serve(&self, context: &Context, header: &Header, stream: &TcpStream) -> Result<()> {
         let sum = header.need("md5sum")?;
         if !agree(sum, &self.kind.md5sum) {
             let error = Error::invalid_input(format!(
@@ -59,7 +60,7 @@ impl Service {
             return Err(error);
         }
         Header::new([
-            ("callerid", graph.names.node()),
+            ("callerid", context.names.node()),
             ("service", &self.name),
             ("type", &self.kind.name),
             ("md5sum", &self.kind.md5sum),
@@ -75,16 +76,16 @@ impl Service {
         let mut reader = BufReader::new(stream);
         let mut request = Vec::new();
         while let Some(length) = read_length(&mut reader)? {
-            if length as usize > graph.max_message_bytes {
+            if length as usize > context.max_message_bytes {
                 let text = format!(
                     "the request has {length} bytes; at most {} are allowed",
-                    graph.max_message_bytes
+                    context.max_message_bytes
                 );
                 write_frame(&mut &*stream, &[0], text.as_bytes())?;
                 return Err(Error::format(text).context(format!("serving {}", self.name)));
             }
             read_body(&mut reader, length as usize, &mut request)?;
-            self.answer(graph, &request, stream)?;
+            self.answer(context, &request, stream)?;
             if header.get("persistent") != Some("1") {
                 break;
             }
@@ -92,8 +93,8 @@ impl Service {
         Ok(())
     }
 
-    fn answer(&self, graph: &Graph, request: &[u8], mut stream: &TcpStream) -> Result<()> {
-        let answer = graph.guarded(&format!("the handler of {}", self.name), || (self.handler)(request));
+    fn answer(&self, context: &Context, request: &[u8], mut stream: &TcpStream) -> Result<()> {
+        let answer = context.guarded(&format!("the handler of {}", self.name), || (self.handler)(request));
         let answer = answer.unwrap_or_else(|| Err("the handler panicked".to_owned()));
         let (code, body) = match &answer {
             Ok(response) => (1, response.as_slice()),

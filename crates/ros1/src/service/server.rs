@@ -23,9 +23,7 @@ impl ServiceServer {
         kind.check_concrete()?;
         let service = Arc::new(Service::new(name, kind, handler));
         let mut services = lock(&graph.services);
-        if graph.is_ended() {
-            return Err(Error::network("the node was shut down; create a new one"));
-        }
+        graph.context.check_running()?;
         if services.contains_key(name) {
             return Err(Error::invalid_param(format!("this node already offers service {name}")));
         }
@@ -33,7 +31,7 @@ impl ServiceServer {
         drop(services);
         // If the registration fails, dropping `server` removes the service.
         let server = Self { graph: Arc::clone(graph), service };
-        server.service.register(graph)?;
+        server.service.register(&graph.context)?;
         Ok(server)
     }
 
@@ -46,7 +44,9 @@ impl ServiceServer {
 impl Drop for ServiceServer {
     fn drop(&mut self) {
         lock(&self.graph.services).retain(|_, other| !Arc::ptr_eq(other, &self.service));
-        self.graph.unregister("unregisterService", &[self.name().into(), self.graph.service_uri().into()]);
+        self.graph
+            .context
+            .unregister("unregisterService", &[self.name().into(), self.graph.context.service_uri().into()]);
     }
 }
 

@@ -8,22 +8,31 @@ use std::time::Duration;
 
 use opendr_engine::{Error, ErrorKind, Result};
 
-use super::{PublisherInfo, Subscribed};
-use crate::ParameterValue;
+use super::PublisherInfo;
+use super::inbox::Inbox;
 use crate::connection::{HANDSHAKE_TIME, Timed, connect};
-use crate::graph::Graph;
+use crate::context::Context;
 use crate::http::HttpUri;
 use crate::lock::lock;
 use crate::master::{CALL_TIME, call_api};
 use crate::tasks::Cancel;
 use crate::tcpros::{Header, read_body, read_length};
 use crate::types::agree;
+use crate::{ParameterValue, TopicType};
 
 /// First and maximum wait before a reconnection; the wait doubles each time.
 const WAITS: [Duration; 2] = [Duration::from_millis(100), Duration::from_secs(5)];
 
 /// Number of successive failures before an unreachable publisher is reported.
 const PATIENCE: u32 = 4;
+
+/// What the links of a subscription receive, and where the messages go.
+pub(crate) struct Wanted {
+    pub topic: String,
+    pub kind: TopicType,
+    pub tcp_nodelay: bool,
+    pub inbox: Arc<Inbox>,
+}
 
 /// A connection to one publisher, renewed when it breaks, with its statistics for getBusStats and getBusInfo.
 #[derive(Debug)]
@@ -45,9 +54,9 @@ pub(crate) struct Link {
 
 impl Link {
     /// Starts the thread that connects to the publisher at `uri`.
-    pub fn start(graph: &Arc<Graph>, subscribed: &Arc<Subscribed>, uri: &str) -> Result<Arc<Self>> {
+    pub fn start(context: &Arc<Context>, wanted: &Arc<Wanted>, uri: &str) -> Result<Arc<Self>> {
         let link = Arc::new(Self {
-            id: graph.connection_id(),
+            id: context.connection_id(),
             uri: uri.to_owned(),
             connected: AtomicBool::new(false),
             orphaned: AtomicBool::new(false),
@@ -57,10 +66,10 @@ impl Link {
             ends: Mutex::default(),
             cancel: Mutex::default(),
         });
-        let (this, graph, subscribed) = (Arc::clone(&link), Arc::clone(graph), Arc::clone(subscribed));
-        let tasks = Arc::clone(&graph.tasks);
+        let (this, context, wanted) = (Arc::clone(&link), Arc::clone(context), Arc::clone(wanted));
+        let tasks = Arc::clone(&context.tasks);
         let cancel = tasks.spawn("subscriber", move |cancel| {
-            this.run(&graph, &subscribed, cancel);
+            this.run(&context, &wanted, cancel);
             this.finished.store(true, Ordering::Relaxed);
         })?;
         *lock(&link.cancel) = Some(cancel);
@@ -74,11 +83,11 @@ impl Link {
         }
     }
 
-    fn run(&self, graph: &Graph, subscribed: &Subscribed, cancel: &Cancel) {
+    fn run(&self, context: &Context, wanted: &Wanted, cancel: &Cancel) {
         let (mut pause, mut failures, mut reported) = (WAITS[0], 0, String::new());
         while !cancel.is_cancelled() {
             let before = self.received_messages.load(Ordering::Relaxed);
-            let ended = self.receive(graph, subscribed, cancel);
+            let ended = self.receive(context, wanted, cancel);
             self.connected.store(false, Ordering::Relaxed);
             cancel.release();
             if self.received_messages.load(Ordering::Relaxed) > before {
@@ -90,7 +99,7 @@ impl Link {
                 let text = error.to_string();
                 let serious = error.kind() != ErrorKind::Network || failures >= PATIENCE;
                 if serious && text != reported && !cancel.is_cancelled() {
-                    graph.problem(error.context(format!("receiving {} from {}", subscribed.topic, self.uri)));
+                    context.problem(error.context(format!("receiving {} from {}", wanted.topic, self.uri)));
                     reported = text;
                 }
             }
@@ -101,25 +110,25 @@ impl Link {
         }
     }
 
-    fn receive(&self, graph: &Graph, subscribed: &Subscribed, cancel: &Cancel) -> Result<()> {
-        let stream = self.open(graph, &subscribed.topic)?;
+    fn receive(&self, context: &Context, wanted: &Wanted, cancel: &Cancel) -> Result<()> {
+        let stream = self.open(context, &wanted.topic)?;
         cancel.hold(&stream)?;
-        let publisher = Arc::new(self.greet(graph, subscribed, &stream)?);
+        let publisher = Arc::new(self.greet(context, wanted, &stream)?);
         stream.set_read_timeout(None)?;
         *lock(&self.ends) = ends(&stream);
         self.connected.store(true, Ordering::Relaxed);
         let mut reader = BufReader::with_capacity(64 << 10, &stream);
         let broken = |error| Error::network("the publisher disconnected").with_source(error);
         while let Some(length) = read_length(&mut reader).map_err(broken)? {
-            if length as usize > graph.max_message_bytes {
+            if length as usize > context.max_message_bytes {
                 return Err(Error::format(format!(
                     "a message has {length} bytes; at most {} are allowed (NodeOptions::max_message_bytes)",
-                    graph.max_message_bytes
+                    context.max_message_bytes
                 )));
             }
-            let mut buffer = subscribed.inbox.buffer(length as usize);
+            let mut buffer = wanted.inbox.buffer(length as usize);
             read_body(&mut reader, length as usize, &mut buffer).map_err(broken)?;
-            subscribed.inbox.push(buffer, Arc::clone(&publisher));
+            wanted.inbox.push(buffer, Arc::clone(&publisher));
             self.received_messages.fetch_add(1, Ordering::Relaxed);
             self.received_bytes.fetch_add(u64::from(length) + 4, Ordering::Relaxed);
         }
@@ -127,11 +136,11 @@ impl Link {
     }
 
     /// Requests the publisher's TCPROS address and connects to it.
-    fn open(&self, graph: &Graph, topic: &str) -> Result<TcpStream> {
+    fn open(&self, context: &Context, topic: &str) -> Result<TcpStream> {
         let uri = HttpUri::new(&self.uri)?;
         let protocols = ParameterValue::List(vec![ParameterValue::List(vec!["TCPROS".into()])]);
         let params = [topic.into(), protocols];
-        let answer = call_api(&uri, graph.names.node(), "requestTopic", &params, CALL_TIME)
+        let answer = call_api(&uri, context.names.node(), "requestTopic", &params, CALL_TIME)
             .map_err(|error| if error.kind() == ErrorKind::NotFound { not_yet(&error) } else { error })?;
         match answer.as_list().unwrap_or_default() {
             [
@@ -149,15 +158,15 @@ impl Link {
         }
     }
 
-    fn greet(&self, graph: &Graph, subscribed: &Subscribed, stream: &TcpStream) -> Result<PublisherInfo> {
-        let kind = &subscribed.kind;
+    fn greet(&self, context: &Context, wanted: &Wanted, stream: &TcpStream) -> Result<PublisherInfo> {
+        let kind = &wanted.kind;
         Header::new([
-            ("callerid", graph.names.node()),
-            ("topic", &subscribed.topic),
+            ("callerid", context.names.node()),
+            ("topic", &wanted.topic),
             ("type", &kind.name),
             ("md5sum", &kind.md5sum),
             ("message_definition", &kind.definition),
-            ("tcp_nodelay", if subscribed.tcp_nodelay { "1" } else { "0" }),
+            ("tcp_nodelay", if wanted.tcp_nodelay { "1" } else { "0" }),
         ])
         .write(stream)?;
         let header = Header::read(&mut Timed::new(stream, HANDSHAKE_TIME))?;

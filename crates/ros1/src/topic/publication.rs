@@ -9,7 +9,7 @@ use opendr_engine::{Error, Result};
 
 use super::outbox::Outbox;
 use crate::TopicType;
-use crate::graph::Graph;
+use crate::context::Context;
 use crate::lock::{lock, wait};
 use crate::tasks::Cancel;
 use crate::tcpros::Header;
@@ -57,10 +57,10 @@ impl Publication {
     }
 
     /// Registers the topic with the master.
-    pub fn register(&self, graph: &Graph) -> Result<()> {
+    pub fn register(&self, context: &Context) -> Result<()> {
         let params =
-            [self.topic.as_str().into(), self.kind.name.as_str().into(), graph.api_uri.as_str().into()];
-        graph.register("registerPublisher", &params).map(|_| ())
+            [self.topic.as_str().into(), self.kind.name.as_str().into(), context.api_uri.as_str().into()];
+        context.register("registerPublisher", &params).map(|_| ())
     }
 
     /// Returns whether a message would be sent or latched.
@@ -154,14 +154,20 @@ impl Publication {
     }
 
     /// Serves the subscriber that sent `header` until it disconnects.
-    pub fn serve(&self, graph: &Graph, header: &Header, stream: &TcpStream, cancel: &Cancel) -> Result<()> {
+    pub fn serve(
+        &self,
+        context: &Context,
+        header: &Header,
+        stream: &TcpStream,
+        cancel: &Cancel,
+    ) -> Result<()> {
         if let Err(error) = self.clash(header) {
             Header::error(&error.to_string()).write(stream)?;
             return Err(error);
         }
         let latching = if self.latched.load(Ordering::Relaxed) { "1" } else { "0" };
         Header::new([
-            ("callerid", graph.names.node()),
+            ("callerid", context.names.node()),
             ("topic", &self.topic),
             ("type", &self.kind.name),
             ("md5sum", &self.kind.md5sum),
@@ -175,7 +181,7 @@ impl Publication {
         let caller = header.get("callerid").unwrap_or("unnamed");
         let ends = super::link::ends(stream);
         let queue_size = self.queue_size.load(Ordering::Relaxed);
-        let outbox = Arc::new(Outbox::new(graph.connection_id(), caller, ends, queue_size));
+        let outbox = Arc::new(Outbox::new(context.connection_id(), caller, ends, queue_size));
         if self.join(&outbox) {
             outbox.send_all(stream);
         }

@@ -48,9 +48,7 @@ impl Publisher {
             ));
         }
         let mut publications = lock(&graph.publications);
-        if graph.is_ended() {
-            return Err(Error::network("the node was shut down; create a new one"));
-        }
+        graph.context.check_running()?;
         let publication = match publications.get(topic) {
             Some(there) if there.kind.md5sum == kind.md5sum && there.kind.name == kind.name => {
                 there.handles.fetch_add(1, Ordering::Relaxed);
@@ -70,7 +68,7 @@ impl Publisher {
         drop(publications);
         // If the registration fails, dropping `publisher` removes the topic.
         let publisher = Self { graph: Arc::clone(graph), publication };
-        publisher.publication.register(graph)?;
+        publisher.publication.register(&graph.context)?;
         Ok(publisher)
     }
 
@@ -80,7 +78,7 @@ impl Publisher {
     /// `InvalidInput` for a message longer than `NodeOptions::max_message_bytes`, `Network` after the shutdown of the node.
     pub fn publish(&self, message: &[u8]) -> Result<()> {
         self.check(message.len())?;
-        if !self.publication.is_heard() && !self.graph.is_ended() {
+        if !self.publication.is_heard() && !self.graph.context.is_ended() {
             return Ok(());
         }
         self.publication.publish(&self.publication.buffer(message))
@@ -96,7 +94,7 @@ impl Publisher {
     }
 
     fn check(&self, length: usize) -> Result<()> {
-        let most = self.graph.max_message_bytes.min(u32::MAX as usize);
+        let most = self.graph.context.max_message_bytes.min(u32::MAX as usize);
         if length <= most {
             return Ok(());
         }
@@ -136,8 +134,8 @@ impl Drop for Publisher {
         publications.retain(|_, other| !Arc::ptr_eq(other, &self.publication));
         drop(publications);
         self.publication.close();
-        let params = [self.topic().into(), self.graph.api_uri.as_str().into()];
-        self.graph.unregister("unregisterPublisher", &params);
+        let params = [self.topic().into(), self.graph.context.api_uri.as_str().into()];
+        self.graph.context.unregister("unregisterPublisher", &params);
     }
 }
 

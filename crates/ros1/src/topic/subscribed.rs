@@ -2,39 +2,32 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::Ordering;
-use std::sync::{Arc, Mutex, Weak};
+use std::sync::{Arc, Mutex};
 
 use opendr_engine::{Error, Result};
 
-use super::inbox::Inbox;
-use super::link::Link;
-use crate::graph::Graph;
+use super::link::{Link, Wanted};
+use crate::ParameterValue;
+use crate::context::Context;
 use crate::lock::lock;
-use crate::{ParameterValue, TopicType};
 
 /// Maximum number of publishers of one topic; a longer list is an error or an attack.
 const MOST_PUBLISHERS: usize = 256;
 
 /// A subscribed topic with a link to each of its publishers.
 pub(crate) struct Subscribed {
-    pub topic: String,
-    pub kind: TopicType,
-    pub tcp_nodelay: bool,
-    pub inbox: Arc<Inbox>,
-    graph: Weak<Graph>,
+    pub wanted: Arc<Wanted>,
+    context: Arc<Context>,
     /// Lock held while publishers change, so that an older list never replaces a newer one.
     changing: Mutex<()>,
     links: Mutex<BTreeMap<String, Arc<Link>>>,
 }
 
 impl Subscribed {
-    pub fn new(graph: &Arc<Graph>, topic: &str, kind: TopicType, tcp_nodelay: bool, inbox: Inbox) -> Self {
+    pub fn new(context: &Arc<Context>, wanted: Wanted) -> Self {
         Self {
-            topic: topic.to_owned(),
-            kind,
-            tcp_nodelay,
-            inbox: Arc::new(inbox),
-            graph: Arc::downgrade(graph),
+            wanted: Arc::new(wanted),
+            context: Arc::clone(context),
             changing: Mutex::default(),
             links: Mutex::default(),
         }
@@ -42,52 +35,52 @@ impl Subscribed {
 
     /// Registers the subscription with the master and connects to the publishers that it returns. With `again`, the master may have
     /// been restarted; since many nodes never register twice, working connections are kept.
-    pub fn register(self: &Arc<Self>, again: bool) -> Result<()> {
-        let Some(graph) = self.graph.upgrade() else { return Ok(()) };
-        let params =
-            [self.topic.as_str().into(), self.kind.name.as_str().into(), graph.api_uri.as_str().into()];
+    pub fn register(&self, again: bool) -> Result<()> {
+        let Wanted { topic, kind, .. } = &*self.wanted;
+        let params = [topic.as_str().into(), kind.name.as_str().into(), self.context.api_uri.as_str().into()];
         let _changing = lock(&self.changing);
-        if let Some(publishers) = graph.register("registerSubscriber", &params)? {
-            self.set_publishers(&graph, &uris(&publishers)?, again);
+        if let Some(publishers) = self.context.register("registerSubscriber", &params)? {
+            self.set_publishers(&uris(&publishers)?, again);
         }
         Ok(())
     }
 
     /// Applies the master's list of current publishers.
-    pub fn update(self: &Arc<Self>, publishers: &[String]) {
+    pub fn update(&self, publishers: &[String]) {
         let _changing = lock(&self.changing);
-        if let Some(graph) = self.graph.upgrade() {
-            self.set_publishers(&graph, publishers, false);
-        }
+        self.set_publishers(publishers, false);
     }
 
-    fn set_publishers(self: &Arc<Self>, graph: &Arc<Graph>, uris: &[String], again: bool) {
+    fn set_publishers(&self, uris: &[String], again: bool) {
         if uris.len() > MOST_PUBLISHERS {
-            graph.problem(Error::unsupported(format!(
+            self.context.problem(Error::unsupported(format!(
                 "{} has {} publishers; only {MOST_PUBLISHERS} are connected",
-                self.topic,
+                self.wanted.topic,
                 uris.len()
             )));
         }
-        let wanted = uris.iter().take(MOST_PUBLISHERS).collect::<BTreeSet<_>>();
+        let current = uris.iter().take(MOST_PUBLISHERS).collect::<BTreeSet<_>>();
         let mut links = lock(&self.links);
         links.retain(|uri, link| {
-            let known = wanted.contains(uri);
+            let known = current.contains(uri);
             let connected = link.connected.load(Ordering::Relaxed);
             let orphaned = !known && connected && (again || link.orphaned.load(Ordering::Relaxed));
             link.orphaned.store(orphaned, Ordering::Relaxed);
             let finished = link.finished.load(Ordering::Relaxed);
-            let stays = (known || orphaned) && !finished && !self.inbox.is_closed();
+            let stays = (known || orphaned) && !finished && !self.wanted.inbox.is_closed();
             if !stays {
                 link.cancel();
             }
             stays
         });
-        for uri in wanted {
-            if !links.contains_key(uri) && !self.inbox.is_closed() {
-                match Link::start(graph, self, uri) {
+        for uri in current {
+            if !links.contains_key(uri) && !self.wanted.inbox.is_closed() {
+                match Link::start(&self.context, &self.wanted, uri) {
                     Ok(link) => drop(links.insert(uri.clone(), link)),
-                    Err(error) => graph.problem(error.context(format!("subscribing to {}", self.topic))),
+                    Err(error) => {
+                        let error = error.context(format!("subscribing to {}", self.wanted.topic));
+                        self.context.problem(error);
+                    }
                 }
             }
         }
@@ -100,7 +93,7 @@ impl Subscribed {
 
     /// Ends every link, and closes the queue.
     pub fn close(&self) {
-        self.inbox.close();
+        self.wanted.inbox.close();
         for link in std::mem::take(&mut *lock(&self.links)).values() {
             link.cancel();
         }

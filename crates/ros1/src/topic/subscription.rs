@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use opendr_engine::{Error, Result};
 
 use super::inbox::Inbox;
+use super::link::Wanted;
 use super::{ReceivedMessage, Subscribed};
 use crate::TopicType;
 use crate::graph::Graph;
@@ -50,12 +51,15 @@ impl Subscription {
                 "queue_size is 0; give at least 1, which keeps the newest message only",
             ));
         }
-        let inbox = Inbox::new(options.queue_size);
-        let subscribed = Arc::new(Subscribed::new(graph, topic, kind, options.tcp_nodelay, inbox));
+        let wanted = Wanted {
+            topic: topic.to_owned(),
+            kind,
+            tcp_nodelay: options.tcp_nodelay,
+            inbox: Arc::new(Inbox::new(options.queue_size)),
+        };
+        let subscribed = Arc::new(Subscribed::new(&graph.context, wanted));
         let mut subscriptions = lock(&graph.subscriptions);
-        if graph.is_ended() {
-            return Err(Error::network("the node was shut down; create a new one"));
-        }
+        graph.context.check_running()?;
         subscriptions.push(Arc::clone(&subscribed));
         drop(subscriptions);
         // If the registration fails, dropping `subscription` removes the topic.
@@ -66,12 +70,12 @@ impl Subscription {
 
     /// Waits for the next message; returns `None` after the shutdown of the node.
     pub fn recv(&self) -> Option<ReceivedMessage> {
-        self.subscribed.inbox.pop(None)
+        self.subscribed.wanted.inbox.pop(None)
     }
 
     /// Waits for the next message, for at most `time`.
     pub fn recv_timeout(&self, time: Duration) -> Option<ReceivedMessage> {
-        self.subscribed.inbox.pop(Instant::now().checked_add(time))
+        self.subscribed.wanted.inbox.pop(Instant::now().checked_add(time))
     }
 
     /// Returns the next message, if there is one.
@@ -81,7 +85,7 @@ impl Subscription {
 
     /// Returns the newest message, if there is one, and drops those before it.
     pub fn latest(&self) -> Option<ReceivedMessage> {
-        self.subscribed.inbox.pop_newest()
+        self.subscribed.wanted.inbox.pop_newest()
     }
 
     /// Calls `take` with every message, on a thread of its own, until the listener is dropped. Messages queue while it runs. A panic
@@ -91,9 +95,9 @@ impl Subscription {
     /// `Network` after the shutdown of the node, `Io` when the system has no more threads.
     pub fn on_message(self, mut take: impl FnMut(ReceivedMessage) + Send + 'static) -> Result<Listener> {
         let (graph, subscribed) = (Arc::clone(&self.graph), Arc::clone(&self.subscribed));
-        self.graph.tasks.spawn("listener", move |_| {
-            while let Some(message) = subscribed.inbox.pop(None) {
-                graph.guarded("the owner's function for messages", || take(message));
+        self.graph.context.tasks.spawn("listener", move |_| {
+            while let Some(message) = subscribed.wanted.inbox.pop(None) {
+                graph.context.guarded("the owner's function for messages", || take(message));
             }
         })?;
         Ok(Listener { subscription: self })
@@ -101,7 +105,7 @@ impl Subscription {
 
     /// Returns the topic's full name.
     pub fn topic(&self) -> &str {
-        &self.subscribed.topic
+        &self.subscribed.wanted.topic
     }
 
     /// Returns the number of connected publishers.
@@ -117,12 +121,12 @@ impl Subscription {
 
     /// Returns the number of dropped messages.
     pub fn dropped(&self) -> u64 {
-        self.subscribed.inbox.dropped.load(Ordering::Relaxed)
+        self.subscribed.wanted.inbox.dropped.load(Ordering::Relaxed)
     }
 
     /// Returns whether the node is shut down, so that no message follows.
     pub fn is_closed(&self) -> bool {
-        self.subscribed.inbox.is_closed()
+        self.subscribed.wanted.inbox.is_closed()
     }
 }
 
@@ -130,13 +134,13 @@ impl Drop for Subscription {
     fn drop(&mut self) {
         let mut subscriptions = lock(&self.graph.subscriptions);
         subscriptions.retain(|other| !Arc::ptr_eq(other, &self.subscribed));
-        let others = subscriptions.iter().any(|other| other.topic == self.subscribed.topic);
+        let others = subscriptions.iter().any(|other| other.wanted.topic == self.subscribed.wanted.topic);
         drop(subscriptions);
         self.subscribed.close();
         if !others {
-            self.graph.unregister(
+            self.graph.context.unregister(
                 "unregisterSubscriber",
-                &[self.topic().into(), self.graph.api_uri.as_str().into()],
+                &[self.topic().into(), self.graph.context.api_uri.as_str().into()],
             );
         }
     }

@@ -5,11 +5,11 @@ use std::path::Path;
 
 use image::codecs::png::PngEncoder;
 use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, Limits, Luma};
+use opendr_engine::atomic_file::replace_file;
 use opendr_engine::data::{Image, Layout, PixelFormat, Pixels};
 use opendr_engine::{Error, Result, ResultExt};
 
 use crate::codec::decode::Decoder;
-use crate::codec::encode::write_atomically;
 use crate::codec::finding;
 use crate::codec::size_limit::check_size;
 
@@ -87,7 +87,7 @@ pub fn encode_depth_png(image: &Image) -> Result<Vec<u8>> {
 pub fn save_depth(image: &Image, path: impl AsRef<Path>) -> Result<()> {
     let path = path.as_ref();
     encode_depth_png(image)
-        .and_then(|bytes| write_atomically(path, &bytes))
+        .and_then(|bytes| replace_file(path, &bytes))
         .context(|| format!("saving {}", path.display()))
 }
 

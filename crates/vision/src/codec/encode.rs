@@ -1,8 +1,7 @@
 //! Encoding of [`Image`] into image files.
 
 use std::borrow::Cow;
-use std::fs;
-use std::io::{Cursor, Write};
+use std::io::Cursor;
 use std::path::Path;
 
 use image::codecs::bmp::BmpEncoder;
@@ -10,6 +9,7 @@ use image::codecs::png::PngEncoder;
 use image::codecs::webp::WebPEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageFormat};
 use jpeg_encoder::{ColorType, SamplingFactor};
+use opendr_engine::atomic_file::replace_file;
 use opendr_engine::data::{Image, Layout, PixelFormat, Pixels};
 use opendr_engine::{Error, Result, ResultExt};
 
@@ -58,7 +58,7 @@ impl Encoder {
         let path = path.as_ref();
         let written = format_of(path)
             .and_then(|format| self.encode(image, format))
-            .and_then(|bytes| write_atomically(path, &bytes));
+            .and_then(|bytes| replace_file(path, &bytes));
         written.context(|| format!("saving {}", path.display()))
     }
 
@@ -148,20 +148,4 @@ fn format_of(path: &Path) -> Result<ImageFormat> {
             "unsupported image format; end the file name with .jpg, .jpeg, .png, .bmp or .webp",
         )),
     }
-}
-
-/// Writes a temporary file beside `path` and renames it; a failure leaves no file behind.
-pub(super) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
-    let name = path.file_name().ok_or_else(|| Error::invalid_input("the path has no file name"))?;
-    let mut temporary = name.to_owned();
-    temporary.push(format!(".{}.partial", std::process::id()));
-    let temporary = path.with_file_name(temporary);
-    let written = fs::File::create(&temporary)
-        .and_then(|mut file| file.write_all(bytes))
-        .and_then(|()| fs::rename(&temporary, path));
-    if written.is_err() {
-        // The write error is the one to report.
-        let _ = fs::remove_file(&temporary);
-    }
-    Ok(written?)
 }

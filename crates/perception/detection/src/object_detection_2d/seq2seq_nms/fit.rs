@@ -7,7 +7,9 @@ use opendr_engine::params::Params;
 use opendr_engine::target::Classes;
 use opendr_engine::{Device, Result, Statistics};
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device};
+use opendr_training::{
+    ScheduleKind, TrainingParams, fit_learner, open_for_training, open_for_validation, seeded_device,
+};
 
 use super::candidates::Candidates;
 use super::network::{NetworkSizes, Seq2SeqNmsNetwork};
@@ -63,7 +65,7 @@ impl Fit for Seq2SeqNms {
         job: &FitJob<'_>,
     ) -> Result<Statistics> {
         let dataset = open_for_training::<Self>(dataset, job)?;
-        let val_dataset = val_dataset.map(|dataset| open_for_training::<Self>(dataset, job)).transpose()?;
+        let val_dataset = val_dataset.map(|dataset| open_for_validation::<Self>(dataset, job)).transpose()?;
         let classes = selected_classes(&fit_params.classes, &dataset.classes())?;
         let training = Training { base, params, fit_params, classes, job };
         let Some(detector) = &fit_params.detector else {

@@ -1,17 +1,19 @@
 //! Training of the patch network.
 
-use opendr_datasets::{OpenOptions, Problems, format_of};
-use opendr_engine::dataset::{DatasetIterator, DatasetRef};
+use opendr_engine::dataset::DatasetRef;
 use opendr_engine::learner::{Fit, FitJob};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, Statistics, ValueType};
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{OptimizerKind, TrainingParams, fit_learner, seeded_device};
+use opendr_training::{OptimizerKind, TrainingParams, fit_learner, open_accepted, seeded_device};
 
 use super::network::PatchNetwork;
 use super::objective::Patches;
 use super::{HighResolutionPatches, HighResolutionPatchesParams};
+
+/// A category per image, or boxes.
+const ANNOTATIONS: [ValueType; 2] = [ValueType::Category, ValueType::BoundingBoxList];
 
 /// Training parameters of [`HighResolutionPatches`]: it trains on patches of two classes, of which class 0 is the background,
 /// or on images with boxes around the objects.
@@ -46,23 +48,10 @@ impl Fit for HighResolutionPatches {
         job: &FitJob<'_>,
     ) -> Result<Statistics> {
         let HighResolutionPatchesFitParams { training, patches } = fit_params;
-        let dataset = open(dataset, job)?;
+        let dataset = open_accepted::<Self>(&ANNOTATIONS, dataset, job)?;
         let network = PatchNetwork::new(params.architecture, &seeded_device(job, training)?);
         let network = network_from_base(network, base)?;
         let objective = Patches { params, most: *patches };
         fit_learner::<Self, _>(&objective, network, params, training, &*dataset, val_dataset, job)
     }
-}
-
-/// Opens the data set with a category per image where it has them, else with boxes.
-fn open<'a>(dataset: DatasetRef<'a>, job: &FitJob<'_>) -> Result<Box<dyn DatasetIterator + 'a>> {
-    let external = match dataset {
-        DatasetRef::Iterator(dataset) => return Ok(Box::new(dataset)),
-        DatasetRef::External(external) => external,
-    };
-    let has = format_of(external)?.targets;
-    let accepted = [ValueType::Category, ValueType::BoundingBoxList];
-    let target = accepted.into_iter().find(|accepted| has.contains(accepted));
-    let problems = if job.skip_broken { Problems::skipping() } else { Problems::strict() };
-    opendr_datasets::open(external, &OpenOptions { split: None, target }, &problems)
 }
