@@ -1,6 +1,7 @@
 //! The built-in runtime: pure Rust (rten), available without any installed library.
 
 mod engine;
+mod planned;
 mod repair;
 mod size_limit;
 mod substitute;
@@ -8,9 +9,10 @@ mod threads;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use opendr_engine::{Device, Error, Result};
+use opendr_engine::{Device, Error, ErrorKind, Result};
 use rten::{LoadErrorKind, ModelOptions};
 
+use crate::executor::GraphExecutor;
 use crate::onnx_header::OnnxHeader;
 use crate::runtime::{Engine, Runtime, SessionOptions};
 use engine::BuiltinEngine;
@@ -18,13 +20,48 @@ use engine::BuiltinEngine;
 /// Version of rten in the workspace's manifest; rten does not expose it.
 const RTEN_VERSION: &str = "0.27";
 
-/// The built-in runtime. Runs on the CPU only, two to eight times slower than ONNX Runtime; always available.
+/// The built-in runtime: the graph executor for models that it supports, rten for the others. Runs on the CPU only;
+/// always available.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Builtin;
 
 impl Runtime for Builtin {
     fn name(&self) -> &'static str {
         "builtin"
+    }
+
+    fn version(&self) -> String {
+        format!("{}, rten {RTEN_VERSION}", GraphExecutor.version())
+    }
+
+    fn devices(&self) -> Vec<Device> {
+        vec![Device::Cpu]
+    }
+
+    fn open(&self, bytes: &[u8], options: &SessionOptions) -> Result<Box<dyn Engine>> {
+        // The executor plans at once where the shapes of the inputs are declared, so that it refuses here what it
+        // cannot run. Models of open shapes, and quantised ones, which run in integers there, stay with rten.
+        if planned::is_suited(bytes)? {
+            match GraphExecutor.open(bytes, options) {
+                Err(error) if error.kind() == ErrorKind::Unsupported => {}
+                opened => return opened,
+            }
+        }
+        Rten.open(bytes, options)
+    }
+
+    fn describe(&self) -> String {
+        format!("built-in ({}, rten {RTEN_VERSION})", GraphExecutor.describe())
+    }
+}
+
+/// The runtime of the crate rten, in pure Rust.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Rten;
+
+impl Runtime for Rten {
+    fn name(&self) -> &'static str {
+        "rten"
     }
 
     fn version(&self) -> String {
@@ -66,6 +103,6 @@ impl Runtime for Builtin {
     }
 
     fn describe(&self) -> String {
-        format!("built-in (rten {RTEN_VERSION})")
+        format!("rten {RTEN_VERSION}")
     }
 }

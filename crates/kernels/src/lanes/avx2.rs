@@ -9,7 +9,7 @@ pub(crate) struct Avx2(__m256);
 const NEAREST: i32 = _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC;
 
 implement_lanes! {
-    Avx2, width: 8, rows: 6,
+    Avx2, width: 8, rows: 6, registers: 16,
     splat(value) = Self(_mm256_set1_ps(value));
     load(from) = Self(_mm256_loadu_ps(from));
     store(value, to) = _mm256_storeu_ps(to, value.0);

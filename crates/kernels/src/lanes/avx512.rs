@@ -9,7 +9,7 @@ pub(crate) struct Avx512(__m512);
 const NEAREST: i32 = _MM_FROUND_TO_NEAREST_INT;
 
 implement_lanes! {
-    Avx512, width: 16, rows: 8,
+    Avx512, width: 16, rows: 8, registers: 32,
     splat(value) = Self(_mm512_set1_ps(value));
     load(from) = Self(_mm512_loadu_ps(from));
     store(value, to) = _mm512_storeu_ps(to, value.0);
