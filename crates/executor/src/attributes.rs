@@ -27,10 +27,14 @@ impl Attributes for NodeProto {
 
     /// Returns a list of sizes, `default` each where it is absent.
     fn sizes(&self, key: &str, count: usize, default: usize) -> Result<Vec<usize>> {
-        let Some(values) = self.ints(key).filter(|values| !values.is_empty()) else { return Ok(vec![default; count]) };
+        let Some(values) = self.ints(key).filter(|values| !values.is_empty()) else {
+            return Ok(vec![default; count]);
+        };
         let sizes: Option<Vec<usize>> =
             values.iter().map(|&value| usize::try_from(value).ok().filter(|_| value <= MAX_SIZE)).collect();
-        sizes.filter(|sizes| sizes.len() == count).ok_or_else(|| self.damaged(&format!("attribute {key:?} is {values:?}")))
+        sizes
+            .filter(|sizes| sizes.len() == count)
+            .ok_or_else(|| self.damaged(&format!("attribute {key:?} is {values:?}")))
     }
 
     fn damaged(&self, what: &str) -> Error {
@@ -38,6 +42,9 @@ impl Attributes for NodeProto {
     }
 
     fn refused(&self, what: &str) -> Error {
-        Error::unsupported(format!("the executor does not support operator {} {:?}: {what}", self.op_type, self.name))
+        Error::unsupported(format!(
+            "the executor does not support operator {} {:?}: {what}",
+            self.op_type, self.name
+        ))
     }
 }

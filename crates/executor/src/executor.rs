@@ -7,6 +7,7 @@ use opendr_engine::{Error, Result};
 use opendr_kernels::{Arena, Compute};
 
 use crate::graph::Graph;
+use crate::ops;
 use crate::plan::Plan;
 use crate::tensor::{Kind, Tensor};
 
@@ -39,7 +40,7 @@ impl Executor {
     /// # Errors
     /// `Format` when the bytes are not an ONNX model, `Unsupported` with the operator or type that the executor lacks.
     pub fn open(model: &[u8], compute: Compute) -> Result<Self> {
-        let graph = Arc::new(Graph::read(model)?);
+        let graph = Arc::new(Graph::read(model, ops::is_supported)?);
         let mut executor = Self { graph, compute, plans: Vec::new(), arena: Arena::new(0) };
         let shapes: Option<Vec<Vec<usize>>> =
             executor.graph.inputs.iter().map(|input| input.dims.iter().copied().collect()).collect();
@@ -52,6 +53,11 @@ impl Executor {
     /// Returns the names and element types of the inputs.
     pub fn inputs(&self) -> impl Iterator<Item = (&str, Kind)> {
         self.graph.inputs.iter().map(|input| (input.name.as_str(), input.kind))
+    }
+
+    /// Returns the declared dimensions of the inputs, `None` where one is open.
+    pub fn input_shapes(&self) -> impl Iterator<Item = &[Option<usize>]> {
+        self.graph.inputs.iter().map(|input| input.dims.as_slice())
     }
 
     /// Returns the names and element types of the outputs.
@@ -179,6 +185,9 @@ impl Executor {
 
 impl std::fmt::Debug for Executor {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Executor").field("inputs", &self.graph.inputs).field("outputs", &self.graph.outputs).finish_non_exhaustive()
+        f.debug_struct("Executor")
+            .field("inputs", &self.graph.inputs)
+            .field("outputs", &self.graph.outputs)
+            .finish_non_exhaustive()
     }
 }

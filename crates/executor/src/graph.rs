@@ -8,7 +8,6 @@ use opendr_kernels::{DepthwiseFilters, Filters};
 use opendr_onnx::passes;
 use opendr_onnx::proto::{DimensionValue, GraphProto, NodeProto, TypeValue, ValueInfoProto};
 
-use crate::ops;
 use crate::tensor::{Constant, Kind};
 
 /// A declared input or output.
@@ -40,24 +39,27 @@ pub(crate) struct Graph {
 }
 
 impl Graph {
-    pub(crate) fn read(bytes: &[u8]) -> Result<Self> {
+    pub(crate) fn read(bytes: &[u8], is_supported: impl Fn(&str) -> bool) -> Result<Self> {
         let model = opendr_onnx::model_from_bytes(bytes)?;
         let opset = model.opset_import.iter().filter(|set| set.domain.is_empty() || set.domain == "ai.onnx");
         let opset = opset.map(|set| set.version).max().unwrap_or(17);
         if !model.functions.is_empty() {
-            return Err(Error::unsupported("the executor does not support ONNX models with functions of their own"));
+            return Err(Error::unsupported(
+                "the executor does not support ONNX models with functions of their own",
+            ));
         }
         let mut graph = model.graph.unwrap_or_default();
         if !graph.sparse_initializer.is_empty() {
             return Err(Error::unsupported("the executor does not support sparse weights"));
         }
-        for node in &graph.node {
-            if !(node.domain.is_empty() || node.domain == "ai.onnx") || !ops::is_supported(&node.op_type) {
-                return Err(Error::unsupported(format!(
-                    "the executor does not support operator {} {:?}",
-                    node.op_type, node.name
-                )));
-            }
+        let refused = |node: &&NodeProto| {
+            !(node.domain.is_empty() || node.domain == "ai.onnx") || !is_supported(&node.op_type)
+        };
+        if let Some(node) = graph.node.iter().find(refused) {
+            return Err(Error::unsupported(format!(
+                "the executor does not support operator {} {:?}",
+                node.op_type, node.name
+            )));
         }
         let named: HashSet<String> = graph.initializer.iter().map(|tensor| tensor.name.clone()).collect();
         let inputs = declared(graph.input.iter().filter(|input| !named.contains(&input.name)))?;
@@ -112,19 +114,25 @@ fn simplify(graph: &mut GraphProto, opset: i64) -> Result<()> {
 
 /// Evaluates casts of 16-bit weights, so that passes see constants.
 fn widen_half_constants(graph: &mut GraphProto) -> Result<()> {
-    let by_name: HashMap<&str, usize> = graph.initializer.iter().enumerate().map(|(i, tensor)| (tensor.name.as_str(), i)).collect();
+    let by_name: HashMap<&str, usize> =
+        graph.initializer.iter().enumerate().map(|(i, tensor)| (tensor.name.as_str(), i)).collect();
     let mut widened = Vec::new();
     for (index, node) in graph.node.iter().enumerate() {
-        let ([input], [output], "Cast", 1) = (node.input.as_slice(), node.output.as_slice(), node.op_type.as_str(), node.int_or("to", 0)) else {
+        let ([input], [output], "Cast", 1) =
+            (node.input.as_slice(), node.output.as_slice(), node.op_type.as_str(), node.int_or("to", 0))
+        else {
             continue;
         };
-        let Some(tensor) = by_name.get(input.as_str()).and_then(|&i| graph.initializer.get(i)) else { continue };
+        let Some(tensor) = by_name.get(input.as_str()).and_then(|&i| graph.initializer.get(i)) else {
+            continue;
+        };
         let constant = Constant::from_tensor(tensor)?;
         if constant.kind != Kind::F16 {
             continue;
         }
         let halves = constant.data.get::<u16>(constant.region());
-        let raw_data = halves.iter().flat_map(|&half| opendr_onnx::float_from_half(half).to_le_bytes()).collect();
+        let raw_data =
+            halves.iter().flat_map(|&half| opendr_onnx::float_from_half(half).to_le_bytes()).collect();
         let mut tensor = tensor.clone();
         tensor.name.clone_from(output);
         tensor.data_type = 1;
@@ -141,7 +149,9 @@ fn widen_half_constants(graph: &mut GraphProto) -> Result<()> {
     graph.initializer.extend(widened.into_iter().map(|(_, tensor)| tensor));
     let read: HashSet<&str> = graph.node.iter().flat_map(|node| &node.input).map(String::as_str).collect();
     let outputs: HashSet<&str> = graph.output.iter().map(|output| output.name.as_str()).collect();
-    graph.initializer.retain(|tensor| read.contains(tensor.name.as_str()) || outputs.contains(tensor.name.as_str()));
+    graph
+        .initializer
+        .retain(|tensor| read.contains(tensor.name.as_str()) || outputs.contains(tensor.name.as_str()));
     Ok(())
 }
 
@@ -149,7 +159,8 @@ fn declared<'a>(infos: impl Iterator<Item = &'a ValueInfoProto>) -> Result<Vec<D
     infos
         .map(|info| {
             let name = info.name.clone();
-            let Some(TypeValue::Tensor(tensor)) = info.r#type.as_ref().and_then(|kind| kind.value.as_ref()) else {
+            let Some(TypeValue::Tensor(tensor)) = info.r#type.as_ref().and_then(|kind| kind.value.as_ref())
+            else {
                 return Err(Error::unsupported(format!("{name:?} of the ONNX model is not a tensor")));
             };
             let kind = Kind::from_onnx(tensor.elem_type, &name)?;
@@ -178,7 +189,9 @@ fn ordered(
     for (index, node) in nodes.iter().enumerate() {
         for output in node.output.iter().filter(|output| !output.is_empty()) {
             if known.contains(output) || produced.insert(output, index).is_some() {
-                return Err(Error::format(format!("damaged ONNX model: the value {output:?} is produced twice")));
+                return Err(Error::format(format!(
+                    "damaged ONNX model: the value {output:?} is produced twice"
+                )));
             }
         }
     }
@@ -187,14 +200,17 @@ fn ordered(
     for (index, node) in nodes.iter().enumerate() {
         for input in node.input.iter().filter(|input| !input.is_empty() && !known.contains(*input)) {
             let Some(&producer) = produced.get(input.as_str()) else {
-                return Err(Error::format(format!("damaged ONNX model: nothing produces the value {input:?}")));
+                return Err(Error::format(format!(
+                    "damaged ONNX model: nothing produces the value {input:?}"
+                )));
             };
             waiting[index] += 1;
             followers[producer].push(index);
         }
     }
     // The lowest node that can run comes first: the order of the file where that is one.
-    let mut ready: std::collections::BTreeSet<usize> = (0..nodes.len()).filter(|&index| waiting[index] == 0).collect();
+    let mut ready: std::collections::BTreeSet<usize> =
+        (0..nodes.len()).filter(|&index| waiting[index] == 0).collect();
     let mut order = Vec::with_capacity(nodes.len());
     while let Some(index) = ready.pop_first() {
         order.push(index);

@@ -1,7 +1,9 @@
 //! What a step reads and writes in a run.
 
-use opendr_kernels::{Arena, Compute, Number, Region, Rest, Written};
 use std::sync::Arc;
+
+use opendr_engine::Result;
+use opendr_kernels::{Arena, Compute, Number, Region, Rest, Written};
 
 use crate::tensor::{Constant, Data, Tensor};
 
@@ -71,4 +73,9 @@ fn numbers<'a, T: Number>(data: Data<'a>) -> &'a [T] {
         Data::U8(data) | Data::Bool(data) => Arena::view(data),
         Data::I8(data) => Arena::view(data),
     }
+}
+
+/// What computes a step; the plan has checked shapes and types.
+pub(crate) trait Kernel: Send + Sync {
+    fn run(&self, io: &mut Io<'_>) -> Result<()>;
 }

@@ -35,6 +35,7 @@ mod io;
 mod ops;
 mod plan;
 mod planner;
+mod remap;
 mod tensor;
 
 pub use executor::{Executor, LayerTime};

@@ -7,8 +7,9 @@ use opendr_engine::{Error, Result};
 use opendr_kernels::{ALIGNMENT, Arena, Compute, Region};
 
 use crate::graph::Graph;
-use crate::io::{Io, Place};
-use crate::planner::{Id, Kernel, Planner, Source};
+use crate::io::{Io, Kernel, Place};
+use crate::ops;
+use crate::planner::{Id, Planner, Source};
 use crate::tensor::{Data, Kind, Tensor};
 
 /// Bytes of the arena beyond which a model is refused.
@@ -41,11 +42,13 @@ pub(crate) struct Plan {
 
 impl Plan {
     pub(crate) fn new(graph: &Graph, compute: &Compute, shapes: Vec<Vec<usize>>) -> Result<Self> {
-        let (planner, outputs) = Planner::plan(graph, compute, &shapes)?;
+        let (planner, outputs) = planned(graph, compute, &shapes)?;
         let lives = lives(&planner, &outputs);
         let (starts, arena_bytes) = place(&planner.buffers, &lives);
         if arena_bytes > MAX_ARENA {
-            return Err(Error::unsupported(format!("the ONNX model needs {arena_bytes} bytes for its tensors")));
+            return Err(Error::unsupported(format!(
+                "the ONNX model needs {arena_bytes} bytes for its tensors"
+            )));
         }
         let values = &planner.values;
         let place = |id: Id| -> Place {
@@ -54,12 +57,18 @@ impl Plan {
             match &value.source {
                 Source::Constant(constant) => Place::Constant(Arc::clone(constant)),
                 Source::Input(index) => Place::Input(*index),
-                Source::Buffer(buffer, offset) => Place::Arena(Region { start: starts[*buffer] + offset, bytes }),
+                Source::Buffer(buffer, offset) => {
+                    Place::Arena(Region { start: starts[*buffer] + offset, bytes })
+                }
             }
         };
         let outputs = outputs
             .iter()
-            .map(|&id| PlannedOutput { place: place(id), kind: values[id].kind, shape: values[id].shape.clone() })
+            .map(|&id| PlannedOutput {
+                place: place(id),
+                kind: values[id].kind,
+                shape: values[id].shape.clone(),
+            })
             .collect();
         let mut steps = Vec::new();
         for step in planner.steps {
@@ -87,7 +96,8 @@ impl Plan {
     ) -> Result<()> {
         for step in &self.steps {
             let (written, rest) = arena.split(step.write);
-            let mut io = Io { reads: &step.reads, inputs, rest, written: Some(written), sizes: &step.sizes, compute };
+            let mut io =
+                Io { reads: &step.reads, inputs, rest, written: Some(written), sizes: &step.sizes, compute };
             step.kernel.run(&mut io)?;
             observe(step.node);
         }
@@ -95,12 +105,19 @@ impl Plan {
     }
 
     /// Returns an output after a run.
-    pub(crate) fn output<'a>(&'a self, index: usize, arena: &'a Arena, inputs: &[Tensor<'a>]) -> Option<Tensor<'a>> {
+    pub(crate) fn output<'a>(
+        &'a self,
+        index: usize,
+        arena: &'a Arena,
+        inputs: &[Tensor<'a>],
+    ) -> Option<Tensor<'a>> {
         let output = self.outputs.get(index)?;
         let (from, region) = match &output.place {
             Place::Arena(region) => (arena, *region),
             Place::Constant(constant) => (&constant.data, constant.region()),
-            Place::Input(index) => return inputs.get(*index).map(|input| Tensor { shape: &output.shape, data: input.data }),
+            Place::Input(index) => {
+                return inputs.get(*index).map(|input| Tensor { shape: &output.shape, data: input.data });
+            }
             Place::Absent => return None,
         };
         let data = match output.kind {
@@ -118,6 +135,42 @@ impl Plan {
     pub(crate) fn output_count(&self) -> usize {
         self.outputs.len()
     }
+}
+
+/// Builds the steps of all nodes; returns them with the outputs of the graph.
+fn planned<'a>(
+    graph: &'a Graph,
+    compute: &'a Compute,
+    shapes: &[Vec<usize>],
+) -> Result<(Planner<'a>, Vec<Id>)> {
+    let mut planner = Planner::new(graph, compute, shapes)?;
+    for (index, node) in graph.nodes.iter().enumerate() {
+        if planner.is_fused(index) {
+            continue;
+        }
+        planner.node = index;
+        let inputs: Vec<Option<Id>> = node.input.iter().map(|name| planner.named(name)).collect();
+        let outputs = ops::build(&mut planner, node, &inputs)?;
+        for (name, id) in node.output.iter().zip(outputs) {
+            planner.name(name, id);
+        }
+    }
+    let mut outputs = Vec::new();
+    for output in &graph.outputs {
+        let id = planner.named(&output.name).ok_or_else(|| {
+            Error::format(format!("damaged ONNX model: nothing produces the output {:?}", output.name))
+        })?;
+        if planner.kind(id) != output.kind {
+            return Err(Error::format(format!(
+                "damaged ONNX model: the output {:?} is declared as {:?}, but is {:?}",
+                output.name,
+                output.kind,
+                planner.kind(id)
+            )));
+        }
+        outputs.push(planner.plain(id)?);
+    }
+    Ok((planner, outputs))
 }
 
 /// Returns the first and last step of every buffer; `None` where nothing needs it.

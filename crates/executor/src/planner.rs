@@ -8,8 +8,8 @@ use opendr_kernels::{ALIGNMENT, Arena, Compute, Region};
 use opendr_onnx::proto::NodeProto;
 
 use crate::graph::Graph;
-use crate::io::{Io, Place};
-use crate::ops::{self, movement};
+use crate::io::{Io, Kernel, Place};
+use crate::remap;
 use crate::tensor::{Constant, Kind, count};
 
 /// Order of the dimensions in memory.
@@ -19,11 +19,6 @@ pub(crate) enum Layout {
     Plain,
     /// The second dimension of the shape comes last.
     ChannelsLast,
-}
-
-/// What computes a step; the plan has checked shapes and types.
-pub(crate) trait Kernel: Send + Sync {
-    fn run(&self, io: &mut Io<'_>) -> Result<()>;
 }
 
 /// Index of a value of a plan.
@@ -90,7 +85,8 @@ pub(crate) struct Planner<'a> {
 const MAX_CONSTANT: usize = 1 << 28;
 
 impl<'a> Planner<'a> {
-    pub(crate) fn plan(graph: &'a Graph, compute: &'a Compute, shapes: &[Vec<usize>]) -> Result<(Self, Vec<Id>)> {
+    /// Begins with the constants and inputs of a graph.
+    pub(crate) fn new(graph: &'a Graph, compute: &'a Compute, shapes: &[Vec<usize>]) -> Result<Self> {
         let mut planner = Self {
             graph,
             compute,
@@ -110,30 +106,12 @@ impl<'a> Planner<'a> {
             let id = planner.add(input.kind, shape.clone(), Layout::Plain, Source::Input(index));
             planner.names.insert(input.name.clone(), id);
         }
-        for (index, node) in graph.nodes.iter().enumerate() {
-            if planner.fused.contains(&index) {
-                continue;
-            }
-            planner.node = index;
-            let inputs: Vec<Option<Id>> = node.input.iter().map(|name| planner.names.get(name).copied()).collect();
-            let outputs = ops::build(&mut planner, node, &inputs)?;
-            for (name, id) in node.output.iter().zip(outputs) {
-                planner.names.entry(name.clone()).or_insert(id);
-            }
-        }
-        let mut outputs = Vec::new();
-        for output in &graph.outputs {
-            let id = planner.names.get(&output.name).copied();
-            let id = id.ok_or_else(|| Error::format(format!("damaged ONNX model: nothing produces the output {:?}", output.name)))?;
-            if planner.values[id].kind != output.kind {
-                return Err(Error::format(format!(
-                    "damaged ONNX model: the output {:?} is declared as {:?}, but is {:?}",
-                    output.name, output.kind, planner.values[id].kind
-                )));
-            }
-            outputs.push(planner.plain(id)?);
-        }
-        Ok((planner, outputs))
+        Ok(planner)
+    }
+
+    /// Gives a name to a value, unless it has one.
+    pub(crate) fn name(&mut self, name: &str, id: Id) {
+        self.names.entry(name.to_owned()).or_insert(id);
     }
 
     fn add(&mut self, kind: Kind, shape: Vec<usize>, layout: Layout, source: Source) -> Id {
@@ -197,7 +175,9 @@ impl<'a> Planner<'a> {
     /// `Unsupported` where the list depends on the data of the inputs.
     pub(crate) fn ints(&self, node: &NodeProto, id: Id) -> Result<Vec<i64>> {
         use crate::attributes::Attributes;
-        let constant = self.constant(id).ok_or_else(|| node.refused("a shape or list that depends on the data of the inputs"))?;
+        let constant = self
+            .constant(id)
+            .ok_or_else(|| node.refused("a shape or list that depends on the data of the inputs"))?;
         constant.ints().ok_or_else(|| node.damaged("a shape or list does not have integers"))
     }
 
@@ -208,7 +188,10 @@ impl<'a> Planner<'a> {
         reads: &[Option<Id>],
         outputs: &[(Kind, Vec<usize>, Layout)],
     ) -> Result<Vec<Id>> {
-        let sizes = outputs.iter().map(|(kind, shape, _)| Ok(count(shape)? * kind.bytes())).collect::<Result<Vec<usize>>>()?;
+        let sizes = outputs
+            .iter()
+            .map(|(kind, shape, _)| Ok(count(shape)? * kind.bytes()))
+            .collect::<Result<Vec<usize>>>()?;
         let offsets: Vec<usize> = sizes
             .iter()
             .scan(0, |offset, size| {
@@ -224,7 +207,13 @@ impl<'a> Planner<'a> {
         }
         let buffer = self.buffers.len();
         self.buffers.push(bytes);
-        self.steps.push(Step { kernel: Box::new(kernel), reads: reads.to_vec(), buffer, sizes, node: self.node });
+        self.steps.push(Step {
+            kernel: Box::new(kernel),
+            reads: reads.to_vec(),
+            buffer,
+            sizes,
+            node: self.node,
+        });
         let mut ids = Vec::new();
         for ((kind, shape, layout), offset) in outputs.iter().zip(offsets) {
             ids.push(self.add(*kind, shape.clone(), *layout, Source::Buffer(buffer, offset)));
@@ -252,7 +241,14 @@ impl<'a> Planner<'a> {
             .collect();
         let mut data = Arena::new(bytes);
         let (written, rest) = data.split(Region { start: 0, bytes });
-        kernel.run(&mut Io { reads: &reads, inputs: &[], rest, written: Some(written), sizes, compute: self.compute })?;
+        kernel.run(&mut Io {
+            reads: &reads,
+            inputs: &[],
+            rest,
+            written: Some(written),
+            sizes,
+            compute: self.compute,
+        })?;
         let constant = Arc::new(Constant { kind: *kind, shape: shape.clone(), data });
         let id = self.add(*kind, shape.clone(), *layout, Source::Constant(constant));
         Ok(vec![id])
@@ -322,7 +318,7 @@ impl<'a> Planner<'a> {
                 Layout::ChannelsLast => order[1..].rotate_left(1),
                 Layout::Plain => order[1..].rotate_right(1),
             }
-            let remap = movement::transposed(&value.physical(), &order, value.kind.bytes());
+            let remap = remap::transposed(&value.physical(), &order, value.kind.bytes());
             self.emit_one(remap, &[id], value.kind, value.shape.clone(), layout)?
         };
         self.values[id].other = Some(other);

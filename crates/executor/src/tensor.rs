@@ -44,7 +44,9 @@ impl Kind {
             Ok(DataType::Bool) => Self::Bool,
             Ok(DataType::Float16) => Self::F16,
             _ => {
-                return Err(Error::unsupported(format!("the executor does not support ONNX type {kind} ({name:?})")));
+                return Err(Error::unsupported(format!(
+                    "the executor does not support ONNX type {kind} ({name:?})"
+                )));
             }
         })
     }
@@ -134,7 +136,9 @@ impl Constant {
     pub(crate) fn ints(&self) -> Option<Vec<i64>> {
         match self.kind {
             Kind::I64 => Some(self.data.get::<i64>(self.region()).to_vec()),
-            Kind::I32 => Some(self.data.get::<i32>(self.region()).iter().map(|&value| i64::from(value)).collect()),
+            Kind::I32 => {
+                Some(self.data.get::<i32>(self.region()).iter().map(|&value| i64::from(value)).collect())
+            }
             _ => None,
         }
     }
@@ -155,7 +159,11 @@ impl Constant {
                 "the ONNX model keeps its weights {name:?} in another file; save it as one file"
             )));
         }
-        let damaged = || Error::format(format!("damaged ONNX model: the size of the weights {name:?} does not match their shape"));
+        let damaged = || {
+            Error::format(format!(
+                "damaged ONNX model: the size of the weights {name:?} does not match their shape"
+            ))
+        };
         let kind = Kind::from_onnx(tensor.data_type, name)?;
         let dims = tensor.dims.iter().map(|&dim| usize::try_from(dim).ok()).collect::<Option<Vec<_>>>();
         let shape = dims.ok_or_else(damaged)?;
@@ -166,10 +174,18 @@ impl Constant {
                 return Err(damaged());
             }
             match kind {
-                Kind::F32 => Arena::from_numbers(&raw.as_chunks().0.iter().map(|&b| f32::from_le_bytes(b)).collect::<Vec<_>>()),
-                Kind::I64 => Arena::from_numbers(&raw.as_chunks().0.iter().map(|&b| i64::from_le_bytes(b)).collect::<Vec<_>>()),
-                Kind::I32 => Arena::from_numbers(&raw.as_chunks().0.iter().map(|&b| i32::from_le_bytes(b)).collect::<Vec<_>>()),
-                Kind::F16 => Arena::from_numbers(&raw.as_chunks().0.iter().map(|&b| u16::from_le_bytes(b)).collect::<Vec<_>>()),
+                Kind::F32 => Arena::from_numbers(
+                    &raw.as_chunks().0.iter().map(|&b| f32::from_le_bytes(b)).collect::<Vec<_>>(),
+                ),
+                Kind::I64 => Arena::from_numbers(
+                    &raw.as_chunks().0.iter().map(|&b| i64::from_le_bytes(b)).collect::<Vec<_>>(),
+                ),
+                Kind::I32 => Arena::from_numbers(
+                    &raw.as_chunks().0.iter().map(|&b| i32::from_le_bytes(b)).collect::<Vec<_>>(),
+                ),
+                Kind::F16 => Arena::from_numbers(
+                    &raw.as_chunks().0.iter().map(|&b| u16::from_le_bytes(b)).collect::<Vec<_>>(),
+                ),
                 Kind::Bool => Arena::from_numbers(&raw.iter().map(|&b| u8::from(b != 0)).collect::<Vec<_>>()),
                 Kind::U8 | Kind::I8 => Arena::from_numbers(raw),
             }
@@ -188,8 +204,12 @@ impl Constant {
                 Kind::I64 => Arena::from_numbers(&tensor.int64_data),
                 Kind::I32 => Arena::from_numbers(ints),
                 Kind::F16 => Arena::from_numbers(&ints.iter().map(|&value| value as u16).collect::<Vec<_>>()),
-                Kind::Bool => Arena::from_numbers(&ints.iter().map(|&value| u8::from(value != 0)).collect::<Vec<_>>()),
-                Kind::U8 | Kind::I8 => Arena::from_numbers(&ints.iter().map(|&value| value as u8).collect::<Vec<_>>()),
+                Kind::Bool => {
+                    Arena::from_numbers(&ints.iter().map(|&value| u8::from(value != 0)).collect::<Vec<_>>())
+                }
+                Kind::U8 | Kind::I8 => {
+                    Arena::from_numbers(&ints.iter().map(|&value| value as u8).collect::<Vec<_>>())
+                }
             }
         };
         Ok(Self { kind, shape, data })

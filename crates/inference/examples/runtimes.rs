@@ -1,14 +1,18 @@
 //! Prints a table of the runtimes side by side on ONNX files, on random inputs:
 //! `cargo run --release -p opendr-inference --example runtimes -- THREADS ROUNDS FILE...`.
 //!
-//! One line per file: medians and minima of the times of a run in milliseconds, taking turns, the ratio of the minima
-//! of graph executor and ONNX Runtime, the largest difference of an output relative to its largest magnitude, and the
+//! One line per file: medians and minima of the times of a run in milliseconds, taking turns (with one thread, the time
+//! that the thread has computed, which other programs do not change much), the ratio of the minima of graph executor
+//! and ONNX Runtime, the largest difference of an output relative to its largest magnitude, and the
 //! times to open the model. ONNX Runtime is found as by the library (`ORT_DYLIB_PATH`).
 
 use std::time::Instant;
 
 use opendr_engine::{Random, Result};
-use opendr_inference::{ElementType, GraphExecutor, OnnxRuntime, Rten, Runtime, Session, SessionOptions, TensorData, TensorInfo, TensorView};
+use opendr_inference::{
+    ElementType, GraphExecutor, OnnxRuntime, Rten, Runtime, Session, SessionOptions, TensorData, TensorInfo,
+    TensorView,
+};
 
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -16,6 +20,14 @@ fn main() -> Result<()> {
         eprintln!("usage: runtimes THREADS ROUNDS FILE...");
         return Ok(());
     };
+    if threads == "layers" {
+        for file in &arguments[1..] {
+            let bytes =
+                std::fs::read(file).map_err(|error| opendr_engine::Error::internal(error.to_string()))?;
+            print_layers(file, &bytes)?;
+        }
+        return Ok(());
+    }
     let threads = threads.parse().unwrap_or(1);
     let rounds = rounds.parse().unwrap_or(15_usize).max(1);
     let options = SessionOptions { threads, ..SessionOptions::default() };
@@ -38,9 +50,48 @@ fn main() -> Result<()> {
     Ok(())
 }
 
+/// Returns the time that this thread has computed, or with several threads the time of day.
+fn seconds(threads: usize) -> f64 {
+    if threads == 1 {
+        let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+        // SAFETY: the pointer is to a local value.
+        if unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &mut time) } == 0 {
+            return time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64;
+        }
+    }
+    std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0.0, |time| time.as_secs_f64())
+}
+
 fn name(file: &str) -> &str {
     let start = file.rmatch_indices('/').nth(1).map_or(0, |(at, _)| at + 1);
     &file[start..]
+}
+
+/// Prints the time of the nodes of a model, the longest first.
+fn print_layers(file: &str, bytes: &[u8]) -> Result<()> {
+    let mut executor = opendr_executor::Executor::open(bytes, opendr_kernels::Compute::single())?;
+    let infos = Session::open_with(&GraphExecutor, bytes, SessionOptions::default())?.inputs().to_vec();
+    let owned: Vec<Owned> = infos.iter().map(Owned::random).collect();
+    let tensors: Vec<opendr_executor::Tensor<'_>> = owned.iter().filter_map(Owned::floats).collect();
+    let mut least: Vec<opendr_executor::LayerTime> = executor.profile(&tensors)?;
+    for _ in 0..30 {
+        for (least, new) in least.iter_mut().zip(executor.profile(&tensors)?) {
+            least.time = least.time.min(new.time);
+        }
+    }
+    let total: f64 = least.iter().map(|layer| layer.time.as_secs_f64()).sum();
+    println!("# {file}: {:.3} ms, arena {} KiB", 1e3 * total, executor.arena_bytes() >> 10);
+    least.sort_by_key(|layer| std::cmp::Reverse(layer.time));
+    for layer in least.iter().take(25) {
+        println!(
+            "{:>9.1} us {:5.1} % {} {}",
+            1e6 * layer.time.as_secs_f64(),
+            100.0 * layer.time.as_secs_f64() / total,
+            layer.operator,
+            layer.name
+        );
+    }
+    Ok(())
 }
 
 struct Opened {
@@ -66,7 +117,11 @@ fn compare(
     rounds: usize,
 ) -> Result<(String, Option<f64>)> {
     let bytes = std::fs::read(file).map_err(|error| opendr_engine::Error::internal(error.to_string()))?;
-    let mut sides = [open(&GraphExecutor, &bytes, options), open(onnx_runtime, &bytes, options), open(&Rten, &bytes, options)];
+    let mut sides = [
+        open(&GraphExecutor, &bytes, options),
+        open(onnx_runtime, &bytes, options),
+        open(&Rten, &bytes, options),
+    ];
     let infos = sides.iter().find_map(|side| side.session.as_ref()).map_or(&[][..], Session::inputs).to_vec();
     let owned: Vec<Owned> = infos.iter().map(Owned::random).collect();
     let inputs = owned.iter().map(Owned::view).collect::<Result<Vec<_>>>()?;
@@ -88,12 +143,15 @@ fn compare(
             let side = &mut sides[(round + offset) % 3];
             let Some(session) = &side.session else { continue };
             // Small models run several times per turn, so that a turn is a millisecond.
-            let runs = side.times.first().map_or(1, |first| (1.0 / first.max(1e-3)).ceil().clamp(1.0, 50.0) as usize);
-            let start = Instant::now();
+            let runs = side
+                .times
+                .first()
+                .map_or(1, |first| (1.0 / first.max(1e-3)).ceil().clamp(1.0, 50.0) as usize);
+            let start = seconds(options.threads);
             for _ in 0..runs {
                 session.run(&inputs, |_| Ok(()))?;
             }
-            side.times.push(1e3 * start.elapsed().as_secs_f64() / runs as f64);
+            side.times.push(1e3 * (seconds(options.threads) - start) / runs as f64);
         }
     }
     let time = |side: &Opened| {
@@ -130,7 +188,10 @@ fn difference(a: &[(String, Vec<f64>)], b: &[(String, Vec<f64>)]) -> f64 {
     for ((name, a), (_, b)) in a.iter().zip(b) {
         let magnitude = b.iter().fold(f64::MIN_POSITIVE, |largest, value| largest.max(value.abs()));
         let apart = if a.len() == b.len() {
-            a.iter().zip(b).map(|(a, b)| if a.is_nan() && b.is_nan() { 0.0 } else { (a - b).abs() }).fold(0.0, |m: f64, d| if d.is_nan() { f64::INFINITY } else { m.max(d) })
+            a.iter()
+                .zip(b)
+                .map(|(a, b)| if a.is_nan() && b.is_nan() { 0.0 } else { (a - b).abs() })
+                .fold(0.0, |m: f64, d| if d.is_nan() { f64::INFINITY } else { m.max(d) })
         } else {
             f64::INFINITY
         };
@@ -170,15 +231,27 @@ impl Owned {
             (4, _) => 256,
             _ => 8,
         };
-        let shape: Vec<usize> = info.dims.iter().enumerate().map(|(d, dim)| dim.unwrap_or_else(|| open(d))).collect();
+        let shape: Vec<usize> =
+            info.dims.iter().enumerate().map(|(d, dim)| dim.unwrap_or_else(|| open(d))).collect();
         let count = shape.iter().product();
         let mut random = Random::new(7);
         match info.element_type {
             ElementType::I64 => Self::Longs(shape, (0..count).map(|i| i as i64 % 7).collect()),
             ElementType::I32 => Self::Ints(shape, (0..count).map(|i| i as i32 % 7).collect()),
-            ElementType::U8 | ElementType::I8 => Self::Bytes(shape, (0..count).map(|i| (i * 37 % 251) as u8).collect()),
+            ElementType::U8 | ElementType::I8 => {
+                Self::Bytes(shape, (0..count).map(|i| (i * 37 % 251) as u8).collect())
+            }
             ElementType::Bool => Self::Truths(shape, (0..count).map(|i| i % 3 == 0).collect()),
             _ => Self::Floats(shape, (0..count).map(|_| random.uniform(-1.0, 1.0)).collect()),
+        }
+    }
+
+    fn floats(&self) -> Option<opendr_executor::Tensor<'_>> {
+        match self {
+            Self::Floats(shape, data) => {
+                Some(opendr_executor::Tensor { shape, data: opendr_executor::Data::F32(data) })
+            }
+            _ => None,
         }
     }
 

@@ -30,7 +30,10 @@ impl Runtime for GraphExecutor {
 
     fn open(&self, bytes: &[u8], options: &SessionOptions) -> Result<Box<dyn Engine>> {
         if !matches!(options.device, Device::Auto | Device::Cpu) {
-            return Err(Error::device(format!("the graph executor does not support device {}, only cpu", options.device)));
+            return Err(Error::device(format!(
+                "the graph executor does not support device {}, only cpu",
+                options.device
+            )));
         }
         let header = OnnxHeader::read(bytes)?;
         let executor = Executor::open(bytes, compute(options.thread_count()?))?;

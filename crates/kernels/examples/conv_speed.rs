@@ -26,11 +26,16 @@ fn main() {
         let window = square(size, kernel, stride);
         let output = window.output[0];
         let mut random = Random::new(1);
-        let mut numbers = |count: usize| -> Vec<f32> { (0..count).map(|_| random.uniform(-1.0, 1.0)).collect() };
+        let mut numbers =
+            |count: usize| -> Vec<f32> { (0..count).map(|_| random.uniform(-1.0, 1.0)).collect() };
         let (x, weights) = (numbers(size * size * channels), numbers(outputs * channels * kernel * kernel));
         let planar = channels < 8;
         let filters = Filters::new(&compute, &weights, [1, outputs, channels], window.kernel, None, planar);
-        let strides = if planar { Strides::planar(window.input, channels) } else { Strides::channels_last(window.input, channels) };
+        let strides = if planar {
+            Strides::planar(window.input, channels)
+        } else {
+            Strides::channels_last(window.input, channels)
+        };
         let y_strides = Strides::channels_last(window.output, outputs);
         let conv = Convolution {
             filters: Arc::new(filters),
@@ -43,17 +48,25 @@ fn main() {
         };
         let mut y = vec![0.0; output * output * outputs];
         let operations = (2 * output * output * outputs * channels * kernel * kernel) as f64;
-        report(&format!("conv {size}x{size}x{channels}->{outputs} {kernel}x{kernel}/{stride}"), operations, || {
-            conv.run(&compute, &x, None, &mut y);
-        });
+        report(
+            &format!("conv {size}x{size}x{channels}->{outputs} {kernel}x{kernel}/{stride}"),
+            operations,
+            || {
+                conv.run(&compute, &x, None, &mut y);
+            },
+        );
     }
-    for [size, channels, kernel, stride] in [[112, 32, 3, 1], [112, 64, 3, 2], [56, 128, 3, 1], [28, 96, 5, 1], [14, 512, 3, 1]] {
+    for [size, channels, kernel, stride] in
+        [[112, 32, 3, 1], [112, 64, 3, 2], [56, 128, 3, 1], [28, 96, 5, 1], [14, 512, 3, 1]]
+    {
         let window = square(size, kernel, stride);
         let output = window.output[0];
         let x = vec![0.5; size * size * channels];
         let mut y = vec![0.0; output * output * channels];
-        let filters = DepthwiseFilters::new(&vec![0.1; channels * kernel * kernel], channels, window.kernel, None);
-        let strides = [Strides::channels_last(window.input, channels), Strides::channels_last(window.output, channels)];
+        let filters =
+            DepthwiseFilters::new(&vec![0.1; channels * kernel * kernel], channels, window.kernel, None);
+        let strides =
+            [Strides::channels_last(window.input, channels), Strides::channels_last(window.output, channels)];
         let operations = (2 * output * output * channels * kernel * kernel) as f64;
         report(&format!("depthwise {size}x{size}x{channels} {kernel}x{kernel}/{stride}"), operations, || {
             filters.run(&compute, &window, 1, &Finish::default(), strides, &x, &mut y);

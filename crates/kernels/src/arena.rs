@@ -85,7 +85,10 @@ impl Arena {
         self.check(written);
         let bytes = self.bytes();
         let start = self.lines.as_mut_ptr().cast::<u8>();
-        (Written { start, region: written, arena: PhantomData }, Rest { start, bytes, written, arena: PhantomData })
+        (
+            Written { start, region: written, arena: PhantomData },
+            Rest { start, bytes, written, arena: PhantomData },
+        )
     }
 
     fn check(&self, region: Region) {
@@ -127,7 +130,8 @@ impl<'a> Written<'a> {
         let Region { start, bytes: all } = self.region;
         let first = bytes.next_multiple_of(ALIGNMENT);
         assert!(first <= all, "the region is too small");
-        let part = |start, bytes| Written { start: self.start, region: Region { start, bytes }, arena: PhantomData };
+        let part =
+            |start, bytes| Written { start: self.start, region: Region { start, bytes }, arena: PhantomData };
         (part(start, bytes), part(start + first, all - first))
     }
 }

@@ -59,14 +59,26 @@ impl Binary {
         assert_eq!(x.len(), y.len(), "the rows must have equal lengths");
         let at = y.as_mut_ptr();
         // SAFETY: both rows have this length; each number of `y` is read before it is written.
-        unsafe { dispatch_binary(isa, self, (at.cast_const(), true), (x.as_ptr(), true), [0.0; 2], at, y.len()) }
+        unsafe {
+            dispatch_binary(isa, self, (at.cast_const(), true), (x.as_ptr(), true), [0.0; 2], at, y.len())
+        }
     }
 
     /// Computes `y = function(y, scalar)`.
     pub fn apply_scalar(self, isa: Isa, y: &mut [f32], scalar: f32) {
         let at = y.as_mut_ptr();
         // SAFETY: each number of `y` is read before it is written; the scalar is no row.
-        unsafe { dispatch_binary(isa, self, (at.cast_const(), true), (std::ptr::null(), false), [0.0, scalar], at, y.len()) }
+        unsafe {
+            dispatch_binary(
+                isa,
+                self,
+                (at.cast_const(), true),
+                (std::ptr::null(), false),
+                [0.0, scalar],
+                at,
+                y.len(),
+            )
+        }
     }
 
     #[inline(always)]

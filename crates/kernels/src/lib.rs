@@ -43,6 +43,7 @@ mod matrix;
 mod network;
 mod optimizer;
 mod pool;
+mod pooling;
 mod product;
 mod softmax;
 mod unary;
@@ -65,6 +66,7 @@ pub use optimizer::{
     Adam, AdamOptions, Momentum, WeightDecay, clip_gradient_norm, gradient_norm, polyak_update,
 };
 pub use pool::WorkerPool;
+pub use pooling::Pooling;
 pub use product::{Bias, Product};
 pub use softmax::{categorical_backward, cross_entropy, entropy, log_softmax, log_softmax_backward};
 pub use unary::Unary;

@@ -7,11 +7,11 @@ use opendr_kernels::{Convolution, DepthwiseFilters, Filters, Finish, Strides, Wi
 use opendr_onnx::proto::NodeProto;
 
 use super::fusion::{self, Fused};
-use super::{optional, required};
+use super::inputs::{optional, required};
 use crate::attributes::Attributes;
 use crate::graph::Packed;
-use crate::io::Io;
-use crate::planner::{Id, Kernel, Layout, Planner};
+use crate::io::{Io, Kernel};
+use crate::planner::{Id, Layout, Planner};
 use crate::tensor::{Constant, Kind, count};
 
 /// Channels of a planar input up to which it is read as it is.
@@ -42,7 +42,9 @@ pub(crate) fn window(node: &NodeProto, dims: &[usize], kernel: &[usize], is_ceil
             _ => {}
         }
         let padded = dims[i] + pads[i] + pads[rank + i];
-        let rest = padded.checked_sub(span).ok_or_else(|| node.damaged(&format!("the input {dims:?} is smaller than the kernel")))?;
+        let rest = padded
+            .checked_sub(span)
+            .ok_or_else(|| node.damaged(&format!("the input {dims:?} is smaller than the kernel")))?;
         output[i] = rest / strides[i] + 1;
         if is_ceil && rest % strides[i] != 0 && output[i] * strides[i] < dims[i] + pads[i] {
             output[i] += 1;
@@ -73,13 +75,21 @@ pub(crate) fn output_shape(window: &Window, batch: usize, channels: usize, rank:
 pub(crate) fn conv(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
     let x = required(node, inputs, 0)?;
     let dims = planner.shape(x);
-    let weights = planner.constant(required(node, inputs, 1)?).ok_or_else(|| node.refused("weights that are not constant"))?;
+    let weights = planner
+        .constant(required(node, inputs, 1)?)
+        .ok_or_else(|| node.refused("weights that are not constant"))?;
     let bias = constant_bias(planner, node, inputs, 2)?;
     if planner.kind(x) != Kind::F32 || !(3..=4).contains(&dims.len()) {
-        return Err(node.refused(&format!("an input of {:?} with {} dimensions", planner.kind(x), dims.len())));
+        return Err(node.refused(&format!(
+            "an input of {:?} with {} dimensions",
+            planner.kind(x),
+            dims.len()
+        )));
     }
     let floats = weights.floats().ok_or_else(|| node.refused("weights that are not floats"))?;
-    let [outputs, channels, kernel @ ..] = weights.shape.as_slice() else { return Err(node.damaged("its weights")) };
+    let [outputs, channels, kernel @ ..] = weights.shape.as_slice() else {
+        return Err(node.damaged("its weights"));
+    };
     let (outputs, channels, rank) = (*outputs, *channels, dims.len() - 2);
     let groups = usize::try_from(node.int_or("group", 1)).unwrap_or(0);
     let fits = groups > 0
@@ -103,7 +113,8 @@ pub(crate) fn conv(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option
         let Packed::Depthwise(filters) = filters else { return Err(node.refused("weights of two kinds")) };
         let fused = fusion::after(planner, node, &shape, false);
         let finish = finish(&fused, |slopes| filters.padded(slopes));
-        let strides = [Strides::channels_last(window.input, outputs), Strides::channels_last(window.output, outputs)];
+        let strides =
+            [Strides::channels_last(window.input, outputs), Strides::channels_last(window.output, outputs)];
         let step = DepthwiseStep { filters, window, batch: dims[0], finish, strides };
         let y = planner.emit_one(step, &[x], Kind::F32, shape, Layout::ChannelsLast)?;
         fused.absorb(planner, y);
@@ -124,7 +135,11 @@ pub(crate) fn conv(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option
         filters,
         window,
         batch: dims[0],
-        x: if planar { Strides::planar(window.input, dims[1]) } else { Strides::channels_last(window.input, dims[1]) },
+        x: if planar {
+            Strides::planar(window.input, dims[1])
+        } else {
+            Strides::channels_last(window.input, dims[1])
+        },
         y,
         residual: y,
         finish,
@@ -133,7 +148,8 @@ pub(crate) fn conv(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option
         Some(residual) => Some(planner.channels_last(residual)?),
         None => None,
     };
-    let ids = planner.emit(ConvStep(conv), &[Some(x), residual], &[(Kind::F32, shape, Layout::ChannelsLast)])?;
+    let ids =
+        planner.emit(ConvStep(conv), &[Some(x), residual], &[(Kind::F32, shape, Layout::ChannelsLast)])?;
     if let Some(&y) = ids.first() {
         fused.absorb(planner, y);
     }
@@ -189,18 +205,30 @@ impl Kernel for DepthwiseStep {
 }
 
 /// A transposed convolution becomes a convolution with as many outputs as a block has pixels, and their arrangement.
-pub(crate) fn transposed(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
+pub(crate) fn transposed(
+    planner: &mut Planner<'_>,
+    node: &NodeProto,
+    inputs: &[Option<Id>],
+) -> Result<Vec<Id>> {
     let x = required(node, inputs, 0)?;
     let dims = planner.shape(x);
-    let weights = planner.constant(required(node, inputs, 1)?).ok_or_else(|| node.refused("weights that are not constant"))?;
+    let weights = planner
+        .constant(required(node, inputs, 1)?)
+        .ok_or_else(|| node.refused("weights that are not constant"))?;
     let bias = constant_bias(planner, node, inputs, 2)?;
     let floats = weights.floats().ok_or_else(|| node.refused("weights that are not floats"))?;
-    let [batch, channels, height, width] = dims[..] else { return Err(node.refused("an input without two spatial dimensions")) };
+    let [batch, channels, height, width] = dims[..] else {
+        return Err(node.refused("an input without two spatial dimensions"));
+    };
     let [inputs_of_weights, outputs, kernel_height, kernel_width] = weights.shape[..] else {
         return Err(node.damaged("its weights"));
     };
     let groups = usize::try_from(node.int_or("group", 1)).unwrap_or(0);
-    if groups == 0 || inputs_of_weights != channels || channels % groups != 0 || node.find("output_shape").is_some() {
+    if groups == 0
+        || inputs_of_weights != channels
+        || channels % groups != 0
+        || node.find("output_shape").is_some()
+    {
         return Err(node.refused("its groups or its output shape"));
     }
     if node.text("auto_pad", "NOTSET") != "NOTSET" {
@@ -209,7 +237,10 @@ pub(crate) fn transposed(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[
     let (strides, dilations) = (node.sizes("strides", 2, 1)?, node.sizes("dilations", 2, 1)?);
     let (pads, extra) = (node.sizes("pads", 4, 0)?, node.sizes("output_padding", 2, 0)?);
     let size = |i: usize, input: usize, kernel: usize| -> Option<usize> {
-        let span = input.checked_sub(1)?.checked_mul(strides[i])?.checked_add(kernel.checked_sub(1)?.checked_mul(dilations[i])? + 1)?;
+        let span = input
+            .checked_sub(1)?
+            .checked_mul(strides[i])?
+            .checked_add(kernel.checked_sub(1)?.checked_mul(dilations[i])? + 1)?;
         span.checked_add(extra[i])?.checked_sub(pads[i] + pads[2 + i])
     };
     let sizes = [size(0, height, kernel_height), size(1, width, kernel_width)];
@@ -243,9 +274,11 @@ pub(crate) fn transposed(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[
         }
     }
     let x = planner.channels_last(x)?;
-    let filters = Filters::new(planner.compute, &packed, [groups, columns, group_inputs], [1, 1], None, false);
+    let filters =
+        Filters::new(planner.compute, &packed, [groups, columns, group_inputs], [1, 1], None, false);
     let input = [height, width];
-    let window = Window { kernel: [1, 1], strides: [1, 1], dilations: [1, 1], pads: [0, 0], input, output: input };
+    let window =
+        Window { kernel: [1, 1], strides: [1, 1], dilations: [1, 1], pads: [0, 0], input, output: input };
     let y = Strides::channels_last(input, groups * columns);
     let conv = Convolution {
         filters: Arc::new(filters),
@@ -256,7 +289,13 @@ pub(crate) fn transposed(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[
         residual: y,
         finish: Finish::default(),
     };
-    let products = planner.emit_one(ConvStep(conv), &[x], Kind::F32, vec![batch, groups * columns, height, width], Layout::ChannelsLast)?;
+    let products = planner.emit_one(
+        ConvStep(conv),
+        &[x],
+        Kind::F32,
+        vec![batch, groups * columns, height, width],
+        Layout::ChannelsLast,
+    )?;
     let step = ScatterStep {
         batch,
         input,
@@ -302,7 +341,10 @@ impl Kernel for ScatterStep {
             y.chunks_mut(channels).for_each(|y| y.copy_from_slice(&self.bias));
             for ky in 0..self.kernel[0] {
                 let at = (oy + self.pads[0]).checked_sub(ky * self.dilations[0]);
-                let Some(iy) = at.filter(|at| at % self.strides[0] == 0).map(|at| at / self.strides[0]) else { continue };
+                let Some(iy) = at.filter(|at| at % self.strides[0] == 0).map(|at| at / self.strides[0])
+                else {
+                    continue;
+                };
                 if iy >= height {
                     continue;
                 }

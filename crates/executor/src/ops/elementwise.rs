@@ -4,10 +4,10 @@ use opendr_engine::Result;
 use opendr_kernels::{Binary, Operand, Unary};
 use opendr_onnx::proto::NodeProto;
 
-use super::{optional, required};
+use super::inputs::{optional, required};
 use crate::attributes::Attributes;
-use crate::io::Io;
-use crate::planner::{Id, Kernel, Layout, Planner, channels_to_end};
+use crate::io::{Io, Kernel};
+use crate::planner::{Id, Layout, Planner, channels_to_end};
 use crate::tensor::{Kind, count};
 
 /// Returns the function of a node of one input.
@@ -17,7 +17,9 @@ pub(crate) fn unary_of(node: &NodeProto) -> Option<Unary> {
         "Erf" => Unary::Erf,
         "Exp" => Unary::Exp,
         "Gelu" if node.text("approximate", "none") == "none" => Unary::Gelu,
-        "HardSigmoid" => Unary::HardSigmoid { alpha: node.float("alpha", 0.2), beta: node.float("beta", 0.5) },
+        "HardSigmoid" => {
+            Unary::HardSigmoid { alpha: node.float("alpha", 0.2), beta: node.float("beta", 0.5) }
+        }
         "HardSwish" => Unary::HardSwish,
         "LeakyRelu" => Unary::LeakyRelu { slope: node.float("alpha", 0.01) },
         "Neg" => Unary::Neg,
@@ -67,11 +69,16 @@ pub(crate) fn clip_of(planner: &Planner<'_>, node: &NodeProto, inputs: &[Option<
 
 pub(crate) fn clip(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
     let x = required(node, inputs, 0)?;
-    let function = clip_of(planner, node, inputs).ok_or_else(|| node.refused("bounds that are not constants of floats"))?;
+    let function = clip_of(planner, node, inputs)
+        .ok_or_else(|| node.refused("bounds that are not constants of floats"))?;
     Ok(vec![apply(planner, node, x, function)?])
 }
 
-pub(crate) fn variadic(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
+pub(crate) fn variadic(
+    planner: &mut Planner<'_>,
+    node: &NodeProto,
+    inputs: &[Option<Id>],
+) -> Result<Vec<Id>> {
     let mut sum = required(node, inputs, 0)?;
     let function = match node.op_type.as_str() {
         "Sum" => Function::Add,
@@ -178,7 +185,13 @@ fn aligned(planner: &mut Planner<'_>, node: &NodeProto, ids: &[Id]) -> Result<(V
 }
 
 /// Applies a function to two values.
-pub(crate) fn combine(planner: &mut Planner<'_>, node: &NodeProto, function: Function, a: Id, b: Id) -> Result<Id> {
+pub(crate) fn combine(
+    planner: &mut Planner<'_>,
+    node: &NodeProto,
+    function: Function,
+    a: Id,
+    b: Id,
+) -> Result<Id> {
     let kind = planner.kind(a);
     if planner.kind(b) != kind && function != Function::Pow {
         return Err(node.damaged(&format!("elements of types {kind:?} and {:?}", planner.kind(b))));
@@ -187,12 +200,20 @@ pub(crate) fn combine(planner: &mut Planner<'_>, node: &NodeProto, function: Fun
     let (ids, shape, layout) = aligned(planner, node, &[a, b])?;
     let truths = matches!(
         function,
-        Function::Equal | Function::Less | Function::LessOrEqual | Function::Greater | Function::GreaterOrEqual | Function::And | Function::Or
+        Function::Equal
+            | Function::Less
+            | Function::LessOrEqual
+            | Function::Greater
+            | Function::GreaterOrEqual
+            | Function::And
+            | Function::Or
     );
     let logic = matches!(function, Function::And | Function::Or);
     let fits = match kind {
         Kind::F32 => !logic,
-        Kind::I64 | Kind::I32 => !matches!(function, Function::PRelu | Function::Pow | Function::FloatMod) && !logic,
+        Kind::I64 | Kind::I32 => {
+            !matches!(function, Function::PRelu | Function::Pow | Function::FloatMod) && !logic
+        }
         Kind::Bool => logic || function == Function::Equal,
         Kind::U8 | Kind::I8 => matches!(function, Function::Equal),
         Kind::F16 => false,
@@ -222,16 +243,20 @@ impl Rows {
         let strides: Vec<Vec<usize>> = operands
             .iter()
             .map(|shape| {
-                let own = super::movement::strides(shape);
+                let own = crate::remap::strides(shape);
                 let missing = rank - shape.len();
-                (0..rank).map(|d| d.checked_sub(missing).filter(|&d| shape[d] != 1).map_or(0, |d| own[d])).collect()
+                (0..rank)
+                    .map(|d| d.checked_sub(missing).filter(|&d| shape[d] != 1).map_or(0, |d| own[d]))
+                    .collect()
             })
             .collect();
         let mut merged: Vec<(usize, Vec<usize>)> = Vec::new();
         for (d, &length) in dims.iter().enumerate().filter(|(_, length)| **length != 1) {
             let steps: Vec<usize> = strides.iter().map(|strides| strides[d]).collect();
             match merged.last_mut() {
-                Some((outer, outer_steps)) if outer_steps.iter().zip(&steps).all(|(outer, step)| *outer == step * length) => {
+                Some((outer, outer_steps))
+                    if outer_steps.iter().zip(&steps).all(|(outer, step)| *outer == step * length) =>
+                {
                     *outer *= length;
                     *outer_steps = steps;
                 }
@@ -353,22 +378,33 @@ impl BinaryStep {
             const PIECE: usize = 1 << 14;
             io.compute.pool().run_on_pieces(y, PIECE, |index, y| {
                 let at = index * PIECE;
-                let of = |x, operand: usize| if rows.is_row[operand] { part(x, at, true, y.len()) } else { part(x, 0, false, 1) };
+                let of = |x, operand: usize| {
+                    if rows.is_row[operand] { part(x, at, true, y.len()) } else { part(x, 0, false, 1) }
+                };
                 let (a, b) = (of(a, 0), of(b, 1));
                 function.apply(isa, a, b, y);
             });
             return;
         }
         let per_piece = ((1 << 14) / rows.length).max(1);
-        io.compute.pool().run_on_pieces(y, per_piece * rows.length, |index, y| piece(index * per_piece, y, rows.length));
+        io.compute
+            .pool()
+            .run_on_pieces(y, per_piece * rows.length, |index, y| piece(index * per_piece, y, rows.length));
     }
 
-    fn each<T: opendr_kernels::Number, U: opendr_kernels::Number>(&self, io: &mut Io<'_>, function: impl Fn(T, T) -> U) {
+    fn each<T: opendr_kernels::Number, U: opendr_kernels::Number>(
+        &self,
+        io: &mut Io<'_>,
+        function: impl Fn(T, T) -> U,
+    ) {
         let (a, b, y) = (io.read::<T>(0), io.read::<T>(1), io.write::<U>());
         for (row, y) in y.chunks_mut(self.rows.length.max(1)).enumerate() {
             let (a, b) = (self.rows.of(a, row, 0, y.len()), self.rows.of(b, row, 1, y.len()));
             for (i, y) in y.iter_mut().enumerate() {
-                *y = function(a[if self.rows.is_row[0] { i } else { 0 }], b[if self.rows.is_row[1] { i } else { 0 }]);
+                *y = function(
+                    a[if self.rows.is_row[0] { i } else { 0 }],
+                    b[if self.rows.is_row[1] { i } else { 0 }],
+                );
             }
         }
     }
@@ -420,7 +456,7 @@ impl Kernel for SelectStep {
     fn run(&self, io: &mut Io<'_>) -> Result<()> {
         let rows = &self.rows;
         let condition = io.read::<u8>(0);
-        super::movement::by_size!(self.size, T => {
+        crate::remap::by_size!(self.size, T => {
             let (a, b, y) = (io.read::<T>(1), io.read::<T>(2), io.write::<T>());
             for (row, y) in y.chunks_mut(rows.length.max(1)).enumerate() {
                 let condition = rows.of(condition, row, 0, y.len());
@@ -484,7 +520,9 @@ impl CastStep {
             Kind::I32 => io.write::<i32>().iter_mut().zip(x).for_each(|(y, &x)| *y = read(x).1 as i32),
             Kind::U8 => io.write::<u8>().iter_mut().zip(x).for_each(|(y, &x)| *y = read(x).1 as u8),
             Kind::I8 => io.write::<i8>().iter_mut().zip(x).for_each(|(y, &x)| *y = read(x).1 as i8),
-            Kind::Bool => io.write::<u8>().iter_mut().zip(x).for_each(|(y, &x)| *y = u8::from(read(x).0 != 0.0)),
+            Kind::Bool => {
+                io.write::<u8>().iter_mut().zip(x).for_each(|(y, &x)| *y = u8::from(read(x).0 != 0.0))
+            }
             Kind::F16 => {}
         }
     }

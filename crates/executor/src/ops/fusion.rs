@@ -41,14 +41,17 @@ pub(crate) fn after(planner: &Planner<'_>, node: &NodeProto, shape: &[usize], wi
             name = next;
             continue;
         }
-        let Some(index) = planner.graph.only_reader(&name).filter(|&index| !planner.is_fused(index)) else { break };
+        let Some(index) = planner.graph.only_reader(&name).filter(|&index| !planner.is_fused(index)) else {
+            break;
+        };
         let next = &planner.graph.nodes[index];
         if next.output.len() != 1 {
             break;
         }
         if !acts && next.input.first() == Some(&name) {
             let inputs: Vec<Option<Id>> = next.input.iter().map(|name| planner.named(name)).collect();
-            let others_known = next.input.iter().zip(&inputs).skip(1).all(|(name, id)| name.is_empty() || id.is_some());
+            let others_known =
+                next.input.iter().zip(&inputs).skip(1).all(|(name, id)| name.is_empty() || id.is_some());
             let function = match next.op_type.as_str() {
                 "Clip" if others_known => clip_of(planner, next, &inputs),
                 "Max" | "Min" => bounded(planner, next, &inputs),
@@ -68,7 +71,8 @@ pub(crate) fn after(planner: &Planner<'_>, node: &NodeProto, shape: &[usize], wi
         }
         if with_sum && fused.residual.is_none() && next.op_type == "Add" && next.input.len() == 2 {
             let other = if next.input[0] == name { &next.input[1] } else { &next.input[0] };
-            let fits = |id: &Id| planner.shape(*id) == shape && planner.kind(*id) == Kind::F32 && *other != name;
+            let fits =
+                |id: &Id| planner.shape(*id) == shape && planner.kind(*id) == Kind::F32 && *other != name;
             if let Some(residual) = planner.named(other).filter(fits) {
                 fused.residual = Some(residual);
                 fused.residual_last = acts;
@@ -92,12 +96,17 @@ fn output(planner: &Planner<'_>, node: usize) -> Option<String> {
 /// Returns the functions `x * sigmoid(x)` and `x * hard_sigmoid(x)`, and their nodes.
 fn swish(planner: &Planner<'_>, name: &str) -> Option<(Unary, Vec<usize>)> {
     let [first, second] = planner.graph.readers.get(name)?.as_slice() else { return None };
-    let (gate, product) = if planner.graph.nodes.get(*first)?.op_type == "Mul" { (*second, *first) } else { (*first, *second) };
+    let (gate, product) =
+        if planner.graph.nodes.get(*first)?.op_type == "Mul" { (*second, *first) } else { (*first, *second) };
     let (gate_node, product_node) = (planner.graph.nodes.get(gate)?, planner.graph.nodes.get(product)?);
     let gated = gate_node.output.first()?;
     let function = match (gate_node.op_type.as_str(), unary_of(gate_node)?) {
         ("Sigmoid", _) => Unary::Swish,
-        ("HardSigmoid", Unary::HardSigmoid { alpha, beta }) if (alpha - 1.0 / 6.0).abs() < 1e-6 && beta == 0.5 => Unary::HardSwish,
+        ("HardSigmoid", Unary::HardSigmoid { alpha, beta })
+            if (alpha - 1.0 / 6.0).abs() < 1e-6 && beta == 0.5 =>
+        {
+            Unary::HardSwish
+        }
         _ => return None,
     };
     let whole = product_node.op_type == "Mul"
@@ -130,6 +139,10 @@ fn slopes(planner: &Planner<'_>, inputs: &[Option<Id>], shape: &[usize]) -> Opti
         return Some(vec![*slope; channels]);
     }
     let missing = shape.len().checked_sub(constant.shape.len())?;
-    let along = constant.shape.iter().enumerate().all(|(d, &dim)| if d + missing == 1 { dim == channels } else { dim == 1 });
+    let along = constant
+        .shape
+        .iter()
+        .enumerate()
+        .all(|(d, &dim)| if d + missing == 1 { dim == channels } else { dim == 1 });
     (along && values.len() == channels).then(|| values.to_vec())
 }

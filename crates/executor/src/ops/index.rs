@@ -4,11 +4,11 @@ use opendr_engine::{Error, Result};
 use opendr_kernels::Number;
 use opendr_onnx::proto::NodeProto;
 
-use super::movement::by_size;
-use super::{axis, required};
+use super::inputs::{axis, required};
 use crate::attributes::Attributes;
-use crate::io::Io;
-use crate::planner::{Id, Kernel, Layout, Planner};
+use crate::io::{Io, Kernel};
+use crate::planner::{Id, Layout, Planner};
+use crate::remap::by_size;
 use crate::tensor::{Kind, count};
 
 /// Returns an index of a dimension of `size`, which may be negative.
@@ -112,11 +112,16 @@ fn tuples(
 ) -> Result<(Tuples, Id, Vec<usize>)> {
     let (at, at_kind) = indices(planner, node, at)?;
     let (dims, at_dims) = (planner.shape(x), planner.shape(at));
-    let Some((&depth, outer)) = at_dims.split_last() else { return Err(node.damaged("indices without dimensions")) };
-    if batch_dims > outer.len() || batch_dims + depth > dims.len() || dims.get(..batch_dims) != outer.get(..batch_dims) {
+    let Some((&depth, outer)) = at_dims.split_last() else {
+        return Err(node.damaged("indices without dimensions"));
+    };
+    if batch_dims > outer.len()
+        || batch_dims + depth > dims.len()
+        || dims.get(..batch_dims) != outer.get(..batch_dims)
+    {
         return Err(node.damaged("its batch dimensions, or the length of its tuples"));
     }
-    let strides = super::movement::strides(&dims);
+    let strides = crate::remap::strides(&dims);
     let range = batch_dims..batch_dims + depth;
     let tuples = Tuples {
         at_kind,
@@ -130,10 +135,15 @@ fn tuples(
     Ok((tuples, at, shape))
 }
 
-pub(crate) fn gather_nd(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
+pub(crate) fn gather_nd(
+    planner: &mut Planner<'_>,
+    node: &NodeProto,
+    inputs: &[Option<Id>],
+) -> Result<Vec<Id>> {
     let x = required(node, inputs, 0)?;
     let x = planner.plain(x)?;
-    let batch_dims = usize::try_from(node.int_or("batch_dims", 0)).map_err(|_| node.damaged("attribute \"batch_dims\""))?;
+    let batch_dims = usize::try_from(node.int_or("batch_dims", 0))
+        .map_err(|_| node.damaged("attribute \"batch_dims\""))?;
     let (tuples, at, shape) = tuples(planner, node, x, required(node, inputs, 1)?, batch_dims)?;
     let kind = planner.kind(x);
     let step = GatherNdStep { size: kind.bytes(), tuples };
@@ -159,12 +169,19 @@ impl Kernel for GatherNdStep {
     }
 }
 
-pub(crate) fn scatter_nd(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
+pub(crate) fn scatter_nd(
+    planner: &mut Planner<'_>,
+    node: &NodeProto,
+    inputs: &[Option<Id>],
+) -> Result<Vec<Id>> {
     let [x, at, updates] = [0, 1, 2].map(|slot| required(node, inputs, slot));
     let (x, updates) = (planner.plain(x?)?, planner.plain(updates?)?);
     let (tuples, at, shape) = tuples(planner, node, x, at?, 0)?;
     let kind = planner.kind(x);
-    if planner.shape(updates) != shape || planner.kind(updates) != kind || node.text("reduction", "none") != "none" {
+    if planner.shape(updates) != shape
+        || planner.kind(updates) != kind
+        || node.text("reduction", "none") != "none"
+    {
         return Err(node.refused("its updates or its reduction"));
     }
     let dims = planner.shape(x);
@@ -192,14 +209,22 @@ impl Kernel for ScatterNdStep {
     }
 }
 
-pub(crate) fn scatter_elements(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
+pub(crate) fn scatter_elements(
+    planner: &mut Planner<'_>,
+    node: &NodeProto,
+    inputs: &[Option<Id>],
+) -> Result<Vec<Id>> {
     let [x, at, updates] = [0, 1, 2].map(|slot| required(node, inputs, slot));
     let (x, updates) = (planner.plain(x?)?, planner.plain(updates?)?);
     let (at, at_kind) = indices(planner, node, at?)?;
     let (dims, at_dims) = (planner.shape(x), planner.shape(at));
     let along = axis(node, node.int_or("axis", 0), dims.len())?;
     let fits = at_dims.len() == dims.len() && (0..dims.len()).all(|d| d == along || at_dims[d] <= dims[d]);
-    if !fits || planner.shape(updates) != at_dims || planner.kind(updates) != planner.kind(x) || node.text("reduction", "none") != "none" {
+    if !fits
+        || planner.shape(updates) != at_dims
+        || planner.kind(updates) != planner.kind(x)
+        || node.text("reduction", "none") != "none"
+    {
         return Err(node.refused("its updates or its reduction"));
     }
     let kind = planner.kind(x);
@@ -217,7 +242,7 @@ struct ScatterElementsStep {
 
 impl Kernel for ScatterElementsStep {
     fn run(&self, io: &mut Io<'_>) -> Result<()> {
-        let strides = super::movement::strides(&self.dims);
+        let strides = crate::remap::strides(&self.dims);
         by_size!(self.size, T => {
             let (x, updates, y) = (io.read::<T>(0), io.read::<T>(2), io.write::<T>());
             y.copy_from_slice(x);

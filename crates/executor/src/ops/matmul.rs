@@ -7,11 +7,11 @@ use opendr_kernels::{Convolution, Filters, Finish, Matrix, MatrixMut, Product, S
 use opendr_onnx::proto::NodeProto;
 
 use super::elementwise::{Function, combine};
-use super::{optional, required};
+use super::inputs::{optional, required};
 use crate::attributes::Attributes;
 use crate::graph::Packed;
-use crate::io::Io;
-use crate::planner::{Id, Kernel, Layout, Planner};
+use crate::io::{Io, Kernel};
+use crate::planner::{Id, Layout, Planner};
 use crate::tensor::{Constant, Kind, count};
 
 pub(crate) fn matmul(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
@@ -53,7 +53,7 @@ pub(crate) fn matmul(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opti
     }
     let batch = count(&outer)?;
     let offsets = |own: &[usize], size: usize| -> Vec<usize> {
-        let strides = super::movement::strides(own);
+        let strides = crate::remap::strides(own);
         let missing = outer.len() - own.len();
         let offset = |mut index: usize| {
             let mut at = 0;
@@ -95,7 +95,8 @@ fn with_weights(
     });
     let Packed::Dense(filters) = filters else { return Err(node.refused("weights of two kinds")) };
     let input = [1, rows];
-    let window = Window { kernel: [1, 1], strides: [1, 1], dilations: [1, 1], pads: [0, 0], input, output: input };
+    let window =
+        Window { kernel: [1, 1], strides: [1, 1], dilations: [1, 1], pads: [0, 0], input, output: input };
     let y = Strides::channels_last(input, columns);
     let x = Strides::channels_last(input, depth);
     let conv = Convolution { filters, window, batch: 1, x, y, residual: y, finish: Finish::default() };
@@ -149,7 +150,8 @@ pub(crate) fn gemm(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option
     }
     let shape = vec![rows, columns];
     let c = optional(inputs, 2).filter(|_| beta != 0.0);
-    let bias = c.and_then(|c| planner.constant(c)).filter(|bias| beta == 1.0 && bias.shape.last() == Some(&columns));
+    let bias =
+        c.and_then(|c| planner.constant(c)).filter(|bias| beta == 1.0 && bias.shape.last() == Some(&columns));
     let bias = bias.as_ref().and_then(|bias| bias.floats()).filter(|bias| bias.len() == columns);
     let y = with_weights(planner, node, a, &constant, [rows, depth, columns], transposed, bias, shape)?;
     match c.filter(|_| bias.is_none()) {

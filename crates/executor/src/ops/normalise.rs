@@ -5,10 +5,10 @@ use opendr_kernels::Binary;
 use opendr_onnx::proto::NodeProto;
 
 use super::elementwise::{Function, combine};
-use super::{axis, optional, required};
+use super::inputs::{axis, optional, required};
 use crate::attributes::Attributes;
-use crate::io::Io;
-use crate::planner::{Id, Kernel, Layout, Planner};
+use crate::io::{Io, Kernel};
+use crate::planner::{Id, Layout, Planner};
 use crate::tensor::{Constant, Kind};
 
 pub(crate) fn softmax(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
@@ -27,7 +27,13 @@ pub(crate) fn softmax(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opt
     if flat || along + 1 == dims.len() {
         let x = planner.plain(x)?;
         let length = if flat { dims[along..].iter().product() } else { dims[along] };
-        return Ok(vec![planner.emit_one(SoftmaxStep { length, is_log }, &[x], Kind::F32, dims, Layout::Plain)?]);
+        return Ok(vec![planner.emit_one(
+            SoftmaxStep { length, is_log },
+            &[x],
+            Kind::F32,
+            dims,
+            Layout::Plain,
+        )?]);
     }
     if along == 1 && planner.is_channels_last(x) {
         let step = SoftmaxStep { length: dims[1], is_log };
@@ -37,11 +43,11 @@ pub(crate) fn softmax(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opt
     let mut order: Vec<usize> = (0..dims.len()).collect();
     order.swap(along, dims.len() - 1);
     let swapped: Vec<usize> = order.iter().map(|&d| dims[d]).collect();
-    let there = super::movement::transposed(&dims, &order, 4);
+    let there = crate::remap::transposed(&dims, &order, 4);
     let moved = planner.emit_one(there, &[x], Kind::F32, swapped.clone(), Layout::Plain)?;
     let step = SoftmaxStep { length: dims[along], is_log };
     let y = planner.emit_one(step, &[moved], Kind::F32, swapped.clone(), Layout::Plain)?;
-    let back = super::movement::transposed(&swapped, &order, 4);
+    let back = crate::remap::transposed(&swapped, &order, 4);
     Ok(vec![planner.emit_one(back, &[y], Kind::F32, dims, Layout::Plain)?])
 }
 
@@ -88,12 +94,16 @@ pub(crate) fn batch(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Optio
     }
     let mut parameters = Vec::new();
     for slot in 1..5 {
-        let constant = planner.constant(required(node, inputs, slot)?).filter(|constant| constant.shape == [dims[1]]);
-        let constant = constant.ok_or_else(|| node.refused("parameters that are not one constant per channel"))?;
-        parameters.push(constant.floats().ok_or_else(|| node.refused("parameters that are not floats"))?.to_vec());
+        let constant =
+            planner.constant(required(node, inputs, slot)?).filter(|constant| constant.shape == [dims[1]]);
+        let constant =
+            constant.ok_or_else(|| node.refused("parameters that are not one constant per channel"))?;
+        parameters
+            .push(constant.floats().ok_or_else(|| node.refused("parameters that are not floats"))?.to_vec());
     }
     let epsilon = node.float("epsilon", 1e-5);
-    let scale: Vec<f32> = (0..dims[1]).map(|c| parameters[0][c] / (parameters[3][c] + epsilon).sqrt()).collect();
+    let scale: Vec<f32> =
+        (0..dims[1]).map(|c| parameters[0][c] / (parameters[3][c] + epsilon).sqrt()).collect();
     let shift: Vec<f32> = (0..dims[1]).map(|c| parameters[1][c] - parameters[2][c] * scale[c]).collect();
     let mut shape = vec![1; dims.len() - 1];
     shape[0] = dims[1];
@@ -115,7 +125,8 @@ pub(crate) fn layer(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Optio
         Some(bias) => Some(planner.plain(bias)?),
         None => None,
     };
-    let fits = |id: Id| planner.shape(id).iter().product::<usize>() == length && planner.kind(id) == Kind::F32;
+    let fits =
+        |id: Id| planner.shape(id).iter().product::<usize>() == length && planner.kind(id) == Kind::F32;
     if !fits(scale) || !bias.is_none_or(fits) || planner.kind(x) != Kind::F32 {
         return Err(node.refused("its scale or bias"));
     }
@@ -130,7 +141,8 @@ struct LayerStep {
 
 impl Kernel for LayerStep {
     fn run(&self, io: &mut Io<'_>) -> Result<()> {
-        let (x, scale, bias, y) = (io.read::<f32>(0), io.read::<f32>(1), io.read::<f32>(2), io.write::<f32>());
+        let (x, scale, bias, y) =
+            (io.read::<f32>(0), io.read::<f32>(1), io.read::<f32>(2), io.write::<f32>());
         let length = self.length.max(1);
         if y.is_empty() {
             return Ok(());

@@ -4,14 +4,19 @@ use opendr_engine::Result;
 use opendr_onnx::proto::NodeProto;
 
 use super::elementwise::Rows;
-use super::{axis, optional, required};
+use super::inputs::{axis, optional, required};
 use crate::attributes::Attributes;
-use crate::io::Io;
-use crate::planner::{Id, Kernel, Planner};
+use crate::io::{Io, Kernel};
+use crate::planner::{Id, Planner};
 use crate::tensor::Kind;
 
 /// Returns scale and zero point with a shape that broadcasts to the input, and their reach in memory.
-fn parameters(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>], x: Id) -> Result<(Vec<Option<Id>>, Rows)> {
+fn parameters(
+    planner: &mut Planner<'_>,
+    node: &NodeProto,
+    inputs: &[Option<Id>],
+    x: Id,
+) -> Result<(Vec<Option<Id>>, Rows)> {
     let (dims, rank) = (planner.shape(x), planner.rank(x));
     let scale = required(node, inputs, 1)?;
     let zero = optional(inputs, 2);
@@ -43,10 +48,17 @@ fn parameters(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]
     Ok((vec![Some(x), Some(scale), zero], rows))
 }
 
-pub(crate) fn quantize(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
+pub(crate) fn quantize(
+    planner: &mut Planner<'_>,
+    node: &NodeProto,
+    inputs: &[Option<Id>],
+) -> Result<Vec<Id>> {
     let x = required(node, inputs, 0)?;
     let to = optional(inputs, 2).map_or(Kind::U8, |zero| planner.kind(zero));
-    if planner.kind(x) != Kind::F32 || !matches!(to, Kind::U8 | Kind::I8) || node.int_or("output_dtype", 0) != 0 {
+    if planner.kind(x) != Kind::F32
+        || !matches!(to, Kind::U8 | Kind::I8)
+        || node.int_or("output_dtype", 0) != 0
+    {
         return Err(node.refused("its types"));
     }
     let (reads, rows) = parameters(planner, node, inputs, x)?;
@@ -54,10 +66,16 @@ pub(crate) fn quantize(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Op
     planner.emit(QuantizeStep { to, rows }, &reads, &[(to, value.shape, value.layout)])
 }
 
-pub(crate) fn dequantize(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
+pub(crate) fn dequantize(
+    planner: &mut Planner<'_>,
+    node: &NodeProto,
+    inputs: &[Option<Id>],
+) -> Result<Vec<Id>> {
     let x = required(node, inputs, 0)?;
     let from = planner.kind(x);
-    if !matches!(from, Kind::U8 | Kind::I8 | Kind::I32) || optional(inputs, 2).is_some_and(|zero| planner.kind(zero) != from) {
+    if !matches!(from, Kind::U8 | Kind::I8 | Kind::I32)
+        || optional(inputs, 2).is_some_and(|zero| planner.kind(zero) != from)
+    {
         return Err(node.refused("its types"));
     }
     let (reads, rows) = parameters(planner, node, inputs, x)?;
@@ -100,7 +118,9 @@ impl QuantizeStep {
                 }
             } else {
                 let (scale, zero) = (scales[at], zeros.get(at).map_or(0.0, |&zero| read(zero)));
-                y.iter_mut().zip(x).for_each(|(y, x)| *y = to(((x / scale).round_ties_even() + zero).clamp(low, high)));
+                y.iter_mut()
+                    .zip(x)
+                    .for_each(|(y, x)| *y = to(((x / scale).round_ties_even() + zero).clamp(low, high)));
             }
         }
     }

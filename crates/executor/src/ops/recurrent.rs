@@ -6,10 +6,10 @@ use opendr_engine::Result;
 use opendr_kernels::{Compute, Convolution, Filters, Finish, Strides, Window};
 use opendr_onnx::proto::NodeProto;
 
-use super::{optional, required};
+use super::inputs::{optional, required};
 use crate::attributes::Attributes;
-use crate::io::Io;
-use crate::planner::{Id, Kernel, Layout, Planner};
+use crate::io::{Io, Kernel};
+use crate::planner::{Id, Layout, Planner};
 use crate::tensor::{Kind, count};
 
 pub(crate) fn lstm(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
@@ -23,11 +23,19 @@ pub(crate) fn gru(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<
     build(planner, node, inputs, 3)
 }
 
-fn build(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>], gates: usize) -> Result<Vec<Id>> {
+fn build(
+    planner: &mut Planner<'_>,
+    node: &NodeProto,
+    inputs: &[Option<Id>],
+    gates: usize,
+) -> Result<Vec<Id>> {
     let x = required(node, inputs, 0)?;
     let x = planner.plain(x)?;
     let standard = ["activations", "activation_alpha", "activation_beta", "clip"];
-    if standard.iter().any(|key| node.find(key).is_some()) || node.int_or("layout", 0) != 0 || optional(inputs, 4).is_some() {
+    if standard.iter().any(|key| node.find(key).is_some())
+        || node.int_or("layout", 0) != 0
+        || optional(inputs, 4).is_some()
+    {
         return Err(node.refused("its activations, layout or lengths"));
     }
     let reversed = match node.text("direction", "forward").as_str() {
@@ -37,7 +45,9 @@ fn build(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>], gat
     };
     let weights = |slot: usize| {
         let constant = planner.constant(required(node, inputs, slot)?);
-        constant.filter(|constant| constant.floats().is_some()).ok_or_else(|| node.refused("weights that are not constants of floats"))
+        constant
+            .filter(|constant| constant.floats().is_some())
+            .ok_or_else(|| node.refused("weights that are not constants of floats"))
     };
     let (w, r) = (weights(1)?, weights(2)?);
     let b = if optional(inputs, 3).is_some() { Some(weights(3)?) } else { None };
@@ -75,7 +85,12 @@ fn build(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>], gat
         let split = if gates == 3 && !before { 2 * hidden } else { rows };
         let last = (split < rows).then(|| filters(&r[split * hidden..], &hidden_bias[split..], hidden));
         let r = filters(&r[..split * hidden], &hidden_bias[..split], hidden);
-        cells.push(Cell { input: product(w, steps * batch, features), hidden: product(r, batch, hidden), last: last.map(|last| product(last, batch, hidden)), is_reversed });
+        cells.push(Cell {
+            input: product(w, steps * batch, features),
+            hidden: product(r, batch, hidden),
+            last: last.map(|last| product(last, batch, hidden)),
+            is_reversed,
+        });
     }
     let state_shape = vec![directions, batch, hidden];
     let initial = |planner: &mut Planner<'_>, slot: usize| -> Result<Option<Id>> {
@@ -91,7 +106,8 @@ fn build(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>], gat
     // One output has sequence, last state and cells; the others are views of it.
     let state = count(&state_shape)?;
     let lines = |elements: usize| elements.next_multiple_of(16);
-    let step = RecurrentStep { cells, gates, before, steps, batch, hidden, parts: [lines(output), lines(state)] };
+    let step =
+        RecurrentStep { cells, gates, before, steps, batch, hidden, parts: [lines(output), lines(state)] };
     let whole = lines(output) + 2 * lines(state);
     let y = planner.emit(step, &[Some(x), h, c], &[(Kind::F32, vec![whole], Layout::Plain)])?;
     let y = y.first().copied().ok_or_else(|| node.damaged("its outputs"))?;
@@ -100,7 +116,10 @@ fn build(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>], gat
     if gates == 4 {
         outputs.push(planner.view(y, 4 * (lines(output) + lines(state)), state_shape));
     }
-    outputs.into_iter().map(|output| output.ok_or_else(|| node.refused("inputs that are all constant"))).collect()
+    outputs
+        .into_iter()
+        .map(|output| output.ok_or_else(|| node.refused("inputs that are all constant")))
+        .collect()
 }
 
 fn product(filters: Arc<Filters>, rows: usize, depth: usize) -> Convolution {
@@ -108,7 +127,14 @@ fn product(filters: Arc<Filters>, rows: usize, depth: usize) -> Convolution {
     let y = Strides::channels_last(input, filters.outputs());
     Convolution {
         filters,
-        window: Window { kernel: [1, 1], strides: [1, 1], dilations: [1, 1], pads: [0, 0], input, output: input },
+        window: Window {
+            kernel: [1, 1],
+            strides: [1, 1],
+            dilations: [1, 1],
+            pads: [0, 0],
+            input,
+            output: input,
+        },
         batch: 1,
         x: Strides::channels_last(input, depth),
         y,

@@ -4,10 +4,10 @@ use opendr_engine::Result;
 use opendr_kernels::Binary;
 use opendr_onnx::proto::NodeProto;
 
-use super::{axis, list, required};
+use super::inputs::{axis, list, required};
 use crate::attributes::Attributes;
-use crate::io::Io;
-use crate::planner::{Id, Kernel, Layout, Planner};
+use crate::io::{Io, Kernel};
+use crate::planner::{Id, Layout, Planner};
 use crate::tensor::{Kind, count};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,7 +42,8 @@ pub(crate) fn reduce(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opti
         _ => Reduction::L2,
     };
     let kind = planner.kind(x);
-    let integers = matches!(kind, Kind::I64 | Kind::I32) && matches!(reduction, Reduction::Sum | Reduction::Max | Reduction::Min | Reduction::Prod);
+    let integers = matches!(kind, Kind::I64 | Kind::I32)
+        && matches!(reduction, Reduction::Sum | Reduction::Max | Reduction::Min | Reduction::Prod);
     if kind != Kind::F32 && !integers {
         return Err(node.refused(&format!("elements of type {kind:?}")));
     }
@@ -51,7 +52,11 @@ pub(crate) fn reduce(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opti
     let shape: Vec<usize> = (0..dims.len()).filter(|d| keep || !gone.contains(d)).map(|d| kept[d]).collect();
     let length = count(&gone.iter().map(|&d| dims[d]).collect::<Vec<_>>())?;
     // Height and width of a tensor with channels last lie between the images and the channels.
-    let spatial = dims.len() > 2 && planner.is_channels_last(x) && (2..dims.len()).all(|d| gone.contains(&d)) && !gone.contains(&0) && !gone.contains(&1);
+    let spatial = dims.len() > 2
+        && planner.is_channels_last(x)
+        && (2..dims.len()).all(|d| gone.contains(&d))
+        && !gone.contains(&0)
+        && !gone.contains(&1);
     if spatial {
         let step = ReduceStep { reduction, kind, length, inner: dims[1] };
         let y = planner.emit_one(step, &[x], kind, kept, Layout::ChannelsLast)?;
@@ -71,7 +76,7 @@ pub(crate) fn reduce(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opti
         let mut order: Vec<usize> = (0..dims.len()).filter(|d| !gone.contains(d)).collect();
         order.extend(gone.iter().copied());
         let moved: Vec<usize> = order.iter().map(|&d| dims[d]).collect();
-        let remap = super::movement::transposed(&dims, &order, kind.bytes());
+        let remap = crate::remap::transposed(&dims, &order, kind.bytes());
         x = planner.emit_one(remap, &[x], kind, moved, Layout::Plain)?;
         1
     };
@@ -141,7 +146,12 @@ impl ReduceStep {
         }
     }
 
-    fn integers<T: opendr_kernels::Number>(&self, io: &mut Io<'_>, read: impl Fn(T) -> i64, write: impl Fn(i64) -> T) {
+    fn integers<T: opendr_kernels::Number>(
+        &self,
+        io: &mut Io<'_>,
+        read: impl Fn(T) -> i64,
+        write: impl Fn(i64) -> T,
+    ) {
         let (x, y) = (io.read::<T>(0), io.write::<T>());
         let inner = self.inner.max(1);
         for (index, y) in y.iter_mut().enumerate() {

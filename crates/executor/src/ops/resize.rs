@@ -3,17 +3,21 @@
 use opendr_engine::Result;
 use opendr_onnx::proto::NodeProto;
 
-use super::{optional, required};
+use super::inputs::{optional, required};
 use crate::attributes::Attributes;
-use crate::io::Io;
-use crate::planner::{Id, Kernel, Layout, Planner};
+use crate::io::{Io, Kernel};
+use crate::planner::{Id, Layout, Planner};
 use crate::tensor::{Kind, count};
 
 pub(crate) fn resize(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
     let x = required(node, inputs, 0)?;
     let dims = planner.shape(x);
     let old = planner.graph.opset < 11;
-    if dims.len() != 4 || planner.kind(x) != Kind::F32 || node.find("axes").is_some() || node.int_or("antialias", 0) != 0 {
+    if dims.len() != 4
+        || planner.kind(x) != Kind::F32
+        || node.find("axes").is_some()
+        || node.int_or("antialias", 0) != 0
+    {
         return Err(node.refused("its input, axes, or antialiasing"));
     }
     if node.text("keep_aspect_ratio_policy", "stretch") != "stretch" {
@@ -36,7 +40,8 @@ pub(crate) fn resize(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opti
             if sizes.len() != 4 {
                 return Err(node.damaged("four sizes"));
             }
-            let scales = sizes.iter().zip(&dims).map(|(&size, &dim)| size as f64 / dim.max(1) as f64).collect();
+            let scales =
+                sizes.iter().zip(&dims).map(|(&size, &dim)| size as f64 / dim.max(1) as f64).collect();
             (sizes, scales)
         }
         _ => return Err(node.refused("scales that are not constant")),
@@ -90,7 +95,13 @@ pub(crate) fn resize(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opti
     }
     let x = planner.channels_last(x)?;
     let (Some(columns), Some(rows)) = (axes.pop(), axes.pop()) else { return Err(node.damaged("its sizes")) };
-    let step = ResizeStep { rows, columns, input: [dims[2], dims[3]], channels: dims[1], is_linear: mode == "linear" };
+    let step = ResizeStep {
+        rows,
+        columns,
+        input: [dims[2], dims[3]],
+        channels: dims[1],
+        is_linear: mode == "linear",
+    };
     Ok(vec![planner.emit_one(step, &[x], Kind::F32, shape, Layout::ChannelsLast)?])
 }
 
@@ -119,7 +130,9 @@ impl Kernel for ResizeStep {
             let line = |row: usize| &x[(image * height + row) * width * channels..][..width * channels];
             let (above, below) = (line(top), line(bottom));
             for (y, &([left, right], across)) in y.chunks_exact_mut(channels).zip(&self.columns) {
-                let at = |line: &'_ [f32], column: usize| column * channels..column * channels + channels.min(line.len());
+                let at = |line: &'_ [f32], column: usize| {
+                    column * channels..column * channels + channels.min(line.len())
+                };
                 let a = &above[at(above, left)];
                 if !self.is_linear {
                     y.copy_from_slice(a);
@@ -135,7 +148,8 @@ impl Kernel for ResizeStep {
 }
 
 fn blend(y: &mut [f32], [a, b, c, d]: [&[f32]; 4], across: f32, down: f32) {
-    let weights = [(1.0 - across) * (1.0 - down), across * (1.0 - down), (1.0 - across) * down, across * down];
+    let weights =
+        [(1.0 - across) * (1.0 - down), across * (1.0 - down), (1.0 - across) * down, across * down];
     for ((((y, a), b), c), d) in y.iter_mut().zip(a).zip(b).zip(c).zip(d) {
         *y = a * weights[0] + b * weights[1] + c * weights[2] + d * weights[3];
     }

@@ -3,15 +3,20 @@
 use opendr_engine::Result;
 use opendr_onnx::proto::NodeProto;
 
+use super::inputs::{axis, list, optional, required};
 use super::movement::sizes;
-use super::{axis, list, optional, required};
 use crate::attributes::Attributes;
 use crate::planner::{Id, Layout, Planner};
 use crate::tensor::{Constant, Kind, count};
 
-pub(crate) fn identity(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
-    let _ = planner;
-    if optional(inputs, 2).is_some_and(|training| planner.constant(training).is_none_or(|flag| flag.data.get::<u8>(flag.region()) != [0])) {
+pub(crate) fn identity(
+    planner: &mut Planner<'_>,
+    node: &NodeProto,
+    inputs: &[Option<Id>],
+) -> Result<Vec<Id>> {
+    if optional(inputs, 2).is_some_and(|training| {
+        planner.constant(training).is_none_or(|flag| flag.data.get::<u8>(flag.region()) != [0])
+    }) {
         return Err(node.refused("training mode"));
     }
     Ok(vec![required(node, inputs, 0)?])
@@ -38,7 +43,9 @@ pub(crate) fn reshape(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opt
                 open = Some(index);
                 1
             }
-            0 if !keep_zero => *dims.get(index).ok_or_else(|| node.damaged("a dimension that is not there"))?,
+            0 if !keep_zero => {
+                *dims.get(index).ok_or_else(|| node.damaged("a dimension that is not there"))?
+            }
             _ => usize::try_from(size).map_err(|_| node.damaged(&format!("shape {wanted:?}")))?,
         });
     }
@@ -70,14 +77,19 @@ pub(crate) fn squeeze(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opt
     reshaped(planner, node, x, shape)
 }
 
-pub(crate) fn unsqueeze(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
+pub(crate) fn unsqueeze(
+    planner: &mut Planner<'_>,
+    node: &NodeProto,
+    inputs: &[Option<Id>],
+) -> Result<Vec<Id>> {
     let x = required(node, inputs, 0)?;
     let dims = planner.shape(x);
     let axes = list(planner, node, inputs, "axes", 1)?.ok_or_else(|| node.damaged("no axes"))?;
     let rank = dims.len() + axes.len();
     let axes = axes.iter().map(|&along| axis(node, along, rank)).collect::<Result<Vec<_>>>()?;
     let mut rest = dims.iter().copied();
-    let shape: Vec<usize> = (0..rank).map(|d| if axes.contains(&d) { 1 } else { rest.next().unwrap_or(1) }).collect();
+    let shape: Vec<usize> =
+        (0..rank).map(|d| if axes.contains(&d) { 1 } else { rest.next().unwrap_or(1) }).collect();
     reshaped(planner, node, x, shape)
 }
 
@@ -134,7 +146,9 @@ pub(crate) fn range(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Optio
     let [start, limit, delta] = ids;
     let (start, limit, delta) = (start?, limit?, delta?);
     if planner.kind(start) == Kind::F32 {
-        let number = |id| planner.scalar(id).ok_or_else(|| node.refused("bounds that depend on the data of the inputs"));
+        let number = |id| {
+            planner.scalar(id).ok_or_else(|| node.refused("bounds that depend on the data of the inputs"))
+        };
         let (start, limit, delta) = (number(start)?, number(limit)?, number(delta)?);
         let length = ((f64::from(limit) - f64::from(start)) / f64::from(delta)).ceil().max(0.0);
         if !length.is_finite() || length > f64::from(1 << 24) {
@@ -149,7 +163,11 @@ pub(crate) fn range(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Optio
         return Err(node.damaged("a step of 0"));
     }
     let span = i128::from(limit) - i128::from(start);
-    let length = if (span > 0) == (delta > 0) { span.unsigned_abs().div_ceil(u128::from(delta.unsigned_abs())) } else { 0 };
+    let length = if (span > 0) == (delta > 0) {
+        span.unsigned_abs().div_ceil(u128::from(delta.unsigned_abs()))
+    } else {
+        0
+    };
     if length > 1 << 24 {
         return Err(node.damaged("the range is too long"));
     }

@@ -1,7 +1,7 @@
-//! The built-in runtime: pure Rust (rten), available without any installed library.
+//! The built-in runtime: pure Rust (the graph executor and rten), available without any installed library.
 
 mod engine;
-mod planned;
+mod fallback;
 mod repair;
 mod size_limit;
 mod substitute;
@@ -16,6 +16,7 @@ use crate::executor::GraphExecutor;
 use crate::onnx_header::OnnxHeader;
 use crate::runtime::{Engine, Runtime, SessionOptions};
 use engine::BuiltinEngine;
+use fallback::{Fallback, has_open_shapes};
 
 /// Version of rten in the workspace's manifest; rten does not expose it.
 const RTEN_VERSION: &str = "0.27";
@@ -39,15 +40,12 @@ impl Runtime for Builtin {
     }
 
     fn open(&self, bytes: &[u8], options: &SessionOptions) -> Result<Box<dyn Engine>> {
-        // The executor plans at once where the shapes of the inputs are declared, so that it refuses here what it
-        // cannot run. Models of open shapes, and quantised ones, which run in integers there, stay with rten.
-        if planned::is_suited(bytes)? {
-            match GraphExecutor.open(bytes, options) {
-                Err(error) if error.kind() == ErrorKind::Unsupported => {}
-                opened => return opened,
-            }
+        match GraphExecutor.open(bytes, options) {
+            // Open shapes are planned in the first run, which may refuse them too.
+            Ok(engine) if has_open_shapes(&*engine) => Ok(Box::new(Fallback::new(engine, bytes, *options))),
+            Err(error) if error.kind() == ErrorKind::Unsupported => Rten.open(bytes, options),
+            opened => opened,
         }
-        Rten.open(bytes, options)
     }
 
     fn describe(&self) -> String {

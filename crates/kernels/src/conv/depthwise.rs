@@ -1,6 +1,6 @@
 //! Depthwise convolutions: every channel has a kernel of its own.
 
-use super::{Finish, Strides, Window};
+use super::geometry::{Finish, Strides, Window};
 use crate::aligned::AlignedBuffer;
 use crate::compute::Compute;
 use crate::isa::{Isa, for_every_isa};
@@ -74,10 +74,17 @@ impl DepthwiseFilters {
             return;
         }
         let reach = |at: Strides, [height, width]: [usize; 2]| {
-            (batch - 1) * at.image + height.saturating_sub(1) * at.row + width.saturating_sub(1) * at.pixel + self.channels
+            (batch - 1) * at.image
+                + height.saturating_sub(1) * at.row
+                + width.saturating_sub(1) * at.pixel
+                + self.channels
         };
         assert_eq!(self.kernel, window.kernel, "the filters must have the size of the kernel");
-        assert!(window.input.contains(&0) || x.len() >= reach(x_strides, window.input), "the input is too short");
+        y_strides.check_written(window.output, self.channels);
+        assert!(
+            window.input.contains(&0) || x.len() >= reach(x_strides, window.input),
+            "the input is too short"
+        );
         assert!(y.len() >= reach(y_strides, window.output), "the output is too short");
         if let Some(slopes) = &finish.slopes {
             assert!(slopes.len() >= self.padded, "one slope per channel, rounded up");
@@ -110,7 +117,11 @@ impl DepthwiseFilters {
         // SAFETY: sizes have been checked; pieces write disjoint rows.
         let work = |piece| unsafe { dispatch_rows(isa, &job, piece) };
         let products = batch * height * width * self.channels * self.kernel[0] * self.kernel[1];
-        if products < 1 << 15 { (0..batch * down).for_each(work) } else { compute.pool().run(batch * down, work) }
+        if products < 1 << 15 {
+            (0..batch * down).for_each(work)
+        } else {
+            compute.pool().run(batch * down, work)
+        }
     }
 }
 
@@ -149,12 +160,12 @@ unsafe fn rows_of_piece<V: Lanes>(job: &Job<'_>, piece: usize) {
                 _ => row::<V, 0, 0>(job, image, oy),
             }
             if job.then != Unary::Identity {
-            let y = job.y.add(image * job.y_strides.image + oy * job.y_strides.row);
-            for ox in 0..window.output[1] {
-                let y = y.add(ox * job.y_strides.pixel);
-                unary_all::<V>(job.then, y, y, job.filters.channels);
+                let y = job.y.add(image * job.y_strides.image + oy * job.y_strides.row);
+                for ox in 0..window.output[1] {
+                    let y = y.add(ox * job.y_strides.pixel);
+                    unary_all::<V>(job.then, y, y, job.filters.channels);
+                }
             }
-        }
         }
     }
 }
@@ -184,7 +195,8 @@ unsafe fn row<V: Lanes, const K: usize, const S: usize>(job: &Job<'_>, image: us
         (width, width)
     } else {
         let left = window.pads[1].div_ceil(S).min(width);
-        let right = (window.input[1] + window.pads[1]).checked_sub(K).map_or(0, |last| last / S + 1).min(width);
+        let right =
+            (window.input[1] + window.pads[1]).checked_sub(K).map_or(0, |last| last / S + 1).min(width);
         (left, right.max(left))
     };
     // SAFETY: channels and pixels lie within the tensors, whose sizes have been checked.
@@ -273,7 +285,8 @@ unsafe fn edge<V: Lanes>(job: &Job<'_>, taps: &Taps, ox: usize, count: usize) ->
         for ky in taps.first..taps.end {
             let y = (taps.input_row + (ky * window.dilations[0]) as isize) as usize;
             for kx in 0..window.kernel[1] {
-                let x = (ox * window.strides[1] + kx * window.dilations[1]) as isize - window.pads[1] as isize;
+                let x =
+                    (ox * window.strides[1] + kx * window.dilations[1]) as isize - window.pads[1] as isize;
                 if x >= 0 && x < window.input[1] as isize {
                     let at = taps.x.add(y * job.x_strides.row + x as usize * job.x_strides.pixel);
                     let weight = V::load(taps.weights.add((ky * window.kernel[1] + kx) * padded));
@@ -298,7 +311,9 @@ unsafe fn finish<V: Lanes, const R: usize>(
 ) {
     // SAFETY: passed on.
     unsafe {
-        let y = job.y.add(image * job.y_strides.image + oy * job.y_strides.row + ox * job.y_strides.pixel + channel);
+        let y = job
+            .y
+            .add(image * job.y_strides.image + oy * job.y_strides.row + ox * job.y_strides.pixel + channel);
         let zero = V::splat(0.0);
         let slope = job.finish.slopes.as_ref().map(|slopes| V::load(slopes.as_ptr().add(channel)));
         for (i, &sum) in sums.iter().enumerate() {

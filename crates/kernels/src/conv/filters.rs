@@ -46,7 +46,11 @@ impl Filters {
         planar: bool,
     ) -> Self {
         let taps = kernel[0] * kernel[1];
-        assert_eq!(weights.len(), groups * outputs * channels * taps, "the weights must have the stated shape");
+        assert_eq!(
+            weights.len(),
+            groups * outputs * channels * taps,
+            "the weights must have the stated shape"
+        );
         let strides = [channels * taps, taps, 1];
         Self::with_strides(compute, weights, strides, [groups, outputs, channels], kernel, bias, planar)
     }
@@ -115,7 +119,19 @@ impl Filters {
                 to[..from.len()].copy_from_slice(from);
             }
         }
-        Self { isa, width, vectors, groups, outputs, channels, kernel, planar, group_length, panels, bias: padded_bias }
+        Self {
+            isa,
+            width,
+            vectors,
+            groups,
+            outputs,
+            channels,
+            kernel,
+            planar,
+            group_length,
+            panels,
+            bias: padded_bias,
+        }
     }
 
     /// Returns the number of output channels.

@@ -1,8 +1,8 @@
 //! Division of a convolution into pieces, and the loop over the tiles of a piece.
 
 use super::filters::width_of;
-use super::tile::{Row, finish, most_pixels, tile};
-use super::{Convolution, Window};
+use super::geometry::{Convolution, Strides, Window};
+use super::tile::{Row, finish, most_pixels, planar_tile, tile};
 use crate::compute::Compute;
 use crate::isa::for_every_isa;
 use crate::lanes::Lanes;
@@ -36,7 +36,48 @@ struct Job<'a> {
 // SAFETY: pieces read the inputs and write disjoint parts of the output.
 unsafe impl Sync for Job<'_> {}
 
-pub(super) fn run(conv: &Convolution, compute: &Compute, x: &[f32], residual: Option<&[f32]>, y: &mut [f32]) {
+impl Convolution {
+    /// Computes the convolution. `residual` has the shape of the output.
+    ///
+    /// # Panics
+    /// When the slices are shorter than the shapes and strides require.
+    pub fn run(&self, compute: &Compute, x: &[f32], residual: Option<&[f32]>, y: &mut [f32]) {
+        let Window { input, output, .. } = self.window;
+        let filters = &*self.filters;
+        if self.batch == 0 || output.contains(&0) || filters.outputs() == 0 {
+            return;
+        }
+        assert_eq!(filters.kernel(), self.window.kernel, "the filters must have the size of the kernel");
+        self.y.check_written(output, filters.outputs());
+        let side_by_side = if filters.is_planar() { self.x.pixel } else { self.x.channel };
+        assert_eq!(side_by_side, 1, "pixels of planes, or channels of pixels, must lie side by side");
+        let reach = |at: Strides, [height, width]: [usize; 2], channels: usize| {
+            (self.batch - 1) * at.image
+                + height.saturating_sub(1) * at.row
+                + width.saturating_sub(1) * at.pixel
+                + channels.saturating_sub(1) * at.channel
+                + 1
+        };
+        assert!(
+            input.contains(&0) || x.len() >= reach(self.x, input, filters.channels()),
+            "the input is too short"
+        );
+        assert!(y.len() >= reach(self.y, output, filters.outputs()), "the output is too short");
+        if let Some(residual) = residual {
+            assert_eq!(self.residual.channel, 1, "the channels of the residual must lie side by side");
+            assert!(
+                residual.len() >= reach(self.residual, output, filters.outputs()),
+                "the residual is too short"
+            );
+        }
+        if let Some(slopes) = &self.finish.slopes {
+            assert!(slopes.len() >= filters.padded_outputs(), "one slope per output channel, rounded up");
+        }
+        run(self, compute, x, residual, y);
+    }
+}
+
+fn run(conv: &Convolution, compute: &Compute, x: &[f32], residual: Option<&[f32]>, y: &mut [f32]) {
     let mut flat;
     let mut conv = conv;
     let window = conv.window;
@@ -50,7 +91,11 @@ pub(super) fn run(conv: &Convolution, compute: &Compute, x: &[f32], residual: Op
         flat.window = Window { input: [1, height * width], output: [1, height * width], ..window };
         conv = &flat;
     }
-    let zeros: Vec<f32> = if conv.filters.group_channels() > ZEROS { vec![0.0; conv.filters.group_channels()] } else { Vec::new() };
+    let zeros: Vec<f32> = if conv.filters.group_channels() > ZEROS {
+        vec![0.0; conv.filters.group_channels()]
+    } else {
+        Vec::new()
+    };
     let mut job = divide(conv, compute.pool().threads());
     job.x = x.as_ptr();
     job.y = y.as_mut_ptr();
@@ -140,7 +185,11 @@ unsafe fn piece_in_tiles<V: Lanes>(job: &Job<'_>, piece: usize) {
                 } else {
                     job.residual.add(image * conv.residual.image + oy * conv.residual.row + panel.first)
                 };
-                let slopes = conv.finish.slopes.as_ref().map_or(std::ptr::null(), |slopes| slopes.as_ptr().add(panel.padded_first));
+                let slopes = conv
+                    .finish
+                    .slopes
+                    .as_ref()
+                    .map_or(std::ptr::null(), |slopes| slopes.as_ptr().add(panel.padded_first));
                 let row = Row {
                     conv,
                     x: job.x.add(image * conv.x.image + group * filters.group_channels() * conv.x.channel),
@@ -190,10 +239,35 @@ fn bounds(job: &Job<'_>) -> ([f32; 2], bool, bool) {
 #[inline(always)]
 unsafe fn pixels<V: Lanes, const N: usize>(row: &Row, first: usize, end: usize) {
     let most = most_pixels::<V>(N);
+    let window = &row.conv.window;
+    let step = if row.conv.filters.is_planar() && window.dilations[1] == 1 { window.strides[1] } else { 0 };
+    // Output pixels all of whose taps lie within the row.
+    let inner_end = (window.input[1] + window.pads[1])
+        .checked_sub(window.kernel[1])
+        .map_or(0, |last| last / window.strides[1] + 1);
     let mut at = first;
     while at < end {
         let left = end - at;
-        let size = left.div_ceil(left.div_ceil(most));
+        if (step == 1 || step == 2) && left >= most && at * step >= window.pads[1] && at + most <= inner_end {
+            // SAFETY: passed on.
+            unsafe {
+                match (most, step) {
+                    (4, 1) => planar_tile::<V, 4, N, 1>(row, at),
+                    (4, _) => planar_tile::<V, 4, N, 2>(row, at),
+                    (6, 1) => planar_tile::<V, 6, N, 1>(row, at),
+                    (6, _) => planar_tile::<V, 6, N, 2>(row, at),
+                    (8, 1) => planar_tile::<V, 8, N, 1>(row, at),
+                    (8, _) => planar_tile::<V, 8, N, 2>(row, at),
+                    (_, 1) => planar_tile::<V, 12, N, 1>(row, at),
+                    _ => planar_tile::<V, 12, N, 2>(row, at),
+                }
+            }
+            at += most;
+            continue;
+        }
+        // At the left edge of a planar image a single pixel, so that the others are inner ones.
+        let size =
+            if step > 0 && at * step < window.pads[1] { 1 } else { left.div_ceil(left.div_ceil(most)) };
         // SAFETY: passed on.
         unsafe {
             match size {

@@ -1,14 +1,14 @@
 //! The inner loop: some pixels of a row by some registers of outputs.
 
-use super::Convolution;
 use super::filters::Panel;
+use super::geometry::Convolution;
 use crate::lanes::{Lanes, MAX_WIDTH};
 use crate::unary::Unary;
 
 /// Rows of a tile with one, two and three registers across: the sums use most registers.
 pub(super) const fn most_pixels<V: Lanes>(vectors: usize) -> usize {
     match (V::REGISTERS >= 32, vectors) {
-        (true, 2) => 12,
+        (true, 1 | 2) => 12,
         (false, 2) => 6,
         (false, 3) => 4,
         _ => 8,
@@ -70,7 +70,8 @@ pub(super) unsafe fn tile<V: Lanes, const R: usize, const N: usize>(row: &Row, f
             let mut b = row.panel.weights.add(ky * row_length);
             for run in 0..runs {
                 let line = row.x.wrapping_add(y * conv.x.row + run * conv.x.channel);
-                let (parts, count) = if merged { (1, window.kernel[1] * depth) } else { (window.kernel[1], depth) };
+                let (parts, count) =
+                    if merged { (1, window.kernel[1] * depth) } else { (window.kernel[1], depth) };
                 for kx in 0..parts {
                     let x = left + (kx * window.dilations[1]) as isize;
                     let pixels = if inside {
@@ -85,6 +86,52 @@ pub(super) unsafe fn tile<V: Lanes, const R: usize, const N: usize>(row: &Row, f
                     };
                     add_products(&mut sums, pixels, count, b);
                     b = b.wrapping_add(count * N * V::WIDTH);
+                }
+            }
+        }
+        store(row, first, &sums);
+    }
+}
+
+/// A tile of a planar image, all taps of which lie within it, with a constant step between pixels: an instruction
+/// reads each number at a distance that it contains.
+///
+/// # Safety
+/// As for [`tile`]; the columns of all taps lie within the input.
+#[inline(always)]
+pub(super) unsafe fn planar_tile<V: Lanes, const R: usize, const N: usize, const S: usize>(
+    row: &Row,
+    first: usize,
+) {
+    let conv = row.conv;
+    let window = &conv.window;
+    let channels = conv.filters.group_channels();
+    let left = first * S - window.pads[1];
+    // SAFETY: by contract.
+    unsafe {
+        let mut sums = [[V::splat(0.0); N]; R];
+        for (j, sum) in sums[0].iter_mut().enumerate() {
+            *sum = V::load(row.panel.bias.add(j * V::WIDTH));
+        }
+        sums = [sums[0]; R];
+        let mut b = row.panel.weights.add(row.taps[0] * window.kernel[1] * channels * N * V::WIDTH);
+        for ky in row.taps[0]..row.taps[1] {
+            let y = (row.input_row + (ky * window.dilations[0]) as isize) as usize;
+            for channel in 0..channels {
+                let line = row.x.add(y * conv.x.row + channel * conv.x.channel + left);
+                for kx in 0..window.kernel[1] {
+                    let x = line.add(kx);
+                    let mut weights = [V::splat(0.0); N];
+                    for (j, weight) in weights.iter_mut().enumerate() {
+                        *weight = V::load(b.add(j * V::WIDTH));
+                    }
+                    for i in 0..R {
+                        let x = V::splat(*x.add(i * S));
+                        for j in 0..N {
+                            sums[i][j] = x.mul_add(weights[j], sums[i][j]);
+                        }
+                    }
+                    b = b.add(N * V::WIDTH);
                 }
             }
         }
@@ -184,9 +231,15 @@ pub(super) unsafe fn finish<V: Lanes>(row: &Row, [first, end]: [usize; 2]) {
             let y = row.y.add(pixel * conv.y.pixel);
             for j in (0..used).step_by(V::WIDTH) {
                 let count = (used - j).min(V::WIDTH);
-                let load = |from: *const f32| if count == V::WIDTH { V::load(from) } else { V::load_some(from, count) };
+                let load = |from: *const f32| {
+                    if count == V::WIDTH { V::load(from) } else { V::load_some(from, count) }
+                };
                 let mut value: V = load(y.add(j));
-                let residual = if zero(row.residual) { None } else { Some(row.residual.add(pixel * conv.residual.pixel + j)) };
+                let residual = if zero(row.residual) {
+                    None
+                } else {
+                    Some(row.residual.add(pixel * conv.residual.pixel + j))
+                };
                 if let Some(residual) = residual.filter(|_| !conv.finish.residual_last) {
                     value = value.add(load(residual));
                 }
