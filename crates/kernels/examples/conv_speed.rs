@@ -6,7 +6,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use opendr_engine::Random;
-use opendr_kernels::{Compute, Convolution, DepthwiseFilters, Filters, Finish, Strides, Window};
+use opendr_kernels::{
+    Compute, Convolution, DepthwiseConvolution, DepthwiseFilters, Filters, Finish, Strides, Window,
+};
 
 fn main() {
     let compute = Compute::single();
@@ -65,11 +67,17 @@ fn main() {
         let mut y = vec![0.0; output * output * channels];
         let filters =
             DepthwiseFilters::new(&vec![0.1; channels * kernel * kernel], channels, window.kernel, None);
-        let strides =
-            [Strides::channels_last(window.input, channels), Strides::channels_last(window.output, channels)];
+        let depthwise = DepthwiseConvolution {
+            filters: Arc::new(filters),
+            window,
+            batch: 1,
+            x: Strides::channels_last(window.input, channels),
+            y: Strides::channels_last(window.output, channels),
+            finish: Finish::default(),
+        };
         let operations = (2 * output * output * channels * kernel * kernel) as f64;
         report(&format!("depthwise {size}x{size}x{channels} {kernel}x{kernel}/{stride}"), operations, || {
-            filters.run(&compute, &window, 1, &Finish::default(), strides, &x, &mut y);
+            depthwise.run(&compute, &x, &mut y);
         });
     }
 }

@@ -53,7 +53,7 @@ pub use arena::{ALIGNMENT, Arena, Number, Region, Rest, Written};
 pub use binary::{Binary, Operand};
 pub use column_sums::add_column_sums;
 pub use compute::Compute;
-pub use conv::{Convolution, DepthwiseFilters, Filters, Finish, Strides, Window};
+pub use conv::{Convolution, DepthwiseConvolution, DepthwiseFilters, Filters, Finish, Strides, Window};
 pub use elementary::{exp_in_place, sigmoid_in_place, tanh_in_place};
 pub use fourier::{FOURIER_FRAMES, FourierScratch, RealFourier, Spectrum};
 pub use gaussian::{gaussian_backward, gaussian_entropy, gaussian_log_density};

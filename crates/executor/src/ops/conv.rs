@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use opendr_engine::Result;
-use opendr_kernels::{Convolution, DepthwiseFilters, Filters, Finish, Strides, Window};
+use opendr_kernels::{Convolution, DepthwiseConvolution, DepthwiseFilters, Filters, Finish, Strides, Window};
 use opendr_onnx::proto::NodeProto;
 
 use super::fusion::{self, Fused};
@@ -113,9 +113,14 @@ pub(crate) fn conv(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option
         let Packed::Depthwise(filters) = filters else { return Err(node.refused("weights of two kinds")) };
         let fused = fusion::after(planner, node, &shape, false);
         let finish = finish(&fused, |slopes| filters.padded(slopes));
-        let strides =
-            [Strides::channels_last(window.input, outputs), Strides::channels_last(window.output, outputs)];
-        let step = DepthwiseStep { filters, window, batch: dims[0], finish, strides };
+        let step = DepthwiseStep(DepthwiseConvolution {
+            filters,
+            window,
+            batch: dims[0],
+            x: Strides::channels_last(window.input, outputs),
+            y: Strides::channels_last(window.output, outputs),
+            finish,
+        });
         let y = planner.emit_one(step, &[x], Kind::F32, shape, Layout::ChannelsLast)?;
         fused.absorb(planner, y);
         return Ok(vec![y]);
@@ -187,19 +192,12 @@ impl Kernel for ConvStep {
     }
 }
 
-struct DepthwiseStep {
-    filters: Arc<DepthwiseFilters>,
-    window: Window,
-    batch: usize,
-    finish: Finish,
-    strides: [Strides; 2],
-}
+struct DepthwiseStep(DepthwiseConvolution);
 
 impl Kernel for DepthwiseStep {
     fn run(&self, io: &mut Io<'_>) -> Result<()> {
         let x = io.read::<f32>(0);
-        let y = io.write();
-        self.filters.run(io.compute, &self.window, self.batch, &self.finish, self.strides, x, y);
+        self.0.run(io.compute, x, io.write());
         Ok(())
     }
 }

@@ -2,7 +2,7 @@
 
 use opendr_engine::{ErrorKind, Result};
 
-use super::Rten;
+use super::rten_runtime::Rten;
 use crate::runtime::{Engine, Runtime, SessionOptions, Sink};
 use crate::tensor::{TensorInfo, TensorView};
 
@@ -41,7 +41,7 @@ impl Engine for Fallback {
             sink(outputs)
         });
         match ran {
-            Err(error) if !is_done && error.kind() == ErrorKind::Unsupported => {
+            Err(error) if !is_done && matches!(error.kind(), ErrorKind::Unsupported | ErrorKind::Format) => {
                 self.engine = Rten.open(&model, &self.options)?;
                 self.engine.run(inputs, sink)
             }

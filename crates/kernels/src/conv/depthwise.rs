@@ -1,5 +1,7 @@
 //! Depthwise convolutions: every channel has a kernel of its own.
 
+use std::sync::Arc;
+
 use super::geometry::{Finish, Strides, Window};
 use crate::aligned::AlignedBuffer;
 use crate::compute::Compute;
@@ -55,39 +57,52 @@ impl DepthwiseFilters {
         all.resize(self.padded, 0.0);
         all
     }
+}
 
-    /// Computes the convolution of `batch` images with channels last. There is no residual.
+/// A depthwise convolution of known shapes.
+#[derive(Debug, Clone)]
+pub struct DepthwiseConvolution {
+    /// Weights and bias.
+    pub filters: Arc<DepthwiseFilters>,
+    /// Geometry.
+    pub window: Window,
+    /// Number of images.
+    pub batch: usize,
+    /// Layout of the input; channels lie side by side.
+    pub x: Strides,
+    /// Layout of the output; channels lie side by side.
+    pub y: Strides,
+    /// What follows the sums. There is no residual.
+    pub finish: Finish,
+}
+
+impl DepthwiseConvolution {
+    /// Computes the convolution.
     ///
     /// # Panics
     /// When the slices are shorter than the shapes and strides require.
-    pub fn run(
-        &self,
-        compute: &Compute,
-        window: &Window,
-        batch: usize,
-        finish: &Finish,
-        [x_strides, y_strides]: [Strides; 2],
-        x: &[f32],
-        y: &mut [f32],
-    ) {
-        if batch == 0 || window.output.contains(&0) || self.channels == 0 {
+    pub fn run(&self, compute: &Compute, x: &[f32], y: &mut [f32]) {
+        let Self { filters, window, batch, x: x_strides, y: y_strides, finish } = self;
+        let (batch, x_strides, y_strides) = (*batch, *x_strides, *y_strides);
+        if batch == 0 || window.output.contains(&0) || filters.channels == 0 {
             return;
         }
         let reach = |at: Strides, [height, width]: [usize; 2]| {
             (batch - 1) * at.image
                 + height.saturating_sub(1) * at.row
                 + width.saturating_sub(1) * at.pixel
-                + self.channels
+                + filters.channels
         };
-        assert_eq!(self.kernel, window.kernel, "the filters must have the size of the kernel");
-        y_strides.check_written(window.output, self.channels);
+        assert_eq!(x_strides.channel, 1, "the channels of the input must lie side by side");
+        assert_eq!(filters.kernel, window.kernel, "the filters must have the size of the kernel");
+        y_strides.check_written(window.output, filters.channels);
         assert!(
             window.input.contains(&0) || x.len() >= reach(x_strides, window.input),
             "the input is too short"
         );
         assert!(y.len() >= reach(y_strides, window.output), "the output is too short");
         if let Some(slopes) = &finish.slopes {
-            assert!(slopes.len() >= self.padded, "one slope per channel, rounded up");
+            assert!(slopes.len() >= filters.padded, "one slope per channel, rounded up");
         }
         let [height, width] = window.output;
         let threads = compute.pool().threads();
@@ -101,7 +116,7 @@ impl DepthwiseFilters {
             other => (all, other),
         };
         let job = Job {
-            filters: self,
+            filters,
             window,
             finish,
             x_strides,
@@ -116,7 +131,7 @@ impl DepthwiseFilters {
         let isa: Isa = compute.isa();
         // SAFETY: sizes have been checked; pieces write disjoint rows.
         let work = |piece| unsafe { dispatch_rows(isa, &job, piece) };
-        let products = batch * height * width * self.channels * self.kernel[0] * self.kernel[1];
+        let products = batch * height * width * filters.channels * filters.kernel[0] * filters.kernel[1];
         if products < 1 << 15 {
             (0..batch * down).for_each(work)
         } else {

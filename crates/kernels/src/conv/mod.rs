@@ -11,6 +11,6 @@ mod piece;
 mod tests;
 mod tile;
 
-pub use depthwise::DepthwiseFilters;
+pub use depthwise::{DepthwiseConvolution, DepthwiseFilters};
 pub use filters::Filters;
 pub use geometry::{Convolution, Finish, Strides, Window};

@@ -180,12 +180,16 @@ fn random_depthwise_convolutions_equal_plain_sums() {
         let wanted = reference(&window, batch, [channels, 1, 1], &x, &weights, &bias);
         for compute in computes() {
             let filters = DepthwiseFilters::new(&weights, channels, window.kernel, Some(&bias));
-            let strides = [
-                Strides::channels_last(window.input, channels),
-                Strides::channels_last(window.output, channels),
-            ];
+            let depthwise = DepthwiseConvolution {
+                filters: Arc::new(filters),
+                window,
+                batch,
+                x: Strides::channels_last(window.input, channels),
+                y: Strides::channels_last(window.output, channels),
+                finish: Finish::default(),
+            };
             let mut y = vec![f32::NAN; wanted.len()];
-            filters.run(&compute, &window, batch, &Finish::default(), strides, &x, &mut y);
+            depthwise.run(&compute, &x, &mut y);
             for (&y, &wanted) in y.iter().zip(&wanted) {
                 assert!(
                     (f64::from(y) - wanted).abs() < 1e-4,

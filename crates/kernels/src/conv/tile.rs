@@ -125,10 +125,10 @@ pub(super) unsafe fn planar_tile<V: Lanes, const R: usize, const N: usize, const
                     for (j, weight) in weights.iter_mut().enumerate() {
                         *weight = V::load(b.add(j * V::WIDTH));
                     }
-                    for i in 0..R {
+                    for (i, sums) in sums.iter_mut().enumerate() {
                         let x = V::splat(*x.add(i * S));
-                        for j in 0..N {
-                            sums[i][j] = x.mul_add(weights[j], sums[i][j]);
+                        for (sum, &weight) in sums.iter_mut().zip(&weights) {
+                            *sum = x.mul_add(weight, *sum);
                         }
                     }
                     b = b.add(N * V::WIDTH);
