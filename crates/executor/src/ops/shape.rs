@@ -52,7 +52,7 @@ pub(crate) fn reshape(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opt
     if let Some(open) = open {
         let known = count(&shape)?;
         let all = count(&dims)?;
-        shape[open] = if known == 0 { 0 } else { all / known };
+        shape[open] = all.checked_div(known).unwrap_or(0);
     }
     reshaped(planner, node, x, shape)
 }
