@@ -31,6 +31,7 @@
 //! ```
 
 mod builtin;
+mod executor;
 mod measured;
 mod onnx_header;
 mod onnx_runtime;
@@ -44,7 +45,8 @@ mod threads;
 pub mod recording;
 pub mod timing;
 
-pub use builtin::Builtin;
+pub use builtin::{Builtin, Rten};
+pub use executor::GraphExecutor;
 pub use onnx_runtime::{OnnxRuntime, prefer_python};
 pub use runtime::{Engine, Runtime, SessionOptions, Sink};
 pub use selection::{default_runtime, describe, device, runtimes};

@@ -2,12 +2,12 @@ use std::cell::RefCell;
 use std::thread::LocalKey;
 
 /// Memory for panels, aligned to a cache line; it grows and never shrinks.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub(crate) struct AlignedBuffer {
     lines: Vec<CacheLine>,
 }
 
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 struct CacheLine(#[expect(dead_code, reason = "read through a pointer to all lines")] [f32; 16]);
 
@@ -22,8 +22,13 @@ thread_local! {
 }
 
 impl AlignedBuffer {
+    /// Returns the first number.
+    pub(crate) fn start(&self) -> *const f32 {
+        self.lines.as_ptr().cast()
+    }
+
     /// Returns `length` numbers with unspecified content.
-    fn take(&mut self, length: usize) -> &mut [f32] {
+    pub(crate) fn take(&mut self, length: usize) -> &mut [f32] {
         let lines = length.div_ceil(16);
         if self.lines.len() < lines {
             self.lines.resize(lines, CacheLine([0.0; 16]));

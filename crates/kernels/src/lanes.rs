@@ -29,6 +29,8 @@ pub(crate) trait Lanes: Copy {
     const WIDTH: usize;
     /// Rows of a tile of the product; a tile uses most of the available registers.
     const ROWS: usize;
+    /// Registers of the instruction set.
+    const REGISTERS: usize;
 
     unsafe fn splat(value: f32) -> Self;
     unsafe fn load(from: *const f32) -> Self;
@@ -79,12 +81,30 @@ pub(crate) trait Lanes: Copy {
 
 /// Implements [`Lanes`] from one expression per function.
 macro_rules! implement_lanes {
-    ($type:ty, width: $width:literal, rows: $rows:literal,
+    ($type:ty, width: $width:literal, rows: $rows:literal, registers: $registers:literal,
+     $(@some($from:ident, $value:ident, $to:ident, $count:ident): $load_some:expr, $store_some:expr,)?
      $($name:ident($($argument:ident),*) = $body:expr;)*) => {
         impl $crate::lanes::Lanes for $type {
             const WIDTH: usize = $width;
             const ROWS: usize = $rows;
+            const REGISTERS: usize = $registers;
             $($crate::lanes::implement_lanes!(@function $name($($argument),*) = $body);)*
+            $(
+                #[inline(always)]
+                #[allow(unused_unsafe)]
+                unsafe fn load_some($from: *const f32, $count: usize) -> Self {
+                    // SAFETY: the trait's contract.
+                    unsafe { $load_some }
+                }
+
+                #[inline(always)]
+                #[allow(unused_unsafe)]
+                unsafe fn store_some(self, $to: *mut f32, $count: usize) {
+                    let $value = self;
+                    // SAFETY: the trait's contract.
+                    unsafe { $store_some }
+                }
+            )?
         }
     };
     (@function splat($value:ident) = $body:expr) => {

@@ -27,8 +27,11 @@
 
 mod activation;
 mod aligned;
+mod arena;
+mod binary;
 mod column_sums;
 mod compute;
+mod conv;
 mod elementary;
 mod fourier;
 mod gaussian;
@@ -40,12 +43,17 @@ mod matrix;
 mod network;
 mod optimizer;
 mod pool;
+mod pooling;
 mod product;
 mod softmax;
+mod unary;
 
 pub use activation::Activation;
+pub use arena::{ALIGNMENT, Arena, Number, Region, Rest, Written};
+pub use binary::{Binary, Operand};
 pub use column_sums::add_column_sums;
 pub use compute::Compute;
+pub use conv::{Convolution, DepthwiseConvolution, DepthwiseFilters, Filters, Finish, Strides, Window};
 pub use elementary::{exp_in_place, sigmoid_in_place, tanh_in_place};
 pub use fourier::{FOURIER_FRAMES, FourierScratch, RealFourier, Spectrum};
 pub use gaussian::{gaussian_backward, gaussian_entropy, gaussian_log_density};
@@ -58,5 +66,7 @@ pub use optimizer::{
     Adam, AdamOptions, Momentum, WeightDecay, clip_gradient_norm, gradient_norm, polyak_update,
 };
 pub use pool::WorkerPool;
+pub use pooling::Pooling;
 pub use product::{Bias, Product};
 pub use softmax::{categorical_backward, cross_entropy, entropy, log_softmax, log_softmax_backward};
+pub use unary::Unary;

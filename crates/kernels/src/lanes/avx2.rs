@@ -6,10 +6,20 @@ use super::implement_lanes;
 #[derive(Clone, Copy)]
 pub(crate) struct Avx2(__m256);
 
+/// Returns the mask of the first lanes.
+#[inline(always)]
+unsafe fn first(count: usize) -> __m256i {
+    // SAFETY: the caller has AVX2; the window of eight begins at most eight before the end.
+    unsafe { _mm256_loadu_si256(MASK.as_ptr().add(8 - count.min(8)).cast()) }
+}
+
+static MASK: [i32; 16] = [-1, -1, -1, -1, -1, -1, -1, -1, 0, 0, 0, 0, 0, 0, 0, 0];
+
 const NEAREST: i32 = _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC;
 
 implement_lanes! {
-    Avx2, width: 8, rows: 6,
+    Avx2, width: 8, rows: 6, registers: 16,
+    @some(from, value, to, count): Self(_mm256_maskload_ps(from, first(count))), _mm256_maskstore_ps(to, first(count), value.0),
     splat(value) = Self(_mm256_set1_ps(value));
     load(from) = Self(_mm256_loadu_ps(from));
     store(value, to) = _mm256_storeu_ps(to, value.0);

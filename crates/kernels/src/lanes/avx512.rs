@@ -6,10 +6,17 @@ use super::implement_lanes;
 #[derive(Clone, Copy)]
 pub(crate) struct Avx512(__m512);
 
+/// Returns the mask of the first lanes.
+#[inline(always)]
+fn first(count: usize) -> __mmask16 {
+    ((1_u32 << count) - 1) as __mmask16
+}
+
 const NEAREST: i32 = _MM_FROUND_TO_NEAREST_INT;
 
 implement_lanes! {
-    Avx512, width: 16, rows: 8,
+    Avx512, width: 16, rows: 8, registers: 32,
+    @some(from, value, to, count): Self(_mm512_maskz_loadu_ps(first(count), from)), _mm512_mask_storeu_ps(to, first(count), value.0),
     splat(value) = Self(_mm512_set1_ps(value));
     load(from) = Self(_mm512_loadu_ps(from));
     store(value, to) = _mm512_storeu_ps(to, value.0);

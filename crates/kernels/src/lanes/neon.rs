@@ -7,7 +7,7 @@ use super::implement_lanes;
 pub(crate) struct Neon(float32x4_t);
 
 implement_lanes! {
-    Neon, width: 4, rows: 8,
+    Neon, width: 4, rows: 8, registers: 32,
     splat(value) = Self(vdupq_n_f32(value));
     load(from) = Self(vld1q_f32(from));
     store(value, to) = vst1q_f32(to, value.0);

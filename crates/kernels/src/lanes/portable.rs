@@ -24,7 +24,7 @@ impl Portable {
 const ROUNDING: f32 = 12_582_912.0;
 
 implement_lanes! {
-    Portable, width: 4, rows: 4,
+    Portable, width: 4, rows: 4, registers: 16,
     splat(value) = { let lanes = [value; 4]; Self(lanes) };
     load(from) = Self(from.cast::<[f32; 4]>().read_unaligned());
     store(value, to) = to.cast::<[f32; 4]>().write_unaligned(value.0);

@@ -1,0 +1,43 @@
+//! Graph executor: ONNX models planned and run on the CPU kernels.
+//!
+//! Contents:
+//! * [`Executor`]: an opened model that runs on [`Tensor`]s. Begin here.
+//! * [`supported_operators`]: the operators that it runs; a model with another one is refused when it is opened.
+//!
+//! A model is planned once per shape of its inputs: shapes are inferred, what depends on constants only is computed,
+//! activations and sums are fused into convolutions, image tensors lie with channels last, and every tensor has a
+//! place in one arena. A run then allocates nothing. `opendr-inference` runs models through this crate and falls back
+//! to another runtime for what it refuses.
+//!
+//! ```
+//! use opendr_executor::{Data, Executor, Tensor};
+//! use opendr_kernels::Compute;
+//! use opendr_onnx::{Builder, ElementType, Operator, bytes_from_model, model_from_graph};
+//!
+//! let mut graph = Builder::default();
+//! let x = graph.input("x", ElementType::Float, vec![Some(2)], &[]);
+//! let relu = graph.add("relu", Operator::new("Relu"), &[&x], ElementType::Float, vec![Some(2)])?;
+//! graph.output("y", &relu, "", &[])?;
+//! let model = bytes_from_model(&model_from_graph(graph.finish("example")));
+//!
+//! let mut executor = Executor::open(&model, Compute::single())?;
+//! executor.run(&[Tensor { shape: &[2], data: Data::F32(&[-1.0, 3.0]) }], &mut |outputs| {
+//!     assert!(matches!(outputs[0].data, Data::F32([0.0, 3.0])));
+//!     Ok(())
+//! })?;
+//! # Ok::<(), opendr_engine::Error>(())
+//! ```
+
+mod attributes;
+mod executor;
+mod graph;
+mod io;
+mod ops;
+mod plan;
+mod planner;
+mod remap;
+mod tensor;
+
+pub use executor::{Executor, LayerTime};
+pub use ops::supported_operators;
+pub use tensor::{Data, Kind, Tensor};

@@ -1,0 +1,134 @@
+//! The operators: each builds the steps of a node whose input shapes are known.
+
+mod conv;
+mod elementwise;
+mod fusion;
+mod index;
+mod inputs;
+mod matmul;
+mod movement;
+mod normalise;
+mod pool;
+mod quantize;
+mod recurrent;
+mod reduce;
+mod resize;
+mod shape;
+
+use opendr_engine::Result;
+use opendr_onnx::proto::NodeProto;
+
+use crate::attributes::Attributes;
+use crate::planner::{Id, Planner};
+
+type Build = fn(&mut Planner<'_>, &NodeProto, &[Option<Id>]) -> Result<Vec<Id>>;
+
+/// Operators and what builds them, by name.
+const OPERATORS: &[(&str, Build)] = &[
+    ("Abs", elementwise::unary),
+    ("Add", elementwise::binary),
+    ("And", elementwise::binary),
+    ("ArgMax", reduce::arg),
+    ("ArgMin", reduce::arg),
+    ("AveragePool", pool::pool),
+    ("BatchNormalization", normalise::batch),
+    ("Cast", elementwise::cast),
+    ("Clip", elementwise::clip),
+    ("Concat", movement::concat),
+    ("Constant", shape::constant),
+    ("ConstantOfShape", shape::constant_of_shape),
+    ("Conv", conv::conv),
+    ("ConvTranspose", conv::transposed),
+    ("DepthToSpace", movement::depth_to_space),
+    ("DequantizeLinear", quantize::dequantize),
+    ("Div", elementwise::binary),
+    ("Dropout", shape::identity),
+    ("Equal", elementwise::binary),
+    ("Erf", elementwise::unary),
+    ("Exp", elementwise::unary),
+    ("Expand", movement::expand),
+    ("Flatten", shape::flatten),
+    ("GRU", recurrent::gru),
+    ("Gather", index::gather),
+    ("GatherND", index::gather_nd),
+    ("Gelu", elementwise::unary),
+    ("Gemm", matmul::gemm),
+    ("GlobalAveragePool", pool::global),
+    ("GlobalMaxPool", pool::global),
+    ("Greater", elementwise::binary),
+    ("GreaterOrEqual", elementwise::binary),
+    ("HardSigmoid", elementwise::unary),
+    ("HardSwish", elementwise::unary),
+    ("Identity", shape::identity),
+    ("LSTM", recurrent::lstm),
+    ("LayerNormalization", normalise::layer),
+    ("LeakyRelu", elementwise::unary),
+    ("Less", elementwise::binary),
+    ("LessOrEqual", elementwise::binary),
+    ("LogSoftmax", normalise::softmax),
+    ("MatMul", matmul::matmul),
+    ("Max", elementwise::variadic),
+    ("MaxPool", pool::pool),
+    ("Min", elementwise::variadic),
+    ("Mod", elementwise::binary),
+    ("Mul", elementwise::binary),
+    ("Neg", elementwise::unary),
+    ("Not", elementwise::not),
+    ("Or", elementwise::binary),
+    ("PRelu", elementwise::prelu),
+    ("Pad", movement::pad),
+    ("Pow", elementwise::binary),
+    ("QuantizeLinear", quantize::quantize),
+    ("Range", shape::range),
+    ("Reciprocal", elementwise::unary),
+    ("ReduceL2", reduce::reduce),
+    ("ReduceMax", reduce::reduce),
+    ("ReduceMean", reduce::reduce),
+    ("ReduceMin", reduce::reduce),
+    ("ReduceProd", reduce::reduce),
+    ("ReduceSum", reduce::reduce),
+    ("ReduceSumSquare", reduce::reduce),
+    ("Relu", elementwise::unary),
+    ("Reshape", shape::reshape),
+    ("Resize", resize::resize),
+    ("ScatterElements", index::scatter_elements),
+    ("ScatterND", index::scatter_nd),
+    ("Shape", shape::shape),
+    ("Sigmoid", elementwise::unary),
+    ("Size", shape::size),
+    ("Slice", movement::slice),
+    ("Softmax", normalise::softmax),
+    ("SpaceToDepth", movement::depth_to_space),
+    ("Split", movement::split),
+    ("Sqrt", elementwise::unary),
+    ("Squeeze", shape::squeeze),
+    ("Sub", elementwise::binary),
+    ("Sum", elementwise::variadic),
+    ("Tanh", elementwise::unary),
+    ("Tile", movement::tile),
+    ("TopK", index::top_k),
+    ("Transpose", movement::transpose),
+    ("Unsqueeze", shape::unsqueeze),
+    ("Where", elementwise::select),
+];
+
+/// Returns the names of the operators that the executor runs.
+pub fn supported_operators() -> impl Iterator<Item = &'static str> {
+    OPERATORS.iter().map(|(name, _)| *name)
+}
+
+pub(crate) fn is_supported(name: &str) -> bool {
+    OPERATORS.iter().any(|(operator, _)| *operator == name)
+}
+
+/// Builds the steps of a node and returns its outputs.
+pub(crate) fn build(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
+    let build = OPERATORS.iter().find(|(name, _)| *name == node.op_type).map(|(_, build)| build);
+    let build = build.ok_or_else(|| node.refused("it is not known"))?;
+    let used = node.output.iter().rposition(|name| !name.is_empty()).map_or(0, |last| last + 1);
+    let outputs = build(planner, node, inputs)?;
+    if outputs.len() < used {
+        return Err(node.refused("one of its outputs"));
+    }
+    Ok(outputs)
+}

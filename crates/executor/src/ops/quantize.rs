@@ -1,0 +1,158 @@
+//! Quantisation.
+
+use opendr_engine::Result;
+use opendr_onnx::proto::NodeProto;
+
+use super::elementwise::Rows;
+use super::inputs::{axis, optional, required};
+use crate::attributes::Attributes;
+use crate::io::{Io, Kernel};
+use crate::planner::{Id, Planner};
+use crate::tensor::Kind;
+
+/// Returns scale and zero point with a shape that broadcasts to the input, and their reach in memory.
+fn parameters(
+    planner: &mut Planner<'_>,
+    node: &NodeProto,
+    inputs: &[Option<Id>],
+    x: Id,
+) -> Result<(Vec<Option<Id>>, Rows)> {
+    let (dims, rank) = (planner.shape(x), planner.rank(x));
+    let scale = required(node, inputs, 1)?;
+    let zero = optional(inputs, 2);
+    let elements: usize = planner.shape(scale).iter().product();
+    if node.int_or("block_size", 0) != 0 || planner.kind(scale) != Kind::F32 {
+        return Err(node.refused("blocks, or the type of its scale"));
+    }
+    if zero.is_some_and(|zero| planner.shape(zero).iter().product::<usize>() != elements) {
+        return Err(node.damaged("scale and zero point of different shapes"));
+    }
+    let mut shape = vec![1; rank];
+    if elements != 1 || planner.rank(scale) == 1 && rank > 0 && elements > 1 {
+        let along = axis(node, node.int_or("axis", 1), rank)?;
+        if dims[along] != elements {
+            return Err(node.damaged("one scale per element of the axis"));
+        }
+        shape[along] = elements;
+    }
+    let value = planner.value(x).clone();
+    let physical = value.physical();
+    let shape = if planner.is_channels_last(x) { crate::planner::channels_to_end(&shape) } else { shape };
+    let own = physical.clone();
+    let rows = Rows::new(&physical, &[own, shape.clone(), shape]);
+    let scale = planner.plain(scale)?;
+    let zero = match zero {
+        Some(zero) => Some(planner.plain(zero)?),
+        None => None,
+    };
+    Ok((vec![Some(x), Some(scale), zero], rows))
+}
+
+pub(crate) fn quantize(
+    planner: &mut Planner<'_>,
+    node: &NodeProto,
+    inputs: &[Option<Id>],
+) -> Result<Vec<Id>> {
+    let x = required(node, inputs, 0)?;
+    let to = optional(inputs, 2).map_or(Kind::U8, |zero| planner.kind(zero));
+    if planner.kind(x) != Kind::F32
+        || !matches!(to, Kind::U8 | Kind::I8)
+        || node.int_or("output_dtype", 0) != 0
+    {
+        return Err(node.refused("its types"));
+    }
+    let (reads, rows) = parameters(planner, node, inputs, x)?;
+    let value = planner.value(x).clone();
+    planner.emit(QuantizeStep { to, rows }, &reads, &[(to, value.shape, value.layout)])
+}
+
+pub(crate) fn dequantize(
+    planner: &mut Planner<'_>,
+    node: &NodeProto,
+    inputs: &[Option<Id>],
+) -> Result<Vec<Id>> {
+    let x = required(node, inputs, 0)?;
+    let from = planner.kind(x);
+    if !matches!(from, Kind::U8 | Kind::I8 | Kind::I32)
+        || optional(inputs, 2).is_some_and(|zero| planner.kind(zero) != from)
+    {
+        return Err(node.refused("its types"));
+    }
+    let (reads, rows) = parameters(planner, node, inputs, x)?;
+    let value = planner.value(x).clone();
+    planner.emit(DequantizeStep { from, rows }, &reads, &[(Kind::F32, value.shape, value.layout)])
+}
+
+struct QuantizeStep {
+    to: Kind,
+    rows: Rows,
+}
+
+impl Kernel for QuantizeStep {
+    fn run(&self, io: &mut Io<'_>) -> Result<()> {
+        match self.to {
+            Kind::U8 => self.write(io, |zero: u8| f32::from(zero), [0.0, 255.0], |value| value as u8),
+            _ => self.write(io, |zero: i8| f32::from(zero), [-128.0, 127.0], |value| value as i8),
+        }
+        Ok(())
+    }
+}
+
+impl QuantizeStep {
+    fn write<T: opendr_kernels::Number>(
+        &self,
+        io: &mut Io<'_>,
+        read: impl Fn(T) -> f32 + Sync,
+        [low, high]: [f32; 2],
+        to: impl Fn(f32) -> T + Sync,
+    ) {
+        let (x, scales, zeros, y) = (io.read::<f32>(0), io.read::<f32>(1), io.read::<T>(2), io.write::<T>());
+        let length = self.rows.length.max(1);
+        for (row, y) in y.chunks_mut(length).enumerate() {
+            let x = self.rows.of(x, row, 0, y.len());
+            let at = self.rows.start(row, 1);
+            if self.rows.is_row[1] {
+                for (i, (y, x)) in y.iter_mut().zip(x).enumerate() {
+                    let zero = zeros.get(at + i).map_or(0.0, |&zero| read(zero));
+                    *y = to(((x / scales[at + i]).round_ties_even() + zero).clamp(low, high));
+                }
+            } else {
+                let (scale, zero) = (scales[at], zeros.get(at).map_or(0.0, |&zero| read(zero)));
+                y.iter_mut()
+                    .zip(x)
+                    .for_each(|(y, x)| *y = to(((x / scale).round_ties_even() + zero).clamp(low, high)));
+            }
+        }
+    }
+}
+
+struct DequantizeStep {
+    from: Kind,
+    rows: Rows,
+}
+
+impl Kernel for DequantizeStep {
+    fn run(&self, io: &mut Io<'_>) -> Result<()> {
+        match self.from {
+            Kind::U8 => self.write(io, |x: u8| i32::from(x)),
+            Kind::I8 => self.write(io, |x: i8| i32::from(x)),
+            _ => self.write(io, |x: i32| x),
+        }
+        Ok(())
+    }
+}
+
+impl DequantizeStep {
+    fn write<T: opendr_kernels::Number>(&self, io: &mut Io<'_>, read: impl Fn(T) -> i32) {
+        let (x, scales, zeros, y) = (io.read::<T>(0), io.read::<f32>(1), io.read::<T>(2), io.write::<f32>());
+        for (row, y) in y.chunks_mut(self.rows.length.max(1)).enumerate() {
+            let x = self.rows.of(x, row, 0, y.len());
+            let at = self.rows.start(row, 1);
+            for (i, (y, &x)) in y.iter_mut().zip(x).enumerate() {
+                let i = if self.rows.is_row[1] { at + i } else { at };
+                let zero = zeros.get(i).map_or(0, |&zero| read(zero));
+                *y = read(x).wrapping_sub(zero) as f32 * scales[i];
+            }
+        }
+    }
+}

@@ -1,0 +1,7 @@
+//! Tests of the graph executor on small graphs and real files.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests fail by panicking")]
+
+mod conformance;
+mod hostile;
+mod operators;
+mod threads;

@@ -1,0 +1,267 @@
+//! Prints a table of the runtimes side by side on ONNX files, on random inputs:
+//! `cargo run --release -p opendr-inference --example runtimes -- THREADS ROUNDS FILE...`.
+//!
+//! One line per file: medians and minima of the times of a run in milliseconds, taking turns (with one thread, the time
+//! that the thread has computed, which other programs do not change much), the ratio of the minima of graph executor
+//! and ONNX Runtime, the largest difference of an output relative to its largest magnitude, and the
+//! times to open the model. ONNX Runtime is found as by the library (`ORT_DYLIB_PATH`).
+
+use std::time::Instant;
+
+use opendr_engine::{Random, Result};
+use opendr_inference::{
+    ElementType, GraphExecutor, OnnxRuntime, Rten, Runtime, Session, SessionOptions, TensorData, TensorInfo,
+    TensorView,
+};
+
+fn main() -> Result<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [threads, rounds, files @ ..] = arguments.as_slice() else {
+        eprintln!("usage: runtimes THREADS ROUNDS FILE...");
+        return Ok(());
+    };
+    if threads == "layers" {
+        for file in &arguments[1..] {
+            let bytes =
+                std::fs::read(file).map_err(|error| opendr_engine::Error::internal(error.to_string()))?;
+            print_layers(file, &bytes)?;
+        }
+        return Ok(());
+    }
+    let threads = threads.parse().unwrap_or(1);
+    let rounds = rounds.parse().unwrap_or(15_usize).max(1);
+    let options = SessionOptions { threads, ..SessionOptions::default() };
+    let onnx_runtime = OnnxRuntime::find()?;
+    println!("# {}, {threads} threads, {rounds} rounds", onnx_runtime.describe());
+    println!("| model | executor, ms | ONNX Runtime, ms | rten, ms | ratio | difference | opened in, ms |");
+    println!("|---|---|---|---|---|---|---|");
+    let mut logarithms = Vec::new();
+    for file in files {
+        match compare(file, &options, &*onnx_runtime, rounds) {
+            Ok((line, ratio)) => {
+                println!("{line}");
+                logarithms.extend(ratio.map(f64::ln));
+            }
+            Err(error) => println!("| {} | {error:#} | | | | | |", name(file)),
+        }
+    }
+    let mean = logarithms.iter().sum::<f64>() / logarithms.len().max(1) as f64;
+    println!("# geometric mean of {} ratios: {:.3}", logarithms.len(), mean.exp());
+    Ok(())
+}
+
+/// Returns the time that this thread has computed, or with several threads the time of day.
+fn seconds(threads: usize) -> f64 {
+    if threads == 1 {
+        let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+        // SAFETY: the pointer is to a local value.
+        if unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &mut time) } == 0 {
+            return time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64;
+        }
+    }
+    std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0.0, |time| time.as_secs_f64())
+}
+
+fn name(file: &str) -> &str {
+    let start = file.rmatch_indices('/').nth(1).map_or(0, |(at, _)| at + 1);
+    &file[start..]
+}
+
+/// Prints the time of the nodes of a model, the longest first.
+fn print_layers(file: &str, bytes: &[u8]) -> Result<()> {
+    let mut executor = opendr_executor::Executor::open(bytes, opendr_kernels::Compute::single())?;
+    let infos = Session::open_with(&GraphExecutor, bytes, SessionOptions::default())?.inputs().to_vec();
+    let owned: Vec<Owned> = infos.iter().map(Owned::random).collect();
+    let tensors: Vec<opendr_executor::Tensor<'_>> = owned.iter().filter_map(Owned::floats).collect();
+    let mut least: Vec<opendr_executor::LayerTime> = executor.profile(&tensors)?;
+    for _ in 0..30 {
+        for (least, new) in least.iter_mut().zip(executor.profile(&tensors)?) {
+            least.time = least.time.min(new.time);
+        }
+    }
+    let total: f64 = least.iter().map(|layer| layer.time.as_secs_f64()).sum();
+    println!("# {file}: {:.3} ms, arena {} KiB", 1e3 * total, executor.arena_bytes() >> 10);
+    least.sort_by_key(|layer| std::cmp::Reverse(layer.time));
+    for layer in least.iter().take(25) {
+        println!(
+            "{:>9.1} us {:5.1} % {} {}",
+            1e6 * layer.time.as_secs_f64(),
+            100.0 * layer.time.as_secs_f64() / total,
+            layer.operator,
+            layer.name
+        );
+    }
+    Ok(())
+}
+
+struct Opened {
+    session: Option<Session>,
+    opened: f64,
+    times: Vec<f64>,
+    refused: String,
+}
+
+fn open(runtime: &dyn Runtime, bytes: &[u8], options: &SessionOptions) -> Opened {
+    let start = Instant::now();
+    let (session, refused) = match Session::open_with(runtime, bytes, *options) {
+        Ok(session) => (Some(session), String::new()),
+        Err(error) => (None, error.to_string()),
+    };
+    Opened { session, opened: 1e3 * start.elapsed().as_secs_f64(), times: Vec::new(), refused }
+}
+
+fn compare(
+    file: &str,
+    options: &SessionOptions,
+    onnx_runtime: &dyn Runtime,
+    rounds: usize,
+) -> Result<(String, Option<f64>)> {
+    let bytes = std::fs::read(file).map_err(|error| opendr_engine::Error::internal(error.to_string()))?;
+    let mut sides = [
+        open(&GraphExecutor, &bytes, options),
+        open(onnx_runtime, &bytes, options),
+        open(&Rten, &bytes, options),
+    ];
+    let infos = sides.iter().find_map(|side| side.session.as_ref()).map_or(&[][..], Session::inputs).to_vec();
+    let owned: Vec<Owned> = infos.iter().map(Owned::random).collect();
+    let inputs = owned.iter().map(Owned::view).collect::<Result<Vec<_>>>()?;
+    let mut outputs: Vec<Vec<(String, Vec<f64>)>> = vec![Vec::new(); 3];
+    for (side, kept) in sides.iter_mut().zip(&mut outputs) {
+        let Some(session) = &side.session else { continue };
+        let names: Vec<String> = session.outputs().iter().map(|output| output.name.clone()).collect();
+        let ran = session.run(&inputs, |outputs| {
+            kept.extend(names.iter().cloned().zip(outputs.iter().map(numbers)));
+            Ok(())
+        });
+        if let Err(error) = ran {
+            side.refused = error.to_string();
+            side.session = None;
+        }
+    }
+    for round in 0..rounds {
+        for offset in 0..3 {
+            let side = &mut sides[(round + offset) % 3];
+            let Some(session) = &side.session else { continue };
+            // Small models run several times per turn, so that a turn is a millisecond.
+            let runs = side
+                .times
+                .first()
+                .map_or(1, |first| (1.0 / first.max(1e-3)).ceil().clamp(1.0, 50.0) as usize);
+            let start = seconds(options.threads);
+            for _ in 0..runs {
+                session.run(&inputs, |_| Ok(()))?;
+            }
+            side.times.push(1e3 * (seconds(options.threads) - start) / runs as f64);
+        }
+    }
+    let time = |side: &Opened| {
+        let mut times = side.times.clone();
+        times.sort_by(f64::total_cmp);
+        match times.as_slice() {
+            [] => format!("refused: {}", side.refused),
+            [least, ..] => format!("{:.3} ({least:.3})", times[times.len() / 2]),
+        }
+    };
+    let least = |side: &Opened| side.times.iter().copied().min_by(f64::total_cmp);
+    let ratio = least(&sides[0]).zip(least(&sides[1])).map(|(ours, theirs)| ours / theirs);
+    let line = format!(
+        "| {} | {} | {} | {} | {} | {:.1e} | {:.0}, {:.0}, {:.0} |",
+        name(file),
+        time(&sides[0]),
+        time(&sides[1]),
+        time(&sides[2]),
+        ratio.map_or("-".to_owned(), |ratio| format!("{ratio:.2}")),
+        difference(&outputs[0], &outputs[1]),
+        sides[0].opened,
+        sides[1].opened,
+        sides[2].opened,
+    );
+    Ok((line, ratio))
+}
+
+/// Returns the largest difference of an output, relative to its largest magnitude.
+fn difference(a: &[(String, Vec<f64>)], b: &[(String, Vec<f64>)]) -> f64 {
+    if a.is_empty() || b.is_empty() {
+        return f64::NAN;
+    }
+    let mut worst = 0.0_f64;
+    for ((name, a), (_, b)) in a.iter().zip(b) {
+        let magnitude = b.iter().fold(f64::MIN_POSITIVE, |largest, value| largest.max(value.abs()));
+        let apart = if a.len() == b.len() {
+            a.iter()
+                .zip(b)
+                .map(|(a, b)| if a.is_nan() && b.is_nan() { 0.0 } else { (a - b).abs() })
+                .fold(0.0, |m: f64, d| if d.is_nan() { f64::INFINITY } else { m.max(d) })
+        } else {
+            f64::INFINITY
+        };
+        if apart / magnitude > 1e-4 {
+            eprintln!("  {name}: {:.1e} of {magnitude:.3e}", apart / magnitude);
+        }
+        worst = worst.max(apart / magnitude);
+    }
+    worst
+}
+
+fn numbers(tensor: &TensorView<'_>) -> Vec<f64> {
+    match tensor.data() {
+        TensorData::F32(data) => data.iter().map(|&value| f64::from(value)).collect(),
+        TensorData::I32(data) => data.iter().map(|&value| f64::from(value)).collect(),
+        TensorData::I64(data) => data.iter().map(|&value| value as f64).collect(),
+        TensorData::U8(data) => data.iter().map(|&value| f64::from(value)).collect(),
+        TensorData::I8(data) => data.iter().map(|&value| f64::from(value)).collect(),
+        TensorData::Bool(data) => data.iter().map(|&value| f64::from(u8::from(value))).collect(),
+        _ => Vec::new(),
+    }
+}
+
+enum Owned {
+    Floats(Vec<usize>, Vec<f32>),
+    Longs(Vec<usize>, Vec<i64>),
+    Ints(Vec<usize>, Vec<i32>),
+    Bytes(Vec<usize>, Vec<u8>),
+    Truths(Vec<usize>, Vec<bool>),
+}
+
+impl Owned {
+    /// Open dimensions have the size 256 where there is a height or width, else 8.
+    fn random(info: &TensorInfo) -> Self {
+        let open = |d: usize| match (info.dims.len(), d) {
+            (_, 0) => 1,
+            (4, _) => 256,
+            _ => 8,
+        };
+        let shape: Vec<usize> =
+            info.dims.iter().enumerate().map(|(d, dim)| dim.unwrap_or_else(|| open(d))).collect();
+        let count = shape.iter().product();
+        let mut random = Random::new(7);
+        match info.element_type {
+            ElementType::I64 => Self::Longs(shape, (0..count).map(|i| i as i64 % 7).collect()),
+            ElementType::I32 => Self::Ints(shape, (0..count).map(|i| i as i32 % 7).collect()),
+            ElementType::U8 | ElementType::I8 => {
+                Self::Bytes(shape, (0..count).map(|i| (i * 37 % 251) as u8).collect())
+            }
+            ElementType::Bool => Self::Truths(shape, (0..count).map(|i| i % 3 == 0).collect()),
+            _ => Self::Floats(shape, (0..count).map(|_| random.uniform(-1.0, 1.0)).collect()),
+        }
+    }
+
+    fn floats(&self) -> Option<opendr_executor::Tensor<'_>> {
+        match self {
+            Self::Floats(shape, data) => {
+                Some(opendr_executor::Tensor { shape, data: opendr_executor::Data::F32(data) })
+            }
+            _ => None,
+        }
+    }
+
+    fn view(&self) -> Result<TensorView<'_>> {
+        match self {
+            Self::Floats(shape, data) => TensorView::new(shape, data),
+            Self::Longs(shape, data) => TensorView::new(shape, data),
+            Self::Ints(shape, data) => TensorView::new(shape, data),
+            Self::Bytes(shape, data) => TensorView::new(shape, data),
+            Self::Truths(shape, data) => TensorView::new(shape, data),
+        }
+    }
+}

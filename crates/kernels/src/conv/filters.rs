@@ -1,0 +1,239 @@
+//! Weights in the order in which the inner loop reads them.
+
+use crate::aligned::AlignedBuffer;
+use crate::compute::Compute;
+use crate::isa::{Isa, Set};
+use crate::lanes::{self, Lanes};
+
+/// Packed weights and bias of a convolution of one or more groups, for one instruction set.
+pub struct Filters {
+    isa: Isa,
+    width: usize,
+    /// Registers per panel.
+    vectors: usize,
+    groups: usize,
+    /// Outputs per group.
+    outputs: usize,
+    /// Channels per group.
+    channels: usize,
+    kernel: [usize; 2],
+    planar: bool,
+    group_length: usize,
+    panels: AlignedBuffer,
+    /// Per group, filled up to whole registers.
+    bias: Vec<f32>,
+}
+
+impl std::fmt::Debug for Filters {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { groups, outputs, channels, kernel, .. } = self;
+        write!(f, "Filters({groups} groups of {outputs}x{channels}x{kernel:?})")
+    }
+}
+
+impl Filters {
+    /// Packs weights of the shape `[groups * outputs, channels, height, width]`. `planar` states that the input has
+    /// planes of channels, which is faster for few channels.
+    ///
+    /// # Panics
+    /// When the lengths do not match.
+    pub fn new(
+        compute: &Compute,
+        weights: &[f32],
+        [groups, outputs, channels]: [usize; 3],
+        kernel: [usize; 2],
+        bias: Option<&[f32]>,
+        planar: bool,
+    ) -> Self {
+        let taps = kernel[0] * kernel[1];
+        assert_eq!(
+            weights.len(),
+            groups * outputs * channels * taps,
+            "the weights must have the stated shape"
+        );
+        let strides = [channels * taps, taps, 1];
+        Self::with_strides(compute, weights, strides, [groups, outputs, channels], kernel, bias, planar)
+    }
+
+    /// Packs a matrix `[depth, columns]` (transposed: `[columns, depth]`) as the filters of a product.
+    ///
+    /// # Panics
+    /// When the lengths do not match.
+    pub fn from_matrix(
+        compute: &Compute,
+        matrix: &[f32],
+        [depth, columns]: [usize; 2],
+        transposed: bool,
+        bias: Option<&[f32]>,
+    ) -> Self {
+        assert_eq!(matrix.len(), depth * columns, "the matrix must have the stated shape");
+        let strides = if transposed { [depth, 1, 1] } else { [1, columns, 1] };
+        Self::with_strides(compute, matrix, strides, [1, columns, depth], [1, 1], bias, false)
+    }
+
+    fn with_strides(
+        compute: &Compute,
+        weights: &[f32],
+        [output_stride, channel_stride, tap_stride]: [usize; 3],
+        [groups, outputs, channels]: [usize; 3],
+        kernel: [usize; 2],
+        bias: Option<&[f32]>,
+        planar: bool,
+    ) -> Self {
+        let isa = compute.isa();
+        let width = width_of(isa);
+        let blocks = outputs.div_ceil(width);
+        let vectors = if blocks.is_multiple_of(3) || blocks > 6 { 3 } else { 2 }.min(blocks.max(1));
+        let depth = kernel[0] * kernel[1] * channels;
+        let group_length = blocks * width * depth;
+        let mut panels = AlignedBuffer::default();
+        let packed = panels.take(group_length * groups);
+        for group in 0..groups {
+            let to = &mut packed[group * group_length..][..group_length];
+            for first in (0..blocks).step_by(vectors) {
+                let panel_width = vectors.min(blocks - first) * width;
+                let panel = &mut to[first * width * depth..][..panel_width * depth];
+                let used = panel_width.min(outputs - first * width);
+                for step in 0..depth {
+                    let (channel, ky, kx) = if planar {
+                        let (row, kx) = (step / kernel[1], step % kernel[1]);
+                        (row % channels, row / channels, kx)
+                    } else {
+                        let (tap, channel) = (step / channels, step % channels);
+                        (channel, tap / kernel[1], tap % kernel[1])
+                    };
+                    let tap = (ky * kernel[1] + kx) * tap_stride;
+                    let row = &mut panel[step * panel_width..][..panel_width];
+                    for (i, number) in row[..used].iter_mut().enumerate() {
+                        let output = group * outputs + first * width + i;
+                        *number = weights[output * output_stride + channel * channel_stride + tap];
+                    }
+                }
+            }
+        }
+        let padded = blocks * width;
+        let mut padded_bias = vec![0.0; padded * groups];
+        if let Some(bias) = bias {
+            assert_eq!(bias.len(), outputs * groups, "one bias per output");
+            for (to, from) in padded_bias.chunks_mut(padded.max(1)).zip(bias.chunks(outputs.max(1))) {
+                to[..from.len()].copy_from_slice(from);
+            }
+        }
+        Self {
+            isa,
+            width,
+            vectors,
+            groups,
+            outputs,
+            channels,
+            kernel,
+            planar,
+            group_length,
+            panels,
+            bias: padded_bias,
+        }
+    }
+
+    /// Returns the number of output channels.
+    pub fn outputs(&self) -> usize {
+        self.outputs * self.groups
+    }
+
+    /// Returns the number of input channels.
+    pub fn channels(&self) -> usize {
+        self.channels * self.groups
+    }
+
+    /// Returns the number of outputs of all groups, each rounded up to whole registers.
+    pub fn padded_outputs(&self) -> usize {
+        self.bias.len()
+    }
+
+    /// Returns `values`, one per output, with the padding of the bias.
+    pub fn padded(&self, values: &[f32]) -> Vec<f32> {
+        let padded = self.bias.len() / self.groups.max(1);
+        let mut all = vec![0.0; self.bias.len()];
+        for (to, from) in all.chunks_mut(padded.max(1)).zip(values.chunks(self.outputs.max(1))) {
+            to[..from.len()].copy_from_slice(from);
+        }
+        all
+    }
+
+    /// Returns the bytes of the packed weights.
+    pub fn bytes(&self) -> usize {
+        4 * (self.group_length * self.groups + self.bias.len())
+    }
+
+    pub(super) fn kernel(&self) -> [usize; 2] {
+        self.kernel
+    }
+
+    pub(super) fn isa(&self) -> Isa {
+        self.isa
+    }
+
+    pub(super) fn groups(&self) -> usize {
+        self.groups
+    }
+
+    pub(super) fn is_planar(&self) -> bool {
+        self.planar
+    }
+
+    pub(super) fn group_outputs(&self) -> usize {
+        self.outputs
+    }
+
+    pub(super) fn group_channels(&self) -> usize {
+        self.channels
+    }
+
+    pub(super) fn depth(&self) -> usize {
+        self.kernel[0] * self.kernel[1] * self.channels
+    }
+
+    pub(super) fn panel_count(&self) -> usize {
+        self.outputs.div_ceil(self.width).div_ceil(self.vectors)
+    }
+
+    /// Returns a panel: its weights, bias, first output, and number of registers across.
+    pub(super) fn panel(&self, group: usize, index: usize) -> Panel {
+        let first = index * self.vectors * self.width;
+        let blocks = self.outputs.div_ceil(self.width);
+        let from = group * self.group_length + first * self.depth();
+        let padded = blocks * self.width;
+        Panel {
+            weights: self.panels.start().wrapping_add(from),
+            bias: self.bias.as_ptr().wrapping_add(group * padded + first),
+            padded_first: group * padded + first,
+            first: group * self.outputs + first,
+            used: self.outputs - first,
+            vectors: self.vectors.min(blocks - index * self.vectors),
+        }
+    }
+}
+
+/// A part of the outputs: as many as there are registers across a tile.
+#[derive(Clone, Copy)]
+pub(super) struct Panel {
+    pub(super) weights: *const f32,
+    pub(super) bias: *const f32,
+    /// First output in lists that are filled up to whole registers.
+    pub(super) padded_first: usize,
+    pub(super) first: usize,
+    /// Outputs from the first on, at most those of the panel are used.
+    pub(super) used: usize,
+    pub(super) vectors: usize,
+}
+
+pub(super) fn width_of(isa: Isa) -> usize {
+    match isa.set() {
+        Set::Portable => lanes::Portable::WIDTH,
+        #[cfg(target_arch = "x86_64")]
+        Set::Avx2 => lanes::Avx2::WIDTH,
+        #[cfg(target_arch = "x86_64")]
+        Set::Avx512 => lanes::Avx512::WIDTH,
+        #[cfg(target_arch = "aarch64")]
+        Set::Neon => lanes::Neon::WIDTH,
+    }
+}
