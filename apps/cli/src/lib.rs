@@ -31,6 +31,7 @@ mod recorded_set;
 #[cfg_attr(not(feature = "ros"), path = "recordings_absent.rs")]
 mod recordings;
 mod report;
+mod report_file;
 mod stdout;
 mod then_flag;
 mod timings;

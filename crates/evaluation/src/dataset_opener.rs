@@ -16,7 +16,7 @@ pub type Samples<'a> = Box<dyn DatasetIterator + 'a>;
 /// Returns the type of annotation on which a learner trains: the one that its task's metric compares with, else its target type.
 pub fn annotation_type(spec: &Spec, outputs: &[Output]) -> Option<ValueType> {
     let metric = metric_of(spec.task).and_then(opendr_metrics::find).ok();
-    metric.map(|metric| metric.truth).or_else(|| outputs.first().map(|output| output.value_type))
+    metric.map(|metric| metric.ground_truth).or_else(|| outputs.first().map(|output| output.value_type))
 }
 
 /// Opens data sets for a learner.

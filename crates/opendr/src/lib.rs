@@ -59,7 +59,8 @@ mod tune;
 pub use by_name::{download, learner, learner_with};
 pub use export::{export, network};
 pub use fit::{
-    FitData, FitEnvironments, FitOptions, Fitted, check_fit, fit, fit_active, fit_policy, teacher, teacher_with,
+    FitData, FitEnvironments, FitOptions, Fitted, check_fit, fit, fit_active, fit_policy, teacher,
+    teacher_with,
 };
 pub use online::{OnlineReport, OnlineTuning, TrackingResult};
 #[cfg(feature = "actions")]
@@ -107,10 +108,10 @@ pub use registry::registry;
 pub use smaller::optimize_loaded;
 pub use tune::{LearnerTraining, MakeLearner, TuneData, TuneOptions, Tuned, search_space, tune};
 pub use {
-    opendr_active as active, opendr_control as control, opendr_datasets as datasets, opendr_evaluation as evaluation,
-    opendr_inference as inference, opendr_metrics as metrics, opendr_optimize as optimize,
-    opendr_planning as planning, opendr_rl as rl, opendr_simulation as simulation, opendr_tuning as tuning,
-    opendr_vision as vision, opendr_zoo as zoo,
+    opendr_active as active, opendr_control as control, opendr_datasets as datasets,
+    opendr_evaluation as evaluation, opendr_inference as inference, opendr_metrics as metrics,
+    opendr_optimize as optimize, opendr_planning as planning, opendr_rl as rl,
+    opendr_simulation as simulation, opendr_tuning as tuning, opendr_vision as vision, opendr_zoo as zoo,
 };
 #[cfg(feature = "ros")]
 pub use {opendr_recordings as bags, opendr_ros as ros};

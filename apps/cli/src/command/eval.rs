@@ -1,7 +1,6 @@
 //! `opendr eval`: evaluates a learner on a data set, or a policy in an environment.
 
 mod active;
-mod report_file;
 
 use std::path::PathBuf;
 
@@ -19,7 +18,8 @@ use opendr::{Error, JsonFormat, Pipeline, Progress, Result};
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
 use crate::{
-    class_flags, dataset_flags, environment_flags, learner_flags, loading, named_value, stdout, then_flag,
+    class_flags, dataset_flags, environment_flags, learner_flags, loading, named_value, report_file, stdout,
+    then_flag,
 };
 
 const EXAMPLES: &str = "\

@@ -1,6 +1,6 @@
 //! `--online` of `opendr eval` and `opendr sim view`: a policy that is adapted while it acts.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgAction, ArgMatches};
 use opendr::control::online::{AdaptationParams, tracking_task};
@@ -10,12 +10,13 @@ use opendr::learner::AnyLearner;
 use opendr::params::Params as _;
 use opendr::rl::EvaluationProtocol;
 use opendr::simulation::{Recording, RegisteredSource};
-use opendr::{Error, OnlineTuning, Progress, Result, Unit};
+use opendr::{Error, JsonFormat, OnlineTuning, Progress, Result, Unit};
 
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
-use crate::{named_value, stdout};
+use crate::{named_value, report_file, stdout};
 
+const REPORT: JsonFormat = JsonFormat::new("evaluation of online adaptation", 1);
 const ONLINE: &str = "online";
 const ONLINE_PARAM: &str = "online-param";
 
@@ -67,9 +68,12 @@ pub fn evaluate(
     let params = params(matches)?;
     let report = tuning(learner, source)?.compare(source.make()?.as_mut(), &params, protocol, bar)?;
     if matches.get_flag("json") {
-        stdout::print_json(&report)?;
+        stdout::print_json(REPORT, &report)?;
     } else {
         stdout::print(report.to_string().trim_end())?;
+    }
+    if let Some(folder) = matches.get_one::<PathBuf>("out") {
+        bar.note(&format!("written: {}", report_file::write(REPORT, &report, folder)?.display()));
     }
     Ok(Outcome::Done)
 }

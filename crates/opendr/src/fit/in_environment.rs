@@ -3,13 +3,13 @@
 use std::time::Instant;
 
 use opendr_datasets::Problems;
-use opendr_engine::dataset::{DatasetIterator as _, DatasetRef};
+use opendr_engine::dataset::{DatasetIterator as _, DatasetRef, Subset};
 use opendr_engine::environment::EnvironmentSource;
 use opendr_engine::learner::{AnyLearner, Entry, FitJob};
 use opendr_engine::{Error, Progress, Result, Statistics};
+use opendr_evaluation::DatasetOpener;
 
-use super::samples::limited;
-use super::{DatasetOpener, FitOptions, Fitted, check_fit, finish, run_folder};
+use super::{FitOptions, Fitted, check_fit, finish, run_folder};
 use crate::training_environment;
 
 /// Environments in which a policy is trained and evaluated.
@@ -55,12 +55,13 @@ pub fn fit_active(
     options: &FitOptions,
     progress: &dyn Progress,
 ) -> Result<Fitted> {
-    let problems = if options.skip_broken { Problems::skipping() } else { Problems::strict() };
-    let opener = DatasetOpener { entry, annotated: true, problems: &problems, progress };
-    let samples = limited(opener.open_training(dataset, options.split.as_deref())?, options.limit);
+    let problems = Problems::new(options.skip_broken);
+    let opener = DatasetOpener::new(entry, true, &problems, progress);
+    let samples = opener.open_training(dataset, options.split.as_deref())?;
+    let samples = Subset::first(samples, options.limit.unwrap_or(usize::MAX));
     let count = samples.len();
     let mut fitted = fit_with(learner, entry, options, progress, |learner, job| {
-        let dataset = DatasetRef::Iterator(samples.as_ref());
+        let dataset = DatasetRef::Iterator(&samples);
         learner.fit_active(&options.params, Some(dataset), env, job)
     })?;
     fitted.samples = count;

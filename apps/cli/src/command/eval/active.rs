@@ -10,10 +10,9 @@ use opendr::active::{
 use opendr::learner::Entry;
 use opendr::{JsonFormat, Progress as _, Result, Unit};
 
-use super::report_file;
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
-use crate::{environment_flags, learner_flags, loading, stdout};
+use crate::{environment_flags, learner_flags, loading, report_file, stdout};
 
 const COMPARISON: JsonFormat = JsonFormat::new("comparison of camera policies", 1);
 /// Number of episodes by default, and of those that calibrate the belief for another recogniser.

@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use opendr::{Error, JsonFormat, Result};
+use opendr::atomic_file::replace_file;
+use opendr::{JsonFormat, Result, ResultExt as _};
 use serde::Serialize;
 
 /// Writes a report as `report.json` into a folder, which is created if needed, and returns its path.
@@ -12,8 +13,7 @@ use serde::Serialize;
 pub fn write(format: JsonFormat, report: &impl Serialize, folder: &Path) -> Result<PathBuf> {
     let path = folder.join("report.json");
     let text = format.to_pretty_json(report)?;
-    std::fs::create_dir_all(folder)
-        .and_then(|()| std::fs::write(&path, text))
-        .map_err(|error| Error::io(format!("writing {}", path.display())).with_source(error))?;
+    std::fs::create_dir_all(folder).context(|| format!("creating {}", folder.display()))?;
+    replace_file(&path, text.as_bytes())?;
     Ok(path)
 }
