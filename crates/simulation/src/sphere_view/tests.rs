@@ -159,9 +159,14 @@ fn galleries_are_other_persons() {
     let first = |gallery: u32| {
         let mut environment = SphereView::new(Subject::Face, &SphereViewParams { gallery }).unwrap();
         let mut seen = vec![0.0; environment.spec().observation.len()];
-        environment.reset(Some(3), &ResetOptions::new(), &mut seen).unwrap();
-        seen
+        // Some of these views show the front, and only the front differs.
+        let mut view = |seed| {
+            environment.reset(Some(seed), &ResetOptions::new(), &mut seen).unwrap();
+            seen.clone()
+        };
+        (0..12).map(&mut view).collect::<Vec<_>>()
     };
-    assert_ne!(first(0), first(1));
+    let views = first(0).into_iter().zip(first(1));
+    assert!(views.filter(|(one, other)| one != other).count() > 0);
     assert!(make_vec("SphereView-Face-v1", crate::vector::VectorOptions::new(2)).is_ok());
 }
