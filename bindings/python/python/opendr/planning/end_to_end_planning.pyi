@@ -35,6 +35,10 @@ class EndToEndPlanningRLLearner(Planner):
             (default 0.0001; 0 to 1)
         n_steps: Steps of all environments together between two updates. (default 8192; 1 to 1e+06)
         batch_size: Minibatch size in steps. (default 1024; 1 to 1e+06)
+        surroundings_flights: Flights in embedded corridors from which the map learns what is likely in cells that
+            the camera has not observed; 0 disables it, and unobserved cells are free. (default 600; 0 to 1e+06)
+        critic_warmup: Steps of all environments before the actor is trained; only the critic is trained until
+            then. (default 16384; 0 to 1e+09)
         total_timesteps: Steps of a whole training, over all environments. (default 300000; 1 to 2e+09; in OpenDR
             iters)
         n_envs: Number of parallel environments. (default 8; 1 to 65536)
@@ -50,14 +54,14 @@ class EndToEndPlanningRLLearner(Planner):
 
     deterministic: bool
     seed: int
-    def __init__(self, env: Any = ..., lr: float = ..., n_steps: int = ..., iters: int = ..., batch_size: int = ..., checkpoint_after_iter: int = ..., temp_path: str = ..., device: str = ..., *, optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_load_iter: int = ..., threshold: float = ..., scale: float = ..., seed: int = ..., total_timesteps: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoints_kept: int = ..., preset: bool = ..., deterministic: bool = ...) -> None: ...
+    def __init__(self, env: Any = ..., lr: float = ..., n_steps: int = ..., iters: int = ..., batch_size: int = ..., checkpoint_after_iter: int = ..., temp_path: str = ..., device: str = ..., *, optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_load_iter: int = ..., threshold: float = ..., scale: float = ..., surroundings_flights: int = ..., critic_warmup: int = ..., seed: int = ..., total_timesteps: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoints_kept: int = ..., preset: bool = ..., deterministic: bool = ...) -> None: ...
     @overload
     def infer(self, observation: Union[Observation, ArrayLike], deterministic: bool = ...) -> RlTarget: ...  # type: ignore[overload-overlap]
     @overload
     def infer(self, observation: Sequence[Union[Observation, ArrayLike]], deterministic: bool = ...) -> list[RlTarget]: ...
     @overload
     def infer(self, observation: Iterator[Union[Observation, ArrayLike]], deterministic: bool = ...) -> Iterator[RlTarget]: ...
-    def fit(self, env: Any = ..., logging_path: PathLike = ..., verbose: bool = ..., *, val_env: Any = ..., silent: bool = ..., lr: float = ..., n_steps: int = ..., batch_size: int = ..., seed: int = ..., total_timesteps: int = ..., iters: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoint_after_iter: int = ..., checkpoints_kept: int = ..., preset: bool = ...) -> dict[str, Any]: ...
+    def fit(self, env: Any = ..., logging_path: PathLike = ..., verbose: bool = ..., *, val_env: Any = ..., silent: bool = ..., lr: float = ..., n_steps: int = ..., batch_size: int = ..., surroundings_flights: int = ..., critic_warmup: int = ..., seed: int = ..., total_timesteps: int = ..., iters: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoint_after_iter: int = ..., checkpoints_kept: int = ..., preset: bool = ...) -> dict[str, Any]: ...
     @classmethod
     def download(cls, path: Optional[PathLike] = ..., url: Optional[str] = ..., *, mode: str = ..., verbose: bool = ..., variant: Optional[str] = ...) -> str: ...
 
