@@ -165,6 +165,107 @@ class NanodetLearner(NativeLearner):
     def optimize(self, export_path: Optional[PathLike] = ..., verbose: bool = ..., optimization: Any = ..., conf_threshold: Any = ..., iou_threshold: Any = ..., nms_max_num: Any = ..., hf: Any = ..., dynamic: Any = ..., ch_l: Any = ..., lazy_load: Any = ..., *, target_device: str = ..., out: Optional[PathLike] = ..., precision: str = ..., calibration: Union[None, Dataset] = ..., validation: Union[None, Dataset] = ..., **options: Any) -> dict[str, Any]: ...
     def optimize_c_model(self, *args: Any, **kwargs: Any) -> NoReturn: ...
 
+class YoloxLearner(NativeLearner):
+    """YOLOX detects the 80 COCO classes; the nano variant is the most precise light detector.
+
+    Task: object_detection_2d. ``infer`` takes:
+
+        image: Image.
+
+    and returns: BoundingBoxList.
+
+    Args:
+        threshold: Score below which detections are dropped. (default 0.3; 0 to 1; live: may change while running,
+            and for one call of infer)
+        iou_threshold: IoU above which boxes of one class count as one object. (default 0.45; 0 to 1; live: may
+            change while running, and for one call of infer)
+        max_detections: Maximum number of boxes per image. (default 100; 1 to 1000; live: may change while
+            running, and for one call of infer)
+        multi_label: Whether a cell may be a detection of several classes, or of that with the highest score only.
+            (default True; live: may change while running, and for one call of infer)
+        suppression: Method of non-maximum suppression. (default 'hard'; one of 'hard', 'soft', 'fast', 'cluster';
+            live: may change while running, and for one call of infer)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+    """
+
+    iou_threshold: float
+    max_detections: int
+    multi_label: bool
+    suppression: Literal['hard', 'soft', 'fast', 'cluster']
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> None: ...
+    @overload
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> BoundingBoxList: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> list[BoundingBoxList]: ...
+    @overload
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> Iterator[BoundingBoxList]: ...
+
+class ImportedDetectorLearner(NativeLearner):
+    """Runs your own detector, exported to ONNX by another tool; recognises the layout of its outputs.
+
+    Task: object_detection_2d. ``infer`` takes:
+
+        image: Image.
+
+    and returns: BoundingBoxList.
+
+    Args:
+        threshold: Score below which detections are dropped. (default 0.25; 0 to 1; live: may change while
+            running, and for one call of infer)
+        iou_threshold: IoU above which candidates of one class count as one object; detections and queries are not
+            suppressed. (default 0.65; 0 to 1; live: may change while running, and for one call of infer)
+        max_detections: Maximum number of boxes per image. (default 300; 1 to 1000; live: may change while
+            running, and for one call of infer)
+        multi_label: Whether a candidate may be a detection of several classes, or of that with the highest score
+            only. (default False; live: may change while running, and for one call of infer)
+        suppression: Method of non-maximum suppression of candidates. (default 'hard'; one of 'hard', 'soft',
+            'fast', 'cluster'; live: may change while running, and for one call of infer)
+        layout: What the rows of the outputs are. (default 'auto'; one of 'auto', 'candidates', 'grid_candidates',
+            'detections', 'queries')
+        boxes: The four values of a box. (default 'auto'; one of 'auto', 'xyxy', 'cxcywh', 'xywh', 'yxyx')
+        unit: Unit of boxes. (default 'auto'; one of 'auto', 'pixels', 'fractions')
+        scores: What the class scores are. (default 'auto'; one of 'auto', 'probabilities', 'sigmoid', 'softmax')
+        objectness: Whether rows of candidates have an objectness. (default 'auto'; one of 'auto', 'present',
+            'absent')
+        row_order: Order of the values of a detection in one output. (default 'auto'; one of 'auto',
+            'box_score_class', 'class_score_box', 'batch_box_class_score', 'batch_box_score_class')
+        resize: How an image becomes the network's input. (default 'auto'; one of 'auto', 'letterbox', 'top_left',
+            'top_left_truncated', 'stretch')
+        padding: Level of the padding of a letterbox; recognised from the network if absent. (default None; 0 to
+            255)
+        colour: Order of the colour channels of the network's input. (default 'auto'; one of 'auto', 'rgb', 'bgr')
+        levels: Range of the samples of the network's input. (default 'auto'; one of 'auto', '0_255', '0_1',
+            '-1_1', 'imagenet')
+        first_class: Class index of the network that is the first of the class names; recognised from the network
+            if absent. (default None; 0 to 1000)
+        size: Side of the network's input, for models of dynamic size. (default 640; 32 to 4096 px)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+    """
+
+    iou_threshold: float
+    max_detections: int
+    multi_label: bool
+    suppression: Literal['hard', 'soft', 'fast', 'cluster']
+    layout: Literal['auto', 'candidates', 'grid_candidates', 'detections', 'queries']
+    boxes: Literal['auto', 'xyxy', 'cxcywh', 'xywh', 'yxyx']
+    unit: Literal['auto', 'pixels', 'fractions']
+    scores: Literal['auto', 'probabilities', 'sigmoid', 'softmax']
+    objectness: Literal['auto', 'present', 'absent']
+    row_order: Literal['auto', 'box_score_class', 'class_score_box', 'batch_box_class_score', 'batch_box_score_class']
+    resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch']
+    padding: Optional[int]
+    colour: Literal['auto', 'rgb', 'bgr']
+    levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet']
+    first_class: Optional[int]
+    size: int
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ..., layout: Literal['auto', 'candidates', 'grid_candidates', 'detections', 'queries'] = ..., boxes: Literal['auto', 'xyxy', 'cxcywh', 'xywh', 'yxyx'] = ..., unit: Literal['auto', 'pixels', 'fractions'] = ..., scores: Literal['auto', 'probabilities', 'sigmoid', 'softmax'] = ..., objectness: Literal['auto', 'present', 'absent'] = ..., row_order: Literal['auto', 'box_score_class', 'class_score_box', 'batch_box_class_score', 'batch_box_score_class'] = ..., resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch'] = ..., padding: Optional[int] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet'] = ..., first_class: Optional[int] = ..., size: int = ...) -> None: ...
+    @overload
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> BoundingBoxList: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> list[BoundingBoxList]: ...
+    @overload
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> Iterator[BoundingBoxList]: ...
+
 class SingleShotDetectorLearner(SingleShotDetector):
     """SSD on MobileNetV1, a small detector, trainable on own classes.
 
