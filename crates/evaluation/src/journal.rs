@@ -261,7 +261,7 @@ mod tests {
             model: Some("gru/model".to_owned()),
             ..Subject::default()
         };
-        let names = (1..=12).map(|number| format!("waves_TEST.tsv:{number}"));
+        let names = (1..13).map(|number| format!("waves_TEST.tsv:{number}"));
         let heading = Heading::of_names(subject, "waves".to_owned(), names);
         let (lines, _) = read(&path, &heading).unwrap();
         assert_eq!(lines.len(), 12);
