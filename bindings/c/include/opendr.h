@@ -1139,6 +1139,92 @@ static inline opendr_status opendr_infer_nanodet(const opendr_learner *learner,
 }
 
 /*
+ * YoloxLearner: YOLOX detects the 80 COCO classes; the nano variant is the most precise light detector.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, live, default 0.3): Score below which detections are dropped.
+ *   iou_threshold (a float 0..=1, live, default 0.45): IoU above which boxes of one class count as one object.
+ *   max_detections (an int 1..=1000, live, default 100): Maximum number of boxes per image.
+ *   multi_label (a bool, live, default true): Whether a cell may be a detection of several classes, or of that with the highest score only.
+ *   suppression (a str, one of hard, soft, fast, cluster, live, default hard): Method of non-maximum suppression.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   boxes (BoundingBoxList)
+ */
+static inline opendr_status opendr_load_yolox(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("yolox", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_yolox(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_bounding_box_list **boxes) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "boxes";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (boxes != NULL) *boxes = (opendr_bounding_box_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * ImportedDetectorLearner: Runs your own detector, exported to ONNX by another tool; recognises the layout of its outputs.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, live, default 0.25): Score below which detections are dropped.
+ *   iou_threshold (a float 0..=1, live, default 0.65): IoU above which candidates of one class count as one object; detections and queries are not suppressed.
+ *   max_detections (an int 1..=1000, live, default 300): Maximum number of boxes per image.
+ *   multi_label (a bool, live, default false): Whether a candidate may be a detection of several classes, or of that with the highest score only.
+ *   suppression (a str, one of hard, soft, fast, cluster, live, default hard): Method of non-maximum suppression of candidates.
+ *   layout (a str, one of auto, candidates, grid_candidates, detections, queries, default auto): What the rows of the outputs are.
+ *   boxes (a str, one of auto, xyxy, cxcywh, xywh, yxyx, default auto): The four values of a box.
+ *   unit (a str, one of auto, pixels, fractions, default auto): Unit of boxes.
+ *   scores (a str, one of auto, probabilities, sigmoid, softmax, default auto): What the class scores are.
+ *   objectness (a str, one of auto, present, absent, default auto): Whether rows of candidates have an objectness.
+ *   row_order (a str, one of auto, box_score_class, class_score_box, batch_box_class_score, batch_box_score_class, default auto): Order of the values of a detection in one output.
+ *   resize (a str, one of auto, letterbox, top_left, top_left_truncated, stretch, default auto): How an image becomes the network's input.
+ *   padding (an int 0..=255, default none): Level of the padding of a letterbox; recognised from the network if absent.
+ *   colour (a str, one of auto, rgb, bgr, default auto): Order of the colour channels of the network's input.
+ *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, default auto): Range of the samples of the network's input.
+ *   first_class (an int 0..=1000, default none): Class index of the network that is the first of the class names; recognised from the network if absent.
+ *   size (an int 32..=4096 px, default 640): Side of the network's input, for models of dynamic size.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   boxes (BoundingBoxList)
+ */
+static inline opendr_status opendr_load_detector(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("detector", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_detector(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_bounding_box_list **boxes) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "boxes";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (boxes != NULL) *boxes = (opendr_bounding_box_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
  * SingleShotDetectorLearner: SSD on MobileNetV1, a small detector, trainable on own classes.
  *
  * Parameters:

@@ -1,6 +1,6 @@
 //! Recognition of the conventions of exported detectors, on networks whose outputs are constants with one object.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::path::PathBuf;
 

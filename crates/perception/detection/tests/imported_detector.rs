@@ -2,7 +2,7 @@
 //!
 //! `tests/extended/detector_fixtures.py` writes the fixtures: small networks with random weights.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::path::{Path, PathBuf};
 

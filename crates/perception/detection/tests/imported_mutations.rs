@@ -1,6 +1,6 @@
 //! Damaged and malicious ONNX files cause errors, never a panic. Alone in its process: it opens thousands of sessions.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 use opendr_detection::object_detection_2d::{ImportedDetector, ImportedDetectorParams};
 use opendr_engine::data::Image;

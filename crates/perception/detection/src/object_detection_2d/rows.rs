@@ -112,8 +112,7 @@ impl Selection {
         candidates: &mut Vec<Candidate>,
     ) {
         let best = score(best);
-        // False for NaN too.
-        if !(best >= self.threshold) {
+        if best.is_nan() || best < self.threshold {
             return;
         }
         let (corners, index) = (corners(), row as u32);

@@ -101,7 +101,7 @@ const YOLO_DETECTIONS: Convention = Convention {
 /// # Errors
 /// `Unsupported` for a network that is recognised and is no detector of upright boxes.
 pub(super) fn recognise(facts: &Facts, size: [usize; 2]) -> Result<Option<Convention>> {
-    if facts.metadata("stride") != "" && facts.metadata("names") != "" {
+    if ["stride", "names"].iter().all(|key| !facts.metadata(key).is_empty()) {
         return ultralytics(facts);
     }
     let rules = [paddle, named_lists, tensorflow, detr, lists];

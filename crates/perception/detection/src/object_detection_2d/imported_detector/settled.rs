@@ -27,7 +27,7 @@ pub(super) fn settle(
         };
     }
     take!(layout, known.layout, OutputLayout::Auto);
-    // What was recognised together with another layout says nothing about this one.
+    // What was recognised together with another layout does not apply to this one.
     let known =
         if params.layout == known.layout { known } else { Convention { layout: params.layout, ..UNKNOWN } };
     take!(boxes, known.boxes, BoxFormat::Auto);
