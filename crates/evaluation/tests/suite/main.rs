@@ -3,4 +3,5 @@
 #![allow(clippy::unwrap_used)]
 
 mod evaluation;
+mod opening;
 mod permutations;
