@@ -59,7 +59,7 @@ fn episode_flags() -> [Arg; 2] {
             .long("first-seed")
             .value_parser(value_parser!(u64))
             .value_name("N")
-            .help("Seed of the first evaluated episode; each further episode adds 1 [default: 1000000]"),
+            .help("Seed of the first evaluated episode; each further episode adds 1 [default: 1000000; 5000000 for a moving camera]"),
     ]
 }
 

@@ -1555,6 +1555,50 @@ static inline opendr_status opendr_infer_oc_sort(const opendr_learner *learner,
 }
 
 /*
+ * CBiouLearner: C-BIoU tracks the detections of any detector by the overlap of enlarged boxes, also through sudden motion.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, live, default 0.3): Score below which detections are ignored.
+ *   small_buffer (a float 0..=2, live, default 0.3): Enlargement of the boxes in the first pass, on each side, as a fraction of width and height.
+ *   large_buffer (a float 0..=2, live, default 0.4): Enlargement in the second pass, for the tracks and detections that the first one left.
+ *   iou_threshold (a float 0.01..=1, live, default 0.3): Minimum IoU of the enlarged boxes of a track and its detection.
+ *   motion_window (an int 1..=16, live, default 5): Number of detections whose mean motion is extrapolated; 1 for none.
+ *   max_age (an int 0..=1000, live, default 30): Number of frames that a track is kept without a detection.
+ *   min_hits (an int 1..=100, live, default 3): Number of detections in a row that confirm a track; in the first frames of a stream, one.
+ *   per_class (a bool, live, default true): Whether only boxes of the same class match.
+ *
+ * Inputs:
+ *   detections (BoundingBoxList): Detections in the frame, with their scores.
+ *   image (Image): Frame, from which the motion of the camera is estimated. Either all frames of a stream have one, or none. Optional: may be NULL.
+ *
+ * Outputs:
+ *   tracks (TrackingAnnotationList)
+ */
+static inline opendr_status opendr_load_c_biou(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("c_biou", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_c_biou(const opendr_learner *learner,
+    const opendr_bounding_box_list *detections,
+    const opendr_image *image,
+    opendr_tracking_annotation_list **tracks) {
+    opendr_input inputs_[2];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "detections";
+    inputs_[0].value = (const opendr_value *)detections;
+    inputs_[1].name = "image";
+    inputs_[1].value = (const opendr_value *)image;
+    outputs_[0].name = "tracks";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 2, outputs_, 1);
+    if (tracks != NULL) *tracks = (opendr_tracking_annotation_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
  * ObjectTracking2DDeepSortLearner: DeepSORT tracks the persons that a detector detects and re-identifies them by appearance.
  *
  * Parameters:
@@ -3666,6 +3710,123 @@ static inline opendr_status opendr_infer_end_to_end_planning(const opendr_learne
     outputs_[0].value = NULL;
     status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
     if (target != NULL) *target = (opendr_rl_target *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * ActiveFaceRecognitionLearner: Recognises a person from several views, and proposes the camera motion to the next one.
+ *
+ * Parameters:
+ *   moves (an int 0..=100, live, default 6): Maximum number of motions for a subject.
+ *   confidence (a float 0..=1, live, default 0.97): Probability of the most likely class at which no further motion is proposed.
+ *   min_gain (a float 0..=1, live, default 0): Expected rise of the probability of the true class below which no further motion is proposed; 0 disables the rule.
+ *
+ * Inputs:
+ *   image (Image): Image of the camera.
+ *   pose (Observation): Pose of the camera: azimuth (rad), elevation (rad), distance. Without it, the proposed motions are assumed to have been carried out. Optional: may be NULL.
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_active_face_recognition(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("active_face_recognition", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_active_face_recognition(const opendr_learner *learner,
+    const opendr_image *image,
+    const opendr_observation *pose,
+    opendr_category **category) {
+    opendr_input inputs_[2];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    inputs_[1].name = "pose";
+    inputs_[1].value = (const opendr_value *)pose;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 2, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * ActiveObjectRecognitionLearner: Recognises an object from several views, and proposes the camera motion to the next one.
+ *
+ * Parameters:
+ *   moves (an int 0..=100, live, default 6): Maximum number of motions for a subject.
+ *   confidence (a float 0..=1, live, default 0.97): Probability of the most likely class at which no further motion is proposed.
+ *   min_gain (a float 0..=1, live, default 0): Expected rise of the probability of the true class below which no further motion is proposed; 0 disables the rule.
+ *
+ * Inputs:
+ *   image (Image): Image of the camera.
+ *   pose (Observation): Pose of the camera: azimuth (rad), elevation (rad), distance. Without it, the proposed motions are assumed to have been carried out. Optional: may be NULL.
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_active_object_recognition(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("active_object_recognition", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_active_object_recognition(const opendr_learner *learner,
+    const opendr_image *image,
+    const opendr_observation *pose,
+    opendr_category **category) {
+    opendr_input inputs_[2];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    inputs_[1].name = "pose";
+    inputs_[1].value = (const opendr_value *)pose;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 2, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * ActivePoseRecognitionLearner: Recognises a person's pose from several views, and proposes the camera motion to the next one.
+ *
+ * Parameters:
+ *   moves (an int 0..=100, live, default 6): Maximum number of motions for a subject.
+ *   confidence (a float 0..=1, live, default 0.97): Probability of the most likely class at which no further motion is proposed.
+ *   min_gain (a float 0..=1, live, default 0): Expected rise of the probability of the true class below which no further motion is proposed; 0 disables the rule.
+ *
+ * Inputs:
+ *   image (Image): Image of the camera.
+ *   pose (Observation): Pose of the camera: azimuth (rad), elevation (rad), distance. Without it, the proposed motions are assumed to have been carried out. Optional: may be NULL.
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_active_pose_recognition(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("active_pose_recognition", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_active_pose_recognition(const opendr_learner *learner,
+    const opendr_image *image,
+    const opendr_observation *pose,
+    opendr_category **category) {
+    opendr_input inputs_[2];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    inputs_[1].name = "pose";
+    inputs_[1].value = (const opendr_value *)pose;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 2, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
     else opendr_value_free(&outputs_[0].value);
     return status_;
 }

@@ -20,7 +20,7 @@ class NativeLearnerActive(NativeLearnerRL):
         *,
         env_params: Optional[dict[str, Any]] = None,
         episodes: int = 500,
-        first_seed: int = 1_000_000,
+        first_seed: int = 5_000_000,
         verbose: bool = False,
     ) -> dict[str, Any]:
         """Evaluates the camera policy beside baselines on episodes with fixed seeds.

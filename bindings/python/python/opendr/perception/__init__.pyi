@@ -1,5 +1,6 @@
 """Perception: one module per task."""
 
+from opendr.perception import active_perception as active_perception
 from opendr.perception import activity_recognition as activity_recognition
 from opendr.perception import ambiguity_measure as ambiguity_measure
 from opendr.perception import binary_high_resolution as binary_high_resolution

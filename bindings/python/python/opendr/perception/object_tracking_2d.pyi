@@ -135,6 +135,47 @@ class OcSortLearner(NativeLearner):
     def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, iou_threshold: float = ..., max_age: int = ..., min_hits: int = ..., delta_t: int = ..., inertia: float = ..., per_class: bool = ...) -> None: ...
     def infer(self, detections: BoundingBoxList, image: Optional[Union[Image, NDArray[Any], str, os.PathLike[str]]] = ..., *, threshold: float = ..., iou_threshold: float = ..., max_age: int = ..., min_hits: int = ..., delta_t: int = ..., inertia: float = ..., per_class: bool = ...) -> TrackingAnnotationList: ...
 
+class CBiouLearner(NativeLearner):
+    """C-BIoU tracks the detections of any detector by the overlap of enlarged boxes, also through sudden motion.
+
+    Task: object_tracking_2d. ``infer`` takes:
+
+        detections: BoundingBoxList. Detections in the frame, with their scores.
+        image: Image (optional). Frame, from which the motion of the camera is estimated. Either all frames of a
+            stream have one, or none.
+
+    and returns: TrackingAnnotationList.
+
+    Args:
+        threshold: Score below which detections are ignored. (default 0.3; 0 to 1; live: may change while running,
+            and for one call of infer)
+        small_buffer: Enlargement of the boxes in the first pass, on each side, as a fraction of width and height.
+            (default 0.3; 0 to 2; live: may change while running, and for one call of infer)
+        large_buffer: Enlargement in the second pass, for the tracks and detections that the first one left.
+            (default 0.4; 0 to 2; live: may change while running, and for one call of infer)
+        iou_threshold: Minimum IoU of the enlarged boxes of a track and its detection. (default 0.3; 0.01 to 1;
+            live: may change while running, and for one call of infer)
+        motion_window: Number of detections whose mean motion is extrapolated; 1 for none. (default 5; 1 to 16;
+            live: may change while running, and for one call of infer)
+        max_age: Number of frames that a track is kept without a detection. (default 30; 0 to 1000; live: may
+            change while running, and for one call of infer)
+        min_hits: Number of detections in a row that confirm a track; in the first frames of a stream, one.
+            (default 3; 1 to 100; live: may change while running, and for one call of infer)
+        per_class: Whether only boxes of the same class match. (default True; live: may change while running, and
+            for one call of infer)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+    """
+
+    small_buffer: float
+    large_buffer: float
+    iou_threshold: float
+    motion_window: int
+    max_age: int
+    min_hits: int
+    per_class: bool
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, small_buffer: float = ..., large_buffer: float = ..., iou_threshold: float = ..., motion_window: int = ..., max_age: int = ..., min_hits: int = ..., per_class: bool = ...) -> None: ...
+    def infer(self, detections: BoundingBoxList, image: Optional[Union[Image, NDArray[Any], str, os.PathLike[str]]] = ..., *, threshold: float = ..., small_buffer: float = ..., large_buffer: float = ..., iou_threshold: float = ..., motion_window: int = ..., max_age: int = ..., min_hits: int = ..., per_class: bool = ...) -> TrackingAnnotationList: ...
+
 class ObjectTracking2DDeepSortLearner(DeepSort):
     """DeepSORT tracks the persons that a detector detects and re-identifies them by appearance.
 

@@ -11,7 +11,7 @@ from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 from numpy.typing import ArrayLike, NDArray
 from opendr._input_value import PathLike
 from opendr._native_learner import NativeLearner
-from opendr._upstream.learners.sounds import Words
+from opendr._upstream.learners.audio import Words
 from opendr.engine.data import Audio, Timeseries
 from opendr.engine.datasets import Dataset
 from opendr.engine.learners import Learner

@@ -10,7 +10,7 @@ from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 
 from numpy.typing import ArrayLike, NDArray
 from opendr._input_value import PathLike
-from opendr._upstream.learners.sounds import Transcription
+from opendr._upstream.learners.audio import Transcription
 from opendr.engine.data import Audio, Timeseries
 from opendr.engine.datasets import Dataset
 from opendr.engine.target import WhisperTranscription
