@@ -77,7 +77,7 @@ fn errors_state_file_and_position() {
         files.compare(CocoKind::Boxes, 2).unwrap_err().to_string()
     };
     let truncated = message(&ANNOTATIONS[..300], RESULTS);
-    assert!(truncated.contains("ground truth.json: line 4, byte 363: the file ends"), "{truncated}");
+    assert!(truncated.contains("truth.json: line 4, byte 363: the file ends"), "{truncated}");
     let unknown = message(ANNOTATIONS, &RESULTS.replace("\"image_id\": 7", "\"image_id\": 8"));
     assert!(unknown.contains("results.json: line 1, byte 1: image_id 8 is not among"), "{unknown}");
     let wrong = message(ANNOTATIONS, &RESULTS.replace("0.9", "NaN"));
