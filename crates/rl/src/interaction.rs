@@ -1,6 +1,6 @@
 //! The environments of a training and their current state.
 
-use opendr_engine::environment::{EnvironmentSpec, ResetOptions, Snapshot, StateReader};
+use opendr_engine::environment::{ResetOptions, Snapshot, StateReader};
 use opendr_engine::{Error, Random, Result, ResultExt as _};
 use opendr_simulation::vector::{Autoreset, Batch, Seeds, VecEnvironment};
 
@@ -30,19 +30,20 @@ impl Interaction {
         seed: u64,
     ) -> Result<Self> {
         check(environments, encoder)?;
-        let mut interaction = Self::before_reset(environments.spec(), environments.count(), encoder);
+        let mut interaction = Self::before_reset(environments, encoder);
         let batch = &mut interaction.batch;
         environments.reset(Seeds::From(seed), &ResetOptions::new(), None, batch)?;
         interaction.update_observations(encoder)?;
         Ok(interaction)
     }
 
-    fn before_reset(spec: &EnvironmentSpec, count: usize, encoder: &ObservationEncoder) -> Self {
+    fn before_reset(environments: &dyn VecEnvironment, encoder: &ObservationEncoder) -> Self {
+        let (spec, count) = (environments.spec(), environments.count());
         Self {
             batch: Batch::new(spec, count),
             episodes: Episodes::new(count),
             timesteps: 0,
-            shielded: None,
+            shielded: environments.interventions().map(|_| 0),
             encoded: vec![0.0; count * encoder.encoded_len()],
             size: spec.observation.len(),
         }
@@ -90,8 +91,9 @@ impl Interaction {
 
     /// Counts the environments in which a shield replaced the action of the last step.
     pub fn count_shielded(&mut self, replaced: &[bool]) {
-        let count = replaced.iter().filter(|replaced| **replaced).count() as u64;
-        self.shielded = Some(self.shielded.unwrap_or(0) + count);
+        if let Some(shielded) = &mut self.shielded {
+            *shielded += replaced.iter().filter(|replaced| **replaced).count() as u64;
+        }
     }
 
     /// Adds the share of steps in which a shield replaced the action to the metrics, if there is a shield.
@@ -114,7 +116,9 @@ impl Interaction {
     pub fn save(&self, words: &mut Snapshot) {
         words.push(self.count() as u64);
         words.push(self.timesteps);
-        words.push(self.shielded.unwrap_or(u64::MAX));
+        if let Some(shielded) = self.shielded {
+            words.push(shielded);
+        }
         self.episodes.save(words);
         words
             .extend_numbers(self.batch.observations.iter().chain(&self.encoded).map(|&number| number.into()));
@@ -133,9 +137,11 @@ impl Interaction {
                 "the checkpoint is from a training with {count} environments, not {own}; create {count}"
             )));
         }
-        let mut interaction = Self::before_reset(environments.spec(), own, encoder);
+        let mut interaction = Self::before_reset(environments, encoder);
         interaction.timesteps = words.word()?;
-        interaction.shielded = Some(words.word()?).filter(|shielded| *shielded != u64::MAX);
+        if let Some(shielded) = &mut interaction.shielded {
+            *shielded = words.word()?;
+        }
         interaction.episodes.load(words)?;
         for number in interaction.batch.observations.iter_mut().chain(&mut interaction.encoded) {
             *number = words.finite()? as f32;

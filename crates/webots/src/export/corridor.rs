@@ -20,7 +20,7 @@ const COLOURS: [[f64; 3]; 5] =
 
 pub(super) fn world(episode: &Episode) -> Result<World> {
     let mut environment = UavDepthCorridor::new(&episode.params::<UavDepthCorridorParams>()?)?;
-    let mut observation = episode.observation.clone();
+    let mut observation = vec![0.0; environment.spec().observation.len()];
     environment.reset(Some(episode.seed), &ResetOptions::new(), &mut observation)?;
     let pose = environment.pose();
     let position = pose.position.map(f64::from);

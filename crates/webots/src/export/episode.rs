@@ -26,9 +26,12 @@ impl Episode {
         Ok(Self { id: registration.id().to_owned(), seed, observation, params: all })
     }
 
-    /// Returns the parameters.
+    /// Returns the parameters of type `P`; those that only a wrapper has, such as the form of the reward, are left out. All were checked
+    /// when the episode began.
     pub fn params<P: Params>(&self) -> Result<P> {
-        P::from_map(&self.params)
+        let has = |name: &str| P::FIELDS.iter().any(|field| field.is_called(name));
+        let own = self.params.iter().filter(|(name, _)| has(name));
+        P::from_map(&own.map(|(name, value)| (name.clone(), value.clone())).collect())
     }
 
     /// Returns a number of the observation.

@@ -88,7 +88,7 @@ fn errors_state_file_and_position() {
     let absent = message(ANNOTATIONS, &RESULTS.replace("\"bbox\": [10, 10, 40, 40]", "\"bbox\": null"));
     assert!(absent.contains("line 1, byte 1: no \"bbox\""), "{absent}");
     assert!(message(ANNOTATIONS, "{}").contains("results.json: line 1, byte 0: expected an array"));
-    assert!(message("{\"images\": []}", RESULTS).contains("ground truth.json: no \"categories\""));
+    assert!(message("{\"images\": []}", RESULTS).contains("truth.json: no \"categories\""));
     let negative = message(ANNOTATIONS, &RESULTS.replace("40, 40]", "-40, 40]"));
     assert!(negative.contains("sizes not negative"), "{negative}");
     let gone =
