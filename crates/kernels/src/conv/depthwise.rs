@@ -255,10 +255,9 @@ unsafe fn inner<V: Lanes, const K: usize, const S: usize>(
     count: usize,
 ) -> [V; PIXELS] {
     let padded = job.filters.padded;
-    let kernel = job.window.kernel;
     // SAFETY: passed on; all taps lie within the input.
     unsafe {
-        let mut sums = [V::load(taps.weights.add(kernel[0] * kernel[1] * padded)); PIXELS];
+        let mut sums = [V::splat(0.0); PIXELS];
         let left = ox * S - job.window.pads[1];
         for ky in taps.first..taps.end {
             let y = (taps.input_row + (ky * job.window.dilations[0]) as isize) as usize;
@@ -296,7 +295,7 @@ unsafe fn edge<V: Lanes>(job: &Job<'_>, taps: &Taps, ox: usize, count: usize) ->
     let (window, padded) = (job.window, job.filters.padded);
     // SAFETY: passed on; taps beside the input are left out.
     unsafe {
-        let mut sum = V::load(taps.weights.add(window.kernel[0] * window.kernel[1] * padded));
+        let mut sum = V::splat(0.0);
         for ky in taps.first..taps.end {
             let y = (taps.input_row + (ky * window.dilations[0]) as isize) as usize;
             for kx in 0..window.kernel[1] {
@@ -314,6 +313,7 @@ unsafe fn edge<V: Lanes>(job: &Job<'_>, taps: &Taps, ox: usize, count: usize) ->
     }
 }
 
+/// Adds the bias, last for the reason given in the tiles of dense convolutions, applies the activation function and stores.
 #[inline(always)]
 unsafe fn finish<V: Lanes, const R: usize>(
     job: &Job<'_>,
@@ -330,8 +330,11 @@ unsafe fn finish<V: Lanes, const R: usize>(
             .y
             .add(image * job.y_strides.image + oy * job.y_strides.row + ox * job.y_strides.pixel + channel);
         let zero = V::splat(0.0);
+        let taps = job.window.kernel[0] * job.window.kernel[1];
+        let bias = V::load(job.filters.rows.start().add(taps * job.filters.padded + channel));
         let slope = job.finish.slopes.as_ref().map(|slopes| V::load(slopes.as_ptr().add(channel)));
         for (i, &sum) in sums.iter().enumerate() {
+            let sum = sum.add(bias);
             let value = match slope {
                 Some(slope) => slope.mul_add(zero.min(sum), zero.max(sum)),
                 None => V::splat(job.clamp[1]).min(V::splat(job.clamp[0]).max(sum)),

@@ -58,10 +58,6 @@ pub(super) unsafe fn tile<V: Lanes, const R: usize, const N: usize>(row: &Row, f
     // SAFETY: by contract.
     unsafe {
         let mut sums = [[V::splat(0.0); N]; R];
-        for (j, sum) in sums[0].iter_mut().enumerate() {
-            *sum = V::load(row.panel.bias.add(j * V::WIDTH));
-        }
-        sums = [sums[0]; R];
         let runs = if planar { channels } else { 1 };
         let depth = if planar { 1 } else { channels };
         let row_length = window.kernel[1] * channels * N * V::WIDTH;
@@ -110,10 +106,6 @@ pub(super) unsafe fn planar_tile<V: Lanes, const R: usize, const N: usize, const
     // SAFETY: by contract.
     unsafe {
         let mut sums = [[V::splat(0.0); N]; R];
-        for (j, sum) in sums[0].iter_mut().enumerate() {
-            *sum = V::load(row.panel.bias.add(j * V::WIDTH));
-        }
-        sums = [sums[0]; R];
         let mut b = row.panel.weights.add(row.taps[0] * window.kernel[1] * channels * N * V::WIDTH);
         for ky in row.taps[0]..row.taps[1] {
             let y = (row.input_row + (ky * window.dilations[0]) as isize) as usize;
@@ -187,7 +179,9 @@ unsafe fn add_step<V: Lanes, const R: usize, const N: usize>(
     }
 }
 
-/// Stores a tile, clamped: that is the identity, ReLU and ReLU6. Other functions follow in [`finish`].
+/// Adds the bias to a tile and stores it, clamped: that is the identity, ReLU and ReLU6. Other functions follow in [`finish`].
+///
+/// The bias comes last: a sum that begins with a large bias loses the low bits of every product.
 #[inline(always)]
 unsafe fn store<V: Lanes, const R: usize, const N: usize>(row: &Row, first: usize, sums: &[[V; N]; R]) {
     let stride = row.conv.y.pixel;
@@ -195,10 +189,14 @@ unsafe fn store<V: Lanes, const R: usize, const N: usize>(row: &Row, first: usiz
     unsafe {
         let y = row.y.add(first * stride);
         let (low, high) = (V::splat(row.clamp[0]), V::splat(row.clamp[1]));
+        let mut bias = [V::splat(0.0); N];
+        for (j, bias) in bias.iter_mut().enumerate() {
+            *bias = V::load(row.panel.bias.add(j * V::WIDTH));
+        }
         if row.panel.used >= N * V::WIDTH {
             for (i, sums) in sums.iter().enumerate() {
                 for (j, &sum) in sums.iter().enumerate() {
-                    high.min(low.max(sum)).store(y.add(i * stride + j * V::WIDTH));
+                    high.min(low.max(sum.add(bias[j]))).store(y.add(i * stride + j * V::WIDTH));
                 }
             }
             return;
@@ -206,7 +204,7 @@ unsafe fn store<V: Lanes, const R: usize, const N: usize>(row: &Row, first: usiz
         let mut buffer = [0.0_f32; MAX_TILE];
         for (i, sums) in sums.iter().enumerate() {
             for (j, &sum) in sums.iter().enumerate() {
-                high.min(low.max(sum)).store(buffer.as_mut_ptr().add((i * N + j) * V::WIDTH));
+                high.min(low.max(sum.add(bias[j]))).store(buffer.as_mut_ptr().add((i * N + j) * V::WIDTH));
             }
         }
         for (i, sums) in buffer.chunks_exact(N * V::WIDTH).take(R).enumerate() {
