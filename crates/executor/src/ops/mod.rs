@@ -78,7 +78,6 @@ const OPERATORS: &[(&str, Build)] = &[
     ("PRelu", elementwise::prelu),
     ("Pad", movement::pad),
     ("Pow", elementwise::binary),
-    ("QuantizeLinear", quantize::quantize),
     ("Range", shape::range),
     ("Reciprocal", elementwise::unary),
     ("ReduceL2", reduce::reduce),

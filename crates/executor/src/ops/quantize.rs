@@ -1,4 +1,7 @@
-//! Quantisation.
+//! Dequantisation of weights.
+//!
+//! Networks that also quantise their activations are refused: computed in floats, ties of rounding fall differently than in the 8-bit
+//! products that the model was made for.
 
 use opendr_engine::Result;
 use opendr_onnx::proto::NodeProto;
@@ -48,24 +51,6 @@ fn parameters(
     Ok((vec![Some(x), Some(scale), zero], rows))
 }
 
-pub(crate) fn quantize(
-    planner: &mut Planner<'_>,
-    node: &NodeProto,
-    inputs: &[Option<Id>],
-) -> Result<Vec<Id>> {
-    let x = required(node, inputs, 0)?;
-    let to = optional(inputs, 2).map_or(Kind::U8, |zero| planner.kind(zero));
-    if planner.kind(x) != Kind::F32
-        || !matches!(to, Kind::U8 | Kind::I8)
-        || node.int_or("output_dtype", 0) != 0
-    {
-        return Err(node.refused("its types"));
-    }
-    let (reads, rows) = parameters(planner, node, inputs, x)?;
-    let value = planner.value(x).clone();
-    planner.emit(QuantizeStep { to, rows }, &reads, &[(to, value.shape, value.layout)])
-}
-
 pub(crate) fn dequantize(
     planner: &mut Planner<'_>,
     node: &NodeProto,
@@ -81,49 +66,6 @@ pub(crate) fn dequantize(
     let (reads, rows) = parameters(planner, node, inputs, x)?;
     let value = planner.value(x).clone();
     planner.emit(DequantizeStep { from, rows }, &reads, &[(Kind::F32, value.shape, value.layout)])
-}
-
-struct QuantizeStep {
-    to: Kind,
-    rows: Rows,
-}
-
-impl Kernel for QuantizeStep {
-    fn run(&self, io: &mut Io<'_>) -> Result<()> {
-        match self.to {
-            Kind::U8 => self.write(io, |zero: u8| f32::from(zero), [0.0, 255.0], |value| value as u8),
-            _ => self.write(io, |zero: i8| f32::from(zero), [-128.0, 127.0], |value| value as i8),
-        }
-        Ok(())
-    }
-}
-
-impl QuantizeStep {
-    fn write<T: opendr_kernels::Number>(
-        &self,
-        io: &mut Io<'_>,
-        read: impl Fn(T) -> f32 + Sync,
-        [low, high]: [f32; 2],
-        to: impl Fn(f32) -> T + Sync,
-    ) {
-        let (x, scales, zeros, y) = (io.read::<f32>(0), io.read::<f32>(1), io.read::<T>(2), io.write::<T>());
-        let length = self.rows.length.max(1);
-        for (row, y) in y.chunks_mut(length).enumerate() {
-            let x = self.rows.of(x, row, 0, y.len());
-            let at = self.rows.start(row, 1);
-            if self.rows.is_row[1] {
-                for (i, (y, x)) in y.iter_mut().zip(x).enumerate() {
-                    let zero = zeros.get(at + i).map_or(0.0, |&zero| read(zero));
-                    *y = to(((x / scales[at + i]).round_ties_even() + zero).clamp(low, high));
-                }
-            } else {
-                let (scale, zero) = (scales[at], zeros.get(at).map_or(0.0, |&zero| read(zero)));
-                y.iter_mut()
-                    .zip(x)
-                    .for_each(|(y, x)| *y = to(((x / scale).round_ties_even() + zero).clamp(low, high)));
-            }
-        }
-    }
 }
 
 struct DequantizeStep {
