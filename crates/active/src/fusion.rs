@@ -180,7 +180,7 @@ impl Belief {
 
     /// The information of the last view as a share of all that can be said, 0 before a view.
     pub fn last_information(&self) -> f32 {
-        self.information.last().map_or(0.0, |told| told / (self.classes as f32).ln())
+        self.information.last().map_or(0.0, |information| information / (self.classes as f32).ln())
     }
 
     /// Number of classes.

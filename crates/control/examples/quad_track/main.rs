@@ -6,7 +6,7 @@
 //! `video=FILE.gif` writes a video of one flight instead, `policy=FILE` the base network of seed 0; `plant.NAME` sets an option of the environment for
 //! every flight, and every other name is a parameter of the adaptation.
 
-mod base;
+mod base_policy;
 mod cases;
 mod flight;
 mod report;
@@ -19,7 +19,7 @@ fn main() -> Result<()> {
     let settings = settings::Settings::parse(std::env::args().skip(1))?;
     match (&settings.video, &settings.policy) {
         (Some(path), _) => video::write(path, &settings),
-        (None, Some(path)) => base::train(0)?.policy.policy().save(path.as_ref()),
+        (None, Some(path)) => base_policy::train(0)?.policy.policy().save(path.as_ref()),
         (None, None) => report::run(&settings),
     }
 }

@@ -7,7 +7,7 @@ use opendr_engine::environment::{Controller, Environment as _, ResetOptions};
 use opendr_simulation::RegisteredEnvironment as _;
 use opendr_simulation::quad_track::{QuadTrack, QuadTrackParams};
 
-use crate::base::{Base, train, tuned_pid};
+use crate::base_policy::{Base, train, tuned_pid};
 use crate::cases::{CASES, options, random_plant};
 use crate::flight::{Flight, STEPS, fly_all};
 use crate::settings::Settings;

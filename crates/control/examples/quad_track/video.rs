@@ -6,7 +6,7 @@ use opendr_engine::{Error, Result};
 use opendr_simulation::quad_track::{QuadTrack, QuadTrackParams};
 use opendr_simulation::{Recording, RegisteredEnvironment as _};
 
-use crate::base::train;
+use crate::base_policy::train;
 use crate::cases::{CASES, options};
 use crate::settings::Settings;
 

@@ -23,9 +23,9 @@ fn reference(
     for image in 0..batch {
         for oy in 0..window.output[0] {
             for ox in 0..window.output[1] {
-                for output in 0..groups * outputs {
+                for (output, bias) in bias[..groups * outputs].iter().enumerate() {
                     let group = output / outputs;
-                    let mut sum = f64::from(bias[output]);
+                    let mut sum = f64::from(*bias);
                     for channel in 0..channels {
                         for ky in 0..window.kernel[0] {
                             for kx in 0..window.kernel[1] {
