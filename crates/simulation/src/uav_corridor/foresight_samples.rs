@@ -5,10 +5,10 @@ use opendr_engine::{Random, Result};
 
 use super::{FlightMemory, UavDepthCorridor};
 
-/// Steps that were tried from places of flights: what a [`Foresight`] is learnt from.
+/// Steps that were tried from places of flights: what a [`Foresight`](super::Foresight) is learnt from.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ForesightSamples {
-    /// [`Foresight::FEATURES`] numbers of each step.
+    /// [`Foresight::FEATURES`](super::Foresight::FEATURES) numbers of each step.
     pub features: Vec<f32>,
     /// 1 where the flight failed after the step, else 0.
     pub targets: Vec<f32>,
