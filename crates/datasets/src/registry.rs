@@ -98,12 +98,13 @@ pub fn open(
     (format_of(dataset)?.open)(dataset.path(), options, problems)
 }
 
-/// Opens a data set for `user`, a learner, metric or format, with the first type of annotation of its format that is `accepted`.
+/// Opens a data set with the first type of annotation of its format that is `accepted`. `need` states in the error who needs the
+/// annotations, such as "map needs the annotations".
 ///
 /// # Errors
 /// `InvalidInput` if the format has none of the types; else as [`open`].
 pub fn open_for(
-    user: &str,
+    need: &str,
     accepted: &[ValueType],
     dataset: &ExternalDataset,
     split: Option<String>,
@@ -114,7 +115,7 @@ pub fn open_for(
     if target.is_none() {
         let (needed, has) = (names_of_types(accepted), names_of_types(format.targets));
         return Err(Error::invalid_input(format!(
-            "{user} needs the annotations {needed}, but a data set of format {} has {has}; use another data set, or name \
+            "{need} {needed}, but a data set of format {} has {has}; use another data set, or name \
              another format",
             format.name
         )));

@@ -85,7 +85,13 @@ impl<'a> DatasetOpener<'a> {
         let split = split.map(str::to_owned);
         match self.accepted.is_empty() {
             true => open(external, &OpenOptions { split, target: None }, self.problems),
-            false => open_for(self.learner, &self.accepted, external, split, self.problems),
+            false => open_for(
+                &format!("{} trains on", self.learner),
+                &self.accepted,
+                external,
+                split,
+                self.problems,
+            ),
         }
     }
 }

@@ -45,7 +45,8 @@ impl FilePredictions {
             return Ok(Self::Lines(Lines::open(path, dataset, problems)?));
         }
         let external = ExternalDataset::new(path, format);
-        let predictions = open_for(metric.name, &[metric.prediction], &external, None, problems)?;
+        let predictions =
+            open_for(&format!("{} compares", metric.name), &[metric.prediction], &external, None, problems)?;
         Ok(Self::from_dataset(predictions, dataset))
     }
 

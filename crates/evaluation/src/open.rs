@@ -15,5 +15,11 @@ pub fn open_for_metric(
     split: Option<String>,
     problems: &Problems,
 ) -> Result<Box<dyn DatasetIterator>> {
-    open_for(metric.name, &[metric.ground_truth], dataset, split, problems)
+    open_for(
+        &format!("{} needs the annotations", metric.name),
+        &[metric.ground_truth],
+        dataset,
+        split,
+        problems,
+    )
 }

@@ -170,7 +170,13 @@ fn convert(matches: &ArgMatches) -> Result<Outcome> {
     let output = matches.get_one::<PathBuf>("output").cloned().unwrap_or_default();
     let external = dataset_flags::external(matches);
     let split = dataset_flags::split(matches);
-    let dataset = datasets::open_for(to.name, to.targets, &external, split, &problems)?;
+    let dataset = datasets::open_for(
+        &format!("{} has the annotations", to.name),
+        to.targets,
+        &external,
+        split,
+        &problems,
+    )?;
     let options = WriteOptions { split: matches.get_one("as").cloned(), link: matches.get_flag("link") };
     (to.write)(dataset.as_ref(), &output, &options, &problems, &bar)?;
     dataset_flags::print_problems(&problems)?;

@@ -19,7 +19,9 @@ fn annotations_that_a_format_does_not_have_are_refused() {
     let expected = "a data set of format camvid has Heatmap, not BoundingBoxList";
     assert!(error.to_string().contains(expected), "{error}");
     let wanted = [ValueType::BoundingBoxList, ValueType::PoseList];
-    let error = open_for("Somebody", &wanted, &pictures, None, &Problems::strict()).err().unwrap();
+    let error = open_for("Somebody needs the annotations", &wanted, &pictures, None, &Problems::strict())
+        .err()
+        .unwrap();
     assert_eq!(error.kind(), ErrorKind::InvalidInput);
     let expected = "Somebody needs the annotations BoundingBoxList or PoseList";
     assert!(error.to_string().contains(expected), "{error}");
