@@ -32,16 +32,17 @@ def test_a_camera_is_trained_measured_and_moved(opendr, tmp_path):
     assert done.returncode == 0 and "after" in done.stdout, done.stderr
     # An image without a rig: the target has the motion to the next view.
     line = opendr.infer(*model, strip)[0]
-    assert len(line["outputs"]["target"].get("action", [0, 0, 0])) == 3
+    assert len(line["outputs"]["category"].get("action", [0, 0, 0])) == 3
 
 
 def test_wrong_use_is_refused(opendr, tmp_path):
     (tmp_path / "views.json").write_text("{}")
+    (tmp_path / "empty").mkdir()
     for arguments, word in [
         (["fit", "active_face_recognition", "--env", "CartPole-v1", "--out", tmp_path / "a"], "active perception"),
         (["fit", "active_face_recognition", "--out", tmp_path / "b"], "--env"),
         (["infer", "centernet", "--rig", "SphereView-Face-v1"], "--camera-policy"),
-        (["infer", "centernet", "--rig", "nowhere", "--camera-policy", tmp_path], "model.json"),
+        (["infer", "centernet", "--rig", "nowhere", "--camera-policy", tmp_path / "empty"], "model.json"),
     ]:
         done = opendr.run(*arguments)
         assert done.returncode not in (0, 101) and word in done.stderr, (arguments, done.stderr)

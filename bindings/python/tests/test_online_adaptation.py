@@ -5,17 +5,18 @@ import opendr
 import pytest
 from opendr.control.online_adaptation import OnlineAdapter
 from opendr.control.reinforcement_learning import PpoLearner, Td3Learner
+from opendr.simulation import Environment
 
 
 @pytest.fixture(scope="module")
 def learner():
     learner = Td3Learner()
-    learner.load_pretrained("quad_track", verbose=False)
+    learner.load(variant="quad_track")
     return learner
 
 
 def test_a_load_is_learned_and_saved_with_its_lineage(learner, tmp_path):
-    env = opendr.simulation.Environment("QuadTrack-v1")
+    env = Environment("QuadTrack-v1")
     adapter = OnlineAdapter(learner)
     observation, _ = env.reset(seed=1, options={"mass_factor": 1.3, "change_at": 2.0})
     for _ in range(1500):
@@ -46,7 +47,7 @@ def test_what_cannot_be_adapted_is_refused(learner):
     choices = PpoLearner()
     with pytest.raises(FileNotFoundError, match="no model is loaded"):
         OnlineAdapter(choices, "CartPole-v1")
-    choices.load_pretrained(verbose=False)
+    choices.load()
     with pytest.raises(opendr.Unsupported, match="states no tracking task"):
         OnlineAdapter(choices, "CartPole-v1")
     with pytest.raises(ValueError, match="observes"):

@@ -18,8 +18,8 @@
 //! use opendr_metrics::{Classification, ClassificationParams, Metric};
 //!
 //! let mut metric = Classification::new(&ClassificationParams::default())?;
-//! for (at, (predicted, ground truth)) in [(0, 0), (1, 1), (1, 0), (1, 1)].into_iter().enumerate() {
-//!     metric.update(at, &Category::new(predicted, None), &Category::new(ground truth, None))?;
+//! for (index, (predicted, annotated)) in [(0, 0), (1, 1), (1, 0), (1, 1)].into_iter().enumerate() {
+//!     metric.update(index, &Category::new(predicted, None), &Category::new(annotated, None))?;
 //! }
 //! assert_eq!(metric.finish().statistics.get("accuracy"), Some(0.75));
 //! # Ok::<_, opendr_engine::Error>(())

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from opendr import _opendr
-from opendr._native_learner import PathLike
+from opendr._input_value import PathLike
 from opendr._native_learner_rl import NativeLearnerRL
 
 __all__ = ["OnlineAdapter"]
