@@ -29,7 +29,7 @@ def test_a_load_is_learned_and_saved_with_its_lineage(learner, tmp_path):
         adapter.save(tmp_path / "adapted", "test flight")
     adapted = Td3Learner()
     adapted.load(tmp_path / "adapted")
-    assert not np.allclose(adapted.infer(observation).values, learner.infer(observation).values)
+    assert not np.allclose(adapted.infer(observation).data, learner.infer(observation).data)
     other = OnlineAdapter(learner)
     assert other.load(tmp_path / "adapted")["adapted_on"] == "test flight"
     assert other.distance == pytest.approx(adapter.distance, rel=1e-4)

@@ -1,4 +1,4 @@
-//! Cameras that move: rigs that carry out an [`Action`](crate::target::Action) and capture an image.
+//! Cameras that move: rigs that carry out an [`Action`] and capture an image.
 //!
 //! A rig moves on a sphere around its subject. An action is relative: each of its 1 to 4 numbers is a share, in [-1, 1],
 //! of the step that the rig states for that axis.
