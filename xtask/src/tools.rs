@@ -7,7 +7,8 @@ use std::sync::{Mutex, PoisonError};
 use crate::shell::{Result, command, is_installed, root, step, target};
 
 /// Debian packages by the program or folder that they provide.
-const DEBIAN: [(&str, &str); 20] = [
+const DEBIAN: [(&str, &str); 21] = [
+    ("advzip", "advancecomp"),
     ("ffmpeg", "ffmpeg"),
     ("g++", "g++"),
     ("pkg-config", "pkg-config"),

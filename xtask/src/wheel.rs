@@ -30,9 +30,21 @@ impl For {
     }
 }
 
-/// Builds a wheel with the pip of `python`, as a user does.
+/// Builds a wheel with the pip of `python`, as a user does; one for users is compressed again, more tightly than pip can.
 pub fn build(python: &Python, purpose: For) -> Result<PathBuf> {
-    pip_wheel(python, &purpose.folder(), "bindings/python", &[("MATURIN_PEP517_ARGS", &purpose.arguments())])
+    let wheel = pip_wheel(
+        python,
+        &purpose.folder(),
+        "bindings/python",
+        &[("MATURIN_PEP517_ARGS", &purpose.arguments())],
+    )?;
+    if purpose == For::Users {
+        step(
+            "compression of the wheel",
+            command("advzip").args(["--recompress", "--shrink-extra", "--quiet"]).arg(&wheel),
+        )?;
+    }
+    Ok(wheel)
 }
 
 /// Builds the data package `bindings/models` with our own weights.
