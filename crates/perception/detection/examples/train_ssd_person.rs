@@ -119,7 +119,7 @@ fn main() -> Result<()> {
     let (data, output) = (Path::new(data), Path::new(output));
     let mut params =
         SingleShotDetectorFitParams { backbone_weights: Some(posenet.clone()), ..Default::default() };
-    params.aspect_ratios = vec![0.33, 0.6, 1.1];
+    params.layout.aspect_ratios = vec![0.33, 0.6, 1.1];
     params.training.ema = 0.998;
     let mut photos_at: Vec<_> = PHOTOS.map(|name| data.join(name)).into();
     for setting in settings {

@@ -40,9 +40,3 @@ pub fn iou(a: &[f32; 4], b: &[f32; 4]) -> f32 {
 pub(super) fn overlap(a: &Candidate, b: &Candidate, limit: f32) -> bool {
     a.class == b.class && iou(&a.corners, &b.corners) > limit
 }
-
-/// Keeps the candidates whose mark is not set.
-pub(super) fn keep_unmarked(candidates: &mut Vec<Candidate>, marks: &[bool]) {
-    let mut dropped = marks.iter();
-    candidates.retain(|_| !dropped.next().copied().unwrap_or(false));
-}

@@ -1,4 +1,5 @@
-use super::candidate::{Candidate, keep_unmarked, overlap};
+use super::candidate::{Candidate, overlap};
+use super::greedy::keep_unmarked;
 
 /// Applies Fast NMS in which only kept boxes suppress others, repeated until nothing changes. A change propagates by at least one
 /// box per pass, so there are at most as many passes as boxes; clusters are small in practice.

@@ -1,4 +1,5 @@
-use super::candidate::{Candidate, keep_unmarked, overlap};
+use super::candidate::{Candidate, overlap};
+use super::greedy::keep_unmarked;
 
 /// Drops every box that a box of a higher score overlaps, even if that one is dropped itself.
 pub fn suppress(candidates: &mut Vec<Candidate>, dropped: &mut Vec<bool>, limit: f32) {

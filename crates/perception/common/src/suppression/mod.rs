@@ -1,15 +1,16 @@
 //! Non-maximum suppression: removal of boxes that overlap a box of a higher score.
 
+mod birds_eye_view;
 mod candidate;
 mod cluster;
 mod fast;
+mod greedy;
 mod hard;
 mod soft;
-mod standing;
 mod weighted;
 
+pub use birds_eye_view::{BevCandidate, suppress_bev};
 pub use candidate::{Candidate, iou, keep_best};
-pub use standing::{BevCandidate, suppress_bev};
 pub use weighted::merge_overlapping;
 
 use candidate::by_score;

@@ -13,30 +13,18 @@ use super::objective::GemObjective;
 use super::{Gem, GemParams};
 use crate::object_detection_2d::selected_classes;
 use crate::object_detection_2d::single_shot_detector::network::NetworkConfig;
-use crate::object_detection_2d::single_shot_detector::{Backbone, LayoutOptions, Resizing};
+use crate::object_detection_2d::single_shot_detector::{Backbone, LayoutParams, Resizing};
 
 /// Training parameters of [`Gem`]. Samples have two images of one view, and boxes in pixels of the first.
 #[derive(Debug, Clone, Params)]
 pub struct GemFitParams {
     /// Backbone of each sensor; the two share no weights.
     pub backbone: Backbone,
-    /// Side of the network's inputs, a multiple of 32.
-    #[param(default = 320, range = 96..=1024, unit = "px")]
-    pub img_size: usize,
-    /// How images are resized to that side.
-    #[param(former = "fitting")]
-    pub resizing: Resizing,
+    /// Parameters of the input and of the anchors.
+    #[param(flatten)]
+    pub layout: LayoutParams,
     /// Names of the classes to detect, of those of the data set; all when empty.
     pub classes: Vec<String>,
-    /// Stride of the finest level, 8 or 16.
-    #[param(default = 8, range = 8..=16, unit = "px")]
-    pub stride: usize,
-    /// Aspect ratios (width over height) of the anchors.
-    #[param(default = vec![0.4, 1.0, 2.0], range = 0.05..=20.0)]
-    pub aspect_ratios: Vec<f32>,
-    /// Sides of the anchors of each level, in strides of the level.
-    #[param(default = vec![3.0, 4.25], range = 0.5..=32.0)]
-    pub anchor_scales: Vec<f32>,
     /// Share of samples in which one random sensor is black, so that the detector works with either sensor alone.
     #[param(default = 0.3, range = 0.0..=1.0)]
     pub drop_sensor: f32,
@@ -71,15 +59,8 @@ impl Fit for Gem {
     ) -> Result<Statistics> {
         let training = &fit_params.training;
         let dataset = open_for_training::<Self>(dataset, job)?;
-        let options = LayoutOptions {
-            img_size: fit_params.img_size,
-            fitting: fit_params.resizing,
-            stride: fit_params.stride,
-            anchor_scales: &fit_params.anchor_scales,
-            aspect_ratios: &fit_params.aspect_ratios,
-        };
         let objective = GemObjective {
-            layout: options.layout(base)?,
+            layout: fit_params.layout.resolve(base)?,
             classes: selected_classes(&fit_params.classes, &dataset.classes())?,
             augment: fit_params.augment,
             drop_sensor: fit_params.drop_sensor,

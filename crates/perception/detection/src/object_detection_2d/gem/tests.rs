@@ -12,7 +12,7 @@ use opendr_training::{ScheduleKind, TrainingParams};
 
 use super::drop_sensor::blank;
 use super::*;
-use crate::object_detection_2d::single_shot_detector::Backbone;
+use crate::object_detection_2d::single_shot_detector::{Backbone, LayoutParams};
 
 /// Synthetic pairs with one object on noise: red in the colour image, bright in the infrared one.
 struct Pairs(usize);
@@ -67,10 +67,13 @@ fn fit_params(steps: usize, drop_sensor: f32) -> GemFitParams {
     };
     GemFitParams {
         backbone: Backbone::MobileNet025,
-        img_size: SIDE,
-        stride: 16,
-        anchor_scales: vec![2.0, 3.0],
-        aspect_ratios: vec![1.0],
+        layout: LayoutParams {
+            img_size: SIDE,
+            stride: 16,
+            anchor_scales: vec![2.0, 3.0],
+            aspect_ratios: vec![1.0],
+            ..LayoutParams::default()
+        },
         augment: false,
         drop_sensor,
         training,
@@ -177,7 +180,8 @@ fn invalid_trainings_are_refused() {
     let error = Gem::fit(None, &GemParams::default(), &fit_params(1, 0.0), dataset, None, &job).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::InvalidInput);
     assert!(error.to_string().contains("coco_infrared"), "{error}");
-    let size = GemFitParams { img_size: 100, ..fit_params(1, 0.0) };
+    let layout = LayoutParams { img_size: 100, ..LayoutParams::default() };
+    let size = GemFitParams { layout, ..fit_params(1, 0.0) };
     assert!(trained(None, &size, &job).unwrap_err().to_string().contains("96 or 128"));
     std::fs::remove_dir_all(folder).ok();
 }

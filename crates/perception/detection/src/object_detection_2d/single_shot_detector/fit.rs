@@ -12,7 +12,7 @@ use opendr_training::weights::WeightTable;
 use opendr_training::{ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device};
 
 use super::layout::Resizing;
-use super::layout_options::LayoutOptions;
+use super::layout_params::LayoutParams;
 use super::matching::Matching;
 use super::network::{BACKBONE_LAYERS, Network, NetworkConfig};
 use super::objective::DetectionObjective;
@@ -50,23 +50,11 @@ impl Backbone {
 pub struct SingleShotDetectorFitParams {
     /// Backbone of the network.
     pub backbone: Backbone,
-    /// Side of the network's input, a multiple of 32; OpenDR's default of 512 takes two and a half times as long.
-    #[param(default = 320, range = 96..=1024, unit = "px")]
-    pub img_size: usize,
-    /// How an image is resized to that side.
-    #[param(former = "fitting")]
-    pub resizing: Resizing,
+    /// Parameters of the input and of the anchors.
+    #[param(flatten)]
+    pub layout: LayoutParams,
     /// Names of the classes to detect, of those of the data set; all when empty.
     pub classes: Vec<String>,
-    /// Stride of the finest level, 8 or 16. The coarser one suits larger objects and is faster.
-    #[param(default = 8, range = 8..=16, unit = "px")]
-    pub stride: usize,
-    /// Aspect ratios (width over height) of the anchors.
-    #[param(default = vec![0.4, 1.0, 2.0], range = 0.05..=20.0)]
-    pub aspect_ratios: Vec<f32>,
-    /// Sides of the anchors of each level, in strides of the level.
-    #[param(default = vec![3.0, 4.25], range = 0.5..=32.0)]
-    pub anchor_scales: Vec<f32>,
     /// Container or file (ONNX, safetensors, PyTorch) whose first layers initialise the backbone, such as PoseNet's.
     pub backbone_weights: Option<String>,
     /// Number of frozen layers, of the backbone's 14, from the input.
@@ -127,15 +115,8 @@ impl Fit for SingleShotDetector {
 
 impl SingleShotDetectorFitParams {
     fn objective(&self, base: Option<&Model>, dataset: &dyn DatasetIterator) -> Result<DetectionObjective> {
-        let options = LayoutOptions {
-            img_size: self.img_size,
-            fitting: self.resizing,
-            stride: self.stride,
-            anchor_scales: &self.anchor_scales,
-            aspect_ratios: &self.aspect_ratios,
-        };
         Ok(DetectionObjective {
-            layout: options.layout(base)?,
+            layout: self.layout.resolve(base)?,
             classes: selected_classes(&self.classes, &dataset.classes())?,
             matching: Matching::default(),
             min_score: self.min_score,

@@ -11,7 +11,7 @@ pub mod decode;
 mod fit;
 mod layout;
 #[cfg(feature = "training")]
-mod layout_options;
+mod layout_params;
 mod levels;
 #[cfg(feature = "training")]
 pub(crate) mod loss;
@@ -40,7 +40,7 @@ use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionK
 pub use fit::{Backbone, SingleShotDetectorFitParams};
 pub use layout::{ImageLayout, Layout, Resizing};
 #[cfg(feature = "training")]
-pub(crate) use layout_options::LayoutOptions;
+pub use layout_params::LayoutParams;
 pub(crate) use levels::Levels;
 #[cfg(feature = "training")]
 pub(crate) use levels::output_names;

@@ -12,7 +12,7 @@ use opendr_engine::{Device, ErrorKind, Header, Random, Result, Statistics, Value
 use opendr_training::{ScheduleKind, TrainingParams};
 
 use super::fit::Backbone;
-use super::{SingleShotDetector, SingleShotDetectorFitParams, SingleShotDetectorParams};
+use super::{LayoutParams, SingleShotDetector, SingleShotDetectorFitParams, SingleShotDetectorParams};
 
 /// Synthetic images of one bright box on noise.
 struct Synthetic(usize);
@@ -61,10 +61,13 @@ fn fit_params(steps: usize) -> SingleShotDetectorFitParams {
     };
     SingleShotDetectorFitParams {
         backbone: Backbone::MobileNet025,
-        img_size: SIDE,
-        stride: 16,
-        anchor_scales: vec![2.0, 3.0],
-        aspect_ratios: vec![1.0],
+        layout: LayoutParams {
+            img_size: SIDE,
+            stride: 16,
+            anchor_scales: vec![2.0, 3.0],
+            aspect_ratios: vec![1.0],
+            ..LayoutParams::default()
+        },
         augment: false,
         training,
         ..SingleShotDetectorFitParams::default()
@@ -183,7 +186,8 @@ fn invalid_trainings_are_refused() {
     let error = trained(None, &classes, &job).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::InvalidParam);
     assert!(error.to_string().contains("red, blue"), "{error}");
-    let size = SingleShotDetectorFitParams { img_size: 100, ..fit_params(1) };
+    let layout = LayoutParams { img_size: 100, ..LayoutParams::default() };
+    let size = SingleShotDetectorFitParams { layout, ..fit_params(1) };
     assert!(trained(None, &size, &job).unwrap_err().to_string().contains("96 or 128"));
     SingleShotDetectorFitParams::default().check().unwrap();
     std::fs::remove_dir_all(folder).ok();

@@ -2,6 +2,8 @@
 
 use opendr_engine::overlap::RotatedRectangle;
 
+use super::greedy::{keep_unmarked, mark};
+
 /// A 3D box before suppression.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BevCandidate {
@@ -27,27 +29,10 @@ pub fn suppress_bev(candidates: &mut Vec<BevCandidate>, dropped: &mut Vec<bool>,
         is_finite && candidate.score.is_finite() && candidate.footprint.area() > 0.0
     });
     candidates.sort_unstable_by(|a, b| b.score.total_cmp(&a.score).then(a.index.cmp(&b.index)));
-    dropped.clear();
-    dropped.resize(candidates.len(), false);
-    let mut kept = 0;
-    for best in 0..candidates.len() {
-        if dropped[best] {
-            continue;
-        }
-        kept += 1;
-        if kept > most {
-            dropped[best..].fill(true);
-            break;
-        }
-        for other in best + 1..candidates.len() {
-            if !dropped[other] && candidates[other].class == candidates[best].class {
-                let shared = candidates[best].footprint.iou(&candidates[other].footprint);
-                dropped[other] = shared > f64::from(overlap);
-            }
-        }
-    }
-    let mut marks = dropped.iter();
-    candidates.retain(|_| !marks.next().copied().unwrap_or_default());
+    mark(candidates, dropped, most, |best, other| {
+        best.class == other.class && best.footprint.iou(&other.footprint) > f64::from(overlap)
+    });
+    keep_unmarked(candidates, dropped);
 }
 
 #[cfg(test)]
