@@ -33,6 +33,7 @@ mod sine_cosine;
 
 pub mod classic_control;
 pub mod lidar;
+pub mod person_scenes;
 pub mod quad_track;
 pub mod raycast;
 pub mod sphere_view;
