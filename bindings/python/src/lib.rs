@@ -17,6 +17,7 @@ mod datum;
 mod environment;
 mod error;
 mod evaluate;
+mod generation;
 mod handle;
 mod header;
 mod metric;
@@ -69,6 +70,7 @@ fn _opendr(module: &Bound<'_, PyModule>) -> PyResult<()> {
         wrap_pyfunction!(dataset::shuffled, module)?,
         wrap_pyfunction!(dataset::split, module)?,
         wrap_pyfunction!(evaluate::evaluate, module)?,
+        wrap_pyfunction!(generation::render, module)?,
         wrap_pyfunction!(metric::metrics, module)?,
         wrap_pyfunction!(metric::metric_of, module)?,
         wrap_pyfunction!(plugin::register, module)?,

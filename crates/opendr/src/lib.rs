@@ -44,6 +44,7 @@
 //! ```
 
 mod by_name;
+pub mod data_generation;
 pub mod environments;
 mod export;
 mod fit;

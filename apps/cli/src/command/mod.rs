@@ -22,6 +22,7 @@ mod score;
 mod sim;
 #[cfg(feature = "webots")]
 mod sim_export;
+mod sim_render;
 mod tune;
 
 use std::ffi::{OsStr, OsString};

@@ -1,4 +1,4 @@
-//! `opendr sim`: lists the environments and records videos of them.
+//! `opendr sim`: lists the environments, records videos of them, renders data sets, exports worlds.
 
 use std::path::{Path, PathBuf};
 
@@ -21,6 +21,7 @@ Examples:
   opendr sim view CartPole-v1 --learner ppo --out cart.mp4      an episode of a policy (mp4 needs ffmpeg)
   opendr sim view QuadTrack-v1 --learner td3/quad_track --online --rate 10 --env-param mass_factor=1.3
   opendr sim view UavDepthCorridor-v1 --env-param max_obstacles=10 --seed 7 --out flight.png
+  opendr sim render persons rendered/ --frames 1000             a labelled data set, as COCO
   opendr sim export UavDepthCorridor-v1 flight.wbt --seed 7     the world of an episode, for Webots";
 
 const ID: &str = "id";
@@ -62,7 +63,7 @@ pub fn grammar() -> Command {
         .args(super::online::flags().map(|flag| flag.requires("learner")))
         .args(loading::flags());
     Command::new("sim")
-        .about("List the environments and priors of reinforcement learning and record videos of them")
+        .about("List environments and priors, record videos of episodes, render labelled data sets")
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommands([
@@ -71,6 +72,7 @@ pub fn grammar() -> Command {
                 Arg::new(ID).value_name("ID").help("List the spaces and parameters of this environment"),
             ),
             view,
+            super::sim_render::grammar(),
             #[cfg(feature = "webots")]
             super::sim_export::grammar(),
         ])
@@ -82,6 +84,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         Some(("list", matches)) => list(matches),
         Some(("view", matches)) => view(matches),
         Some(("priors", _)) => priors(),
+        Some(("render", matches)) => super::sim_render::run(matches),
         #[cfg(feature = "webots")]
         Some(("export", matches)) => super::sim_export::run(matches),
         _ => Ok(Outcome::Done),

@@ -184,6 +184,17 @@ def evaluate(
     options: str,
     verbose: bool,
 ) -> tuple[str, str]: ...
+def render(
+    world: str,
+    out: str,
+    frames: int,
+    size: list[int],
+    seed: int,
+    format: str | None,
+    split: str | None,
+    geometry: bool,
+    verbose: bool,
+) -> tuple[int, str, str | None]: ...
 def metrics() -> list[dict[str, Any]]: ...
 def metric_of(task: str) -> str: ...
 def register(cls: Any, tables: dict[str, Any]) -> None: ...

@@ -4,6 +4,7 @@ mod cached;
 mod dataset_ref;
 mod external;
 mod mapped;
+mod read_ahead;
 mod subset;
 
 use std::path::PathBuf;
@@ -12,6 +13,7 @@ pub use cached::CachedDatasetIterator;
 pub use dataset_ref::DatasetRef;
 pub use external::ExternalDataset;
 pub use mapped::MappedDatasetIterator;
+pub use read_ahead::ReadAheadDatasetIterator;
 pub use subset::Subset;
 
 use crate::target::Classes;

@@ -88,3 +88,16 @@ fn cached_samples_are_read_once() {
     assert_eq!(numbers.1.load(Ordering::Relaxed), 2);
     assert!(cached.get(3).is_err());
 }
+
+#[test]
+fn samples_that_are_read_ahead_keep_their_order_and_errors() {
+    let numbers = Numbers(11, AtomicUsize::new(0));
+    let ahead = ReadAheadDatasetIterator::new(&numbers, 3);
+    assert_eq!(ahead.len(), 11);
+    for index in [0, 1, 5, 10, 2, 9] {
+        assert_eq!(ahead.get(index).unwrap(), numbers.get(index).unwrap());
+        assert_eq!(ahead.target(index).unwrap(), numbers.target(index).unwrap());
+    }
+    let none = ReadAheadDatasetIterator::new(Numbers(0, AtomicUsize::new(0)), 0);
+    assert!(none.is_empty());
+}

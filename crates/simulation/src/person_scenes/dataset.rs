@@ -41,6 +41,11 @@ pub struct PersonScenes {
 const PERSONS: usize = 6;
 /// Share of images without persons, so that a detector learns what is none.
 const EMPTY: f32 = 0.12;
+/// Range of the distance of persons from the camera, metres.
+const NEAREST: f32 = 1.2;
+const FARTHEST: f32 = 14.0;
+/// Draws of a position before a person is left out.
+const ATTEMPTS: usize = 8;
 /// Distance between persons, metres.
 const APART: f32 = 0.55;
 
@@ -69,18 +74,11 @@ impl PersonScenes {
         }
         let mut random = Random::from_key([self.seed, index as u64, 0x9e50]);
         let mut stage = self.stage(&mut random)?;
-        let camera_position = stage.pose.position;
         let mut joints: Vec<[Vector; 17]> = Vec::new();
         let mut taken: Vec<Vector> = Vec::new();
         let count = if random.chance(EMPTY) { 0 } else { 1 + random.below(PERSONS) };
         for _ in 0..count {
-            let half = stage.place.half;
-            let position = [random.uniform(-half, half), random.uniform(-half, half), 0.0];
-            let is_near = |other: &Vector| length(minus(*other, position)) < APART;
-            let aside = minus(position, [camera_position[0], camera_position[1], 0.0]);
-            if taken.iter().any(is_near) || length(aside) < 1.0 {
-                continue;
-            }
+            let Some(position) = free_position(&stage, &taken, &mut random) else { continue };
             taken.push(position);
             let number = joints.len() as u16 + 1;
             let (shape, angles) = (BodyShape::draw(&mut random), JointAngles::draw(&mut random));
@@ -110,6 +108,11 @@ impl PersonScenes {
         Ok(Stage { place, persons: Vec::new(), camera, half_width, pose: Pose::looking_at(position, aim) })
     }
 
+    /// Returns a rendered image with its labels as a sample.
+    pub fn sample(&self, index: usize, scene: RenderedScene, poses: Vec<BodyPose>) -> Sample {
+        Sample { data: vec![scene.image.into()], target: Some(self.value(index, poses)) }
+    }
+
     fn value(&self, index: usize, poses: Vec<BodyPose>) -> Value {
         let header = Header::new(index as i64 + 1, "camera");
         match self.target {
@@ -123,6 +126,21 @@ impl PersonScenes {
     }
 }
 
+/// Draws a position on the floor in view of the camera that no other person takes; `None` if none is found.
+fn free_position(stage: &Stage, taken: &[Vector], random: &mut Random) -> Option<Vector> {
+    let [ahead, left, _] = stage.pose.axes;
+    let [x, y, _] = stage.pose.position;
+    (0..ATTEMPTS).find_map(|_| {
+        // Near persons are as frequent as far ones in terms of their size in the image.
+        let far = NEAREST * (FARTHEST / NEAREST).powf(random.uniform(0.0, 1.0));
+        let aside = far * stage.half_width * random.uniform(-1.0, 1.0);
+        let position = [x + far * ahead[0] + aside * left[0], y + far * ahead[1] + aside * left[1], 0.0];
+        let is_inside = position.iter().all(|part| part.abs() <= stage.place.half + 0.8);
+        let is_free = taken.iter().all(|other| length(minus(*other, position)) >= APART);
+        (is_inside && is_free).then_some(position)
+    })
+}
+
 impl Dataset for PersonScenes {}
 
 impl DatasetIterator for PersonScenes {
@@ -132,7 +150,7 @@ impl DatasetIterator for PersonScenes {
 
     fn get(&self, index: usize) -> Result<Sample> {
         let (scene, poses) = self.render(index)?;
-        Ok(Sample { data: vec![scene.image.into()], target: Some(self.value(index, poses)) })
+        Ok(self.sample(index, scene, poses))
     }
 
     fn name(&self, index: usize) -> String {

@@ -22,6 +22,7 @@ mod subject;
 mod surface;
 #[cfg(test)]
 mod tests;
+mod views;
 mod world;
 
 pub use asset::Asset;
@@ -29,4 +30,5 @@ pub use conditions::Conditions;
 pub(crate) use environment::registrations;
 pub use environment::{MOVES, SphereView, SphereViewParams};
 pub use subject::{CLASSES, Subject};
+pub use views::SubjectViews;
 pub use world::{SIDE, SphereWorld};

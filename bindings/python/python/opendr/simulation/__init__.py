@@ -7,7 +7,9 @@
     envs = gymnasium.make_vec("opendr/CartPole-v1", num_envs=64)
 
 ``gymnasium.make("opendr.simulation:opendr/UavDepthCorridor-v1")`` needs no import. Gymnasium is optional;
-``environments`` works without it.
+``environments`` and ``render`` work without it.
+
+    opendr.simulation.render("persons", "rendered", frames=1000)      # a labelled data set, as COCO
 """
 
 from __future__ import annotations
@@ -16,12 +18,13 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from opendr.simulation._registered import environments
+from opendr.simulation._rendering import render
 
 if TYPE_CHECKING:
     from opendr.simulation.environment import Environment
     from opendr.simulation.vector_environment import VectorEnvironment
 
-__all__ = ["Environment", "VectorEnvironment", "environments"]
+__all__ = ["Environment", "VectorEnvironment", "environments", "render"]
 
 _HOMES = {
     "Environment": "opendr.simulation.environment",
