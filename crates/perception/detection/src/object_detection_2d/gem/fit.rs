@@ -13,7 +13,7 @@ use super::objective::GemObjective;
 use super::{Gem, GemParams};
 use crate::object_detection_2d::selected_classes;
 use crate::object_detection_2d::single_shot_detector::network::NetworkConfig;
-use crate::object_detection_2d::single_shot_detector::{Backbone, LayoutParams, Resizing};
+use crate::object_detection_2d::single_shot_detector::{Backbone, LayoutParams};
 
 /// Training parameters of [`Gem`]. Samples have two images of one view, and boxes in pixels of the first.
 #[derive(Debug, Clone, Params)]

@@ -11,7 +11,6 @@ use opendr_perception_common::frozen_layers::{FrozenLayers, is_on_cpu};
 use opendr_training::weights::WeightTable;
 use opendr_training::{ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device};
 
-use super::layout::Resizing;
 use super::layout_params::LayoutParams;
 use super::matching::Matching;
 use super::network::{BACKBONE_LAYERS, Network, NetworkConfig};
