@@ -19,7 +19,7 @@ Examples:
   opendr sim render person_keypoints rendered/ --geometry             with depth, normals and camera poses
   opendr sim render faces heads/ --size 112x112 --frames 2600         a folder for each person
   opendr sim render street scans/                                     lidar scans with 3D boxes, as KITTI
-  opendr fit single_shot_detector --dataset rendered/                 train on them";
+  opendr fit single_shot_detector rendered/                           train on them";
 
 pub fn grammar() -> Command {
     let number = |name: &'static str| Arg::new(name).long(name).value_name("N");
