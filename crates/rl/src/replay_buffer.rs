@@ -4,7 +4,7 @@ use opendr_engine::environment::StateReader;
 use opendr_engine::{Error, Random, Result};
 
 use crate::policy::ObservationEncoder;
-use crate::saved_state::SavedState;
+use crate::saved_state::{SHIELDED, SavedState};
 
 /// Ring buffer of past steps; the oldest are overwritten. Observations are stored as the environment returns them.
 #[derive(Debug, Clone)]
@@ -57,7 +57,7 @@ pub(crate) const ROWS: [&str; 6] = [
     "replay_actions",
     "replay_rewards",
     "replay_continues",
-    "replay_shielded",
+    SHIELDED,
 ];
 
 impl ReplayBuffer {
@@ -142,7 +142,7 @@ impl ReplayBuffer {
         state.fill(ROWS[2], &mut self.actions[..len * action])?;
         state.fill(ROWS[3], &mut self.rewards[..len])?;
         state.fill(ROWS[4], &mut self.continues[..len])?;
-        state.fill(ROWS[5], &mut self.shielded[..len])
+        state.fill_or_zero(ROWS[5], &mut self.shielded[..len])
     }
 }
 

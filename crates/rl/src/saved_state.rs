@@ -1,7 +1,7 @@
 //! The saved state of a training, from which it resumes bit for bit.
 
 use opendr_engine::environment::{Snapshot, StateReader};
-use opendr_engine::{Error, JsonFormat, Random, Result, ResultExt as _};
+use opendr_engine::{Error, ErrorKind, JsonFormat, Random, Result, ResultExt as _};
 use opendr_kernels::Adam;
 use serde::{Deserialize, Serialize};
 
@@ -20,6 +20,10 @@ struct Record {
     environments: Snapshot,
 }
 
+/// Array of the steps of a replay buffer in which a shield replaced the action.
+pub(crate) const SHIELDED: &str = "replay_shielded";
+/// Arrays that version 0.1.0 does not write.
+const ADDED: [&str; 1] = [SHIELDED];
 const STATE: &str = "state.json";
 const FORMAT: JsonFormat = JsonFormat::new("state of a policy's training", 1);
 
@@ -58,6 +62,15 @@ impl SavedState {
         Ok(())
     }
 
+    /// Copies the array `name` as [`Self::fill`] does; zeros where an older version wrote the checkpoint, without that array.
+    pub(crate) fn fill_or_zero(&self, name: &str, numbers: &mut [f32]) -> Result<()> {
+        if self.arrays.iter().any(|(own, _)| *own == name) {
+            return self.fill(name, numbers);
+        }
+        numbers.fill(0.0);
+        Ok(())
+    }
+
     pub(crate) fn fill_adam(
         &self,
         names: [&str; 2],
@@ -83,21 +96,25 @@ impl SavedState {
         Ok(std::iter::once((STATE.to_owned(), json)).chain(rows).collect())
     }
 
-    /// Reads the state from the files of [`Self::files`], with the arrays `names`; `read` returns the bytes of a file.
+    /// Reads the state from the files of [`Self::files`], with the arrays `names`; `read` returns the bytes of a file. An array that
+    /// older versions do not write may be absent.
     ///
     /// # Errors
     /// `Format` for a damaged file, and the errors of `read`.
     pub fn from_files(read: &dyn Fn(&str) -> Result<Vec<u8>>, names: &[&'static str]) -> Result<Self> {
         let Record { words, environments } = FORMAT.read(&read(STATE)?).context(|| STATE.to_owned())?;
         let array = |name: &&'static str| -> Result<_> {
-            let bytes = read(&file_name(name))?;
+            let bytes = match read(&file_name(name)) {
+                Err(error) if ADDED.contains(name) && error.kind() == ErrorKind::NotFound => return Ok(None),
+                bytes => bytes?,
+            };
             let (numbers, rest) = bytes.as_chunks::<4>();
             match rest {
-                [] => Ok((*name, numbers.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect())),
+                [] => Ok(Some((*name, numbers.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect()))),
                 _ => Err(Error::format(format!("the size of array {name} is not a multiple of 4 bytes"))),
             }
         };
-        let arrays = names.iter().map(array).collect::<Result<_>>()?;
+        let arrays = names.iter().filter_map(|name| array(name).transpose()).collect::<Result<_>>()?;
         Ok(Self { words, arrays, environments })
     }
 }

@@ -8,8 +8,12 @@ use opendr_engine::{Error, Result};
 
 /// A controller that follows commands: references, such as a speed to hold, or gains.
 pub trait CommandedController: Send {
-    /// The space of commands: the action space of the policy.
+    /// The space of commands: the action space of the policy. The command of zeros, where it has one, is best the controller without
+    /// commands: a policy that commands zeros then begins as its prior.
     fn commands(&self) -> &Space;
+
+    /// Number of numbers of an action.
+    fn actions(&self) -> usize;
 
     /// Forgets the episode; called when another begins.
     fn reset(&mut self) {}
@@ -39,22 +43,56 @@ pub trait CommandedController: Send {
     }
 }
 
+/// A commanded controller that can move between threads.
+pub type BoxedCommanded = Box<dyn CommandedController>;
+
+impl CommandedController for BoxedCommanded {
+    fn commands(&self) -> &Space {
+        (**self).commands()
+    }
+
+    fn actions(&self) -> usize {
+        (**self).actions()
+    }
+
+    fn reset(&mut self) {
+        (**self).reset();
+    }
+
+    fn follow(&mut self, observation: &[f32], command: &[f32], action: &mut [f32]) -> Result<()> {
+        (**self).follow(observation, command, action)
+    }
+
+    fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
+        (**self).save_state(snapshot)
+    }
+
+    fn load_state(&mut self, state: &mut StateReader<'_>) -> Result<()> {
+        (**self).load_state(state)
+    }
+}
+
 /// A [`CommandedController`] of a function without state.
 pub struct CommandLaw<F> {
     commands: Space,
+    actions: usize,
     law: F,
 }
 
 impl<F: Fn(&[f32], &[f32], &mut [f32]) -> Result<()> + Send> CommandLaw<F> {
-    /// `law` writes an action from observation and command.
-    pub fn new(commands: Space, law: F) -> Self {
-        Self { commands, law }
+    /// `law` writes an action of `actions` numbers from observation and command.
+    pub fn new(commands: Space, actions: usize, law: F) -> Self {
+        Self { commands, actions, law }
     }
 }
 
 impl<F: Fn(&[f32], &[f32], &mut [f32]) -> Result<()> + Send> CommandedController for CommandLaw<F> {
     fn commands(&self) -> &Space {
         &self.commands
+    }
+
+    fn actions(&self) -> usize {
+        self.actions
     }
 
     fn follow(&mut self, observation: &[f32], command: &[f32], action: &mut [f32]) -> Result<()> {
@@ -76,12 +114,20 @@ impl<E: Environment, C: CommandedController> Commanded<E, C> {
     /// `inner`, where `controller` follows each command for `hold` steps; their rewards are summed.
     ///
     /// # Errors
-    /// `InvalidParam` where `hold` is 0.
+    /// `InvalidParam` where `hold` is 0, `InvalidInput` for a controller with actions of another length.
     pub fn new(inner: E, controller: C, hold: u32) -> Result<Self> {
         if hold == 0 {
             return Err(Error::invalid_param("a command is held for 0 steps; give at least 1"));
         }
         let mut spec = inner.spec().clone();
+        if controller.actions() != spec.action.len() {
+            return Err(Error::invalid_input(format!(
+                "actions of {} numbers in {}, whose actions are {}; select a controller of this environment",
+                controller.actions(),
+                spec.id,
+                spec.action
+            )));
+        }
         let (seen, action) = (vec![0.0; spec.observation.len()], vec![0.0; spec.action.len()]);
         spec.action = controller.commands().clone();
         spec.max_episode_steps = spec.max_episode_steps.map(|steps| steps.div_ceil(hold));

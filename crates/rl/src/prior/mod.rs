@@ -4,7 +4,8 @@
 //!
 //! 1. [`Residual`]: the policy corrects the controller's actions. [`ResidualConfig`] has the settings that go with it, and
 //!    [`ResidualLearner`] saves policy and prior as one learner.
-//! 2. [`Commanded`]: the policy commands references or gains, and the controller makes the actions.
+//! 2. [`Commanded`]: the policy commands references or gains, and the controller makes the actions. [`ShapedLearner`] saves both as one
+//!    learner.
 //! 3. [`DemonstratedSteps`]: a share of every minibatch of SAC or TD3 ([`Sac::set_demonstrations`](crate::Sac::set_demonstrations)), or
 //!    the behaviour that a policy begins with ([`begin_as_clone`]).
 //! 4. [`Shield`]: the controller acts where a predicate calls the policy's action unsafe.
@@ -14,6 +15,7 @@
 mod action_shaping;
 mod alpha;
 mod builtin;
+mod commanding_policy;
 mod demonstration_params;
 mod demonstrations;
 mod library;
@@ -26,11 +28,14 @@ mod residual_config;
 mod residual_controller;
 mod residual_learner;
 mod safety_rule;
+mod shaped_learner;
+mod shaping_config;
 mod shield;
 mod shield_params;
 
-pub use action_shaping::{CommandLaw, Commanded, CommandedController};
+pub use action_shaping::{BoxedCommanded, CommandLaw, Commanded, CommandedController};
 pub use alpha::AlphaSchedule;
+pub use commanding_policy::CommandingPolicy;
 pub use demonstration_params::{
     ClonedDemonstrations, Demonstrating, MakeEnvironment, ReplayedDemonstrations,
 };
@@ -48,5 +53,10 @@ pub use residual_learner::{
     ResidualTd3Method,
 };
 pub use safety_rule::SafetyRule;
+pub use shaped_learner::{
+    ShapedLearner, ShapedMethod, ShapedPpoFitParams, ShapedPpoLearner, ShapedPpoMethod, ShapedSacFitParams,
+    ShapedSacLearner, ShapedSacMethod,
+};
+pub use shaping_config::ShapingConfig;
 pub use shield::{Predicate, Shield, ShieldedController, ShieldedVector};
 pub use shield_params::ShieldParams;

@@ -10,7 +10,8 @@ use opendr_engine::params::{ParamMap, Params as _};
 use super::prior_record::PriorRecord;
 use super::residual_controller::inner_spaces;
 use super::residual_learner::own_shield;
-use super::{BoxedController, Prior, ResidualController, Shield};
+use super::shaping_config::CommandRecord;
+use super::{BoxedController, CommandingPolicy, Prior, ResidualController, Shield};
 use crate::evaluation::policy_controller;
 use crate::learner::PolicyParams;
 use crate::policy::Policy;
@@ -53,13 +54,16 @@ impl Controller for ModelController {
 }
 
 /// Returns the controllers of a policy that has a prior or a shield: prior, policy and both, then what is deployed under the shield;
-/// none for a container without either. `params` are the parameters of its learner, with those of [`PolicyParams`].
+/// none for a container without either. A policy of commands does nothing alone, so that it has no row of its own. `params` are the parameters of its learner, with those of [`PolicyParams`].
 ///
 /// # Errors
 /// `Format` for a damaged container, `NotFound` for an unknown prior or rule.
 pub fn controllers_of_model(model: &Model, params: &ParamMap) -> Result<Option<Vec<ModelController>>> {
     let record = PriorRecord::of(model)?;
     let Ok(params) = PolicyParams::from_map(params) else { return Ok(None) };
+    if let Some(record) = CommandRecord::of(model)? {
+        return commanded_controllers(model, &params, &record).map(Some);
+    }
     if record.is_none() && params.shield.shield.is_none() {
         return Ok(None);
     }
@@ -92,4 +96,26 @@ pub fn controllers_of_model(model: &Model, params: &ParamMap) -> Result<Option<V
         rows.push(ModelController { name: "prior and policy, shielded", controller, shield: Some(shield) });
     }
     Ok(Some(rows))
+}
+
+/// Returns the controllers of a policy of commands: its prior without commands, and the prior that follows them.
+fn commanded_controllers(
+    model: &Model,
+    params: &PolicyParams,
+    record: &CommandRecord,
+) -> Result<Vec<ModelController>> {
+    let policy = Arc::new(Policy::from_bytes(&model.file(POLICY_FILE)?)?);
+    let (prior, space) = (Prior::find(&record.id)?, policy.observation());
+    let both = || -> Result<BoxedController> {
+        let mut both = CommandingPolicy::new(Arc::clone(&policy), prior.commanded(space)?, record.hold)?;
+        both.set_sampled((!params.deterministic).then_some(params.seed));
+        Ok(Box::new(both))
+    };
+    let row = |name, controller| ModelController { name, controller, shield: None };
+    let mut rows = vec![row("prior", prior.controller(space)?), row("prior and policy", both()?)];
+    if let Some(shield) = own_shield(&params.shield, &prior, space)? {
+        let shield = Some(shield);
+        rows.push(ModelController { name: "prior and policy, shielded", controller: both()?, shield });
+    }
+    Ok(rows)
 }

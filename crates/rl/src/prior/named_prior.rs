@@ -2,14 +2,17 @@
 
 use std::sync::Arc;
 
-use opendr_engine::Result;
 use opendr_engine::environment::{Controller, Space};
+use opendr_engine::{Error, Result};
 use serde::{Deserialize, Serialize};
+
+use super::BoxedCommanded;
 
 /// A controller that can move between threads.
 pub type BoxedController = Box<dyn Controller + Send>;
 
 type Make = dyn Fn(&Space) -> Result<BoxedController> + Send + Sync;
+type MakeCommanded = dyn Fn(&Space) -> Result<BoxedCommanded> + Send + Sync;
 
 /// A controller that policies are trained on top of, under the name and version that their files carry. A change of its actions
 /// needs a new version: a policy trained on other actions would act wrongly.
@@ -18,6 +21,7 @@ pub struct Prior {
     id: PriorId,
     about: String,
     make: Arc<Make>,
+    make_commanded: Option<Arc<MakeCommanded>>,
 }
 
 /// Name and version of a [`Prior`].
@@ -36,7 +40,37 @@ impl Prior {
         version: u32,
         make: impl Fn(&Space) -> Result<BoxedController> + Send + Sync + 'static,
     ) -> Self {
-        Self { id: PriorId { name: name.into(), version }, about: String::new(), make: Arc::new(make) }
+        let id = PriorId { name: name.into(), version };
+        Self { id, about: String::new(), make: Arc::new(make), make_commanded: None }
+    }
+
+    /// Adds the same controller as one that follows commands, which policies of action shaping give; `make` creates it for observations
+    /// of a space.
+    #[must_use]
+    pub fn with_commands(
+        self,
+        make: impl Fn(&Space) -> Result<BoxedCommanded> + Send + Sync + 'static,
+    ) -> Self {
+        Self { make_commanded: Some(Arc::new(make)), ..self }
+    }
+
+    /// Returns whether the controller follows commands.
+    pub fn has_commands(&self) -> bool {
+        self.make_commanded.is_some()
+    }
+
+    /// Creates the controller that follows commands, for observations of `space`.
+    ///
+    /// # Errors
+    /// `Unsupported` for a prior without commands, and for a space that it does not read.
+    pub fn commanded(&self, space: &Space) -> Result<BoxedCommanded> {
+        let make = self.make_commanded.as_ref().ok_or_else(|| {
+            Error::unsupported(format!(
+                "the prior {} follows no commands; select one that \"opendr sim priors\" lists with commands, or correct it by residual_ppo",
+                self.id.name
+            ))
+        })?;
+        make(space)
     }
 
     /// Adds what the controller does and where, in one sentence.

@@ -1,12 +1,16 @@
 //! Demonstrations and shields as parameters of a training, and the report of a policy with a prior.
 
 use opendr_engine::data::Observation;
-use opendr_engine::environment::{Controller, EnvironmentSource, ResetOptions};
+use opendr_engine::environment::{Controller, EnvironmentSource, ResetOptions, Space};
 use opendr_engine::learner::{FitJob, Handle, LearnerRl};
 use opendr_engine::model::Model;
 use opendr_engine::params::{ParamMap, Params as _};
+use opendr_engine::target::RlTarget;
 use opendr_engine::{Device, ErrorKind, Result};
-use opendr_rl::prior::{Prior, ResidualPpoFitParams, ResidualPpoLearner, ShieldParams, controllers_of_model};
+use opendr_rl::prior::{
+    CommandLaw, Prior, ResidualPpoFitParams, ResidualPpoLearner, ShapedPpoFitParams, ShapedPpoLearner,
+    ShapedSacFitParams, ShapedSacLearner, ShieldParams, controllers_of_model,
+};
 use opendr_rl::{
     EvaluationProtocol, PolicyParams, PpoFitParams, PpoLearner, SacFitParams, SacLearner, evaluate_controller,
 };
@@ -150,4 +154,115 @@ fn demonstrations_are_parameters_of_trainings() {
         pendulum.step(&wanted, &mut seen).unwrap();
     }
     assert!(errors < 0.3, "{errors}");
+}
+
+fn short_shaped(prior: &str, hold: u32) -> ShapedPpoFitParams {
+    let mut params = ShapedPpoFitParams::default();
+    (params.shaping.prior, params.shaping.hold) = (prior.to_owned(), hold);
+    (params.config.n_steps, params.training.n_envs, params.training.total_timesteps) = (32, 2, 64);
+    (params.training.n_eval_episodes, params.training.preset) = (2, false);
+    params
+}
+
+/// Steps of an episode in which `learner` and `controller` act; returns the largest difference of their actions.
+fn largest_difference<L>(learner: &mut Handle<L>, controller: &mut dyn Controller, id: &str) -> f32
+where
+    L: for<'a> LearnerRl<Input<'a> = &'a Observation, Target = RlTarget>,
+{
+    let mut environment = make(id).unwrap();
+    let mut seen = vec![0.0; environment.spec().observation.len()];
+    let mut wanted = vec![0.0; environment.spec().action.len()];
+    environment.reset(Some(6), &ResetOptions::new(), &mut seen).unwrap();
+    controller.reset();
+    let mut largest = 0.0_f32;
+    for _ in 0..20 {
+        let own = learner.infer(&Observation::from_data(seen.clone()).unwrap()).unwrap().values.clone();
+        controller.act(&seen, &mut wanted).unwrap();
+        let differences = own.iter().zip(&wanted).map(|(own, wanted)| (own - wanted).abs());
+        largest = differences.fold(largest, f32::max);
+        if environment.step(&own, &mut seen).unwrap().is_over() {
+            break;
+        }
+    }
+    largest
+}
+
+#[test]
+fn a_policy_of_commands_begins_as_its_prior() {
+    for (id, prior) in [(CORRIDOR, "corridor-reactive"), ("Pendulum-v1", "pendulum-energy")] {
+        let folder = Folder::new("shaped-begin");
+        let mut params = short_shaped(prior, 1);
+        params.config.actor_starts = 1_000_000;
+        let source = RegisteredSource::new(id, &ParamMap::new()).unwrap();
+        fit::<ShapedPpoLearner>(PolicyParams::default(), &params, &source, &folder).unwrap();
+        let mut learner = Handle::<ShapedPpoLearner>::new(PolicyParams::default(), Device::Cpu).unwrap();
+        learner.load(folder.path().join("model")).unwrap();
+        let space = make(id).unwrap().spec().observation.clone();
+        let mut controller = Prior::newest(prior).unwrap().controller(&space).unwrap();
+        let largest = largest_difference(&mut learner, &mut *controller, id);
+        assert!(largest < 1e-6, "{prior}: {largest}");
+    }
+}
+
+#[test]
+fn a_policy_of_commands_is_trained_saved_and_reported() {
+    let folder = Folder::new("shaped");
+    let params = short_shaped("corridor-reactive", 3);
+    let model = fit::<ShapedPpoLearner>(PolicyParams::default(), &params, &corridors(), &folder).unwrap();
+    let shielded = shield(Some("corridor-clearance"), None);
+    let mut rows = controllers_of_model(&model, &shielded.to_map()).unwrap().unwrap();
+    let names: Vec<_> = rows.iter().map(|row| row.name()).collect();
+    assert_eq!(names, ["prior", "prior and policy", "prior and policy, shielded"]);
+    // The learner acts as the shielded row does, with commands that are held for three steps.
+    let mut learner = Handle::<ShapedPpoLearner>::new(shielded, Device::Cpu).unwrap();
+    learner.load(folder.path().join("model")).unwrap();
+    let largest = largest_difference(&mut learner, rows.last_mut().unwrap(), CORRIDOR);
+    assert_eq!((largest, rows.last().unwrap().shielded_share().is_some()), (0.0, true));
+
+    let folder = Folder::new("shaped-refused");
+    let shielded = shield(Some("corridor-clearance"), None);
+    let error = fit::<ShapedPpoLearner>(shielded, &params, &corridors(), &folder).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::InvalidParam, "{error}");
+    let params = short_shaped("corridor-potential-field", 1);
+    let error = fit::<ShapedPpoLearner>(PolicyParams::default(), &params, &corridors(), &folder).unwrap_err();
+    assert!(error.to_string().contains("corridor-potential-field follows no commands"), "{error}");
+}
+
+#[test]
+fn a_container_of_commands_is_checked() {
+    let law = |seen: &[f32], gain: &[f32], action: &mut [f32]| -> Result<()> {
+        action[0] = (-(1.0 + gain[0]) * seen[2]).clamp(-2.0, 2.0);
+        Ok(())
+    };
+    let plain = move |seen: &[f32], action: &mut [f32]| law(seen, &[0.0], action);
+    let prior = Prior::new("test-commanded-law", 1, move |_| Ok(Box::new(plain)));
+    let commands = || Space::symmetric(&[1.0]);
+    prior.with_commands(move |_| Ok(Box::new(CommandLaw::new(commands(), 1, law)))).register().unwrap();
+    let folder = Folder::new("shaped-sac");
+    let mut params = ShapedSacFitParams::default();
+    params.set_text("net_arch", "16").unwrap();
+    params.shaping.prior = "test-commanded-law".to_owned();
+    (params.config.off_policy.batch_size, params.training.total_timesteps) = (16, 150);
+    (params.training.n_eval_episodes, params.training.preset) = (1, false);
+    let pendulum = RegisteredSource::new("Pendulum-v1", &ParamMap::new()).unwrap();
+    fit::<ShapedSacLearner>(PolicyParams::default(), &params, &pendulum, &folder).unwrap();
+    let load = || {
+        let mut learner = Handle::<ShapedSacLearner>::new(PolicyParams::default(), Device::Cpu)?;
+        learner.load(folder.path().join("model"))
+    };
+    load().unwrap();
+    let manifest = folder.path().join("model").join("model.json");
+    let text = std::fs::read_to_string(&manifest).unwrap();
+    for (from, to, kind) in [
+        ("test-commanded-law", "nobody", ErrorKind::NotFound),
+        ("test-commanded-law", "corridor-potential-field", ErrorKind::Unsupported),
+        ("test-commanded-law", "pendulum-energy", ErrorKind::Format),
+        ("\"hold\": 1", "\"hold\": 0", ErrorKind::Format),
+        ("\"hold\": 1", "\"hold\": -1", ErrorKind::Format),
+        ("commanded_prior", "other", ErrorKind::Format),
+    ] {
+        assert!(text.contains(from), "{text}");
+        std::fs::write(&manifest, text.replace(from, to)).unwrap();
+        assert_eq!(load().unwrap_err().kind(), kind, "{from} {to}");
+    }
 }

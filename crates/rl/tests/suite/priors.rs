@@ -209,7 +209,7 @@ fn a_policy_commands_a_controller() {
         action[0] = (-gain[0] * seen[2]).clamp(-2.0, 2.0);
         Ok(())
     };
-    let mut commanded = Commanded::new(pendulum(), CommandLaw::new(gains.clone(), law), 4).unwrap();
+    let mut commanded = Commanded::new(pendulum(), CommandLaw::new(gains.clone(), 1, law), 4).unwrap();
     assert_eq!((&commanded.spec().action, commanded.spec().max_episode_steps), (&gains, Some(50)));
     let (mut seen, mut after) = ([0.0; 3], [0.0; 3]);
     commanded.reset(Some(2), &ResetOptions::new(), &mut seen).unwrap();

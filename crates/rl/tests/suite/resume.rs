@@ -1,10 +1,9 @@
 //! A resumed training gives the same result bit for bit, with any number of threads.
 
-use crate::support::{Folder, TOTAL, assert_resumes, environments};
+use crate::support::{Folder, TOTAL, assert_resumes, environments, trained};
 use opendr_engine::ErrorKind;
 use opendr_rl::{
-    ActionNoise, Algorithm as _, Dqn, DqnConfig, OffPolicyConfig, Ppo, PpoConfig, Sac, SacConfig, Td3,
-    Td3Config,
+    ActionNoise, Algorithm, Dqn, DqnConfig, OffPolicyConfig, Ppo, PpoConfig, Sac, SacConfig, Td3, Td3Config,
 };
 
 #[test]
@@ -106,4 +105,45 @@ fn checkpoints_of_other_algorithms_are_refused() {
     let mut three = environments("CartPole-v1", 3, 1);
     let error = Ppo::new(&config, three.spec()).unwrap().load(&checkpoints, &mut *three).unwrap_err();
     assert!(error.to_string().contains("2 environments, not 3"), "{error}");
+}
+
+/// Saves a checkpoint as version 0.1.0 wrote it, without the array of shielded steps, and resumes from it.
+fn assert_resumes_from_older_version<A: Algorithm>(id: &str, iterations: usize, make: impl Fn() -> A) {
+    let folder = Folder::new("older-version");
+    let mut worlds = environments(id, 2, 1);
+    let mut whole = make();
+    trained(&mut whole, &mut *worlds, iterations).unwrap();
+    let files = whole.saved_state(&*worlds).unwrap().files().unwrap();
+    let older = files.iter().filter(|(name, _)| name != "replay_shielded.f32");
+    let older: Vec<_> = older.map(|(name, bytes)| (name.as_str(), &bytes[..])).collect();
+    assert_eq!(older.len() + 1, files.len());
+    folder.checkpoints().save(whole.report().timesteps, &older).unwrap();
+
+    let mut resumed_worlds = environments(id, 2, 1);
+    let mut resumed = make();
+    resumed.load(&folder.checkpoints(), &mut *resumed_worlds).unwrap().unwrap();
+    for (learner, worlds) in [(&mut whole, &mut worlds), (&mut resumed, &mut resumed_worlds)] {
+        trained(learner, &mut **worlds, iterations).unwrap();
+    }
+    assert_eq!(resumed.saved_state(&*resumed_worlds).unwrap(), whole.saved_state(&*worlds).unwrap());
+    // An array that every version writes is still required.
+    let damaged: Vec<_> = older.into_iter().filter(|(name, _)| *name != "replay_rewards.f32").collect();
+    folder.checkpoints().save(whole.report().timesteps, &damaged).unwrap();
+    let error = make().load(&folder.checkpoints(), &mut *environments(id, 2, 1)).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::NotFound, "{error}");
+}
+
+#[test]
+fn checkpoints_without_shielded_steps_resume() {
+    let pendulum = environments("Pendulum-v1", 2, 1).spec().clone();
+    let mut sac = SacConfig::default();
+    (sac.off_policy, sac.network.net_arch) = (small(sac.off_policy), vec![16, 16]);
+    assert_resumes_from_older_version("Pendulum-v1", 60, || Sac::new(&sac, &pendulum).unwrap());
+    let mut td3 = Td3Config::default();
+    (td3.off_policy, td3.network.net_arch) = (small(td3.off_policy), vec![16, 16]);
+    assert_resumes_from_older_version("Pendulum-v1", 60, || Td3::new(&td3, &pendulum).unwrap());
+    let carts = environments("CartPole-v1", 2, 1).spec().clone();
+    let mut dqn = DqnConfig::default();
+    dqn.off_policy = small(dqn.off_policy);
+    assert_resumes_from_older_version("CartPole-v1", 30, || Dqn::new(&dqn, &carts).unwrap());
 }

@@ -135,6 +135,12 @@ impl<C: CorridorController> CompactController<C> {
     }
 }
 
+impl<C> AsMut<C> for CompactController<C> {
+    fn as_mut(&mut self) -> &mut C {
+        &mut self.controller
+    }
+}
+
 impl<C: CorridorController> Controller for CompactController<C> {
     fn reset(&mut self) {
         self.controller.begin();

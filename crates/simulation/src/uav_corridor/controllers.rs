@@ -45,6 +45,12 @@ impl<C: CorridorController> ObservationController<C> {
     }
 }
 
+impl<C> AsMut<C> for ObservationController<C> {
+    fn as_mut(&mut self) -> &mut C {
+        &mut self.controller
+    }
+}
+
 impl<C: CorridorController> Controller for ObservationController<C> {
     fn reset(&mut self) {
         self.controller.begin();
@@ -88,11 +94,17 @@ pub struct StraightController;
 pub struct ReactiveController {
     yaw: YawTracker,
     share: f32,
+    /// Angle to the left of the target that it flies to, in radians, and cost of a radian away from it, in metres of free distance.
+    aside: f32,
+    detour: f32,
 }
+
+/// Cost of a radian away from the target, in metres of free distance.
+const DETOUR: f32 = 2.0;
 
 impl Default for ReactiveController {
     fn default() -> Self {
-        Self { yaw: YawTracker::default(), share: 1.0 }
+        Self { yaw: YawTracker::default(), share: 1.0, aside: 0.0, detour: DETOUR }
     }
 }
 
@@ -101,6 +113,13 @@ impl ReactiveController {
     #[must_use]
     pub fn with_heading_share(share: f32) -> Self {
         Self { share, ..Self::default() }
+    }
+
+    /// Follows a command from now on, each number in [-1, 1]: a reference, the angle to the left of the target, up to 45 degrees; and a
+    /// gain, the logarithm to the base 4 of the cost of detours. Zeros are the controller without commands.
+    pub fn follow(&mut self, [aside, detour]: [f32; 2]) {
+        self.aside = aside.clamp(-1.0, 1.0) * 2.0 * LARGEST;
+        self.detour = DETOUR * 4.0_f32.powf(detour.clamp(-1.0, 1.0));
     }
 }
 
@@ -166,11 +185,11 @@ impl CorridorController for ReactiveController {
     with_yaw_tracker!();
 
     fn act(&mut self, sight: &CorridorObservation) -> [f32; 2] {
-        let (columns, wanted) = (columns(sight), bearing_of_target(sight));
+        let (columns, wanted) = (columns(sight), bearing_of_target(sight) + self.aside);
         let (mut best, mut heading) = (f32::NEG_INFINITY, 0.0);
         for at in 0..COLUMNS {
             let free = free_width(&columns, bearing(at));
-            let score = free.min(6.0) - 2.0 * (bearing(at) - wanted).abs();
+            let score = free.min(6.0) - self.detour * (bearing(at) - wanted).abs();
             if score > best {
                 (best, heading) = (score, bearing(at));
             }
