@@ -2,15 +2,15 @@
 //! training, on others, and with another recogniser.
 //!
 //! `cargo run --release -p opendr-active --example sphere_view -- face [--seeds 5] [--timesteps 400000] [--episodes 500]
-//! [--strip OUT.png]`
+//! [--first-seed 5000000] [--strip OUT.png]`
 
 mod options;
 
 use std::time::Instant;
 
 use opendr_active::{
-    ActiveFitParams, ActiveTraining, Comparison, EnvironmentRig, EnvironmentScene, FIRST_EVALUATION_SEED,
-    LabelledViews, ViewClassifier, calibrated, compare, episode_strip, fit_view_classifier, train_active,
+    ActiveFitParams, ActiveTraining, Comparison, EnvironmentRig, EnvironmentScene, LabelledViews,
+    ViewClassifier, calibrated, compare, episode_strip, fit_view_classifier, train_active,
 };
 use opendr_engine::environment::EnvironmentSource;
 use opendr_engine::params::ParamMap;
@@ -53,12 +53,12 @@ fn main() -> Result<()> {
         eprintln!("seed {seed}: {:?} after {:.0} s", model.fusion, part.elapsed().as_secs_f64());
         let run = |name: &str, comparison: Comparison| println!("seed {seed}, {name}\n\n{comparison}");
         let evaluate =
-            |scene, model: &_| compare(scene, model, FIRST_EVALUATION_SEED, options.episodes, &Silent);
+            |scene, model: &_| compare(scene, model, options.first_seed, options.episodes, &Silent);
         run("subjects of the training", evaluate(scene()?, &model)?);
         let scene = || EnvironmentScene::new(&others, enrolled.clone());
         run("other subjects", evaluate(scene()?, &model)?);
         if let (Some(path), 0) = (&options.strip, seed) {
-            opendr_vision::save(&episode_strip(scene()?, &model, FIRST_EVALUATION_SEED, 6)?, path)?;
+            opendr_vision::save(&episode_strip(scene()?, &model, options.first_seed, 6)?, path)?;
         }
         let scene = || EnvironmentScene::new(&known, swapped.clone());
         let model = calibrated(&model, &scene, training.calibration_episodes)?;

@@ -1,5 +1,6 @@
 //! The options of the command line.
 
+use opendr_active::FIRST_EVALUATION_SEED;
 use opendr_engine::{Error, Result};
 use opendr_simulation::sphere_view::Subject;
 
@@ -9,6 +10,8 @@ pub struct Options {
     pub timesteps: u64,
     pub episodes: u64,
     pub view_episodes: u64,
+    /// First seed of the episodes that compare camera policies.
+    pub first_seed: u64,
     pub strip: Option<String>,
 }
 
@@ -20,6 +23,7 @@ impl Options {
             timesteps: 400_000,
             episodes: 500,
             view_episodes: 12_000,
+            first_seed: FIRST_EVALUATION_SEED,
             strip: None,
         };
         let mut arguments = std::env::args().skip(1);
@@ -39,9 +43,10 @@ impl Options {
                 "--timesteps" => options.timesteps = value,
                 "--episodes" => options.episodes = value,
                 "--view-episodes" => options.view_episodes = value,
+                "--first-seed" => options.first_seed = value,
                 _ => {
                     return Err(Error::invalid_param(format!(
-                        "no option {argument:?}; give face, object or pose, and --seeds, --timesteps, --episodes, --view-episodes or --strip"
+                        "no option {argument:?}; give face, object or pose, and --seeds, --timesteps, --episodes, --view-episodes, --first-seed or --strip"
                     )));
                 }
             }
