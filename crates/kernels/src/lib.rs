@@ -5,6 +5,7 @@
 //! * [`Product`]: single-precision matrix products with bias and activation, over [`Matrix`] and [`MatrixMut`].
 //! * [`Network`], with [`Dense`], [`Conv2d`] and [`LayerNorm`], and [`Gru`]: layers with explicit gradients on flat
 //!   parameters.
+//! * [`ByteConvolution`], [`ByteDepthwise`]: layers of quantised networks, with exact sums of products of bytes.
 //! * [`Adam`], [`Momentum`], [`clip_gradient_norm`]: optimisers. [`RealFourier`]: the Fourier transform for audio.
 //!
 //! The number of threads never changes a result; the instruction set changes the last bits.
@@ -45,6 +46,7 @@ mod optimizer;
 mod pool;
 mod pooling;
 mod product;
+mod quantized;
 mod softmax;
 mod unary;
 
@@ -68,5 +70,9 @@ pub use optimizer::{
 pub use pool::WorkerPool;
 pub use pooling::Pooling;
 pub use product::{Bias, Product};
+pub use quantized::{
+    ByteConvolution, ByteDepthwise, ByteDepthwiseFilters, ByteFilters, ByteOutput, ByteSum, ByteWeights,
+    ByteZero, add_byte_rows, dequantize, quantize,
+};
 pub use softmax::{categorical_backward, cross_entropy, entropy, log_softmax, log_softmax_backward};
 pub use unary::Unary;

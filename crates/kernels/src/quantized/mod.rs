@@ -1,0 +1,20 @@
+//! Convolutions and products of bytes: the layers of quantised networks, forward only.
+//!
+//! Sums are 32-bit integers and exact, and become bytes with one rounding, so that all instruction sets give the same
+//! bits. Tensors have channels last.
+
+mod conv;
+mod depthwise;
+mod dots;
+mod elementwise;
+mod filters;
+mod output;
+#[cfg(test)]
+mod tests;
+mod tile;
+
+pub use conv::ByteConvolution;
+pub use depthwise::{ByteDepthwise, ByteDepthwiseFilters};
+pub use elementwise::{ByteSum, add_byte_rows, dequantize, quantize};
+pub use filters::{ByteFilters, ByteWeights};
+pub use output::{ByteOutput, ByteZero};
