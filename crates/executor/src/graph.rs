@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use opendr_engine::{Error, Result};
-use opendr_kernels::{DepthwiseFilters, Filters};
+use opendr_kernels::{ByteDepthwiseFilters, ByteFilters, DepthwiseFilters, Filters};
 use opendr_onnx::passes;
 use opendr_onnx::proto::{DimensionValue, GraphProto, NodeProto, TypeValue, ValueInfoProto};
 
@@ -23,6 +23,8 @@ pub(crate) struct Declared {
 pub(crate) enum Packed {
     Dense(Arc<Filters>),
     Depthwise(Arc<DepthwiseFilters>),
+    Bytes(Arc<ByteFilters>),
+    ByteDepthwise(Arc<ByteDepthwiseFilters>),
 }
 
 #[derive(Debug)]

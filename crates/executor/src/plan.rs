@@ -149,14 +149,20 @@ fn planned<'a>(
             continue;
         }
         planner.node = index;
-        let inputs: Vec<Option<Id>> = node.input.iter().map(|name| planner.named(name)).collect();
-        let outputs = ops::build(&mut planner, node, &inputs)?;
+        if node.op_type == "DequantizeLinear" && planner.defer(index) {
+            continue;
+        }
+        let outputs = match ops::build_on_bytes(&mut planner, node)? {
+            Some(outputs) => outputs,
+            None => build(&mut planner, index)?,
+        };
         for (name, id) in node.output.iter().zip(outputs) {
             planner.name(name, id);
         }
     }
     let mut outputs = Vec::new();
     for output in &graph.outputs {
+        materialise(&mut planner, &output.name)?;
         let id = planner.named(&output.name).ok_or_else(|| {
             Error::format(format!("damaged ONNX model: nothing produces the output {:?}", output.name))
         })?;
@@ -171,6 +177,30 @@ fn planned<'a>(
         outputs.push(planner.plain(id)?);
     }
     Ok((planner, outputs))
+}
+
+/// Builds the steps of a node whose inputs are read as they are.
+fn build(planner: &mut Planner<'_>, index: usize) -> Result<Vec<Id>> {
+    let node = &planner.graph.nodes[index];
+    for name in &node.input {
+        materialise(planner, name)?;
+    }
+    planner.node = index;
+    let inputs: Vec<Option<Id>> = node.input.iter().map(|name| planner.named(name)).collect();
+    ops::build(planner, node, &inputs)
+}
+
+/// Dequantises a value that has been deferred.
+fn materialise(planner: &mut Planner<'_>, name: &str) -> Result<()> {
+    let Some(index) = planner.take_deferred(name) else { return Ok(()) };
+    planner.node = index;
+    let node = &planner.graph.nodes[index];
+    // The inputs of a deferred node are not deferred.
+    let inputs: Vec<Option<Id>> = node.input.iter().map(|name| planner.named(name)).collect();
+    for (name, id) in node.output.iter().zip(ops::build(planner, node, &inputs)?) {
+        planner.name(name, id);
+    }
+    Ok(())
 }
 
 /// Returns the first and last step of every buffer; `None` where nothing needs it.

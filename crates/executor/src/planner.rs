@@ -78,6 +78,8 @@ pub(crate) struct Planner<'a> {
     pub(crate) buffers: Vec<usize>,
     names: HashMap<String, Id>,
     fused: HashSet<usize>,
+    /// Dequantised values that nothing has read as floats yet, and their nodes.
+    deferred: HashMap<String, usize>,
     pub(crate) node: usize,
 }
 
@@ -95,6 +97,7 @@ impl<'a> Planner<'a> {
             buffers: Vec::new(),
             names: HashMap::new(),
             fused: HashSet::new(),
+            deferred: HashMap::new(),
             node: 0,
         };
         for (name, constant) in &graph.constants {
@@ -329,6 +332,28 @@ impl<'a> Planner<'a> {
     /// Returns the value that a name has got so far.
     pub(crate) fn named(&self, name: &str) -> Option<Id> {
         self.names.get(name).copied()
+    }
+
+    /// Defers a node that dequantises, until a node reads its output as floats. Returns `false` where an input of it is
+    /// deferred itself.
+    pub(crate) fn defer(&mut self, node: usize) -> bool {
+        let inputs = &self.graph.nodes[node].input;
+        if inputs.iter().any(|input| self.deferred.contains_key(input)) {
+            return false;
+        }
+        let Some(output) = self.graph.nodes[node].output.first() else { return false };
+        self.deferred.insert(output.clone(), node);
+        true
+    }
+
+    /// Returns the node that dequantises a value, if it is deferred.
+    pub(crate) fn deferred(&self, name: &str) -> Option<&'a NodeProto> {
+        self.deferred.get(name).map(|&node| &self.graph.nodes[node])
+    }
+
+    /// Returns the deferred node of a value, and forgets it.
+    pub(crate) fn take_deferred(&mut self, name: &str) -> Option<usize> {
+        self.deferred.remove(name)
     }
 
     /// States that a node needs no step of its own: `id` is its output.

@@ -98,6 +98,12 @@ impl Arena {
     }
 }
 
+/// Returns the same memory as integers.
+pub(crate) fn integers(numbers: &mut [f32]) -> &mut [i32] {
+    // SAFETY: size and alignment are equal, and every pattern of bits is a number of both types.
+    unsafe { std::slice::from_raw_parts_mut(numbers.as_mut_ptr().cast(), numbers.len()) }
+}
+
 /// # Safety
 /// `region` lies in initialised memory at `start`, which is aligned to [`ALIGNMENT`].
 unsafe fn numbers<'a, T: Number>(start: *const u8, region: Region) -> &'a [T] {

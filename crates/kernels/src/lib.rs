@@ -71,8 +71,8 @@ pub use pool::WorkerPool;
 pub use pooling::Pooling;
 pub use product::{Bias, Product};
 pub use quantized::{
-    ByteConvolution, ByteDepthwise, ByteDepthwiseFilters, ByteFilters, ByteOutput, ByteSum, ByteWeights,
-    ByteZero, add_byte_rows, dequantize, quantize,
+    ByteConvolution, ByteDepthwise, ByteDepthwiseFilters, ByteFilters, ByteOutput, ByteResize, ByteSum,
+    ByteWeights, ByteZero, add_byte_rows, dequantize, quantize,
 };
 pub use softmax::{categorical_backward, cross_entropy, entropy, log_softmax, log_softmax_backward};
 pub use unary::Unary;

@@ -1,5 +1,6 @@
 //! The operators: each builds the steps of a node whose input shapes are known.
 
+mod bytes;
 mod conv;
 mod elementwise;
 mod fusion;
@@ -78,6 +79,7 @@ const OPERATORS: &[(&str, Build)] = &[
     ("PRelu", elementwise::prelu),
     ("Pad", movement::pad),
     ("Pow", elementwise::binary),
+    ("QuantizeLinear", quantize::quantize),
     ("Range", shape::range),
     ("Reciprocal", elementwise::unary),
     ("ReduceL2", reduce::reduce),
@@ -118,6 +120,23 @@ pub fn supported_operators() -> impl Iterator<Item = &'static str> {
 
 pub(crate) fn is_supported(name: &str) -> bool {
     OPERATORS.iter().any(|(operator, _)| *operator == name)
+}
+
+/// Builds the steps of a node of quantised values, which computes with their bytes; `None` where it does not.
+pub(crate) fn build_on_bytes(planner: &mut Planner<'_>, node: &NodeProto) -> Result<Option<Vec<Id>>> {
+    let is_quantised = node.input.iter().any(|name| planner.deferred(name).is_some());
+    if !is_quantised || node.output.len() != 1 {
+        return Ok(None);
+    }
+    match node.op_type.as_str() {
+        "Add" => bytes::sum::build(planner, node),
+        "ArgMax" | "ArgMin" => bytes::labels(planner, node),
+        "AveragePool" | "GlobalAveragePool" => bytes::pool::build(planner, node),
+        "Conv" => bytes::conv::build(planner, node),
+        "QuantizeLinear" => bytes::table::build(planner, node),
+        "Resize" => bytes::resize::build(planner, node),
+        _ => Ok(None),
+    }
 }
 
 /// Builds the steps of a node and returns its outputs.

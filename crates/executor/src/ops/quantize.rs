@@ -1,9 +1,7 @@
-//! Dequantisation of weights.
-//!
-//! Networks that also quantise their activations are refused: computed in floats, ties of rounding fall differently than in the 8-bit
-//! products that the model was made for.
+//! Quantisation and dequantisation, where no operator computes with the bytes themselves.
 
 use opendr_engine::Result;
+use opendr_kernels::{ByteOutput, ByteZero};
 use opendr_onnx::proto::NodeProto;
 
 use super::elementwise::Rows;
@@ -68,6 +66,63 @@ pub(crate) fn dequantize(
     planner.emit(DequantizeStep { from, rows }, &reads, &[(Kind::F32, value.shape, value.layout)])
 }
 
+pub(crate) fn quantize(
+    planner: &mut Planner<'_>,
+    node: &NodeProto,
+    inputs: &[Option<Id>],
+) -> Result<Vec<Id>> {
+    let x = required(node, inputs, 0)?;
+    let declared = match node.int_or("output_dtype", 0) {
+        0 => None,
+        kind => Some(Kind::from_onnx(i32::try_from(kind).unwrap_or(-1), &node.name)?),
+    };
+    let to = optional(inputs, 2).map(|zero| planner.kind(zero)).or(declared).unwrap_or(Kind::U8);
+    if planner.kind(x) != Kind::F32
+        || !matches!(to, Kind::U8 | Kind::I8)
+        || declared.is_some_and(|declared| declared != to)
+    {
+        return Err(node.refused("its types"));
+    }
+    let (reads, rows) = parameters(planner, node, inputs, x)?;
+    let value = planner.value(x).clone();
+    planner.emit(QuantizeStep { to, rows }, &reads, &[(to, value.shape, value.layout)])
+}
+
+struct QuantizeStep {
+    to: Kind,
+    rows: Rows,
+}
+
+impl Kernel for QuantizeStep {
+    fn run(&self, io: &mut Io<'_>) -> Result<()> {
+        let (x, scales, zeros) = (io.read::<f32>(0), io.read::<f32>(1), io.read::<u8>(2));
+        let y = io.write::<u8>();
+        let is_signed = self.to == Kind::I8;
+        let output = |index: usize| {
+            let zero = zeros
+                .get(index)
+                .map_or(0, |&zero| if is_signed { i32::from(zero as i8) } else { zero.into() });
+            ByteOutput::new(ByteZero { zero, is_signed })
+        };
+        if let [scale] = scales {
+            opendr_kernels::quantize(io.compute, x, *scale, output(0), y);
+            return Ok(());
+        }
+        for (row, y) in y.chunks_mut(self.rows.length.max(1)).enumerate() {
+            let x = self.rows.of(x, row, 0, y.len());
+            let at = self.rows.start(row, 1);
+            if !self.rows.is_row[1] {
+                opendr_kernels::quantize(io.compute, x, scales[at], output(at), y);
+                continue;
+            }
+            for (i, (y, x)) in y.chunks_mut(1).zip(x.chunks(1)).enumerate() {
+                opendr_kernels::quantize(io.compute, x, scales[at + i], output(at + i), y);
+            }
+        }
+        Ok(())
+    }
+}
+
 struct DequantizeStep {
     from: Kind,
     rows: Rows,
@@ -75,6 +130,18 @@ struct DequantizeStep {
 
 impl Kernel for DequantizeStep {
     fn run(&self, io: &mut Io<'_>) -> Result<()> {
+        let scales = io.read::<f32>(1);
+        if let ([scale], Kind::U8 | Kind::I8) = (scales, self.from) {
+            let is_signed = self.from == Kind::I8;
+            let zero = match io.read::<u8>(2) {
+                [zero, ..] if is_signed => i32::from(*zero as i8),
+                [zero, ..] => i32::from(*zero),
+                [] => 0,
+            };
+            let x = io.read::<u8>(0);
+            opendr_kernels::dequantize(io.compute, x, *scale, ByteZero { zero, is_signed }, io.write());
+            return Ok(());
+        }
         match self.from {
             Kind::U8 => self.write(io, |x: u8| i32::from(x)),
             Kind::I8 => self.write(io, |x: i8| i32::from(x)),

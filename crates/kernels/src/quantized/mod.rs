@@ -9,6 +9,7 @@ mod dots;
 mod elementwise;
 mod filters;
 mod output;
+mod resize;
 #[cfg(test)]
 mod tests;
 mod tile;
@@ -18,3 +19,4 @@ pub use depthwise::{ByteDepthwise, ByteDepthwiseFilters};
 pub use elementwise::{ByteSum, add_byte_rows, dequantize, quantize};
 pub use filters::{ByteFilters, ByteWeights};
 pub use output::{ByteOutput, ByteZero};
+pub use resize::ByteResize;

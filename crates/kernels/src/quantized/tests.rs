@@ -306,3 +306,35 @@ fn rows_of_bytes_are_added() {
         }
     }
 }
+
+#[test]
+fn resized_bytes_are_products_of_weights() {
+    let mut random = Random::new(5);
+    for is_signed in [false, true] {
+        let resize = ByteResize {
+            rows: vec![([0, 1], 0), ([0, 1], 300), ([2, 2], 1024)],
+            columns: vec![([0, 1], 1000), ([1, 3], 512)],
+            input: [3, 4],
+            channels: 37,
+            zero: ByteZero { zero: 0, is_signed },
+        };
+        let x = bytes(&mut random, 2 * 3 * 4 * 37);
+        let unsigned = |byte: u8| i64::from(if is_signed { byte ^ 0x80 } else { byte });
+        for compute in computes() {
+            let mut y = vec![0; 2 * 3 * 2 * 37];
+            resize.run(&compute, &x, &mut y);
+            for (i, &y) in y.iter().enumerate() {
+                let (channel, pixel) = (i % 37, i / 37);
+                let ([top, bottom], down) = resize.rows[pixel / 2 % 3];
+                let ([left, right], across) = resize.columns[pixel % 2];
+                let at = |row: usize, column: usize| {
+                    unsigned(x[((pixel / 6 * 3 + row) * 4 + column) * 37 + channel])
+                };
+                let (across, down) = (i64::from(across), i64::from(down));
+                let above = at(top, left) * (1024 - across) + at(top, right) * across;
+                let below = at(bottom, left) * (1024 - across) + at(bottom, right) * across;
+                assert_eq!(unsigned(y), (above * (1024 - down) + below * down) >> 20);
+            }
+        }
+    }
+}
