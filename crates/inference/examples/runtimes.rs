@@ -72,7 +72,7 @@ fn print_layers(file: &str, bytes: &[u8]) -> Result<()> {
     let mut executor = opendr_executor::Executor::open(bytes, opendr_kernels::Compute::single())?;
     let infos = Session::open_with(&GraphExecutor, bytes, SessionOptions::default())?.inputs().to_vec();
     let owned: Vec<Owned> = infos.iter().map(Owned::random).collect();
-    let tensors: Vec<opendr_executor::Tensor<'_>> = owned.iter().filter_map(Owned::floats).collect();
+    let tensors: Vec<opendr_executor::Tensor<'_>> = owned.iter().filter_map(Owned::of_executor).collect();
     let mut least: Vec<opendr_executor::LayerTime> = executor.profile(&tensors)?;
     for _ in 0..30 {
         for (least, new) in least.iter_mut().zip(executor.profile(&tensors)?) {
@@ -220,6 +220,7 @@ enum Owned {
     Longs(Vec<usize>, Vec<i64>),
     Ints(Vec<usize>, Vec<i32>),
     Bytes(Vec<usize>, Vec<u8>),
+    SignedBytes(Vec<usize>, Vec<i8>),
     Truths(Vec<usize>, Vec<bool>),
 }
 
@@ -238,20 +239,24 @@ impl Owned {
         match info.element_type {
             ElementType::I64 => Self::Longs(shape, (0..count).map(|i| i as i64 % 7).collect()),
             ElementType::I32 => Self::Ints(shape, (0..count).map(|i| i as i32 % 7).collect()),
-            ElementType::U8 | ElementType::I8 => {
-                Self::Bytes(shape, (0..count).map(|i| (i * 37 % 251) as u8).collect())
+            ElementType::I8 => {
+                Self::SignedBytes(shape, (0..count).map(|i| (i * 37 % 251) as u8 as i8).collect())
             }
+            ElementType::U8 => Self::Bytes(shape, (0..count).map(|i| (i * 37 % 251) as u8).collect()),
             ElementType::Bool => Self::Truths(shape, (0..count).map(|i| i % 3 == 0).collect()),
             _ => Self::Floats(shape, (0..count).map(|_| random.uniform(-1.0, 1.0)).collect()),
         }
     }
 
-    fn floats(&self) -> Option<opendr_executor::Tensor<'_>> {
+    fn of_executor(&self) -> Option<opendr_executor::Tensor<'_>> {
+        use opendr_executor::{Data, Tensor};
         match self {
-            Self::Floats(shape, data) => {
-                Some(opendr_executor::Tensor { shape, data: opendr_executor::Data::F32(data) })
-            }
-            _ => None,
+            Self::Floats(shape, data) => Some(Tensor { shape, data: Data::F32(data) }),
+            Self::Longs(shape, data) => Some(Tensor { shape, data: Data::I64(data) }),
+            Self::Ints(shape, data) => Some(Tensor { shape, data: Data::I32(data) }),
+            Self::Bytes(shape, data) => Some(Tensor { shape, data: Data::U8(data) }),
+            Self::SignedBytes(shape, data) => Some(Tensor { shape, data: Data::I8(data) }),
+            Self::Truths(..) => None,
         }
     }
 
@@ -261,6 +266,7 @@ impl Owned {
             Self::Longs(shape, data) => TensorView::new(shape, data),
             Self::Ints(shape, data) => TensorView::new(shape, data),
             Self::Bytes(shape, data) => TensorView::new(shape, data),
+            Self::SignedBytes(shape, data) => TensorView::new(shape, data),
             Self::Truths(shape, data) => TensorView::new(shape, data),
         }
     }
