@@ -73,8 +73,7 @@ impl ByteConvolution {
             && !filters.input.is_signed
             && filters.channels.is_multiple_of(4);
         let job = Job { conv: self, x, y, bounds, pixels, per_piece, shares, is_direct };
-        // SAFETY: sizes have been checked; pieces and shares write different outputs.
-        let work = |index| unsafe { dispatch_piece(filters.instructions, &job, index) };
+        let work = |index| job.run(index);
         let products = pixels * filters.outputs * filters.words * 4;
         if products < PARALLEL_FROM {
             (0..pieces * shares).for_each(work);
@@ -100,51 +99,93 @@ struct Job<'a> {
 // SAFETY: pieces read the input and write different outputs.
 unsafe impl Sync for Job<'_> {}
 
-for_all_instructions!(fn dispatch_piece = piece(job: &Job<'_>, index: usize));
-
-#[inline(always)]
-unsafe fn piece<V: Dots>(job: &Job<'_>, index: usize) {
-    let filters = &*job.conv.filters;
-    let first = index / job.shares * job.per_piece;
-    let count = job.per_piece.min(job.pixels - first);
-    if job.is_direct {
-        let x = &job.x[first * filters.channels..][..count * filters.channels];
-        // SAFETY: passed on; the rows lie within the input.
-        return unsafe { multiply::<V>(job, index, [first, count], x.as_ptr(), filters.channels) };
-    }
-    let depth = filters.channels * filters.kernel[0] * filters.kernel[1];
-    let stride = depth.next_multiple_of(V::TAPS);
-    with_buffer(&PATCHES, (count * stride).div_ceil(4), |buffer| {
-        let bytes = buffer.as_mut_ptr().cast::<u8>();
-        // SAFETY: the buffer has as many bytes; every number of 32 bits is four bytes.
-        let patches = unsafe { std::slice::from_raw_parts_mut(bytes, count * stride) };
-        gather(job, first, depth, patches.chunks_exact_mut(stride));
-        if V::TAPS == 4 {
-            let flip = filters.input.flip();
-            if flip != 0 {
-                patches.iter_mut().for_each(|byte| *byte ^= flip);
-            }
-            // SAFETY: passed on; the buffer has as many rows.
-            return unsafe { multiply::<V>(job, index, [first, count], patches.as_ptr(), stride) };
+impl Job<'_> {
+    /// Computes a piece. Buffers are taken out here: a closure has no instructions beyond those of its function.
+    fn run(&self, index: usize) {
+        let filters = &*self.conv.filters;
+        let first = index / self.shares * self.per_piece;
+        let count = self.per_piece.min(self.pixels - first);
+        let rows = [first, count];
+        if self.is_direct {
+            // SAFETY: sizes have been checked; pieces and shares write different outputs.
+            return unsafe { dispatch_direct(filters.instructions, self, index, rows) };
         }
-        with_buffer(&LEFT_PANELS, (count * stride).div_ceil(2), |wide| {
-            let numbers = wide.as_mut_ptr().cast::<i16>();
-            // SAFETY: as above.
-            let wide = unsafe { std::slice::from_raw_parts_mut(numbers, count * stride) };
-            let (flip, zero) = (filters.input.flip(), filters.input.unsigned() as i16);
-            for (wide, &byte) in wide.iter_mut().zip(&*patches) {
-                *wide = i16::from(byte ^ flip) - zero;
+        let depth = filters.channels * filters.kernel[0] * filters.kernel[1];
+        let stride = depth.next_multiple_of(filters.instructions.taps());
+        with_buffer(&PATCHES, (count * stride).div_ceil(4), |buffer| {
+            // SAFETY: the buffer has as many bytes; every number of 32 bits is four bytes.
+            let patches =
+                unsafe { std::slice::from_raw_parts_mut(buffer.as_mut_ptr().cast::<u8>(), count * stride) };
+            if filters.instructions.is_bytes() {
+                // SAFETY: as above.
+                return unsafe { dispatch_bytes(filters.instructions, self, index, rows, patches) };
             }
-            // SAFETY: as above.
-            unsafe { multiply::<V>(job, index, [first, count], wide.as_ptr().cast(), 2 * stride) }
+            with_buffer(&LEFT_PANELS, (count * stride).div_ceil(2), |wide| {
+                let numbers = wide.as_mut_ptr().cast::<i16>();
+                // SAFETY: as above.
+                unsafe {
+                    let wide = std::slice::from_raw_parts_mut(numbers, count * stride);
+                    dispatch_widened(filters.instructions, self, index, rows, patches, wide);
+                }
+            });
         });
-    });
+    }
+}
+
+for_all_instructions!(fn dispatch_direct = direct(job: &Job<'_>, index: usize, rows: [usize; 2]));
+for_all_instructions!(fn dispatch_bytes = bytes(job: &Job<'_>, index: usize, rows: [usize; 2], patches: &mut [u8]));
+for_all_instructions!(
+    fn dispatch_widened =
+        widened(job: &Job<'_>, index: usize, rows: [usize; 2], patches: &mut [u8], wide: &mut [i16])
+);
+
+/// Multiplies the pixels of the input themselves.
+#[inline(always)]
+unsafe fn direct<V: Dots>(job: &Job<'_>, index: usize, rows: [usize; 2]) {
+    let channels = job.conv.filters.channels;
+    let x = &job.x[rows[0] * channels..][..rows[1] * channels];
+    // SAFETY: passed on; the rows lie within the input.
+    unsafe { multiply::<V>(job, index, rows, x.as_ptr(), channels) }
+}
+
+/// Multiplies patches of bytes.
+#[inline(always)]
+unsafe fn bytes<V: Dots>(job: &Job<'_>, index: usize, rows: [usize; 2], patches: &mut [u8]) {
+    let stride = patches.len() / rows[1].max(1);
+    gather(job, rows[0], patches.chunks_exact_mut(stride.max(1)));
+    let flip = job.conv.filters.input.flip();
+    if flip != 0 {
+        patches.iter_mut().for_each(|byte| *byte ^= flip);
+    }
+    // SAFETY: passed on; there are as many rows.
+    unsafe { multiply::<V>(job, index, rows, patches.as_ptr(), stride) }
+}
+
+/// Multiplies patches of 16-bit integers, from which the zero point has been subtracted.
+#[inline(always)]
+unsafe fn widened<V: Dots>(
+    job: &Job<'_>,
+    index: usize,
+    rows: [usize; 2],
+    patches: &mut [u8],
+    wide: &mut [i16],
+) {
+    let stride = patches.len() / rows[1].max(1);
+    gather(job, rows[0], patches.chunks_exact_mut(stride.max(1)));
+    let input = job.conv.filters.input;
+    let (flip, zero) = (input.flip(), input.unsigned() as i16);
+    for (wide, &byte) in wide.iter_mut().zip(&*patches) {
+        *wide = i16::from(byte ^ flip) - zero;
+    }
+    // SAFETY: as above.
+    unsafe { multiply::<V>(job, index, rows, wide.as_ptr().cast(), 2 * stride) }
 }
 
 /// Copies the bytes below the kernel, row by row; those beside the input stand for 0.
 #[inline(always)]
-fn gather<'a>(job: &Job<'_>, first: usize, depth: usize, patches: impl Iterator<Item = &'a mut [u8]>) {
+fn gather<'a>(job: &Job<'_>, first: usize, patches: impl Iterator<Item = &'a mut [u8]>) {
     let (window, channels) = (&job.conv.window, job.conv.filters.channels);
+    let depth = channels * window.kernel[0] * window.kernel[1];
     let zero = job.conv.filters.input.zero as u8;
     let [height, width] = window.output;
     let run = window.kernel[1] * channels;
@@ -210,10 +251,9 @@ unsafe fn multiply<V: Dots>(
     let filters = &*job.conv.filters;
     let mut sums = [0_i32; MOST];
     if filters.has_corrections {
-        for (row, sum) in sums.iter_mut().enumerate().take(count) {
+        for row in 0..count.min(MOST) {
             // SAFETY: passed on.
-            let row = unsafe { std::slice::from_raw_parts(x.add(row * stride), stride) };
-            *sum = row.iter().map(|&byte| i32::from(byte)).sum();
+            sums[row] = unsafe { V::sum_of_bytes(x.add(row * stride), stride) };
         }
     }
     let size = if job.bounds.is_some() { 1 } else { 4 };

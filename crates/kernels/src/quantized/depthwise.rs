@@ -268,40 +268,51 @@ unsafe fn block<V: Dots, const WIDE: bool, const B: usize, const S: usize, const
     let left = (ox * window.strides[1]) as isize - window.pads[1] as isize;
     // SAFETY: rows and columns within the input are read, and zeros beside it.
     unsafe {
-        let start: [V; GROUP] = std::array::from_fn(|g| V::load(line.constants.add(g * V::WIDTH)));
-        let mut sums = [start; B];
+        let mut sums = [[V::splat(0); GROUP]; B];
+        for g in 0..GROUP {
+            let start = V::load(line.constants.add(g * V::WIDTH));
+            for o in 0..B {
+                sums[o][g] = start;
+            }
+        }
         for quad in 0..window.kernel[0].div_ceil(V::TAPS) {
-            let mut rows = [None; 4];
-            for (part, row) in rows.iter_mut().enumerate().take(V::TAPS) {
+            let zeros = line.job.zeros.as_ptr();
+            // Rows beside the input: every column of them is zero.
+            let mut rows = [(zeros, 0); 4];
+            for part in 0..V::TAPS {
                 let ky = quad * V::TAPS + part;
                 let iy = line.top + (ky * window.dilations[0]) as isize;
-                let inside = ky < window.kernel[0] && iy >= 0 && (iy as usize) < window.input[0];
-                *row = inside.then(|| line.x.add(iy as usize * window.input[1] * channels));
+                if ky < window.kernel[0] && iy >= 0 && (iy as usize) < window.input[0] {
+                    rows[part] = (line.x.add(iy as usize * window.input[1] * channels), channels);
+                }
             }
             for c in 0..(B - 1) * S + kernel {
                 let ix = left + (c * window.dilations[1]) as isize;
                 let inside = ix >= 0 && (ix as usize) < window.input[1];
-                let zeros = line.job.zeros.as_ptr();
-                let pointers = rows.map(|row| match row {
-                    Some(row) if inside => row.add(ix as usize * channels),
-                    _ => zeros,
-                });
+                let mut pointers = [zeros; 4];
+                if inside {
+                    for part in 0..V::TAPS {
+                        pointers[part] = rows[part].0.add(ix as usize * rows[part].1);
+                    }
+                }
                 let column = V::column(&pointers, line.count, input.flip(), input.unsigned());
-                for (o, sums) in sums.iter_mut().enumerate() {
-                    let Some(kx) = c.checked_sub(o * S).filter(|&kx| kx < kernel) else { continue };
-                    let at = (quad * kernel + kx) * group;
+                for o in 0..B {
+                    if c < o * S || c - o * S >= kernel {
+                        continue;
+                    }
+                    let at = (quad * kernel + c - o * S) * group;
                     for g in 0..GROUP {
-                        sums[g] = sums[g].dot(column[g], V::load(line.words.add(at + g * V::WIDTH)));
+                        sums[o][g] = sums[o][g].dot(column[g], V::load(line.words.add(at + g * V::WIDTH)));
                         if WIDE {
-                            sums[g] = sums[g].dot(column[g], V::load(line.rest.add(at + g * V::WIDTH)));
+                            sums[o][g] = sums[o][g].dot(column[g], V::load(line.rest.add(at + g * V::WIDTH)));
                         }
                     }
                 }
             }
         }
-        for (o, sums) in sums.iter().enumerate() {
+        for o in 0..B {
             let to = line.y.add((ox + o * apart) * channels);
-            V::store_column(sums, line.scales, &line.job.bounds, to, line.count);
+            V::store_column(&sums[o], line.scales, &line.job.bounds, to, line.count);
         }
     }
 }

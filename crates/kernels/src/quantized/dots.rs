@@ -41,11 +41,19 @@ pub(super) trait Dots: Copy {
     unsafe fn load(from: *const i32) -> Self;
     /// Adds the products of the parts of each word.
     unsafe fn dot(self, x: Self, weights: Self) -> Self;
+    /// Returns `self + other`.
+    unsafe fn add(self, other: Self) -> Self;
     /// Returns `self + factor * other`.
     unsafe fn add_multiple(self, factor: i32, other: Self) -> Self;
     unsafe fn store(self, to: *mut i32);
     /// Stores the first `count` sums as bytes: `round(sum * scale) + zero` within the bounds.
     unsafe fn store_bytes(self, scales: *const f32, bounds: &Bounds, to: *mut u8, count: usize);
+    /// Returns the sum of `count` unsigned bytes.
+    #[inline(always)]
+    unsafe fn sum_of_bytes(from: *const u8, count: usize) -> i32 {
+        // SAFETY: the trait's contract.
+        unsafe { std::slice::from_raw_parts(from, count) }.iter().map(|&byte| i32::from(byte)).sum()
+    }
     /// Reads `count` bytes of each row, at most four registers, as words with one part per row; channels are in the
     /// order of [`Dots::channel`]. Bytes are read as `byte ^ flip`, and `zero` is subtracted where parts have 16 bits.
     unsafe fn column(rows: &[*const u8; 4], count: usize, flip: u8, zero: i32) -> [Self; 4];

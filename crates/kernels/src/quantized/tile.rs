@@ -80,18 +80,22 @@ unsafe fn tiles<V: Dots, const N: usize>(rows: &Rows<'_>, panel: &Panel) {
 unsafe fn tile<V: Dots, const R: usize, const N: usize>(rows: &Rows<'_>, panel: &Panel, at: usize) {
     // SAFETY: passed on.
     unsafe {
-        let x: [*const i32; R] = std::array::from_fn(|i| rows.x.add((at + i) * rows.x_stride).cast());
+        // Indices instead of iterators: their functions are not always inlined where more instructions are enabled.
+        let mut x = [std::ptr::null::<i32>(); R];
+        for i in 0..R {
+            x[i] = rows.x.add((at + i) * rows.x_stride).cast();
+        }
         let mut sums = [[V::splat(0); N]; R];
         let mut weights = panel.weights;
         for word in 0..rows.words {
             let mut across = [V::splat(0); N];
-            for (j, across) in across.iter_mut().enumerate() {
-                *across = V::load(weights.add(j * V::WIDTH));
+            for j in 0..N {
+                across[j] = V::load(weights.add(j * V::WIDTH));
             }
-            for (sums, x) in sums.iter_mut().zip(&x) {
-                let x = V::splat(x.add(word).read_unaligned());
-                for (sum, &across) in sums.iter_mut().zip(&across) {
-                    *sum = sum.dot(x, across);
+            for i in 0..R {
+                let x = V::splat(x[i].add(word).read_unaligned());
+                for j in 0..N {
+                    sums[i][j] = sums[i][j].dot(x, across[j]);
                 }
             }
             weights = weights.add(N * V::WIDTH);
@@ -110,11 +114,11 @@ unsafe fn finish<V: Dots, const R: usize, const N: usize>(
 ) {
     // SAFETY: passed on.
     unsafe {
-        for (i, sums) in sums.iter().enumerate() {
+        for i in 0..R {
             let of_row = if rows.sums.is_null() { 0 } else { *rows.sums.add(at + i) };
-            for (j, &sum) in sums.iter().enumerate() {
+            for j in 0..N {
                 let (first, count) = (j * V::WIDTH, panel.used.saturating_sub(j * V::WIDTH).min(V::WIDTH));
-                let mut sum = V::load(panel.constants.add(first)).add_multiple(1, sum);
+                let mut sum = sums[i][j].add(V::load(panel.constants.add(first)));
                 if !rows.sums.is_null() {
                     sum = sum.add_multiple(of_row, V::load(panel.corrections.add(first)));
                 }

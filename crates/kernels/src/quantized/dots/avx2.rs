@@ -21,6 +21,32 @@ unsafe fn scaled(sums: Avx2, scales: *const f32, bounds: &Bounds) -> __m256i {
     }
 }
 
+/// Returns two registers of scaled sums as 16-bit integers, with the zero point.
+///
+/// # Safety
+/// The machine has AVX2; `scales` has sixteen numbers.
+#[inline(always)]
+unsafe fn scaled_pair(a: Avx2, b: Avx2, scales: *const f32, bounds: &Bounds) -> __m256i {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let (a, b) = (scaled(a, scales, bounds), scaled(b, scales.add(WIDTH), bounds));
+        _mm256_add_epi16(_mm256_packs_epi32(a, b), _mm256_set1_epi16(bounds.zero as i16))
+    }
+}
+
+/// Returns sixteen bytes as 16-bit integers without the zero point.
+///
+/// # Safety
+/// The machine has AVX2; the row has sixteen bytes.
+#[inline(always)]
+unsafe fn wide(row: *const u8, flip: u8, zero: i32) -> __m256i {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let bytes = _mm_xor_si128(_mm_loadu_si128(row.cast()), _mm_set1_epi8(flip as i8));
+        _mm256_sub_epi16(_mm256_cvtepu8_epi16(bytes), _mm256_set1_epi16(zero as i16))
+    }
+}
+
 impl Dots for Avx2 {
     const WIDTH: usize = WIDTH;
     const TAPS: usize = 2;
@@ -43,6 +69,12 @@ impl Dots for Avx2 {
     unsafe fn dot(self, x: Self, weights: Self) -> Self {
         // SAFETY: the trait's contract.
         Self(unsafe { _mm256_add_epi32(self.0, _mm256_madd_epi16(x.0, weights.0)) })
+    }
+
+    #[inline(always)]
+    unsafe fn add(self, other: Self) -> Self {
+        // SAFETY: the trait's contract.
+        Self(unsafe { _mm256_add_epi32(self.0, other.0) })
     }
 
     #[inline(always)]
@@ -88,13 +120,8 @@ impl Dots for Avx2 {
                     *row = few.as_ptr();
                 }
             }
-            let (flip, zero) = (_mm_set1_epi8(flip as i8), _mm256_set1_epi16(zero as i16));
-            let wide = |row: *const u8| {
-                let bytes = _mm_xor_si128(_mm_loadu_si128(row.cast()), flip);
-                _mm256_sub_epi16(_mm256_cvtepu8_epi16(bytes), zero)
-            };
-            let (a, b) = (wide(rows[0]), wide(rows[1]));
-            let (c, d) = (wide(rows[0].add(16)), wide(rows[1].add(16)));
+            let (a, b) = (wide(rows[0], flip, zero), wide(rows[1], flip, zero));
+            let (c, d) = (wide(rows[0].add(16), flip, zero), wide(rows[1].add(16), flip, zero));
             [
                 Self(_mm256_unpacklo_epi16(a, b)),
                 Self(_mm256_unpackhi_epi16(a, b)),
@@ -108,13 +135,8 @@ impl Dots for Avx2 {
     unsafe fn store_column(sums: &[Self; 4], scales: *const f32, bounds: &Bounds, to: *mut u8, count: usize) {
         // SAFETY: the trait's contract.
         unsafe {
-            let zero = _mm256_set1_epi16(bounds.zero as i16);
-            let half = |i: usize| {
-                let first = scaled(sums[i], scales.add(i * WIDTH), bounds);
-                let second = scaled(sums[i + 1], scales.add((i + 1) * WIDTH), bounds);
-                _mm256_add_epi16(_mm256_packs_epi32(first, second), zero)
-            };
-            let (first, second) = (half(0), half(2));
+            let first = scaled_pair(sums[0], sums[1], scales, bounds);
+            let second = scaled_pair(sums[2], sums[3], scales.add(2 * WIDTH), bounds);
             let packed = if bounds.is_signed {
                 _mm256_packs_epi16(first, second)
             } else {

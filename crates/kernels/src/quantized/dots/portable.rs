@@ -39,6 +39,11 @@ impl Dots for Portable {
     }
 
     #[inline(always)]
+    unsafe fn add(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i].wrapping_add(other.0[i])))
+    }
+
+    #[inline(always)]
     unsafe fn add_multiple(self, factor: i32, other: Self) -> Self {
         Self(std::array::from_fn(|i| self.0[i].wrapping_add(factor.wrapping_mul(other.0[i]))))
     }

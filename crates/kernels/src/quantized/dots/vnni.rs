@@ -21,6 +21,29 @@ unsafe fn scaled(sums: Vnni, scales: *const f32, bounds: &Bounds) -> __m512i {
     }
 }
 
+/// Returns two registers of scaled sums as 16-bit integers, with the zero point.
+///
+/// # Safety
+/// The machine has AVX-512BW; `scales` has 32 numbers.
+#[inline(always)]
+unsafe fn scaled_pair(a: Vnni, b: Vnni, scales: *const f32, bounds: &Bounds) -> __m512i {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let (a, b) = (scaled(a, scales, bounds), scaled(b, scales.add(WIDTH), bounds));
+        _mm512_add_epi16(_mm512_packs_epi32(a, b), _mm512_set1_epi16(bounds.zero as i16))
+    }
+}
+
+/// Returns the bytes of a row in a mask, as unsigned ones.
+///
+/// # Safety
+/// The machine has AVX-512BW; the row has the bytes in the mask.
+#[inline(always)]
+unsafe fn flipped(row: *const u8, mask: u64, flip: __m512i) -> __m512i {
+    // SAFETY: the caller's promise.
+    unsafe { _mm512_xor_si512(_mm512_maskz_loadu_epi8(mask, row.cast()), flip) }
+}
+
 /// Returns the mask of the first bytes.
 #[inline(always)]
 fn first(count: usize) -> u64 {
@@ -52,6 +75,12 @@ impl Dots for Vnni {
     }
 
     #[inline(always)]
+    unsafe fn add(self, other: Self) -> Self {
+        // SAFETY: the trait's contract.
+        Self(unsafe { _mm512_add_epi32(self.0, other.0) })
+    }
+
+    #[inline(always)]
     unsafe fn add_multiple(self, factor: i32, other: Self) -> Self {
         // SAFETY: the trait's contract.
         Self(unsafe { _mm512_add_epi32(self.0, _mm512_mullo_epi32(_mm512_set1_epi32(factor), other.0)) })
@@ -78,12 +107,27 @@ impl Dots for Vnni {
     }
 
     #[inline(always)]
+    unsafe fn sum_of_bytes(from: *const u8, count: usize) -> i32 {
+        // SAFETY: the trait's contract; bytes beyond `count` are not read.
+        unsafe {
+            let ones = _mm512_set1_epi8(1);
+            let (mut sums, mut at) = (_mm512_setzero_si512(), 0);
+            while at + 64 <= count {
+                sums = _mm512_dpbusd_epi32(sums, _mm512_loadu_si512(from.add(at).cast()), ones);
+                at += 64;
+            }
+            let rest = _mm512_maskz_loadu_epi8(first(count - at), from.add(at).cast());
+            _mm512_reduce_add_epi32(_mm512_dpbusd_epi32(sums, rest, ones))
+        }
+    }
+
+    #[inline(always)]
     unsafe fn column(rows: &[*const u8; 4], count: usize, flip: u8, _zero: i32) -> [Self; 4] {
         // SAFETY: the trait's contract; bytes beyond `count` are not read.
         unsafe {
             let (mask, flip) = (first(count), _mm512_set1_epi8(flip as i8));
-            let load = |row: *const u8| _mm512_xor_si512(_mm512_maskz_loadu_epi8(mask, row.cast()), flip);
-            let [a, b, c, d] = [load(rows[0]), load(rows[1]), load(rows[2]), load(rows[3])];
+            let (a, b) = (flipped(rows[0], mask, flip), flipped(rows[1], mask, flip));
+            let (c, d) = (flipped(rows[2], mask, flip), flipped(rows[3], mask, flip));
             let (low, high) = (_mm512_unpacklo_epi8(a, b), _mm512_unpackhi_epi8(a, b));
             let (next_low, next_high) = (_mm512_unpacklo_epi8(c, d), _mm512_unpackhi_epi8(c, d));
             [
@@ -99,13 +143,8 @@ impl Dots for Vnni {
     unsafe fn store_column(sums: &[Self; 4], scales: *const f32, bounds: &Bounds, to: *mut u8, count: usize) {
         // SAFETY: the trait's contract.
         unsafe {
-            let zero = _mm512_set1_epi16(bounds.zero as i16);
-            let half = |i: usize| {
-                let first = scaled(sums[i], scales.add(i * WIDTH), bounds);
-                let second = scaled(sums[i + 1], scales.add((i + 1) * WIDTH), bounds);
-                _mm512_add_epi16(_mm512_packs_epi32(first, second), zero)
-            };
-            let (low, high) = (half(0), half(2));
+            let low = scaled_pair(sums[0], sums[1], scales, bounds);
+            let high = scaled_pair(sums[2], sums[3], scales.add(2 * WIDTH), bounds);
             let bytes =
                 if bounds.is_signed { _mm512_packs_epi16(low, high) } else { _mm512_packus_epi16(low, high) };
             _mm512_mask_storeu_epi8(to.cast(), first(count), bytes);
