@@ -4,6 +4,7 @@
 //! `shell` runs programs.
 
 mod checks;
+mod function_docs;
 mod generate;
 mod imports;
 mod inputs;
@@ -47,7 +48,8 @@ usage: cargo xtask VERB
   generate   write the generated stubs, C headers, pages of docs/, and parts of README.md and DESIGN.md
   generate --crates
              write only the table of the crates in README.md and the diagram of the layers in DESIGN.md
-  words      fail if documentation or messages have a phrase of xtask/words.tsv; print the term to use
+  words      fail if documentation or messages have a phrase of xtask/words.tsv, and print the term to use; or if the documentation of
+             a public function does not begin with a verb
   layers     fail if a crate depends on a higher layer of xtask/layers.tsv, or if two files of a crate import each other
   realtime   fail if a task has no learner with 25 frames per second in 1 GB on 2 cores
   realtime --write
@@ -68,7 +70,7 @@ fn main() -> ExitCode {
         ["test-c"] => test::run_c(),
         ["ros"] => ros::run_alone(),
         ["ros", "--zenoh"] => ros::run_zenoh(),
-        ["words"] => words::run(),
+        ["words"] => words::run().and_then(|()| function_docs::check()),
         ["layers"] => layers::run(),
         ["generate"] => generate::run(),
         ["generate", "--crates"] => pages::write(),

@@ -19,7 +19,7 @@ pub fn run() -> Result<()> {
     measure(|_, _| Ok(()))
 }
 
-/// The same as [`run`], and writes the measurements into the cards.
+/// Runs [`run`], and writes the measurements into the cards.
 pub fn run_and_write() -> Result<()> {
     measure(write_speed)
 }

@@ -172,18 +172,18 @@ impl Belief {
         self.poses.len()
     }
 
-    /// The pose of the view that says most, and its information as a share of all that can be said; `None` before a view.
+    /// Returns the pose of the view with the most information, and its information as a share of the maximum; `None` before a view.
     pub fn most_informative(&self) -> Option<(&ViewPose, f32)> {
         let best = self.information.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
         Some((&self.poses[best.0], best.1 / (self.classes as f32).ln()))
     }
 
-    /// The information of the last view as a share of all that can be said, 0 before a view.
+    /// Returns the information of the last view as a share of the maximum, 0 before a view.
     pub fn last_information(&self) -> f32 {
         self.information.last().map_or(0.0, |information| information / (self.classes as f32).ln())
     }
 
-    /// Number of classes.
+    /// Returns the number of classes.
     pub fn classes(&self) -> usize {
         self.classes
     }

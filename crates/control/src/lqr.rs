@@ -42,7 +42,8 @@ impl Lqr {
         Ok(Self { gain, cost })
     }
 
-    /// A regulator of one axis whose state is an error and its rate, driven by an acceleration that is held for `period` seconds.
+    /// Designs a regulator of one axis whose state is an error and its rate, driven by an acceleration that is held for `period`
+    /// seconds.
     ///
     /// # Errors
     /// As [`Self::design`].
@@ -52,12 +53,12 @@ impl Lqr {
         Self::design(2, 1, &a, &b, &[error, 0.0, 0.0, rate], &[effort])
     }
 
-    /// The gain K by rows, `inputs x states`.
+    /// Returns the gain K by rows, `inputs x states`.
     pub fn gain(&self) -> &[f64] {
         &self.gain.numbers
     }
 
-    /// The solution of the Riccati equation by rows: `xᵀ P x` is the cost to come.
+    /// Returns the solution of the Riccati equation by rows: `xᵀ P x` is the cost to come.
     pub fn cost(&self) -> &[f64] {
         &self.cost.numbers
     }

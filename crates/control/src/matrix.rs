@@ -57,7 +57,7 @@ impl Dense {
         Self { numbers, ..*self }
     }
 
-    /// The solution X of `self X = right` (Gaussian elimination with partial pivoting); none where this matrix is singular.
+    /// Returns the solution X of `self X = right` (Gaussian elimination with partial pivoting); none where this matrix is singular.
     pub fn solve(&self, right: &Self) -> Option<Self> {
         let (size, width) = (self.rows, right.columns);
         let (mut a, mut b) = (self.numbers.clone(), right.numbers.clone());

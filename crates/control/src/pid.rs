@@ -37,7 +37,7 @@ pub struct Pid {
 }
 
 impl Pid {
-    /// A controller that is called every `period` seconds.
+    /// Creates a controller that is called every `period` seconds.
     ///
     /// # Errors
     /// `InvalidParam` for gains out of range and a period that is not positive.
@@ -49,7 +49,7 @@ impl Pid {
         Ok(Self { gains, period, integral: 0.0, derivative: 0.0, previous: None })
     }
 
-    /// The gains.
+    /// Returns the gains.
     pub fn gains(&self) -> &PidGains {
         &self.gains
     }
@@ -67,7 +67,7 @@ impl Pid {
         self.step_with_rate(error, rate, 0.0, saturated)
     }
 
-    /// Returns the command for an error and its measured rate, with a feed-forward command inside the limit.
+    /// Returns the command for an error and its measured rate, with a feedforward command inside the limit.
     pub fn step_with_rate(&mut self, error: f64, rate: f64, feedforward: f64, saturated: bool) -> f64 {
         let PidGains { kp, ki, kd, filter, limit } = self.gains;
         self.derivative += (rate - self.derivative) * (self.period / (filter + self.period));

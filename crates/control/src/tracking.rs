@@ -5,15 +5,16 @@ use opendr_engine::{Error, Result};
 
 use crate::{Lqr, Pid, PidGains};
 
-/// One [`Pid`] for each axis, with feed-forward where the layout has it. With `ki = 0` it has no memory but the filter of the
-/// derivative.
+/// Tracks a reference by one [`Pid`] per axis, with the reference's acceleration as feedforward where the layout has it. With
+/// `ki = 0` its only state is the filter of the derivative.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrackingPid {
     layout: TrackingLayout,
     axes: Vec<Pid>,
 }
 
-/// One [`Lqr`] of two states (error and rate) for each axis, with feed-forward where the layout has it.
+/// Tracks a reference by one [`Lqr`] of two states (error and rate) per axis, with the reference's acceleration as feedforward
+/// where the layout has it. Commands are clipped to a limit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrackingLqr {
     layout: TrackingLayout,
@@ -22,7 +23,7 @@ pub struct TrackingLqr {
 }
 
 impl TrackingPid {
-    /// Gains of each axis, for a controller that is called every `period` seconds.
+    /// Creates a controller from the gains of each axis, called every `period` seconds.
     ///
     /// # Errors
     /// `InvalidParam` where there are not as many gains as axes, and as [`Pid::new`].
@@ -39,8 +40,8 @@ impl TrackingPid {
         Ok(Self { layout, axes })
     }
 
-    /// The conventional law of a task, for commands within bounds: proportional and derivative gains without a filter, a law of the
-    /// present observation alone, which a network without memory can imitate.
+    /// Creates the conventional law of a task, for commands within bounds: proportional and derivative gains without a filter, a
+    /// law of the present observation alone, which a network without memory can imitate.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -77,7 +78,7 @@ impl Controller for TrackingPid {
 }
 
 impl TrackingLqr {
-    /// The regulator of every axis, whose commands are at most `limit`.
+    /// Creates a controller with this regulator on every axis, whose commands are at most `limit`.
     ///
     /// # Errors
     /// `InvalidParam` for a regulator of other than two states and one input.

@@ -56,12 +56,12 @@ impl OnlineTuning {
         Ok(Self { policy, calibration, spec })
     }
 
-    /// The frozen policy.
+    /// Returns the frozen policy.
     pub fn frozen(&self) -> NeuralPolicy {
         self.policy.clone()
     }
 
-    /// The conventional controller of the environment.
+    /// Creates the conventional controller of the environment.
     ///
     /// # Errors
     /// `Unsupported` for an environment without a tracking task.
@@ -71,7 +71,7 @@ impl OnlineTuning {
         TrackingPid::conventional(task, low, high)
     }
 
-    /// An adapter around the policy.
+    /// Creates an adapter around the policy.
     ///
     /// # Errors
     /// `InvalidParam` for parameters out of range.

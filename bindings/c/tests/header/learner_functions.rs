@@ -18,7 +18,7 @@ pub const INTRODUCTION: &str = "\
 /// Keywords of C and C++.
 const KEYWORDS: [&str; 8] = ["class", "default", "delete", "new", "operator", "register", "template", "this"];
 
-/// `opendr_load_X` and `opendr_infer_X`.
+/// Returns `opendr_load_X` and `opendr_infer_X`.
 pub fn of_entry(entry: &Entry) -> String {
     let name = entry.spec.name;
     format!(

@@ -5,7 +5,7 @@ use opendr_c::ARRAYS;
 
 const FUNCTIONS: &str = include_str!("value_functions.h");
 
-/// `opendr_bounding_box_3d_list` of `BoundingBox3DList`.
+/// Returns `opendr_bounding_box_3d_list` of `BoundingBox3DList`.
 pub fn c_name(kind: ValueType) -> String {
     let mut name = "opendr".to_owned();
     let letters: Vec<char> = kind.name().chars().collect();
@@ -21,7 +21,7 @@ pub fn c_name(kind: ValueType) -> String {
     name
 }
 
-/// The macros, and one line for each type.
+/// Returns the macros, and one line for each type.
 pub fn render() -> String {
     let mut text = FUNCTIONS.to_owned();
     for kind in ValueType::ALL {

@@ -18,7 +18,7 @@ pub struct PanTiltZoom {
 }
 
 impl PanTiltZoom {
-    /// A camera over an image of RGB bytes, pixel after pixel, whose width is `field` rad; its images have `width` x
+    /// Creates a camera over an image of RGB bytes, pixel after pixel, whose width is `field` rad; its images have `width` x
     /// `height` pixels. It begins with the whole image.
     ///
     /// # Errors
@@ -43,7 +43,7 @@ impl PanTiltZoom {
         Ok(Self { image, sphere, field, side: [width.max(1), height.max(1)] })
     }
 
-    /// Left, top, width and height of the window, in pixels.
+    /// Returns the left, top, width and height of the window, in pixels.
     pub fn window(&self) -> [usize; 4] {
         let pose = self.sphere.pose();
         let (width, height) = (self.image.width() as f64, self.image.height() as f64);

@@ -56,8 +56,8 @@ impl RecordedViews {
         Ok(Self { folder, views: index.views, sphere })
     }
 
-    /// The recorded view nearest to where the camera was moved: by the angle between the directions, and the logarithm of the
-    /// ratio of distances.
+    /// Returns the recorded view nearest to where the camera was moved: by the angle between the directions, and the logarithm of
+    /// the ratio of distances.
     pub fn nearest(&self) -> &RecordedView {
         let here = self.sphere.pose();
         let way = |view: &RecordedView| {

@@ -16,7 +16,7 @@ pub fn options(pairs: &[(&str, f64)]) -> ResetOptions {
     pairs.iter().map(|(name, value)| ((*name).to_owned(), (*value).into())).collect()
 }
 
-/// A random plant: everything that the environment can change, at once.
+/// Draws a random plant: everything that the environment can change, at once.
 ///
 /// Some draws cannot be flown by any controller: where the drag of the mean wind and two deviations of its gusts exceeds the horizontal
 /// acceleration at the limit of tilt, the vehicle is carried away. These are drawn again.

@@ -65,8 +65,8 @@ struct Buffers {
 const EVENTS: usize = 4096;
 
 impl<P: AdaptablePolicy> OnlineAdapter<P> {
-    /// An adapter around `base` for the tracking task of an environment. Outside `envelope`, where one is given, nothing is learned
-    /// and the conventional law of the task acts.
+    /// Creates an adapter around `base` for the tracking task of an environment. Outside `envelope`, where one is given, nothing is
+    /// learned and the conventional law of the task acts.
     ///
     /// # Errors
     /// `Unsupported` for an environment without a tracking task or a box of actions and for a policy that cannot be adapted,
@@ -141,17 +141,17 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
         self.features = features;
     }
 
-    /// The frozen policy.
+    /// Returns the frozen policy.
     pub fn base(&self) -> &P {
         &self.base
     }
 
-    /// The policy with the present parameters.
+    /// Returns the policy with the present parameters.
     pub fn adapted(&self) -> &P {
         &self.adapted
     }
 
-    /// The parameters of the adaptation.
+    /// Returns the parameters of the adaptation.
     pub fn params(&self) -> &AdaptationParams {
         &self.params
     }
@@ -161,17 +161,17 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
         self.task.axes.len()
     }
 
-    /// What happened so far.
+    /// Returns the log of events so far.
     pub fn log(&self) -> &EventLog {
         &self.log
     }
 
-    /// The monitor.
+    /// Returns the monitor.
     pub fn monitor(&self) -> &Monitor {
         &self.monitor
     }
 
-    /// Steps so far, and in how many of them the parameters learned.
+    /// Returns the number of steps so far, and of those in which the parameters learned.
     pub fn steps(&self) -> [u64; 2] {
         [self.phase.step, self.phase.updates]
     }
@@ -181,12 +181,12 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
         &self.buffers.weights
     }
 
-    /// Norm of the weights: about by how much the commands were changed.
+    /// Returns the norm of the weights: about by how much the commands were changed.
     pub fn distance(&self) -> f32 {
         norm(&self.buffers.weights)
     }
 
-    /// Whether learning was switched off after repeated rollbacks.
+    /// Returns whether learning was switched off after repeated rollbacks.
     pub fn is_disarmed(&self) -> bool {
         self.phase.disarmed
     }
@@ -233,8 +233,8 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
         self.recording = Vec::with_capacity(steps.saturating_mul(self.task.layout.len));
     }
 
-    /// The observations of the recorded steps, row after row. A fresh adapter that acts on them learns the same, bit for bit, and
-    /// writes the same log.
+    /// Returns the observations of the recorded steps, row after row. A fresh adapter that acts on them learns the same, bit for
+    /// bit, and writes the same log.
     pub fn recording(&self) -> &[f32] {
         &self.recording
     }
@@ -320,7 +320,7 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
         }
     }
 
-    /// Starts the lag of the feed-forward commands.
+    /// Starts the lag of the feedforward commands.
     fn start(&mut self, observation: &[f32]) {
         for (at, feedforward) in self.buffers.feedforward.iter_mut().enumerate() {
             *feedforward = self.task.layout.feedforward(observation, at);

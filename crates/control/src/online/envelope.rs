@@ -10,7 +10,7 @@ pub struct Envelope {
 }
 
 impl Envelope {
-    /// The bounds of `observations`, rows of `len` numbers, wider by `margin` of their span to both sides.
+    /// Returns the bounds of `observations`, rows of `len` numbers, widened by `margin` of their span to both sides.
     ///
     /// # Errors
     /// `InvalidInput` without a row or for rows of another length.
@@ -34,7 +34,7 @@ impl Envelope {
         Ok(Self { low, high })
     }
 
-    /// Whether an observation lies inside.
+    /// Returns whether an observation lies inside.
     pub fn contains(&self, observation: &[f32]) -> bool {
         let bounds = self.low.iter().zip(&self.high);
         observation.iter().zip(bounds).all(|(number, (low, high))| (*low..=*high).contains(number))

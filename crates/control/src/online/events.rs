@@ -66,17 +66,17 @@ impl EventLog {
         }
     }
 
-    /// The events.
+    /// Returns the events.
     pub fn events(&self) -> &[Event] {
         &self.events
     }
 
-    /// How many happened after the memory was full.
+    /// Returns the number of events that were dropped after the memory was full.
     pub fn dropped(&self) -> u64 {
         self.dropped
     }
 
-    /// How many events of a kind are kept.
+    /// Returns the number of events of a kind that are kept.
     pub fn count(&self, kind: EventKind) -> usize {
         self.events.iter().filter(|event| event.kind == kind).count()
     }

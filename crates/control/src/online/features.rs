@@ -27,7 +27,7 @@ pub struct ReferenceFeatures {
 const RIDGE: f64 = 1e-4;
 
 impl ReferenceFeatures {
-    /// The constant alone: loads are learned, and no function of the reference.
+    /// Creates the constant alone: loads are learned, and no function of the reference.
     ///
     /// # Errors
     /// `Unsupported` for a policy without a dense last layer, and those of the policy.
@@ -41,7 +41,7 @@ impl ReferenceFeatures {
         Ok(Self { size, count: 1, directions, explained: Vec::new() })
     }
 
-    /// From `observations`, rows as the policy was trained on: errors are to vary independently of the reference.
+    /// Finds the features in `observations`, rows as the policy was trained on: errors are to vary independently of the reference.
     ///
     /// # Errors
     /// `InvalidInput` without a row, `Unsupported` for a policy without a dense last layer, and those of the policy.
@@ -104,12 +104,12 @@ impl ReferenceFeatures {
         Ok(Self { size, count, directions, explained })
     }
 
-    /// Number of features.
+    /// Returns the number of features.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// Share of the variance of each number of the reference that varies which the last layer reproduces, 0 to 1.
+    /// Returns the share of the variance of each number of the reference that varies which the last layer reproduces, 0 to 1.
     pub fn explained(&self) -> &[f32] {
         &self.explained
     }
@@ -173,7 +173,7 @@ impl Inputs {
         policy.backward(&self.ones, &mut self.gradients)
     }
 
-    /// By how much a command changes with its output of the network.
+    /// Returns the derivative of each command by its output of the network.
     pub fn slopes(&self) -> &[f32] {
         let first = self.range.end - self.outputs;
         &self.gradients[first..first + self.ones.len()]

@@ -12,7 +12,7 @@ use super::{NeuralPolicy, OnlineAdapter};
 /// The file of a model that states how it was adapted.
 pub const ADAPTATION: &str = "adaptation.json";
 
-/// How an adapted policy came to be.
+/// Lineage of an adapted policy: its base, the data it was adapted on, and the result. Saved as [`ADAPTATION`] in the model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Adaptation {
     /// Checksum of the base policy's file.

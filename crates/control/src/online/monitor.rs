@@ -66,7 +66,7 @@ pub enum Verdict {
 }
 
 impl Monitor {
-    /// A monitor of a task whose base closes about the conventional loop.
+    /// Creates a monitor of a task whose base closes about the conventional loop.
     pub fn new(params: MonitorParams, task: &TrackingTask) -> Self {
         let period = task.period;
         let loops = task.axes.iter().map(|axis| {
@@ -110,7 +110,7 @@ impl Monitor {
         if self.good_for > self.params.good_time { Verdict::Good } else { Verdict::Undecided }
     }
 
-    /// Root mean squares of the errors of late: adapted, and predicted of the base.
+    /// Returns the root mean squares of the recent errors: adapted, and predicted of the base.
     pub fn errors(&self) -> [f64; 2] {
         self.costs.map(f64::sqrt)
     }

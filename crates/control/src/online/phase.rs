@@ -43,7 +43,7 @@ impl Phase {
         self.of_episode += 1;
     }
 
-    /// Whether this step may learn; freezes and resumptions go to the log.
+    /// Returns whether this step may learn; freezes and resumptions go to the log.
     pub fn may_learn(
         &mut self,
         reason: Option<FreezeReason>,

@@ -44,7 +44,7 @@ pub struct NeuralPolicy {
 }
 
 impl NeuralPolicy {
-    /// A policy that acts on the calling thread.
+    /// Creates a policy that acts on the calling thread.
     ///
     /// # Errors
     /// `Unsupported` for a recurrent policy.
@@ -57,7 +57,7 @@ impl NeuralPolicy {
         Ok(Self { policy, compute: Compute::single(), memory: PolicyMemory::default() })
     }
 
-    /// The policy with its present parameters.
+    /// Returns the policy with its present parameters.
     pub fn policy(&self) -> &Policy {
         &self.policy
     }

@@ -3,7 +3,7 @@
 use opendr_engine::environment::{EnvironmentSpec, Space, TrackingTask};
 use opendr_engine::{Error, Result};
 
-/// The tracking task that an environment states.
+/// Returns the tracking task that an environment states.
 ///
 /// # Errors
 /// `Unsupported` where it states none.

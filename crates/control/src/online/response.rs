@@ -11,7 +11,7 @@ pub(super) struct Response {
 pub(super) type Stages = [f32; 3];
 
 impl Response {
-    /// A plant that takes `seconds` from a command to its effect, observed through a filter of `bandwidth` (1/s).
+    /// Creates a plant that takes `seconds` from a command to its effect, observed through a filter of `bandwidth` (1/s).
     pub fn new(seconds: f32, bandwidth: f32, period: f32) -> Self {
         let lag = period / (0.5 * seconds + period);
         Self { shares: [lag, lag, (bandwidth * period).min(1.0)] }

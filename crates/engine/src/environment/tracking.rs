@@ -59,7 +59,7 @@ pub struct TrackingLayout {
     pub reference: [usize; 2],
     /// Place of the first velocity of the reference.
     pub velocity: Option<usize>,
-    /// Place of the first feed-forward command; without one it is 0.
+    /// Place of the first feedforward command; without one it is 0.
     pub feedforward: Option<usize>,
     /// Place of the age of the state estimate, seconds.
     pub age: Option<usize>,
@@ -127,7 +127,7 @@ impl TrackingLayout {
         }
     }
 
-    /// Returns the feed-forward command of an axis.
+    /// Returns the feedforward command of an axis.
     pub fn feedforward(&self, observation: &[f32], axis: usize) -> f32 {
         self.feedforward.map_or(0.0, |first| observation[first + axis])
     }

@@ -80,7 +80,7 @@ pub struct CommandLaw<F> {
 }
 
 impl<F: Fn(&[f32], &[f32], &mut [f32]) -> Result<()> + Send> CommandLaw<F> {
-    /// `law` writes an action of `actions` numbers from observation and command.
+    /// Creates a controller from `law`, which writes an action of `actions` numbers from observation and command.
     pub fn new(commands: Space, actions: usize, law: F) -> Self {
         Self { commands, actions, law }
     }
@@ -111,7 +111,7 @@ pub struct Commanded<E, C> {
 }
 
 impl<E: Environment, C: CommandedController> Commanded<E, C> {
-    /// `inner`, where `controller` follows each command for `hold` steps; their rewards are summed.
+    /// Wraps `inner` so that `controller` follows each command for `hold` steps; their rewards are summed.
     ///
     /// # Errors
     /// `InvalidParam` where `hold` is 0, `InvalidInput` for a controller with actions of another length.

@@ -11,7 +11,7 @@ pub struct AlphaSchedule {
 }
 
 impl AlphaSchedule {
-    /// The same factor always.
+    /// Creates a schedule with the same factor at every step.
     ///
     /// # Errors
     /// As [`Self::linear`].
@@ -19,7 +19,7 @@ impl AlphaSchedule {
         Self::linear(alpha, alpha, 0)
     }
 
-    /// From `from` to `to` over `steps` steps of each environment, then `to`.
+    /// Creates a schedule from `from` to `to` over `steps` steps of each environment, then `to`.
     ///
     /// # Errors
     /// `InvalidParam` for a factor that is negative or not finite.
@@ -30,7 +30,7 @@ impl AlphaSchedule {
         Err(Error::invalid_param(format!("alpha from {from} to {to}; give factors of 0 or more")))
     }
 
-    /// The factor after so many steps.
+    /// Returns the factor after `steps` steps.
     pub fn at(&self, steps: u64) -> f32 {
         match steps < self.steps {
             true => self.from + (self.to - self.from) * (steps as f64 / self.steps as f64) as f32,
@@ -38,7 +38,7 @@ impl AlphaSchedule {
         }
     }
 
-    /// The last factor always: for evaluations and the finished policy.
+    /// Returns the schedule with the last factor at every step: for evaluations and the finished policy.
     #[must_use]
     pub fn finished(self) -> Self {
         Self { from: self.to, steps: 0, ..self }

@@ -22,7 +22,8 @@ pub struct CommandingPolicy<P> {
 }
 
 impl<P: AsRef<Policy>> CommandingPolicy<P> {
-    /// `policy` commands `controller`, with each command for `hold` steps and the most likely commands.
+    /// Creates a controller in which `policy` commands `controller`, with each command for `hold` steps and the most likely
+    /// commands.
     ///
     /// # Errors
     /// `Format` for a policy whose actions are not the controller's commands, and for commands that are held for 0 steps.

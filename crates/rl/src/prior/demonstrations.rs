@@ -24,7 +24,7 @@ pub struct DemonstratedSteps {
 }
 
 impl DemonstratedSteps {
-    /// What a controller does in episodes that begin with these seeds.
+    /// Records what a controller does in episodes that begin with these seeds.
     ///
     /// # Errors
     /// Those of the environment and of the controller, `InvalidInput` where there is no episode.
@@ -71,22 +71,22 @@ impl DemonstratedSteps {
         }
     }
 
-    /// The number of steps.
+    /// Returns the number of steps.
     pub fn len(&self) -> usize {
         self.rewards.len()
     }
 
-    /// Whether there is no step; never after [`Self::record`].
+    /// Returns whether there is no step; never after [`Self::record`].
     pub fn is_empty(&self) -> bool {
         self.rewards.is_empty()
     }
 
-    /// The sum of rewards of each episode.
+    /// Returns the sum of rewards of each episode.
     pub fn returns(&self) -> &[f64] {
         &self.returns
     }
 
-    /// The same as pairs of observations and actions, for [`clone_behaviour`].
+    /// Returns the steps as pairs of observations and actions, for [`clone_behaviour`].
     ///
     /// # Errors
     /// As [`Demonstrations::new`].

@@ -33,7 +33,7 @@ impl Prior {
         Ok(())
     }
 
-    /// The prior of this name and version.
+    /// Returns the prior of this name and version.
     ///
     /// # Errors
     /// `NotFound` where this process has none; the message lists those that it has.
@@ -42,7 +42,7 @@ impl Prior {
         known.iter().find(|prior| prior.id() == id).cloned().ok_or_else(|| not_found(id, &known))
     }
 
-    /// The newest version of a prior.
+    /// Returns the newest version of a prior.
     ///
     /// # Errors
     /// As [`Self::find`].

@@ -34,7 +34,7 @@ pub struct PriorId {
 }
 
 impl Prior {
-    /// A prior; `make` creates its controller for observations of a space.
+    /// Creates a prior; `make` creates its controller for observations of a space.
     pub fn new(
         name: impl Into<String>,
         version: u32,
@@ -84,12 +84,12 @@ impl Prior {
         &self.about
     }
 
-    /// Name and version.
+    /// Returns the name and version.
     pub fn id(&self) -> &PriorId {
         &self.id
     }
 
-    /// A controller for observations of `space`.
+    /// Creates a controller for observations of `space`.
     ///
     /// # Errors
     /// `Unsupported` for a space that the controller does not read.

@@ -47,7 +47,7 @@ impl PriorReport {
         Ok(())
     }
 
-    /// The same for a controller under a shield, with the share of steps in which the fallback acted.
+    /// Adds a controller under a shield, with the share of steps in which the fallback acted.
     ///
     /// # Errors
     /// As [`Self::add`].

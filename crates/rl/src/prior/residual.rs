@@ -33,12 +33,12 @@ pub(super) struct Correction {
 }
 
 impl Correction {
-    /// For actions of `space`.
+    /// Creates the sum of prior and correction for actions of `space`.
     pub fn new(space: &Space) -> Result<Self> {
         Ok(Self { bounds: Bounds::of(space, true)? })
     }
 
-    /// The space of corrections: half as wide as that of actions, around zero.
+    /// Returns the space of corrections: half as wide as that of actions, around zero.
     pub fn space(&self) -> Space {
         let widths = self.bounds.low.iter().zip(&self.bounds.high).map(|(low, high)| 0.5 * (high - low));
         Space::symmetric(&widths.collect::<Vec<_>>())
@@ -76,7 +76,7 @@ impl Correction {
 }
 
 impl<E: Environment> Residual<E> {
-    /// `inner` with corrections of `prior`.
+    /// Wraps `inner` so that actions are corrections of `prior`.
     ///
     /// # Errors
     /// `Unsupported` for actions that are no bounded box.
@@ -90,7 +90,7 @@ impl<E: Environment> Residual<E> {
         Ok(Self { inner, prior, correction, alpha, spec, steps: 0, proposal, action })
     }
 
-    /// The environment inside.
+    /// Returns the environment inside.
     pub fn inner(&self) -> &E {
         &self.inner
     }

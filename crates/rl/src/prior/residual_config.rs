@@ -33,7 +33,7 @@ pub struct ResidualConfig {
 }
 
 impl ResidualConfig {
-    /// The prior.
+    /// Returns the prior.
     ///
     /// # Errors
     /// As [`Prior::newest`].
@@ -41,7 +41,7 @@ impl ResidualConfig {
         Prior::newest(&self.prior)
     }
 
-    /// The factor of corrections in a training with so many environments.
+    /// Returns the factor of corrections in a training with so many environments.
     ///
     /// # Errors
     /// As [`AlphaSchedule::linear`].
@@ -74,7 +74,7 @@ impl ResidualConfig {
         Ok(Shield::new(is_unsafe, Box::new(NoCorrection)))
     }
 
-    /// `config` as it trains corrections: the actor waits for the values.
+    /// Returns `config` changed to train corrections: the actor waits for the critic.
     pub fn ppo(&self, config: &PpoConfig) -> PpoConfig {
         PpoConfig {
             actor_starts: self.critic_warmup,
@@ -83,8 +83,8 @@ impl ResidualConfig {
         }
     }
 
-    /// The same for SAC: it explores from the prior, with a small weight of the entropy at first, which would make the corrections
-    /// wide otherwise.
+    /// Returns `config` changed to train corrections: SAC explores from the prior, with a small weight of the entropy at first,
+    /// which would make the corrections wide otherwise.
     pub fn sac(&self, config: &SacConfig) -> SacConfig {
         let mut config = config.clone();
         config.off_policy.starts_with_policy = true;
@@ -93,7 +93,7 @@ impl ResidualConfig {
         config
     }
 
-    /// The same for TD3, whose noise explores around the prior.
+    /// Returns `config` changed to train corrections: the noise of TD3 explores around the prior.
     pub fn td3(&self, config: &Td3Config) -> Td3Config {
         let mut config = config.clone();
         config.off_policy.starts_with_policy = true;

@@ -38,7 +38,7 @@ pub(super) fn inner_spaces(policy: &Policy) -> Result<(&Space, &Space)> {
 }
 
 impl<P: AsRef<Policy>> ResidualController<P> {
-    /// `policy` on top of `prior`, with the most likely corrections.
+    /// Creates a controller that adds the most likely corrections of `policy` to `prior`.
     ///
     /// # Errors
     /// `Format` for a policy that was not trained in a [`Residual`](super::Residual) environment.

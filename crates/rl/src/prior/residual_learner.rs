@@ -47,12 +47,12 @@ pub struct ResidualState {
 }
 
 impl<M> ResidualLearner<M> {
-    /// The prior that the policy corrects.
+    /// Returns the prior that the policy corrects.
     pub fn prior(&self) -> &PriorId {
         self.prior.id()
     }
 
-    /// The policy of corrections.
+    /// Returns the policy of corrections.
     pub fn policy(&self) -> &Policy {
         &self.policy
     }

@@ -22,7 +22,7 @@ pub struct Shield {
 }
 
 impl Shield {
-    /// `fallback` acts where `is_unsafe` says so of observation and proposed action.
+    /// Creates a shield: `fallback` acts where `is_unsafe` says so of observation and proposed action.
     pub fn new(
         is_unsafe: impl FnMut(&[f32], &[f32]) -> bool + Send + 'static,
         fallback: BoxedController,
@@ -30,7 +30,7 @@ impl Shield {
         Self { is_unsafe: Box::new(is_unsafe), fallback, action: Vec::new(), steps: 0, shielded: 0 }
     }
 
-    /// The share of arbitrated steps in which the fallback acted.
+    /// Returns the share of arbitrated steps in which the fallback acted.
     pub fn shielded_share(&self) -> f64 {
         self.shielded as f64 / self.steps.max(1) as f64
     }
@@ -77,7 +77,7 @@ pub struct ShieldedVector<V> {
 }
 
 impl<V: VecEnvironment> ShieldedVector<V> {
-    /// `inner` with one shield for each environment.
+    /// Wraps `inner` with one shield for each environment.
     ///
     /// # Errors
     /// `InvalidInput` where there are not as many, or the environments do not reset in the same step.
@@ -95,7 +95,7 @@ impl<V: VecEnvironment> ShieldedVector<V> {
         Ok(Self { shields, observations, actions, replaced: vec![false; count], inner })
     }
 
-    /// The share of steps of all environments in which a fallback acted.
+    /// Returns the share of steps of all environments in which a fallback acted.
     pub fn shielded_share(&self) -> f64 {
         let sum = |of: fn(&Shield) -> u64| self.shields.iter().map(of).sum::<u64>() as f64;
         sum(|shield| shield.shielded) / sum(|shield| shield.steps).max(1.0)
@@ -184,19 +184,19 @@ impl<V: VecEnvironment> VecEnvironment for ShieldedVector<V> {
     }
 }
 
-/// A controller under a shield: what is evaluated and deployed.
+/// A controller whose unsafe actions are replaced by the fallback of a [`Shield`], for evaluation and deployment.
 pub struct ShieldedController<C, S = Shield> {
     controller: C,
     shield: S,
 }
 
 impl<C: Controller, S: BorrowMut<Shield>> ShieldedController<C, S> {
-    /// `controller` under `shield`.
+    /// Puts `controller` under `shield`.
     pub fn new(controller: C, shield: S) -> Self {
         Self { controller, shield }
     }
 
-    /// The share of steps so far in which the fallback acted.
+    /// Returns the share of steps so far in which the fallback acted.
     pub fn shielded_share(&self) -> f64 {
         self.shield.borrow().shielded_share()
     }

@@ -47,27 +47,27 @@ impl BodyShape {
         0.146 * self.height
     }
 
-    /// Length from the hips to the base of the neck.
+    /// Returns the length from the hips to the base of the neck.
     pub fn trunk(&self) -> f32 {
         0.288 * self.height
     }
 
-    /// Length from the base of the neck to the middle of the head.
+    /// Returns the length from the base of the neck to the middle of the head.
     pub fn neck(&self) -> f32 {
         0.115 * self.height
     }
 
-    /// Height of the ankle above the sole.
+    /// Returns the height of the ankle above the sole.
     pub fn ankle(&self) -> f32 {
         0.039 * self.height
     }
 
-    /// Distance of a shoulder joint from the middle.
+    /// Returns the distance of a shoulder joint from the middle.
     pub fn half_shoulders(&self) -> f32 {
         0.112 * self.height * self.shoulders
     }
 
-    /// Distance of a hip joint from the middle.
+    /// Returns the distance of a hip joint from the middle.
     pub fn half_hips(&self) -> f32 {
         0.052 * self.height * self.hips
     }

@@ -28,7 +28,7 @@ enum Pattern {
 }
 
 impl Surface {
-    /// A surface of one colour.
+    /// Creates a surface of one colour.
     pub fn plain(colour: Vector) -> Self {
         Self { colours: [colour; 2], pattern: Pattern::Plain, size: 1.0, grain: 0.08 }
     }

@@ -49,17 +49,17 @@ impl RegisteredEnvironment for QuadTrack {
 }
 
 impl QuadTrack {
-    /// Seconds since the reset.
+    /// Returns the seconds since the reset.
     pub fn time(&self) -> f64 {
         self.episode.as_ref().map_or(0.0, Episode::time)
     }
 
-    /// True position, metres; none before the first reset.
+    /// Returns the true position, metres; none before the first reset.
     pub fn position(&self) -> Option<[f64; 3]> {
         self.episode.as_ref().map(|episode| episode.plant.position)
     }
 
-    /// Position of the reference, metres; none before the first reset.
+    /// Returns the position of the reference, metres; none before the first reset.
     pub fn reference(&self) -> Option<[f64; 3]> {
         self.episode.as_ref().map(|episode| episode.reference.at(episode.time()).position)
     }

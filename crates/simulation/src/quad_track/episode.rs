@@ -72,12 +72,12 @@ impl Episode {
         CONTROL_PERIOD * self.place.step as f64
     }
 
-    /// Whether the disturbance has begun.
+    /// Returns whether the disturbance has begun.
     pub fn changed(&self) -> bool {
         self.time() >= self.options.change_at
     }
 
-    /// The wind of now, m/s.
+    /// Returns the present wind, m/s.
     pub fn wind(&self) -> Vector {
         self.gusts.wind(self.mean_wind(), self.wind_from, self.options.turbulence)
     }
@@ -123,7 +123,7 @@ impl Episode {
         self.estimator.advance(state, &self.options, &mut random);
     }
 
-    /// The reference of now.
+    /// Returns the present state of the reference.
     pub fn motion(&self) -> Motion {
         self.reference.at(self.time())
     }
@@ -144,7 +144,7 @@ impl Episode {
         }
     }
 
-    /// True distance to the reference, metres.
+    /// Returns the true distance to the reference, metres.
     pub fn distance(&self) -> f64 {
         let away = minus(self.motion().position, self.plant.position, 1.0);
         dot(away, away).sqrt()

@@ -55,7 +55,7 @@ impl Estimator {
         self.age = CONTROL_PERIOD * delay as f64;
     }
 
-    /// Estimated position and velocity of now.
+    /// Returns the present estimate of position and velocity.
     pub fn state(&self) -> [Vector; 2] {
         let [position, velocity] = self.measured;
         [plus(position, velocity, self.age), velocity]

@@ -42,7 +42,7 @@ const MAX_TILT: f64 = 0.78;
 const LIFT: [f64; 2] = [0.4, 1.8];
 
 impl Plant {
-    /// On the reference, level.
+    /// Creates a level vehicle on the reference.
     pub fn on(motion: &Motion) -> Self {
         Self {
             position: motion.position,
@@ -54,7 +54,7 @@ impl Plant {
         }
     }
 
-    /// The body's axes in the world.
+    /// Returns the body's axes in the world.
     pub fn axes(&self) -> Matrix {
         axes(self.attitude)
     }

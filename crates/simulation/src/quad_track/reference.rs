@@ -49,7 +49,7 @@ impl Reference {
         Self { waves, heading: [cosine, sine] }
     }
 
-    /// The reference at a time, seconds.
+    /// Returns the reference at a time, seconds.
     pub fn at(&self, time: f64) -> Motion {
         let mut motion = Motion::default();
         for (axis, [amplitude, frequency, phase]) in self.waves.into_iter().enumerate() {

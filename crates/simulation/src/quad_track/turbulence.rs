@@ -47,7 +47,7 @@ impl Turbulence {
         }
     }
 
-    /// The wind in the world, from its mean (m/s), its direction as cosine and sine, and the intensity of gusts.
+    /// Returns the wind in the world, from its mean (m/s), its direction as cosine and sine, and the intensity of gusts.
     pub fn wind(&self, speed: f64, [cosine, sine]: [f64; 2], intensity: f64) -> Vector {
         let third = 3.0_f64.sqrt();
         // (1 + sqrt(3) T s) / (1 + T s) of the first number, whose variance is 2.

@@ -36,7 +36,7 @@ impl Asset {
         Ok(())
     }
 
-    /// The bodies of the parts.
+    /// Returns the bodies of the parts.
     pub fn bodies(&self) -> impl Iterator<Item = &Body> {
         self.parts.iter().map(|part| &part.body)
     }

@@ -65,7 +65,7 @@ struct Episode {
 }
 
 impl SphereView {
-    /// The environment of a subject.
+    /// Creates the environment of a subject.
     ///
     /// # Errors
     /// None for any gallery in range.
@@ -88,7 +88,7 @@ impl SphereView {
         Ok(Self { spec, subject, params: params.clone(), world, episode: None, pixels })
     }
 
-    /// The camera and its subject.
+    /// Returns the camera and its subject.
     pub fn world(&self) -> &SphereWorld {
         &self.world
     }

@@ -32,7 +32,7 @@ pub(super) struct Texel {
 }
 
 impl Surface {
-    /// The surface of a form, with `2 cells^2` triangles and `side^2` texels.
+    /// Creates the surface of a form, with `2 cells^2` triangles and `side^2` texels.
     pub fn new(cells: usize, side: usize, form: &impl Form) -> Result<Self> {
         let place = |at: usize, count: usize| 2.0 * at as f32 / count as f32 - 1.0;
         let row = cells + 1;
@@ -65,7 +65,7 @@ impl Surface {
         })
     }
 
-    /// Colour and normal where a ray from the centre to `point` meets the surface.
+    /// Returns the colour and normal where a ray from the centre to `point` meets the surface.
     pub fn texel(&self, point: Vector) -> Texel {
         let place = octahedron::point(point).map(|part| {
             let at = (0.5 * (part + 1.0) * self.side as f32) as usize;

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use opendr_engine::Result;
 use opendr_tuning::Trial;
 
-/// Branin's function; minimum 0.397887 at three points.
+/// Evaluates Branin's function; minimum 0.397887 at three points.
 pub fn branin(trial: &Trial<'_>) -> Result<f64> {
     let (x, y) = (trial.float("x")?, trial.float("y")?);
     let valley = y - 5.1 / (4.0 * PI * PI) * x * x + 5.0 / PI * x - 6.0;
@@ -27,7 +27,7 @@ const CENTRES: [[f64; 6]; 4] = [
     [4047.0, 8828.0, 8732.0, 5743.0, 1091.0, 381.0],
 ];
 
-/// Hartmann's function with six axes; minimum -3.32237.
+/// Evaluates Hartmann's function with six axes; minimum -3.32237.
 pub fn hartmann6(trial: &Trial<'_>) -> Result<f64> {
     let x = places::<6>(trial)?;
     let peak = |at: usize| {
@@ -37,7 +37,7 @@ pub fn hartmann6(trial: &Trial<'_>) -> Result<f64> {
     Ok(-(0..4).map(peak).sum::<f64>())
 }
 
-/// Rosenbrock's function with five axes; minimum 0 where all are 1.
+/// Evaluates Rosenbrock's function with five axes; minimum 0 where all are 1.
 pub fn rosenbrock5(trial: &Trial<'_>) -> Result<f64> {
     let x = places::<5>(trial)?;
     Ok((0..4).map(|at| 100.0 * (x[at + 1] - x[at] * x[at]).powi(2) + (1.0 - x[at]).powi(2)).sum())

@@ -30,7 +30,7 @@ pub struct Done {
 }
 
 impl Done {
-    /// The lines of standard output as JSON.
+    /// Returns the lines of standard output as JSON.
     pub fn lines(&self) -> Vec<Value> {
         self.stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
     }
@@ -56,7 +56,7 @@ impl Place {
         Self(path)
     }
 
-    /// A place and the folder with real models and data; prints a line and returns `None` without `OPENDR_TEST_DATA`.
+    /// Returns a place and the folder with real models and data; prints a line and returns `None` without `OPENDR_TEST_DATA`.
     pub fn with_data() -> Option<(Self, PathBuf)> {
         let data = test_data();
         if data.is_none() {
@@ -65,7 +65,7 @@ impl Place {
         Some((Self::new(), data?))
     }
 
-    /// The command in this place, with its cache and without network; models come from the test data.
+    /// Returns the command in this place, with its cache and without network; models come from the test data.
     pub fn command(&self, arguments: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_opendr"));
         command
@@ -112,7 +112,7 @@ pub struct Running {
 }
 
 impl Running {
-    /// Standard output so far.
+    /// Returns the standard output so far.
     pub fn stdout(&self) -> String {
         String::from_utf8_lossy(&fs::read(&self.outputs[0]).unwrap()).into_owned()
     }

@@ -15,7 +15,7 @@ pub struct Models {
 }
 
 impl Models {
-    /// The models of `OPENDR_TEST_DATA`; others are downloaded from the public packages into a cache of the tests.
+    /// Returns the models of `OPENDR_TEST_DATA`; others are downloaded from the public packages into a cache of the tests.
     pub fn find() -> Option<Self> {
         let Some(shared) = env::var_os("OPENDR_TEST_DATA").map(PathBuf::from) else {
             println!("skipped: no OPENDR_TEST_DATA");
@@ -33,7 +33,7 @@ impl Models {
         self.shared.join("data").join(name)
     }
 
-    /// The container of a learner; prints a line and returns `None` without a network or for a learner without weights.
+    /// Returns the container of a learner; prints a line and returns `None` without a network or for a learner without weights.
     pub fn get(&self, spec: &str) -> Option<PathBuf> {
         if self.zoo.cards().iter().any(|card| card.learner == spec && card.variants.is_empty()) {
             println!("skipped: no weights for {spec}; the tests beside it train some");

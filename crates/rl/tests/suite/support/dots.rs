@@ -68,7 +68,7 @@ impl Environment for Dots {
     }
 }
 
-/// Two of them, in episodes of five steps.
+/// Creates two of them, in episodes of five steps.
 pub fn dots(threads: usize) -> Box<dyn VecEnvironment> {
     let world = || Box::new(TimeLimit::new(Dots::new(), 5).unwrap()) as Box<dyn Environment>;
     let both = vec![world(), world()];

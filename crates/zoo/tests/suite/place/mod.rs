@@ -46,7 +46,7 @@ impl Place {
     }
 }
 
-/// `count` incompressible bytes.
+/// Returns `count` incompressible bytes.
 pub fn noise(count: usize) -> Vec<u8> {
     let mut state = 1u32;
     let mut next = || {
@@ -56,7 +56,7 @@ pub fn noise(count: usize) -> Vec<u8> {
     (0..count).map(|_| next()).collect()
 }
 
-/// A card `test/one` of one file `model.onnx`, with this TOML as its sources.
+/// Returns a card `test/one` of one file `model.onnx`, with this TOML as its sources.
 pub fn card(bytes: &[u8], sources: &str) -> String {
     format!(
         r#"
@@ -75,7 +75,7 @@ files = [{{ name = "model.onnx", size = {}, sha256 = "{}" }}]
     )
 }
 
-/// A source at an address.
+/// Returns a source at an address.
 pub fn url(address: &str) -> String {
     format!("[[variants.sources]]\nkind = \"url\"\nfiles = {{ \"model.onnx\" = \"{address}\" }}\n")
 }

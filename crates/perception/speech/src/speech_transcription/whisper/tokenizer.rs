@@ -185,7 +185,7 @@ fn byte_of(character: char) -> Option<u8> {
 pub mod tests {
     use super::*;
 
-    /// Bytes, a few joins, and special tokens from 260 on.
+    /// Creates a vocabulary of the bytes, a few joins, and special tokens from 260 on.
     pub fn tiny(special: &[&str]) -> Tokenizer {
         let spelled = |byte: u8| (0..=0x143).filter_map(char::from_u32).find(|c| byte_of(*c) == Some(byte));
         let mut vocab: serde_json::Map<String, serde_json::Value> =
