@@ -251,9 +251,9 @@ unsafe fn multiply<V: Dots>(
     let filters = &*job.conv.filters;
     let mut sums = [0_i32; MOST];
     if filters.has_corrections {
-        for row in 0..count.min(MOST) {
+        for (row, sum) in sums.iter_mut().enumerate().take(count) {
             // SAFETY: passed on.
-            sums[row] = unsafe { V::sum_of_bytes(x.add(row * stride), stride) };
+            *sum = unsafe { V::sum_of_bytes(x.add(row * stride), stride) };
         }
     }
     let size = if job.bounds.is_some() { 1 } else { 4 };

@@ -4,6 +4,10 @@
 //! bits. Tensors have channels last.
 
 mod conv;
+#[expect(
+    clippy::needless_range_loop,
+    reason = "functions of iterators are not always inlined where more instructions are enabled"
+)]
 mod depthwise;
 mod dots;
 mod elementwise;
@@ -12,6 +16,10 @@ mod output;
 mod resize;
 #[cfg(test)]
 mod tests;
+#[expect(
+    clippy::needless_range_loop,
+    reason = "functions of iterators are not always inlined where more instructions are enabled"
+)]
 mod tile;
 
 pub use conv::ByteConvolution;

@@ -137,7 +137,7 @@ impl Case {
         }
         let each = if index.is_multiple_of(2) { 1 } else { outputs };
         let zeros =
-            (0..each).map(|_| if index % 5 == 0 { 0 } else { zero(random, is_signed).zero }).collect();
+            (0..each).map(|_| if index.is_multiple_of(5) { 0 } else { zero(random, is_signed).zero }).collect();
         Self {
             window,
             batch,

@@ -80,7 +80,6 @@ unsafe fn tiles<V: Dots, const N: usize>(rows: &Rows<'_>, panel: &Panel) {
 unsafe fn tile<V: Dots, const R: usize, const N: usize>(rows: &Rows<'_>, panel: &Panel, at: usize) {
     // SAFETY: passed on.
     unsafe {
-        // Indices instead of iterators: their functions are not always inlined where more instructions are enabled.
         let mut x = [std::ptr::null::<i32>(); R];
         for i in 0..R {
             x[i] = rows.x.add((at + i) * rows.x_stride).cast();
