@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use super::dots::{Dots, for_all_instructions};
+use super::dots::Dots;
 use super::filters::ByteFilters;
+use super::instructions::for_all_instructions;
 use super::output::{Bounds, ByteOutput};
 use super::tile::{Rows, panel};
 use crate::aligned::{LEFT_PANELS, PATCHES, with_buffer};

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use super::dots::{Dots, Instructions, for_all_instructions};
+use super::dots::Dots;
 use super::filters::ByteWeights;
+use super::instructions::{Instructions, for_all_instructions};
 use super::output::{Bounds, ByteOutput, ByteZero};
 use crate::compute::Compute;
 use crate::conv::Window;

@@ -80,7 +80,7 @@ pub struct ByteSum {
 }
 
 impl ByteSum {
-    /// Adds: `round((fixed + a * ratio_a) + b * ratio_b)`, where `fixed` has all zero points, as ONNX Runtime does.
+    /// Writes the sum into `y`: `round((fixed + a * ratio_a) + b * ratio_b)`, where `fixed` has all zero points, as ONNX Runtime does.
     ///
     /// # Panics
     /// When the lengths differ.

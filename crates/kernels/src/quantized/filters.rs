@@ -1,6 +1,6 @@
 //! Weights of bytes in the order in which the inner loop reads them.
 
-use super::dots::Instructions;
+use super::instructions::Instructions;
 use super::output::ByteZero;
 use crate::compute::Compute;
 

@@ -12,6 +12,7 @@ mod depthwise;
 mod dots;
 mod elementwise;
 mod filters;
+mod instructions;
 mod output;
 mod resize;
 #[cfg(test)]

@@ -25,7 +25,7 @@ pub struct ByteResize {
 }
 
 impl ByteResize {
-    /// Resizes; what is left of a division is cut off, as ONNX Runtime does.
+    /// Writes the interpolated image into `y`; fractions are cut off, as by ONNX Runtime.
     ///
     /// # Panics
     /// When the slices do not have the stated shapes, or rows and columns lie outside of the input.

@@ -136,8 +136,9 @@ impl Case {
             output.high = output.high.max(output.low);
         }
         let each = if index.is_multiple_of(2) { 1 } else { outputs };
-        let zeros =
-            (0..each).map(|_| if index.is_multiple_of(5) { 0 } else { zero(random, is_signed).zero }).collect();
+        let zeros = (0..each)
+            .map(|_| if index.is_multiple_of(5) { 0 } else { zero(random, is_signed).zero })
+            .collect();
         Self {
             window,
             batch,

@@ -1,4 +1,4 @@
-use super::Dots;
+use crate::quantized::dots::Dots;
 use crate::quantized::output::Bounds;
 
 const WIDTH: usize = 8;

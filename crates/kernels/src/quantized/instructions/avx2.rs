@@ -1,6 +1,6 @@
 use std::arch::x86_64::*;
 
-use super::Dots;
+use crate::quantized::dots::Dots;
 use crate::quantized::output::Bounds;
 
 /// Eight sums of products of 16-bit integers: AVX2. (Its instruction for bytes saturates.)

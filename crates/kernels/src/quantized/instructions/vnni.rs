@@ -1,6 +1,6 @@
 use std::arch::x86_64::*;
 
-use super::Dots;
+use crate::quantized::dots::Dots;
 use crate::quantized::output::Bounds;
 
 /// Sixteen sums of products of bytes: AVX-512 VNNI.
