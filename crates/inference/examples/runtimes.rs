@@ -1,53 +1,66 @@
-//! Prints a table of the runtimes side by side on ONNX files, on random inputs:
-//! `cargo run --release -p opendr-inference --example runtimes -- THREADS ROUNDS FILE...`.
+//! Prints a table of the built-in runtime and ONNX Runtime side by side on ONNX files, on random inputs, with one and
+//! with two threads: `cargo run --release -p opendr-inference --example runtimes -- ROUNDS FILE...`.
 //!
-//! One line per file: medians and minima of the times of a run in milliseconds, taking turns (with one thread, the time
-//! that the thread has computed, which other programs do not change much), the ratio of the minima of graph executor
-//! and ONNX Runtime, the largest difference of an output relative to its largest magnitude, and the
-//! times to open the model. ONNX Runtime is found as by the library (`ORT_DYLIB_PATH`).
+//! One line per file: medians of the times of a run in milliseconds, taking turns (with one thread, the time that the
+//! thread has computed, which other programs do not change much), their ratio, the largest difference of an output
+//! relative to its largest magnitude, and the times to open the model. ONNX Runtime is found as by the library
+//! (`ORT_DYLIB_PATH`). `runtimes layers FILE...` prints the nodes of models that take longest.
 
 use std::time::Instant;
 
 use opendr_engine::{Random, Result};
 use opendr_inference::{
-    ElementType, GraphExecutor, OnnxRuntime, Rten, Runtime, Session, SessionOptions, TensorData, TensorInfo,
+    ElementType, GraphExecutor, OnnxRuntime, Runtime, Session, SessionOptions, TensorData, TensorInfo,
     TensorView,
 };
 
+const THREADS: [usize; 2] = [1, 2];
+
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [threads, rounds, files @ ..] = arguments.as_slice() else {
-        eprintln!("usage: runtimes THREADS ROUNDS FILE...");
+    let [rounds, files @ ..] = arguments.as_slice() else {
+        eprintln!("usage: runtimes ROUNDS FILE...\n       runtimes layers FILE...");
         return Ok(());
     };
-    if threads == "layers" {
-        for file in &arguments[1..] {
-            let bytes =
-                std::fs::read(file).map_err(|error| opendr_engine::Error::internal(error.to_string()))?;
-            print_layers(file, &bytes)?;
-        }
-        return Ok(());
+    if rounds == "layers" {
+        return files.iter().try_for_each(|file| print_layers(file, &read(file)?));
     }
-    let threads = threads.parse().unwrap_or(1);
     let rounds = rounds.parse().unwrap_or(15_usize).max(1);
-    let options = SessionOptions { threads, ..SessionOptions::default() };
     let onnx_runtime = OnnxRuntime::find()?;
-    println!("# {}, {threads} threads, {rounds} rounds", onnx_runtime.describe());
-    println!("| model | executor, ms | ONNX Runtime, ms | rten, ms | ratio | difference | opened in, ms |");
-    println!("|---|---|---|---|---|---|---|");
-    let mut logarithms = Vec::new();
-    for file in files {
-        match compare(file, &options, &*onnx_runtime, rounds) {
-            Ok((line, ratio)) => {
-                println!("{line}");
-                logarithms.extend(ratio.map(f64::ln));
-            }
-            Err(error) => println!("| {} | {error:#} | | | | | |", name(file)),
-        }
+    println!("# {}, {rounds} rounds", onnx_runtime.describe());
+    print!("| model |");
+    for threads in THREADS {
+        print!(" built-in, {threads} thread(s) | ONNX Runtime | ratio |");
     }
-    let mean = logarithms.iter().sum::<f64>() / logarithms.len().max(1) as f64;
-    println!("# geometric mean of {} ratios: {:.3}", logarithms.len(), mean.exp());
+    println!(" difference | opened in, ms |");
+    println!("|---|{}---|---|", "---|---|---|".repeat(THREADS.len()));
+    let mut logarithms = [const { Vec::new() }; THREADS.len()];
+    for file in files {
+        let bytes = read(file)?;
+        print!("| `{}` |", name(file));
+        let mut last = String::new();
+        for (threads, logarithms) in THREADS.into_iter().zip(&mut logarithms) {
+            let options = SessionOptions { threads, ..SessionOptions::default() };
+            match compare(&bytes, &options, &*onnx_runtime, rounds) {
+                Ok((columns, ratio, rest)) => {
+                    print!(" {columns} |");
+                    last = rest;
+                    logarithms.extend(ratio.map(f64::ln));
+                }
+                Err(error) => print!(" {error:#} | | |"),
+            }
+        }
+        println!(" {last} |");
+    }
+    for (threads, logarithms) in THREADS.into_iter().zip(&logarithms) {
+        let mean = logarithms.iter().sum::<f64>() / logarithms.len().max(1) as f64;
+        println!("# {threads} thread(s): geometric mean of {} ratios: {:.3}", logarithms.len(), mean.exp());
+    }
     Ok(())
+}
+
+fn read(file: &str) -> Result<Vec<u8>> {
+    std::fs::read(file).map_err(|error| opendr_engine::Error::internal(format!("{file}: {error}")))
 }
 
 /// Returns the time that this thread has computed, or with several threads the time of day.
@@ -110,22 +123,18 @@ fn open(runtime: &dyn Runtime, bytes: &[u8], options: &SessionOptions) -> Opened
     Opened { session, opened: 1e3 * start.elapsed().as_secs_f64(), times: Vec::new(), refused }
 }
 
+/// Returns the columns of the times, the ratio of the medians, and the columns of difference and opening.
 fn compare(
-    file: &str,
+    bytes: &[u8],
     options: &SessionOptions,
     onnx_runtime: &dyn Runtime,
     rounds: usize,
-) -> Result<(String, Option<f64>)> {
-    let bytes = std::fs::read(file).map_err(|error| opendr_engine::Error::internal(error.to_string()))?;
-    let mut sides = [
-        open(&GraphExecutor, &bytes, options),
-        open(onnx_runtime, &bytes, options),
-        open(&Rten, &bytes, options),
-    ];
+) -> Result<(String, Option<f64>, String)> {
+    let mut sides = [open(&GraphExecutor, bytes, options), open(onnx_runtime, bytes, options)];
     let infos = sides.iter().find_map(|side| side.session.as_ref()).map_or(&[][..], Session::inputs).to_vec();
     let owned: Vec<Owned> = infos.iter().map(Owned::random).collect();
     let inputs = owned.iter().map(Owned::view).collect::<Result<Vec<_>>>()?;
-    let mut outputs: Vec<Vec<(String, Vec<f64>)>> = vec![Vec::new(); 3];
+    let mut outputs: Vec<Vec<(String, Vec<f64>)>> = vec![Vec::new(); sides.len()];
     for (side, kept) in sides.iter_mut().zip(&mut outputs) {
         let Some(session) = &side.session else { continue };
         let names: Vec<String> = session.outputs().iter().map(|output| output.name.clone()).collect();
@@ -139,8 +148,8 @@ fn compare(
         }
     }
     for round in 0..rounds {
-        for offset in 0..3 {
-            let side = &mut sides[(round + offset) % 3];
+        for offset in 0..sides.len() {
+            let side = &mut sides[(round + offset) % 2];
             let Some(session) = &side.session else { continue };
             // Small models run several times per turn, so that a turn is a millisecond.
             let runs = side
@@ -154,29 +163,25 @@ fn compare(
             side.times.push(1e3 * (seconds(options.threads) - start) / runs as f64);
         }
     }
-    let time = |side: &Opened| {
+    let median = |side: &Opened| {
         let mut times = side.times.clone();
         times.sort_by(f64::total_cmp);
-        match times.as_slice() {
-            [] => format!("refused: {}", side.refused),
-            [least, ..] => format!("{:.3} ({least:.3})", times[times.len() / 2]),
-        }
+        times.get(times.len() / 2).copied()
     };
-    let least = |side: &Opened| side.times.iter().copied().min_by(f64::total_cmp);
-    let ratio = least(&sides[0]).zip(least(&sides[1])).map(|(ours, theirs)| ours / theirs);
-    let line = format!(
-        "| {} | {} | {} | {} | {} | {:.1e} | {:.0}, {:.0}, {:.0} |",
-        name(file),
+    let time = |side: &Opened| {
+        median(side).map_or_else(|| format!("refused: {}", side.refused), |time| format!("{time:.3}"))
+    };
+    let ratio = median(&sides[0]).zip(median(&sides[1])).map(|(ours, theirs)| ours / theirs);
+    let columns = format!(
+        "{} | {} | {}",
         time(&sides[0]),
         time(&sides[1]),
-        time(&sides[2]),
         ratio.map_or("-".to_owned(), |ratio| format!("{ratio:.2}")),
-        difference(&outputs[0], &outputs[1]),
-        sides[0].opened,
-        sides[1].opened,
-        sides[2].opened,
     );
-    Ok((line, ratio))
+    let [ours, theirs] = &sides;
+    let rest =
+        format!("{:.1e} | {:.0}, {:.0}", difference(&outputs[0], &outputs[1]), ours.opened, theirs.opened);
+    Ok((columns, ratio, rest))
 }
 
 /// Returns the largest difference of an output, relative to its largest magnitude.
