@@ -14,9 +14,9 @@ use opendr_metrics::MetricEntry;
 
 use crate::bootstrap::Groups;
 use crate::classes::{AnnotatedClasses, MapLabels, annotated_classes};
+use crate::contact_sheet::{ContactSheetSamples, ScoredSample};
 use crate::journal::{Heading, Journal, Line, SampleResult};
 use crate::predictor::predict_samples;
-use crate::shown::{ContactSheetSamples, ScoredSample};
 use crate::{ClassMap, ClassMatching, FilePredictions, Outcome, Predictor, Subject};
 
 /// Number of samples with the lowest scores that are listed, and of those spaced evenly over the data set.

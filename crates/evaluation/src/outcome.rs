@@ -12,7 +12,7 @@ use opendr_metrics::{Report, Table};
 use opendr_runlog::svg_from_figure;
 use serde::{Deserialize, Serialize};
 
-use crate::shown::{ScoredSample, contact_sheet};
+use crate::contact_sheet::{ScoredSample, contact_sheet};
 use crate::{ClassReport, Interval};
 
 /// Maximum rows of a printed table; the JSON has all.

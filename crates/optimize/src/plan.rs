@@ -137,7 +137,7 @@ impl Plan {
     }
 
     /// Returns the tensors whose values must be observed.
-    pub fn seen(&self) -> Vec<String> {
+    pub fn observed_tensors(&self) -> Vec<String> {
         let own = self.tensors.iter().filter(|(tensor, range)| tensor == range);
         own.map(|(tensor, _)| tensor.clone()).collect()
     }

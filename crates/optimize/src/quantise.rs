@@ -98,7 +98,7 @@ impl<'a> Quantiser<'a> {
         // With some layers in floats, their inputs need a range of their own.
         let layer_inputs: Vec<String> = all.iter().filter_map(layer_input).collect();
         let seen: BTreeSet<String> =
-            Plan::new(&self.graph, all).seen().into_iter().chain(layer_inputs).collect();
+            Plan::new(&self.graph, all).observed_tensors().into_iter().chain(layer_inputs).collect();
         let inputs: Vec<String> = self.graph.input.iter().map(|input| input.name.clone()).collect();
         let (given, made): (Vec<_>, Vec<_>) = seen.into_iter().partition(|name| inputs.contains(name));
         for name in given {

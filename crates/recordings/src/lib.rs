@@ -25,18 +25,18 @@
 //! # Ok::<_, opendr_engine::Error>(())
 //! ```
 
-mod answers;
 mod channels;
 mod conversion;
 mod recording;
+mod recording_writer;
 mod sets;
 mod stamp;
 mod topic;
 
-pub use answers::RecordingWriter;
 pub use conversion::Conversion;
 pub use opendr_bags::*;
 pub use recording::{Recording, is_recording};
+pub use recording_writer::RecordingWriter;
 pub use sets::{Need, PortTopic, SyncedSet, SyncedSets};
 pub use stamp::{stamp_of, value_of};
 pub use topic::Topic;

@@ -41,8 +41,8 @@ mod options;
 mod pip;
 mod repository;
 mod source;
+mod source_errors;
 mod stop;
-mod tried;
 mod work_folder;
 mod zoo;
 

@@ -16,8 +16,8 @@ use crate::item::Item;
 use crate::models_package::ModelsPackage;
 use crate::options::ZooOptions;
 use crate::repository::{Repository, card_files, copy_container};
+use crate::source_errors::SourceErrors;
 use crate::stopped;
-use crate::tried::Tried;
 
 /// Maximum nesting of parts, by which an item that is its own part is detected.
 const MAX_NESTING: usize = 4;
@@ -230,7 +230,7 @@ impl Zoo {
         };
         let assembly = Assembly { item, cache: &self.cache, progress };
         let folder = self.folder(item)?;
-        let mut tried = Tried::default();
+        let mut tried = SourceErrors::default();
         match fetch.container(item) {
             Ok(None) => {}
             Ok(Some(manifest)) => {

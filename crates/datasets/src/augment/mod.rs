@@ -7,7 +7,7 @@
 mod audio;
 mod augmentation;
 pub(crate) mod cloud;
-mod others;
+mod other_samples;
 mod picture;
 mod pipeline;
 mod registry;
@@ -16,7 +16,7 @@ mod series;
 pub use audio::{AudioGain, AudioNoise, AudioShift};
 pub use augmentation::{Augment, AugmentEntry, Augmentation};
 pub use cloud::{CloudFlip, CloudRotate, CloudScale, DropPoints, JitterPoints, PasteObjects};
-pub use others::OtherSamples;
+pub use other_samples::OtherSamples;
 pub use picture::{
     Affine, AffineMap, Blur, Border, CentreCrop, Colour, CutOut, Flip, FlipDirection, Grey, IouCrop,
     Letterbox, MixUp, Mosaic, PixelNoise, RandomCrop, RandomResizedCrop, RandomScale, Resize, Rotate,

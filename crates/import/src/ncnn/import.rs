@@ -10,7 +10,7 @@ use super::param::layers;
 use super::trace::Trace;
 use super::weights::Weights;
 use crate::bounded::{MAX_BYTES, read_bounded};
-use crate::tensorflow::{ImportOptions, wanted};
+use crate::tensorflow::{ImportOptions, selected_outputs};
 
 /// Converts an ncnn model, its `.param` text and its weights of 16 or 32 bits, to an ONNX model (opset 17). The
 /// output is deterministic.
@@ -42,7 +42,7 @@ pub fn onnx_from_ncnn(param: &[u8], bin: &[u8], options: &ImportOptions) -> Resu
     let given =
         layers.iter().filter(|layer| layer.kind != "Input").flat_map(|layer| layer.outputs.iter().copied());
     let outputs = given.filter(|name| !taken.contains(name)).map(|name| (name.to_owned(), ())).collect();
-    let outputs = wanted(outputs, options)?;
+    let outputs = selected_outputs(outputs, options)?;
     let mut graph = Builder::default();
     outputs.iter().for_each(|(name, ())| graph.reserve(name));
     let mut trace = Trace::through(&layers, graph, Weights::new(bin), options)?;

@@ -49,7 +49,7 @@ impl Order {
 
     /// Returns whether a conversion from this order to `target` moves no element, because all axes that change places
     /// have size one. `dims` are the stored dimensions.
-    pub fn moves_nothing(&self, target: &Self, dims: &[Dim]) -> bool {
+    pub fn is_reshape_to(&self, target: &Self, dims: &[Dim]) -> bool {
         let ranks =
             self.0.iter().zip(dims).filter(|(_, dim)| **dim != Some(1)).map(|(&axis, _)| target.stored(axis));
         ranks.is_sorted()
@@ -183,9 +183,9 @@ mod tests {
     fn single_elements_move_freely() {
         let order = Order::channels_first();
         let plain = Order::plain(4);
-        assert!(order.moves_nothing(&plain, &[Some(1), Some(8), Some(1), Some(1)]));
-        assert!(order.moves_nothing(&plain, &[Some(1), Some(1), None, None]));
-        assert!(!order.moves_nothing(&plain, &[Some(1), Some(8), Some(1), Some(2)]));
+        assert!(order.is_reshape_to(&plain, &[Some(1), Some(8), Some(1), Some(1)]));
+        assert!(order.is_reshape_to(&plain, &[Some(1), Some(1), None, None]));
+        assert!(!order.is_reshape_to(&plain, &[Some(1), Some(8), Some(1), Some(2)]));
         assert_eq!(order.permutation_to(&plain), [0, 2, 3, 1]);
     }
 

@@ -73,7 +73,7 @@ impl Lowering {
             )));
         }
         let dims = order.stored_dims(&value.dims());
-        let free = value.order.moves_nothing(order, value.wire.dims());
+        let free = value.order.is_reshape_to(order, value.wire.dims());
         let open = dims.iter().filter(|dim| dim.is_none()).count();
         let hint = value.wire.hint();
         if free && open <= 1 {

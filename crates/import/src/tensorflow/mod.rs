@@ -20,5 +20,5 @@ pub use input::input;
 pub use layout::Order;
 pub use lowering::{Lowering, MAX_RANK};
 pub use options::ImportOptions;
-pub use output::{finish, wanted};
+pub use output::{finish, selected_outputs};
 pub use value::Value;

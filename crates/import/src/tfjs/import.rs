@@ -8,7 +8,7 @@ use super::model_json::ModelJson;
 use super::trace::Trace;
 use super::weights::read_weights;
 use crate::bounded::{MAX_BYTES, read_bounded};
-use crate::tensorflow::{ImportOptions, finish, wanted};
+use crate::tensorflow::{ImportOptions, finish, selected_outputs};
 
 /// Converts a TensorFlow.js graph model to an ONNX model (opset 17). The output is deterministic.
 ///
@@ -32,7 +32,7 @@ pub fn onnx_from_tfjs(model_json: &[u8], weights: &[&[u8]], options: &ImportOpti
     }
     let model = ModelJson::parse(model_json)?;
     let weights = read_weights(&model, weights)?;
-    let outputs = wanted(model.outputs(), options)?;
+    let outputs = selected_outputs(model.outputs(), options)?;
     let mut trace = Trace::new(model.nodes(), weights, options)?;
     for (name, _) in &outputs {
         trace.lowering.graph.reserve(name);

@@ -9,7 +9,7 @@ use super::flatbuffer::Flatbuffer;
 use super::model::Model;
 use super::trace::Trace;
 use crate::bounded::{MAX_BYTES, read_bounded};
-use crate::tensorflow::{ImportOptions, finish, wanted};
+use crate::tensorflow::{ImportOptions, finish, selected_outputs};
 
 /// Converts a TensorFlow Lite model to an ONNX model (opset 17). The output is deterministic.
 ///
@@ -45,7 +45,7 @@ pub fn onnx_from_tflite(bytes: &[u8], options: &ImportOptions) -> Result<Vec<u8>
         }
         outputs.push((name.to_owned(), output));
     }
-    let outputs = wanted(outputs, options)?;
+    let outputs = selected_outputs(outputs, options)?;
     let mut trace = Trace::new(&model, options)?;
     for (name, _) in &outputs {
         trace.lowering.graph.reserve(name);

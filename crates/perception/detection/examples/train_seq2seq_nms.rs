@@ -117,7 +117,7 @@ fn main() -> Result<()> {
             return Err(Error::invalid_input("the sample is not an image with boxes"));
         };
         let (ground_truth, mut found) = (persons(ground_truth), BoundingBoxList::default());
-        detector.answer(image, &mut found)?;
+        detector.predict_into(image, &mut found)?;
         let found = persons(found);
         boxes += found.boxes.len();
         for (kind, overlap, metric) in &mut greedy {

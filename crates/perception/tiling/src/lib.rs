@@ -28,21 +28,21 @@
 //! # Ok::<(), opendr_engine::Error>(())
 //! ```
 
-mod looking;
+mod image_learner;
 mod packing;
-mod picture_learner;
 mod pieces;
 mod schedule;
 mod tile_picture;
+mod time_budget;
 
 use opendr_engine::params::Params;
 
-pub use looking::{TimeBudget, run_within_budget};
+pub use image_learner::{ImageLearner, Open, open_as, open_copies, open_image_learner};
 pub use packing::{Slot, TileInferences};
-pub use picture_learner::{ImageLearner, Open, open_as, open_copies, open_image_learner};
 pub use pieces::{Cut, Piece, merge_pieces};
 pub use schedule::{Tile, Tiles};
 pub use tile_picture::TileImage;
+pub use time_budget::{TimeBudget, run_within_budget};
 
 /// Parameters of the tiling.
 #[derive(Debug, Clone, Params)]

@@ -64,7 +64,7 @@ impl Publication {
     }
 
     /// Returns whether a message would be sent or latched.
-    pub fn is_heard(&self) -> bool {
+    pub fn has_receivers(&self) -> bool {
         self.latched.load(Ordering::Relaxed) || !lock(&self.subscribers).outboxes.is_empty()
     }
 

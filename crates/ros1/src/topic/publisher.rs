@@ -78,7 +78,7 @@ impl Publisher {
     /// `InvalidInput` for a message longer than `NodeOptions::max_message_bytes`, `Network` after the shutdown of the node.
     pub fn publish(&self, message: &[u8]) -> Result<()> {
         self.check(message.len())?;
-        if !self.publication.is_heard() && !self.graph.context.is_ended() {
+        if !self.publication.has_receivers() && !self.graph.context.is_ended() {
             return Ok(());
         }
         self.publication.publish(&self.publication.buffer(message))

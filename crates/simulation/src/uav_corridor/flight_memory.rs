@@ -194,7 +194,7 @@ impl FlightMemory {
             None => self.costs.find(self.along.iter().copied(), offset, left),
             Some(surroundings) => {
                 self.draw_map();
-                self.costs.find_weighed(left, |weights| surroundings.weigh(&self.raster, weights));
+                self.costs.find_weighted(left, |weights| surroundings.weigh(&self.raster, weights));
             }
         }
         self.proposal = match &self.foresight {

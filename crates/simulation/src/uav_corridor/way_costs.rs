@@ -51,7 +51,7 @@ impl WayCosts {
     }
 
     /// Computes the costs where `weigh` writes the cost of a metre in each cell, column by column, with `left` metres to go.
-    pub fn find_weighed(&mut self, left: f32, weigh: impl FnOnce(&mut [f32])) {
+    pub fn find_weighted(&mut self, left: f32, weigh: impl FnOnce(&mut [f32])) {
         weigh(&mut self.weights);
         self.fly_back(left);
     }

@@ -68,7 +68,7 @@ impl Emitter {
         }
     }
 
-    pub(super) fn answer(&mut self, command: u8, reader: &mut Reader<'_>) -> Result<bool> {
+    pub(super) fn apply_message(&mut self, command: u8, reader: &mut Reader<'_>) -> Result<bool> {
         match command {
             CONFIGURE => {
                 self.buffer_size = usize::try_from(reader.i32()?).ok();

@@ -102,7 +102,7 @@ impl Imager {
         write_period(&mut self.new_period, request);
     }
 
-    pub(super) fn answer(&mut self, command: u8, reader: &mut Reader<'_>) -> Result<bool> {
+    pub(super) fn apply_message(&mut self, command: u8, reader: &mut Reader<'_>) -> Result<bool> {
         match command {
             CONFIGURE => {
                 let _id = reader.u32()?;

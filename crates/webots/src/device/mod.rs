@@ -73,14 +73,14 @@ impl Device {
     }
 
     /// Reads one message of Webots.
-    pub fn answer(&mut self, reader: &mut Reader<'_>) -> Result<()> {
+    pub fn apply_message(&mut self, reader: &mut Reader<'_>) -> Result<()> {
         let command = reader.u8()?;
         let known = match &mut self.state {
-            State::Motor(motor) => motor.answer(command, reader),
-            State::Sensor(sensor) => sensor.answer(command, reader),
-            State::Imager(imager) => imager.answer(command, reader),
-            State::Emitter(emitter) => emitter.answer(command, reader),
-            State::Receiver(receiver) => receiver.answer(command, reader),
+            State::Motor(motor) => motor.apply_message(command, reader),
+            State::Sensor(sensor) => sensor.apply_message(command, reader),
+            State::Imager(imager) => imager.apply_message(command, reader),
+            State::Emitter(emitter) => emitter.apply_message(command, reader),
+            State::Receiver(receiver) => receiver.apply_message(command, reader),
             State::Unknown(node) => {
                 return Err(Error::unsupported(format!(
                     "Webots sent a message of device {:?}, whose type (node number {node}) the native client does not know; \

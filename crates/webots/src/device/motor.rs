@@ -79,7 +79,7 @@ impl Motor {
         }
     }
 
-    pub(super) fn answer(&mut self, command: u8, reader: &mut Reader<'_>) -> Result<bool> {
+    pub(super) fn apply_message(&mut self, command: u8, reader: &mut Reader<'_>) -> Result<bool> {
         match command {
             CONFIGURE => self.configure(reader)?,
             FEEDBACK_DATA => self.force = reader.f64()?,

@@ -43,7 +43,7 @@ impl Sensor {
         }
     }
 
-    pub(super) fn answer(&mut self, command: u8, reader: &mut Reader<'_>) -> Result<bool> {
+    pub(super) fn apply_message(&mut self, command: u8, reader: &mut Reader<'_>) -> Result<bool> {
         if command == CONFIGURE {
             self.configure(reader)?;
         } else if command == self.data() {

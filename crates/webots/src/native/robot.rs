@@ -73,7 +73,7 @@ impl Robot {
         let mut reader = Reader::new(bytes);
         while !reader.is_over() {
             match reader.u16()? {
-                0 => self.answer(&mut reader)?,
+                0 => self.apply_message(&mut reader)?,
                 tag => self.device(tag)?.answer(&mut reader)?,
             }
         }
@@ -87,7 +87,7 @@ impl Robot {
         device.ok_or_else(|| Error::format(format!("a message of device {tag}, but the robot has {count}")))
     }
 
-    fn answer(&mut self, reader: &mut Reader<'_>) -> Result<()> {
+    fn apply_message(&mut self, reader: &mut Reader<'_>) -> Result<()> {
         match reader.u8()? {
             CONFIGURE if !self.is_configured => self.configure(reader)?,
             CONFIGURE if self.is_supervisor && !self.scene.is_configured() => self.scene.configure(reader)?,
@@ -109,7 +109,7 @@ impl Robot {
                 let size = reader.count(1)?;
                 reader.bytes(size)?;
             }
-            command if self.is_supervisor && self.scene.answer(command, reader)? => {}
+            command if self.is_supervisor && self.scene.apply_message(command, reader)? => {}
             command => {
                 return Err(Error::format(format!(
                     "command {command} of the robot is not known; is this the version of Webots that was named ({})?",

@@ -47,7 +47,7 @@ impl Scene {
     }
 
     /// Reads an answer; returns false for an unknown command.
-    pub(super) fn answer(&mut self, command: u8, reader: &mut Reader<'_>) -> Result<bool> {
+    pub(super) fn apply_message(&mut self, command: u8, reader: &mut Reader<'_>) -> Result<bool> {
         match command {
             NODE_FROM_DEF => {
                 self.node = Some(reader.u32()?);

@@ -146,7 +146,7 @@ impl TiledDetection {
             [Slot { part, .. }] => picture.crop(image.view(), part)?,
             _ => picture.pack(image.view(), slots, self.params.tiling.tile)?,
         };
-        detector.answer(picture, found)?;
+        detector.predict_into(picture, found)?;
         let pieces = found.boxes.drain(..).filter_map(|found| {
             if let [slot] = slots {
                 return Some((0, Piece::new(found, &slot.part, size)));

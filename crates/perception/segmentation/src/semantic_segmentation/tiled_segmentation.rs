@@ -131,7 +131,7 @@ impl TiledSegmentation {
         let Region { x, y, width, height } = tile.region;
         let is_whole = [width, height] == [image.width(), image.height()];
         let picture = if is_whole { image } else { picture.crop(image.view(), &tile.region)? };
-        segmenter.answer(picture, map)?;
+        segmenter.predict_into(picture, map)?;
         let HeatmapValues::Labels(labels) = map.values() else {
             return Err(Error::format("the network returns scores instead of the class of every pixel"));
         };

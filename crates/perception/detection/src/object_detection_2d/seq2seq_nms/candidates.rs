@@ -93,7 +93,7 @@ impl DatasetIterator for Candidates<'_> {
             Some(list) => list.clone(),
             None => {
                 let mut list = BoundingBoxList { classes: self.detector.classes(), ..Default::default() };
-                self.detector.answer(image, &mut list)?;
+                self.detector.predict_into(image, &mut list)?;
                 found.get_or_init(|| list).clone()
             }
         };

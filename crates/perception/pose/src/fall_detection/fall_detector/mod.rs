@@ -84,7 +84,8 @@ impl Learner for FallDetector {
         falls.classes.clone_from(&self.classes);
         for pose in &poses.poses {
             let observed = Posture::of(pose);
-            let posture = pose.id.map_or(observed, |id| state.verdicts.judge(id, observed, self.params.hold));
+            let posture =
+                pose.id.map_or(observed, |id| state.verdicts.update_posture(id, observed, self.params.hold));
             let [left, top, width, height] = pose.bounding_box().unwrap_or_default();
             let person = BoundingBox::new(class_of(posture), left, top, width, height, pose.confidence);
             falls.boxes.push(person);

@@ -34,7 +34,7 @@ impl Verdicts {
     }
 
     /// Returns the posture of person `id`, observed in posture `observed`; an unknown one changes nothing.
-    pub fn judge(&mut self, id: i64, observed: Posture, hold: f32) -> Posture {
+    pub fn update_posture(&mut self, id: i64, observed: Posture, hold: f32) -> Posture {
         let Some(person) = self.persons.iter_mut().find(|person| person.id == id) else {
             self.persons.push(Verdict { id, posture: observed, other: None, away: 0.0 });
             return observed;
@@ -65,7 +65,7 @@ mod tests {
         let mut verdicts = Verdicts::default();
         let judge = |(at, (id, posture)): (usize, &(i64, Posture))| {
             verdicts.begin_frame(&Header::new(at as i64 * 100_000_000, "camera"));
-            let judged = verdicts.judge(*id, *posture, hold);
+            let judged = verdicts.update_posture(*id, *posture, hold);
             verdicts.end_frame();
             judged
         };

@@ -134,7 +134,7 @@ impl Network {
     }
 
     /// Computes the maps of the last stage only.
-    pub fn answer(&self, pictures: Tensor<4>) -> Maps {
+    pub fn forward_last_stage(&self, pictures: Tensor<4>) -> Maps {
         let mut stages = self.forward(pictures);
         // There is at least an initial stage.
         stages.swap_remove(stages.len() - 1)

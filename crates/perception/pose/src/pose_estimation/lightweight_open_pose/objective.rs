@@ -88,7 +88,7 @@ impl Objective for PoseObjective {
         let side = 4 * STRIDE;
         let input = Input::new("image", [1, 3, side, side]);
         let onnx = export::onnx(network, input, &OUTPUTS, |network: &Network, image| -> Maps {
-            network.answer(image)
+            network.forward_last_stage(image)
         })?;
         Ok(Container {
             manifest: self.manifest(),

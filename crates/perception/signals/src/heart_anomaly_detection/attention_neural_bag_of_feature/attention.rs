@@ -61,7 +61,7 @@ impl Attention {
         Self { share: Initializer::Constant { value: 0.5 }.init([1], device), weights, spatial }
     }
 
-    /// Applies attention to a sequence.
+    /// Applies attention to sequences of codewords `[batch, steps, words]`; the shape stays.
     pub fn forward(&self, series: Tensor<3>) -> Tensor<3> {
         // Rows attend: codewords or steps.
         let rows = if self.spatial { series.swap_dims(1, 2) } else { series };

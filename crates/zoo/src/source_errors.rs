@@ -6,9 +6,9 @@ use crate::item::Item;
 
 /// Errors of an item's sources.
 #[derive(Debug, Default)]
-pub(crate) struct Tried(Vec<(String, Error)>);
+pub(crate) struct SourceErrors(Vec<(String, Error)>);
 
-impl Tried {
+impl SourceErrors {
     pub(crate) fn add(&mut self, place: impl Into<String>, error: Error) {
         self.0.push((place.into(), error));
     }

@@ -12,7 +12,7 @@ pub trait ImageLearner<T>: Send + Sync {
     ///
     /// # Errors
     /// As [`Learner::infer_into`].
-    fn answer(&self, image: &Image, target: &mut T) -> Result<()>;
+    fn predict_into(&self, image: &Image, target: &mut T) -> Result<()>;
 
     /// Returns the names of the classes.
     fn classes(&self) -> Classes;
@@ -22,7 +22,7 @@ impl<T, L> ImageLearner<T> for L
 where
     L: for<'a> Learner<Input<'a> = &'a Image, Target = T, State = ()>,
 {
-    fn answer(&self, image: &Image, target: &mut T) -> Result<()> {
+    fn predict_into(&self, image: &Image, target: &mut T) -> Result<()> {
         self.infer_into(&mut (), image, target)
     }
 
