@@ -2,6 +2,7 @@
 
 mod bytes;
 mod conv;
+mod conv_transpose;
 mod elementwise;
 mod fusion;
 mod index;
@@ -39,7 +40,7 @@ const OPERATORS: &[(&str, Build)] = &[
     ("Constant", shape::constant),
     ("ConstantOfShape", shape::constant_of_shape),
     ("Conv", conv::conv),
-    ("ConvTranspose", conv::transposed),
+    ("ConvTranspose", conv_transpose::build),
     ("DepthToSpace", movement::depth_to_space),
     ("DequantizeLinear", quantize::dequantize),
     ("Div", elementwise::binary),

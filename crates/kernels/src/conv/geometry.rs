@@ -57,8 +57,8 @@ impl Strides {
     pub(super) fn check_written(&self, [height, width]: [usize; 2], channels: usize) {
         let apart = self.channel == 1
             && self.pixel >= channels
-            && (height <= 1 || self.row >= width * self.pixel)
-            && self.image >= (height - 1) * self.row + width * self.pixel;
+            && (height <= 1 || self.row >= (width - 1) * self.pixel + channels)
+            && self.image >= (height - 1) * self.row + (width - 1) * self.pixel + channels;
         assert!(apart, "channels, pixels and rows of the output must lie apart");
     }
 }
