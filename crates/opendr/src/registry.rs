@@ -16,7 +16,8 @@ use opendr_classification::{
 use opendr_clouds::object_detection_3d::VoxelObjectDetection3d;
 #[cfg(feature = "detection")]
 use opendr_detection::object_detection_2d::{
-    CenterNet, Gem, ImportedDetector, Nanodet, Seq2SeqNms, SingleShotDetector, TiledDetection, Yolox,
+    CenterNet, FastestDet, Gem, ImportedDetector, Nanodet, Seq2SeqNms, SingleShotDetector, TiledDetection,
+    Yolox,
 };
 use opendr_engine::learner::Registry;
 use opendr_engine::learners;
@@ -80,6 +81,7 @@ pub fn registry() -> &'static Registry {
                 CenterNet,
                 Nanodet,
                 Yolox,
+                FastestDet,
                 ImportedDetector,
                 SingleShotDetector,
                 TiledDetection,

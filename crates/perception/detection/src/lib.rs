@@ -1,6 +1,6 @@
 //! Object detection in images: boxes with class labels.
 //!
-//! Learners: [`object_detection_2d::Yolox`], [`object_detection_2d::CenterNet`], [`object_detection_2d::Nanodet`],
+//! Learners: [`object_detection_2d::Yolox`], [`object_detection_2d::FastestDet`], [`object_detection_2d::CenterNet`], [`object_detection_2d::Nanodet`],
 //! [`object_detection_2d::ImportedDetector`] (ONNX files of other tools), [`object_detection_2d::SingleShotDetector`] (SSD, trainable
 //! on own classes), [`object_detection_2d::Gem`] (colour and infrared), [`object_detection_2d::Seq2SeqNms`] (learned non-maximum
 //! suppression) and [`object_detection_2d::TiledDetection`] (any detector over tiles of large images).

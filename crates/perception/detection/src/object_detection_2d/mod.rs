@@ -2,6 +2,7 @@
 
 mod centernet;
 mod detectors;
+mod fastest_det;
 mod gem;
 mod imported_detector;
 mod nanodet;
@@ -15,6 +16,7 @@ mod yolox;
 
 pub use centernet::{CenterNet, CenterNetParams};
 pub use detectors::DETECTORS;
+pub use fastest_det::{FastestDet, FastestDetParams};
 #[cfg(feature = "training")]
 pub use gem::GemFitParams;
 pub use gem::{Gem, GemInputs, GemParams, GemTargets};
