@@ -76,6 +76,26 @@ def test_wrong_use_is_told(opendr, tmp_path):
         assert done.returncode not in (0, 101) and word in done.stderr, (arguments, done.stderr)
 
 
+def test_a_prior_follows_the_commands_of_a_shaped_policy(opendr, tmp_path):
+    listed = opendr.run("sim", "priors").stdout
+    line = next(line for line in listed.splitlines() if line.startswith("corridor-reactive "))
+    assert "commands" in line, line
+    run, evaluated = tmp_path / "run", tmp_path / "evaluated"
+    fit = ["shaped_ppo", "--env", "UavDepthCorridor-compact-v1", "--hold", "3"]
+    steps = ["--total-timesteps", "2048", "--n-eval-episodes", "2"]
+    done = opendr.run("fit", *fit, "--prior", "corridor-reactive", *steps, "--out", run, "--quiet")
+    assert done.returncode == 0, done.stderr
+    model = ["shaped_ppo", "--model", run / "model", "--shield", "corridor-clearance"]
+    seeds = ["--episodes", "5", "--first-seed", "7000000"]
+    done = opendr.run("eval", *model, *seeds, "--out", evaluated, "--quiet")
+    assert done.returncode == 0, done.stderr
+    rows = json.loads((evaluated / "report.json").read_text())["controllers"]
+    assert [row["name"] for row in rows] == ["prior", "prior and policy", "prior and policy, shielded"]
+    assert all(row["episodes"] == 5 for row in rows)
+    done = opendr.run("fit", *fit, "--prior", "corridor-potential-field", "--out", tmp_path / "none", "--quiet")
+    assert done.returncode not in (0, 101) and "follows no commands" in done.stderr, done.stderr
+
+
 def test_a_residual_policy_is_reported_with_its_prior(opendr, tmp_path):
     listed = opendr.run("sim", "priors").stdout
     assert "corridor-reactive " in listed and "safety rule" in listed

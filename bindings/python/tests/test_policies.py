@@ -5,7 +5,7 @@ import numpy as np
 import opendr
 import pytest
 from opendr import _opendr, priors
-from opendr.control.reinforcement_learning import PpoLearner, ResidualPpoLearner, SacLearner
+from opendr.control.reinforcement_learning import PpoLearner, ResidualPpoLearner, SacLearner, ShapedPpoLearner
 from opendr.engine.data import Observation
 from opendr.engine.learners import LearnerRL
 from opendr.engine.target import RlTarget
@@ -52,8 +52,8 @@ def test_pretrained_policies(entry, tmp_path):
     learner = cls(device="cpu")
     with pytest.raises(FileNotFoundError, match=r"download\(\).*load\(\).*fit\(\)"):
         learner.infer(np.zeros(1))
-    if entry["name"].startswith("residual_"):
-        # A correction belongs to a prior of the user's choice.
+    if entry["name"].startswith(("residual_", "shaped_")):
+        # A correction or a command belongs to a prior of the user's choice.
         with pytest.raises(opendr.NotFound, match="no pretrained weights"):
             learner.load()
         return
@@ -126,6 +126,23 @@ def test_wrong_environments_are_told(tmp_path):
         learner.fit("CartPole-v1", env_params={"gravity": -1}, silent=True, out=tmp_path / "run")
     with pytest.raises(TypeError, match="no argument 'epochs'"):
         learner.fit("CartPole-v1", silent=True, out=tmp_path / "run", epochs=3)
+
+
+def test_a_shaped_policy_begins_as_its_prior(tmp_path):
+    learner = ShapedPpoLearner()
+    steps = {"total_timesteps": 256, "n_steps": 64, "n_envs": 1, "n_eval_episodes": 1}
+    learner.fit("Pendulum-v1", prior="pendulum-energy", out=tmp_path / "run", silent=True, **steps)
+    numbers = learner.eval(episodes=2)
+    assert [row["name"] for row in numbers["controllers"]] == ["prior", "prior and policy"]
+    learner.save(tmp_path / "saved")
+    again = ShapedPpoLearner()
+    again.load(tmp_path / "saved")
+    seen = Observation([1.0, 0.0, 0.5])
+    assert list(np.asarray(again.infer(seen))) == list(np.asarray(learner.infer(seen)))
+    # A function takes no commands.
+    priors.register("test-uncommanded", 1, lambda seen: [0.0])
+    with pytest.raises(opendr.Unsupported, match="follows no commands"):
+        ShapedPpoLearner().fit("Pendulum-v1", prior="test-uncommanded", out=tmp_path / "none", silent=True, **steps)
 
 
 def test_a_function_is_a_prior(tmp_path):

@@ -46,7 +46,9 @@ use opendr_pose::{
     fall_detection::FallDetector,
     pose_estimation::{BlazePose, HighResolutionPoseEstimation, LightweightOpenPose, Movenet, Posenet},
 };
-use opendr_rl::prior::{ResidualPpoLearner, ResidualSacLearner, ResidualTd3Learner};
+use opendr_rl::prior::{
+    ResidualPpoLearner, ResidualSacLearner, ResidualTd3Learner, ShapedPpoLearner, ShapedSacLearner,
+};
 use opendr_rl::{DqnLearner, PpoLearner, SacLearner, Td3Learner};
 #[cfg(feature = "segmentation")]
 use opendr_segmentation::{
@@ -190,6 +192,8 @@ pub fn registry() -> &'static Registry {
                 ResidualPpoLearner,
                 ResidualSacLearner,
                 ResidualTd3Learner,
+                ShapedPpoLearner,
+                ShapedSacLearner,
                 EndToEndPlanningRl,
                 ActiveFaceRecognition,
                 ActiveObjectRecognition,

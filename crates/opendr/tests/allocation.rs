@@ -140,6 +140,7 @@ fn nothing_is_allocated_around_the_session() {
     use opendr::{face_detection as face, object_detection_2d as detection, pose_estimation as pose};
     check::<detection::CenterNet>(&models, [512, 512], 0.05);
     check::<detection::Nanodet>(&models, [416, 416], 0.05);
+    check::<detection::FastestDet>(&models, [352, 352], 0.05);
     check::<face::Yunet>(&models, [640, 640], 0.1);
     check::<face::UltraLightFace>(&models, [240, 320], 0.1);
     check::<pose::Movenet>(&models, [192, 192], 0.0);
