@@ -134,7 +134,8 @@ fn list(matches: &ArgMatches) -> Result<Outcome> {
 fn priors() -> Result<Outcome> {
     for prior in Prior::all() {
         let PriorId { name, version } = prior.id();
-        stdout::print(format_args!("{name:28} version {version}: {}", prior.description()))?;
+        let commands = if prior.has_commands() { ", follows commands" } else { "" };
+        stdout::print(format_args!("{name:28} version {version}{commands}: {}", prior.description()))?;
     }
     for rule in SafetyRule::all() {
         stdout::print(format_args!("{:28} safety rule: {}", rule.name(), rule.description()))?;
