@@ -36,9 +36,9 @@ impl Case {
         let (channels, all) = (self.groups * self.inputs, self.groups * self.outputs);
         let mut y = vec![0.0; self.batch * all * height * width];
         for image in 0..self.batch {
-            for output in 0..all {
+            for (output, &bias) in bias.iter().enumerate() {
                 let plane = (image * all + output) * height * width;
-                y[plane..plane + height * width].fill(bias[output]);
+                y[plane..plane + height * width].fill(bias);
                 let group = output / self.outputs;
                 for input in group * self.inputs..(group + 1) * self.inputs {
                     for iy in 0..self.input[0] {

@@ -74,7 +74,7 @@ impl Robot {
         while !reader.is_over() {
             match reader.u16()? {
                 0 => self.apply_message(&mut reader)?,
-                tag => self.device(tag)?.answer(&mut reader)?,
+                tag => self.device(tag)?.apply_message(&mut reader)?,
             }
         }
         Ok(())
