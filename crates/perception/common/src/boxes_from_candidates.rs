@@ -16,9 +16,12 @@ pub fn boxes_from_candidates(
 ) {
     list.boxes.clear();
     list.classes.clone_from(classes);
-    list.boxes.extend(candidates.iter().filter_map(|candidate| {
-        let corners = geometry.image_box_from_input(candidate.corners);
-        let inside = corners[2] > corners[0] && corners[3] > corners[1];
-        inside.then(|| BoundingBox::from_corners(i64::from(candidate.class), corners, candidate.score))
-    }));
+    list.boxes.extend(candidates.iter().filter_map(|candidate| box_from_candidate(candidate, geometry)));
+}
+
+/// Returns the box of a candidate, mapped to image pixels and clipped to the image; `None` outside the image.
+pub fn box_from_candidate(candidate: &Candidate, geometry: &InputGeometry) -> Option<BoundingBox> {
+    let corners = geometry.image_box_from_input(candidate.corners);
+    let inside = corners[2] > corners[0] && corners[3] > corners[1];
+    inside.then(|| BoundingBox::from_corners(i64::from(candidate.class), corners, candidate.score))
 }

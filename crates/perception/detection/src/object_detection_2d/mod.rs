@@ -22,7 +22,7 @@ pub use gem::GemFitParams;
 pub use gem::{Gem, GemInputs, GemParams, GemTargets};
 pub use imported_detector::{
     BoxFormat, BoxUnit, ImportedDetector, ImportedDetectorParams, InputColour, InputLevels, InputResize,
-    Objectness, OutputLayout, RowOrder, ScoreFormat,
+    MaskOutput, Objectness, OutputLayout, RowOrder, ScoreFormat,
 };
 pub use nanodet::{Nanodet, NanodetParams};
 #[cfg(feature = "training")]

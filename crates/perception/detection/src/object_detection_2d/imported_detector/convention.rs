@@ -6,8 +6,8 @@ use opendr_inference::ElementType;
 use super::class_names::class_names;
 use super::facts::{Facts, is_integer, last_two};
 use super::params::{
-    BoxFormat, BoxUnit, InputColour, InputLevels, InputResize, Objectness, OutputLayout, RowOrder,
-    ScoreFormat,
+    BoxFormat, BoxUnit, InputColour, InputLevels, InputResize, MaskOutput, Objectness, OutputLayout,
+    RowOrder, ScoreFormat,
 };
 use crate::object_detection_2d::rows::cells_of;
 
@@ -20,6 +20,7 @@ pub(super) struct Convention {
     pub(super) scores: ScoreFormat,
     pub(super) objectness: Objectness,
     pub(super) row_order: RowOrder,
+    pub(super) masks: MaskOutput,
     pub(super) resize: InputResize,
     pub(super) padding: usize,
     pub(super) colour: InputColour,
@@ -38,6 +39,7 @@ pub(super) const UNKNOWN: Convention = Convention {
     scores: ScoreFormat::Auto,
     objectness: Objectness::Auto,
     row_order: RowOrder::Auto,
+    masks: MaskOutput::Absent,
     resize: InputResize::Auto,
     padding: 0,
     colour: InputColour::Auto,
@@ -106,7 +108,7 @@ pub(super) fn recognise(facts: &Facts, size: [usize; 2]) -> Result<Option<Conven
     }
     let rules = [paddle, named_lists, tensorflow, detr, lists];
     let known = rules.into_iter().find_map(|rule| rule(facts));
-    Ok(known.or_else(|| yolo_rows(facts, size)))
+    Ok(known.or_else(|| yolo_rows(facts, size).map(|known| with_masks(known, facts))))
 }
 
 /// Exports of Ultralytics, by their metadata.
@@ -135,7 +137,7 @@ fn ultralytics(facts: &Facts) -> Result<Option<Convention>> {
         resize: InputResize::Stretch,
         ..YOLO
     };
-    Ok(match fields {
+    let convention = match fields {
         _ if is_final => Some(listed),
         Some(6) if is_rt_detr && count != 2 => Some(Convention {
             boxes: BoxFormat::Cxcywh,
@@ -149,7 +151,19 @@ fn ultralytics(facts: &Facts) -> Result<Option<Convention>> {
         Some(6) if few => None,
         Some(fields) if fields == count + 5 => Some(Convention { objectness: Objectness::Present, ..YOLO }),
         _ => Some(YOLO),
+    };
+    Ok(match facts.metadata("task") {
+        "segment" => convention.map(|convention| with_masks(convention, facts)),
+        _ => convention,
     })
+}
+
+/// Adds the masks of a network with an output of prototypes.
+fn with_masks(convention: Convention, facts: &Facts) -> Convention {
+    match facts.prototypes() {
+        Some(_) => Convention { masks: MaskOutput::Prototypes, ..convention },
+        None => convention,
+    }
 }
 
 /// Exports of `PaddleDetection`: class, score and box in a row, and a scale factor as input. Its models differ in normalisation.

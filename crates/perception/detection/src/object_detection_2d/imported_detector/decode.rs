@@ -5,6 +5,7 @@ use opendr_inference::{TensorData, TensorView};
 use opendr_perception_common::suppression::Candidate;
 
 use super::convention::Convention;
+use super::masks::{MaskScratch, Prototypes};
 use super::params::{BoxFormat, BoxUnit, Objectness, OutputLayout, RowOrder, ScoreFormat};
 use super::roles::Roles;
 use crate::object_detection_2d::rows::{ClassScores, Rows, Selection, cells_of, decode_grid};
@@ -18,6 +19,8 @@ pub(super) struct Decoder {
     pub(super) roles: Roles,
     /// Number of class names; 0 if there are none.
     pub(super) classes: usize,
+    /// Output of the prototypes of masks, and their number.
+    pub(super) prototypes: Option<(usize, usize)>,
     /// Width and height of the network's input.
     pub(super) size: [usize; 2],
 }
@@ -28,6 +31,7 @@ pub(super) struct Scratch {
     best: Vec<(f32, u32)>,
     pub(super) candidates: Vec<Candidate>,
     pub(super) marks: Vec<bool>,
+    pub(super) masks: MaskScratch,
 }
 
 impl Decoder {
@@ -72,6 +76,32 @@ impl Decoder {
         }
     }
 
+    /// Returns the prototypes of the masks and the rows with their coefficients, the last values of each row; `None` without masks.
+    ///
+    /// # Errors
+    /// `Format` when the outputs have no such shapes.
+    pub(super) fn masks<'a>(&self, outputs: &[TensorView<'a>]) -> Result<Option<(Prototypes<'a>, Rows<'a>)>> {
+        let (Some((prototypes, _)), Roles::Rows { output, transposed }) = (self.prototypes, self.roles)
+        else {
+            return Ok(None);
+        };
+        let (prototypes, rows) =
+            (Prototypes::of(&outputs[prototypes])?, Rows::of(&outputs[output], transposed)?);
+        if rows.len() > 0 && rows.fields() < 4 + prototypes.channels() {
+            return Err(Error::format(format!(
+                "the network has rows of {} values, too few for the coefficients of {} prototypes; set masks to absent",
+                rows.fields(),
+                prototypes.channels()
+            )));
+        }
+        Ok(Some((prototypes, rows)))
+    }
+
+    /// Returns the number of values at the end of a row that are coefficients of masks.
+    fn coefficients(&self) -> usize {
+        self.prototypes.map_or(0, |(_, channels)| channels)
+    }
+
     fn has_objectness(&self) -> bool {
         self.convention.objectness == Objectness::Present
     }
@@ -97,7 +127,7 @@ impl Decoder {
         let is_softmax = self.convention.scores == ScoreFormat::Softmax;
         // Masks or keypoints may follow the class scores of one output, and the background the classes of a softmax.
         let count = match self.classes {
-            0 => fields - usize::from(is_softmax),
+            0 => fields.saturating_sub(usize::from(is_softmax) + self.coefficients()),
             classes if classes <= fields && (first > 0 || classes + usize::from(is_softmax) == fields) => {
                 classes
             }

@@ -58,6 +58,14 @@ impl Facts {
         found.next().filter(|_| found.next().is_none())
     }
 
+    /// Returns the index of the output of mask prototypes, `[1, channels, height, width]`, and their number.
+    pub(super) fn prototypes(&self) -> Option<(usize, usize)> {
+        let output = self.only_output(|output| {
+            output.element_type == ElementType::F32 && matches!(output.dims[..], [_, Some(_), _, _])
+        })?;
+        self.outputs[output].dims[1].map(|channels| (output, channels))
+    }
+
     /// Returns the operators between an output and the last layers with weights.
     pub(super) fn tail(&self, output: usize) -> HashSet<&str> {
         let makers: HashMap<&str, &NodeProto> = self

@@ -8,6 +8,7 @@ mod convention;
 mod decode;
 mod facts;
 mod input;
+mod masks;
 mod params;
 mod roles;
 mod settled;
@@ -19,13 +20,14 @@ use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
-use opendr_inference::Session;
-use opendr_perception_common::boxes_from_candidates::boxes_from_candidates;
+use opendr_inference::{Session, TensorView};
+use opendr_perception_common::boxes_from_candidates::{box_from_candidate, boxes_from_candidates};
 use opendr_perception_common::suppression::Suppression;
+use opendr_vision::InputGeometry;
 
 pub use params::{
-    BoxFormat, BoxUnit, ImportedDetectorParams, InputColour, InputLevels, InputResize, Objectness,
-    OutputLayout, RowOrder, ScoreFormat,
+    BoxFormat, BoxUnit, ImportedDetectorParams, InputColour, InputLevels, InputResize, MaskOutput,
+    Objectness, OutputLayout, RowOrder, ScoreFormat,
 };
 
 use class_names::class_names;
@@ -71,7 +73,11 @@ impl Learner for ImportedDetector {
         let convention = settled::settle(&mut params, convention::recognise(&facts, image.size)?, &facts)?;
         let roles = Roles::find(convention.layout, &facts, classes.len())?;
         let network = Network::new(session, image, &convention)?;
-        let decoder = Decoder { convention, roles, classes: classes.len(), size: image.size };
+        let prototypes = match convention.masks {
+            MaskOutput::Prototypes => facts.prototypes(),
+            MaskOutput::Auto | MaskOutput::Absent => None,
+        };
+        let decoder = Decoder { convention, roles, classes: classes.len(), prototypes, size: image.size };
         Ok(Self { params, classes, network, decoder, scratch: Pool::default() })
     }
 
@@ -102,13 +108,39 @@ impl Learner for ImportedDetector {
             }
             self.decoder.run(outputs, Selection { threshold, multi_label }, scratch)?;
             suppression.run(&mut scratch.candidates, &mut scratch.marks);
-            boxes_from_candidates(boxes, &scratch.candidates, geometry, &self.classes);
-            Ok(())
+            self.write(boxes, outputs, geometry, scratch)
         })
     }
 }
 
 impl ImportedDetector {
+    /// Writes the candidates that are left as boxes, with masks where the network has them.
+    fn write(
+        &self,
+        boxes: &mut BoundingBoxList,
+        outputs: &[TensorView<'_>],
+        geometry: &InputGeometry,
+        Scratch { candidates, masks, .. }: &mut Scratch,
+    ) -> Result<()> {
+        let Some((prototypes, rows)) = self.decoder.masks(outputs)? else {
+            boxes_from_candidates(boxes, candidates, geometry, &self.classes);
+            return Ok(());
+        };
+        let image = geometry.image_size.map(|side| side as usize);
+        let content = prototypes.content(geometry, image, self.decoder.size);
+        let first = rows.fields() - prototypes.channels();
+        boxes.boxes.clear();
+        boxes.classes.clone_from(&self.classes);
+        for candidate in candidates.iter() {
+            let Some(mut found) = box_from_candidate(candidate, geometry) else { continue };
+            let coefficient = |channel| rows.at(candidate.index as usize, first + channel);
+            let mask = prototypes.mask(coefficient, content, found.corners(), image, masks)?;
+            found.segment = Some(Box::new(mask));
+            boxes.boxes.push(found);
+        }
+        Ok(())
+    }
+
     /// Returns the threshold of the suppression; 1 where the network has suppressed already, as no IoU exceeds it.
     fn iou_threshold(&self) -> f32 {
         match self.params.layout {

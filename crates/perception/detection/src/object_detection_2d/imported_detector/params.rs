@@ -90,6 +90,18 @@ opendr_engine::choices! {
 }
 
 opendr_engine::choices! {
+    /// Whether the detections have masks.
+    pub enum MaskOutput {
+        /// Recognised from the network.
+        Auto = "auto",
+        /// There are no masks.
+        Absent = "absent",
+        /// Masks are sums of prototypes, an output of four dimensions, by the last values of each row (YOLACT).
+        Prototypes = "prototypes",
+    }
+}
+
+opendr_engine::choices! {
     /// How an image becomes the network's input.
     pub enum InputResize {
         /// Recognised from the network.
@@ -163,6 +175,8 @@ pub struct ImportedDetectorParams {
     pub objectness: Objectness,
     /// Order of the values of a detection in one output.
     pub row_order: RowOrder,
+    /// Whether the detections have masks.
+    pub masks: MaskOutput,
     /// How an image becomes the network's input.
     pub resize: InputResize,
     /// Level of the padding of a letterbox; recognised from the network if absent.

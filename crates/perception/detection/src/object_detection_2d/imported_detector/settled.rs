@@ -5,8 +5,8 @@ use opendr_engine::{Error, Result};
 use super::convention::{Convention, UNKNOWN};
 use super::facts::Facts;
 use super::params::{
-    BoxFormat, BoxUnit, ImportedDetectorParams, InputColour, InputLevels, InputResize, Objectness,
-    OutputLayout, RowOrder, ScoreFormat,
+    BoxFormat, BoxUnit, ImportedDetectorParams, InputColour, InputLevels, InputResize, MaskOutput,
+    Objectness, OutputLayout, RowOrder, ScoreFormat,
 };
 
 /// Combines the parameters with what was recognised, and writes the result into the parameters.
@@ -35,6 +35,7 @@ pub(super) fn settle(
     take!(scores, known.scores, ScoreFormat::Auto);
     take!(objectness, known.objectness, Objectness::Auto);
     take!(row_order, known.row_order, RowOrder::Auto);
+    take!(masks, known.masks, MaskOutput::Auto);
     take!(resize, known.resize, InputResize::Auto);
     take!(colour, known.colour, InputColour::Auto);
     take!(levels, known.levels, InputLevels::Auto);
@@ -48,12 +49,19 @@ pub(super) fn settle(
         scores: params.scores,
         objectness: params.objectness,
         row_order: params.row_order,
+        masks: params.masks,
         resize: params.resize,
         padding,
         colour: params.colour,
         levels: params.levels,
         first_class,
     };
+    if convention.masks == MaskOutput::Prototypes && facts.prototypes().is_none() {
+        return Err(Error::unsupported(format!(
+            "the network has no output of four dimensions, which the prototypes of masks are; set masks to absent ({})",
+            facts.describe()
+        )));
+    }
     match missing(&convention)[..] {
         [] => Ok(convention),
         ref missing => Err(Error::unsupported(format!(
