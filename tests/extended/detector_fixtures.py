@@ -46,8 +46,15 @@ def randomise(model, seed, density=0.5):
             parameter.data = kept * signs * (2 / (fan_in * density)) ** 0.5
 
 
-def write(folder, name, onnx, detections, size, threshold, iou=IOU, params=None, classes=()):
-    """Writes a container and its detections; `detections` are rows of x0, y0, x1, y1, score, class in image pixels."""
+def runs(mask):
+    """Run lengths of a mask, column by column, as in COCO."""
+    flat = np.asarray(mask, bool).flatten(order="F")
+    ends = np.flatnonzero(np.diff(np.concatenate([[False], flat, [not flat[-1]]]).astype(np.int8)))
+    return np.diff(np.concatenate([[0], ends])).tolist()
+
+
+def write(folder, name, onnx, detections, size, threshold, iou=IOU, params=None, classes=(), masks=None):
+    """Writes a container and its detections; `detections` are rows of x0, y0, x1, y1, score, class in image pixels, `masks` their masks."""
     onnx = Path(onnx).read_bytes()
     entry = {"name": "model.onnx", "size": len(onnx), "sha256": hashlib.sha256(onnx).hexdigest()}
     manifest = {
@@ -62,8 +69,12 @@ def write(folder, name, onnx, detections, size, threshold, iou=IOU, params=None,
     with zipfile.ZipFile(folder / f"{name}.zip", "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
         archive.writestr(zipfile.ZipInfo("model.json"), json.dumps(manifest))
         archive.writestr(zipfile.ZipInfo("model.onnx"), onnx, compress_type=zipfile.ZIP_DEFLATED, compresslevel=9)
-    rows = sorted(([round(float(value), 5) for value in row] for row in detections), key=lambda row: -row[4])
+    rows = [[round(float(value), 5) for value in row] for row in detections]
+    order = sorted(range(len(rows)), key=lambda index: -rows[index][4])
+    rows = [rows[index] for index in order]
     expected = {"image": size, "threshold": threshold, "iou_threshold": iou, "detections": rows}
+    if masks is not None:
+        expected["masks"] = [runs(masks[index]) for index in order]
     (folder / f"{name}.json").write_text(json.dumps(expected) + "\n")
     print(f"{name}: {len(rows)} detections, {(folder / f'{name}.zip').stat().st_size} bytes")
 
@@ -85,7 +96,7 @@ def ultralytics(folder):
     from ultralytics import RTDETR, YOLO
     from ultralytics.data.augment import LetterBox
     from ultralytics.utils.nms import non_max_suppression
-    from ultralytics.utils.ops import scale_boxes, xywh2xyxy
+    from ultralytics.utils.ops import process_mask_native, scale_boxes, xywh2xyxy
 
     convolutions = [[-1, 1, "Conv", [16, 3, 2]]] * 3 + [[-1, 1, "Conv", [32, 3, 2]], [-1, 1, "Conv", [48, 3, 2]]]
     heads = {
@@ -98,6 +109,7 @@ def ultralytics(folder):
         ("yolo_segment", "segment", {}, {}),
         ("yolo_pose", "pose", {}, {}),
         ("yolo_end_to_end", "detect", {"end2end": True}, {"nms": False}),
+        ("yolo_segment_end_to_end", "segment", {"end2end": True}, {"nms": False}),
         ("yolo_nms", "detect", {}, {"nms": True, "conf": 0.3, "iou": IOU}),
     ]
     width, height = SIDE, SIDE * 3 // 4
@@ -113,7 +125,8 @@ def ultralytics(folder):
         randomise(model.model, len(name))
         model.model.names = dict(enumerate(CLASSES))
         onnx = model.export(format="onnx", imgsz=SIDE, simplify=False, opset=17, **export)
-        rows = torch.from_numpy(outputs_of(onnx, images=tensor)[0])
+        outputs = [torch.from_numpy(output) for output in outputs_of(onnx, images=tensor)]
+        rows = outputs[0]
         if options or export:
             scores = rows[0, :, 4]
             threshold = threshold_for(scores, min(12, int((scores > 0).sum()) - 1))
@@ -122,7 +135,10 @@ def ultralytics(folder):
             threshold = threshold_for(rows[0, 4:7].amax(0), 60)
             kept = non_max_suppression(rows, threshold, IOU, nc=3)[0]
         kept[:, :4] = scale_boxes((SIDE, SIDE), kept[:, :4], (height, width))
-        write(folder, name, onnx, kept[:, :6], [width, height], threshold)
+        masks = None
+        if task == "segment":
+            masks = process_mask_native(outputs[1][0], kept[:, 6:], kept[:, :4], (height, width)).bool().numpy()
+        write(folder, name, onnx, kept[:, :6], [width, height], threshold, masks=masks)
 
     decoder = [[2, 3, 4], 1, "RTDETRDecoder", ["nc", 32, 20, 2, 4, 1, 64]]
     spec = {"nc": 3, "scales": {"l": [1, 1, 1024]}, "backbone": convolutions, "head": [decoder]}

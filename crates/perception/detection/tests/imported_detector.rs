@@ -11,7 +11,7 @@ use opendr_detection::object_detection_2d::{
 };
 use opendr_engine::data::{Image, PixelFormat};
 use opendr_engine::learner::Handle;
-use opendr_engine::target::{BoundingBox, Name};
+use opendr_engine::target::{BoundingBox, Name, Rle, Segmentation};
 use opendr_engine::{Device, ErrorKind};
 use opendr_perception_testing::learner_checks::check_trained_learner;
 use opendr_perception_testing::test_models::{container, test_data};
@@ -60,21 +60,46 @@ fn compare(name: &str, layout: OutputLayout, classes: &[&str]) {
     let [width, height] = [0, 1].map(|side| expected["image"][side].as_u64().unwrap() as usize);
     let found = detector.infer(&image(width, height)).unwrap().boxes;
     assert_same(name, &found, &expected["detections"]);
+    let Some(masks) = expected["masks"].as_array() else {
+        assert!(found.iter().all(|found| found.segment.is_none()), "{name}");
+        return;
+    };
+    let rows: Vec<[f32; 6]> = expected["detections"].as_array().unwrap().iter().map(row_of).collect();
+    let (mut pixels, mut differ) = (0, 0);
+    for found in &found {
+        let Some(Segmentation::Rle(mask)) = found.segment.as_ref().map(|segment| &segment.segmentation) else {
+            panic!("{name}: {found:?} has no mask")
+        };
+        let at = rows.iter().position(|wanted| is_close(&row(found), wanted)).unwrap();
+        let counts = masks[at].as_array().unwrap().iter().map(|count| count.as_u64().unwrap() as u32);
+        let wanted = Rle::new(height as u32, width as u32, counts.collect()).unwrap();
+        let pairs = mask.mask().unwrap().into_iter().zip(wanted.mask().unwrap());
+        differ += pairs.filter(|(found, wanted)| found != wanted).count();
+        pixels += wanted.area();
+    }
+    // Logits within rounding of zero.
+    assert!(pixels > 100 && differ as f64 <= 1e-3 * pixels as f64, "{name}: {differ} of {pixels} pixels");
+}
+
+fn row_of(row: &serde_json::Value) -> [f32; 6] {
+    std::array::from_fn(|index| number(&row[index]))
+}
+
+fn is_close(found: &[f32; 6], wanted: &[f32; 6]) -> bool {
+    found.iter().zip(wanted).all(|(a, b)| (a - b).abs() <= TOLERANCE)
 }
 
 /// Compares boxes with rows of `x0, y0, x1, y1, score, class` in any order.
 fn assert_same(name: &str, found: &[BoundingBox], rows: &serde_json::Value) {
     let rows = rows.as_array().unwrap();
-    let mut wanted: Vec<[f32; 6]> =
-        rows.iter().map(|row| std::array::from_fn(|index| number(&row[index]))).collect();
+    let mut wanted: Vec<[f32; 6]> = rows.iter().map(row_of).collect();
     // Boxes that a package clips to nothing are none.
     wanted.retain(|row| row[2] > row[0] && row[3] > row[1]);
     assert_eq!(found.len(), wanted.len(), "{name}: {found:?} instead of {wanted:?}");
     assert!(!wanted.is_empty(), "{name}");
     for found in found.iter().map(row) {
         // Detections of equal scores have no order.
-        let close = |wanted: &[f32; 6]| found.iter().zip(wanted).all(|(a, b)| (a - b).abs() <= TOLERANCE);
-        let at = wanted.iter().position(close);
+        let at = wanted.iter().position(|wanted| is_close(&found, wanted));
         wanted.remove(at.unwrap_or_else(|| panic!("{name}: {found:?} is not one of {wanted:?}")));
     }
 }
@@ -91,6 +116,7 @@ fn yolo_candidates() {
 #[test]
 fn yolo_end_to_end() {
     compare("yolo_end_to_end", OutputLayout::Detections, NAMES);
+    compare("yolo_segment_end_to_end", OutputLayout::Detections, NAMES);
 }
 
 #[test]
