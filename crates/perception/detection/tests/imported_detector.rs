@@ -67,7 +67,8 @@ fn compare(name: &str, layout: OutputLayout, classes: &[&str]) {
     let rows: Vec<[f32; 6]> = expected["detections"].as_array().unwrap().iter().map(row_of).collect();
     let (mut pixels, mut differ) = (0, 0);
     for found in &found {
-        let Some(Segmentation::Rle(mask)) = found.segment.as_ref().map(|segment| &segment.segmentation) else {
+        let Some(Segmentation::Rle(mask)) = found.segment.as_ref().map(|segment| &segment.segmentation)
+        else {
             panic!("{name}: {found:?} has no mask")
         };
         let at = rows.iter().position(|wanted| is_close(&row(found), wanted)).unwrap();
