@@ -8,7 +8,7 @@ use opendr_simulation::RegisteredEnvironment as _;
 use opendr_simulation::quad_track::{QuadTrack, QuadTrackParams};
 
 use crate::base_policy::{Base, train, tuned_pid};
-use crate::cases::{CASES, options, random_plant};
+use crate::cases::{CASES, options, random_plants};
 use crate::flight::{Flight, STEPS, fly_all};
 use crate::settings::Settings;
 
@@ -123,19 +123,35 @@ fn plants(base: &Base, settings: &Settings) -> Result<()> {
         return Ok(());
     }
     let first = settings.first_seed + 1_000_000;
-    let plant = |at| random_plant(first + at);
-    let frozen = fly_all(settings.plants, first, plant, || Ok(base.policy.clone()))?;
-    let adapted = fly_all(settings.plants, first, plant, || base.adapter(settings))?;
+    let plants = random_plants(settings.plants, first)?;
+    let options = |at: u64| plants.get(at as usize).map(|plant| plant.options.clone()).unwrap_or_default();
+    let frozen = fly_all(settings.plants, first, options, || Ok(base.policy.clone()))?;
+    let pid = fly_all(settings.plants, first, options, tuned_pid)?;
+    let adapted = fly_all(settings.plants, first, options, || base.adapter(settings))?;
     let lost = |flights: &[Flight]| flights.iter().filter(|flight| flight.lost).count();
-    let own = frozen.iter().zip(&adapted).filter(|(frozen, adapted)| adapted.lost && !frozen.lost).count();
-    let worse =
-        frozen.iter().zip(&adapted).filter(|(frozen, adapted)| adapted.last > 1.3 * frozen.last).count();
+    let is_own_loss = |at: &usize| adapted[*at].lost && !frozen[*at].lost;
+    let is_worse = |at: &usize| adapted[*at].last > 1.3 * frozen[*at].last;
+    let [own, worse] =
+        [(0..plants.len()).filter(is_own_loss).count(), (0..plants.len()).filter(is_worse).count()];
     println!(
-        "{} random plants: lost {} adapted, {} frozen, {own} adapted only; adapted above 1.3 x frozen in {worse}",
+        "{} random plants, {} draws refused that the tuned PID loses with the true state: lost {} adapted, {} frozen, {} tuned PID, \
+         {own} adapted only; adapted above 1.3 x frozen in {worse}",
         settings.plants,
+        plants.iter().map(|plant| plant.refused).sum::<usize>(),
         lost(&adapted),
-        lost(&frozen)
+        lost(&frozen),
+        lost(&pid)
     );
+    for at in (0..plants.len()).filter(|at| adapted[*at].lost || is_worse(at)) {
+        println!(
+            "  seed {}: {:.3} m adapted, {:.3} m frozen, {:.3} m tuned PID; {:?}",
+            first + at as u64,
+            adapted[at].last,
+            frozen[at].last,
+            pid[at].last,
+            plants[at].options
+        );
+    }
     Ok(())
 }
 
