@@ -23,8 +23,6 @@ use crate::tensor::{Constant, Kind, count};
 const MIN_OUTPUTS: usize = 8;
 /// Number of phases up to which each has filters of its own.
 const MAX_PHASES: usize = 64;
-/// Largest stride, dilation, or padding; sums of positions fit into 64 bits.
-const MAX_SIZE: usize = 1 << 30;
 /// Numbers of the products of pixels and weights beyond which a node is refused.
 const MAX_PRODUCTS: usize = 1 << 27;
 
@@ -113,9 +111,6 @@ fn geometry(node: &NodeProto, dims: &[usize], weights: &Constant) -> Result<Geom
     let (mut pads, extra) = (node.sizes("pads", 2 * rank, 0)?, node.sizes("output_padding", rank, 0)?);
     if strides.contains(&0) || dilations.contains(&0) {
         return Err(node.damaged("a stride or dilation of 0"));
-    }
-    if [&strides, &dilations, &pads, &extra].into_iter().flatten().any(|&size| size > MAX_SIZE) {
-        return Err(node.damaged("a size beyond 2^30"));
     }
     let auto_pad = node.text("auto_pad", "NOTSET");
     let stated = match node.find("output_shape") {

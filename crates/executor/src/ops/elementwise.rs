@@ -4,11 +4,12 @@ use opendr_engine::Result;
 use opendr_kernels::{Binary, Operand, Unary};
 use opendr_onnx::proto::NodeProto;
 
+use super::functions;
 use super::inputs::{optional, required};
 use crate::attributes::Attributes;
 use crate::io::{Io, Kernel};
 use crate::planner::{Id, Layout, Planner, channels_to_end};
-use crate::tensor::{Kind, count};
+use crate::tensor::{Constant, Kind, count};
 
 /// Returns the function of a node of one input.
 pub(crate) fn unary_of(node: &NodeProto) -> Option<Unary> {
@@ -44,6 +45,9 @@ impl Kernel for UnaryStep {
 
 pub(crate) fn unary(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
     let x = required(node, inputs, 0)?;
+    if node.op_type == "Gelu" && node.text("approximate", "none") == "tanh" {
+        return Ok(vec![functions::gelu_by_tanh(planner, node, x)?]);
+    }
     let function = unary_of(node).ok_or_else(|| node.refused("its attributes"))?;
     Ok(vec![apply(planner, node, x, function)?])
 }
@@ -81,13 +85,17 @@ pub(crate) fn variadic(
 ) -> Result<Vec<Id>> {
     let mut sum = required(node, inputs, 0)?;
     let function = match node.op_type.as_str() {
-        "Sum" => Function::Add,
+        "Sum" | "Mean" => Function::Add,
         "Max" => Function::Max,
         _ => Function::Min,
     };
     for slot in 1..inputs.len() {
         let other = required(node, inputs, slot)?;
         sum = combine(planner, node, function, sum, other)?;
+    }
+    if node.op_type == "Mean" {
+        let count = planner.add_constant(Constant::from_floats(vec![1], &[inputs.len() as f32]));
+        sum = combine(planner, node, Function::Div, sum, count)?;
     }
     Ok(vec![sum])
 }
@@ -112,6 +120,7 @@ pub(crate) enum Function {
     GreaterOrEqual,
     And,
     Or,
+    Xor,
 }
 
 pub(crate) fn binary(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
@@ -129,6 +138,7 @@ pub(crate) fn binary(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opti
         "Greater" => Function::Greater,
         "GreaterOrEqual" => Function::GreaterOrEqual,
         "And" => Function::And,
+        "Xor" => Function::Xor,
         _ => Function::Or,
     };
     if node.find("axis").is_some() {
@@ -207,8 +217,9 @@ pub(crate) fn combine(
             | Function::GreaterOrEqual
             | Function::And
             | Function::Or
+            | Function::Xor
     );
-    let logic = matches!(function, Function::And | Function::Or);
+    let logic = matches!(function, Function::And | Function::Or | Function::Xor);
     let fits = match kind {
         Kind::F32 => !logic,
         Kind::I64 | Kind::I32 => {
@@ -319,6 +330,7 @@ impl Kernel for BinaryStep {
             }
             (_, And) => self.each(io, |a: u8, b: u8| a & b),
             (_, Or) => self.each(io, |a: u8, b: u8| a | b),
+            (_, Xor) => self.each(io, |a: u8, b: u8| a ^ b),
             (_, function) => self.each(io, move |a: u8, b: u8| compared(function, &a, &b)),
         }
         Ok(())

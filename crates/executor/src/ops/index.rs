@@ -209,6 +209,53 @@ impl Kernel for ScatterNdStep {
     }
 }
 
+pub(crate) fn gather_elements(
+    planner: &mut Planner<'_>,
+    node: &NodeProto,
+    inputs: &[Option<Id>],
+) -> Result<Vec<Id>> {
+    let x = required(node, inputs, 0)?;
+    let x = planner.plain(x)?;
+    let (at, at_kind) = indices(planner, node, required(node, inputs, 1)?)?;
+    let (dims, at_dims) = (planner.shape(x), planner.shape(at));
+    let along = axis(node, node.int_or("axis", 0), dims.len())?;
+    if at_dims.len() != dims.len() || (0..dims.len()).any(|d| d != along && at_dims[d] > dims[d]) {
+        return Err(node.damaged(&format!("indices {at_dims:?} of an input {dims:?}")));
+    }
+    let kind = planner.kind(x);
+    let step = GatherElementsStep { size: kind.bytes(), along, dims, at_dims: at_dims.clone(), at_kind };
+    Ok(vec![planner.emit_one(step, &[x, at], kind, at_dims, Layout::Plain)?])
+}
+
+struct GatherElementsStep {
+    size: usize,
+    along: usize,
+    dims: Vec<usize>,
+    at_dims: Vec<usize>,
+    at_kind: Kind,
+}
+
+impl Kernel for GatherElementsStep {
+    fn run(&self, io: &mut Io<'_>) -> Result<()> {
+        let strides = crate::remap::strides(&self.dims);
+        by_size!(self.size, T => {
+            let (x, y) = (io.read::<T>(0), io.write::<T>());
+            for (i, y) in y.iter_mut().enumerate() {
+                let selected = index(read_index(io, 1, self.at_kind, i), self.dims[self.along])?;
+                let (mut rest, mut at) = (i, selected * strides[self.along]);
+                for d in (0..self.dims.len()).rev() {
+                    if d != self.along {
+                        at += rest % self.at_dims[d] * strides[d];
+                    }
+                    rest /= self.at_dims[d];
+                }
+                *y = x[at];
+            }
+        });
+        Ok(())
+    }
+}
+
 pub(crate) fn scatter_elements(
     planner: &mut Planner<'_>,
     node: &NodeProto,

@@ -18,7 +18,10 @@ enum Reduction {
     Min,
     Prod,
     SumSquare,
+    L1,
     L2,
+    LogSum,
+    LogSumExp,
 }
 
 pub(crate) fn reduce(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
@@ -39,6 +42,9 @@ pub(crate) fn reduce(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opti
         "ReduceMin" => Reduction::Min,
         "ReduceProd" => Reduction::Prod,
         "ReduceSumSquare" => Reduction::SumSquare,
+        "ReduceL1" => Reduction::L1,
+        "ReduceLogSum" => Reduction::LogSum,
+        "ReduceLogSumExp" => Reduction::LogSumExp,
         _ => Reduction::L2,
     };
     let kind = planner.kind(x);
@@ -54,6 +60,7 @@ pub(crate) fn reduce(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opti
     // Height and width of a tensor with channels last lie between the images and the channels.
     let spatial = dims.len() > 2
         && planner.is_channels_last(x)
+        && reduction != Reduction::LogSumExp
         && (2..dims.len()).all(|d| gone.contains(&d))
         && !gone.contains(&0)
         && !gone.contains(&1);
@@ -70,8 +77,11 @@ pub(crate) fn reduce(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opti
     let first = gone.iter().copied().min().unwrap_or(0);
     let last = gone.iter().copied().max().unwrap_or(0);
     let joined = (first..=last).all(|d| gone.contains(&d) || dims[d] == 1);
-    let inner = if joined || gone.is_empty() {
-        dims.get(last + 1..).map_or(1, |rest| rest.iter().product())
+    let rest: usize = dims.get(last + 1..).map_or(1, |rest| rest.iter().product());
+    // The largest exponent has to be known before the sum.
+    let is_sequential = reduction == Reduction::LogSumExp && rest != 1;
+    let inner = if joined && !is_sequential || gone.is_empty() {
+        rest
     } else {
         let mut order: Vec<usize> = (0..dims.len()).filter(|d| !gone.contains(d)).collect();
         order.extend(gone.iter().copied());
@@ -120,7 +130,9 @@ impl ReduceStep {
         for (y, x) in y.chunks_mut(inner).zip(x.chunks(length * inner)) {
             if inner == 1 {
                 y[0] = match self.reduction {
-                    Reduction::Sum | Reduction::Mean => super::normalise::sum(x),
+                    Reduction::Sum | Reduction::Mean | Reduction::LogSum => super::normalise::sum(x),
+                    Reduction::L1 => x.iter().map(|x| x.abs()).sum(),
+                    Reduction::LogSumExp => log_sum_exp(x),
                     Reduction::SumSquare | Reduction::L2 => super::normalise::squares(x),
                     Reduction::Max => x.iter().copied().fold(start, f32::max),
                     Reduction::Min => x.iter().copied().fold(start, f32::min),
@@ -130,7 +142,10 @@ impl ReduceStep {
                 y.fill(start);
                 for x in x.chunks_exact(inner) {
                     match self.reduction {
-                        Reduction::Sum | Reduction::Mean => Binary::Add.apply_to(isa, y, x),
+                        Reduction::Sum | Reduction::Mean | Reduction::LogSum => {
+                            Binary::Add.apply_to(isa, y, x);
+                        }
+                        Reduction::L1 => y.iter_mut().zip(x).for_each(|(y, x)| *y += x.abs()),
                         Reduction::Max => Binary::Max.apply_to(isa, y, x),
                         Reduction::Min => Binary::Min.apply_to(isa, y, x),
                         Reduction::Prod => Binary::Mul.apply_to(isa, y, x),
@@ -141,6 +156,7 @@ impl ReduceStep {
             match self.reduction {
                 Reduction::Mean => Binary::Mul.apply_scalar(isa, y, 1.0 / length as f32),
                 Reduction::L2 => y.iter_mut().for_each(|y| *y = y.sqrt()),
+                Reduction::LogSum => y.iter_mut().for_each(|y| *y = y.ln()),
                 _ => {}
             }
         }
@@ -165,6 +181,14 @@ impl ReduceStep {
             });
         }
     }
+}
+
+/// Returns the logarithm of the sum of exponentials, without overflow.
+fn log_sum_exp(x: &[f32]) -> f32 {
+    let largest = x.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    // Infinities have no difference.
+    let base = if largest.is_finite() { largest } else { 0.0 };
+    base + x.iter().map(|x| (x - base).exp()).sum::<f32>().ln()
 }
 
 pub(crate) fn arg(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
