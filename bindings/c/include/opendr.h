@@ -1176,6 +1176,42 @@ static inline opendr_status opendr_infer_yolox(const opendr_learner *learner,
 }
 
 /*
+ * FastestDetLearner: FastestDet detects the 80 COCO classes with a network of 1 MB; the fastest detector, for small processors.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, live, default 0.4): Score below which detections are dropped.
+ *   iou_threshold (a float 0..=1, live, default 0.45): IoU above which boxes of one class count as one object.
+ *   max_detections (an int 1..=1000, live, default 100): Maximum number of boxes per image.
+ *   suppression (a str, one of hard, soft, fast, cluster, live, default hard): Method of non-maximum suppression.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   boxes (BoundingBoxList)
+ */
+static inline opendr_status opendr_load_fastest_det(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("fastest_det", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_fastest_det(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_bounding_box_list **boxes) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "boxes";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (boxes != NULL) *boxes = (opendr_bounding_box_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
  * ImportedDetectorLearner: Runs your own detector, exported to ONNX by another tool; recognises the layout of its outputs.
  *
  * Parameters:
@@ -3665,6 +3701,78 @@ static inline opendr_status opendr_load_residual_td3(const char *path, const cha
 }
 
 static inline opendr_status opendr_infer_residual_td3(const opendr_learner *learner,
+    const opendr_observation *observation,
+    opendr_rl_target **target) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "observation";
+    inputs_[0].value = (const opendr_value *)observation;
+    outputs_[0].name = "target";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (target != NULL) *target = (opendr_rl_target *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * ShapedPpoLearner: A prior controller that follows commands of a policy that PPO trains.
+ *
+ * Parameters:
+ *   deterministic (a bool, live, default true): Whether the policy takes its most likely actions instead of sampling.
+ *   seed (an int, default 0): Seed of sampled actions, at the start of a stream.
+ *   shield (a str, default none): Name of the safety rule that decides which actions are replaced (`opendr sim priors` lists the rules); none disables the shield.
+ *   shield_prior (a str, default none): Name of the prior that acts instead, in its newest version; none means the policy's own prior.
+ *
+ * Inputs:
+ *   observation (Observation)
+ *
+ * Outputs:
+ *   target (RlTarget)
+ */
+static inline opendr_status opendr_load_shaped_ppo(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("shaped_ppo", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_shaped_ppo(const opendr_learner *learner,
+    const opendr_observation *observation,
+    opendr_rl_target **target) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "observation";
+    inputs_[0].value = (const opendr_value *)observation;
+    outputs_[0].name = "target";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (target != NULL) *target = (opendr_rl_target *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * ShapedSacLearner: A prior controller that follows commands of a policy that SAC trains.
+ *
+ * Parameters:
+ *   deterministic (a bool, live, default true): Whether the policy takes its most likely actions instead of sampling.
+ *   seed (an int, default 0): Seed of sampled actions, at the start of a stream.
+ *   shield (a str, default none): Name of the safety rule that decides which actions are replaced (`opendr sim priors` lists the rules); none disables the shield.
+ *   shield_prior (a str, default none): Name of the prior that acts instead, in its newest version; none means the policy's own prior.
+ *
+ * Inputs:
+ *   observation (Observation)
+ *
+ * Outputs:
+ *   target (RlTarget)
+ */
+static inline opendr_status opendr_load_shaped_sac(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("shaped_sac", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_shaped_sac(const opendr_learner *learner,
     const opendr_observation *observation,
     opendr_rl_target **target) {
     opendr_input inputs_[1];

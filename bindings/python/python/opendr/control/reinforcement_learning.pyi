@@ -599,3 +599,172 @@ class ResidualTd3Learner(NativeLearnerRL):
     @overload
     def infer(self, observation: Iterator[Union[Observation, ArrayLike]], *, deterministic: bool = ...) -> Iterator[RlTarget]: ...
     def fit(self, env: Any = ..., val_env: Any = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, env_params: Optional[dict[str, Any]] = ..., out: Optional[PathLike] = ..., resume: bool = ..., prior: str = ..., alpha: float = ..., alpha_start: float = ..., alpha_steps: int = ..., critic_warmup: int = ..., correction_log_std: float = ..., learning_rate: float = ..., buffer_size: int = ..., learning_starts: int = ..., starts_with_policy: bool = ..., actor_starts: int = ..., batch_size: int = ..., tau: float = ..., gamma: float = ..., train_freq: int = ..., gradient_steps: Optional[int] = ..., norm_obs: bool = ..., clip_obs: float = ..., seed: int = ..., net_arch: list[Any] = ..., activation_fn: Literal['tanh', 'relu'] = ..., image_network: Literal['small', 'nature', 'flat'] = ..., gru_size: Optional[int] = ..., action_noise_std: float = ..., action_noise: Literal['normal', 'ornstein_uhlenbeck'] = ..., policy_delay: int = ..., target_policy_noise: float = ..., target_noise_clip: float = ..., total_timesteps: int = ..., iters: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoint_after_iter: int = ..., checkpoints_kept: int = ..., preset: bool = ...) -> dict[str, Any]: ...
+
+class ShapedPpoLearner(NativeLearnerRL):
+    """A prior controller that follows commands of a policy that PPO trains.
+
+    Task: reinforcement_learning. ``infer`` takes:
+
+        observation: Observation.
+
+    and returns: RlTarget.
+
+    Args:
+        deterministic: Whether the policy takes its most likely actions instead of sampling. (default True; live:
+            may change while running, and for one call of infer)
+        seed: Seed of sampled actions, at the start of a stream. (default 0)
+        shield: Name of the safety rule that decides which actions are replaced (`opendr sim priors` lists the
+            rules); none disables the shield. (default None)
+        shield_prior: Name of the prior that acts instead, in its newest version; none means the policy's own
+            prior. (default None)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+
+    Parameters of ``fit``, for one call or, given here, for all of them:
+        prior: Name of the prior that follows the commands, in its newest version (`opendr sim priors` lists those
+            with commands). (default 'corridor-reactive')
+        hold: Steps of the environment for which a command is held. (default 1; 1 to 1000)
+        command_log_std: Logarithm of the initial standard deviation of the commands; policies of SAC have their
+            own. (default -1.0; -20 to 2)
+        learning_rate: Learning rate of Adam. (default 0.0003; 0 to 1)
+        learning_rate_schedule: Schedule of the learning rate. (default 'constant'; one of 'constant', 'linear')
+        n_steps: Steps of each environment between two updates. (default 2048; 1 to 1e+06)
+        batch_size: Steps per minibatch. (default 64; 1 to 1e+06)
+        n_epochs: Passes over the collected steps per update. (default 10; 1 to 1000)
+        gamma: Discount factor. (default 0.99; 0 to 1)
+        gae_lambda: Lambda of generalised advantage estimation: 0 for one-step, 1 for Monte Carlo estimates.
+            (default 0.95; 0 to 1)
+        clip_range: Clipping range of the probability ratio. (default 0.2; 0 to 10)
+        clip_range_schedule: Schedule of the clipping range. (default 'constant'; one of 'constant', 'linear')
+        clip_range_vf: Clipping range of the values; none means no clipping. It depends on the scale of the
+            rewards. (default None; 0 to 1e+09)
+        normalize_advantage: Whether the advantages of a minibatch are normalised to mean 0 and standard deviation
+            1. (default True)
+        ent_coef: Weight of the entropy in the loss. (default 0.0; 0 to 10)
+        vf_coef: Weight of the value loss. (default 0.5; 0 to 100)
+        max_grad_norm: Maximum norm of the gradients. (default 0.5; 0 to 1e+09)
+        target_kl: KL divergence at 1.5 times which an update is stopped; none means no limit. (default None; 0 to
+            1e+09)
+        net_arch: Units of the hidden layers. (default [64, 64]; 1 to 4096)
+        activation_fn: Activation function of the hidden layers. (default 'tanh'; one of 'tanh', 'relu')
+        image_network: Network for image observations, before the hidden layers. (default 'small'; one of 'small',
+            'nature', 'flat')
+        gru_size: Units of a gated recurrent unit before the hidden layers, for policies with memory; none means
+            no recurrent unit. (default None; 1 to 4096)
+        sequence_length: Steps per training sequence of a recurrent policy; a sequence lies in one minibatch. None
+            means as many as fit into a minibatch. Other policies train on single steps. (default None; 1 to
+            1e+06)
+        net_arch_vf: Units of the hidden layers of the value network; none means those of the policy. (default
+            None; 1 to 4096)
+        ortho_init: Whether weights are initialised orthogonally, else by PyTorch's default. (default True)
+        actor_starts: Steps of all environments before the actor is trained; only the critic is trained until
+            then. (default 0; 0 to 1e+09)
+        log_std_init: Initial log standard deviation of continuous actions. (default 0.0; -20 to 20)
+        norm_obs: Whether observations are normalised by the running mean and variance of the training. (default
+            False)
+        norm_reward: Whether rewards are divided by the standard deviation of the discounted return. (default
+            False)
+        clip_obs: Normalised observations are clipped to plus and minus this value. (default 10.0; 0 to 1e+09)
+        clip_reward: Normalised rewards are clipped to plus and minus this value. (default 10.0; 0 to 1e+09)
+        total_timesteps: Steps of a whole training, over all environments. (default 100000; 1 to 2e+09; in OpenDR
+            iters)
+        n_envs: Number of parallel environments. (default 1; 1 to 65536)
+        num_workers: Threads for environments and learning; results do not depend on them. (default 1; 1 to 256)
+        eval_freq: Steps between two evaluations of the policy; 0 evaluates at the end only. (default 10000; 0 to
+            1e+09)
+        n_eval_episodes: Episodes per evaluation. (default 20; 1 to 1e+06)
+        checkpoint_after_iter: Steps between two checkpoints. (default 20000; 1 to 1e+09)
+        checkpoints_kept: Number of checkpoints that are kept. (default 2; 1 to 1000)
+        preset: Whether parameters left at their defaults take the values of the environment's preset, if there is
+            one. (default True)
+    """
+
+    deterministic: bool
+    seed: int
+    shield: Optional[str]
+    shield_prior: Optional[str]
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, prior: str = ..., hold: int = ..., command_log_std: float = ..., learning_rate: float = ..., learning_rate_schedule: Literal['constant', 'linear'] = ..., n_steps: int = ..., n_epochs: int = ..., gamma: float = ..., gae_lambda: float = ..., clip_range: float = ..., clip_range_schedule: Literal['constant', 'linear'] = ..., clip_range_vf: Optional[float] = ..., normalize_advantage: bool = ..., ent_coef: float = ..., vf_coef: float = ..., max_grad_norm: float = ..., target_kl: Optional[float] = ..., net_arch: list[Any] = ..., activation_fn: Literal['tanh', 'relu'] = ..., image_network: Literal['small', 'nature', 'flat'] = ..., gru_size: Optional[int] = ..., sequence_length: Optional[int] = ..., net_arch_vf: Optional[list[Any]] = ..., ortho_init: bool = ..., actor_starts: int = ..., log_std_init: float = ..., norm_obs: bool = ..., norm_reward: bool = ..., clip_obs: float = ..., clip_reward: float = ..., seed: int = ..., total_timesteps: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoints_kept: int = ..., preset: bool = ..., deterministic: bool = ..., shield: Optional[str] = ..., shield_prior: Optional[str] = ...) -> None: ...
+    @overload
+    def infer(self, observation: Union[Observation, ArrayLike], *, deterministic: bool = ...) -> RlTarget: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, observation: Sequence[Union[Observation, ArrayLike]], *, deterministic: bool = ...) -> list[RlTarget]: ...
+    @overload
+    def infer(self, observation: Iterator[Union[Observation, ArrayLike]], *, deterministic: bool = ...) -> Iterator[RlTarget]: ...
+    def fit(self, env: Any = ..., val_env: Any = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, env_params: Optional[dict[str, Any]] = ..., out: Optional[PathLike] = ..., resume: bool = ..., prior: str = ..., hold: int = ..., command_log_std: float = ..., learning_rate: float = ..., learning_rate_schedule: Literal['constant', 'linear'] = ..., n_steps: int = ..., batch_size: int = ..., n_epochs: int = ..., gamma: float = ..., gae_lambda: float = ..., clip_range: float = ..., clip_range_schedule: Literal['constant', 'linear'] = ..., clip_range_vf: Optional[float] = ..., normalize_advantage: bool = ..., ent_coef: float = ..., vf_coef: float = ..., max_grad_norm: float = ..., target_kl: Optional[float] = ..., net_arch: list[Any] = ..., activation_fn: Literal['tanh', 'relu'] = ..., image_network: Literal['small', 'nature', 'flat'] = ..., gru_size: Optional[int] = ..., sequence_length: Optional[int] = ..., net_arch_vf: Optional[list[Any]] = ..., ortho_init: bool = ..., actor_starts: int = ..., log_std_init: float = ..., norm_obs: bool = ..., norm_reward: bool = ..., clip_obs: float = ..., clip_reward: float = ..., seed: int = ..., total_timesteps: int = ..., iters: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoint_after_iter: int = ..., checkpoints_kept: int = ..., preset: bool = ...) -> dict[str, Any]: ...
+
+class ShapedSacLearner(NativeLearnerRL):
+    """A prior controller that follows commands of a policy that SAC trains.
+
+    Task: reinforcement_learning. ``infer`` takes:
+
+        observation: Observation.
+
+    and returns: RlTarget.
+
+    Args:
+        deterministic: Whether the policy takes its most likely actions instead of sampling. (default True; live:
+            may change while running, and for one call of infer)
+        seed: Seed of sampled actions, at the start of a stream. (default 0)
+        shield: Name of the safety rule that decides which actions are replaced (`opendr sim priors` lists the
+            rules); none disables the shield. (default None)
+        shield_prior: Name of the prior that acts instead, in its newest version; none means the policy's own
+            prior. (default None)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+
+    Parameters of ``fit``, for one call or, given here, for all of them:
+        prior: Name of the prior that follows the commands, in its newest version (`opendr sim priors` lists those
+            with commands). (default 'corridor-reactive')
+        hold: Steps of the environment for which a command is held. (default 1; 1 to 1000)
+        command_log_std: Logarithm of the initial standard deviation of the commands; policies of SAC have their
+            own. (default -1.0; -20 to 2)
+        learning_rate: Learning rate of Adam, for all networks. (default 0.0003; 0 to 1)
+        buffer_size: Capacity of the replay buffer, in steps. (default 1000000; 1 to 1e+09)
+        learning_starts: Steps of all environments with random actions before training begins. (default 100; 0 to
+            1e+09)
+        starts_with_policy: Whether the actions before training begins are those of the policy instead of random
+            ones, for a policy that starts from prior knowledge. (default False)
+        actor_starts: Steps of all environments before the actor is trained; only the critic is trained until
+            then. DQN has no actor. (default 0; 0 to 1e+09)
+        batch_size: Transitions per gradient step. (default 256; 1 to 1e+06)
+        tau: Soft update coefficient of the target networks; 1 copies the parameters. (default 0.005; 0 to 1)
+        gamma: Discount factor. (default 0.99; 0 to 1)
+        train_freq: Steps of each environment between two updates. (default 1; 1 to 1e+06)
+        gradient_steps: Gradient steps per update; none means one per collected step. (default 1; 1 to 1e+06)
+        norm_obs: Whether observations are normalised by the running mean and variance of the training. (default
+            False)
+        clip_obs: Normalised observations are clipped to plus and minus this value. (default 10.0; 0 to 1e+09)
+        net_arch: Units of the hidden layers. (default [256, 256]; 1 to 4096)
+        activation_fn: Activation function of the hidden layers. (default 'relu'; one of 'tanh', 'relu')
+        image_network: Network for image observations, before the hidden layers. (default 'small'; one of 'small',
+            'nature', 'flat')
+        gru_size: Units of a gated recurrent unit before the hidden layers, for policies with memory; none means
+            no recurrent unit. (default None; 1 to 4096)
+        ent_coef: Entropy coefficient; none means it is learned. (default None; 0 to 1e+06)
+        ent_coef_init: Initial value of a learned entropy coefficient. (default 1.0; 1e-09 to 1e+06)
+        target_entropy: Target entropy of a learned coefficient; none means minus the number of action axes.
+            (default None; -1e+06 to 1e+06)
+        target_update_interval: Gradient steps between two updates of the target networks. (default 1; 1 to 1e+06)
+        total_timesteps: Steps of a whole training, over all environments. (default 100000; 1 to 2e+09; in OpenDR
+            iters)
+        n_envs: Number of parallel environments. (default 1; 1 to 65536)
+        num_workers: Threads for environments and learning; results do not depend on them. (default 1; 1 to 256)
+        eval_freq: Steps between two evaluations of the policy; 0 evaluates at the end only. (default 10000; 0 to
+            1e+09)
+        n_eval_episodes: Episodes per evaluation. (default 20; 1 to 1e+06)
+        checkpoint_after_iter: Steps between two checkpoints. (default 20000; 1 to 1e+09)
+        checkpoints_kept: Number of checkpoints that are kept. (default 2; 1 to 1000)
+        preset: Whether parameters left at their defaults take the values of the environment's preset, if there is
+            one. (default True)
+    """
+
+    deterministic: bool
+    seed: int
+    shield: Optional[str]
+    shield_prior: Optional[str]
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, prior: str = ..., hold: int = ..., command_log_std: float = ..., learning_rate: float = ..., buffer_size: int = ..., learning_starts: int = ..., starts_with_policy: bool = ..., actor_starts: int = ..., tau: float = ..., gamma: float = ..., train_freq: int = ..., gradient_steps: Optional[int] = ..., norm_obs: bool = ..., clip_obs: float = ..., seed: int = ..., net_arch: list[Any] = ..., activation_fn: Literal['tanh', 'relu'] = ..., image_network: Literal['small', 'nature', 'flat'] = ..., gru_size: Optional[int] = ..., ent_coef: Optional[float] = ..., ent_coef_init: float = ..., target_entropy: Optional[float] = ..., target_update_interval: int = ..., total_timesteps: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoints_kept: int = ..., preset: bool = ..., deterministic: bool = ..., shield: Optional[str] = ..., shield_prior: Optional[str] = ...) -> None: ...
+    @overload
+    def infer(self, observation: Union[Observation, ArrayLike], *, deterministic: bool = ...) -> RlTarget: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, observation: Sequence[Union[Observation, ArrayLike]], *, deterministic: bool = ...) -> list[RlTarget]: ...
+    @overload
+    def infer(self, observation: Iterator[Union[Observation, ArrayLike]], *, deterministic: bool = ...) -> Iterator[RlTarget]: ...
+    def fit(self, env: Any = ..., val_env: Any = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, env_params: Optional[dict[str, Any]] = ..., out: Optional[PathLike] = ..., resume: bool = ..., prior: str = ..., hold: int = ..., command_log_std: float = ..., learning_rate: float = ..., buffer_size: int = ..., learning_starts: int = ..., starts_with_policy: bool = ..., actor_starts: int = ..., batch_size: int = ..., tau: float = ..., gamma: float = ..., train_freq: int = ..., gradient_steps: Optional[int] = ..., norm_obs: bool = ..., clip_obs: float = ..., seed: int = ..., net_arch: list[Any] = ..., activation_fn: Literal['tanh', 'relu'] = ..., image_network: Literal['small', 'nature', 'flat'] = ..., gru_size: Optional[int] = ..., ent_coef: Optional[float] = ..., ent_coef_init: float = ..., target_entropy: Optional[float] = ..., target_update_interval: int = ..., total_timesteps: int = ..., iters: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoint_after_iter: int = ..., checkpoints_kept: int = ..., preset: bool = ...) -> dict[str, Any]: ...

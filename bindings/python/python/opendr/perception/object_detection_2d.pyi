@@ -200,6 +200,38 @@ class YoloxLearner(NativeLearner):
     @overload
     def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> Iterator[BoundingBoxList]: ...
 
+class FastestDetLearner(NativeLearner):
+    """FastestDet detects the 80 COCO classes with a network of 1 MB; the fastest detector, for small processors.
+
+    Task: object_detection_2d. ``infer`` takes:
+
+        image: Image.
+
+    and returns: BoundingBoxList.
+
+    Args:
+        threshold: Score below which detections are dropped. (default 0.4; 0 to 1; live: may change while running,
+            and for one call of infer)
+        iou_threshold: IoU above which boxes of one class count as one object. (default 0.45; 0 to 1; live: may
+            change while running, and for one call of infer)
+        max_detections: Maximum number of boxes per image. (default 100; 1 to 1000; live: may change while
+            running, and for one call of infer)
+        suppression: Method of non-maximum suppression. (default 'hard'; one of 'hard', 'soft', 'fast', 'cluster';
+            live: may change while running, and for one call of infer)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+    """
+
+    iou_threshold: float
+    max_detections: int
+    suppression: Literal['hard', 'soft', 'fast', 'cluster']
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, iou_threshold: float = ..., max_detections: int = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> None: ...
+    @overload
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> BoundingBoxList: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> list[BoundingBoxList]: ...
+    @overload
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> Iterator[BoundingBoxList]: ...
+
 class ImportedDetectorLearner(NativeLearner):
     """Runs your own detector, exported to ONNX by another tool; recognises the layout of its outputs.
 
