@@ -109,7 +109,6 @@ def ultralytics(folder):
         ("yolo_segment", "segment", {}, {}),
         ("yolo_pose", "pose", {}, {}),
         ("yolo_end_to_end", "detect", {"end2end": True}, {"nms": False}),
-        ("yolo_segment_end_to_end", "segment", {"end2end": True}, {"nms": False}),
         ("yolo_nms", "detect", {}, {"nms": True, "conf": 0.3, "iou": IOU}),
     ]
     width, height = SIDE, SIDE * 3 // 4

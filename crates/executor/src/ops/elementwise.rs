@@ -315,7 +315,7 @@ impl Kernel for BinaryStep {
             (Kind::F32, Min) => self.fast(io, Binary::Min),
             (Kind::F32, Pow) => self.each(io, |a: f32, b: f32| if b == 2.0 { a * a } else { a.powf(b) }),
             (Kind::F32, FloatMod) => self.each(io, |a: f32, b: f32| a % b),
-            (Kind::F32, Mod) => self.each(io, |a: f32, b: f32| a - b * (a / b).floor()),
+            (Kind::F32, Mod) => self.each(io, python_remainder),
             (Kind::F32, PRelu) => self.each(io, |x: f32, slope: f32| if x < 0.0 { slope * x } else { x }),
             (Kind::F32, function) => self.each(io, move |a: f32, b: f32| compared(function, &a, &b)),
             (Kind::I64, Equal | Less | LessOrEqual | Greater | GreaterOrEqual) => {
@@ -334,6 +334,18 @@ impl Kernel for BinaryStep {
             (_, function) => self.each(io, move |a: u8, b: u8| compared(function, &a, &b)),
         }
         Ok(())
+    }
+}
+
+/// The remainder with the sign of the divisor, as in Python.
+fn python_remainder(a: f32, b: f32) -> f32 {
+    let rest = a % b;
+    if rest == 0.0 {
+        rest.copysign(b)
+    } else if (rest < 0.0) != (b < 0.0) {
+        rest + b
+    } else {
+        rest
     }
 }
 

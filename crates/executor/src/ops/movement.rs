@@ -381,7 +381,8 @@ pub(crate) fn depth_to_space(
             return Err(node.damaged("the blocks do not fit"));
         }
         let shape = vec![batch, channels * block * block, height / block, width / block];
-        (vec![batch, channels, height / block, block, width / block, block], [0, 3, 5, 1, 2, 4], shape)
+        let order = if node.text("mode", "DCR") == "CRD" { [0, 1, 3, 5, 2, 4] } else { [0, 3, 5, 1, 2, 4] };
+        (vec![batch, channels, height / block, block, width / block, block], order, shape)
     } else {
         let fewer = channels / (block * block);
         if fewer * block * block != channels {

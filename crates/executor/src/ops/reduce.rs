@@ -124,7 +124,10 @@ impl ReduceStep {
             _ => 0.0,
         };
         if length == 0 {
-            y.fill(start);
+            y.fill(match self.reduction {
+                Reduction::LogSum | Reduction::LogSumExp => f32::NEG_INFINITY,
+                _ => start,
+            });
             return;
         }
         for (y, x) in y.chunks_mut(inner).zip(x.chunks(length * inner)) {

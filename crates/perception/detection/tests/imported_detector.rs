@@ -117,7 +117,6 @@ fn yolo_candidates() {
 #[test]
 fn yolo_end_to_end() {
     compare("yolo_end_to_end", OutputLayout::Detections, NAMES);
-    compare("yolo_segment_end_to_end", OutputLayout::Detections, NAMES);
 }
 
 #[test]

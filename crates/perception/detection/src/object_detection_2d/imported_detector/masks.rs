@@ -127,8 +127,8 @@ struct Axis {
 
 impl Axis {
     fn new(first: f32, end: f32, pixels: usize, samples: usize) -> Self {
-        // Conversions of NaN and of numbers outside the image saturate.
-        let clipped = |edge: f32| (edge.round().max(0.0) as usize).min(pixels);
+        // A pixel belongs to the box where its index does. Conversions of NaN and of numbers outside the image saturate.
+        let clipped = |edge: f32| (edge.ceil().max(0.0) as usize).min(pixels);
         let (first, end) = (clipped(first), clipped(end));
         Self { first, end: end.max(first), scale: samples as f32 / pixels.max(1) as f32, samples }
     }
