@@ -299,12 +299,14 @@ pub struct Environment {
     library: PathBuf,
     data: Option<PathBuf>,
     cache: PathBuf,
+    node_tests: PathBuf,
 }
 
 impl Environment {
-    /// Returns the environment with ONNX Runtime's library of `python`.
+    /// Returns the environment with ONNX Runtime's library and ONNX's node tests of `python`.
     pub fn of(python: &Python) -> Result<Self> {
-        Ok(Self { library: python.onnxruntime()?, data: test_data(), cache: cache()? })
+        let node_tests = node_tests(python)?;
+        Ok(Self { library: python.onnxruntime()?, data: test_data(), cache: cache()?, node_tests })
     }
 
     /// Sets the variables of a command.
@@ -312,6 +314,7 @@ impl Environment {
         command.env("ORT_DYLIB_PATH", &self.library).env("OPENDR_TEST_CACHE", &self.cache);
         command.env("OPENDR_BIN", surfaces::opendr()).env("OPENDR_EXAMPLES", target().join("debug/examples"));
         command.env("OPENDR_MODELS", root().join("models/weights"));
+        command.env("OPENDR_ONNX_NODE_TESTS", &self.node_tests);
         if let Some(data) = &self.data {
             command.env("OPENDR_TEST_DATA", data);
         }
@@ -331,4 +334,19 @@ fn cache() -> Result<PathBuf> {
         std::env::var_os("OPENDR_TEST_CACHE").map_or_else(|| target().join("test-cache"), PathBuf::from);
     std::fs::create_dir_all(&cache).map_err(|error| format!("{}: {error}", cache.display()))?;
     Ok(Path::new(&cache).to_owned())
+}
+
+/// Returns the folder of the node tests of the package `onnx`, which are written again after the environment has changed.
+fn node_tests(python: &Python) -> Result<PathBuf> {
+    let folder = python.folder().join("onnx-node-tests");
+    let stamp = folder.join("complete");
+    if !stamp.is_file() {
+        let mut write = command(python.program());
+        step(
+            "node tests of ONNX",
+            write.arg(root().join("crates/executor/tests/node_tests.py")).arg(&folder),
+        )?;
+        std::fs::write(&stamp, "").map_err(|error| format!("{}: {error}", stamp.display()))?;
+    }
+    Ok(folder)
 }

@@ -121,6 +121,11 @@ impl Python {
         step("wheel's installation", &mut install)
     }
 
+    /// Returns its folder, which is removed when its requirements change.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
     /// Returns the path of its interpreter.
     pub fn program(&self) -> PathBuf {
         self.folder.join("bin/python")

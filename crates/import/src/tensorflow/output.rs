@@ -12,7 +12,10 @@ use super::value::Value;
 ///
 /// # Errors
 /// `NotFound` for an output that the model does not have, `Format` when it has none.
-pub fn selected_outputs<T>(mut outputs: Vec<(String, T)>, options: &ImportOptions) -> Result<Vec<(String, T)>> {
+pub fn selected_outputs<T>(
+    mut outputs: Vec<(String, T)>,
+    options: &ImportOptions,
+) -> Result<Vec<(String, T)>> {
     for name in &options.outputs {
         if !outputs.iter().any(|(own, _)| own == name) {
             let own: Vec<&str> = outputs.iter().map(|(own, _)| own.as_str()).collect();

@@ -203,9 +203,9 @@ mod tests {
         let (found, area) = mask([0.0, 2.0, 6.4, 8.0], [0, 0, 4, 4], [8, 8]);
         for (at, is_set) in found.into_iter().enumerate() {
             let (x, y) = (at % 8, at / 8);
-            assert_eq!(is_set, (4..6).contains(&x) && y >= 2, "{x}, {y}");
+            assert_eq!(is_set, (4..7).contains(&x) && y >= 2, "{x}, {y}");
         }
-        assert_eq!(area, 12.0);
+        assert_eq!(area, 18.0);
     }
 
     #[test]
