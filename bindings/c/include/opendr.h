@@ -1226,6 +1226,7 @@ static inline opendr_status opendr_infer_fastest_det(const opendr_learner *learn
  *   scores (a str, one of auto, probabilities, sigmoid, softmax, default auto): What the class scores are.
  *   objectness (a str, one of auto, present, absent, default auto): Whether rows of candidates have an objectness.
  *   row_order (a str, one of auto, box_score_class, class_score_box, batch_box_class_score, batch_box_score_class, default auto): Order of the values of a detection in one output.
+ *   masks (a str, one of auto, absent, prototypes, default auto): Whether the detections have masks.
  *   resize (a str, one of auto, letterbox, top_left, top_left_truncated, stretch, default auto): How an image becomes the network's input.
  *   padding (an int 0..=255, default none): Level of the padding of a letterbox; recognised from the network if absent.
  *   colour (a str, one of auto, rgb, bgr, default auto): Order of the colour channels of the network's input.

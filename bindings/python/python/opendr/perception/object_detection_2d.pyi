@@ -261,6 +261,7 @@ class ImportedDetectorLearner(NativeLearner):
             'absent')
         row_order: Order of the values of a detection in one output. (default 'auto'; one of 'auto',
             'box_score_class', 'class_score_box', 'batch_box_class_score', 'batch_box_score_class')
+        masks: Whether the detections have masks. (default 'auto'; one of 'auto', 'absent', 'prototypes')
         resize: How an image becomes the network's input. (default 'auto'; one of 'auto', 'letterbox', 'top_left',
             'top_left_truncated', 'stretch')
         padding: Level of the padding of a letterbox; recognised from the network if absent. (default None; 0 to
@@ -284,13 +285,14 @@ class ImportedDetectorLearner(NativeLearner):
     scores: Literal['auto', 'probabilities', 'sigmoid', 'softmax']
     objectness: Literal['auto', 'present', 'absent']
     row_order: Literal['auto', 'box_score_class', 'class_score_box', 'batch_box_class_score', 'batch_box_score_class']
+    masks: Literal['auto', 'absent', 'prototypes']
     resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch']
     padding: Optional[int]
     colour: Literal['auto', 'rgb', 'bgr']
     levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet']
     first_class: Optional[int]
     size: int
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ..., layout: Literal['auto', 'candidates', 'grid_candidates', 'detections', 'queries'] = ..., boxes: Literal['auto', 'xyxy', 'cxcywh', 'xywh', 'yxyx'] = ..., unit: Literal['auto', 'pixels', 'fractions'] = ..., scores: Literal['auto', 'probabilities', 'sigmoid', 'softmax'] = ..., objectness: Literal['auto', 'present', 'absent'] = ..., row_order: Literal['auto', 'box_score_class', 'class_score_box', 'batch_box_class_score', 'batch_box_score_class'] = ..., resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch'] = ..., padding: Optional[int] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet'] = ..., first_class: Optional[int] = ..., size: int = ...) -> None: ...
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ..., layout: Literal['auto', 'candidates', 'grid_candidates', 'detections', 'queries'] = ..., boxes: Literal['auto', 'xyxy', 'cxcywh', 'xywh', 'yxyx'] = ..., unit: Literal['auto', 'pixels', 'fractions'] = ..., scores: Literal['auto', 'probabilities', 'sigmoid', 'softmax'] = ..., objectness: Literal['auto', 'present', 'absent'] = ..., row_order: Literal['auto', 'box_score_class', 'class_score_box', 'batch_box_class_score', 'batch_box_score_class'] = ..., masks: Literal['auto', 'absent', 'prototypes'] = ..., resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch'] = ..., padding: Optional[int] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet'] = ..., first_class: Optional[int] = ..., size: int = ...) -> None: ...
     @overload
     def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> BoundingBoxList: ...  # type: ignore[overload-overlap]
     @overload
