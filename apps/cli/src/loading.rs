@@ -103,10 +103,11 @@ fn entry_of_model(path: &Path) -> Result<&'static Entry> {
     if !name.is_empty() {
         return opendr::registry().find(name);
     }
-    let recognises = |entry: &&'static Entry| entry.spec.recognises_networks;
+    let onnx = model.onnx()?;
+    let recognises = |entry: &&'static Entry| entry.spec.recognises_network.is_some_and(|is| is(&onnx));
     opendr::registry().entries().into_iter().find(recognises).ok_or_else(|| {
         Error::unsupported(format!(
-            "{} names no learner, and no learner of this build recognises networks; write \"LEARNER --model {0}\"",
+            "{} names no learner, and no learner of this build recognises its network; write \"LEARNER --model {0}\"",
             path.display()
         ))
     })

@@ -47,6 +47,7 @@ pub mod timing;
 
 pub use builtin::{Builtin, Rten};
 pub use executor::GraphExecutor;
+pub use onnx_header::declared_tensors;
 pub use onnx_runtime::{OnnxRuntime, prefer_python};
 pub use runtime::{Engine, Runtime, SessionOptions, Sink};
 pub use selection::{default_runtime, describe, device, runtimes};

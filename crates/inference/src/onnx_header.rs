@@ -20,6 +20,15 @@ pub(crate) struct OnnxHeader {
     pub(crate) outputs: Vec<TensorInfo>,
 }
 
+/// Returns the inputs and the outputs that an ONNX model declares; inputs with an initialiser are none.
+///
+/// # Errors
+/// `Format` when the bytes are not a complete ONNX model, `Unsupported` when it keeps weights in other files or when an input or
+/// output has a type that [`ElementType`] lacks.
+pub fn declared_tensors(onnx: &[u8]) -> Result<[Vec<TensorInfo>; 2]> {
+    OnnxHeader::read(onnx).map(|header| [header.inputs, header.outputs])
+}
+
 impl OnnxHeader {
     /// Reads and checks the structure of a model.
     ///

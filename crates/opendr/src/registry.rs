@@ -10,7 +10,8 @@ use opendr_actions::{
 use opendr_active::{ActiveFaceRecognition, ActiveObjectRecognition, ActivePoseRecognition};
 #[cfg(feature = "classification")]
 use opendr_classification::{
-    compressive_learning::MultilinearCompressive, image_classification::ImageClassifier,
+    compressive_learning::MultilinearCompressive,
+    image_classification::{ImageClassifier, ImportedClassifier},
 };
 #[cfg(feature = "clouds")]
 use opendr_clouds::object_detection_3d::VoxelObjectDetection3d;
@@ -44,7 +45,9 @@ use opendr_planning::end_to_end::EndToEndPlanningRl;
 #[cfg(feature = "pose")]
 use opendr_pose::{
     fall_detection::FallDetector,
-    pose_estimation::{BlazePose, HighResolutionPoseEstimation, LightweightOpenPose, Movenet, Posenet},
+    pose_estimation::{
+        BlazePose, HighResolutionPoseEstimation, ImportedPoseEstimator, LightweightOpenPose, Movenet, Posenet,
+    },
 };
 use opendr_rl::prior::{
     ResidualPpoLearner, ResidualSacLearner, ResidualTd3Learner, ShapedPpoLearner, ShapedSacLearner,
@@ -122,6 +125,7 @@ pub fn registry() -> &'static Registry {
                 LightweightOpenPose,
                 HighResolutionPoseEstimation,
                 BlazePose,
+                ImportedPoseEstimator,
                 FallDetector,
             },
             #[cfg(feature = "hands")]
@@ -133,6 +137,7 @@ pub fn registry() -> &'static Registry {
             #[cfg(feature = "classification")]
             {
                 ImageClassifier,
+                ImportedClassifier,
                 MultilinearCompressive,
             },
             #[cfg(feature = "segmentation")]

@@ -33,10 +33,12 @@ pub enum opendr_skeleton {
     OPENDR_NTU25 = 7,
     /// The positions of the two jaws of a gripper for a grasp.
     OPENDR_GRASP2 = 8,
+    /// Up to 144 keypoints without names, by their index.
+    OPENDR_POINTS = 9,
 }
 
 // The numbers are the indices in `Skeleton::ALL`.
-const _: () = assert!(Skeleton::ALL.len() == opendr_skeleton::OPENDR_GRASP2 as usize + 1);
+const _: () = assert!(Skeleton::ALL.len() == opendr_skeleton::OPENDR_POINTS as usize + 1);
 
 /// A keypoint in an image, pixels; (-1, -1) means not detected.
 #[repr(C)]
@@ -124,11 +126,11 @@ impl List for PoseList {
         })?;
         // SAFETY: the caller's promise.
         let points = unsafe { slice(plain.keypoints, plain.keypoint_count, "the keypoints of a pose") }?;
-        let joints = skeleton.joints().len();
-        if points.len() != joints {
+        if !skeleton.has(points.len()) {
             return Err(Error::invalid_input(format!(
-                "the pose has {} keypoints, and its skeleton {joints}; give one per joint",
-                points.len()
+                "the pose has {} keypoints, and its skeleton {}; give one per joint",
+                points.len(),
+                skeleton.joints().len()
             )));
         }
         points

@@ -3,7 +3,7 @@
 use crate::Task;
 
 /// Name, task and description of a learner; a constant beside its code.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy)]
 pub struct Spec {
     /// Registry name, also the file name and the command-line argument: `"nanodet"`.
     pub name: &'static str,
@@ -15,8 +15,9 @@ pub struct Spec {
     pub about: &'static str,
     /// Arguments of OpenDR's class of this name that have no effect here, each with the reason.
     pub without_effect: &'static [(&'static str, &'static str)],
-    /// Whether it loads ONNX files of other tools as they are; it recognises their inputs and outputs.
-    pub recognises_networks: bool,
+    /// For learners that load ONNX files of other tools as they are: returns whether the bytes of such a file are a network of the
+    /// learner's task.
+    pub recognises_network: Option<fn(&[u8]) -> bool>,
 }
 
 impl Spec {
@@ -25,7 +26,7 @@ impl Spec {
 
     /// Creates the specification of a learner named `name`.
     pub const fn new(name: &'static str, task: Task) -> Self {
-        Self { name, task, class: "", about: "", without_effect: &[], recognises_networks: false }
+        Self { name, task, class: "", about: "", without_effect: &[], recognises_network: None }
     }
 
     /// Sets the class name.
@@ -46,9 +47,9 @@ impl Spec {
         Self { about, ..self }
     }
 
-    /// States that the learner loads ONNX files of other tools as they are.
+    /// States that the learner loads ONNX files of other tools as they are, and which of them are of its task.
     #[must_use]
-    pub const fn recognises_networks(self) -> Self {
-        Self { recognises_networks: true, ..self }
+    pub const fn recognises_network(self, recognises: fn(&[u8]) -> bool) -> Self {
+        Self { recognises_network: Some(recognises), ..self }
     }
 }

@@ -28,6 +28,8 @@ pub enum Skeleton {
     Ntu25,
     /// Positions of the two jaws of a gripper in a grasp.
     Grasp2,
+    /// Up to 144 keypoints without names, by their index.
+    Points,
 }
 
 /// The joints of a hand, and its bones.
@@ -78,6 +80,20 @@ const HAND_BONES: &[[usize; 2]] = &[
     [0, 17],
 ];
 
+/// The names of keypoints that have none: their indices.
+#[rustfmt::skip]
+const POINTS: &[&str] = &[
+    "0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12", "13", "14", "15", "16", "17",
+    "18", "19", "20", "21", "22", "23", "24", "25", "26", "27", "28", "29", "30", "31", "32", "33", "34",
+    "35", "36", "37", "38", "39", "40", "41", "42", "43", "44", "45", "46", "47", "48", "49", "50", "51",
+    "52", "53", "54", "55", "56", "57", "58", "59", "60", "61", "62", "63", "64", "65", "66", "67", "68",
+    "69", "70", "71", "72", "73", "74", "75", "76", "77", "78", "79", "80", "81", "82", "83", "84", "85",
+    "86", "87", "88", "89", "90", "91", "92", "93", "94", "95", "96", "97", "98", "99", "100", "101",
+    "102", "103", "104", "105", "106", "107", "108", "109", "110", "111", "112", "113", "114", "115",
+    "116", "117", "118", "119", "120", "121", "122", "123", "124", "125", "126", "127", "128", "129",
+    "130", "131", "132", "133", "134", "135", "136", "137", "138", "139", "140", "141", "142", "143",
+];
+
 impl Skeleton {
     /// All skeletons.
     pub const ALL: &'static [Self] = &[
@@ -90,6 +106,7 @@ impl Skeleton {
         Self::Jhmdb15,
         Self::Ntu25,
         Self::Grasp2,
+        Self::Points,
     ];
 
     /// Returns the name in JSON and messages.
@@ -104,6 +121,7 @@ impl Skeleton {
             Self::Jhmdb15 => "jhmdb15",
             Self::Ntu25 => "ntu25",
             Self::Grasp2 => "grasp2",
+            Self::Points => "points",
         }
     }
 
@@ -114,6 +132,7 @@ impl Skeleton {
             Self::RightHand21 => "right hand",
             Self::Face478 => "face",
             Self::Grasp2 => "grasp",
+            Self::Points => "object",
             _ => "person",
         }
     }
@@ -186,7 +205,14 @@ impl Skeleton {
                 "r_foot", "chest", "l_tip", "l_thumb", "r_tip", "r_thumb",
             ],
             Self::Grasp2 => &["l_jaw", "r_jaw"],
+            Self::Points => POINTS,
         }
+    }
+
+    /// Returns whether a pose of this skeleton has `count` keypoints: one per joint, or fewer if the joints have no names.
+    pub const fn has(self, count: usize) -> bool {
+        let joints = self.joints().len();
+        count == joints || matches!(self, Self::Points) && count < joints
     }
 
     /// Returns the bones: pairs of joint indices.
@@ -286,6 +312,7 @@ impl Skeleton {
                 [10, 14],
             ],
             Self::Grasp2 => &[[0, 1]],
+            Self::Points => &[],
             Self::Ntu25 => &[
                 [20, 1],
                 [1, 0],
@@ -340,6 +367,10 @@ mod tests {
     fn bones_join_joints() {
         for skeleton in Skeleton::ALL {
             let count = skeleton.joints().len();
+            if *skeleton == Skeleton::Points {
+                assert!(skeleton.joints().iter().enumerate().all(|(index, name)| *name == index.to_string()));
+                continue;
+            }
             let digits: String = skeleton.name().chars().filter(char::is_ascii_digit).collect();
             assert_eq!(digits, count.to_string());
             assert!(skeleton.bones().iter().flatten().all(|joint| *joint < count));

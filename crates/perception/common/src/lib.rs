@@ -3,7 +3,7 @@
 //! The crate holds no learner. Its modules, by purpose:
 //!
 //! * Inputs: [`image_network`] (a session with fused pre-processing of one image), [`manifest_preprocess`] (pre-processing from
-//!   a model's manifest), [`clip_frames`], [`frame_features`] (features of skeletons).
+//!   a model's manifest), [`exported_network`] (networks of other tools), [`clip_frames`], [`frame_features`] (features of skeletons).
 //! * Outputs: [`category_scores`] (categories from logits), [`suppression`] (non-maximum suppression),
 //!   [`boxes_from_candidates`], [`part_tree`] (PersonLab's decoder of poses), [`joints`], [`rotated_square`].
 //! * Second passes over parts of a large image: [`regions`].
@@ -35,6 +35,7 @@ pub mod category_scores;
 pub mod clip_frames;
 #[cfg(feature = "training")]
 pub mod dynamic_sides;
+pub mod exported_network;
 pub mod frame_features;
 #[cfg(feature = "training")]
 pub mod frozen_layers;

@@ -5,8 +5,7 @@
 use std::path::PathBuf;
 
 use opendr_detection::object_detection_2d::{
-    BoxFormat, BoxUnit, ImportedDetector, ImportedDetectorParams, InputColour, InputLevels, InputResize,
-    Objectness, OutputLayout, ScoreFormat,
+    BoxFormat, BoxUnit, ImportedDetector, ImportedDetectorParams, Objectness, OutputLayout, ScoreFormat,
 };
 use opendr_engine::data::Image;
 use opendr_engine::learner::Handle;
@@ -15,6 +14,7 @@ use opendr_engine::{Device, ErrorKind, Result};
 use opendr_onnx::{
     Array, Builder, Data, ElementType, GraphTensor, Operator, bytes_from_model, model_from_graph,
 };
+use opendr_perception_common::exported_network::{InputColour, InputLevels, InputParams, InputResize};
 
 /// Corners of the object in an image of 64 x 64 pixels; its class is 1 and its score 0.9.
 const CORNERS: [f32; 4] = [16.0, 8.0, 48.0, 40.0];
@@ -104,6 +104,11 @@ fn detects(path: PathBuf, params: ImportedDetectorParams) -> ImportedDetectorPar
     detector.params().clone()
 }
 
+fn with_levels(levels: InputLevels) -> ImportedDetectorParams {
+    let input = InputParams { levels, ..InputParams::default() };
+    ImportedDetectorParams { input, ..ImportedDetectorParams::default() }
+}
+
 fn recognised(path: PathBuf) -> ImportedDetectorParams {
     detects(path, ImportedDetectorParams::default())
 }
@@ -117,10 +122,10 @@ fn candidates_with_objectness() {
     assert_eq!((params.layout, params.objectness), (OutputLayout::Candidates, Objectness::Present));
     let output = ("outputs", &[1, 84, 8][..], rows(84, 7, &ROW, 0.0));
     let params = recognised(network("yolov6", &[IMAGES], Tail::Sum, vec![output]));
-    assert_eq!((params.layout, params.levels), (OutputLayout::Candidates, InputLevels::Unit));
+    assert_eq!((params.layout, params.input.levels), (OutputLayout::Candidates, InputLevels::Unit));
     let output = ("output", &[1, 84, 8][..], rows(84, 7, &ROW, 0.0));
     let params = recognised(network("yolox_decoded", &[IMAGES], Tail::Exponential, vec![output]));
-    assert_eq!((params.layout, params.levels), (OutputLayout::Candidates, InputLevels::Bytes));
+    assert_eq!((params.layout, params.input.levels), (OutputLayout::Candidates, InputLevels::Bytes));
 }
 
 #[test]
@@ -139,7 +144,7 @@ fn candidates_relative_to_cells() {
     let row = [1.0, 0.75, 0.0, 0.0, 0.9, 0.0, 1.0, 0.0];
     let output = ("output", &[1, 84, 8][..], rows(84, 80, &row, 0.0));
     let params = recognised(network("yolox", &[IMAGES], Tail::Nothing, vec![output]));
-    let found = (params.layout, params.resize, params.colour);
+    let found = (params.layout, params.input.resize, params.input.colour);
     assert_eq!(found, (OutputLayout::GridCandidates, InputResize::TopLeftTruncated, InputColour::Bgr));
 }
 
@@ -148,13 +153,13 @@ fn rows_of_detections() {
     let row = [16.0, 8.0, 48.0, 40.0, 0.9, 1.0];
     let output = ("output0", &[1, 50, 6][..], rows(50, 0, &row, 0.0));
     let params = recognised(network("yolov10", &[IMAGES], Tail::Nothing, vec![output]));
-    assert_eq!((params.layout, params.resize), (OutputLayout::Detections, InputResize::Letterbox));
+    assert_eq!((params.layout, params.input.resize), (OutputLayout::Detections, InputResize::Letterbox));
     let row = [0.0, 16.0, 8.0, 48.0, 40.0, 1.0, 0.9];
     recognised(network("yolov7", &[IMAGES], Tail::Nothing, vec![("output", &[2, 7], rows(2, 0, &row, 0.0))]));
     let nhwc = ("images", ElementType::Float, &[1, 64, 64, 3][..]);
     let row = [0.0, 8.0, 16.0, 40.0, 48.0, 0.9, 2.0];
     let output = ("detections", &[1, 10, 7][..], rows(10, 0, &row, 0.0));
-    let params = ImportedDetectorParams { levels: InputLevels::Bytes, ..ImportedDetectorParams::default() };
+    let params = with_levels(InputLevels::Bytes);
     let params = detects(network("efficientdet", &[nhwc], Tail::Nothing, vec![output]), params);
     assert_eq!((params.boxes, params.first_class), (BoxFormat::Yxyx, Some(1)));
 }
@@ -176,7 +181,7 @@ fn lists_of_detections() {
         ("scores", &[1, 10], first(10, 0.9)),
     ];
     let params = recognised(network("d_fine", &[IMAGES, sizes], Tail::Nothing, outputs));
-    assert_eq!(params.resize, InputResize::Stretch);
+    assert_eq!(params.input.resize, InputResize::Stretch);
     let nhwc = ("images", ElementType::Float, &[1, 64, 64, 3][..]);
     let fractions = [0.125, 0.25, 0.625, 0.75];
     let outputs = vec![
@@ -185,7 +190,7 @@ fn lists_of_detections() {
         ("detection_classes", &[1, 10], first(10, 2.0)),
         ("num_detections", &[1], Data::Float(vec![1.0])),
     ];
-    let params = ImportedDetectorParams { levels: InputLevels::Bytes, ..ImportedDetectorParams::default() };
+    let params = with_levels(InputLevels::Bytes);
     detects(network("tensorflow", &[nhwc], Tail::Nothing, outputs), params);
 }
 
@@ -195,7 +200,7 @@ fn queries() {
     let boxes = rows(10, 0, &[0.5, 0.375, 0.5, 0.5], 0.5);
     let outputs = vec![("dets", &[1, 10, 4][..], boxes), ("labels", &[1, 10, 3], logits)];
     let params = recognised(network("rf_detr", &[IMAGES], Tail::Nothing, outputs));
-    assert_eq!((params.layout, params.levels), (OutputLayout::Queries, InputLevels::ImageNet));
+    assert_eq!((params.layout, params.input.levels), (OutputLayout::Queries, InputLevels::ImageNet));
 }
 
 #[test]
@@ -209,8 +214,11 @@ fn what_tools_leave_open_is_to_be_given() {
     assert_eq!(error.kind(), ErrorKind::Unsupported);
     assert!(format!("{error:#}").contains("set colour, levels"), "{error:#}");
     let params = ImportedDetectorParams {
-        colour: InputColour::Bgr,
-        levels: InputLevels::ImageNet,
+        input: InputParams {
+            colour: InputColour::Bgr,
+            levels: InputLevels::ImageNet,
+            ..InputParams::default()
+        },
         ..ImportedDetectorParams::default()
     };
     detects(network("mmdeploy", &[IMAGES], Tail::Nothing, outputs()), params);
@@ -227,7 +235,7 @@ fn what_tools_leave_open_is_to_be_given() {
     let path = network("paddle", &inputs, Tail::Nothing, outputs());
     let error = load(&path, ImportedDetectorParams::default()).err().unwrap();
     assert!(format!("{error:#}").contains("set levels"), "{error:#}");
-    let params = ImportedDetectorParams { levels: InputLevels::Unit, ..ImportedDetectorParams::default() };
+    let params = with_levels(InputLevels::Unit);
     detects(network("paddle", &inputs, Tail::Nothing, outputs()), params);
 }
 
@@ -242,9 +250,12 @@ fn a_layout_can_be_given() {
         unit: BoxUnit::Pixels,
         scores: ScoreFormat::Probabilities,
         objectness: Objectness::Absent,
-        resize: InputResize::Stretch,
-        colour: InputColour::Rgb,
-        levels: InputLevels::Unit,
+        input: InputParams {
+            resize: InputResize::Stretch,
+            colour: InputColour::Rgb,
+            levels: InputLevels::Unit,
+            ..InputParams::default()
+        },
         ..ImportedDetectorParams::default()
     };
     detects(network("split", &[IMAGES], Tail::Nothing, outputs), params);

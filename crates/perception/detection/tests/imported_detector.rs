@@ -1,6 +1,6 @@
 //! Detectors that other packages exported, beside the packages' own post-processing.
 //!
-//! `tests/extended/detector_fixtures.py` writes the fixtures: small networks with random weights.
+//! `tests/extended/exported_network_fixtures.py` writes the fixtures: small networks with random weights.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
@@ -13,6 +13,7 @@ use opendr_engine::data::{Image, PixelFormat};
 use opendr_engine::learner::Handle;
 use opendr_engine::target::{BoundingBox, Name, Rle, Segmentation};
 use opendr_engine::{Device, ErrorKind};
+use opendr_perception_testing::fixture_image::fixture_image;
 use opendr_perception_testing::learner_checks::check_trained_learner;
 use opendr_perception_testing::test_models::{container, test_data};
 
@@ -21,14 +22,6 @@ const TOLERANCE: f32 = 1e-3;
 
 fn fixture(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/imported").join(name)
-}
-
-/// The image of `detector_fixtures.py`.
-fn image(width: usize, height: usize) -> Image {
-    let level = |x: usize, y: usize, c: usize| ((x * 5 + y * 11 + c * 71 + x * y / 7) % 256) as u8;
-    let rows = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-    let pixels = rows.flat_map(|(x, y)| (0..3).map(move |c| level(x, y, c))).collect();
-    Image::from_rgb8(pixels, width, height).unwrap()
 }
 
 fn row(found: &BoundingBox) -> [f32; 6] {
@@ -58,7 +51,7 @@ fn compare(name: &str, layout: OutputLayout, classes: &[&str]) {
     assert_eq!(detector.params().layout, layout, "{name}");
     assert_eq!(detector.classes().iter().collect::<Vec<_>>(), classes, "{name}");
     let [width, height] = [0, 1].map(|side| expected["image"][side].as_u64().unwrap() as usize);
-    let found = detector.infer(&image(width, height)).unwrap().boxes;
+    let found = detector.infer(&fixture_image(width, height)).unwrap().boxes;
     assert_same(name, &found, &expected["detections"]);
     let Some(masks) = expected["masks"].as_array() else {
         assert!(found.iter().all(|found| found.segment.is_none()), "{name}");
@@ -163,7 +156,8 @@ fn yolox_nano() {
 #[test]
 fn it_is_a_learner() {
     let scratch = std::env::temp_dir().join(format!("opendr-imported-{}", std::process::id()));
-    let calls = [[64, 48], [80, 80], [31, 90]].map(|[width, height]| vec![image(width, height).into()]);
+    let calls =
+        [[64, 48], [80, 80], [31, 90]].map(|[width, height]| vec![fixture_image(width, height).into()]);
     check_trained_learner::<ImportedDetector>(&fixture("yolo.zip"), &scratch, calls.into());
     std::fs::remove_dir_all(&scratch).ok();
 }

@@ -1,10 +1,12 @@
 //! Shared test code of the perception learners.
 //!
 //! The crate has real models and data for tests ([`test_models`]), the check that a learner overfits one batch
-//! ([`overfit`]), and the checks of the learner's contract ([`learner_checks`]). It is a dev-dependency of the families only; no
+//! ([`overfit`]), the image of the fixtures of exported networks ([`fixture_image`]), and the checks of the learner's contract
+//! ([`learner_checks`]). It is a dev-dependency of the families only; no
 //! program contains it. Begin with [`test_models::test_data`].
 #![allow(clippy::unwrap_used)]
 
+pub mod fixture_image;
 pub mod learner_checks;
 pub mod overfit;
 pub mod test_models;

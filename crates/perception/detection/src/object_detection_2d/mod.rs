@@ -6,7 +6,6 @@ mod fastest_det;
 mod gem;
 mod imported_detector;
 mod nanodet;
-mod rows;
 #[cfg(feature = "training")]
 mod selected_classes;
 mod seq2seq_nms;
@@ -21,8 +20,8 @@ pub use fastest_det::{FastestDet, FastestDetParams};
 pub use gem::GemFitParams;
 pub use gem::{Gem, GemInputs, GemParams, GemTargets};
 pub use imported_detector::{
-    BoxFormat, BoxUnit, ImportedDetector, ImportedDetectorParams, InputColour, InputLevels, InputResize,
-    MaskOutput, Objectness, OutputLayout, RowOrder, ScoreFormat,
+    BoxFormat, BoxUnit, ImportedDetector, ImportedDetectorParams, MaskOutput, Objectness, OutputLayout,
+    RowOrder, ScoreFormat,
 };
 pub use nanodet::{Nanodet, NanodetParams};
 #[cfg(feature = "training")]

@@ -10,11 +10,10 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Device, Pool, Result, Task};
 use opendr_perception_common::boxes_from_candidates::boxes_from_candidates;
+use opendr_perception_common::exported_network::{Rows, Selection, decode_grid};
 use opendr_perception_common::image_network::{ImageNetwork, preprocess_from_input};
 use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
 use opendr_vision::{ChannelOrder, LetterboxAlign};
-
-use super::rows::{Rows, Selection, decode_grid};
 
 /// Parameters of [`Yolox`].
 #[derive(Debug, Clone, Params)]

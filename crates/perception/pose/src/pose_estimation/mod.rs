@@ -2,6 +2,7 @@
 
 mod blazepose;
 mod high_resolution_pose_estimation;
+mod imported_pose_estimator;
 mod lightweight_open_pose;
 mod movenet;
 mod one_euro;
@@ -13,6 +14,9 @@ pub use blazepose::{BlazePose, BlazePoseParams, BlazePoseState};
 pub use high_resolution_pose_estimation::{
     HighResolutionPoseEstimation, HighResolutionPoseEstimationParams, HighResolutionPoseEstimationState,
     RegionMethod,
+};
+pub use imported_pose_estimator::{
+    ImportedPoseEstimator, ImportedPoseEstimatorParams, KeypointOrder, PoseLayout,
 };
 #[cfg(feature = "training")]
 pub use lightweight_open_pose::LightweightOpenPoseFitParams;

@@ -15,7 +15,8 @@ _FACE = (
 
 #: The joints of each skeleton, in order. Persons: ``"opendr18"`` of OpenDR and OpenPose, ``"coco17"`` of COCO,
 #: ``"blazepose33"`` of BlazePose, ``"jhmdb15"`` of JHMDB, ``"ntu25"`` of Kinect v2. MediaPipe's hands and face:
-#: ``"left_hand21"``, ``"right_hand21"``, ``"face478"``. The jaws of a gripper: ``"grasp2"``.
+#: ``"left_hand21"``, ``"right_hand21"``, ``"face478"``. The jaws of a gripper: ``"grasp2"``. Keypoints
+#: without names, by their index: ``"points"``.
 JOINTS: dict[str, tuple[str, ...]] = {
     "opendr18": (
         *("nose", "neck", "r_sho", "r_elb", "r_wri", "l_sho", "l_elb", "l_wri", "r_hip", "r_knee"),
@@ -44,6 +45,7 @@ JOINTS: dict[str, tuple[str, ...]] = {
         *("chest", "l_tip", "l_thumb", "r_tip", "r_thumb"),
     ),
     "grasp2": ("l_jaw", "r_jaw"),
+    "points": tuple(str(index) for index in range(144)),
 }
 
 

@@ -2,14 +2,12 @@
 
 use opendr_engine::{Error, Result};
 use opendr_inference::ElementType;
-
-use super::class_names::class_names;
-use super::facts::{Facts, is_integer, last_two};
-use super::params::{
-    BoxFormat, BoxUnit, InputColour, InputLevels, InputResize, MaskOutput, Objectness, OutputLayout,
-    RowOrder, ScoreFormat,
+use opendr_perception_common::exported_network::{
+    Facts, InputColour, InputConvention, InputLevels, InputResize, cells_of, class_names, is_integer,
+    last_two,
 };
-use crate::object_detection_2d::rows::cells_of;
+
+use super::params::{BoxFormat, BoxUnit, MaskOutput, Objectness, OutputLayout, RowOrder, ScoreFormat};
 
 /// What is known of a network; `Auto` where a parameter has to state it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,10 +19,7 @@ pub(super) struct Convention {
     pub(super) objectness: Objectness,
     pub(super) row_order: RowOrder,
     pub(super) masks: MaskOutput,
-    pub(super) resize: InputResize,
-    pub(super) padding: usize,
-    pub(super) colour: InputColour,
-    pub(super) levels: InputLevels,
+    pub(super) input: InputConvention,
     pub(super) first_class: usize,
 }
 
@@ -40,10 +35,7 @@ pub(super) const UNKNOWN: Convention = Convention {
     objectness: Objectness::Auto,
     row_order: RowOrder::Auto,
     masks: MaskOutput::Absent,
-    resize: InputResize::Auto,
-    padding: 0,
-    colour: InputColour::Auto,
-    levels: InputLevels::Auto,
+    input: InputConvention::UNKNOWN,
     first_class: 0,
 };
 
@@ -54,19 +46,19 @@ const YOLO: Convention = Convention {
     unit: BoxUnit::Pixels,
     scores: ScoreFormat::Probabilities,
     objectness: Objectness::Absent,
-    resize: InputResize::Letterbox,
-    padding: 114,
-    colour: InputColour::Rgb,
-    levels: InputLevels::Unit,
+    input: InputConvention::YOLO,
     ..UNKNOWN
 };
 
 /// Candidates of YOLOX that are decoded by the network.
 const YOLOX: Convention = Convention {
     objectness: Objectness::Present,
-    resize: InputResize::TopLeftTruncated,
-    colour: InputColour::Bgr,
-    levels: InputLevels::Bytes,
+    input: InputConvention {
+        resize: InputResize::TopLeftTruncated,
+        colour: InputColour::Bgr,
+        levels: InputLevels::Bytes,
+        ..InputConvention::YOLO
+    },
     ..YOLO
 };
 
@@ -79,31 +71,35 @@ const DETECTIONS: Convention = Convention {
     ..UNKNOWN
 };
 
+/// An input that an RGB image fills.
+const STRETCHED: InputConvention =
+    InputConvention { resize: InputResize::Stretch, colour: InputColour::Rgb, ..InputConvention::UNKNOWN };
+
+/// The same, normalised as on ImageNet.
+const IMAGENET: InputConvention = InputConvention { levels: InputLevels::ImageNet, ..STRETCHED };
+
 /// Queries with boxes in fractions of the input.
 const QUERIES: Convention = Convention {
     layout: OutputLayout::Queries,
     boxes: BoxFormat::Cxcywh,
     unit: BoxUnit::Fractions,
-    resize: InputResize::Stretch,
-    colour: InputColour::Rgb,
+    input: STRETCHED,
     ..UNKNOWN
 };
 
+/// The input of YOLO, filled by the image.
+const YOLO_STRETCHED: InputConvention =
+    InputConvention { resize: InputResize::Stretch, ..InputConvention::YOLO };
+
 /// Final detections of a network that takes images as YOLO does.
-const YOLO_DETECTIONS: Convention = Convention {
-    resize: YOLO.resize,
-    padding: YOLO.padding,
-    colour: YOLO.colour,
-    levels: YOLO.levels,
-    ..DETECTIONS
-};
+const YOLO_DETECTIONS: Convention = Convention { input: YOLO.input, ..DETECTIONS };
 
 /// Recognises the convention of a network with an input of `size` pixels.
 ///
 /// # Errors
 /// `Unsupported` for a network that is recognised and is no detector of upright boxes.
 pub(super) fn recognise(facts: &Facts, size: [usize; 2]) -> Result<Option<Convention>> {
-    if ["stride", "names"].iter().all(|key| !facts.metadata(key).is_empty()) {
+    if facts.is_of_ultralytics() {
         return ultralytics(facts);
     }
     let rules = [paddle, named_lists, tensorflow, detr, lists];
@@ -125,24 +121,18 @@ fn ultralytics(facts: &Facts) -> Result<Option<Convention>> {
     let Some([rows, fields]) = facts.outputs.first().and_then(|output| last_two(output, 2)) else {
         return Ok(None);
     };
-    let is_final = facts.metadata("end2end") == "True"
-        || facts.metadata("args").contains("'nms': True")
-        || facts.has_operator("NonMaxSuppression");
+    let is_final = facts.has_suppressed();
     let is_rt_detr = facts.metadata("head") == "RTDETRDecoder";
     let listed = Convention { row_order: RowOrder::BoxScoreClass, ..YOLO_DETECTIONS };
     let few = rows.is_some_and(|rows| rows <= MAX_DETECTIONS);
-    let queries = Convention {
-        layout: OutputLayout::Queries,
-        unit: BoxUnit::Fractions,
-        resize: InputResize::Stretch,
-        ..YOLO
-    };
+    let queries =
+        Convention { layout: OutputLayout::Queries, unit: BoxUnit::Fractions, input: YOLO_STRETCHED, ..YOLO };
     let convention = match fields {
         _ if is_final => Some(listed),
         Some(6) if is_rt_detr && count != 2 => Some(Convention {
             boxes: BoxFormat::Cxcywh,
             unit: BoxUnit::Fractions,
-            resize: InputResize::Stretch,
+            input: YOLO_STRETCHED,
             ..listed
         }),
         Some(fields) if is_rt_detr && fields == count + 4 && fields != 6 => Some(queries),
@@ -170,12 +160,7 @@ fn with_masks(convention: Convention, facts: &Facts) -> Convention {
 fn paddle(facts: &Facts) -> Option<Convention> {
     facts.inputs.iter().find(|input| input.name.contains("scale_factor"))?;
     facts.only_output(|output| last_two(output, 2).is_some_and(|dims| dims[1] == Some(6)))?;
-    Some(Convention {
-        row_order: RowOrder::ClassScoreBox,
-        resize: InputResize::Stretch,
-        colour: InputColour::Rgb,
-        ..DETECTIONS
-    })
+    Some(Convention { row_order: RowOrder::ClassScoreBox, input: STRETCHED, ..DETECTIONS })
 }
 
 /// Outputs that are named by their exporter: `MMDeploy`, RF-DETR, and the suppression of YOLOv6 to v8.
@@ -186,9 +171,11 @@ fn named_lists(facts: &Facts) -> Option<Convention> {
     let (boxes, labels) = (facts.output_named("dets")?, facts.output_named("labels")?);
     match last_two(&facts.outputs[boxes], 2)?[1]? {
         5 if is_integer(&facts.outputs[labels]) => {
-            Some(Convention { resize: InputResize::TopLeft, padding: 114, ..DETECTIONS })
+            let input =
+                InputConvention { resize: InputResize::TopLeft, padding: 114, ..InputConvention::UNKNOWN };
+            Some(Convention { input, ..DETECTIONS })
         }
-        4 => Some(Convention { scores: ScoreFormat::Sigmoid, levels: InputLevels::ImageNet, ..QUERIES }),
+        4 => Some(Convention { scores: ScoreFormat::Sigmoid, input: IMAGENET, ..QUERIES }),
         _ => None,
     }
 }
@@ -197,15 +184,15 @@ fn named_lists(facts: &Facts) -> Option<Convention> {
 fn tensorflow(facts: &Facts) -> Option<Convention> {
     let bytes = facts.inputs.iter().any(|input| input.element_type == ElementType::U8);
     let levels = if bytes { InputLevels::Bytes } else { InputLevels::Auto };
-    let common =
-        Convention { boxes: BoxFormat::Yxyx, colour: InputColour::Rgb, levels, first_class: 1, ..DETECTIONS };
+    let input = |resize| InputConvention { resize, levels, ..STRETCHED };
+    let common = Convention { boxes: BoxFormat::Yxyx, first_class: 1, ..DETECTIONS };
     if facts.output_named("detection_boxes").is_some() {
-        return Some(Convention { unit: BoxUnit::Fractions, resize: InputResize::Stretch, ..common });
+        return Some(Convention { unit: BoxUnit::Fractions, input: input(InputResize::Stretch), ..common });
     }
     let rows = facts.output_named("detections")?;
     (last_two(&facts.outputs[rows], 3)?[1] == Some(7)).then_some(Convention {
         row_order: RowOrder::BatchBoxScoreClass,
-        resize: InputResize::TopLeft,
+        input: input(InputResize::TopLeft),
         ..common
     })
 }
@@ -217,9 +204,10 @@ fn detr(facts: &Facts) -> Option<Convention> {
     let queries = last_two(&facts.outputs[logits], 3)?[0];
     Some(match queries {
         _ if facts.has_operator("GridSample") => {
-            Convention { scores: ScoreFormat::Sigmoid, levels: InputLevels::Unit, ..QUERIES }
+            let input = InputConvention { levels: InputLevels::Unit, ..STRETCHED };
+            Convention { scores: ScoreFormat::Sigmoid, input, ..QUERIES }
         }
-        Some(100) => Convention { scores: ScoreFormat::Softmax, levels: InputLevels::ImageNet, ..QUERIES },
+        Some(100) => Convention { scores: ScoreFormat::Softmax, input: IMAGENET, ..QUERIES },
         _ => QUERIES,
     })
 }
@@ -230,11 +218,10 @@ fn lists(facts: &Facts) -> Option<Convention> {
     let rank = facts.outputs[boxes].dims.len() - 1;
     facts.only_output(|output| is_integer(output) && output.dims.len() == rank)?;
     facts.only_output(|output| output.element_type == ElementType::F32 && output.dims.len() == rank)?;
-    let common = Convention { colour: InputColour::Rgb, levels: InputLevels::Unit, ..DETECTIONS };
-    Some(match facts.inputs.iter().any(|input| input.name.contains("size")) {
-        true => Convention { resize: InputResize::Stretch, ..common },
-        false => Convention { resize: InputResize::TopLeft, ..common },
-    })
+    let takes_size = facts.inputs.iter().any(|input| input.name.contains("size"));
+    let resize = if takes_size { InputResize::Stretch } else { InputResize::TopLeft };
+    let input = InputConvention { resize, levels: InputLevels::Unit, ..STRETCHED };
+    Some(Convention { input, ..DETECTIONS })
 }
 
 /// Rows without metadata, by their number: that of the cells of the input, or three times that.

@@ -2,13 +2,13 @@
 
 use opendr_engine::{Error, Result};
 use opendr_inference::{TensorData, TensorView};
+use opendr_perception_common::exported_network::{ClassScores, Rows, Selection, cells_of, decode_grid};
 use opendr_perception_common::suppression::Candidate;
 
 use super::convention::Convention;
 use super::masks::{MaskScratch, Prototypes};
 use super::params::{BoxFormat, BoxUnit, Objectness, OutputLayout, RowOrder, ScoreFormat};
 use super::roles::Roles;
-use crate::object_detection_2d::rows::{ClassScores, Rows, Selection, cells_of, decode_grid};
 
 /// Strides of the levels of a network whose boxes are relative to their cells.
 const STRIDES: [usize; 4] = [8, 16, 32, 64];

@@ -3,11 +3,8 @@
 //! The layout of inputs and outputs is recognised from names, shapes, metadata and operators. A parameter overrides it; what is
 //! neither recognised nor given is an error that names the parameter. `docs/bring_your_own.md` lists the conventions.
 
-mod class_names;
 mod convention;
 mod decode;
-mod facts;
-mod input;
 mod masks;
 mod params;
 mod roles;
@@ -22,27 +19,24 @@ use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
 use opendr_perception_common::boxes_from_candidates::{box_from_candidate, boxes_from_candidates};
+use opendr_perception_common::exported_network::{
+    ExportedNetwork, Facts, ImageInput, NetworkKind, Selection,
+};
 use opendr_perception_common::suppression::Suppression;
 use opendr_vision::InputGeometry;
 
 pub use params::{
-    BoxFormat, BoxUnit, ImportedDetectorParams, InputColour, InputLevels, InputResize, MaskOutput,
-    Objectness, OutputLayout, RowOrder, ScoreFormat,
+    BoxFormat, BoxUnit, ImportedDetectorParams, MaskOutput, Objectness, OutputLayout, RowOrder, ScoreFormat,
 };
 
-use class_names::class_names;
 use decode::{Decoder, Scratch};
-use facts::Facts;
-use input::{ImageInput, Network};
 use roles::Roles;
-
-use super::rows::Selection;
 
 /// A loaded detector of another tool.
 pub struct ImportedDetector {
     params: ImportedDetectorParams,
     classes: Classes,
-    network: Network,
+    network: ExportedNetwork,
     decoder: Decoder,
     scratch: Pool<Scratch>,
 }
@@ -53,7 +47,7 @@ impl Learner for ImportedDetector {
         .about(
             "Runs your own detector, exported to ONNX by another tool; recognises the layout of its outputs.",
         )
-        .recognises_networks();
+        .recognises_network(|onnx| NetworkKind::Detector.recognises(onnx));
     type Params = ImportedDetectorParams;
     type Input<'a> = &'a Image;
     type Target = BoundingBoxList;
@@ -63,16 +57,11 @@ impl Learner for ImportedDetector {
         let onnx = model.onnx()?;
         let session = Session::open(&onnx, device)?;
         let facts = Facts::read(&onnx, &session)?;
-        let image = ImageInput::find(&facts, params.size)?;
-        let classes = match model.classes() {
-            given if given.is_empty() => {
-                Classes::from(class_names(facts.metadata("names")).unwrap_or_default())
-            }
-            given => given.clone(),
-        };
+        let image = ImageInput::find(&facts, params.input.size)?;
+        let classes = facts.classes(model);
         let convention = settled::settle(&mut params, convention::recognise(&facts, image.size)?, &facts)?;
         let roles = Roles::find(convention.layout, &facts, classes.len())?;
-        let network = Network::new(session, image, &convention)?;
+        let network = ExportedNetwork::new(session, image, &convention.input)?;
         let prototypes = match convention.masks {
             MaskOutput::Prototypes => facts.prototypes(),
             MaskOutput::Auto | MaskOutput::Absent => None,
@@ -102,7 +91,7 @@ impl Learner for ImportedDetector {
             threshold,
             max_boxes: max_detections,
         };
-        self.network.run(image, |outputs, geometry| {
+        self.network.run(image.view(), |outputs, geometry| {
             if outputs.is_empty() {
                 return Err(Error::format("the network has no outputs"));
             }

@@ -1,6 +1,7 @@
-//! Parameters of [`super::ImportedDetector`]: its settings, and what is to be known of a network's inputs and outputs.
+//! Parameters of [`super::ImportedDetector`]: its settings, and what is to be known of a network's outputs.
 
 use opendr_engine::params::Params;
+use opendr_perception_common::exported_network::InputParams;
 use opendr_perception_common::suppression::SuppressionKind;
 
 opendr_engine::choices! {
@@ -101,50 +102,6 @@ opendr_engine::choices! {
     }
 }
 
-opendr_engine::choices! {
-    /// How an image becomes the network's input.
-    pub enum InputResize {
-        /// Recognised from the network.
-        Auto = "auto",
-        /// The aspect ratio is kept; padding on all sides.
-        Letterbox = "letterbox",
-        /// The aspect ratio is kept; padding on the right and at the bottom.
-        TopLeft = "top_left",
-        /// The same, with truncated sides (YOLOX).
-        TopLeftTruncated = "top_left_truncated",
-        /// The whole input is filled.
-        Stretch = "stretch",
-    }
-}
-
-opendr_engine::choices! {
-    /// Order of the colour channels of the network's input.
-    pub enum InputColour {
-        /// Recognised from the network.
-        Auto = "auto",
-        /// Red, green, blue.
-        Rgb = "rgb",
-        /// Blue, green, red.
-        Bgr = "bgr",
-    }
-}
-
-opendr_engine::choices! {
-    /// Range of the samples of the network's input.
-    pub enum InputLevels {
-        /// Recognised from the network.
-        Auto = "auto",
-        /// 0 to 255.
-        Bytes = "0_255",
-        /// 0 to 1.
-        Unit = "0_1",
-        /// -1 to 1.
-        Signed = "-1_1",
-        /// Mean 0 and variance 1 over ImageNet.
-        ImageNet = "imagenet",
-    }
-}
-
 /// Parameters of [`super::ImportedDetector`].
 #[derive(Debug, Clone, Params)]
 pub struct ImportedDetectorParams {
@@ -177,19 +134,10 @@ pub struct ImportedDetectorParams {
     pub row_order: RowOrder,
     /// Whether the detections have masks.
     pub masks: MaskOutput,
-    /// How an image becomes the network's input.
-    pub resize: InputResize,
-    /// Level of the padding of a letterbox; recognised from the network if absent.
-    #[param(range = 0..=255)]
-    pub padding: Option<usize>,
-    /// Order of the colour channels of the network's input.
-    pub colour: InputColour,
-    /// Range of the samples of the network's input.
-    pub levels: InputLevels,
     /// Class index of the network that is the first of the class names; recognised from the network if absent.
     #[param(range = 0..=1000)]
     pub first_class: Option<usize>,
-    /// Side of the network's input, for models of dynamic size.
-    #[param(default = 640, range = 32..=4096, unit = "px")]
-    pub size: usize,
+    /// The network's input.
+    #[param(flatten)]
+    pub input: InputParams,
 }

@@ -2,8 +2,8 @@
 
 use opendr_engine::{Error, Result};
 use opendr_inference::{ElementType, TensorInfo};
+use opendr_perception_common::exported_network::{Facts, is_integer, last_two};
 
-use super::facts::{Facts, is_integer, last_two};
 use super::params::OutputLayout;
 
 /// Indices of the outputs by what they are.

@@ -1,12 +1,11 @@
 //! The convention that parameters and recognition settle together.
 
 use opendr_engine::{Error, Result};
+use opendr_perception_common::exported_network::Facts;
 
 use super::convention::{Convention, UNKNOWN};
-use super::facts::Facts;
 use super::params::{
-    BoxFormat, BoxUnit, ImportedDetectorParams, InputColour, InputLevels, InputResize, MaskOutput,
-    Objectness, OutputLayout, RowOrder, ScoreFormat,
+    BoxFormat, BoxUnit, ImportedDetectorParams, MaskOutput, Objectness, OutputLayout, RowOrder, ScoreFormat,
 };
 
 /// Combines the parameters with what was recognised, and writes the result into the parameters.
@@ -36,12 +35,8 @@ pub(super) fn settle(
     take!(objectness, known.objectness, Objectness::Auto);
     take!(row_order, known.row_order, RowOrder::Auto);
     take!(masks, known.masks, MaskOutput::Auto);
-    take!(resize, known.resize, InputResize::Auto);
-    take!(colour, known.colour, InputColour::Auto);
-    take!(levels, known.levels, InputLevels::Auto);
-    let padding = params.padding.unwrap_or(known.padding);
-    let first_class = params.first_class.unwrap_or(known.first_class);
-    (params.padding, params.first_class) = (Some(padding), Some(first_class));
+    let input = params.input.settle(known.input);
+    let first_class = *params.first_class.get_or_insert(known.first_class);
     let convention = Convention {
         layout: params.layout,
         boxes: params.boxes,
@@ -50,10 +45,7 @@ pub(super) fn settle(
         objectness: params.objectness,
         row_order: params.row_order,
         masks: params.masks,
-        resize: params.resize,
-        padding,
-        colour: params.colour,
-        levels: params.levels,
+        input,
         first_class,
     };
     if convention.masks == MaskOutput::Prototypes && facts.prototypes().is_none() {
@@ -83,9 +75,7 @@ fn missing(convention: &Convention) -> Vec<&'static str> {
         ("unit", !is_grid && convention.unit == BoxUnit::Auto),
         ("scores", !is_grid && layout != Detections && convention.scores == ScoreFormat::Auto),
         ("objectness", layout == Candidates && convention.objectness == Objectness::Auto),
-        ("resize", convention.resize == InputResize::Auto),
-        ("colour", convention.colour == InputColour::Auto),
-        ("levels", convention.levels == InputLevels::Auto),
     ];
-    all.into_iter().filter(|(_, is_missing)| *is_missing).map(|(name, _)| name).collect()
+    let of_outputs = all.into_iter().filter(|(_, is_missing)| *is_missing).map(|(name, _)| name);
+    of_outputs.chain(convention.input.missing()).collect()
 }

@@ -1,15 +1,13 @@
 //! The inputs of a network: an image, and constants that describe it.
 
-use opendr_engine::data::{Image, Layout};
+use opendr_engine::data::{ImageView, Layout};
 use opendr_engine::{Error, Pool, Result};
 use opendr_inference::{ElementType, Session, TensorInfo, TensorView};
 use opendr_vision::{ChannelOrder, InputGeometry, LetterboxAlign, Preprocess};
 
-use super::convention::Convention;
-use super::facts::Facts;
-use super::params::{InputColour, InputLevels, InputResize};
+use super::{Facts, InputColour, InputConvention, InputLevels, InputResize};
 
-/// Maximum number of inputs of a detector.
+/// Maximum number of inputs of a network.
 const MAX_INPUTS: usize = 4;
 /// Maximum number of pixels of the network's input.
 const MAX_PIXELS: usize = 1 << 24;
@@ -18,13 +16,13 @@ const IMAGENET_STD: [f32; 3] = [58.395, 57.12, 57.375];
 
 /// The image input of a network.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct ImageInput {
+pub struct ImageInput {
     index: usize,
     is_bytes: bool,
     layout: Layout,
     has_batch: bool,
     /// Width and height, in pixels.
-    pub(super) size: [usize; 2],
+    pub size: [usize; 2],
 }
 
 impl ImageInput {
@@ -32,7 +30,7 @@ impl ImageInput {
     ///
     /// # Errors
     /// `Unsupported` for a network without an image of three channels, or with a batch of several.
-    pub(super) fn find(facts: &Facts, side: usize) -> Result<Self> {
+    pub fn find(facts: &Facts, side: usize) -> Result<Self> {
         let images =
             facts.inputs.iter().enumerate().filter_map(|(index, input)| Self::of(index, input, side));
         let found =
@@ -75,7 +73,7 @@ impl ImageInput {
 }
 
 /// The inputs of a network, with its session.
-pub(super) struct Network {
+pub struct ExportedNetwork {
     session: Session,
     image: ImageInput,
     preprocess: Preprocess,
@@ -123,12 +121,12 @@ impl Constant {
     }
 }
 
-impl Network {
+impl ExportedNetwork {
     /// Prepares the inputs of `session`.
     ///
     /// # Errors
     /// `Unsupported` for an input that is neither the image nor known.
-    pub(super) fn new(session: Session, image: ImageInput, convention: &Convention) -> Result<Self> {
+    pub fn new(session: Session, image: ImageInput, convention: &InputConvention) -> Result<Self> {
         let count = session.inputs().len();
         let others = session.inputs().iter().enumerate().filter(|(index, _)| *index != image.index);
         let constants = others.map(|(index, input)| Some((index, Constant::of(input, image.size)?)));
@@ -136,7 +134,7 @@ impl Network {
         let Some(constants) = constants.filter(|_| count <= MAX_INPUTS) else {
             let inputs: Vec<String> = session.inputs().iter().map(ToString::to_string).collect();
             return Err(Error::unsupported(format!(
-                "the network's inputs {} are not those of a known detector; export it with an image as its only input",
+                "the network's inputs {} are not those of a known network; export it with an image as its only input",
                 inputs.join(", ")
             )));
         };
@@ -145,9 +143,9 @@ impl Network {
     }
 
     /// Runs the network on an image. `sink` receives the outputs and the mapping back to image pixels.
-    pub(super) fn run(
+    pub fn run(
         &self,
-        image: &Image,
+        image: ImageView<'_>,
         mut sink: impl FnMut(&[TensorView<'_>], &InputGeometry) -> Result<()>,
     ) -> Result<()> {
         let shape = self.preprocess.shape();
@@ -155,12 +153,12 @@ impl Network {
         if self.image.is_bytes {
             let mut input = self.bytes.take();
             input.resize(self.preprocess.len(), 0);
-            let geometry = self.preprocess.run_into(image.view(), &mut input[..])?;
+            let geometry = self.preprocess.run_into(image, &mut input[..])?;
             self.run_on(TensorView::new(shape, &input[..])?, |outputs| sink(outputs, &geometry))
         } else {
             let mut input = self.floats.take();
             input.resize(self.preprocess.len(), 0.0);
-            let geometry = self.preprocess.run_into(image.view(), &mut input[..])?;
+            let geometry = self.preprocess.run_into(image, &mut input[..])?;
             self.run_on(TensorView::new(shape, &input[..])?, |outputs| sink(outputs, &geometry))
         }
     }
@@ -174,7 +172,7 @@ impl Network {
     }
 }
 
-fn preprocess(image: &ImageInput, convention: &Convention) -> Preprocess {
+fn preprocess(image: &ImageInput, convention: &InputConvention) -> Preprocess {
     let padding = convention.padding as f32;
     let order = match convention.colour {
         InputColour::Bgr => ChannelOrder::Bgr,

@@ -2,11 +2,12 @@
 
 use opendr_engine::{Error, Result};
 use opendr_inference::TensorView;
-use opendr_perception_common::suppression::Candidate;
+
+use crate::suppression::Candidate;
 
 /// The rows of an output `[1, rows, fields]`, or `[1, fields, rows]`.
 #[derive(Clone, Copy)]
-pub(super) struct Rows<'a> {
+pub struct Rows<'a> {
     values: &'a [f32],
     rows: usize,
     fields: usize,
@@ -19,7 +20,7 @@ impl<'a> Rows<'a> {
     ///
     /// # Errors
     /// `Format` for another shape, `InvalidInput` for another type of elements.
-    pub(super) fn of(output: &TensorView<'a>, transposed: bool) -> Result<Self> {
+    pub fn of(output: &TensorView<'a>, transposed: bool) -> Result<Self> {
         let values = output.values::<f32>()?;
         let (outer, [first, second]) = match output.shape() {
             [outer @ .., first, second] => (outer, [*first, *second]),
@@ -37,27 +38,27 @@ impl<'a> Rows<'a> {
     }
 
     /// Returns the number of rows.
-    pub(super) fn len(&self) -> usize {
+    pub fn len(&self) -> usize {
         self.rows
     }
 
     /// Returns the number of fields of a row.
-    pub(super) fn fields(&self) -> usize {
+    pub fn fields(&self) -> usize {
         self.fields
     }
 
     /// Returns a value; 0 outside of the output.
-    pub(super) fn at(&self, row: usize, field: usize) -> f32 {
+    pub fn at(&self, row: usize, field: usize) -> f32 {
         self.values.get(row * self.row_stride + field * self.field_stride).copied().unwrap_or(0.0)
     }
 
     /// Returns the four values of a box that begins at `field`.
-    pub(super) fn corners(&self, row: usize, field: usize) -> [f32; 4] {
+    pub fn corners(&self, row: usize, field: usize) -> [f32; 4] {
         std::array::from_fn(|index| self.at(row, field + index))
     }
 
     /// Writes the highest value of the fields `first..first + count` of each row, and its index, into `best`.
-    pub(super) fn best(&self, first: usize, count: usize, best: &mut Vec<(f32, u32)>) {
+    pub fn best(&self, first: usize, count: usize, best: &mut Vec<(f32, u32)>) {
         best.clear();
         best.resize(self.rows, (f32::NEG_INFINITY, 0));
         let count = count.min(self.fields.saturating_sub(first));
@@ -85,24 +86,27 @@ impl<'a> Rows<'a> {
 
 /// What becomes a candidate.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Selection {
+pub struct Selection {
     /// Score below which nothing does.
-    pub(super) threshold: f32,
+    pub threshold: f32,
     /// Whether every class of a row that reaches the threshold does, or only the class with the highest score.
-    pub(super) multi_label: bool,
+    pub multi_label: bool,
 }
 
 /// The class scores of rows: `count` fields from `first` on.
 #[derive(Clone, Copy)]
-pub(super) struct ClassScores<'a> {
-    pub(super) rows: Rows<'a>,
-    pub(super) first: usize,
-    pub(super) count: usize,
+pub struct ClassScores<'a> {
+    /// The rows.
+    pub rows: Rows<'a>,
+    /// First field with a class score.
+    pub first: usize,
+    /// Number of classes.
+    pub count: usize,
 }
 
 impl Selection {
     /// Adds the candidates of a row whose highest class value and class are `best`; `score` maps a class's value to its score.
-    pub(super) fn add(
+    pub fn add(
         self,
         classes: &ClassScores<'_>,
         row: usize,
@@ -136,7 +140,7 @@ impl Selection {
 ///
 /// # Errors
 /// `Format` when the number of rows is not that of the cells.
-pub(super) fn decode_grid(
+pub fn decode_grid(
     rows: &Rows<'_>,
     [width, height]: [usize; 2],
     strides: &[usize],
@@ -177,7 +181,7 @@ pub(super) fn decode_grid(
 }
 
 /// Returns the number of cells of all levels with `strides` for an input of `[width, height]` pixels.
-pub(super) fn cells_of([width, height]: [usize; 2], strides: &[usize]) -> usize {
+pub fn cells_of([width, height]: [usize; 2], strides: &[usize]) -> usize {
     strides.iter().map(|stride| (width / stride) * (height / stride)).sum()
 }
 

@@ -2,7 +2,7 @@
 
 /// Reads the class names of a Python dictionary `{0: 'person', 1: "car"}`, of a list, or of the same in JSON. Returns `None` for
 /// other texts, and when the indices are not 0, 1, 2, ...
-pub(super) fn class_names(text: &str) -> Option<Vec<String>> {
+pub fn class_names(text: &str) -> Option<Vec<String>> {
     let text = text.trim();
     let (is_keyed, inner) = match (text.strip_prefix('{'), text.strip_prefix('[')) {
         (Some(inner), _) => (true, inner.strip_suffix('}')?),

@@ -3,9 +3,13 @@
 use std::collections::{HashMap, HashSet};
 
 use opendr_engine::Result;
-use opendr_inference::{ElementType, Session, TensorInfo};
+use opendr_engine::model::Model;
+use opendr_engine::target::Classes;
+use opendr_inference::{ElementType, Session, TensorInfo, declared_tensors};
 use opendr_onnx::model_from_bytes;
 use opendr_onnx::proto::{GraphProto, NodeProto};
+
+use super::class_names;
 
 /// Operators whose further inputs are shapes or indices, which are not followed.
 const SHAPED: [&str; 9] =
@@ -14,9 +18,11 @@ const SHAPED: [&str; 9] =
 const LAYERS: [&str; 4] = ["Conv", "ConvTranspose", "Gemm", "MatMul"];
 
 /// Facts about a network.
-pub(super) struct Facts {
-    pub(super) inputs: Vec<TensorInfo>,
-    pub(super) outputs: Vec<TensorInfo>,
+pub struct Facts {
+    /// Inputs.
+    pub inputs: Vec<TensorInfo>,
+    /// Outputs.
+    pub outputs: Vec<TensorInfo>,
     metadata: HashMap<String, String>,
     operators: HashSet<String>,
     graph: GraphProto,
@@ -24,13 +30,29 @@ pub(super) struct Facts {
 
 impl Facts {
     /// Reads the facts of the ONNX file that `session` runs.
-    pub(super) fn read(onnx: &[u8], session: &Session) -> Result<Self> {
+    ///
+    /// # Errors
+    /// `Format` when the bytes are not an ONNX model.
+    pub fn read(onnx: &[u8], session: &Session) -> Result<Self> {
+        Self::new(onnx, session.inputs().to_vec(), session.outputs().to_vec())
+    }
+
+    /// Reads the facts that an ONNX file declares.
+    ///
+    /// # Errors
+    /// `Format` when the bytes are not an ONNX model.
+    pub fn declared(onnx: &[u8]) -> Result<Self> {
+        let [inputs, outputs] = declared_tensors(onnx)?;
+        Self::new(onnx, inputs, outputs)
+    }
+
+    fn new(onnx: &[u8], inputs: Vec<TensorInfo>, outputs: Vec<TensorInfo>) -> Result<Self> {
         let model = model_from_bytes(onnx)?;
         let mut graph = model.graph.unwrap_or_default();
         graph.initializer.clear();
         Ok(Self {
-            inputs: session.inputs().to_vec(),
-            outputs: session.outputs().to_vec(),
+            inputs,
+            outputs,
             metadata: model.metadata_props.into_iter().map(|entry| (entry.key, entry.value)).collect(),
             operators: graph.node.iter().map(|node| node.op_type.clone()).collect(),
             graph,
@@ -38,28 +60,50 @@ impl Facts {
     }
 
     /// Returns an entry of the metadata; empty if there is none.
-    pub(super) fn metadata(&self, key: &str) -> &str {
+    pub fn metadata(&self, key: &str) -> &str {
         self.metadata.get(key).map_or("", String::as_str)
     }
 
+    /// Returns the class names of the model, else those in the metadata of Ultralytics; empty if there are none.
+    pub fn classes(&self, model: &Model) -> Classes {
+        match model.classes() {
+            given if given.is_empty() => {
+                Classes::from(class_names(self.metadata("names")).unwrap_or_default())
+            }
+            given => given.clone(),
+        }
+    }
+
+    /// Returns whether the metadata are those of Ultralytics.
+    pub fn is_of_ultralytics(&self) -> bool {
+        ["stride", "names"].iter().all(|key| !self.metadata(key).is_empty())
+    }
+
+    /// Returns whether an export of Ultralytics ends in detections, after suppression.
+    pub fn has_suppressed(&self) -> bool {
+        self.metadata("end2end") == "True"
+            || self.metadata("args").contains("'nms': True")
+            || self.has_operator("NonMaxSuppression")
+    }
+
     /// Returns whether the network has an operator.
-    pub(super) fn has_operator(&self, name: &str) -> bool {
+    pub fn has_operator(&self, name: &str) -> bool {
         self.operators.contains(name)
     }
 
     /// Returns the index of the output whose name contains `part`.
-    pub(super) fn output_named(&self, part: &str) -> Option<usize> {
+    pub fn output_named(&self, part: &str) -> Option<usize> {
         self.outputs.iter().position(|output| output.name.contains(part))
     }
 
     /// Returns the only output for which `is` holds.
-    pub(super) fn only_output(&self, is: impl Fn(&TensorInfo) -> bool) -> Option<usize> {
+    pub fn only_output(&self, is: impl Fn(&TensorInfo) -> bool) -> Option<usize> {
         let mut found = (0..).zip(&self.outputs).filter(|(_, output)| is(output)).map(|(index, _)| index);
         found.next().filter(|_| found.next().is_none())
     }
 
     /// Returns the index of the output of mask prototypes, `[1, channels, height, width]`, and their number.
-    pub(super) fn prototypes(&self) -> Option<(usize, usize)> {
+    pub fn prototypes(&self) -> Option<(usize, usize)> {
         let output = self.only_output(|output| {
             output.element_type == ElementType::F32 && matches!(output.dims[..], [_, Some(_), _, _])
         })?;
@@ -67,7 +111,7 @@ impl Facts {
     }
 
     /// Returns the operators between an output and the last layers with weights.
-    pub(super) fn tail(&self, output: usize) -> HashSet<&str> {
+    pub fn tail(&self, output: usize) -> HashSet<&str> {
         let makers: HashMap<&str, &NodeProto> = self
             .graph
             .node
@@ -91,7 +135,7 @@ impl Facts {
     }
 
     /// Returns inputs and outputs as one text for messages.
-    pub(super) fn describe(&self) -> String {
+    pub fn describe(&self) -> String {
         let list = |infos: &[TensorInfo]| {
             let texts: Vec<String> = infos.iter().take(12).map(ToString::to_string).collect();
             texts.join(", ")
@@ -101,7 +145,7 @@ impl Facts {
 }
 
 /// Returns the last two dimensions of a tensor of floats with at least `rank` dimensions.
-pub(super) fn last_two(info: &TensorInfo, rank: usize) -> Option<[Option<usize>; 2]> {
+pub fn last_two(info: &TensorInfo, rank: usize) -> Option<[Option<usize>; 2]> {
     match info.dims[..] {
         [.., first, second] if info.element_type == ElementType::F32 && info.dims.len() >= rank => {
             Some([first, second])
@@ -111,6 +155,6 @@ pub(super) fn last_two(info: &TensorInfo, rank: usize) -> Option<[Option<usize>;
 }
 
 /// Returns whether a tensor has integer elements.
-pub(super) fn is_integer(info: &TensorInfo) -> bool {
+pub fn is_integer(info: &TensorInfo) -> bool {
     matches!(info.element_type, ElementType::I32 | ElementType::I64)
 }

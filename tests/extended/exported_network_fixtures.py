@@ -1,10 +1,11 @@
-"""Writes the fixtures of the imported detectors: small networks with random weights, exported by their own packages, and the
-detections of the packages' own post-processing on one image.
+"""Writes the fixtures of networks that other tools exported: small networks with random weights, exported by their own packages, and the
+predictions of the packages' own post-processing on one image.
 
-    python tests/extended/detector_fixtures.py crates/perception/detection/tests/imported
+    python tests/extended/exported_network_fixtures.py crates/perception [PACKAGE...]
 
 It needs torch, torchvision, ultralytics, transformers, YOLOX from its repository, onnx and onnxruntime, and downloads nothing. Each
-fixture is a container NAME.zip and the detections NAME.json; that of YOLOX is the model of the test data (OPENDR_TEST_DATA). The packages' code is run, not copied; no weights of theirs are involved.
+fixture is a container NAME.zip and the predictions NAME.json in tests/imported of detection, pose and classification; that of YOLOX is the
+model of the test data (OPENDR_TEST_DATA). The packages' code is run, not copied; no weights of theirs are involved.
 """
 
 import hashlib
@@ -53,22 +54,28 @@ def runs(mask):
     return np.diff(np.concatenate([[0], ends])).tolist()
 
 
-def write(folder, name, onnx, detections, size, threshold, iou=IOU, params=None, classes=(), masks=None):
-    """Writes a container and its detections; `detections` are rows of x0, y0, x1, y1, score, class in image pixels, `masks` their masks."""
+def write_container(path, onnx, learner, task):
     onnx = Path(onnx).read_bytes()
-    entry = {"name": "model.onnx", "size": len(onnx), "sha256": hashlib.sha256(onnx).hexdigest()}
+    entry = {"path": "model.onnx", "size": len(onnx), "sha256": hashlib.sha256(onnx).hexdigest()}
     manifest = {
         "format_version": 1,
-        "learner": "detector",
-        "task": "object_detection_2d",
-        "params": params or {},
-        "classes": list(classes),
+        "learner": learner,
+        "task": task,
+        "params": {},
+        "classes": [],
         "files": [entry],
     }
     # Entries with one date, so that the same networks give the same bytes.
-    with zipfile.ZipFile(folder / f"{name}.zip", "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
         archive.writestr(zipfile.ZipInfo("model.json"), json.dumps(manifest))
         archive.writestr(zipfile.ZipInfo("model.onnx"), onnx, compress_type=zipfile.ZIP_DEFLATED, compresslevel=9)
+    print(f"{path.name}: {path.stat().st_size} bytes")
+
+
+def write(root, name, onnx, detections, size, threshold, iou=IOU, masks=None):
+    """Writes a container and its detections; `detections` are rows of x0, y0, x1, y1, score, class in image pixels, `masks` their masks."""
+    folder = imported(root, "detection")
+    write_container(folder / f"{name}.zip", onnx, "detector", "object_detection_2d")
     rows = [[round(float(value), 5) for value in row] for row in detections]
     order = sorted(range(len(rows)), key=lambda index: -rows[index][4])
     rows = [rows[index] for index in order]
@@ -76,7 +83,24 @@ def write(folder, name, onnx, detections, size, threshold, iou=IOU, params=None,
     if masks is not None:
         expected["masks"] = [runs(masks[index]) for index in order]
     (folder / f"{name}.json").write_text(json.dumps(expected) + "\n")
-    print(f"{name}: {len(rows)} detections, {(folder / f'{name}.zip').stat().st_size} bytes")
+
+
+def write_poses(root, name, onnx, boxes, keypoints, size, threshold):
+    """Writes a container and its poses; `boxes` as in `write`, `keypoints` their x, y, score in image pixels."""
+    folder = imported(root, "pose")
+    write_container(folder / f"{name}.zip", onnx, "pose_estimator", "pose_estimation")
+    poses = [
+        {"box": [round(float(value), 5) for value in box], "keypoints": [[round(float(v), 5) for v in point] for point in points]}
+        for box, points in zip(boxes, keypoints)
+    ]
+    expected = {"image": size, "threshold": threshold, "iou_threshold": IOU, "poses": poses}
+    (folder / f"{name}.json").write_text(json.dumps(expected) + "\n")
+
+
+def imported(root, crate):
+    folder = root / crate / "tests/imported"
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
 
 
 def threshold_for(scores, count):
@@ -96,18 +120,24 @@ def ultralytics(folder):
     from ultralytics import RTDETR, YOLO
     from ultralytics.data.augment import LetterBox
     from ultralytics.utils.nms import non_max_suppression
-    from ultralytics.utils.ops import process_mask_native, scale_boxes, xywh2xyxy
+    from ultralytics.utils.ops import process_mask_native, scale_boxes, scale_coords, xywh2xyxy
 
     convolutions = [[-1, 1, "Conv", [16, 3, 2]]] * 3 + [[-1, 1, "Conv", [32, 3, 2]], [-1, 1, "Conv", [48, 3, 2]]]
     heads = {
         "detect": [[2, 3, 4], 1, "Detect", ["nc"]],
         "segment": [[2, 3, 4], 1, "Segment", ["nc", 4, 8]],
-        "pose": [[2, 3, 4], 1, "Pose", ["nc", [5, 3]]],
+        "pose": [[2, 3, 4], 1, "Pose", ["nc", "kpt_shape"]],
     }
+    person = {"nc": 1, "kpt_shape": [17, 3]}
+    pairs = {"kpt_shape": [6, 2]}
     cases = [
         ("yolo", "detect", {}, {}),
         ("yolo_segment", "segment", {}, {}),
         ("yolo_pose", "pose", {}, {}),
+        ("yolo_pose_person", "pose", person, {}),
+        ("yolo_pose_pairs", "pose", pairs, {}),
+        ("yolo_pose_end_to_end", "pose", {"end2end": True}, {"nms": False}),
+        ("yolo_pose_nms", "pose", {}, {"nms": True, "conf": 0.3, "iou": IOU}),
         ("yolo_end_to_end", "detect", {"end2end": True}, {"nms": False}),
         ("yolo_nms", "detect", {}, {"nms": True, "conf": 0.3, "iou": IOU}),
     ]
@@ -118,26 +148,46 @@ def ultralytics(folder):
     for name, task, options, export in cases:
         spec = {"nc": 3, "reg_max": 1, "scales": {"n": [1, 1, 1024]}, "kpt_shape": [5, 3]}
         spec |= {"backbone": convolutions, "head": [heads[task]], **options}
+        count = spec["nc"]
         path = Path(f"yolo11n-{name}.yaml")
         path.write_text(yaml.safe_dump(spec))
         model = YOLO(path, task=task)
         randomise(model.model, len(name))
-        model.model.names = dict(enumerate(CLASSES))
+        model.model.names = dict(enumerate(CLASSES if count == 3 else ["person"]))
         onnx = model.export(format="onnx", imgsz=SIDE, simplify=False, opset=17, **export)
         outputs = [torch.from_numpy(output) for output in outputs_of(onnx, images=tensor)]
         rows = outputs[0]
-        if options or export:
+        if export:
             scores = rows[0, :, 4]
             threshold = threshold_for(scores, min(12, int((scores > 0).sum()) - 1))
             kept = rows[0][scores > threshold]
         else:
-            threshold = threshold_for(rows[0, 4:7].amax(0), 60)
-            kept = non_max_suppression(rows, threshold, IOU, nc=3)[0]
+            threshold = threshold_for(rows[0, 4 : 4 + count].amax(0), 60)
+            kept = non_max_suppression(rows, threshold, IOU, nc=count)[0]
         kept[:, :4] = scale_boxes((SIDE, SIDE), kept[:, :4], (height, width))
+        if task == "pose":
+            points = kept[:, 6:].reshape(len(kept), *spec["kpt_shape"])
+            points = scale_coords((SIDE, SIDE), points, (height, width))
+            write_poses(folder, name, onnx, kept[:, :6], points, [width, height], threshold)
+        if name.startswith("yolo_pose_"):
+            continue
         masks = None
         if task == "segment":
             masks = process_mask_native(outputs[1][0], kept[:, 6:], kept[:, :4], (height, width)).bool().numpy()
         write(folder, name, onnx, kept[:, :6], [width, height], threshold, masks=masks)
+
+    spec = {"nc": 3, "scales": {"n": [1, 1, 1024]}, "backbone": convolutions, "head": [[-1, 1, "Classify", ["nc"]]]}
+    Path("yolo11n-cls-tiny.yaml").write_text(yaml.safe_dump(spec))
+    model = YOLO("yolo11n-cls-tiny.yaml", task="classify")
+    randomise(model.model, 9)
+    model.model.names = dict(enumerate(CLASSES))
+    onnx = model.export(format="onnx", imgsz=SIDE, simplify=False, opset=17)
+    square = np.ascontiguousarray(image(SIDE, SIDE).transpose(2, 0, 1)[None].astype(np.float32) / 255)
+    scores = outputs_of(onnx, images=square)[0][0]
+    folder_of_classes = imported(folder, "classification")
+    write_container(folder_of_classes / "yolo_classify.zip", onnx, "classifier", "image_classification")
+    expected = {"image": [SIDE, SIDE], "scores": [round(float(score), 6) for score in scores]}
+    (folder_of_classes / "yolo_classify.json").write_text(json.dumps(expected) + "\n")
 
     decoder = [[2, 3, 4], 1, "RTDETRDecoder", ["nc", 32, 20, 2, 4, 1, 64]]
     spec = {"nc": 3, "scales": {"l": [1, 1, 1024]}, "backbone": convolutions, "head": [decoder]}
@@ -177,7 +227,7 @@ def yolox(folder):
         photos[name] = [[round(float(value), 5) for value in row] for row in found[:, [0, 1, 2, 3, 4, 6]]]
         print(f"yolox {name}: {len(photos[name])} detections")
     expected = {"threshold": threshold, "iou_threshold": iou, "photos": photos}
-    (folder / "yolox_nano.json").write_text(json.dumps(expected) + "\n")
+    (imported(folder, "detection") / "yolox_nano.json").write_text(json.dumps(expected) + "\n")
 
 
 def torchvision(folder):
@@ -270,7 +320,6 @@ def transformers(folder):
 def main():
     folder = Path(sys.argv[1]).resolve()
     wanted = sys.argv[2:]
-    folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as scratch:
         os.chdir(scratch)
         for package in (ultralytics, yolox, torchvision, transformers):

@@ -1,0 +1,118 @@
+//! Parameters of a network's image input, and what is recognised of it.
+
+use opendr_engine::params::Params;
+
+opendr_engine::choices! {
+    /// How an image becomes the network's input.
+    pub enum InputResize {
+        /// Recognised from the network.
+        Auto = "auto",
+        /// The aspect ratio is kept; padding on all sides.
+        Letterbox = "letterbox",
+        /// The aspect ratio is kept; padding on the right and at the bottom.
+        TopLeft = "top_left",
+        /// The same, with truncated sides (YOLOX).
+        TopLeftTruncated = "top_left_truncated",
+        /// The whole input is filled.
+        Stretch = "stretch",
+    }
+}
+
+opendr_engine::choices! {
+    /// Order of the colour channels of the network's input.
+    pub enum InputColour {
+        /// Recognised from the network.
+        Auto = "auto",
+        /// Red, green, blue.
+        Rgb = "rgb",
+        /// Blue, green, red.
+        Bgr = "bgr",
+    }
+}
+
+opendr_engine::choices! {
+    /// Range of the samples of the network's input.
+    pub enum InputLevels {
+        /// Recognised from the network.
+        Auto = "auto",
+        /// 0 to 255.
+        Bytes = "0_255",
+        /// 0 to 1.
+        Unit = "0_1",
+        /// -1 to 1.
+        Signed = "-1_1",
+        /// Mean 0 and variance 1 over ImageNet.
+        ImageNet = "imagenet",
+    }
+}
+
+/// Parameters of a network's image input.
+#[derive(Debug, Clone, Params)]
+pub struct InputParams {
+    /// How an image becomes the network's input.
+    pub resize: InputResize,
+    /// Level of the padding of a letterbox; recognised from the network if absent.
+    #[param(range = 0..=255)]
+    pub padding: Option<usize>,
+    /// Order of the colour channels of the network's input.
+    pub colour: InputColour,
+    /// Range of the samples of the network's input.
+    pub levels: InputLevels,
+    /// Side of the network's input, for models of dynamic size.
+    #[param(default = 640, range = 32..=4096, unit = "px")]
+    pub size: usize,
+}
+
+/// What is known of a network's image input; `Auto` where a parameter has to state it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InputConvention {
+    /// How an image becomes the network's input.
+    pub resize: InputResize,
+    /// Level of the padding of a letterbox.
+    pub padding: usize,
+    /// Order of the colour channels.
+    pub colour: InputColour,
+    /// Range of the samples.
+    pub levels: InputLevels,
+}
+
+impl InputConvention {
+    /// Nothing is known.
+    pub const UNKNOWN: Self =
+        Self { resize: InputResize::Auto, padding: 0, colour: InputColour::Auto, levels: InputLevels::Auto };
+
+    /// Input of YOLOv3 to v12 and YOLO26: letterbox with padding of 114, RGB, 0 to 1.
+    pub const YOLO: Self = Self {
+        resize: InputResize::Letterbox,
+        padding: 114,
+        colour: InputColour::Rgb,
+        levels: InputLevels::Unit,
+    };
+
+    /// Returns the names of the parameters that are still to be set.
+    pub fn missing(&self) -> impl Iterator<Item = &'static str> {
+        let all = [
+            ("resize", self.resize == InputResize::Auto),
+            ("colour", self.colour == InputColour::Auto),
+            ("levels", self.levels == InputLevels::Auto),
+        ];
+        all.into_iter().filter(|(_, is_missing)| *is_missing).map(|(name, _)| name)
+    }
+}
+
+impl InputParams {
+    /// Combines the parameters with what was recognised, and writes the result into the parameters.
+    pub fn settle(&mut self, known: InputConvention) -> InputConvention {
+        if self.resize == InputResize::Auto {
+            self.resize = known.resize;
+        }
+        if self.colour == InputColour::Auto {
+            self.colour = known.colour;
+        }
+        if self.levels == InputLevels::Auto {
+            self.levels = known.levels;
+        }
+        let padding = *self.padding.get_or_insert(known.padding);
+        InputConvention { resize: self.resize, padding, colour: self.colour, levels: self.levels }
+    }
+}
