@@ -72,8 +72,9 @@ def write_container(path, onnx, learner, task):
     print(f"{path.name}: {path.stat().st_size} bytes")
 
 
-def write(root, name, onnx, detections, size, threshold, iou=IOU, masks=None):
-    """Writes a container and its detections; `detections` are rows of x0, y0, x1, y1, score, class in image pixels, `masks` their masks."""
+def write(root, name, onnx, detections, size, threshold, iou=IOU, masks=None, polygons=None):
+    """Writes a container and its detections; `detections` are rows of x0, y0, x1, y1, score, class in image pixels, `masks` their masks,
+    `polygons` the corners of their rotated boxes."""
     folder = imported(root, "detection")
     write_container(folder / f"{name}.zip", onnx, "detector", "object_detection_2d")
     rows = [[round(float(value), 5) for value in row] for row in detections]
@@ -82,6 +83,8 @@ def write(root, name, onnx, detections, size, threshold, iou=IOU, masks=None):
     expected = {"image": size, "threshold": threshold, "iou_threshold": iou, "detections": rows}
     if masks is not None:
         expected["masks"] = [runs(masks[index]) for index in order]
+    if polygons is not None:
+        expected["polygons"] = [[round(float(v), 4) for v in polygons[index].flatten()] for index in order]
     (folder / f"{name}.json").write_text(json.dumps(expected) + "\n")
 
 
@@ -120,7 +123,14 @@ def ultralytics(folder):
     from ultralytics import RTDETR, YOLO
     from ultralytics.data.augment import LetterBox
     from ultralytics.utils.nms import non_max_suppression
-    from ultralytics.utils.ops import process_mask_native, scale_boxes, scale_coords, xywh2xyxy
+    from ultralytics.utils.ops import (
+        process_mask_native,
+        regularize_rboxes,
+        scale_boxes,
+        scale_coords,
+        xywh2xyxy,
+        xywhr2xyxyxyxy,
+    )
 
     convolutions = [[-1, 1, "Conv", [16, 3, 2]]] * 3 + [[-1, 1, "Conv", [32, 3, 2]], [-1, 1, "Conv", [48, 3, 2]]]
     heads = {
@@ -128,6 +138,7 @@ def ultralytics(folder):
         "segment": [[2, 3, 4], 1, "Segment", ["nc", 4, 8]],
         "pose": [[2, 3, 4], 1, "Pose", ["nc", "kpt_shape"]],
     }
+    heads["obb"] = [[2, 3, 4], 1, "OBB", ["nc", 1]]
     person = {"nc": 1, "kpt_shape": [17, 3]}
     pairs = {"kpt_shape": [6, 2]}
     cases = [
@@ -138,6 +149,8 @@ def ultralytics(folder):
         ("yolo_pose_pairs", "pose", pairs, {}),
         ("yolo_pose_end_to_end", "pose", {"end2end": True}, {"nms": False}),
         ("yolo_pose_nms", "pose", {}, {"nms": True, "conf": 0.3, "iou": IOU}),
+        ("yolo_obb", "obb", {}, {}),
+        ("yolo_obb_end_to_end", "obb", {"end2end": True}, {"nms": False}),
         ("yolo_end_to_end", "detect", {"end2end": True}, {"nms": False}),
         ("yolo_nms", "detect", {}, {"nms": True, "conf": 0.3, "iou": IOU}),
     ]
@@ -163,7 +176,16 @@ def ultralytics(folder):
             kept = rows[0][scores > threshold]
         else:
             threshold = threshold_for(rows[0, 4 : 4 + count].amax(0), 60)
-            kept = non_max_suppression(rows, threshold, IOU, nc=count)[0]
+            kept = non_max_suppression(rows, threshold, IOU, nc=count, rotated=task == "obb")[0]
+        if task == "obb":
+            rotated = regularize_rboxes(torch.cat([kept[:, :4], kept[:, -1:]], 1))
+            rotated[:, :4] = scale_boxes((SIDE, SIDE), rotated[:, :4], (height, width), xywh=True)
+            corners = xywhr2xyxyxyxy(rotated)
+            kept[:, :2], kept[:, 2:4] = corners.amin(1), corners.amax(1)
+            kept[:, 0:4:2] = kept[:, 0:4:2].clamp(0, width)
+            kept[:, 1:4:2] = kept[:, 1:4:2].clamp(0, height)
+            write(folder, name, onnx, kept[:, :6], [width, height], threshold, polygons=corners)
+            continue
         kept[:, :4] = scale_boxes((SIDE, SIDE), kept[:, :4], (height, width))
         if task == "pose":
             points = kept[:, 6:].reshape(len(kept), *spec["kpt_shape"])

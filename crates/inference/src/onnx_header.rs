@@ -208,8 +208,16 @@ impl<'a> ValueInfo<'a> {
             for field in Fields::new(dim) {
                 let field = field?;
                 if let (1, Value::Varint(value)) = (field.number, field.value) {
-                    // A negative size means "unknown" in files of old exporters.
-                    size = usize::try_from(value.cast_signed()).ok();
+                    // A size of -1 means "unknown" in files of old exporters.
+                    size = match value.cast_signed() {
+                        -1 => None,
+                        known => Some(usize::try_from(known).map_err(|_| {
+                            Error::format(format!(
+                                "{:?} of the ONNX model has a dimension of {known}",
+                                self.name
+                            ))
+                        })?),
+                    };
                 }
             }
             self.dims.push(size);

@@ -9,6 +9,7 @@ mod suited;
 
 pub use python::prefer_python;
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -145,7 +146,7 @@ impl OnnxRuntime {
     }
 
     fn open_on_cpu(&self, model: &[u8], options: &SessionOptions) -> Result<Session> {
-        self.builder(options)?.commit_from_memory(&suited(model)).map_err(|error| {
+        commit(self.builder(options)?, &suited(model))?.map_err(|error| {
             let message = "ONNX Runtime cannot open the ONNX model";
             // An unknown operator is reported as a general failure.
             let unknown = error.message().contains("No Op registered");
@@ -161,13 +162,14 @@ impl OnnxRuntime {
     /// Opens a model on an accelerator, or returns why that fails.
     fn open_on(&self, device: Device, model: &[u8], options: &SessionOptions) -> Result<Session> {
         let builder = self.builder(options)?;
+        let commit = |builder| commit(builder, model).map_err(|error| error.message().to_owned());
         Some(provider::providers_from_device(device))
             .filter(|_| provider::is_built_in(device))
             .ok_or_else(|| self.no_provider(device))
             .and_then(|providers| {
                 builder.with_execution_providers(providers).map_err(|error| message_of(&error))
             })
-            .and_then(|mut builder| builder.commit_from_memory(model).map_err(|error| message_of(&error)))
+            .and_then(|builder| commit(builder)?.map_err(|error| message_of(&error)))
             .map_err(|reason| {
                 let devices: Vec<_> = self.devices().iter().map(ToString::to_string).collect();
                 Error::device(format!(
@@ -189,6 +191,15 @@ impl OnnxRuntime {
                 builder.with_execution_providers(provider::providers_from_device(device)).is_ok()
             })
     }
+}
+
+/// Opens a session of a model.
+///
+/// # Errors
+/// `Format` when the binding of ONNX Runtime panics, as it does for outputs of an impossible shape.
+fn commit(mut builder: SessionBuilder, model: &[u8]) -> Result<ort::Result<Session>> {
+    catch_unwind(AssertUnwindSafe(|| builder.commit_from_memory(model)))
+        .map_err(|_| Error::format("ONNX Runtime cannot open the ONNX model: its graph is damaged"))
 }
 
 impl Runtime for OnnxRuntime {

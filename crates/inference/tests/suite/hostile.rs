@@ -61,14 +61,19 @@ fn node(kind: &str, inputs: &[&str], output: &str) -> Vec<u8> {
 
 /// Returns a model from `x` to `y`, floats of shape `[2]`, of these nodes and weights.
 fn model(nodes: &[Vec<u8>], weights: &[Vec<u8>]) -> Vec<u8> {
-    let shape = field(2, &field(1, &number(1, 2)));
-    let info = |name: &str| {
-        [field(1, name.as_bytes()), field(2, &field(1, &[number(1, 1), shape.clone()].concat()))]
+    model_with_output(2, nodes, weights)
+}
+
+/// Returns a model whose output declares the shape `[side]`.
+fn model_with_output(side: i64, nodes: &[Vec<u8>], weights: &[Vec<u8>]) -> Vec<u8> {
+    let info = |name: &str, side: i64| {
+        let shape = field(2, &field(1, &number(1, side.cast_unsigned())));
+        [field(1, name.as_bytes()), field(2, &field(1, &[number(1, 1), shape].concat()))]
     };
     let mut graph: Vec<u8> = nodes.iter().flat_map(|node| field(1, node)).collect();
     graph.extend(field(2, b"graph"));
     graph.extend(weights.iter().flat_map(|weight| field(5, weight)));
-    graph.extend([field(11, &info("x").concat()), field(12, &info("y").concat())].concat());
+    graph.extend([field(11, &info("x", 2).concat()), field(12, &info("y", side).concat())].concat());
     [number(1, 8), field(7, &graph), field(8, &number(2, 13))].concat()
 }
 
@@ -115,6 +120,19 @@ fn missing_weights_are_rejected() {
     let attribute = [field(1, b"value"), field(5, &weight), number(20, 4)].concat();
     let constant = [node("Constant", &[], "w"), field(5, &attribute)].concat();
     assert_eq!(refused("a constant elsewhere", &model(&[constant, add], &[])), ErrorKind::Unsupported);
+}
+
+#[test]
+fn negative_dimensions_are_rejected() {
+    let add = node("Add", &["x", "x"], "y");
+    for side in [-2, -5, i64::MIN] {
+        let model = model_with_output(side, from_ref(&add), &[]);
+        assert_eq!(refused("a negative dimension", &model), ErrorKind::Format);
+    }
+    // Old exporters write -1 for an unknown dimension.
+    for runtime in runtimes() {
+        open(&runtime, &model_with_output(-1, from_ref(&add), &[])).unwrap();
+    }
 }
 
 #[test]

@@ -53,6 +53,9 @@ fn compare(name: &str, layout: OutputLayout, classes: &[&str]) {
     let [width, height] = [0, 1].map(|side| expected["image"][side].as_u64().unwrap() as usize);
     let found = detector.infer(&fixture_image(width, height)).unwrap().boxes;
     assert_same(name, &found, &expected["detections"]);
+    if let Some(polygons) = expected["polygons"].as_array() {
+        return assert_polygons(name, &found, &expected["detections"], polygons);
+    }
     let Some(masks) = expected["masks"].as_array() else {
         assert!(found.iter().all(|found| found.segment.is_none()), "{name}");
         return;
@@ -73,6 +76,31 @@ fn compare(name: &str, layout: OutputLayout, classes: &[&str]) {
     }
     // Logits within rounding of zero.
     assert!(pixels > 100 && differ as f64 <= 1e-3 * pixels as f64, "{name}: {differ} of {pixels} pixels");
+}
+
+/// Compares the corners of rotated boxes, in any order that goes round.
+fn assert_polygons(
+    name: &str,
+    found: &[BoundingBox],
+    rows: &serde_json::Value,
+    polygons: &[serde_json::Value],
+) {
+    let rows: Vec<[f32; 6]> = rows.as_array().unwrap().iter().map(row_of).collect();
+    for found in found {
+        let Some(Segmentation::Polygons(of_box)) =
+            found.segment.as_ref().map(|segment| &segment.segmentation)
+        else {
+            panic!("{name}: {found:?} has no polygon")
+        };
+        let at = rows.iter().position(|wanted| is_close(&row(found), wanted)).unwrap();
+        let wanted: Vec<f32> = polygons[at].as_array().unwrap().iter().map(number).collect();
+        let corners = of_box[0].as_chunks::<2>().0;
+        assert_eq!(corners.len(), 4, "{name}");
+        for corner in wanted.as_chunks::<2>().0 {
+            let is_same = |own: &[f32; 2]| own.iter().zip(corner).all(|(a, b)| (a - b).abs() <= 1e-2);
+            assert!(corners.iter().any(is_same), "{name}: {corner:?} is not one of {corners:?}");
+        }
+    }
 }
 
 fn row_of(row: &serde_json::Value) -> [f32; 6] {
@@ -105,6 +133,12 @@ fn yolo_candidates() {
     for name in ["yolo", "yolo_segment", "yolo_pose"] {
         compare(name, OutputLayout::Candidates, NAMES);
     }
+}
+
+#[test]
+fn yolo_with_rotated_boxes() {
+    compare("yolo_obb", OutputLayout::Candidates, NAMES);
+    compare("yolo_obb_end_to_end", OutputLayout::Detections, NAMES);
 }
 
 #[test]

@@ -2,11 +2,12 @@
 //!
 //! The crate has real models and data for tests ([`test_models`]), the check that a learner overfits one batch
 //! ([`overfit`]), the image of the fixtures of exported networks ([`fixture_image`]), and the checks of the learner's contract
-//! ([`learner_checks`]). It is a dev-dependency of the families only; no
+//! ([`learner_checks`]), and damaged files ([`mutations`]). It is a dev-dependency of the families only; no
 //! program contains it. Begin with [`test_models::test_data`].
 #![allow(clippy::unwrap_used)]
 
 pub mod fixture_image;
 pub mod learner_checks;
+pub mod mutations;
 pub mod overfit;
 pub mod test_models;

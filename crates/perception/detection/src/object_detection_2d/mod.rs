@@ -20,8 +20,8 @@ pub use fastest_det::{FastestDet, FastestDetParams};
 pub use gem::GemFitParams;
 pub use gem::{Gem, GemInputs, GemParams, GemTargets};
 pub use imported_detector::{
-    BoxFormat, BoxUnit, ImportedDetector, ImportedDetectorParams, MaskOutput, Objectness, OutputLayout,
-    RowOrder, ScoreFormat,
+    BoxAngle, BoxFormat, BoxUnit, ImportedDetector, ImportedDetectorParams, MaskOutput, Objectness,
+    OutputLayout, RowOrder, ScoreFormat,
 };
 pub use nanodet::{Nanodet, NanodetParams};
 #[cfg(feature = "training")]

@@ -7,7 +7,9 @@ use opendr_perception_common::exported_network::{
     last_two,
 };
 
-use super::params::{BoxFormat, BoxUnit, MaskOutput, Objectness, OutputLayout, RowOrder, ScoreFormat};
+use super::params::{
+    BoxAngle, BoxFormat, BoxUnit, MaskOutput, Objectness, OutputLayout, RowOrder, ScoreFormat,
+};
 
 /// What is known of a network; `Auto` where a parameter has to state it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,6 +20,7 @@ pub(super) struct Convention {
     pub(super) scores: ScoreFormat,
     pub(super) objectness: Objectness,
     pub(super) row_order: RowOrder,
+    pub(super) angle: BoxAngle,
     pub(super) masks: MaskOutput,
     pub(super) input: InputConvention,
     pub(super) first_class: usize,
@@ -34,6 +37,7 @@ pub(super) const UNKNOWN: Convention = Convention {
     scores: ScoreFormat::Auto,
     objectness: Objectness::Auto,
     row_order: RowOrder::Auto,
+    angle: BoxAngle::Absent,
     masks: MaskOutput::Absent,
     input: InputConvention::UNKNOWN,
     first_class: 0,
@@ -97,7 +101,7 @@ const YOLO_DETECTIONS: Convention = Convention { input: YOLO.input, ..DETECTIONS
 /// Recognises the convention of a network with an input of `size` pixels.
 ///
 /// # Errors
-/// `Unsupported` for a network that is recognised and is no detector of upright boxes.
+/// `Unsupported` for a network that is recognised and is no detector.
 pub(super) fn recognise(facts: &Facts, size: [usize; 2]) -> Result<Option<Convention>> {
     if facts.is_of_ultralytics() {
         return ultralytics(facts);
@@ -110,10 +114,10 @@ pub(super) fn recognise(facts: &Facts, size: [usize; 2]) -> Result<Option<Conven
 /// Exports of Ultralytics, by their metadata.
 fn ultralytics(facts: &Facts) -> Result<Option<Convention>> {
     match facts.metadata("task") {
-        "" | "detect" | "segment" | "pose" => {}
+        "" | "detect" | "segment" | "pose" | "obb" => {}
         other => {
             return Err(Error::unsupported(format!(
-                "the network's metadata state the task {other:?}; a detector has the task detect, segment or pose"
+                "the network's metadata state the task {other:?}; a detector has the task detect, segment, pose or obb"
             )));
         }
     }
@@ -144,6 +148,10 @@ fn ultralytics(facts: &Facts) -> Result<Option<Convention>> {
     };
     Ok(match facts.metadata("task") {
         "segment" => convention.map(|convention| with_masks(convention, facts)),
+        "obb" => {
+            let layout = if facts.has_suppressed() { listed } else { YOLO };
+            Some(Convention { boxes: BoxFormat::Cxcywh, angle: BoxAngle::Last, ..layout })
+        }
         _ => convention,
     })
 }

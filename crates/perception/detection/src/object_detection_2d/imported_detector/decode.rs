@@ -7,7 +7,8 @@ use opendr_perception_common::suppression::Candidate;
 
 use super::convention::Convention;
 use super::masks::{MaskScratch, Prototypes};
-use super::params::{BoxFormat, BoxUnit, Objectness, OutputLayout, RowOrder, ScoreFormat};
+use super::oriented::Gaussian;
+use super::params::{BoxAngle, BoxFormat, BoxUnit, Objectness, OutputLayout, RowOrder, ScoreFormat};
 use super::roles::Roles;
 
 /// Strides of the levels of a network whose boxes are relative to their cells.
@@ -31,6 +32,7 @@ pub(super) struct Scratch {
     best: Vec<(f32, u32)>,
     pub(super) candidates: Vec<Candidate>,
     pub(super) marks: Vec<bool>,
+    pub(super) shapes: Vec<Gaussian>,
     pub(super) masks: MaskScratch,
 }
 
@@ -97,9 +99,21 @@ impl Decoder {
         Ok(Some((prototypes, rows)))
     }
 
-    /// Returns the number of values at the end of a row that are coefficients of masks.
-    fn coefficients(&self) -> usize {
-        self.prototypes.map_or(0, |(_, channels)| channels)
+    /// Returns the rows of rotated boxes; `None` for upright boxes.
+    ///
+    /// # Errors
+    /// `Format` when the output has no rows.
+    pub(super) fn oriented<'a>(&self, outputs: &[TensorView<'a>]) -> Result<Option<Rows<'a>>> {
+        let (BoxAngle::Last, Roles::Rows { output, transposed }) = (self.convention.angle, self.roles) else {
+            return Ok(None);
+        };
+        Rows::of(&outputs[output], transposed).map(Some)
+    }
+
+    /// Returns the number of values at the end of a row that are coefficients of masks or an angle.
+    fn further_values(&self) -> usize {
+        let of_angle = usize::from(self.convention.angle == BoxAngle::Last);
+        self.prototypes.map_or(of_angle, |(_, channels)| channels)
     }
 
     fn has_objectness(&self) -> bool {
@@ -127,7 +141,7 @@ impl Decoder {
         let is_softmax = self.convention.scores == ScoreFormat::Softmax;
         // Masks or keypoints may follow the class scores of one output, and the background the classes of a softmax.
         let count = match self.classes {
-            0 => fields.saturating_sub(usize::from(is_softmax) + self.coefficients()),
+            0 => fields.saturating_sub(usize::from(is_softmax) + self.further_values()),
             classes if classes <= fields && (first > 0 || classes + usize::from(is_softmax) == fields) => {
                 classes
             }
@@ -172,7 +186,8 @@ impl Decoder {
             RowOrder::BatchBoxScoreClass => (1, 5, 6),
             RowOrder::Auto | RowOrder::BoxScoreClass => (0, 4, 5),
         };
-        if rows.len() > 0 && rows.fields() <= [corners + 3, score, class].into_iter().fold(0, usize::max) {
+        let last = [corners + 3, score, class].into_iter().fold(0, usize::max) + self.further_values().min(1);
+        if rows.len() > 0 && rows.fields() <= last {
             return Err(Error::format(format!(
                 "the network has rows of {} values, too few for the row order {}; set another row_order",
                 rows.fields(),

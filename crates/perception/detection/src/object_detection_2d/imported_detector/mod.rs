@@ -6,6 +6,7 @@
 mod convention;
 mod decode;
 mod masks;
+mod oriented;
 mod params;
 mod roles;
 mod settled;
@@ -26,7 +27,8 @@ use opendr_perception_common::suppression::Suppression;
 use opendr_vision::InputGeometry;
 
 pub use params::{
-    BoxFormat, BoxUnit, ImportedDetectorParams, MaskOutput, Objectness, OutputLayout, RowOrder, ScoreFormat,
+    BoxAngle, BoxFormat, BoxUnit, ImportedDetectorParams, MaskOutput, Objectness, OutputLayout, RowOrder,
+    ScoreFormat,
 };
 
 use decode::{Decoder, Scratch};
@@ -96,8 +98,18 @@ impl Learner for ImportedDetector {
                 return Err(Error::format("the network has no outputs"));
             }
             self.decoder.run(outputs, Selection { threshold, multi_label }, scratch)?;
-            suppression.run(&mut scratch.candidates, &mut scratch.marks);
-            self.write(boxes, outputs, geometry, scratch)
+            let Some(rows) = self.decoder.oriented(outputs)? else {
+                suppression.run(&mut scratch.candidates, &mut scratch.marks);
+                return self.write(boxes, outputs, geometry, scratch);
+            };
+            let Scratch { candidates, shapes, marks, .. } = &mut *scratch;
+            oriented::suppress(candidates, &rows, suppression.iou_threshold, max_detections, shapes, marks);
+            boxes.boxes.clear();
+            boxes.classes.clone_from(&self.classes);
+            boxes.boxes.extend(candidates.iter().filter_map(|candidate| {
+                oriented::box_from_oriented(candidate, oriented::angle(&rows, candidate), geometry)
+            }));
+            Ok(())
         })
     }
 }

@@ -102,6 +102,18 @@ opendr_engine::choices! {
     }
 }
 
+opendr_engine::choices! {
+    /// Whether the boxes are rotated.
+    pub enum BoxAngle {
+        /// Recognised from the network.
+        Auto = "auto",
+        /// Boxes are upright.
+        Absent = "absent",
+        /// The last value of each row is the angle by which the box is rotated about its centre, in radians, clockwise.
+        Last = "last",
+    }
+}
+
 /// Parameters of [`super::ImportedDetector`].
 #[derive(Debug, Clone, Params)]
 pub struct ImportedDetectorParams {
@@ -117,7 +129,7 @@ pub struct ImportedDetectorParams {
     /// Whether a candidate may be a detection of several classes, or of that with the highest score only.
     #[param(default = false, live)]
     pub multi_label: bool,
-    /// Method of non-maximum suppression of candidates.
+    /// Method of non-maximum suppression of upright candidates; rotated ones have Fast NMS by the probabilistic IoU.
     #[param(live)]
     pub suppression: SuppressionKind,
     /// What the rows of the outputs are.
@@ -132,6 +144,8 @@ pub struct ImportedDetectorParams {
     pub objectness: Objectness,
     /// Order of the values of a detection in one output.
     pub row_order: RowOrder,
+    /// Whether the boxes are rotated; the segment of a rotated box is its polygon.
+    pub angle: BoxAngle,
     /// Whether the detections have masks.
     pub masks: MaskOutput,
     /// Class index of the network that is the first of the class names; recognised from the network if absent.

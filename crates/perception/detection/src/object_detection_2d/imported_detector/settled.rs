@@ -5,7 +5,8 @@ use opendr_perception_common::exported_network::Facts;
 
 use super::convention::{Convention, UNKNOWN};
 use super::params::{
-    BoxFormat, BoxUnit, ImportedDetectorParams, MaskOutput, Objectness, OutputLayout, RowOrder, ScoreFormat,
+    BoxAngle, BoxFormat, BoxUnit, ImportedDetectorParams, MaskOutput, Objectness, OutputLayout, RowOrder,
+    ScoreFormat,
 };
 
 /// Combines the parameters with what was recognised, and writes the result into the parameters.
@@ -34,6 +35,7 @@ pub(super) fn settle(
     take!(scores, known.scores, ScoreFormat::Auto);
     take!(objectness, known.objectness, Objectness::Auto);
     take!(row_order, known.row_order, RowOrder::Auto);
+    take!(angle, known.angle, BoxAngle::Auto);
     take!(masks, known.masks, MaskOutput::Auto);
     let input = params.input.settle(known.input);
     let first_class = *params.first_class.get_or_insert(known.first_class);
@@ -44,6 +46,7 @@ pub(super) fn settle(
         scores: params.scores,
         objectness: params.objectness,
         row_order: params.row_order,
+        angle: params.angle,
         masks: params.masks,
         input,
         first_class,
@@ -53,6 +56,11 @@ pub(super) fn settle(
             "the network has no output of four dimensions, which the prototypes of masks are; set masks to absent ({})",
             facts.describe()
         )));
+    }
+    if convention.angle == BoxAngle::Last && convention.masks == MaskOutput::Prototypes {
+        return Err(Error::unsupported(
+            "a network with rotated boxes and masks is not supported; set masks to absent",
+        ));
     }
     match missing(&convention)[..] {
         [] => Ok(convention),
