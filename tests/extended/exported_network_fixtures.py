@@ -56,7 +56,7 @@ def runs(mask):
 
 def write_container(path, onnx, learner, task):
     onnx = Path(onnx).read_bytes()
-    entry = {"path": "model.onnx", "size": len(onnx), "sha256": hashlib.sha256(onnx).hexdigest()}
+    entry = {"name": "model.onnx", "size": len(onnx), "sha256": hashlib.sha256(onnx).hexdigest()}
     manifest = {
         "format_version": 1,
         "learner": learner,

@@ -53,7 +53,7 @@ fn means(name: &str) -> PathBuf {
     let image = graph.input("image", ElementType::Float, [1, 3, 8, 8].map(Some).to_vec(), &[]);
     let mean = Operator::new("ReduceMean").ints("axes", 2..4).int("keepdims", 0);
     let scores = [1, 3].map(Some).to_vec();
-    let scores = graph.add("scores", mean, &[&image], ElementType::Float, scores).unwrap();
+    let scores = graph.add("means", mean, &[&image], ElementType::Float, scores).unwrap();
     graph.output("scores", &scores, "", &[]).unwrap();
     let folder = std::env::temp_dir().join(format!("opendr-classifier-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
@@ -67,7 +67,7 @@ fn a_network_without_metadata_takes_parameters() {
     let path = means("plain");
     assert!(NetworkKind::Classifier.recognises(&std::fs::read(&path).unwrap()));
     let error = load(path.clone(), ImportedClassifierParams::default()).err().unwrap();
-    assert_eq!(error.kind(), ErrorKind::Unsupported);
+    assert_eq!(error.kind(), ErrorKind::Unsupported, "{error:#}");
     assert!(format!("{error:#}").contains("set resize, colour, levels, and crop"), "{error:#}");
     let input = InputParams {
         resize: InputResize::Stretch,

@@ -17,7 +17,7 @@ fn network(outputs: &[(&str, &[usize])], metadata: &[(&str, &str)]) -> Vec<u8> {
     let x = graph.input("images", ElementType::Float, dims(&[1, 3, 32, 32]), &[]);
     let pool = Operator::new("AveragePool").ints("kernel_shape", [8, 5]).ints("strides", [4, 2]);
     let pooled = graph.add("pooled", pool, &[&x], ElementType::Float, dims(&[1, 3, 7, 14])).unwrap();
-    let mut add = |name: &str, inputs: &[&GraphTensor], shape: &[usize]| {
+    let mut add = |name: &'static str, inputs: &[&GraphTensor], shape: &[usize]| {
         graph.add(name, Operator::new(name), inputs, ElementType::Float, dims(shape)).unwrap()
     };
     let flat = add("Reshape", &[&pooled, &GraphTensor::ints([294])], &[294]);
