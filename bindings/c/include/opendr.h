@@ -126,6 +126,8 @@ typedef enum opendr_skeleton {
     OPENDR_NTU25 = 7,
     // The positions of the two jaws of a gripper for a grasp.
     OPENDR_GRASP2 = 8,
+    // Up to 144 keypoints without names, by their index.
+    OPENDR_POINTS = 9,
 } opendr_skeleton;
 
 // An environment; calls from several threads are serialised.
@@ -1219,19 +1221,20 @@ static inline opendr_status opendr_infer_fastest_det(const opendr_learner *learn
  *   iou_threshold (a float 0..=1, live, default 0.65): IoU above which candidates of one class count as one object; detections and queries are not suppressed.
  *   max_detections (an int 1..=1000, live, default 300): Maximum number of boxes per image.
  *   multi_label (a bool, live, default false): Whether a candidate may be a detection of several classes, or of that with the highest score only.
- *   suppression (a str, one of hard, soft, fast, cluster, live, default hard): Method of non-maximum suppression of candidates.
+ *   suppression (a str, one of hard, soft, fast, cluster, live, default hard): Method of non-maximum suppression of upright candidates; rotated ones have Fast NMS by the probabilistic IoU.
  *   layout (a str, one of auto, candidates, grid_candidates, detections, queries, default auto): What the rows of the outputs are.
  *   boxes (a str, one of auto, xyxy, cxcywh, xywh, yxyx, default auto): The four values of a box.
  *   unit (a str, one of auto, pixels, fractions, default auto): Unit of boxes.
  *   scores (a str, one of auto, probabilities, sigmoid, softmax, default auto): What the class scores are.
  *   objectness (a str, one of auto, present, absent, default auto): Whether rows of candidates have an objectness.
  *   row_order (a str, one of auto, box_score_class, class_score_box, batch_box_class_score, batch_box_score_class, default auto): Order of the values of a detection in one output.
+ *   angle (a str, one of auto, absent, last, default auto): Whether the boxes are rotated; the segment of a rotated box is its polygon.
  *   masks (a str, one of auto, absent, prototypes, default auto): Whether the detections have masks.
+ *   first_class (an int 0..=1000, default none): Class index of the network that is the first of the class names; recognised from the network if absent.
  *   resize (a str, one of auto, letterbox, top_left, top_left_truncated, stretch, default auto): How an image becomes the network's input.
  *   padding (an int 0..=255, default none): Level of the padding of a letterbox; recognised from the network if absent.
  *   colour (a str, one of auto, rgb, bgr, default auto): Order of the colour channels of the network's input.
  *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, default auto): Range of the samples of the network's input.
- *   first_class (an int 0..=1000, default none): Class index of the network that is the first of the class names; recognised from the network if absent.
  *   size (an int 32..=4096 px, default 640): Side of the network's input, for models of dynamic size.
  *
  * Inputs:
@@ -2245,6 +2248,52 @@ static inline opendr_status opendr_infer_blazepose(const opendr_learner *learner
 }
 
 /*
+ * ImportedPoseEstimatorLearner: Runs your own pose estimator, exported to ONNX by another tool; recognises the layout of its outputs.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, live, default 0.25): Score below which poses are dropped.
+ *   keypoint_threshold (a float 0..=1, live, default 0.5): Score below which keypoints are missing.
+ *   iou_threshold (a float 0..=1, live, default 0.65): IoU of the boxes above which candidates of one class count as one object; detections are not suppressed.
+ *   max_poses (an int 1..=1000, live, default 100): Maximum number of poses per image.
+ *   suppression (a str, one of hard, soft, fast, cluster, live, default hard): Method of non-maximum suppression of candidates.
+ *   layout (a str, one of auto, candidates, detections, lists, default auto): What the outputs are.
+ *   keypoints (an int 1..=144, default none): Number of keypoints of a pose; recognised from the network if absent.
+ *   keypoint_values (an int 2..=3, default none): Number of values of a keypoint: 2 (position) or 3 (position and score); recognised from the network if absent.
+ *   skeleton (a str, one of auto, coco17, blazepose33, left_hand21, right_hand21, points, default auto): Skeleton of the keypoints.
+ *   resize (a str, one of auto, letterbox, top_left, top_left_truncated, stretch, default auto): How an image becomes the network's input.
+ *   padding (an int 0..=255, default none): Level of the padding of a letterbox; recognised from the network if absent.
+ *   colour (a str, one of auto, rgb, bgr, default auto): Order of the colour channels of the network's input.
+ *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, default auto): Range of the samples of the network's input.
+ *   size (an int 32..=4096 px, default 640): Side of the network's input, for models of dynamic size.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   poses (PoseList)
+ */
+static inline opendr_status opendr_load_pose_estimator(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("pose_estimator", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_pose_estimator(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_pose_list **poses) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "poses";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (poses != NULL) *poses = (opendr_pose_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
  * FallDetectorLearner: Detects fallen persons by a rule on their poses over time.
  *
  * Parameters:
@@ -2412,6 +2461,46 @@ static inline opendr_status opendr_load_image_classifier(const char *path, const
 }
 
 static inline opendr_status opendr_infer_image_classifier(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_category **category) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * ImportedClassifierLearner: Runs your own image classifier, exported to ONNX by another tool; recognises input and scores.
+ *
+ * Parameters:
+ *   probabilities (a bool, live, default true): Whether the prediction has the score of every class.
+ *   scores (a str, one of auto, probabilities, logits, default auto): What the scores are.
+ *   crop (a float 0..=1, default none): Share of the image's height or width that its central crop keeps, which has the aspect ratio of the network's input; 0 for the whole image. Networks trained on images of 256 pixels, cropped to 224, have 0.875. Recognised from the network if absent.
+ *   resize (a str, one of auto, letterbox, top_left, top_left_truncated, stretch, default auto): How an image becomes the network's input.
+ *   padding (an int 0..=255, default none): Level of the padding of a letterbox; recognised from the network if absent.
+ *   colour (a str, one of auto, rgb, bgr, default auto): Order of the colour channels of the network's input.
+ *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, default auto): Range of the samples of the network's input.
+ *   size (an int 32..=4096 px, default 640): Side of the network's input, for models of dynamic size.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_classifier(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("classifier", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_classifier(const opendr_learner *learner,
     const opendr_image *image,
     opendr_category **category) {
     opendr_input inputs_[1];

@@ -250,8 +250,9 @@ class ImportedDetectorLearner(NativeLearner):
             running, and for one call of infer)
         multi_label: Whether a candidate may be a detection of several classes, or of that with the highest score
             only. (default False; live: may change while running, and for one call of infer)
-        suppression: Method of non-maximum suppression of candidates. (default 'hard'; one of 'hard', 'soft',
-            'fast', 'cluster'; live: may change while running, and for one call of infer)
+        suppression: Method of non-maximum suppression of upright candidates; rotated ones have Fast NMS by the
+            probabilistic IoU. (default 'hard'; one of 'hard', 'soft', 'fast', 'cluster'; live: may change while
+            running, and for one call of infer)
         layout: What the rows of the outputs are. (default 'auto'; one of 'auto', 'candidates', 'grid_candidates',
             'detections', 'queries')
         boxes: The four values of a box. (default 'auto'; one of 'auto', 'xyxy', 'cxcywh', 'xywh', 'yxyx')
@@ -261,7 +262,11 @@ class ImportedDetectorLearner(NativeLearner):
             'absent')
         row_order: Order of the values of a detection in one output. (default 'auto'; one of 'auto',
             'box_score_class', 'class_score_box', 'batch_box_class_score', 'batch_box_score_class')
+        angle: Whether the boxes are rotated; the segment of a rotated box is its polygon. (default 'auto'; one of
+            'auto', 'absent', 'last')
         masks: Whether the detections have masks. (default 'auto'; one of 'auto', 'absent', 'prototypes')
+        first_class: Class index of the network that is the first of the class names; recognised from the network
+            if absent. (default None; 0 to 1000)
         resize: How an image becomes the network's input. (default 'auto'; one of 'auto', 'letterbox', 'top_left',
             'top_left_truncated', 'stretch')
         padding: Level of the padding of a letterbox; recognised from the network if absent. (default None; 0 to
@@ -269,8 +274,6 @@ class ImportedDetectorLearner(NativeLearner):
         colour: Order of the colour channels of the network's input. (default 'auto'; one of 'auto', 'rgb', 'bgr')
         levels: Range of the samples of the network's input. (default 'auto'; one of 'auto', '0_255', '0_1',
             '-1_1', 'imagenet')
-        first_class: Class index of the network that is the first of the class names; recognised from the network
-            if absent. (default None; 0 to 1000)
         size: Side of the network's input, for models of dynamic size. (default 640; 32 to 4096 px)
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
     """
@@ -285,14 +288,15 @@ class ImportedDetectorLearner(NativeLearner):
     scores: Literal['auto', 'probabilities', 'sigmoid', 'softmax']
     objectness: Literal['auto', 'present', 'absent']
     row_order: Literal['auto', 'box_score_class', 'class_score_box', 'batch_box_class_score', 'batch_box_score_class']
+    angle: Literal['auto', 'absent', 'last']
     masks: Literal['auto', 'absent', 'prototypes']
+    first_class: Optional[int]
     resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch']
     padding: Optional[int]
     colour: Literal['auto', 'rgb', 'bgr']
     levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet']
-    first_class: Optional[int]
     size: int
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ..., layout: Literal['auto', 'candidates', 'grid_candidates', 'detections', 'queries'] = ..., boxes: Literal['auto', 'xyxy', 'cxcywh', 'xywh', 'yxyx'] = ..., unit: Literal['auto', 'pixels', 'fractions'] = ..., scores: Literal['auto', 'probabilities', 'sigmoid', 'softmax'] = ..., objectness: Literal['auto', 'present', 'absent'] = ..., row_order: Literal['auto', 'box_score_class', 'class_score_box', 'batch_box_class_score', 'batch_box_score_class'] = ..., masks: Literal['auto', 'absent', 'prototypes'] = ..., resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch'] = ..., padding: Optional[int] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet'] = ..., first_class: Optional[int] = ..., size: int = ...) -> None: ...
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ..., layout: Literal['auto', 'candidates', 'grid_candidates', 'detections', 'queries'] = ..., boxes: Literal['auto', 'xyxy', 'cxcywh', 'xywh', 'yxyx'] = ..., unit: Literal['auto', 'pixels', 'fractions'] = ..., scores: Literal['auto', 'probabilities', 'sigmoid', 'softmax'] = ..., objectness: Literal['auto', 'present', 'absent'] = ..., row_order: Literal['auto', 'box_score_class', 'class_score_box', 'batch_box_class_score', 'batch_box_score_class'] = ..., angle: Literal['auto', 'absent', 'last'] = ..., masks: Literal['auto', 'absent', 'prototypes'] = ..., first_class: Optional[int] = ..., resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch'] = ..., padding: Optional[int] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet'] = ..., size: int = ...) -> None: ...
     @overload
     def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> BoundingBoxList: ...  # type: ignore[overload-overlap]
     @overload

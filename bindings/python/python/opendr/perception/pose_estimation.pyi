@@ -303,6 +303,64 @@ class BlazePoseLearner(NativeLearner):
     @overload
     def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., keypoint_threshold: float = ..., passes: int = ..., track: bool = ...) -> Iterator[PoseList]: ...
 
+class ImportedPoseEstimatorLearner(NativeLearner):
+    """Runs your own pose estimator, exported to ONNX by another tool; recognises the layout of its outputs.
+
+    Task: pose_estimation. ``infer`` takes:
+
+        image: Image.
+
+    and returns: PoseList.
+
+    Args:
+        threshold: Score below which poses are dropped. (default 0.25; 0 to 1; live: may change while running, and
+            for one call of infer)
+        keypoint_threshold: Score below which keypoints are missing. (default 0.5; 0 to 1; live: may change while
+            running, and for one call of infer)
+        iou_threshold: IoU of the boxes above which candidates of one class count as one object; detections are
+            not suppressed. (default 0.65; 0 to 1; live: may change while running, and for one call of infer)
+        max_poses: Maximum number of poses per image. (default 100; 1 to 1000; live: may change while running, and
+            for one call of infer)
+        suppression: Method of non-maximum suppression of candidates. (default 'hard'; one of 'hard', 'soft',
+            'fast', 'cluster'; live: may change while running, and for one call of infer)
+        layout: What the outputs are. (default 'auto'; one of 'auto', 'candidates', 'detections', 'lists')
+        keypoints: Number of keypoints of a pose; recognised from the network if absent. (default None; 1 to 144)
+        keypoint_values: Number of values of a keypoint: 2 (position) or 3 (position and score); recognised from
+            the network if absent. (default None; 2 to 3)
+        skeleton: Skeleton of the keypoints. (default 'auto'; one of 'auto', 'coco17', 'blazepose33',
+            'left_hand21', 'right_hand21', 'points')
+        resize: How an image becomes the network's input. (default 'auto'; one of 'auto', 'letterbox', 'top_left',
+            'top_left_truncated', 'stretch')
+        padding: Level of the padding of a letterbox; recognised from the network if absent. (default None; 0 to
+            255)
+        colour: Order of the colour channels of the network's input. (default 'auto'; one of 'auto', 'rgb', 'bgr')
+        levels: Range of the samples of the network's input. (default 'auto'; one of 'auto', '0_255', '0_1',
+            '-1_1', 'imagenet')
+        size: Side of the network's input, for models of dynamic size. (default 640; 32 to 4096 px)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+    """
+
+    keypoint_threshold: float
+    iou_threshold: float
+    max_poses: int
+    suppression: Literal['hard', 'soft', 'fast', 'cluster']
+    layout: Literal['auto', 'candidates', 'detections', 'lists']
+    keypoints: Optional[int]
+    keypoint_values: Optional[int]
+    skeleton: Literal['auto', 'coco17', 'blazepose33', 'left_hand21', 'right_hand21', 'points']
+    resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch']
+    padding: Optional[int]
+    colour: Literal['auto', 'rgb', 'bgr']
+    levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet']
+    size: int
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, keypoint_threshold: float = ..., iou_threshold: float = ..., max_poses: int = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ..., layout: Literal['auto', 'candidates', 'detections', 'lists'] = ..., keypoints: Optional[int] = ..., keypoint_values: Optional[int] = ..., skeleton: Literal['auto', 'coco17', 'blazepose33', 'left_hand21', 'right_hand21', 'points'] = ..., resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch'] = ..., padding: Optional[int] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet'] = ..., size: int = ...) -> None: ...
+    @overload
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ..., keypoint_threshold: float = ..., iou_threshold: float = ..., max_poses: int = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> PoseList: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., keypoint_threshold: float = ..., iou_threshold: float = ..., max_poses: int = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> list[PoseList]: ...
+    @overload
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., keypoint_threshold: float = ..., iou_threshold: float = ..., max_poses: int = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> Iterator[PoseList]: ...
+
 class FilteredPose:
     """Not available yet: infer(img, track=True, smooth=True) of LightweightOpenPoseLearner smooths poses."""
 
