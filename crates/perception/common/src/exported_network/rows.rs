@@ -42,6 +42,11 @@ impl<'a> Rows<'a> {
         self.rows
     }
 
+    /// Returns whether there are no rows.
+    pub fn is_empty(&self) -> bool {
+        self.rows == 0
+    }
+
     /// Returns the number of fields of a row.
     pub fn fields(&self) -> usize {
         self.fields

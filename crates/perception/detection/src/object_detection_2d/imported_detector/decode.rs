@@ -89,7 +89,7 @@ impl Decoder {
         };
         let (prototypes, rows) =
             (Prototypes::of(&outputs[prototypes])?, Rows::of(&outputs[output], transposed)?);
-        if rows.len() > 0 && rows.fields() < 4 + prototypes.channels() {
+        if !rows.is_empty() && rows.fields() < 4 + prototypes.channels() {
             return Err(Error::format(format!(
                 "the network has rows of {} values, too few for the coefficients of {} prototypes; set masks to absent",
                 rows.fields(),
@@ -187,7 +187,7 @@ impl Decoder {
             RowOrder::Auto | RowOrder::BoxScoreClass => (0, 4, 5),
         };
         let last = [corners + 3, score, class].into_iter().fold(0, usize::max) + self.further_values().min(1);
-        if rows.len() > 0 && rows.fields() <= last {
+        if !rows.is_empty() && rows.fields() <= last {
             return Err(Error::format(format!(
                 "the network has rows of {} values, too few for the row order {}; set another row_order",
                 rows.fields(),
@@ -214,7 +214,7 @@ impl Decoder {
         let rows = Rows::of(boxes, false)?;
         let of_labels = labels.data().len();
         let of_scores = scores.map_or(rows.len(), |scores| scores.data().len());
-        if of_labels != rows.len() || of_scores != rows.len() || (rows.len() > 0 && rows.fields() < 4) {
+        if of_labels != rows.len() || of_scores != rows.len() || (!rows.is_empty() && rows.fields() < 4) {
             return Err(Error::format(format!(
                 "the network has {} boxes, {of_scores} scores and {of_labels} classes; set its layout",
                 rows.len()

@@ -97,7 +97,7 @@ pub(super) fn box_from_oriented(
         geometry.image_from_input([x + right * cos - down * sin, y + right * sin + down * cos])
     };
     let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
-    let [width, height] = geometry.image_size.map(|side| side as f32);
+    let [width, height] = geometry.image_size;
     let bounds = corners.iter().fold(
         [f32::INFINITY, f32::INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY],
         |[left, top, right, bottom], [x, y]| [left.min(*x), top.min(*y), right.max(*x), bottom.max(*y)],

@@ -81,7 +81,7 @@ impl Decoder {
                 }
             }
             PoseLayout::Detections => {
-                if rows.len() > 0 && rows.fields() != 6 + self.values() {
+                if !rows.is_empty() && rows.fields() != 6 + self.values() {
                     return Err(self.wrong_rows(&rows, classes));
                 }
                 for row in 0..rows.len() {
@@ -102,7 +102,7 @@ impl Decoder {
             }
             PoseLayout::Lists => {
                 let keypoints = outputs[self.keypoints].data().len();
-                if rows.len() > 0 && (rows.fields() < 5 || keypoints != rows.len() * self.values()) {
+                if !rows.is_empty() && (rows.fields() < 5 || keypoints != rows.len() * self.values()) {
                     return Err(self.wrong_rows(&rows, classes));
                 }
                 for row in 0..rows.len() {
@@ -185,7 +185,7 @@ impl Decoder {
         if !x.is_finite() || !y.is_finite() {
             return Keypoint::MISSING;
         }
-        let [width, height] = geometry.image_size.map(|side| side as f32);
+        let [width, height] = geometry.image_size;
         let confidence = if self.layout.values > 2 { value(first + 2) } else { score };
         Keypoint { x: x.clamp(0.0, width), y: y.clamp(0.0, height), confidence }
     }
