@@ -34,9 +34,9 @@ MODULES: dict[str, dict[str, Home]] = {
     "datasets.wider_person": {"WiderPersonDataset": _DATASETS},
     "datasets.xmldataset": {"XMLBasedDataset": _DATASETS},
     "detectron2.detectron2_learner": {
-        "Detectron2Learner": Absent("use CenterNetDetectorLearner for boxes, BodyPixLearner for masks of persons")
+        "Detectron2Learner": Absent("use ImportedDetectorLearner with an ONNX export of your model, or CenterNetDetectorLearner")
     },
-    "detr.detr_learner": {"DetrLearner": Absent("use CenterNetDetectorLearner, which detects the same classes of COCO")},
+    "detr.detr_learner": {"DetrLearner": Absent("use ImportedDetectorLearner with an ONNX export of DETR, or CenterNetDetectorLearner")},
     "gem.algorithm.util.draw": {"draw": _DRAWING},
     "gem.gem_learner": {"GemLearner": HERE},
     "nanodet.nanodet_learner": {"NanodetLearner": HERE},
@@ -58,8 +58,12 @@ MODULES: dict[str, dict[str, Home]] = {
     "ssd.ssd_learner": {"SingleShotDetectorLearner": HERE},
     "utils.class_filter_wrapper": {"FilteredLearnerWrapper": "opendr._upstream.filtering"},
     "utils.vis_utils": {"draw_bounding_boxes": _DRAWING, "draw_detections": _DRAWING},
-    "yolov3.yolov3_learner": {"YOLOv3DetectorLearner": Absent("use CenterNetDetectorLearner or NanodetLearner")},
-    "yolov5.yolov5_learner": {"YOLOv5DetectorLearner": Absent("use NanodetLearner, which is as light")},
+    "yolov3.yolov3_learner": {
+        "YOLOv3DetectorLearner": Absent("use ImportedDetectorLearner with an ONNX export of YOLOv3, or YoloxLearner")
+    },
+    "yolov5.yolov5_learner": {
+        "YOLOv5DetectorLearner": Absent("use ImportedDetectorLearner with an ONNX export of YOLOv5, or YoloxLearner")
+    },
 }
 
 _SUBSET = "dataset use_subset subset_size verbose"

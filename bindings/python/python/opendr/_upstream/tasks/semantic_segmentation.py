@@ -9,7 +9,7 @@ MODULES: dict[str, dict[str, Home]] = {
     "bisenet.bisenet_learner": {"BisenetLearner": HERE},
     "yolov8_seg.yolov8_seg_learner": {
         "YOLOv8SegLearner": Absent(
-            "use DeeplabLearner for classes, BodyPixLearner of instance_segmentation for persons"
+            "use ImportedDetectorLearner with an ONNX export, which returns masks, or DeeplabLearner for classes"
         )
     },
 }
