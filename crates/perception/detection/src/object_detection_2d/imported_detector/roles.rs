@@ -27,7 +27,7 @@ impl Roles {
             OutputLayout::Detections => {
                 named(facts).or_else(|| listed(facts)).or_else(|| detection_rows(facts))
             }
-            _ => split(facts).or_else(|| rows(facts, classes)),
+            _ => split(facts).or_else(|| rows(facts, classes, layout)),
         };
         found.ok_or_else(|| {
             Error::unsupported(format!(
@@ -91,13 +91,48 @@ fn split(facts: &Facts) -> Option<Roles> {
     Some(Roles::Split { boxes, scores, transposed })
 }
 
-fn rows(facts: &Facts, classes: usize) -> Option<Roles> {
+fn rows(facts: &Facts, classes: usize, layout: OutputLayout) -> Option<Roles> {
     let output = facts.only_output(|output| is_float(output) && output.dims.len() == 3)?;
     let transposed = match last_two(&facts.outputs[output], 3)? {
         [_, Some(fields)] if classes > 0 && (fields == classes + 4 || fields == classes + 5) => false,
         [Some(first), Some(second)] => first < second,
         [first, second] if first.is_some() != second.is_some() => first.is_some(),
+        // Ultralytics writes the candidates of a network with open shapes as columns, too.
+        _ if facts.is_of_ultralytics() && layout == OutputLayout::Candidates => true,
         _ => return None,
     };
     Some(Roles::Rows { output, transposed })
+}
+
+#[cfg(test)]
+mod tests {
+    use opendr_onnx::proto::StringStringEntryProto;
+    use opendr_onnx::{Builder, ElementType, Operator, bytes_from_model, model_from_graph};
+
+    use super::*;
+
+    /// Facts of a network whose output has open shapes.
+    fn open_shapes(metadata: &[(&str, &str)]) -> Facts {
+        let mut graph = Builder::default();
+        let image = graph.input("images", ElementType::Float, [1, 3, 64].map(Some).to_vec(), &[]);
+        let rows = Operator::new("Abs");
+        let rows = graph.add("rows", rows, &[&image], ElementType::Float, vec![Some(1), None, None]).unwrap();
+        graph.output("output0", &rows, "", &[]).unwrap();
+        let mut model = model_from_graph(graph.finish("detector"));
+        let entry = |(key, value): &(&str, &str)| StringStringEntryProto {
+            key: (*key).into(),
+            value: (*value).into(),
+        };
+        model.metadata_props = metadata.iter().map(entry).collect();
+        Facts::declared(&bytes_from_model(&model)).unwrap()
+    }
+
+    #[test]
+    fn open_shapes_need_a_known_tool() {
+        let known = open_shapes(&[("stride", "32"), ("names", "{0: 'ball'}"), ("task", "detect")]);
+        let columns = Roles::Rows { output: 0, transposed: true };
+        assert_eq!(Roles::find(OutputLayout::Candidates, &known, 1).unwrap(), columns);
+        let error = Roles::find(OutputLayout::Candidates, &open_shapes(&[]), 1).unwrap_err();
+        assert!(error.to_string().contains("fixed input size"), "{error}");
+    }
 }
