@@ -650,12 +650,12 @@ class Dataset_NMS:
     def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...
 
 class Detectron2Learner:
-    """Not available yet: use CenterNetDetectorLearner for boxes, BodyPixLearner for masks of persons."""
+    """Not available yet: use ImportedDetectorLearner with an ONNX export of your model, or CenterNetDetectorLearner."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...
 
 class DetrLearner:
-    """Not available yet: use CenterNetDetectorLearner, which detects the same classes of COCO."""
+    """Not available yet: use ImportedDetectorLearner with an ONNX export of DETR, or CenterNetDetectorLearner."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...
 
@@ -675,11 +675,11 @@ class RetinaFaceLearner:
     def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...
 
 class YOLOv3DetectorLearner:
-    """Not available yet: use CenterNetDetectorLearner or NanodetLearner."""
+    """Not available yet: use ImportedDetectorLearner with an ONNX export of YOLOv3, or YoloxLearner."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...
 
 class YOLOv5DetectorLearner:
-    """Not available yet: use NanodetLearner, which is as light."""
+    """Not available yet: use ImportedDetectorLearner with an ONNX export of YOLOv5, or YoloxLearner."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...

@@ -198,6 +198,6 @@ class TiledSegmentationLearner(NativeLearner):
     def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, tile: int = ..., tile_overlap: int = ..., whole: bool = ..., time_budget: float = ..., max_tiles: int = ..., detail_threshold: float = ..., change_threshold: float = ..., memory: int = ..., rotation: int = ...) -> Iterator[Heatmap]: ...
 
 class YOLOv8SegLearner:
-    """Not available yet: use DeeplabLearner for classes, BodyPixLearner of instance_segmentation for persons."""
+    """Not available yet: use ImportedDetectorLearner with an ONNX export, which returns masks, or DeeplabLearner for classes."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...
