@@ -383,7 +383,7 @@ def table_of_opendr(page):
     count = sum(isinstance(home, Absent) for _, home in names.values())
     modules = {".".join(filter(None, (task, path))) for task in TASKS for path in rows(task).MODULES}
     text += UPSTREAM_TEXT.format(names=len(names), modules=len(modules), here=len(names) - count, missing=count)
-    text += f"\n### Learners\n{CLASSES_TEXT}\n{table_of_learners(names)}"
+    text += f"\n### Accuracy and training\n{CLASSES_TEXT}\n{table_of_learners(names)}"
     text += f"\n### Demos\n{DEMOS_TEXT}\n| learner | demos | remaining differences |\n|---|---|---|\n{demos}"
     text += f"\n### Not available yet\n\n{MISSING_TEXT}\n| name | module | replacement |\n|---|---|---|\n{missing}"
     text += f"\n### Arguments without effect\n\n{IDLE_TEXT}\n| learner | arguments | reason |\n|---|---|---|\n{idle}"
