@@ -403,13 +403,14 @@ def table_of_learners(names):
         entry = entries[name]
         variants = tomllib.loads((MODELS / f"{entry['name']}.toml").read_text()).get("variants", [])
         default = next((variant for variant in variants if variant.get("default")), {})
-        has_weights = default.get("name", "") if "files" in default or "parts" in default else "" if variants else "no model"
+        is_rule = bool(variants) and not {"files", "parts"} & set(default)
+        weights = "" if is_rule else default.get("name", "no model")
         trains = "yes" if entry["fit"] or entry["fit_in"] else "no"
         measured = "; ".join(
             f"{data}: {', '.join(f'{number} {value}' for number, value in numbers.items())}"
             for data, numbers in default.get("metrics", {}).items()
         )
-        text += f"| `{name}` | `{entry['name']}` | {cell(has_weights)} | {trains} | {cell(measured)} |\n"
+        text += f"| `{name}` | `{entry['name']}` | {cell(weights)} | {trains} | {cell(measured)} |\n"
     return text
 
 

@@ -137,8 +137,8 @@ def ultralytics(folder):
         "detect": [[2, 3, 4], 1, "Detect", ["nc"]],
         "segment": [[2, 3, 4], 1, "Segment", ["nc", 4, 8]],
         "pose": [[2, 3, 4], 1, "Pose", ["nc", "kpt_shape"]],
+        "obb": [[2, 3, 4], 1, "OBB", ["nc", 1]],
     }
-    heads["obb"] = [[2, 3, 4], 1, "OBB", ["nc", 1]]
     person = {"nc": 1, "kpt_shape": [17, 3]}
     pairs = {"kpt_shape": [6, 2]}
     cases = [

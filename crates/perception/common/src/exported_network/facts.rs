@@ -2,9 +2,9 @@
 
 use std::collections::{HashMap, HashSet};
 
-use opendr_engine::Result;
 use opendr_engine::model::Model;
 use opendr_engine::target::Classes;
+use opendr_engine::{Device, Error, Result};
 use opendr_inference::{ElementType, Session, TensorInfo, declared_tensors};
 use opendr_onnx::model_from_bytes;
 use opendr_onnx::proto::{GraphProto, NodeProto};
@@ -29,12 +29,15 @@ pub struct Facts {
 }
 
 impl Facts {
-    /// Reads the facts of the ONNX file that `session` runs.
+    /// Opens the network of a model and reads its facts.
     ///
     /// # Errors
-    /// `Format` when the bytes are not an ONNX model.
-    pub fn read(onnx: &[u8], session: &Session) -> Result<Self> {
-        Self::new(onnx, session.inputs().to_vec(), session.outputs().to_vec())
+    /// Those of [`Model::onnx`] and [`Session::open`].
+    pub fn open(model: &Model, device: Device) -> Result<(Session, Self)> {
+        let onnx = model.onnx()?;
+        let session = Session::open(&onnx, device)?;
+        let facts = Self::new(&onnx, session.inputs().to_vec(), session.outputs().to_vec())?;
+        Ok((session, facts))
     }
 
     /// Reads the facts that an ONNX file declares.
@@ -132,6 +135,15 @@ impl Facts {
             names.extend(node.input.iter().take(followed).map(String::as_str));
         }
         found
+    }
+
+    /// Returns the error for a network whose layout is neither recognised nor given; `missing` has the names of the parameters to set.
+    pub fn unsettled(&self, missing: &[&str]) -> Error {
+        Error::unsupported(format!(
+            "the network does not state all of its layout; set {} ({})",
+            missing.join(", "),
+            self.describe()
+        ))
     }
 
     /// Returns inputs and outputs as one text for messages.

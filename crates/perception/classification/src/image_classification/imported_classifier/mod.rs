@@ -10,7 +10,6 @@ use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Result, Task};
-use opendr_inference::Session;
 use opendr_perception_common::category_scores::{category_from_logits, category_from_probabilities};
 use opendr_perception_common::exported_network::{
     ExportedNetwork, Facts, ImageInput, InputConvention, InputResize, NetworkKind, is_class_scores,
@@ -41,9 +40,7 @@ impl Learner for ImportedClassifier {
     type State = ();
 
     fn load(model: &Model, mut params: ImportedClassifierParams, device: Device) -> Result<Self> {
-        let onnx = model.onnx()?;
-        let session = Session::open(&onnx, device)?;
-        let facts = Facts::read(&onnx, &session)?;
+        let (session, facts) = Facts::open(model, device)?;
         let image = ImageInput::find(&facts, params.input.size)?;
         let output = facts.only_output(is_class_scores).ok_or_else(|| {
             Error::unsupported(format!(

@@ -18,7 +18,7 @@ use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
-use opendr_inference::{Session, TensorView};
+use opendr_inference::TensorView;
 use opendr_perception_common::boxes_from_candidates::{box_from_candidate, boxes_from_candidates};
 use opendr_perception_common::exported_network::{
     ExportedNetwork, Facts, ImageInput, NetworkKind, Selection,
@@ -56,9 +56,7 @@ impl Learner for ImportedDetector {
     type State = ();
 
     fn load(model: &Model, mut params: ImportedDetectorParams, device: Device) -> Result<Self> {
-        let onnx = model.onnx()?;
-        let session = Session::open(&onnx, device)?;
-        let facts = Facts::read(&onnx, &session)?;
+        let (session, facts) = Facts::open(model, device)?;
         let image = ImageInput::find(&facts, params.input.size)?;
         let classes = facts.classes(model);
         let convention = settled::settle(&mut params, convention::recognise(&facts, image.size)?, &facts)?;

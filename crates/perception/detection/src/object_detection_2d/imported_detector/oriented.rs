@@ -1,6 +1,7 @@
 //! Oriented boxes: suppression by the probabilistic IoU, and polygons.
 
 use opendr_engine::target::{BoundingBox, Segment, Segmentation};
+use opendr_perception_common::boxes_from_candidates::box_from_candidate;
 use opendr_perception_common::exported_network::Rows;
 use opendr_perception_common::suppression::{Candidate, keep_best};
 use opendr_vision::InputGeometry;
@@ -90,23 +91,17 @@ pub(super) fn box_from_oriented(
 ) -> Option<BoundingBox> {
     let [left, top, right, bottom] = candidate.corners;
     let [x, y] = [(left + right) / 2.0, (top + bottom) / 2.0];
-    let [half_width, half_height] = [(right - left) / 2.0, (bottom - top) / 2.0];
+    let [half_width, half_height] = [(right - left).abs() / 2.0, (bottom - top).abs() / 2.0];
     let (sin, cos) = angle.sin_cos();
+    let reach_x = half_width * cos.abs() + half_height * sin.abs();
+    let reach_y = half_width * sin.abs() + half_height * cos.abs();
+    let around = Candidate { corners: [x - reach_x, y - reach_y, x + reach_x, y + reach_y], ..*candidate };
+    let mut found = box_from_candidate(&around, geometry)?;
     let corner = |right: f32, down: f32| {
         let [right, down] = [right * half_width, down * half_height];
         geometry.image_from_input([x + right * cos - down * sin, y + right * sin + down * cos])
     };
     let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
-    let [width, height] = geometry.image_size;
-    let bounds = corners.iter().fold(
-        [f32::INFINITY, f32::INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY],
-        |[left, top, right, bottom], [x, y]| [left.min(*x), top.min(*y), right.max(*x), bottom.max(*y)],
-    );
-    let [left, top, right, bottom] = bounds;
-    let clipped =
-        [left.clamp(0.0, width), top.clamp(0.0, height), right.clamp(0.0, width), bottom.clamp(0.0, height)];
-    let is_inside = clipped[2] > clipped[0] && clipped[3] > clipped[1];
-    let mut found = BoundingBox::from_corners(i64::from(candidate.class), clipped, candidate.score);
     let next = |at: usize| corners[(at + 1) % 4];
     let twice: f32 = (0..4).map(|at| corners[at][0] * next(at)[1] - next(at)[0] * corners[at][1]).sum();
     found.segment = Some(Box::new(Segment {
@@ -114,7 +109,7 @@ pub(super) fn box_from_oriented(
         area: twice.abs() / 2.0,
         iscrowd: false,
     }));
-    is_inside.then_some(found)
+    Some(found)
 }
 
 #[cfg(test)]

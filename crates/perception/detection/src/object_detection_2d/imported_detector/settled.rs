@@ -64,11 +64,7 @@ pub(super) fn settle(
     }
     match missing(&convention)[..] {
         [] => Ok(convention),
-        ref missing => Err(Error::unsupported(format!(
-            "the network does not state all of its layout; set {} ({})",
-            missing.join(", "),
-            facts.describe()
-        ))),
+        ref missing => Err(facts.unsettled(missing)),
     }
 }
 

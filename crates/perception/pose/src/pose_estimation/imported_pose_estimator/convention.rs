@@ -106,11 +106,7 @@ pub(super) fn settle(
     let of_outputs = of_outputs.into_iter().filter(|(_, is_missing)| *is_missing).map(|(name, _)| name);
     let missing: Vec<_> = of_outputs.chain(input.missing()).collect();
     let (Some(keypoints), Some(values), []) = (params.keypoints, params.keypoint_values, &missing[..]) else {
-        return Err(Error::unsupported(format!(
-            "the network does not state all of its layout; set {} ({})",
-            missing.join(", "),
-            facts.describe()
-        )));
+        return Err(facts.unsettled(&missing));
     };
     if !(2..=3).contains(&values) {
         return Err(Error::unsupported(format!(

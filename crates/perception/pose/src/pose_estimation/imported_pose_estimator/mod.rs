@@ -12,7 +12,6 @@ use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
 use opendr_engine::target::{Classes, PoseList};
 use opendr_engine::{Device, Pool, Result, Task};
-use opendr_inference::Session;
 use opendr_perception_common::exported_network::{ExportedNetwork, Facts, ImageInput, NetworkKind};
 use opendr_perception_common::suppression::Suppression;
 
@@ -42,9 +41,7 @@ impl Learner for ImportedPoseEstimator {
     type State = ();
 
     fn load(model: &Model, mut params: ImportedPoseEstimatorParams, device: Device) -> Result<Self> {
-        let onnx = model.onnx()?;
-        let session = Session::open(&onnx, device)?;
-        let facts = Facts::read(&onnx, &session)?;
+        let (session, facts) = Facts::open(model, device)?;
         let image = ImageInput::find(&facts, params.input.size)?;
         let classes = facts.classes(model);
         let recognised = convention::recognise(&facts)?;
