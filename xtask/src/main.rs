@@ -3,6 +3,7 @@
 //! `cargo xtask` without arguments lists the tasks. Each task is a module; `checks` runs and skips the steps of the test task,
 //! `shell` runs programs.
 
+mod card;
 mod checks;
 mod function_docs;
 mod generate;
@@ -25,6 +26,7 @@ mod suite;
 mod surfaces;
 mod test;
 mod tools;
+mod train;
 mod wheel;
 mod words;
 mod workspace;
@@ -54,6 +56,11 @@ usage: cargo xtask VERB
   realtime   fail if a task has no learner with 25 frames per second in 1 GB on 2 cores
   realtime --write
              also write the measurements into the cards; needs an otherwise idle machine
+  train NAME
+             make the weights of models/training/NAME.toml, measure them, compare with the expected figure, and write it into the
+             card; resume an interrupted training
+  train NAME --gpu
+             train through Vulkan
   install-c PREFIX
              install the C library with its headers, pkg-config file and CMake package under PREFIX
 
@@ -76,6 +83,8 @@ fn main() -> ExitCode {
         ["generate", "--crates"] => pages::write(),
         ["realtime"] => realtime::run(),
         ["realtime", "--write"] => realtime::run_and_write(),
+        ["train", name] => train::run(name, false),
+        ["train", name, "--gpu"] => train::run(name, true),
         ["install-c", prefix] => install_c::run(prefix.as_ref()),
         _ => {
             eprintln!("{USAGE}");

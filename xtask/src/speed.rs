@@ -4,16 +4,13 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::shell::{Result, root};
+use crate::card::{edited_card, with_line};
+use crate::shell::Result;
 
 /// Writes the report of `opendr bench` for `LEARNER/VARIANT` into its card.
 pub fn write_speed(model: &str, report: &Value) -> Result<()> {
-    let (learner, variant) = model.split_once('/').ok_or_else(|| format!("{model} has no variant"))?;
-    let path = root().join(format!("models/{learner}.toml"));
-    let card = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-    let changed = with_speed(&card, variant, &speed_of(report, &processor()?)?)
-        .ok_or_else(|| format!("{} has no licence of {variant} to write after", path.display()))?;
-    fs::write(&path, changed).map_err(|error| format!("{}: {error}", path.display()))
+    let speed = speed_of(report, &processor()?)?;
+    edited_card(model, |card, variant| with_line(card, variant, "speed = ", &speed))
 }
 
 /// Returns the line `speed = {...}` of a report, measured on `processor`.
@@ -51,37 +48,11 @@ fn processor() -> Result<String> {
     Ok(name.replace("(R)", "").replace("(TM)", "").split_whitespace().collect::<Vec<_>>().join(" "))
 }
 
-/// Returns the card with `speed` as the line of its variant.
-fn with_speed(card: &str, variant: &str, speed: &str) -> Option<String> {
-    let mut lines: Vec<&str> = card.lines().collect();
-    let name = format!("name = {variant:?}");
-    let begin = lines.iter().position(|line| *line == name)?;
-    let length = lines[begin..].iter().position(|line| line.starts_with("[[")).unwrap_or(lines.len() - begin);
-    let block = begin..begin + length;
-    match lines[block.clone()].iter().position(|line| line.starts_with("speed = ")) {
-        Some(at) => lines[begin + at] = speed,
-        None => {
-            let licence = lines[block].iter().position(|line| line.starts_with("licence = "))?;
-            lines.insert(begin + licence + 1, speed);
-        }
-    }
-    Some(lines.join("\n") + "\n")
-}
-
 #[cfg(test)]
 mod tests {
     use serde_json::json;
 
     use super::*;
-
-    #[test]
-    fn the_speed_is_written_into_the_block_of_its_variant() {
-        let card = "[[variants]]\nname = \"a\"\nlicence = {}\n\n[[variants]]\nname = \"b\"\nlicence = {}\nspeed = {}\n";
-        let with = with_speed(card, "a", "speed = 1").unwrap();
-        assert_eq!(with, card.replacen("licence = {}\n", "licence = {}\nspeed = 1\n", 1));
-        assert_eq!(with_speed(card, "b", "speed = 1").unwrap(), card.replace("speed = {}", "speed = 1"));
-        assert_eq!(with_speed(card, "c", "speed = 1"), None);
-    }
 
     #[test]
     fn audio_has_a_real_time_factor() {

@@ -36,6 +36,16 @@ impl Device {
     pub const NAMES: [&str; 7] =
         ["auto", "cpu", "cuda[:N]", "tensorrt[:N]", "openvino", "coreml", "vulkan[:N]"];
 
+    /// Returns the device that runs the models of a learner on this device: itself, or the best available one for
+    /// [`Device::Vulkan`], on which learners train only.
+    #[must_use]
+    pub const fn for_inference(self) -> Self {
+        match self {
+            Self::Vulkan(_) => Self::Auto,
+            other => other,
+        }
+    }
+
     /// Returns the device that `OPENDR_DEVICE` names, or `self` where the variable is unset or empty.
     ///
     /// # Errors
@@ -90,6 +100,12 @@ impl fmt::Display for Device {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn models_trained_through_vulkan_run_on_the_best_device() {
+        assert_eq!(Device::Vulkan(1).for_inference(), Device::Auto);
+        assert_eq!(Device::Cuda(1).for_inference(), Device::Cuda(1));
+    }
 
     #[test]
     fn names_round_trip() {

@@ -35,10 +35,12 @@ pub enum opendr_skeleton {
     OPENDR_GRASP2 = 8,
     /// Up to 144 keypoints without names, by their index.
     OPENDR_POINTS = 9,
+    /// Kinect v1's 20 joints of a person, in the order of UTD-MHAD.
+    OPENDR_KINECT20 = 10,
 }
 
 // The numbers are the indices in `Skeleton::ALL`.
-const _: () = assert!(Skeleton::ALL.len() == opendr_skeleton::OPENDR_POINTS as usize + 1);
+const _: () = assert!(Skeleton::ALL.len() == opendr_skeleton::OPENDR_KINECT20 as usize + 1);
 
 /// A keypoint in an image, pixels; (-1, -1) means not detected.
 #[repr(C)]

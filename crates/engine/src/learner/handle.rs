@@ -59,7 +59,7 @@ impl<L: Learner> Handle<L> {
                 params.set(field.name, stated.clone()).context(context)?;
             }
         }
-        let learner = L::load(&model, params, self.device).context(context)?;
+        let learner = L::load(&model, params, self.device.for_inference()).context(context)?;
         self.params = learner.params().clone();
         self.ready = Some(Ready { stream: Stream::new(Arc::new(RwLock::new(learner))), model });
         Ok(())

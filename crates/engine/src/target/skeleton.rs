@@ -30,6 +30,8 @@ pub enum Skeleton {
     Grasp2,
     /// Up to 144 keypoints without names, by their index.
     Points,
+    /// Kinect v1's 20 joints of a person, in the order of UTD-MHAD: head to hips, then each arm and each leg.
+    Kinect20,
 }
 
 /// The joints of a hand, and its bones.
@@ -107,6 +109,7 @@ impl Skeleton {
         Self::Ntu25,
         Self::Grasp2,
         Self::Points,
+        Self::Kinect20,
     ];
 
     /// Returns the name in JSON and messages.
@@ -122,6 +125,7 @@ impl Skeleton {
             Self::Ntu25 => "ntu25",
             Self::Grasp2 => "grasp2",
             Self::Points => "points",
+            Self::Kinect20 => "kinect20",
         }
     }
 
@@ -206,6 +210,11 @@ impl Skeleton {
             ],
             Self::Grasp2 => &["l_jaw", "r_jaw"],
             Self::Points => POINTS,
+            Self::Kinect20 => &[
+                "head", "neck", "belly", "pelvis", "l_sho", "l_elb", "l_wri", "l_hand", "r_sho", "r_elb",
+                "r_wri", "r_hand", "l_hip", "l_knee", "l_ank", "l_foot", "r_hip", "r_knee", "r_ank",
+                "r_foot",
+            ],
         }
     }
 
@@ -313,6 +322,27 @@ impl Skeleton {
             ],
             Self::Grasp2 => &[[0, 1]],
             Self::Points => &[],
+            Self::Kinect20 => &[
+                [1, 0],
+                [1, 2],
+                [2, 3],
+                [1, 4],
+                [4, 5],
+                [5, 6],
+                [6, 7],
+                [1, 8],
+                [8, 9],
+                [9, 10],
+                [10, 11],
+                [3, 12],
+                [12, 13],
+                [13, 14],
+                [14, 15],
+                [3, 16],
+                [16, 17],
+                [17, 18],
+                [18, 19],
+            ],
             Self::Ntu25 => &[
                 [20, 1],
                 [1, 0],

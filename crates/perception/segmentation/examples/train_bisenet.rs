@@ -41,7 +41,7 @@ fn main() -> Result<()> {
     let number = |at: usize, usual: usize| rest.get(at).and_then(|text| text.parse().ok()).unwrap_or(usual);
     let scenes = Streets { first: 0, count: number(0, 600) };
     let mut fit_params =
-        BisenetFitParams { crop_height: 96, crop_width: 128, width: 12, ..Default::default() };
+        BisenetFitParams { crop_height: 96, crop_width: 128, width: 12, colour: 0.0, ..Default::default() };
     fit_params.training.epochs = number(1, 20);
     let mut handle = Handle::<Bisenet>::new(BisenetParams::default(), Device::Cpu)?;
     let job = FitJob { device: Device::Cpu, ..FitJob::new(Path::new(output)) };

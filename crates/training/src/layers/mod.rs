@@ -1,6 +1,7 @@
 //! Layers and backbones shared by learners.
 
 mod activation;
+mod bilinear;
 mod conv_norm_act;
 mod gru;
 mod inverted_residual;
@@ -9,6 +10,7 @@ mod resnet18;
 mod separable_conv;
 
 pub use activation::Activation;
+pub use bilinear::bilinear;
 pub use conv_norm_act::{ConvNormAct, ConvNormActConfig};
 pub use gru::{Gru, GruConfig};
 pub use inverted_residual::{InvertedResidual, InvertedResidualConfig};

@@ -13,6 +13,8 @@ opendr_engine::choices! {
         Coco = "coco",
         /// JHMDB's 15 joints.
         Jhmdb = "jhmdb",
+        /// The 20 joints of Kinect v1, in the order of UTD-MHAD.
+        Kinect = "kinect",
     }
 }
 
@@ -24,6 +26,7 @@ impl GraphType {
             Self::Kinetics => Skeleton::Opendr18,
             Self::Coco => Skeleton::Coco17,
             Self::Jhmdb => Skeleton::Jhmdb15,
+            Self::Kinect => Skeleton::Kinect20,
         }
     }
 
@@ -45,6 +48,7 @@ impl GraphType {
             Self::Ntu => 20,
             Self::Kinetics | Self::Jhmdb => 1,
             Self::Coco => 0,
+            Self::Kinect => 2,
         }
     }
 

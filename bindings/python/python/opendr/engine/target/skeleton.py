@@ -14,9 +14,9 @@ _FACE = (
 )
 
 #: The joints of each skeleton, in order. Persons: ``"opendr18"`` of OpenDR and OpenPose, ``"coco17"`` of COCO,
-#: ``"blazepose33"`` of BlazePose, ``"jhmdb15"`` of JHMDB, ``"ntu25"`` of Kinect v2. MediaPipe's hands and face:
-#: ``"left_hand21"``, ``"right_hand21"``, ``"face478"``. The jaws of a gripper: ``"grasp2"``. Keypoints
-#: without names, by their index: ``"points"``.
+#: ``"blazepose33"`` of BlazePose, ``"jhmdb15"`` of JHMDB, ``"ntu25"`` of Kinect v2, ``"kinect20"`` of
+#: Kinect v1. MediaPipe's hands and face: ``"left_hand21"``, ``"right_hand21"``, ``"face478"``. The jaws of a
+#: gripper: ``"grasp2"``. Keypoints without names, by their index: ``"points"``.
 JOINTS: dict[str, tuple[str, ...]] = {
     "opendr18": (
         *("nose", "neck", "r_sho", "r_elb", "r_wri", "l_sho", "l_elb", "l_wri", "r_hip", "r_knee"),
@@ -45,6 +45,10 @@ JOINTS: dict[str, tuple[str, ...]] = {
         *("chest", "l_tip", "l_thumb", "r_tip", "r_thumb"),
     ),
     "grasp2": ("l_jaw", "r_jaw"),
+    "kinect20": (
+        *("head", "neck", "belly", "pelvis", "l_sho", "l_elb", "l_wri", "l_hand", "r_sho", "r_elb", "r_wri", "r_hand"),
+        *("l_hip", "l_knee", "l_ank", "l_foot", "r_hip", "r_knee", "r_ank", "r_foot"),
+    ),
     "points": tuple(str(index) for index in range(144)),
 }
 

@@ -3,10 +3,8 @@
 use burn::module::Module;
 use burn::nn::PaddingConfig2d;
 use burn::nn::conv::{Conv2d, Conv2dConfig};
-use burn::tensor::module::interpolate;
-use burn::tensor::ops::{InterpolateMode, InterpolateOptions};
 use burn::tensor::{Device, Tensor};
-use opendr_training::layers::{BasicBlock, ConvNormAct, ConvNormActConfig};
+use opendr_training::layers::{BasicBlock, ConvNormAct, ConvNormActConfig, bilinear};
 
 use super::CHANNELS;
 
@@ -50,9 +48,7 @@ impl RangeNetwork {
         }
         for (block, beside) in self.up.iter().zip(finer.into_iter().rev()) {
             let [_, _, rows, columns] = beside.dims();
-            let options = InterpolateOptions::new(InterpolateMode::Bilinear).with_align_corners(false);
-            let wider = interpolate(x, options.with_output_size([rows, columns]));
-            x = block.forward(Tensor::cat(vec![beside, wider], 1));
+            x = block.forward(Tensor::cat(vec![beside, bilinear(x, [rows, columns])], 1));
         }
         self.scores.forward(x)
     }

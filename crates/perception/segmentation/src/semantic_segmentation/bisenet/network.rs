@@ -4,10 +4,8 @@ use burn::module::Module;
 use burn::nn::PaddingConfig2d;
 use burn::nn::conv::{Conv2d, Conv2dConfig};
 use burn::tensor::activation::{relu, sigmoid};
-use burn::tensor::module::interpolate;
-use burn::tensor::ops::{InterpolateMode, InterpolateOptions};
 use burn::tensor::{Device, Tensor};
-use opendr_training::layers::{BasicBlock, ConvNormAct, ConvNormActConfig};
+use opendr_training::layers::{BasicBlock, ConvNormAct, ConvNormActConfig, bilinear};
 
 /// Network from images to class scores.
 #[derive(Module, Debug)]
@@ -25,14 +23,20 @@ pub struct BisenetNetwork {
 }
 
 impl BisenetNetwork {
-    /// Creates a network with random weights for `classes` classes, with `width` channels in its first layers.
-    pub fn new(classes: usize, width: usize, device: &Device) -> Self {
+    /// Creates a network with random weights for `classes` classes, with `width` channels in its first layers and a spatial
+    /// path that ends at 1/8 of the input's resolution, or at 1/4 where `is_fine`.
+    pub fn new(classes: usize, width: usize, is_fine: bool, device: &Device) -> Self {
         let block = |from: usize, to: usize, kernel: usize, stride: usize| {
             ConvNormActConfig::new([from, to]).with_kernel(kernel).with_stride(stride).init(device)
         };
         let wide = 4 * width;
+        let (last_stride, merged) = if is_fine { (1, 2 * width) } else { (2, wide) };
         Self {
-            spatial: vec![block(3, width, 5, 2), block(width, width, 3, 2), block(width, 2 * width, 3, 2)],
+            spatial: vec![
+                block(3, width, 5, 2),
+                block(width, width, 3, 2),
+                block(width, 2 * width, 3, last_stride),
+            ],
             stem: block(3, width, 5, 2),
             context: (0..4)
                 .map(|stage: u32| {
@@ -43,10 +47,10 @@ impl BisenetNetwork {
             attention: vec![point([wide, wide], device), point([2 * wide, 2 * wide], device)],
             tail: point([2 * wide, 2 * wide], device),
             reduce: vec![block(wide, 2 * width, 3, 1), block(2 * wide, 2 * width, 3, 1)],
-            fuse: block(4 * width, wide, 1, 1),
-            gate: vec![point([wide, width], device), point([width, wide], device)],
-            head: block(wide, wide, 3, 1),
-            scores: point([wide, classes], device),
+            fuse: block(4 * width, merged, 1, 1),
+            gate: vec![point([merged, width], device), point([width, merged], device)],
+            head: block(merged, merged, 3, 1),
+            scores: point([merged, classes], device),
         }
     }
 
@@ -68,13 +72,13 @@ impl BisenetNetwork {
             let x = x.clone() * sigmoid(attention.forward(mean(x)));
             if stage == 1 { x + whole.clone() } else { x }
         });
-        let context = weighed.zip(&self.reduce).map(|(x, reduce)| resized(reduce.forward(x), size));
+        let context = weighed.zip(&self.reduce).map(|(x, reduce)| bilinear(reduce.forward(x), size));
         let context = context.reduce(|one, other| one + other);
         let parts = [Some(spatial), context].into_iter().flatten().collect();
         let fused = self.fuse.forward(Tensor::cat(parts, 1));
         let gate = self.gate.iter().fold(mean(fused.clone()), |x, layer| layer.forward(relu(x)));
         let fused = fused.clone() + fused * sigmoid(gate);
-        resized(self.scores.forward(self.head.forward(fused)), [height, width])
+        bilinear(self.scores.forward(self.head.forward(fused)), [height, width])
     }
 }
 
@@ -90,9 +94,4 @@ fn side(x: &Tensor<4>) -> [usize; 2] {
 /// Returns the mean over the image, `[batch, channels, 1, 1]`.
 fn mean(x: Tensor<4>) -> Tensor<4> {
     x.mean_dim(3).mean_dim(2)
-}
-
-fn resized(x: Tensor<4>, size: [usize; 2]) -> Tensor<4> {
-    let options = InterpolateOptions::new(InterpolateMode::Bilinear).with_align_corners(false);
-    interpolate(x, options.with_output_size(size))
 }

@@ -2,13 +2,13 @@
 
 use burn::tensor::activation::log_softmax;
 use burn::tensor::{Device, Int, Tensor, TensorData};
-use opendr_datasets::augment::{Flip, Pipeline, RandomResizedCrop};
+use opendr_datasets::augment::{Colour, Flip, Pipeline, RandomResizedCrop};
 use opendr_datasets::loader::{Collate, ImageBatch, ImageBatches};
-use opendr_engine::dataset::Sample;
-use opendr_engine::learner::Learner as _;
+use opendr_engine::dataset::{DatasetIterator, Sample};
+use opendr_engine::learner::{FitJob, Learner as _};
 use opendr_engine::model::Manifest;
 use opendr_engine::target::{Classes, HeatmapValues};
-use opendr_engine::{Error, Result, Value};
+use opendr_engine::{Error, Result, Unit, Value};
 use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{Input, onnx};
 use opendr_training::{Container, Loss, Objective};
@@ -27,13 +27,16 @@ pub(super) struct SegmentPixels {
     pub size: [usize; 2],
     pub crop: f32,
     pub flip: f32,
+    pub colour: f32,
+    /// Weight of the pixels of each class.
+    pub weights: Vec<f32>,
 }
 
 /// Collates [`MappedPictures`].
 pub(super) struct MapCollator {
     pictures: ImageBatches,
     size: [usize; 2],
-    classes: usize,
+    class_weights: Vec<f32>,
 }
 
 /// Batch of images and the class of each of their pixels.
@@ -41,6 +44,43 @@ pub(super) struct MappedPictures {
     pictures: ImageBatch,
     classes: Vec<i64>,
     weights: Vec<f32>,
+}
+
+/// Number of samples whose pixels are counted for the weights of the classes.
+const COUNTED: usize = 400;
+
+/// Returns the weight of each of `classes` classes: its share of the annotated pixels to the power of `-balance`, scaled so
+/// that the mean over the pixels is 1. A class without a pixel has the weight of the rarest of the others.
+pub(super) fn class_weights(
+    dataset: &dyn DatasetIterator,
+    classes: usize,
+    balance: f64,
+    job: &FitJob<'_>,
+) -> Result<Vec<f32>> {
+    if balance == 0.0 {
+        return Ok(vec![1.0; classes]);
+    }
+    let mut pixels = vec![0_u64; classes];
+    let step = dataset.len().div_ceil(COUNTED).max(1);
+    job.progress.begin("counting pixels", Some(dataset.len().div_ceil(step) as u64), Unit::Items);
+    for index in (0..dataset.len()).step_by(step) {
+        job.progress.advance(1);
+        // Samples without a map are reported by the loader, or skipped by it.
+        let Ok(Sample { target: Some(Value::Heatmap(map)), .. }) = dataset.get(index) else { continue };
+        let HeatmapValues::Labels(labels) = map.values() else { continue };
+        for &label in labels.iter() {
+            if let Some(count) = pixels.get_mut(label as usize) {
+                *count += 1;
+            }
+        }
+    }
+    job.progress.end();
+    let rarest = pixels.iter().copied().filter(|count| *count > 0).min().unwrap_or(1);
+    let all = pixels.iter().sum::<u64>().max(1) as f64;
+    let shares = pixels.iter().map(|&count| count.max(rarest) as f64 / all);
+    let weights: Vec<f64> = shares.clone().map(|share| share.powf(-balance)).collect();
+    let mean: f64 = shares.zip(&weights).map(|(share, weight)| share * weight).sum();
+    Ok(weights.into_iter().map(|weight| (weight / mean) as f32).collect())
 }
 
 impl Collate for MapCollator {
@@ -76,14 +116,18 @@ impl Collate for MapCollator {
             let from = nearest(y, height, rows) * columns;
             for x in 0..width {
                 let label = labels[from + nearest(x, width, columns)];
-                if label != IGNORED && label as usize >= self.classes {
-                    return Err(Error::invalid_input(format!(
-                        "a pixel has class {label}, but the network has {} classes from 0; correct the data set",
-                        self.classes
-                    )));
-                }
-                batch.classes.push(if label == IGNORED { 0 } else { i64::from(label) });
-                batch.weights.push(if label == IGNORED { 0.0 } else { 1.0 });
+                let (class, weight) = match self.class_weights.get(label as usize) {
+                    Some(weight) => (i64::from(label), *weight),
+                    None if label == IGNORED => (0, 0.0),
+                    None => {
+                        return Err(Error::invalid_input(format!(
+                            "a pixel has class {label}, but the network has {} classes from 0; correct the data set",
+                            self.class_weights.len()
+                        )));
+                    }
+                };
+                batch.classes.push(class);
+                batch.weights.push(weight);
             }
         }
         Ok(())
@@ -96,7 +140,7 @@ impl Objective for SegmentPixels {
 
     fn collate(&self) -> Result<MapCollator> {
         let pictures = ImageBatches::new(preprocess(self.size));
-        Ok(MapCollator { pictures, size: self.size, classes: self.classes.len() })
+        Ok(MapCollator { pictures, size: self.size, class_weights: self.weights.clone() })
     }
 
     fn pipeline(&self) -> Result<Pipeline> {
@@ -106,10 +150,14 @@ impl Objective for SegmentPixels {
             let crop = RandomResizedCrop { width, height, min_area: self.crop, ..Default::default() };
             pipeline = pipeline.then(crop)?;
         }
-        match self.flip > 0.0 {
-            true => pipeline.sometimes(self.flip, Flip::default()),
-            false => Ok(pipeline),
+        if self.flip > 0.0 {
+            pipeline = pipeline.sometimes(self.flip, Flip::default())?;
         }
+        if self.colour > 0.0 {
+            let [brightness, contrast, saturation] = [self.colour; 3];
+            pipeline = pipeline.then(Colour { brightness, contrast, saturation, hue: 0.3 * self.colour })?;
+        }
+        Ok(pipeline)
     }
 
     fn loss(&self, network: &BisenetNetwork, batch: &MappedPictures, device: &Device) -> Result<Loss> {
@@ -120,7 +168,8 @@ impl Objective for SegmentPixels {
         let classes = TensorData::new(batch.classes.clone(), [pixels, 1]);
         let weights = TensorData::new(batch.weights.clone(), [pixels, 1]);
         let likely = log_softmax(scores, 1).gather(1, Tensor::<2, Int>::from_data(classes, device));
-        let counted = batch.weights.iter().sum::<f32>().max(1.0);
+        let counted = batch.weights.iter().sum::<f32>();
+        let counted = if counted > 0.0 { counted } else { 1.0 };
         let loss = (likely * Tensor::<2>::from_data(weights, device)).sum() / (-counted);
         Ok(loss.into())
     }

@@ -5,7 +5,7 @@ use opendr_engine::{ErrorKind, Random};
 use opendr_perception_testing::overfit::losses_on_one_batch;
 
 use super::network::BisenetNetwork;
-use super::objective::SegmentPixels;
+use super::objective::{SegmentPixels, class_weights};
 use super::*;
 
 /// A road below a sky, whose slope depends on the index; one corner is ignored.
@@ -40,7 +40,14 @@ impl DatasetIterator for Roads {
 }
 
 fn objective() -> SegmentPixels {
-    SegmentPixels { classes: Roads.classes(), size: [32, 64], crop: 1.0, flip: 0.0 }
+    SegmentPixels {
+        classes: Roads.classes(),
+        size: [32, 64],
+        crop: 1.0,
+        flip: 0.0,
+        colour: 0.0,
+        weights: vec![1.0; 2],
+    }
 }
 
 fn picture(index: usize) -> Image {
@@ -53,7 +60,33 @@ fn picture(index: usize) -> Image {
 #[test]
 fn overfits_one_batch() {
     let samples = (0..4).map(|index| Roads.get(index).unwrap()).collect();
-    let network = |device: &_| BisenetNetwork::new(2, 4, device);
+    let network = |device: &_| BisenetNetwork::new(2, 4, false, device);
+    let [before, after] = losses_on_one_batch(&objective(), network, samples, 0.01);
+    assert!(after < 0.1 * before, "{before} {after}");
+}
+
+#[test]
+fn rare_classes_weigh_more() {
+    let job = FitJob::new(std::path::Path::new("unused"));
+    assert_eq!(class_weights(&Roads, 2, 0.0, &job).unwrap(), [1.0, 1.0]);
+    let mut pixels = [0_u64; 2];
+    for index in 0..Roads.len() {
+        let Some(opendr_engine::Value::Heatmap(map)) = Roads.get(index).unwrap().target else { panic!() };
+        let HeatmapValues::Labels(labels) = map.values() else { panic!() };
+        labels.iter().filter(|label| **label < 2).for_each(|label| pixels[*label as usize] += 1);
+    }
+    let weights = class_weights(&Roads, 2, 0.5, &job).unwrap();
+    let wanted = (pixels[0] as f32 / pixels[1] as f32).sqrt();
+    assert!((weights[1] / weights[0] - wanted).abs() < 1e-3, "{weights:?} {pixels:?}");
+    // A class without a pixel counts as rare as the rarest.
+    let weights = class_weights(&Roads, 3, 0.5, &job).unwrap();
+    assert_eq!(weights[2], weights[0].max(weights[1]));
+}
+
+#[test]
+fn the_fine_network_also_overfits() {
+    let samples = (0..4).map(|index| Roads.get(index).unwrap()).collect();
+    let network = |device: &_| BisenetNetwork::new(2, 4, true, device);
     let [before, after] = losses_on_one_batch(&objective(), network, samples, 0.01);
     assert!(after < 0.1 * before, "{before} {after}");
 }
