@@ -1,13 +1,17 @@
-//! `cargo xtask train NAME`: makes the weights of `models/training/NAME.toml`, measures them and writes the card's metrics.
+//! `cargo xtask train NAME`: makes the weights of `models/training/NAME.toml`, measures them and writes them with the card's metrics.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 use serde_json::Value;
+use sha2::{Digest, Sha256};
 
 use crate::card::{edited_card, with_line};
 use crate::shell::{Result, command, output, root, step, target};
+
+/// File of a container that the package of models has.
+const NETWORK: &str = "model.onnx";
 
 /// How weights are made and measured.
 #[derive(Debug, Deserialize)]
@@ -76,7 +80,8 @@ impl Places {
     }
 }
 
-/// Trains, measures, compares with the expected figure and writes the card. A training that was interrupted goes on.
+/// Makes the weights, measures them, compares the figure with the expected one and writes weights and card. A training that was
+/// interrupted goes on.
 ///
 /// With `is_on_gpu`, the program is built with the feature `wgpu`, and trains through Vulkan.
 pub fn run(name: &str, is_on_gpu: bool) -> Result<()> {
@@ -125,7 +130,20 @@ pub fn run(name: &str, is_on_gpu: bool) -> Result<()> {
     if (value - expected).abs() > *within {
         return Err(format!("{metric} is {value:.4}; expected {expected} within {within}"));
     }
-    edited_card(&recipe.model, |card, variant| with_line(card, variant, "metrics.", &metrics))
+    let weights = root().join(format!("models/weights/{}.onnx", recipe.model));
+    let bytes =
+        fs::read(Path::new(&container).join(NETWORK)).map_err(|error| format!("{container}: {error}"))?;
+    fs::write(&weights, &bytes).map_err(|error| format!("{}: {error}", weights.display()))?;
+    edited_card(&recipe.model, |card, variant| {
+        let card = with_line(card, variant, "metrics.", &metrics)?;
+        with_line(&card, variant, "files = ", &files_of(&bytes))
+    })
+}
+
+/// Returns the card's line of files for a network.
+fn files_of(network: &[u8]) -> String {
+    let sha256: String = Sha256::digest(network).iter().map(|byte| format!("{byte:02x}")).collect();
+    format!("files = [{{ name = {NETWORK:?}, size = {}, sha256 = {sha256:?} }}]", network.len())
 }
 
 fn opendr() -> std::process::Command {
@@ -186,6 +204,9 @@ mod tests {
             let variant = variants.iter().find(|entry| entry["name"].as_str() == Some(variant)).unwrap();
             let value = variant["metrics"][&evaluation.data][&evaluation.metric].as_float().unwrap();
             assert!((value - evaluation.expected).abs() <= evaluation.within, "{name}: {value}");
+            let weights = fs::read(root().join(format!("models/weights/{model}.onnx"))).unwrap();
+            let files: toml::Table = toml::from_str(&files_of(&weights)).unwrap();
+            assert_eq!(variant["files"], files["files"], "{name}");
             assert!(steps.iter().any(|words| words[0] == "fit"), "{name}");
         }
     }
