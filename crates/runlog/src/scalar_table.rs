@@ -10,9 +10,19 @@ use opendr_engine::{Error, Result, ResultExt};
 
 use crate::atomic_file::{write_atomically, write_error};
 use crate::csv;
+use crate::file_names::TABLE;
 
 /// Maximum size of a table that is read.
 const MAX_BYTES: u64 = 1 << 30;
+
+/// Reads the scalars of a log in `folder`, written up to now: `[step, value]` pairs by tag, empty if there is no log.
+///
+/// # Errors
+/// `Format` with the number of an invalid line, `Io` when the table cannot be read.
+pub fn read_scalars(folder: &Path) -> Result<Vec<(String, Vec<[f64; 2]>)>> {
+    let table = ScalarTable::read(folder.join(TABLE), u64::MAX)?;
+    Ok(table.tags().map(|tag| (tag.to_owned(), table.points(tag))).collect())
+}
 
 /// A table in memory and its CSV file.
 #[derive(Debug)]
@@ -174,6 +184,18 @@ mod tests {
 
     fn temporary(name: &str) -> PathBuf {
         std::env::temp_dir().join(format!("opendr-table-{name}-{}.csv", std::process::id()))
+    }
+
+    #[test]
+    fn scalars_of_a_running_log_are_read() {
+        let folder = std::env::temp_dir().join(format!("opendr-scalars-{}", std::process::id()));
+        assert_eq!(read_scalars(&folder).unwrap(), []);
+        fs::create_dir_all(&folder).unwrap();
+        fs::write(folder.join(TABLE), "step,loss,map\n1,0.5,\n2,0.25,0.1\n3,0.").unwrap();
+        let scalars = read_scalars(&folder).unwrap();
+        fs::remove_dir_all(&folder).unwrap();
+        let expected = [("loss", vec![[1.0, 0.5], [2.0, 0.25]]), ("map", vec![[2.0, 0.1]])];
+        assert_eq!(scalars, expected.map(|(tag, points)| (tag.to_owned(), points)));
     }
 
     #[test]

@@ -32,7 +32,8 @@ class SpatioTemporalGCNLearner(NativeLearner):
             those present. (default 2; 1 to 64)
         in_channels: Number of coordinates of a joint: 2 (a third channel of the input holds scores) or 3.
             (default 3; 2 to 3)
-        graph_type: Skeleton: joints and bones. (default 'ntu'; one of 'ntu', 'kinetics', 'coco', 'jhmdb')
+        graph_type: Skeleton: joints and bones. (default 'ntu'; one of 'ntu', 'kinetics', 'coco', 'jhmdb',
+            'kinect')
         method_name: Network architecture. (default 'stgcn'; one of 'stgcn')
         num_frames: Number of frames of a clip: the last ones of a longer recording; a shorter one is preceded by
             its repeated first frame. (default 300; 1 to 10000)
@@ -97,12 +98,12 @@ class SpatioTemporalGCNLearner(NativeLearner):
     num_point: Optional[int]
     num_person: int
     in_channels: int
-    graph_type: Literal['ntu', 'kinetics', 'coco', 'jhmdb']
+    graph_type: Literal['ntu', 'kinetics', 'coco', 'jhmdb', 'kinect']
     method_name: Literal['stgcn']
     num_frames: int
     channels: list[Any]
     temporal_kernel: int
-    def __init__(self, lr: float = ..., batch_size: int = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., num_workers: int = ..., epochs: int = ..., experiment_name: Any = ..., device_ind: Any = ..., val_batch_size: Any = ..., drop_after_epoch: list[Any] = ..., start_epoch: Any = ..., dataset_name: Any = ..., num_class: Optional[int] = ..., num_point: Optional[int] = ..., num_person: int = ..., in_channels: int = ..., graph_type: Literal['ntu', 'kinetics', 'coco', 'jhmdb'] = ..., method_name: Literal['stgcn'] = ..., stbln_symmetric: Any = ..., num_frames: int = ..., num_subframes: Any = ..., *, iters: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., backbone: str = ..., network_head: str = ..., threshold: float = ..., scale: float = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., momentum: float = ..., weight_decay: float = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., seed: int = ..., dropout: float = ..., label_smoothing: float = ..., augment: bool = ..., channels: list[Any] = ..., temporal_kernel: int = ...) -> None: ...
+    def __init__(self, lr: float = ..., batch_size: int = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., num_workers: int = ..., epochs: int = ..., experiment_name: Any = ..., device_ind: Any = ..., val_batch_size: Any = ..., drop_after_epoch: list[Any] = ..., start_epoch: Any = ..., dataset_name: Any = ..., num_class: Optional[int] = ..., num_point: Optional[int] = ..., num_person: int = ..., in_channels: int = ..., graph_type: Literal['ntu', 'kinetics', 'coco', 'jhmdb', 'kinect'] = ..., method_name: Literal['stgcn'] = ..., stbln_symmetric: Any = ..., num_frames: int = ..., num_subframes: Any = ..., *, iters: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., backbone: str = ..., network_head: str = ..., threshold: float = ..., scale: float = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., momentum: float = ..., weight_decay: float = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., seed: int = ..., dropout: float = ..., label_smoothing: float = ..., augment: bool = ..., channels: list[Any] = ..., temporal_kernel: int = ...) -> None: ...
     @overload
     def infer(self, skeleton_sequence: Union[SkeletonSequence, ArrayLike], *, experiment_name: Any = ..., device_ind: Any = ..., val_batch_size: Any = ..., start_epoch: Any = ..., dataset_name: Any = ..., stbln_symmetric: Any = ..., num_subframes: Any = ...) -> Category: ...  # type: ignore[overload-overlap]
     @overload
@@ -133,7 +134,8 @@ class CoSTGCNLearner(NativeLearner):
             those present so far. (default 2; 1 to 64)
         in_channels: Number of coordinates of a joint: 2 (a third channel of the input holds scores) or 3.
             (default 3; 2 to 3)
-        graph_type: Skeleton: joints and bones. (default 'ntu'; one of 'ntu', 'kinetics', 'coco', 'jhmdb')
+        graph_type: Skeleton: joints and bones. (default 'ntu'; one of 'ntu', 'kinetics', 'coco', 'jhmdb',
+            'kinect')
         backbone: Network architecture. (default 'costgcn'; one of 'costgcn')
         sequence_len: Number of frames that a prediction covers. (default 300; 1 to 10000)
         channels: Output channels of each block. (default [64, 64, 64, 64, 128, 128, 128, 256, 256, 256]; 1 to
@@ -194,11 +196,11 @@ class CoSTGCNLearner(NativeLearner):
     num_point: Optional[int]
     num_person: int
     in_channels: int
-    graph_type: Literal['ntu', 'kinetics', 'coco', 'jhmdb']
+    graph_type: Literal['ntu', 'kinetics', 'coco', 'jhmdb', 'kinect']
     sequence_len: int
     channels: list[Any]
     temporal_kernel: int
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., backbone: Literal['costgcn'] = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., loss: Any = ..., weight_decay: float = ..., momentum: float = ..., drop_last: Any = ..., pin_memory: Any = ..., num_workers: int = ..., seed: int = ..., num_classes: Optional[int] = ..., num_point: Optional[int] = ..., num_person: int = ..., in_channels: int = ..., graph_type: Literal['ntu', 'kinetics', 'coco', 'jhmdb'] = ..., sequence_len: int = ..., *, threshold: float = ..., scale: float = ..., epochs: int = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., dropout: float = ..., label_smoothing: float = ..., augment: bool = ..., channels: list[Any] = ..., temporal_kernel: int = ...) -> None: ...
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., backbone: Literal['costgcn'] = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., loss: Any = ..., weight_decay: float = ..., momentum: float = ..., drop_last: Any = ..., pin_memory: Any = ..., num_workers: int = ..., seed: int = ..., num_classes: Optional[int] = ..., num_point: Optional[int] = ..., num_person: int = ..., in_channels: int = ..., graph_type: Literal['ntu', 'kinetics', 'coco', 'jhmdb', 'kinect'] = ..., sequence_len: int = ..., *, threshold: float = ..., scale: float = ..., epochs: int = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., dropout: float = ..., label_smoothing: float = ..., augment: bool = ..., channels: list[Any] = ..., temporal_kernel: int = ...) -> None: ...
     @overload
     def infer(self, skeleton_sequence: Union[SkeletonSequence, ArrayLike], *, network_head: Any = ..., loss: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> Category: ...  # type: ignore[overload-overlap]
     @overload
