@@ -35,6 +35,7 @@ mod report_file;
 mod stdout;
 mod then_flag;
 mod timings;
+mod viewing;
 mod writer;
 
 use std::ffi::OsString;

@@ -99,6 +99,8 @@ pub use opendr_speech::{speech_recognition, speech_transcription, voice_activity
 pub use opendr_stereo::stereo_matching;
 #[cfg(feature = "tracking")]
 pub use opendr_tracking::{object_tracking_2d, object_tracking_3d, tracking};
+#[cfg(feature = "viewer")]
+pub use opendr_viewer as viewer;
 #[cfg(feature = "webots")]
 pub use opendr_webots as webots;
 pub use pipeline::Pipeline;

@@ -180,7 +180,7 @@ fn a_viewer_of_other_machines_needs_its_token() {
     };
     assert_eq!(with(token), 200);
     assert_eq!(with(&token[1..]), 403);
-    assert_eq!(with(&format!("{}0", &token[..31]).replace(token, "")), 403);
+    assert_eq!(with(&token.chars().rev().collect::<String>()), 403);
     assert_eq!(get(&viewer, "/api/state", "Host: robot.local\r\n").0, 403);
     assert_eq!(get(&viewer, "/api/next?after=0&token=x", "Host: robot.local\r\n").0, 403);
 }

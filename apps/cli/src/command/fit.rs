@@ -10,7 +10,7 @@ use opendr::{FitData, FitEnvironments, FitOptions, Fitted, Progress, Result};
 
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
-use crate::{class_flags, dataset_flags, environment_flags, learner_flags, loading, stdout};
+use crate::{class_flags, dataset_flags, environment_flags, learner_flags, loading, stdout, viewing};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -74,7 +74,7 @@ fn val_flags() -> [Arg; 3] {
     ]
 }
 
-fn output_flags() -> [Arg; 4] {
+fn output_flags() -> [Arg; 5] {
     [
         Arg::new("out")
             .long("out")
@@ -93,6 +93,7 @@ fn output_flags() -> [Arg; 4] {
             .action(ArgAction::SetTrue)
             .help("Resume from the last checkpoint in the output folder"),
         Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print a JSON object"),
+        viewing::flag(),
     ]
 }
 
@@ -139,6 +140,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let params = learner_flags::params(entry, matches)?;
     let device = loading::device(matches)?;
     let options = options(entry.spec.name, learner_flags::fit_params(entry, matches)?, matches)?;
+    let _viewer = viewing::of_training(entry.spec.class, options.logging_path.clone(), matches, &bar)?;
     let starts_from_model =
         spec.contains('/') || matches.contains_id("model") || matches.get_flag("pretrained");
     let fits = entry.capabilities.fit || entry.capabilities.fit_in;

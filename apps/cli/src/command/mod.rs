@@ -24,6 +24,7 @@ mod sim;
 mod sim_export;
 mod sim_render;
 mod tune;
+mod view;
 
 use std::ffi::{OsStr, OsString};
 
@@ -41,6 +42,7 @@ Examples:
   opendr infer LEARNER street.jpg --out boxes.png     predict on an image
   opendr infer LEARNER dance.mp4 --json               ... on a video, as lines of JSON
   opendr infer LEARNER drive.bag --out boxes.mcap     ... on a ROS recording
+  opendr view LEARNER camera:0                        show predictions on a local web page
   opendr infer LEARNER --help                         list the parameters of a learner
   opendr eval LEARNER coco/ --out evaluated/          measure a learner on a data set
   opendr fit LEARNER coco/ --val-split val2017        train a learner
@@ -71,6 +73,7 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
         bench::grammar(),
         runtime::grammar(),
         demo::grammar(),
+        view::grammar(),
         #[cfg(feature = "ros")]
         bag::grammar(),
         #[cfg(feature = "ros")]
@@ -90,7 +93,7 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
             _ => learner_flags::add,
         };
         *command = add(std::mem::take(command), entry);
-        if name == "infer" {
+        if ["infer", view::NAME].map(OsStr::new).contains(&name.as_os_str()) {
             *command = recordings::ports_by_topic(std::mem::take(command), entry);
         }
         if environment_flags::is_policy(entry) {
@@ -143,6 +146,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         "bench" => bench::run(matches),
         "runtime" => runtime::run(matches),
         "demo" => demo::run(matches),
+        view::NAME => view::run(matches),
         #[cfg(feature = "ros")]
         "bag" => bag::run(matches),
         #[cfg(feature = "ros")]
@@ -164,7 +168,9 @@ fn named_learner(command: &Command, words: &[OsString]) -> Result<Option<&'stati
     while let Some(word) = words.next() {
         let bytes = word.as_encoded_bytes();
         if !bytes.starts_with(b"-") {
-            return loading::entry(&word.to_string_lossy()).map(Some);
+            let word = word.to_string_lossy();
+            let is_run = command.get_name() == view::NAME && view::log_of(&word).is_some();
+            return if is_run { Ok(None) } else { loading::entry(&word).map(Some) };
         }
         if !bytes.contains(&b'=') && !is_switch(command, word) {
             words.next();
@@ -197,7 +203,7 @@ mod tests {
     #[test]
     fn grammar_of_every_learner_is_valid() {
         for entry in opendr::registry().entries() {
-            for command in ["infer", "bench", "eval", "fit", "import", "tune"] {
+            for command in ["infer", "bench", "eval", "fit", "import", "tune", "view"] {
                 grammar(&words(&format!("opendr {command} {}", entry.spec.name))).unwrap().debug_assert();
             }
         }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use opendr::learner::{Entry, Outputs, Ports};
+use opendr::viewer::Viewer;
 use opendr::{Error, Result};
 
 use crate::item::{Item, Next};
@@ -16,6 +17,7 @@ pub(super) struct Job {
     pub(super) port: &'static str,
     pub(super) further: Vec<PortFile>,
     pub(super) sequence: bool,
+    pub(super) viewer: Option<Viewer>,
 }
 
 /// Video of the last processed frame; for an image sequence, its folder.

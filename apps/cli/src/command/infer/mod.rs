@@ -19,8 +19,9 @@ use crate::progress_bar::{ProgressBar, interrupted};
 use crate::recordings::RecordingSink;
 use crate::report::{Json, Report};
 use crate::timings::Timings;
+use crate::viewing::Pace;
 use crate::writer::{Failures, Writer};
-use crate::{learner_flags, loading, recordings, then_flag};
+use crate::{learner_flags, loading, recordings, then_flag, viewing};
 use job::{InferenceResult, Job, Stream, of_item};
 
 const EXAMPLES: &str = "\
@@ -42,10 +43,16 @@ Examples:
 \"opendr infer LEARNER --help\" lists the learner's parameters; \"opendr models\" lists the learners.";
 
 pub fn grammar() -> Command {
+    arguments(Command::new("infer"))
+        .about("Run a learner on images, videos, a camera, files of other input types, or recordings")
+        .after_help(EXAMPLES)
+}
+
+/// Adds the arguments of `infer`, which are those of `view` too.
+pub fn arguments(command: Command) -> Command {
     let switch = |name: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue);
     let path = |name: &'static str| Arg::new(name).long(name).value_parser(value_parser!(PathBuf));
-    let command = Command::new("infer")
-        .about("Run a learner on images, videos, a camera, files of other input types, or recordings")
+    let command = command
         .arg(loading::learner())
         .arg(
             Arg::new("input")
@@ -75,13 +82,22 @@ pub fn grammar() -> Command {
                 .value_name("N")
                 .help("Stop after N frames"),
         ])
+        .args([viewing::flag(), viewing::write_flag()])
         .args(recordings::flags())
-        .args(loading::flags())
-        .after_help(EXAMPLES);
+        .args(loading::flags());
     on_rig::add(command)
 }
 
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
+    run_paced(matches, None)
+}
+
+/// Displays items at the speed of their streams, and the last one until Ctrl-C.
+pub fn run_until_interrupt(matches: &ArgMatches) -> Result<Outcome> {
+    run_paced(matches, Some(Pace::default()))
+}
+
+fn run_paced(matches: &ArgMatches, pace: Option<Pace>) -> Result<Outcome> {
     let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
     let entry = loading::entry(spec)?;
     let bar = ProgressBar::new(matches.get_flag("quiet"));
@@ -118,16 +134,19 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let params = learner_flags::params(entry, matches)?;
     let load = || loading::load(spec, &params, matches, &bar);
     let chained = then_flag::is_given(matches);
-    let job = Job {
+    let mut job = Job {
         entry,
         port: port.name,
         further: learner_flags::port_files(entry, matches)?,
         sequence: matches.get_flag("sequence"),
+        viewer: None,
     };
     let dump = matches.get_one::<PathBuf>("dump").map(|folder| Dump::create(folder)).transpose()?;
     let alone = chained || job.sequence || dump.is_some() || !items.are_independent();
     let count = if alone { 1 } else { loading::copies(matches, frames)? };
     let mut learners = loading::load_copies(count, load)?;
+    let adjustable = learners.first().filter(|_| !chained).map(AsRef::as_ref);
+    job.viewer = viewing::of_learner(entry, adjustable, matches, &bar)?;
     let mut processors = match learners.pop() {
         Some(first) if chained => {
             Learners::Chain(then_flag::pipeline(entry, first.as_ref(), matches, &bar)?, Stream::default())
@@ -137,7 +156,12 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
             Learners::Parallel(
                 learners
                     .zip(std::iter::once(dump).chain(std::iter::repeat_with(|| None)))
-                    .map(|(learner, dump)| Worker { learner, stream: Stream::default(), dump })
+                    .map(|(learner, dump)| Worker {
+                        learner,
+                        stream: Stream::default(),
+                        dump,
+                        last_change: 0,
+                    })
                     .collect(),
             )
         }
@@ -148,13 +172,18 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     if frames != Some(1) {
         bar.begin("frames", frames, Unit::Items);
     }
-    let result = job.run(&mut processors, items, limit, &mut report, &mut out, &bar);
+    let stays = pace.is_some();
+    let result = job.run(&mut processors, items, limit, &mut report, &mut out, &bar, pace);
     bar.end();
     // Frames that were handed to the writer are finished even after an error.
     for (input, error) in out.finish() {
         report.failure(input.as_deref(), &error)?;
     }
     result?;
+    if stays && !interrupted() {
+        bar.note("the page shows the last item; Ctrl-C ends it");
+        viewing::wait_for_interrupt();
+    }
     Ok(if report.finish()? == 0 { Outcome::Done } else { Outcome::SomeFailed })
 }
 
@@ -163,6 +192,8 @@ struct Worker {
     learner: Box<dyn AnyLearner>,
     stream: Stream,
     dump: Option<Dump>,
+    /// Number of the last change of a parameter by the viewer.
+    last_change: u64,
 }
 
 /// Learners that process the items.
@@ -224,6 +255,7 @@ impl Job {
         report: &mut Report<'_>,
         out: &mut Out,
         bar: &ProgressBar,
+        mut pace: Option<Pace>,
     ) -> Result<()> {
         let classes = learners.classes();
         let mut left = limit;
@@ -236,6 +268,12 @@ impl Job {
                 Ok((item, outputs, timings)) => {
                     for outputs in &outputs {
                         report.item(&item, outputs, timings)?;
+                    }
+                    if let Some(viewer) = &self.viewer {
+                        if let Some(pace) = &mut pace {
+                            pace.wait(&item);
+                        }
+                        viewing::show(viewer, &item, &outputs, timings);
                     }
                     let path = item.path().clone();
                     match out.put(item, outputs, &classes) {
@@ -263,6 +301,11 @@ impl Job {
         let begins = self.follow(&mut worker.stream, &item);
         if begins {
             worker.learner.reset();
+        }
+        if let Some(viewer) = &self.viewer {
+            for (name, value) in viewer.changes(&mut worker.last_change) {
+                worker.learner.set(&name, value).unwrap_or_else(|error| viewer.fail(&error));
+            }
         }
         match self.infer_and_dump(worker, &item, begins) {
             Ok((outputs, timings)) => Ok((item, outputs, timings)),

@@ -32,7 +32,7 @@ const WINDOW: [usize; 2] = [224, 224];
 pub fn add(command: Command) -> Command {
     let flag = |name: &'static str| Arg::new(name).long(name);
     command.mut_arg("input", |input| input.required(false).required_unless_present(RIG)).args([
-        flag(RIG).value_name("RIG").conflicts_with("input").help(
+        flag(RIG).value_name("RIG").conflicts_with_all(["input", "view"]).help(
             "Move a camera until the class is certain: in an environment (SphereView-Face-v1), over recorded views (their index, .json) or in a large image",
         ),
         flag(CAMERA_POLICY).requires(RIG).value_parser(value_parser!(PathBuf)).value_name("PATH").help(
