@@ -1,5 +1,6 @@
 """`opendr view` and `--view` in a real browser."""
 
+import json
 import math
 import signal
 import socket
@@ -102,6 +103,8 @@ def test_an_image_its_predictions_and_live_parameters(opendr, browser, picture):
         )
         changed = "fetch('/api/state').then((state) => state.json()).then((state) => state.params.find((param) => param.name === 'threshold').value)"
         wait_until(lambda: browser.run(f"return {changed}") == 0.75, "the change of the threshold")
+        # The image is inferred again with the new threshold.
+        browser.wait("document.getElementById('status').textContent.startsWith('item 2')")
         browser.run("document.getElementById('overlay').click()")
         assert browser.run("return document.getElementById('overlay').getAttribute('aria-pressed')") == "false"
         assert browser.errors() == []
@@ -180,6 +183,49 @@ def test_curves_of_a_training(opendr, browser, tmp_path):
         browser.wait("document.getElementById('status').textContent === 'step 200'")
         assert "0.5" in browser.run("return document.querySelectorAll('#curves figcaption')[1].textContent")
         assert browser.errors() == []
+
+
+def test_a_study(opendr, browser, tmp_path):
+    lines = [{"op_code": 0, "study_name": "tuned", "directions": [2]}]
+    for number, (lr, value) in enumerate([(0.1, 0.5), (0.2, 0.75), (0.3, 0.25)]):
+        distribution = json.dumps({"name": "FloatDistribution", "attributes": {"step": None, "low": 0.0, "high": 1.0, "log": False}})
+        lines.append({"op_code": 4, "study_id": 0})
+        lines.append({"op_code": 5, "trial_id": number, "param_name": "lr", "param_value_internal": lr, "distribution": distribution})
+        lines.append({"op_code": 6, "trial_id": number, "state": 1, "values": [value]})
+    (tmp_path / "study.log").write_text("".join(json.dumps({"worker_id": "one", **line}) + "\n" for line in lines))
+    with Page(opendr, "view", tmp_path) as page:
+        browser.open(page.url)
+        browser.wait("document.querySelectorAll('#curves figure').length === 3")
+        captions = browser.run("return [...document.querySelectorAll('#curves figcaption span')].map((span) => span.textContent)")
+        assert captions[::2] == ["best value", "value of each trial", "value over lr"]
+        assert captions[1] == "0.75"
+        assert browser.errors() == []
+
+
+def test_episodes_of_an_environment(opendr, browser):
+    with Page(opendr, "sim", "view", "CartPole-v1", "--rate", "200") as page:
+        browser.open(page.url)
+        browser.wait(is_shown("picture"))
+        assert "CartPole-v1 seed" in browser.run("return document.getElementById('input').textContent")
+        headings = browser.run("return [...document.querySelectorAll('#outputs h3')].map((heading) => heading.textContent)")
+        assert headings[:3] == ["reward", "return", "action"]
+        # Episodes go on until Ctrl-C.
+        browser.wait("document.getElementById('input').textContent.includes('seed 2')")
+        assert browser.errors() == []
+
+
+def test_samples_of_an_evaluation(opendr, browser, tmp_path):
+    images = [{"id": index, "file_name": f"{index}.png", "width": 640, "height": 480} for index in range(400)]
+    boxes = [{"id": index + 1, "image_id": index, "category_id": 1, "bbox": [9, 9, 90, 90], "area": 8100, "iscrowd": 0} for index in range(400)]
+    for image in images:
+        write_png(tmp_path / image["file_name"], 640, 480, (90, image["id"] // 2, 40))
+    truth = {"images": images, "annotations": boxes, "categories": [{"id": 1, "name": "person"}]}
+    (tmp_path / "annotations.json").write_text(json.dumps(truth))
+    with Page(opendr, "eval", "single_shot_detector", tmp_path, "--resamples", "0", "--quiet") as page:
+        browser.open(page.url)
+        browser.wait(is_shown("picture"))
+        assert ".png" in browser.run("return document.getElementById('input').textContent")
+        assert browser.wait("document.querySelector('#outputs h3')?.textContent") == "boxes"
 
 
 def test_pages_that_stall_do_not_stop_inference(opendr, tmp_path):

@@ -78,6 +78,9 @@ class Browser:
         return self.request("POST", path, body)
 
     def open(self, url):
+        """Opens a page in place of the one before, whose errors are forgotten."""
+        self.post("/url", {"url": "about:blank"})
+        self.errors()
         self.post("/url", {"url": url})
 
     def run(self, script, *arguments):

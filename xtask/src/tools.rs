@@ -7,12 +7,14 @@ use std::sync::{Mutex, PoisonError};
 use crate::shell::{Result, command, is_installed, root, step, target};
 
 /// Debian packages by the program or folder that they provide.
-const DEBIAN: [(&str, &str); 21] = [
+const DEBIAN: [(&str, &str); 23] = [
     ("advzip", "advancecomp"),
     ("ffmpeg", "ffmpeg"),
     ("g++", "g++"),
     ("pkg-config", "pkg-config"),
     ("cmake", "cmake"),
+    ("chromium", "chromium"),
+    ("chromedriver", "chromium-driver"),
     ("valgrind", "valgrind"),
     ("/usr/share/datasets/fashion-mnist", "dataset-fashion-mnist"),
     ("ip", "iproute2"),

@@ -14,6 +14,7 @@
 
 mod class_flags;
 mod command;
+mod curves;
 mod dataset_flags;
 mod dump;
 mod environment_flags;

@@ -2,15 +2,15 @@
 
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use opendr::learner::{AnyLearner, Entry, Outputs};
-use opendr::viewer::{Shown, Viewer, ViewerOptions};
-use opendr::{Error, Progress, Result};
+use opendr::viewer::{CurveSource, Shown, Viewer, ViewerOptions};
+use opendr::{Error, Progress, Result, ValueRef};
 
 use crate::item::{Datum, Item};
 use crate::progress_bar::{ProgressBar, interrupted};
@@ -23,7 +23,7 @@ pub const ADDRESS: &str = "127.0.0.1:7007";
 /// Time for which `opendr view` displays an item that is no frame of a stream.
 const STILL: Duration = Duration::from_secs(1);
 /// Time between two checks for Ctrl-C.
-const POLL: Duration = Duration::from_millis(50);
+pub const POLL: Duration = Duration::from_millis(50);
 
 /// Returns the flag of the page.
 pub fn flag() -> Arg {
@@ -60,22 +60,34 @@ pub fn of_learner(
         params: learner.map_or(&[], |_| entry.params),
         values: learner.map_or_else(BTreeMap::new, AnyLearner::params),
         is_writable: matches.get_flag(VIEW_WRITE),
-        log: None,
+        curves: None,
     };
     start(options, matches, bar)
 }
 
-/// Starts the page of the curves of a training that logs into `log`.
+/// Starts the page of items alone, without parameters.
 ///
 /// # Errors
 /// `Io` when the port is in use.
-pub fn of_training(
+pub fn of_items(title: &str, matches: &ArgMatches, bar: &ProgressBar) -> Result<Option<Viewer>> {
+    start(ViewerOptions { title: title.to_owned(), ..ViewerOptions::default() }, matches, bar)
+}
+
+/// Starts the page of curves.
+///
+/// # Errors
+/// `Io` when the port is in use.
+pub fn of_curves(
     title: &str,
-    log: Option<PathBuf>,
+    curves: CurveSource,
     matches: &ArgMatches,
     bar: &ProgressBar,
 ) -> Result<Option<Viewer>> {
-    start(ViewerOptions { title: title.to_owned(), log, ..ViewerOptions::default() }, matches, bar)
+    start(
+        ViewerOptions { title: title.to_owned(), curves: Some(curves), ..ViewerOptions::default() },
+        matches,
+        bar,
+    )
 }
 
 fn start(options: ViewerOptions, matches: &ArgMatches, bar: &ProgressBar) -> Result<Option<Viewer>> {
@@ -95,12 +107,21 @@ pub fn show(viewer: &Viewer, item: &Item, outputs: &[Outputs], timings: Timings)
     let Timings { pre, session, post, .. } = timings;
     for outputs in outputs {
         viewer.show(Shown {
-            name: item.path().display().to_string(),
-            index: item.number(),
-            input: item.value().to_value(),
-            outputs: outputs.iter().map(|(name, value)| (name.to_owned(), value.clone())).collect(),
             stages: vec![("pre", pre), ("network", session), ("post", post)],
+            ..shown(item.path().display().to_string(), item.number(), item.value(), outputs)
         });
+    }
+}
+
+/// Returns an item with its outputs, without latencies.
+pub fn shown(name: String, index: u64, input: ValueRef<'_>, outputs: &Outputs) -> Shown {
+    Shown {
+        name,
+        index,
+        input: input.to_value(),
+        outputs: outputs.iter().map(|(name, value)| (name.to_owned(), value.clone())).collect(),
+        notes: Vec::new(),
+        stages: Vec::new(),
     }
 }
 
@@ -132,7 +153,8 @@ pub fn wait_for_interrupt() {
     }
 }
 
-fn sleep(time: Duration) {
+/// Waits for `time`, or until Ctrl-C.
+pub fn sleep(time: Duration) {
     let begin = Instant::now();
     while !interrupted() && begin.elapsed() < time {
         thread::sleep(POLL.min(time.saturating_sub(begin.elapsed())));

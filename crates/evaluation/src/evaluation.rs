@@ -16,8 +16,8 @@ use crate::bootstrap::Groups;
 use crate::classes::{AnnotatedClasses, MapLabels, annotated_classes};
 use crate::contact_sheet::{ContactSheetSamples, ScoredSample};
 use crate::journal::{Heading, Journal, Line, SampleResult};
-use crate::predictor::predict_samples;
-use crate::{ClassMap, ClassMatching, FilePredictions, Outcome, Predictor, Subject};
+use crate::predictor::PredictionJob;
+use crate::{ClassMap, ClassMatching, FilePredictions, Outcome, Predictor, SampleObserver, Subject};
 
 /// Number of samples with the lowest scores that are listed, and of those spaced evenly over the data set.
 const LISTED: usize = 24;
@@ -52,6 +52,8 @@ pub struct Evaluation<'a> {
     pub problems: &'a Problems,
     /// Receives the progress, and may stop the evaluation.
     pub progress: &'a dyn Progress,
+    /// Receives each sample with the outputs of the learner.
+    pub observer: Option<&'a SampleObserver<'a>>,
 }
 
 impl<'a> Evaluation<'a> {
@@ -67,6 +69,7 @@ impl<'a> Evaluation<'a> {
             folder: None,
             problems,
             progress: &Silent,
+            observer: None,
         }
     }
 
@@ -268,7 +271,8 @@ impl<'a> Evaluation<'a> {
     ) -> Result<()> {
         let (dataset, first) = (tally.dataset, tally.next);
         let wanted = self.metric.prediction;
-        predict_samples(predictors, ports, dataset, first, wanted, self.progress, |line| {
+        let job = PredictionJob { ports, dataset, first, wanted, observer: self.observer };
+        job.predict(predictors, self.progress, |line| {
             if let Some(journal) = &mut journal {
                 journal.write(&line)?;
             }

@@ -49,7 +49,7 @@ pub use labelled_dataset::LabelledDataset;
 pub use open::open_for_metric;
 pub use options::{EvalJob, EvalOptions};
 pub use outcome::Outcome;
-pub use predictor::Predictor;
+pub use predictor::{PredictedSample, Predictor, SampleObserver};
 pub use subject::Subject;
 pub use task::metric_of;
 pub use teacher::{Distillation, Teacher};

@@ -13,7 +13,9 @@ use opendr_metrics::{MetricEntry, find};
 use serde::Deserialize;
 
 use crate::evaluation::RESAMPLES;
-use crate::{ClassMatching, Evaluation, Outcome, Predictor, Subject, metric_of, open_for_metric};
+use crate::{
+    ClassMatching, Evaluation, Outcome, Predictor, SampleObserver, Subject, metric_of, open_for_metric,
+};
 
 /// All options; each may be omitted.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -48,6 +50,8 @@ pub struct EvalJob<'a> {
     pub dataset: Subset<Box<dyn DatasetIterator + 'a>>,
     /// The problems found in them.
     pub problems: Problems,
+    /// Receives each sample with the outputs of the learner.
+    pub observer: Option<&'a SampleObserver<'a>>,
     metric: &'static MetricEntry,
     name: String,
     options: &'a EvalOptions,
@@ -97,7 +101,7 @@ impl EvalOptions {
         };
         let name = self.name.clone().unwrap_or(name);
         let dataset = Subset::first(dataset, self.limit.unwrap_or(usize::MAX));
-        Ok(EvalJob { dataset, problems, metric, name, options: self })
+        Ok(EvalJob { dataset, problems, observer: None, metric, name, options: self })
     }
 
     /// Evaluates a loaded learner on a data set.
@@ -155,6 +159,7 @@ impl EvalJob<'_> {
             resamples: self.options.resamples.unwrap_or(RESAMPLES),
             folder: self.options.out.as_deref(),
             progress,
+            observer: self.observer,
             ..Evaluation::new(subject, self.metric, &self.problems)
         }
     }

@@ -10,7 +10,7 @@ use opendr_engine::target::Classes;
 use opendr_engine::{Error, Progress, Result, ResultExt, Unit, Value, ValueType};
 
 use crate::journal::{Heading, Journal, Line, SampleResult};
-use crate::predictor::predict_samples;
+use crate::predictor::PredictionJob;
 use crate::{ClassMap, ClassMatching, LabelledDataset, Subject};
 
 /// Advice for classes that do not match.
@@ -134,8 +134,14 @@ impl Distillation<'_> {
             self.progress.advance(1);
             labels.add(line)
         })?;
-        let (streams, ports, first) = (&mut teacher.streams, teacher.entry.ports, labels.next);
-        predict_samples(streams, ports, samples, first, self.annotation_type, self.progress, |line| {
+        let job = PredictionJob {
+            ports: teacher.entry.ports,
+            dataset: samples,
+            first: labels.next,
+            wanted: self.annotation_type,
+            observer: None,
+        };
+        job.predict(&mut teacher.streams, self.progress, |line| {
             journal.write(&line)?;
             labels.add(line)
         })

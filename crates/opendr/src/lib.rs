@@ -109,11 +109,13 @@ pub use policy_evaluation::{
 };
 pub use registry::registry;
 pub use smaller::optimize_loaded;
-pub use tune::{LearnerTraining, MakeLearner, TuneData, TuneOptions, Tuned, search_space, tune};
+pub use tune::{
+    LearnerTraining, MakeLearner, STUDY_JOURNAL, TuneData, TuneOptions, Tuned, search_space, tune,
+};
 pub use {
     opendr_active as active, opendr_control as control, opendr_datasets as datasets,
     opendr_evaluation as evaluation, opendr_inference as inference, opendr_metrics as metrics,
-    opendr_optimize as optimize, opendr_planning as planning, opendr_rl as rl,
+    opendr_optimize as optimize, opendr_planning as planning, opendr_rl as rl, opendr_runlog as runlog,
     opendr_simulation as simulation, opendr_tuning as tuning, opendr_vision as vision, opendr_zoo as zoo,
 };
 #[cfg(feature = "ros")]

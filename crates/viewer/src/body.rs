@@ -24,7 +24,9 @@ const MAX_TEXT: usize = 4 << 10;
 /// Encodes an item.
 pub fn encoded(number: u64, item: &Shown, is_drawn: bool) -> Vec<u8> {
     let mut head = Map::new();
-    let outputs = item.outputs.iter().map(|(name, value)| json!({ "name": name, "text": text(value) }));
+    let values = item.outputs.iter().map(|(name, value)| (name, format!("{value:#}")));
+    let notes = item.notes.iter().map(|(name, text)| (name, text.clone()));
+    let outputs = values.chain(notes).map(|(name, text)| json!({ "name": name, "text": shortened(text) }));
     let stages = item.stages.iter().map(|(name, time)| json!([name, time]));
     head.insert("number".to_owned(), json!(number));
     head.insert("input".to_owned(), json!(item.name));
@@ -54,9 +56,8 @@ pub fn encoded(number: u64, item: &Shown, is_drawn: bool) -> Vec<u8> {
     bytes
 }
 
-/// Returns the text of a prediction, shortened.
-fn text(value: &Value) -> String {
-    let mut text = format!("{value:#}");
+/// Shortens the text of a prediction.
+fn shortened(mut text: String) -> String {
     if text.len() > MAX_TEXT {
         let end = (0..=MAX_TEXT).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0);
         text.truncate(end);

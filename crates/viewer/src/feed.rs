@@ -18,6 +18,8 @@ pub struct Shown {
     pub input: Value,
     /// Outputs of the learner, by name.
     pub outputs: Vec<(String, Value)>,
+    /// Further lines, such as the reward of a step, by name.
+    pub notes: Vec<(String, String)>,
     /// Durations of the stages, in milliseconds.
     pub stages: Vec<(&'static str, f64)>,
 }

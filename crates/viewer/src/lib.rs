@@ -28,5 +28,5 @@ mod settings;
 mod tests;
 
 pub use feed::Shown;
-pub use options::ViewerOptions;
+pub use options::{Curve, CurveSource, ViewerOptions};
 pub use server::Viewer;

@@ -1,10 +1,8 @@
 //! Responses of the viewer by method and path.
 
-use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use opendr_engine::params::ParamValue;
-use opendr_runlog::read_scalars;
 use serde::Deserialize;
 use serde_json::json;
 
@@ -14,6 +12,7 @@ use crate::pages;
 use crate::request::Request;
 use crate::response::Response;
 use crate::settings::Settings;
+use crate::{Curve, CurveSource};
 
 /// Maximum time that a request waits for the next item.
 const PATIENCE: Duration = Duration::from_secs(5);
@@ -28,7 +27,7 @@ pub struct Shared {
     pub feed: Feed,
     pub settings: Settings,
     pub is_writable: bool,
-    pub log: Option<PathBuf>,
+    pub curves: Option<CurveSource>,
 }
 
 /// A change of a parameter.
@@ -69,7 +68,7 @@ impl Shared {
         Response::json(&json!({
             "title": self.title,
             "is_writable": self.is_writable,
-            "has_curves": self.log.is_some(),
+            "has_curves": self.curves.is_some(),
             "params": params,
             "failure": failure,
         }))
@@ -87,9 +86,14 @@ impl Shared {
     }
 
     fn curves(&self) -> Response {
-        let Some(log) = &self.log else { return Response::refusal(404, "there is no training") };
-        match curves(log) {
-            Ok(curves) => Response::json(&curves),
+        let Some(CurveSource { unit, read }) = &self.curves else {
+            return Response::refusal(404, "there is no training");
+        };
+        match read() {
+            Ok(curves) => {
+                let curves: Vec<_> = curves.into_iter().map(thinned).collect();
+                Response::json(&json!({ "unit": unit, "curves": curves }))
+            }
             Err(error) => Response::refusal(503, &error.to_string()),
         }
     }
@@ -113,14 +117,11 @@ impl Shared {
     }
 }
 
-/// Returns the curves of a log, thinned out.
-fn curves(log: &Path) -> opendr_engine::Result<serde_json::Value> {
-    let thinned = |points: Vec<[f64; 2]>| {
-        let step = points.len().div_ceil(MAX_CURVE).max(1);
-        let last = points.len().saturating_sub(1);
-        let kept = points.into_iter().enumerate().filter(|(index, _)| index % step == 0 || *index == last);
-        kept.map(|(_, point)| point).collect::<Vec<_>>()
-    };
-    let curves = read_scalars(log)?.into_iter();
-    Ok(curves.map(|(tag, points)| json!({ "tag": tag, "points": thinned(points) })).collect())
+/// Returns a curve as JSON, with every second, third, ... point and the last one where there are too many.
+fn thinned(curve: Curve) -> serde_json::Value {
+    let step = curve.points.len().div_ceil(MAX_CURVE).max(1);
+    let last = curve.points.len().saturating_sub(1);
+    let kept = curve.points.iter().enumerate().filter(|(index, _)| index % step == 0 || *index == last);
+    let points: Vec<_> = kept.map(|(_, point)| point).collect();
+    json!({ "name": curve.name, "points": points, "is_scatter": curve.is_scatter })
 }

@@ -42,14 +42,14 @@ impl Viewer {
             format!("serving the viewer at {address}; choose another port with --view=ADDRESS:PORT")
         })?;
         let address = listener.local_addr().context(|| "the viewer's address")?;
-        let ViewerOptions { title, params, values, is_writable, log } = options;
+        let ViewerOptions { title, params, values, is_writable, curves } = options;
         let shared = Arc::new(Shared {
             title,
             access: Access::new(address)?,
             feed: Feed::default(),
             settings: Settings::new(params, values),
             is_writable,
-            log,
+            curves,
         });
         let accepting = shared.clone();
         let acceptor = thread::Builder::new()

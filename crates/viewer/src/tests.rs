@@ -1,11 +1,12 @@
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpStream};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use opendr_engine::Value;
 use opendr_engine::data::{Image, PointCloud, Timeseries};
 use opendr_engine::params::{Field, FieldDefault, ParamKind, ParamMap, ParamRange, ParamValue};
 use opendr_engine::target::{BoundingBox, BoundingBoxList};
+use opendr_engine::{Error, Value};
 
 use super::*;
 
@@ -75,6 +76,7 @@ fn shown(index: u64, input: Value) -> Shown {
         index,
         input,
         outputs: vec![("boxes".to_owned(), boxes.into())],
+        notes: vec![("reward".to_owned(), "0.5".to_owned())],
         stages: vec![("pre", 1.0), ("network", 2.0)],
     }
 }
@@ -219,21 +221,25 @@ fn live_parameters_change_where_allowed() {
 }
 
 #[test]
-fn curves_of_a_training_are_served() {
-    let folder = std::env::temp_dir().join(format!("opendr-viewer-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
-    let rows: String = (1..=5000).map(|step| format!("{step},{}\n", 1.0 / f64::from(step))).collect();
-    std::fs::write(folder.join("log.csv"), format!("step,loss\n{rows}")).unwrap();
-    let viewer = viewer(ViewerOptions { log: Some(folder.clone()), ..ViewerOptions::default() });
+fn curves_are_read_anew() {
+    let count = AtomicUsize::new(5000);
+    let read = move || match count.fetch_add(1, Ordering::Relaxed) {
+        5001 => Err(Error::format("line 3 of the log has no number")),
+        count => {
+            let points = (1..=count).map(|step| [step as f64, 1.0 / step as f64]).collect();
+            Ok(vec![Curve { name: "loss".to_owned(), points, is_scatter: false }])
+        }
+    };
+    let curves = CurveSource { unit: "step", read: Box::new(read) };
+    let viewer = viewer(ViewerOptions { curves: Some(curves), ..ViewerOptions::default() });
     let (status, body) = get(&viewer, "/api/curves", HOST);
     assert_eq!(status, 200);
     let curves: serde_json::Value = serde_json::from_slice(&body).unwrap();
-    let points = curves[0]["points"].as_array().unwrap();
+    assert_eq!(curves["unit"], "step");
+    let points = curves["curves"][0]["points"].as_array().unwrap();
     assert!(points.len() <= 1001);
     assert_eq!(points.last().unwrap()[0], 5000.0);
-    std::fs::write(folder.join("log.csv"), "step,loss\n1,x\n2,0.5\n").unwrap();
     assert_eq!(get(&viewer, "/api/curves", HOST).0, 503);
-    std::fs::remove_dir_all(&folder).unwrap();
     assert_eq!(get(&self::viewer(ViewerOptions::default()), "/api/curves", HOST).0, 404);
 }
 

@@ -8,7 +8,7 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::dataset::{DatasetIterator, DatasetRef};
 use opendr::datasets::Problems;
 use opendr::environment::EnvironmentSource as _;
-use opendr::evaluation::{EvalOptions, Outcome as Evaluated, Subject};
+use opendr::evaluation::{EvalOptions, Outcome as Evaluated, PredictedSample, SampleObserver, Subject};
 use opendr::learner::Entry;
 use opendr::metrics::{self, MetricEntry};
 use opendr::params::ParamMap;
@@ -19,7 +19,7 @@ use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
 use crate::{
     class_flags, dataset_flags, environment_flags, learner_flags, loading, named_value, report_file, stdout,
-    then_flag,
+    then_flag, viewing,
 };
 
 const EXAMPLES: &str = "\
@@ -59,6 +59,7 @@ pub fn grammar() -> Command {
                 .value_name("N")
                 .help("Stop after the first N samples"),
         )
+        .arg(viewing::flag())
         .args(super::online::flags())
         .args(loading::flags())
         .after_help(EXAMPLES)
@@ -122,13 +123,21 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let last = then_flag::last(entry, matches)?;
     options.metric_params = metric_params(options.metric_for(last)?, matches)?;
     let external = dataset_flags::external(matches);
-    let job = options.open(last, DatasetRef::External(&external))?;
+    let viewer = viewing::of_items(last.spec.class, matches, &bar)?;
+    let observer = |sample: PredictedSample<'_>| {
+        if let Some(viewer) = &viewer {
+            let PredictedSample { index, name, input, outputs } = sample;
+            viewer.show(viewing::shown(name.to_owned(), index as u64, input, outputs));
+        }
+    };
+    let mut job = options.open(last, DatasetRef::External(&external))?;
     let params = learner_flags::params(entry, matches)?;
     let (learner, all_params) = then_flag::describe(spec, &params, matches)?;
     let model = matches.get_one::<PathBuf>("model").map(|path| path.display().to_string());
     let subject = Subject { learner, model, params: all_params };
     let count = loading::copies(matches, Some(job.dataset.len() as u64))?;
     let load = || loading::load(spec, &params, matches, &bar);
+    job.observer = viewer.as_ref().map(|_| &observer as &SampleObserver<'_>);
     let outcome = if then_flag::is_given(matches) {
         let pipeline = || then_flag::pipeline(entry, load()?.as_ref(), matches, &bar);
         let mut pipelines = loading::load_copies(count, pipeline)?;

@@ -10,7 +10,7 @@ use opendr::{FitData, FitEnvironments, FitOptions, Fitted, Progress, Result};
 
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
-use crate::{class_flags, dataset_flags, environment_flags, learner_flags, loading, stdout, viewing};
+use crate::{class_flags, curves, dataset_flags, environment_flags, learner_flags, loading, stdout, viewing};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -27,7 +27,7 @@ Without --out the output folder is runs/LEARNER-DATE; --resume without it uses t
 model/ of the output folder: opendr infer LEARNER --model OUTPUT/model street.jpg";
 
 /// Folder of the curves within the output folder.
-const LOGS: &str = "log";
+pub const LOGS: &str = "log";
 
 pub fn grammar() -> Command {
     Command::new("fit")
@@ -140,7 +140,8 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let params = learner_flags::params(entry, matches)?;
     let device = loading::device(matches)?;
     let options = options(entry.spec.name, learner_flags::fit_params(entry, matches)?, matches)?;
-    let _viewer = viewing::of_training(entry.spec.class, options.logging_path.clone(), matches, &bar)?;
+    let curves = curves::of_training(options.logging_path.clone().unwrap_or_default());
+    let _viewer = viewing::of_curves(entry.spec.class, curves, matches, &bar)?;
     let starts_from_model =
         spec.contains('/') || matches.contains_id("model") || matches.get_flag("pretrained");
     let fits = entry.capabilities.fit || entry.capabilities.fit_in;

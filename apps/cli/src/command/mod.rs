@@ -169,7 +169,7 @@ fn named_learner(command: &Command, words: &[OsString]) -> Result<Option<&'stati
         let bytes = word.as_encoded_bytes();
         if !bytes.starts_with(b"-") {
             let word = word.to_string_lossy();
-            let is_run = command.get_name() == view::NAME && view::log_of(&word).is_some();
+            let is_run = command.get_name() == view::NAME && view::curves_of(&word).is_some();
             return if is_run { Ok(None) } else { loading::entry(&word).map(Some) };
         }
         if !bytes.contains(&b'=') && !is_switch(command, word) {

@@ -1,16 +1,20 @@
 //! `opendr sim`: lists the environments, records videos of them, renders data sets, exports worlds.
 
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use clap::{Arg, ArgMatches, Command, value_parser};
+use opendr::data::Image;
 use opendr::environment::{Controller, Environment, EnvironmentSource, ResetOptions, Space, Step};
+use opendr::learner::Outputs;
 use opendr::rl::prior::{Prior, PriorId, SafetyRule};
 use opendr::simulation::{Recording, Registry};
+use opendr::viewer::{Shown, Viewer};
 use opendr::{Error, PolicyController, Progress, Random, Result, Unit};
 
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
-use crate::{environment_flags, loading, stdout};
+use crate::{environment_flags, loading, stdout, viewing};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -20,6 +24,7 @@ Examples:
   opendr sim view CartPole-v1                                   an episode of random actions, as CartPole-v1.gif
   opendr sim view CartPole-v1 --learner ppo --out cart.mp4      an episode of a policy (mp4 needs ffmpeg)
   opendr sim view QuadTrack-v1 --learner td3/quad_track --online --rate 10 --env-param mass_factor=1.3
+  opendr sim view CartPole-v1 --view                            episodes on a web page, in real time
   opendr sim view UavDepthCorridor-v1 --env-param max_obstacles=10 --seed 7 --out flight.png
   opendr sim render persons rendered/ --frames 1000             a labelled data set, as COCO
   opendr sim export UavDepthCorridor-v1 flight.wbt --seed 7     the world of an episode, for Webots";
@@ -36,17 +41,16 @@ pub fn grammar() -> Command {
                 .short('o')
                 .value_parser(value_parser!(PathBuf))
                 .value_name("FILE")
-                .help("File to write: .gif, .mp4, or .png for one image per step [default: ID.gif]"),
+                .help("File to write: .gif, .mp4, or .png for one image per step [default: ID.gif, or none with --view]"),
             Arg::new("learner")
                 .long("learner")
                 .value_name("LEARNER[/VARIANT]")
                 .help("Policy that acts [default: random actions]"),
             Arg::new("episodes")
                 .long("episodes")
-                .default_value("1")
                 .value_parser(value_parser!(u64).range(1..=1000))
                 .value_name("N")
-                .help("Number of episodes"),
+                .help("Number of episodes [default: 1, or with --view without end]"),
             Arg::new("seed")
                 .long("seed")
                 .default_value("0")
@@ -55,10 +59,11 @@ pub fn grammar() -> Command {
                 .help("Seed of the first episode; each further episode adds 1"),
             Arg::new("rate")
                 .long("rate")
-                .value_parser(value_parser!(f64))
+                .value_parser(frame_rate)
                 .value_name("HZ")
                 .help("Frames per second [default: 30]"),
             environment_flags::param_flag(),
+            viewing::flag().conflicts_with("online"),
         ])
         .args(super::online::flags().map(|flag| flag.requires("learner")))
         .args(loading::flags());
@@ -77,6 +82,11 @@ pub fn grammar() -> Command {
             super::sim_export::grammar(),
         ])
         .after_help(EXAMPLES)
+}
+
+fn frame_rate(text: &str) -> std::result::Result<f64, String> {
+    let rate = text.parse().ok().filter(|rate| (0.01..=1000.0).contains(rate));
+    rate.ok_or_else(|| "give 0.01 to 1000 frames per second".to_owned())
 }
 
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
@@ -148,38 +158,74 @@ fn view(matches: &ArgMatches) -> Result<Outcome> {
     let id = matches.get_one::<String>(ID).map_or("", String::as_str);
     let source = opendr::environments::source(id, &environment_flags::params(id, matches)?)?;
     let first = matches.get_one::<u64>("seed").copied().unwrap_or(0);
-    let default = PathBuf::from(format!("{}.gif", source.id()));
-    let out = matches.get_one::<PathBuf>("out").unwrap_or(&default);
+    let viewer = viewing::of_items(source.id(), matches, &bar)?;
+    let default = viewer.is_none().then(|| PathBuf::from(format!("{}.gif", source.id())));
+    let out = matches.get_one::<PathBuf>("out").or(default.as_ref());
     let rate = matches.get_one::<f64>("rate").copied().unwrap_or(30.0);
-    if let (true, Some(spec)) = (super::online::is_online(matches), matches.get_one::<String>("learner")) {
+    let learner = matches.get_one::<String>("learner");
+    if let (true, Some(spec), Some(out)) = (super::online::is_online(matches), learner, out) {
         let learner = loading::load(spec, &Default::default(), matches, &bar)?;
         super::online::record(learner.as_ref(), &source, first, out, rate, matches, &bar)?;
         bar.note(&format!("written: {}", written_files(out)));
         return Ok(Outcome::Done);
     }
     let mut environment = source.make()?;
-    let mut acting: Box<dyn Controller> = match matches.get_one::<String>("learner") {
+    let mut acting: Box<dyn Controller> = match learner {
         Some(spec) => {
             let learner = loading::load(spec, &Default::default(), matches, &bar)?;
             Box::new(PolicyController::new(learner.stream()?, loading::entry(spec)?, environment.spec())?)
         }
         None => random_controller(environment.spec().action.clone(), first),
     };
-    let mut film = Recording::create(out, rate)?;
-    let episodes = matches.get_one::<u64>("episodes").copied().unwrap_or(1);
-    bar.begin("episodes", Some(episodes), Unit::Items);
-    for seed in (first..).take(usize::try_from(episodes).unwrap_or(1)) {
+    let film = out.map(|out| Recording::create(out, rate)).transpose()?;
+    let mut screen = Screen { film, viewer, frame: Duration::from_secs_f64(1.0 / rate), due: Instant::now() };
+    let episodes = matches.get_one::<u64>("episodes").copied().or(screen.viewer.is_none().then_some(1));
+    bar.begin("episodes", episodes, Unit::Items);
+    for seed in (first..=u64::MAX).take(episodes.map_or(usize::MAX, |episodes| episodes as usize)) {
         if bar.stopped() {
             break;
         }
-        let line = episode(&mut *environment, &mut *acting, seed, &mut film, &bar);
+        let line = episode(&mut *environment, &mut *acting, seed, &mut screen, &bar);
         stdout::print(line.inspect_err(|_| bar.end())?)?;
         bar.advance(1);
     }
     bar.end();
-    film.finish()?;
-    bar.note(&format!("written: {}", written_files(out)));
+    if let Some(film) = screen.film {
+        film.finish()?;
+    }
+    if let Some(out) = out {
+        bar.note(&format!("written: {}", written_files(out)));
+    }
     Ok(Outcome::Done)
+}
+
+/// Where the images of episodes go.
+struct Screen {
+    film: Option<Recording>,
+    viewer: Option<Viewer>,
+    /// Time between two images.
+    frame: Duration,
+    /// When the page displays the next image.
+    due: Instant,
+}
+
+impl Screen {
+    /// Records an image, and displays it when it is due.
+    fn put(&mut self, name: &str, number: u64, image: Image, notes: Vec<(String, String)>) -> Result<()> {
+        if let Some(film) = &mut self.film {
+            film.write(&image)?;
+        }
+        if let Some(viewer) = &self.viewer {
+            viewing::sleep(self.due.saturating_duration_since(Instant::now()));
+            // After a slow step the next images are not hurried.
+            self.due = self.due.max(Instant::now()) + self.frame;
+            viewer.show(Shown {
+                notes,
+                ..viewing::shown(name.to_owned(), number, (&image).into(), &Outputs::default())
+            });
+        }
+        Ok(())
+    }
 }
 
 fn written_files(out: &Path) -> String {
@@ -204,7 +250,7 @@ fn episode(
     environment: &mut dyn Environment,
     acting: &mut dyn Controller,
     seed: u64,
-    film: &mut Recording,
+    screen: &mut Screen,
     bar: &ProgressBar,
 ) -> Result<String> {
     let spec = environment.spec().clone();
@@ -213,16 +259,30 @@ fn episode(
     acting.reset();
     let (mut earned, mut length) = (0.0, 0u64);
     let no_render = || Error::unsupported(format!("{} does not render", spec.id));
-    film.write(&environment.render()?.ok_or_else(no_render)?)?;
+    let name = format!("{} seed {seed}", spec.id);
+    screen.put(&name, 0, environment.render()?.ok_or_else(no_render)?, Vec::new())?;
     loop {
         acting.act(&observation, &mut action)?;
         let step = environment.step(&action, &mut observation)?;
-        film.write(&environment.render()?.ok_or_else(no_render)?)?;
         (earned, length) = (earned + step.reward, length + 1);
+        let image = environment.render()?.ok_or_else(no_render)?;
+        screen.put(&name, length, image, notes(&step, earned, &action))?;
         if step.is_over() || bar.stopped() {
             return Ok(format!("seed {seed}: return {earned:.2} in {length} steps, {}", ending(&step)));
         }
     }
+}
+
+/// Returns what a page displays beside the image of a step.
+fn notes(step: &Step, earned: f64, action: &[f32]) -> Vec<(String, String)> {
+    let action: Vec<_> = action.iter().map(|value| format!("{value:.3}")).collect();
+    let info = step.info.iter().map(|(name, value)| (name.to_string(), format!("{value:.3}")));
+    let own = [
+        ("reward", format!("{:.3}", step.reward)),
+        ("return", format!("{earned:.3}")),
+        ("action", action.join(", ")),
+    ];
+    own.into_iter().map(|(name, text)| (name.to_owned(), text)).chain(info).collect()
 }
 
 fn ending(step: &Step) -> String {

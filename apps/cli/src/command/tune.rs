@@ -9,11 +9,11 @@ use opendr::dataset::{DatasetRef, ExternalDataset};
 use opendr::params::ParamMap;
 use opendr::rl::EvaluationProtocol;
 use opendr::tuning::{StudyRecord, line_from_study, table_from_study};
-use opendr::{Error, FitOptions, Progress, Result, Silent, TuneData, TuneOptions, Tuned};
+use opendr::{Error, FitOptions, Progress, Result, STUDY_JOURNAL, Silent, TuneData, TuneOptions, Tuned};
 
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
-use crate::{dataset_flags, environment_flags, learner_flags, loading, stdout};
+use crate::{curves, dataset_flags, environment_flags, learner_flags, loading, stdout, viewing};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -60,7 +60,7 @@ fn number(name: &'static str, default: &'static str, help: &'static str) -> Arg 
     Arg::new(name).long(name).default_value(default).value_parser(parser).value_name("N").help(help)
 }
 
-fn search_flags() -> [Arg; 10] {
+fn search_flags() -> [Arg; 11] {
     [
         Arg::new("search")
             .long("search")
@@ -89,6 +89,7 @@ fn search_flags() -> [Arg; 10] {
             .value_name("DIR")
             .help("Folder of the study [default: runs/tune-LEARNER-DATE]"),
         Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print a JSON object"),
+        viewing::flag(),
     ]
 }
 
@@ -102,6 +103,8 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         None => FitOptions::default().output_folder(&format!("tune-{}", entry.spec.name))?,
     };
     bar.note(&format!("output: {}", output.display()));
+    let curves = curves::of_study(output.join(STUDY_JOURNAL));
+    let _viewer = viewing::of_curves(entry.spec.class, curves, matches, &bar)?;
     let last_line = Mutex::new(String::new());
     let watch = |study: &StudyRecord, number: usize| {
         if bar.is_live() {

@@ -30,7 +30,7 @@ pub use search::search_space;
 pub use tuned::Tuned;
 
 /// Name of the study in the output folder, a journal that Optuna reads.
-const STUDY: &str = "study.log";
+pub const STUDY_JOURNAL: &str = "study.log";
 /// Name of the folder of trials in the output folder.
 const TRIALS: &str = "trials";
 /// Name of the folder of running trainings in the output folder.
@@ -139,7 +139,7 @@ fn study(entry: &Entry, data: TuneData<'_>, options: &TuneOptions, output: &Path
         }
     };
     let direction = if by_error { Direction::Minimize } else { Direction::Maximize };
-    let study = Study::open(Storage::journal(output.join(STUDY))?, entry.spec.name, &[direction])?
+    let study = Study::open(Storage::journal(output.join(STUDY_JOURNAL))?, entry.spec.name, &[direction])?
         .with_sampler(Tpe::new(options.seed));
     if let TuneData::Inference { .. } = data {
         return Ok(study.with_pruner(NoPruner));

@@ -35,12 +35,12 @@ export function stacked(canvas, rows) {
 
 const short = (value) => (Math.abs(value) >= 1e5 || (value !== 0 && Math.abs(value) < 1e-3) ? value.toExponential(2) : String(+value.toPrecision(4)));
 
-/** Draws [step, value] pairs with the axes' ends. */
-export function curve(canvas, points, colour = COLOURS[0]) {
+/** Draws [step, value] pairs with the axes' ends, as a line or as points. */
+export function curve(canvas, points, colour = COLOURS[0], isScatter = false) {
   const { context, width, height } = prepared(canvas);
   const finite = points.filter(([step, value]) => Number.isFinite(step) && Number.isFinite(value));
   if (finite.length === 0) return;
-  const steps = finite.map(([step]) => step), values = finite.map(([, value]) => value);
+  const steps = finite.map(([step]) => step).sort((a, b) => a - b), values = finite.map(([, value]) => value);
   const [first, last] = [steps[0], steps.at(-1)];
   const [low, high] = [values.reduce((a, b) => Math.min(a, b)), values.reduce((a, b) => Math.max(a, b))];
   const left = 4, bottom = 16, top = 4;
@@ -57,10 +57,12 @@ export function curve(canvas, points, colour = COLOURS[0]) {
   context.fillText(end, width - left - context.measureText(end).width, height - 3);
   context.strokeStyle = context.fillStyle = colour;
   context.lineWidth = 1.5;
-  context.beginPath();
-  finite.forEach(([step, value]) => context.lineTo(x(step), y(value)));
-  context.stroke();
-  if (finite.length < 3) finite.forEach(([step, value]) => context.fillRect(x(step) - 2, y(value) - 2, 4, 4));
+  if (!isScatter) {
+    context.beginPath();
+    finite.forEach(([step, value]) => context.lineTo(x(step), y(value)));
+    context.stroke();
+  }
+  if (isScatter || finite.length < 3) finite.forEach(([step, value]) => context.fillRect(x(step) - 2, y(value) - 2, 4, 4));
 }
 
 /** Draws traces: `bounds` has the minimum and the maximum of each column of each trace. */

@@ -112,9 +112,9 @@ async function follow() {
 async function followCurves() {
   for (;;) {
     try {
-      const curves = await (await get("/api/curves")).json();
+      const { unit, curves } = await (await get("/api/curves")).json();
       reveal("curves");
-      const figures = curves.map(({ tag, points }, at) => {
+      const figures = curves.map(({ name: tag, points, is_scatter }, at) => {
         const figure = by(`curve ${tag}`) ?? document.createElement("figure");
         if (!figure.id) {
           figure.id = `curve ${tag}`;
@@ -124,10 +124,10 @@ async function followCurves() {
         const [name, value] = [document.createElement("span"), document.createElement("span")];
         [name.textContent, value.textContent] = [tag, points.length ? String(+points.at(-1)[1].toPrecision(5)) : ""];
         figure.firstChild.replaceChildren(name, value);
-        curve(figure.lastChild, points, COLOURS[at % COLOURS.length]);
-        return points.at(-1)?.[0] ?? 0;
+        curve(figure.lastChild, points, COLOURS[at % COLOURS.length], is_scatter);
+        return is_scatter ? 0 : points.at(-1)?.[0] ?? 0;
       });
-      by("status").textContent = curves.length ? `step ${Math.max(...figures)}` : "no values yet";
+      by("status").textContent = curves.length ? `${unit} ${Math.max(...figures)}` : "no values yet";
     } catch (error) {
       by("status").textContent = error instanceof TypeError ? "the program has ended" : error.message;
     }

@@ -45,6 +45,7 @@ Examples:
 pub fn grammar() -> Command {
     arguments(Command::new("infer"))
         .about("Run a learner on images, videos, a camera, files of other input types, or recordings")
+        .mut_arg("input", |input| input.required_unless_present(on_rig::RIG))
         .after_help(EXAMPLES)
 }
 
@@ -56,7 +57,6 @@ pub fn arguments(command: Command) -> Command {
         .arg(loading::learner())
         .arg(
             Arg::new("input")
-                .required(true)
                 .num_args(1..)
                 .value_parser(value_parser!(PathBuf))
                 .value_name("INPUT")
@@ -89,15 +89,15 @@ pub fn arguments(command: Command) -> Command {
 }
 
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
-    run_paced(matches, None)
+    run_with(matches, None)
 }
 
 /// Displays items at the speed of their streams, and the last one until Ctrl-C.
 pub fn run_until_interrupt(matches: &ArgMatches) -> Result<Outcome> {
-    run_paced(matches, Some(Pace::default()))
+    run_with(matches, Some(Hold::default()))
 }
 
-fn run_paced(matches: &ArgMatches, pace: Option<Pace>) -> Result<Outcome> {
+fn run_with(matches: &ArgMatches, mut hold: Option<Hold>) -> Result<Outcome> {
     let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
     let entry = loading::entry(spec)?;
     let bar = ProgressBar::new(matches.get_flag("quiet"));
@@ -172,19 +172,26 @@ fn run_paced(matches: &ArgMatches, pace: Option<Pace>) -> Result<Outcome> {
     if frames != Some(1) {
         bar.begin("frames", frames, Unit::Items);
     }
-    let stays = pace.is_some();
-    let result = job.run(&mut processors, items, limit, &mut report, &mut out, &bar, pace);
+    let result = job.run(&mut processors, items, limit, &mut report, &mut out, &bar, hold.as_mut());
     bar.end();
     // Frames that were handed to the writer are finished even after an error.
     for (input, error) in out.finish() {
         report.failure(input.as_deref(), &error)?;
     }
     result?;
-    if stays && !interrupted() {
-        bar.note("the page shows the last item; Ctrl-C ends it");
-        viewing::wait_for_interrupt();
+    if let Some(hold) = hold.filter(|_| !interrupted()) {
+        bar.note("the page displays the last item; Ctrl-C ends it");
+        job.hold(&mut processors, hold.last.as_ref());
     }
     Ok(if report.finish()? == 0 { Outcome::Done } else { Outcome::SomeFailed })
+}
+
+/// State of `opendr view`.
+#[derive(Default)]
+struct Hold {
+    pace: Pace,
+    /// The item on the page, unless it was passed on to an output.
+    last: Option<Item>,
 }
 
 /// A learner with its stream.
@@ -255,7 +262,7 @@ impl Job {
         report: &mut Report<'_>,
         out: &mut Out,
         bar: &ProgressBar,
-        mut pace: Option<Pace>,
+        mut hold: Option<&mut Hold>,
     ) -> Result<()> {
         let classes = learners.classes();
         let mut left = limit;
@@ -270,13 +277,20 @@ impl Job {
                         report.item(&item, outputs, timings)?;
                     }
                     if let Some(viewer) = &self.viewer {
-                        if let Some(pace) = &mut pace {
-                            pace.wait(&item);
+                        if let Some(hold) = &mut hold {
+                            hold.pace.wait(&item);
                         }
                         viewing::show(viewer, &item, &outputs, timings);
                     }
                     let path = item.path().clone();
-                    match out.put(item, outputs, &classes) {
+                    let done = match (&mut hold, &mut *out) {
+                        (Some(hold), Out::Nowhere) => {
+                            hold.last = Some(item);
+                            Ok(())
+                        }
+                        (_, out) => out.put(item, outputs, &classes),
+                    };
+                    match done {
                         // Another item may still be writable.
                         Err(error) if error.kind() == ErrorKind::InvalidInput => {
                             report.failure(Some(&path), &error)?;
@@ -302,14 +316,42 @@ impl Job {
         if begins {
             worker.learner.reset();
         }
-        if let Some(viewer) = &self.viewer {
-            for (name, value) in viewer.changes(&mut worker.last_change) {
-                worker.learner.set(&name, value).unwrap_or_else(|error| viewer.fail(&error));
-            }
-        }
+        self.apply_changes(worker);
         match self.infer_and_dump(worker, &item, begins) {
             Ok((outputs, timings)) => Ok((item, outputs, timings)),
             Err(error) => Err(of_item(&item, error)),
+        }
+    }
+
+    /// Applies the parameters that pages changed. Returns whether there are any.
+    fn apply_changes(&self, worker: &mut Worker) -> bool {
+        let Some(viewer) = &self.viewer else { return false };
+        let changes = viewer.changes(&mut worker.last_change);
+        let is_changed = !changes.is_empty();
+        for (name, value) in changes {
+            worker.learner.set(&name, value).unwrap_or_else(|error| viewer.fail(&error));
+        }
+        is_changed
+    }
+
+    /// Waits until Ctrl-C. A parameter that changes is applied to the last item, unless it belongs to a stream.
+    fn hold(&self, learners: &mut Learners, last: Option<&Item>) {
+        let last = last.filter(|item| !item.is_of_stream());
+        while !interrupted() {
+            viewing::sleep(viewing::POLL);
+            let (Some(viewer), Some(item), Learners::Parallel(workers)) =
+                (&self.viewer, last, &mut *learners)
+            else {
+                continue;
+            };
+            let Some(worker) = workers.first_mut() else { continue };
+            if self.apply_changes(worker) {
+                worker.learner.reset();
+                match self.infer(worker, item, true) {
+                    Ok((outputs, timings)) => viewing::show(viewer, item, &outputs, timings),
+                    Err(error) => viewer.fail(&error),
+                }
+            }
         }
     }
 

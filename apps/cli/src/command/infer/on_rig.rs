@@ -28,10 +28,10 @@ const SEED: &str = "rig-seed";
 /// Width and height of the images of a pan-tilt-zoom camera, in pixels.
 const WINDOW: [usize; 2] = [224, 224];
 
-/// Adds the flags of the rig; with a rig there are no input files.
+/// Adds the flags of the rig, which conflict with input files.
 pub fn add(command: Command) -> Command {
     let flag = |name: &'static str| Arg::new(name).long(name);
-    command.mut_arg("input", |input| input.required(false).required_unless_present(RIG)).args([
+    command.args([
         flag(RIG).value_name("RIG").conflicts_with_all(["input", "view"]).help(
             "Move a camera until the class is certain: in an environment (SphereView-Face-v1), over recorded views (their index, .json) or in a large image",
         ),
