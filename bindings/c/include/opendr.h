@@ -128,6 +128,8 @@ typedef enum opendr_skeleton {
     OPENDR_GRASP2 = 8,
     // Up to 144 keypoints without names, by their index.
     OPENDR_POINTS = 9,
+    // Kinect v1's 20 joints of a person, in the order of UTD-MHAD.
+    OPENDR_KINECT20 = 10,
 } opendr_skeleton;
 
 // An environment; calls from several threads are serialised.
@@ -3016,7 +3018,7 @@ static inline opendr_status opendr_infer_gr_conv_net(const opendr_learner *learn
  *   num_point (an int 2..=1000, default none): Number of joints. None: that of the graph.
  *   num_person (an int 1..=64, default 2): Maximum number of persons, the first ones of a recording; the prediction is the mean over those present.
  *   in_channels (an int 2..=3, default 3): Number of coordinates of a joint: 2 (a third channel of the input holds scores) or 3.
- *   graph_type (a str, one of ntu, kinetics, coco, jhmdb, default ntu): Skeleton: joints and bones.
+ *   graph_type (a str, one of ntu, kinetics, coco, jhmdb, kinect, default ntu): Skeleton: joints and bones.
  *   method_name (a str, one of stgcn, default stgcn): Network architecture.
  *   num_frames (an int 1..=10000, default 300): Number of frames of a clip: the last ones of a longer recording; a shorter one is preceded by its repeated first frame.
  *   channels (a list 1..=4096, default 64,64,64,64,128,128,128,256,256,256): Output channels of each block.
@@ -3057,7 +3059,7 @@ static inline opendr_status opendr_infer_spatio_temporal_gcn(const opendr_learne
  *   num_point (an int 2..=1000, default none): Number of joints. None: that of the graph.
  *   num_person (an int 1..=64, default 2): Maximum number of persons, the first ones of a recording; the prediction is the mean over those present so far.
  *   in_channels (an int 2..=3, default 3): Number of coordinates of a joint: 2 (a third channel of the input holds scores) or 3.
- *   graph_type (a str, one of ntu, kinetics, coco, jhmdb, default ntu): Skeleton: joints and bones.
+ *   graph_type (a str, one of ntu, kinetics, coco, jhmdb, kinect, default ntu): Skeleton: joints and bones.
  *   backbone (a str, one of costgcn, default costgcn): Network architecture.
  *   sequence_len (an int 1..=10000, default 300): Number of frames that a prediction covers.
  *   channels (a list 1..=4096, default 64,64,64,64,128,128,128,256,256,256): Output channels of each block.

@@ -15,7 +15,8 @@ export function prepared(canvas) {
 }
 
 /** Draws values as areas upon each other: `rows` has an array of numbers for each moment. */
-export function stacked(canvas, rows) {
+export function stacked(canvas, moments) {
+  const rows = moments.length === 1 ? [moments[0], moments[0]] : moments;
   const { context, width, height } = prepared(canvas);
   const totals = rows.map((row) => row.reduce((sum, value) => sum + value, 0));
   const most = Math.max(...totals, 1e-9);

@@ -73,7 +73,8 @@ function describe() {
   arrivals.push(now);
   while (arrivals.length > 1 && now - arrivals[0] > 2000) arrivals.shift();
   const rate = arrivals.length > 1 ? ((arrivals.length - 1) * 1000) / (now - arrivals[0]) : 0;
-  by("status").textContent = `item ${head.number} · ${rate.toFixed(1)} per second`;
+  by("status").textContent = rate > 0 ? `item ${head.number} · ${rate.toFixed(1)} per second` : `item ${head.number}`;
+  by("time").hidden = head.stages_ms.length === 0;
   latencies.push(head.stages_ms.map(([, time]) => time));
   if (latencies.length > HISTORY) latencies.shift();
   stacked(by("latency"), latencies);
@@ -217,5 +218,6 @@ if (state.params.length > 0) {
 }
 if (state.has_curves) {
   for (const id of ["item", "predictions", "time", "space", "pause", "overlay", "snapshot", "record"]) by(id).hidden = true;
+  document.body.classList.add("curves");
   followCurves();
 } else follow();
