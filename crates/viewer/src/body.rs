@@ -7,7 +7,7 @@ use opendr_vision::Encoder;
 use opendr_vision::draw::{Style, draw};
 use serde_json::{Map, json};
 
-use crate::feed::Shown;
+use crate::Shown;
 use crate::memory::resident_mb;
 
 /// Quality of images.

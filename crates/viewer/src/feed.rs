@@ -3,26 +3,7 @@
 use std::sync::{Arc, Condvar, Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
-use opendr_engine::Value;
-
-use crate::body;
-
-/// An input with its predictions.
-#[derive(Debug)]
-pub struct Shown {
-    /// File or device of the input.
-    pub name: String,
-    /// Index within its file.
-    pub index: u64,
-    /// Input of the learner.
-    pub input: Value,
-    /// Outputs of the learner, by name.
-    pub outputs: Vec<(String, Value)>,
-    /// Further lines, such as the reward of a step, by name.
-    pub notes: Vec<(String, String)>,
-    /// Durations of the stages, in milliseconds.
-    pub stages: Vec<(&'static str, f64)>,
-}
+use crate::{Shown, body};
 
 /// An item with its number and its bytes for the pages, made once for all of them.
 #[derive(Debug)]

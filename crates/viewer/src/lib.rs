@@ -23,10 +23,11 @@ mod response;
 mod routes;
 mod server;
 mod settings;
+mod shown;
 
 #[cfg(test)]
 mod tests;
 
-pub use feed::Shown;
 pub use options::{Curve, CurveSource, ViewerOptions};
 pub use server::Viewer;
+pub use shown::Shown;

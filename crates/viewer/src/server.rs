@@ -9,13 +9,13 @@ use std::time::Duration;
 use opendr_engine::params::ParamValue;
 use opendr_engine::{Error, ErrorKind, Result, ResultExt};
 
-use crate::ViewerOptions;
 use crate::access::Access;
-use crate::feed::{Feed, Shown};
+use crate::feed::Feed;
 use crate::request::{Failure, Request};
 use crate::response::Response;
 use crate::routes::Shared;
 use crate::settings::Settings;
+use crate::{Shown, ViewerOptions};
 
 /// Maximum number of connections; a browser opens up to six.
 const MAX_CONNECTIONS: usize = 32;
