@@ -17,6 +17,8 @@ pub(super) struct Job {
     pub(super) port: &'static str,
     pub(super) further: Vec<PortFile>,
     pub(super) sequence: bool,
+    /// Maximum number of items.
+    pub(super) limit: u64,
     pub(super) viewer: Option<Viewer>,
 }
 

@@ -139,6 +139,7 @@ fn run_with(matches: &ArgMatches, mut hold: Option<Hold>) -> Result<Outcome> {
         port: port.name,
         further: learner_flags::port_files(entry, matches)?,
         sequence: matches.get_flag("sequence"),
+        limit,
         viewer: None,
     };
     let dump = matches.get_one::<PathBuf>("dump").map(|folder| Dump::create(folder)).transpose()?;
@@ -172,7 +173,7 @@ fn run_with(matches: &ArgMatches, mut hold: Option<Hold>) -> Result<Outcome> {
     if frames != Some(1) {
         bar.begin("frames", frames, Unit::Items);
     }
-    let result = job.run(&mut processors, items, limit, &mut report, &mut out, &bar, hold.as_mut());
+    let result = job.run(&mut processors, items, &mut report, &mut out, &bar, hold.as_mut());
     bar.end();
     // Frames that were handed to the writer are finished even after an error.
     for (input, error) in out.finish() {
@@ -258,14 +259,13 @@ impl Job {
         &self,
         learners: &mut Learners,
         mut inputs: Inputs,
-        limit: u64,
         report: &mut Report<'_>,
         out: &mut Out,
         bar: &ProgressBar,
         mut hold: Option<&mut Hold>,
     ) -> Result<()> {
         let classes = learners.classes();
-        let mut left = limit;
+        let mut left = self.limit;
         let items = std::iter::from_fn(|| {
             left = left.checked_sub(1).filter(|_| !interrupted())?;
             Some(inputs.next()?.and_then(|item| self.with_files(item)))
