@@ -4,13 +4,12 @@ import json
 import os
 import shlex
 import shutil
-import struct
 import subprocess
-import zlib
 from pathlib import Path
 
 import numpy as np
 import pytest
+from png import GREY, write_png
 
 try:
     import tomllib
@@ -55,14 +54,8 @@ def depth(size, folder):
     width, height = map(int, size.split("x"))
     slope = 500 + np.add.outer(np.arange(height) // 4, np.arange(width) // 3)
     rows = np.hstack([np.zeros((height, 1), np.uint8), slope.astype(">u2").view(np.uint8)])
-
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    header = struct.pack(">IIBBBBB", width, height, 16, 0, 0, 0, 0)
     file = folder / f"depth-{size}.png"
-    chunks = chunk(b"IHDR", header), chunk(b"IDAT", zlib.compress(rows.tobytes())), chunk(b"IEND", b"")
-    file.write_bytes(b"\x89PNG\r\n\x1a\n" + b"".join(chunks))
+    write_png(file, (width, height), rows.tobytes(), depth=16, colour=GREY)
     return str(file)
 
 

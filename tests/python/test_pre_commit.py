@@ -4,10 +4,10 @@ import os
 import shutil
 import signal
 import subprocess
-import time
 from pathlib import Path
 
 import pytest
+from patience import wait_until
 
 ROOT = Path(__file__).resolve().parents[2]
 #: Programs that the hook and git use; nothing else is on the path.
@@ -272,13 +272,6 @@ def is_running(process):
     return True
 
 
-def wait_until(condition):
-    deadline = time.monotonic() + 30
-    while not condition():
-        assert time.monotonic() < deadline, "no change within 30 s"
-        time.sleep(0.02)
-
-
 @pytest.mark.parametrize("subcommand", ["fmt", "nextest"])
 def test_ctrl_c_leaves_the_repository_as_it_was(repository, subcommand):
     repository.write("crates/engine/src/pool.rs")
@@ -286,11 +279,11 @@ def test_ctrl_c_leaves_the_repository_as_it_was(repository, subcommand):
     before = repository.git("rev-parse", "HEAD")
     commit = repository.start(FAKE_CARGO_SLEEPS=subcommand)
     process = repository.log.with_name("cargo.log.pid")
-    wait_until(lambda: process.exists() and process.read_text().endswith("\n"))
+    wait_until(lambda: process.exists() and process.read_text().endswith("\n"), 30, "the process")
     os.killpg(commit.pid, signal.SIGINT)
     commit.communicate(timeout=30)
     assert commit.returncode != 0
-    wait_until(lambda: not is_running(int(process.read_text())))
+    wait_until(lambda: not is_running(int(process.read_text())), 30, "its end")
     assert not (repository.folder / ".git/index.lock").exists()
     assert repository.git("rev-parse", "HEAD") == before
     assert repository.git("status", "--porcelain") == "M  crates/engine/src/pool.rs\n"

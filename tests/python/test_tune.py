@@ -2,10 +2,10 @@
 
 import json
 import signal
-import struct
 import subprocess
 import time
-import zlib
+
+from png import write_plain_png
 
 CART = ["tune", "ppo", "--env", "CartPole-v1", "--search", "learning_rate=1e-5..1e-2", "--search", "n_steps=32,64"]
 SHORT = ["--length", "4000", "--evaluations", "4", "--tuning-seeds", "2", "--episodes", "5"]
@@ -56,11 +56,8 @@ def test_a_killed_search_goes_on(opendr, tmp_path):
 
 def picture(path, colour):
     """A PNG of 16x16 pixels of one colour."""
-    rows = (b"\0" + bytes(colour) * 16) * 16
-    chunks = [(b"IHDR", struct.pack(">IIBBBBB", 16, 16, 8, 2, 0, 0, 0)), (b"IDAT", zlib.compress(rows)), (b"IEND", b"")]
-    chunk = lambda name, data: struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + b"".join(chunk(*one) for one in chunks))
+    write_plain_png(path, (16, 16), colour)
 
 
 def test_a_learner_of_data_is_tuned(opendr, tmp_path):

@@ -9,10 +9,11 @@ import subprocess
 import urllib.error
 import urllib.request
 import wave
-import zlib
 
 import pytest
-from browser import Browser, free_port, wait_until
+from browser import Browser
+from patience import PATIENCE, free_port, wait_until
+from png import write_plain_png
 
 
 INTERRUPTED = 130
@@ -37,7 +38,7 @@ class Page:
         self.url = f"http://127.0.0.1:{self.port}/"
 
     def __enter__(self):
-        wait_until(self.is_served, "the page")
+        wait_until(self.is_served, PATIENCE, "the page")
         return self
 
     def __exit__(self, failure, *_):
@@ -63,20 +64,10 @@ class Page:
             return error.code
 
 
-def write_png(path, width, height, rgb):
-    def chunk(name, data):
-        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
-
-    rows = (b"\0" + bytes(rgb) * width) * height
-    head = chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0))
-    body = chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + head + body)
-
-
 @pytest.fixture(scope="module")
 def picture(tmp_path_factory):
     path = tmp_path_factory.mktemp("pictures") / "red.png"
-    write_png(path, 320, 240, (200, 40, 40))
+    write_plain_png(path, (320, 240), (200, 40, 40))
     return path
 
 
@@ -102,7 +93,7 @@ def test_an_image_its_predictions_and_live_parameters(opendr, browser, picture):
             "slider.value = 0.75; slider.dispatchEvent(new Event('input'))"
         )
         changed = "fetch('/api/state').then((state) => state.json()).then((state) => state.params.find((param) => param.name === 'threshold').value)"
-        wait_until(lambda: browser.run(f"return {changed}") == 0.75, "the change of the threshold")
+        wait_until(lambda: browser.run(f"return {changed}") == 0.75, PATIENCE, "the change of the threshold")
         # The image is inferred again with the new threshold.
         browser.wait("document.getElementById('status').textContent.startsWith('item 2')")
         browser.run("document.getElementById('overlay').click()")
@@ -218,7 +209,7 @@ def test_samples_of_an_evaluation(opendr, browser, tmp_path):
     images = [{"id": index, "file_name": f"{index}.png", "width": 640, "height": 480} for index in range(400)]
     boxes = [{"id": index + 1, "image_id": index, "category_id": 1, "bbox": [9, 9, 90, 90], "area": 8100, "iscrowd": 0} for index in range(400)]
     for image in images:
-        write_png(tmp_path / image["file_name"], 640, 480, (90, image["id"] // 2, 40))
+        write_plain_png(tmp_path / image["file_name"], (640, 480), (90, image["id"] // 2, 40))
     truth = {"images": images, "annotations": boxes, "categories": [{"id": 1, "name": "person"}]}
     (tmp_path / "annotations.json").write_text(json.dumps(truth))
     with Page(opendr, "eval", "single_shot_detector", tmp_path, "--resamples", "0", "--quiet") as page:
@@ -230,7 +221,7 @@ def test_samples_of_an_evaluation(opendr, browser, tmp_path):
 
 def test_pages_that_stall_do_not_stop_inference(opendr, tmp_path):
     for index in range(40):
-        write_png(tmp_path / f"{index:02}.png", 640, 480, (index, 90, 90))
+        write_plain_png(tmp_path / f"{index:02}.png", (640, 480), (index, 90, 90))
     with Page(opendr, "infer", "single_shot_detector", tmp_path, "--sequence", "--quiet") as page:
         stalled = [socket.create_connection(("127.0.0.1", page.port)) for _ in range(8)]
         for connection in stalled:

@@ -3,7 +3,6 @@
 import json
 import os
 import signal
-import socket
 import subprocess
 import threading
 import time
@@ -11,6 +10,7 @@ import xmlrpc.client
 from pathlib import Path
 
 import pytest
+from patience import free_port, wait_until
 from programs import example
 
 ROS = Path(os.environ.get("OPENDR_ROS1_BIN", "/usr/bin"))
@@ -26,20 +26,8 @@ def pytest_collection_modifyitems(items):
             item.add_marker(pytest.mark.skip(reason="skipped: no roscore; apt-get install ros-core python3-rospy"))
 
 
-def free_port():
-    with socket.socket() as listener:
-        listener.bind(("127.0.0.1", 0))
-        return listener.getsockname()[1]
-
-
 def until(condition, seconds=30, what="it"):
-    end = time.time() + seconds
-    while time.time() < end:
-        found = condition()
-        if found:
-            return found
-        time.sleep(0.05)
-    raise AssertionError(f"{what} did not come within {seconds} s")
+    return wait_until(condition, seconds, what)
 
 
 class Process:

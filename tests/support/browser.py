@@ -3,12 +3,12 @@
 import base64
 import json
 import shutil
-import socket
 import subprocess
 import tempfile
-import time
 import urllib.error
 import urllib.request
+
+from patience import PATIENCE, free_port, wait_until
 
 SWITCHES = [
     "--headless",
@@ -22,24 +22,6 @@ SWITCHES = [
     "--enable-unsafe-swiftshader",
     "--window-size=1280,760",
 ]
-PATIENCE = 60
-
-
-def free_port():
-    with socket.socket() as found:
-        found.bind(("127.0.0.1", 0))
-        return found.getsockname()[1]
-
-
-def wait_until(condition, what, patience=PATIENCE):
-    """Returns the first true value of `condition`."""
-    end = time.monotonic() + patience
-    while time.monotonic() < end:
-        value = condition()
-        if value:
-            return value
-        time.sleep(0.05)
-    raise AssertionError(f"{what}: not within {patience} s")
 
 
 class Browser:
@@ -52,7 +34,7 @@ class Browser:
             ["chromedriver", f"--port={port}"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
         )
         self.address = f"http://127.0.0.1:{port}"
-        wait_until(self.is_ready, "ChromeDriver")
+        wait_until(self.is_ready, PATIENCE, "ChromeDriver")
         options = {"args": [*SWITCHES, f"--user-data-dir={self.profile}"]}
         capabilities = {"alwaysMatch": {"goog:chromeOptions": options, "goog:loggingPrefs": {"browser": "ALL"}}}
         session = self.post("/session", {"capabilities": capabilities})
@@ -89,7 +71,7 @@ class Browser:
 
     def wait(self, expression):
         """Waits until a JavaScript expression is true and returns its value."""
-        return wait_until(lambda: self.run(f"return {expression}"), expression)
+        return wait_until(lambda: self.run(f"return {expression}"), PATIENCE, expression)
 
     def screenshot(self, path):
         path.write_bytes(base64.b64decode(self.request("GET", "/screenshot")))
