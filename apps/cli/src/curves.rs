@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use opendr::runlog::read_scalars;
-use opendr::tuning::{Direction, Storage, StudyRecord};
+use opendr::tuning::{Storage, StudyRecord};
 use opendr::viewer::{Curve, CurveSource};
 
 /// Returns the curves of a training that logs into `log`.
@@ -28,19 +28,9 @@ pub fn of_study(journal: PathBuf) -> CurveSource {
 
 /// Returns the best value and the values of complete trials over their numbers, and the values over each parameter that is a number.
 fn curves_of_study(study: &StudyRecord) -> Vec<Curve> {
-    let values: Vec<_> = study.complete().filter_map(|trial| Some((trial, trial.value()?))).collect();
-    let mut best = f64::NAN;
-    let best_so_far = values.iter().map(|(trial, value)| {
-        best = match study.direction() {
-            Direction::Minimize => best.min(*value),
-            Direction::Maximize => best.max(*value),
-        };
-        [trial.number as f64, best]
-    });
-    let best_so_far =
-        Curve { name: "best value".to_owned(), points: best_so_far.collect(), is_scatter: false };
+    let best = Curve { name: "best value".to_owned(), points: study.best_so_far(), is_scatter: false };
     let scatter = |name: String, points: Vec<_>| Curve { name, points, is_scatter: true };
-    let of_trials = values.iter().map(|(trial, value)| [trial.number as f64, *value]).collect();
+    let values: Vec<_> = study.complete().filter_map(|trial| Some((trial, trial.value()?))).collect();
     let mut names: Vec<&String> = values.iter().flat_map(|(trial, _)| trial.params.keys()).collect();
     names.sort();
     names.dedup();
@@ -51,7 +41,7 @@ fn curves_of_study(study: &StudyRecord) -> Vec<Curve> {
         });
         scatter(format!("value over {name}"), points.collect())
     });
-    let curves = [best_so_far, scatter("value of each trial".to_owned(), of_trials)].into_iter();
+    let curves = [best, scatter("value of each trial".to_owned(), study.history())].into_iter();
     curves.chain(of_params).filter(|curve| !curve.points.is_empty()).collect()
 }
 
@@ -59,7 +49,7 @@ fn curves_of_study(study: &StudyRecord) -> Vec<Curve> {
 mod tests {
     use std::fs;
 
-    use opendr::tuning::{Distribution, Outcome, SearchSpace, Study};
+    use opendr::tuning::{Direction, Distribution, Outcome, SearchSpace, Study};
 
     use super::*;
 

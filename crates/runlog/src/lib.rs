@@ -41,4 +41,4 @@ pub use checkpoint::Checkpoint;
 pub use checkpoints::Checkpoints;
 pub use figure::svg_from_figure;
 pub use run_log::RunLog;
-pub use scalar_table::read_scalars;
+pub use scalar_table::{has_scalars, read_scalars};

@@ -15,6 +15,11 @@ use crate::file_names::TABLE;
 /// Maximum size of a table that is read.
 const MAX_BYTES: u64 = 1 << 30;
 
+/// Returns whether `folder` has a log's table of scalars.
+pub fn has_scalars(folder: &Path) -> bool {
+    folder.join(TABLE).is_file()
+}
+
 /// Reads the scalars of a log in `folder`, written up to now: `[step, value]` pairs by tag, empty if there is no log.
 ///
 /// # Errors

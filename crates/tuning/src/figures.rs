@@ -3,25 +3,13 @@
 use opendr_metrics::{Bars, Curves, Figure, Line};
 
 use crate::importance::importance_from_study;
-use crate::records::{Direction, StudyRecord};
+use crate::records::StudyRecord;
 
 /// Returns the values of the complete trials by number, as dots, and the best value so far, as a line.
 pub fn history_figure(study: &StudyRecord) -> Figure {
-    let points: Vec<[f64; 2]> = study
-        .complete()
-        .filter_map(|trial| Some([trial.number as f64, *trial.values.first()?]))
-        .filter(|[_, value]| value.is_finite())
-        .collect();
-    let better: fn(f64, f64) -> f64 = match study.direction() {
-        Direction::Minimize => f64::min,
-        Direction::Maximize => f64::max,
-    };
-    let best = points.iter().scan(f64::NAN, |best, [number, value]| {
-        *best = better(*best, *value);
-        Some([*number, *best])
-    });
+    let points = study.history();
     let lines = vec![
-        Line { label: "best so far".to_owned(), points: best.collect() },
+        Line { label: "best so far".to_owned(), points: study.best_so_far() },
         // A point between NaNs is drawn as a dot.
         Line {
             label: "trial".to_owned(),
@@ -50,7 +38,9 @@ pub fn importance_figure(study: &StudyRecord) -> Figure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Budget, Distribution, Outcome, Progress, RandomSearch, SearchSpace, Storage, Study};
+    use crate::{
+        Budget, Direction, Distribution, Outcome, Progress, RandomSearch, SearchSpace, Storage, Study,
+    };
 
     #[test]
     fn the_best_value_never_gets_worse() {

@@ -167,6 +167,25 @@ impl StudyRecord {
         self.complete().min_by(|a, b| loss(a).total_cmp(&loss(b)))
     }
 
+    /// Returns number and first value of each complete trial, where the value is finite.
+    pub fn history(&self) -> Vec<[f64; 2]> {
+        let values = self.complete().filter_map(|trial| Some([trial.number as f64, *trial.values.first()?]));
+        values.filter(|[_, value]| value.is_finite()).collect()
+    }
+
+    /// Returns the best value up to each trial of [`history`](Self::history).
+    pub fn best_so_far(&self) -> Vec<[f64; 2]> {
+        let better: fn(f64, f64) -> f64 = match self.direction() {
+            Direction::Minimize => f64::min,
+            Direction::Maximize => f64::max,
+        };
+        let best = self.history().into_iter().scan(f64::NAN, |best, [number, value]| {
+            *best = better(*best, value);
+            Some([number, *best])
+        });
+        best.collect()
+    }
+
     /// Returns the Pareto front: the complete trials that no other dominates.
     pub fn pareto_front(&self) -> Vec<&TrialRecord> {
         let complete: Vec<_> = self.complete().collect();

@@ -124,12 +124,12 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     options.metric_params = metric_params(options.metric_for(last)?, matches)?;
     let external = dataset_flags::external(matches);
     let viewer = viewing::of_items(last.spec.class, matches, &bar)?;
-    let observer = |sample: PredictedSample<'_>| {
-        if let Some(viewer) = &viewer {
+    let observer = viewer.as_ref().map(|viewer| {
+        |sample: PredictedSample<'_>| {
             let PredictedSample { index, name, input, outputs } = sample;
             viewer.show(viewing::shown(name.to_owned(), index as u64, input, outputs));
         }
-    };
+    });
     let mut job = options.open(last, DatasetRef::External(&external))?;
     let params = learner_flags::params(entry, matches)?;
     let (learner, all_params) = then_flag::describe(spec, &params, matches)?;
@@ -137,7 +137,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let subject = Subject { learner, model, params: all_params };
     let count = loading::copies(matches, Some(job.dataset.len() as u64))?;
     let load = || loading::load(spec, &params, matches, &bar);
-    job.observer = viewer.as_ref().map(|_| &observer as &SampleObserver<'_>);
+    job.observer = observer.as_ref().map(|observer| observer as &SampleObserver<'_>);
     let outcome = if then_flag::is_given(matches) {
         let pipeline = || then_flag::pipeline(entry, load()?.as_ref(), matches, &bar);
         let mut pipelines = loading::load_copies(count, pipeline)?;

@@ -210,8 +210,14 @@ struct Screen {
 }
 
 impl Screen {
-    /// Records an image, and displays it when it is due.
-    fn put(&mut self, name: &str, number: u64, image: Image, notes: Vec<(String, String)>) -> Result<()> {
+    /// Records an image, and displays it with `notes` when it is due.
+    fn put(
+        &mut self,
+        name: &str,
+        number: u64,
+        image: Image,
+        notes: impl FnOnce() -> Vec<(String, String)>,
+    ) -> Result<()> {
         if let Some(film) = &mut self.film {
             film.write(&image)?;
         }
@@ -220,7 +226,7 @@ impl Screen {
             // After a slow step the next images are not hurried.
             self.due = self.due.max(Instant::now()) + self.frame;
             viewer.show(Shown {
-                notes,
+                notes: notes(),
                 ..viewing::shown(name.to_owned(), number, (&image).into(), &Outputs::default())
             });
         }
@@ -260,13 +266,13 @@ fn episode(
     let (mut earned, mut length) = (0.0, 0u64);
     let no_render = || Error::unsupported(format!("{} does not render", spec.id));
     let name = format!("{} seed {seed}", spec.id);
-    screen.put(&name, 0, environment.render()?.ok_or_else(no_render)?, Vec::new())?;
+    screen.put(&name, 0, environment.render()?.ok_or_else(no_render)?, Vec::new)?;
     loop {
         acting.act(&observation, &mut action)?;
         let step = environment.step(&action, &mut observation)?;
         (earned, length) = (earned + step.reward, length + 1);
         let image = environment.render()?.ok_or_else(no_render)?;
-        screen.put(&name, length, image, notes(&step, earned, &action))?;
+        screen.put(&name, length, image, || notes(&step, earned, &action))?;
         if step.is_over() || bar.stopped() {
             return Ok(format!("seed {seed}: return {earned:.2} in {length} steps, {}", ending(&step)));
         }

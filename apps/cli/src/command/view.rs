@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use clap::{ArgMatches, Command};
+use opendr::runlog::has_scalars;
 use opendr::viewer::CurveSource;
 use opendr::{Error, Result, STUDY_JOURNAL};
 
@@ -57,5 +58,5 @@ pub fn curves_of(spec: &str) -> Option<CurveSource> {
         return Some(curves::of_study(journal));
     }
     let mut logs = [folder.join(LOGS), folder.to_owned()].into_iter();
-    logs.find(|folder| folder.join("log.csv").is_file()).map(curves::of_training)
+    logs.find(|folder| has_scalars(folder)).map(curves::of_training)
 }

@@ -14,7 +14,7 @@ export function prepared(canvas) {
   return { context, width, height };
 }
 
-/** Draws values as areas upon each other: `rows` has an array of numbers for each moment. */
+/** Draws values as areas upon each other: `moments` has an array of numbers for each moment; a single one fills the width. */
 export function stacked(canvas, moments) {
   const rows = moments.length === 1 ? [moments[0], moments[0]] : moments;
   const { context, width, height } = prepared(canvas);

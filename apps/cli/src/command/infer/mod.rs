@@ -336,15 +336,16 @@ impl Job {
 
     /// Waits until Ctrl-C. A parameter that changes is applied to the last item, unless it belongs to a stream.
     fn hold(&self, learners: &mut Learners, last: Option<&Item>) {
+        let worker = match learners {
+            Learners::Parallel(workers) => workers.first_mut(),
+            Learners::Chain(..) => None,
+        };
         let last = last.filter(|item| !item.is_of_stream());
+        let (Some(viewer), Some(item), Some(worker)) = (&self.viewer, last, worker) else {
+            return viewing::wait_for_interrupt();
+        };
         while !interrupted() {
             viewing::sleep(viewing::POLL);
-            let (Some(viewer), Some(item), Learners::Parallel(workers)) =
-                (&self.viewer, last, &mut *learners)
-            else {
-                continue;
-            };
-            let Some(worker) = workers.first_mut() else { continue };
             if self.apply_changes(worker) {
                 worker.learner.reset();
                 match self.infer(worker, item, true) {
