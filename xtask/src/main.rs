@@ -13,6 +13,7 @@ mod install_c;
 mod junit;
 mod layers;
 mod lexer;
+mod models;
 mod pages;
 mod parity;
 mod passages;

@@ -1,10 +1,11 @@
-//! The generated parts of README.md and DESIGN.md: the table of the crates and the diagram of the layers.
+//! The generated parts of README.md, DESIGN.md and docs/models.md: the tables of the crates and the models, and the diagram of the layers.
 
 use std::collections::BTreeSet;
 use std::fs;
 
 use crate::inputs;
 use crate::layers::Layers;
+use crate::models::Models;
 use crate::shell::{Result, root};
 use crate::workspace::{Package, packages};
 
@@ -21,18 +22,27 @@ pub fn write() -> Result<()> {
 
 /// Returns whether a file decides what the generated parts contain.
 pub fn is_input(file: &str) -> bool {
-    ["Cargo.toml", "src/lib.rs", "src/main.rs"].iter().any(|end| file.ends_with(end))
+    let is_card = file.starts_with("models/") && file.ends_with(".toml");
+    is_card || ["Cargo.toml", "src/lib.rs", "src/main.rs"].iter().any(|end| file.ends_with(end))
 }
 
 /// Returns the pages with their generated parts.
-fn pages() -> Result<[(&'static str, String); 2]> {
+fn pages() -> Result<[(&'static str, String); 3]> {
     let (packages, layers) = (packages()?, Layers::read()?);
     let packages = ordered(&packages, &layers);
-    let with = |file, part: &str, text: &str| {
-        let page = replaced(&inputs::text(file)?, part, text).map_err(|error| format!("{file}: {error}"))?;
+    let models = Models::read()?;
+    let with = |file: &'static str, parts: &[(&str, String)]| {
+        let mut page = inputs::text(file)?;
+        for (part, text) in parts {
+            page = replaced(&page, part, text).map_err(|error| format!("{file}: {error}"))?;
+        }
         Ok::<_, String>((file, page))
     };
-    Ok([with("README.md", "crates", &table(&packages)?)?, with("DESIGN.md", "layers", &diagram(&packages))?])
+    Ok([
+        with("README.md", &[("models", models.overview()), ("crates", table(&packages)?)])?,
+        with("DESIGN.md", &[("layers", diagram(&packages))])?,
+        with("docs/models.md", &[("models", models.tables())])?,
+    ])
 }
 
 /// Returns the crates in the order of the layers, each with its layer.

@@ -125,6 +125,7 @@ pub fn run(name: &str, is_on_gpu: bool) -> Result<()> {
     let report: Value =
         serde_json::from_str(&output(&mut eval)?).map_err(|error| format!("report: {error}"))?;
     let (metrics, value) = metrics_of(&report, &recipe.evaluation)?;
+    let headline = headline_of(&report, &recipe.evaluation);
     println!("{container}: {metrics}");
     let Evaluation { metric, expected, within, .. } = &recipe.evaluation;
     if (value - expected).abs() > *within {
@@ -135,7 +136,8 @@ pub fn run(name: &str, is_on_gpu: bool) -> Result<()> {
         fs::read(Path::new(&container).join(NETWORK)).map_err(|error| format!("{container}: {error}"))?;
     fs::write(&weights, &bytes).map_err(|error| format!("{}: {error}", weights.display()))?;
     edited_card(&recipe.model, |card, variant| {
-        let card = with_line(card, variant, "metrics.", &metrics)?;
+        let card = with_line(card, variant, &format!("metrics.{} = ", recipe.evaluation.data), &metrics)?;
+        let card = with_line(&card, variant, "headline = ", &headline)?;
         with_line(&card, variant, "files = ", &files_of(&bytes))
     })
 }
@@ -186,6 +188,19 @@ fn metrics_of(report: &Value, evaluation: &Evaluation) -> Result<(String, f64)> 
     Ok((format!("metrics.{data} = {{ {metric} = {value:.4}, {others}samples = {samples} }}"), value))
 }
 
+/// Returns the card's line of the headline: the main metric, with the report's confidence interval if it is that of this metric.
+fn headline_of(report: &Value, evaluation: &Evaluation) -> String {
+    let Evaluation { data, metric, .. } = evaluation;
+    let bound = |name: &str| report["interval"][name].as_f64();
+    let interval = match (bound("low"), bound("high")) {
+        (Some(low), Some(high)) if report["headline"] == Value::from(metric.as_str()) => {
+            format!(", interval = [{low:.4}, {high:.4}]")
+        }
+        _ => String::new(),
+    };
+    format!("headline = {{ data = {data:?}, metric = {metric:?}{interval} }}")
+}
+
 #[cfg(test)]
 mod tests {
     use serde_json::json;
@@ -226,6 +241,12 @@ mod tests {
         let (line, value) = metrics_of(&report, &evaluation).unwrap();
         assert_eq!(line, "metrics.streets = { miou = 0.5123, pixel_accuracy = 0.9000, samples = 7 }");
         assert_eq!(value, 0.51234);
+        let headline = "headline = { data = \"streets\", metric = \"miou\" }";
+        assert_eq!(headline_of(&report, &evaluation), headline);
+        report["headline"] = json!("miou");
+        report["interval"] = json!({ "low": 0.25, "high": 0.75 });
+        let with_interval = headline.replace(" }", ", interval = [0.2500, 0.7500] }");
+        assert_eq!(headline_of(&report, &evaluation), with_interval);
         report["complete"] = json!(false);
         assert!(metrics_of(&report, &evaluation).is_err());
     }

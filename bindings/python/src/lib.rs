@@ -94,6 +94,7 @@ fn _opendr(module: &Bound<'_, PyModule>) -> PyResult<()> {
         wrap_pyfunction!(zoo::download, module)?,
         wrap_pyfunction!(zoo::sample, module)?,
         wrap_pyfunction!(zoo::models, module)?,
+        wrap_pyfunction!(zoo::list_models, module)?,
         wrap_pyfunction!(zoo::runtime, module)?,
     ] {
         module.add_function(function)?;

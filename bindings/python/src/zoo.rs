@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use opendr::zoo::{Zoo, ZooOptions};
-use opendr::{Device, Result, inference};
+use opendr::zoo::{ModelFilter, Zoo, ZooOptions};
+use opendr::{Device, Error, Result, inference};
 use pyo3::prelude::*;
 
 use crate::bar::PythonBar;
@@ -47,6 +47,29 @@ pub fn models(py: Python<'_>, name: &str) -> PyResult<Vec<String>> {
     let mut items: Vec<_> = zoo.items().filter(|item| item.card.learner == name).collect();
     items.sort_by_key(|item| !item.variant.default);
     Ok(items.iter().map(|item| item.variant.name.clone()).collect())
+}
+
+/// Returns the models of the zoo as a JSON array.
+#[pyfunction]
+#[pyo3(signature = (task=None, grade=None, commercial=false, cached=false))]
+pub fn list_models(
+    py: Python<'_>,
+    task: Option<&str>,
+    grade: Option<&str>,
+    commercial: bool,
+    cached: bool,
+) -> PyResult<String> {
+    let list = || -> Result<String> {
+        let filter = ModelFilter {
+            task: task.map(str::parse).transpose()?,
+            grade: grade.map(str::parse).transpose()?,
+            commercial,
+            cached,
+        };
+        serde_json::to_string(&opendr::models(&open()?, &filter))
+            .map_err(|error| Error::internal("the models cannot be written as JSON").with_source(error))
+    };
+    list().to_python(py)
 }
 
 /// Returns a line that describes the runtime of networks on `device`.

@@ -26,6 +26,20 @@ ENTRIES = [entry for entry in _opendr.entries() if entry["name"] in opendr.learn
 NATIVE = [entry for entry in ENTRIES if hasattr(opendr.learners()[entry["name"]], "_entry")]
 
 
+def test_the_models_are_listed_with_grade_and_accuracy():
+    listed = {model["model"]: model for model in opendr.list_models()}
+    yolox = listed["yolox/nano"]
+    assert (yolox["grade"], yolox["default"], yolox["task"]) == ("real", True, "object_detection_2d")
+    low, high = yolox["accuracy"]["interval"]
+    assert low < yolox["accuracy"]["value"] < high
+    assert listed["sort/default"]["grade"] is None
+    faces = opendr.list_models("face_detection", grade="real", commercial=True)
+    assert faces and all(face["task"] == "face_detection" and face["licence"]["commercial"] for face in faces)
+    assert {model["grade"] for model in opendr.list_models(grade="transfer")} == {"real", "transfer"}
+    with pytest.raises(ValueError, match="the grades are real"):
+        opendr.list_models(grade="good")
+
+
 @pytest.mark.parametrize("entry", NATIVE, ids=lambda entry: entry["name"])
 def test_class(entry):
     cls = opendr.learners()[entry["name"]]

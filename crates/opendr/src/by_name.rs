@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use opendr_engine::learner::AnyLearner;
 use opendr_engine::params::ParamMap;
 use opendr_engine::{Device, Progress, Result, Silent};
-use opendr_zoo::{Zoo, ZooOptions};
+use opendr_zoo::{ModelFilter, ModelSummary, Zoo, ZooOptions};
 
 use crate::registry;
 
@@ -41,6 +41,16 @@ pub fn learner_with(
 /// `NotFound` for an unknown name, else the error of the download.
 pub fn download(spec: &str) -> Result<PathBuf> {
     zoo()?.get(spec, &Silent)
+}
+
+/// Returns the models of the zoo that pass the filter and whose learners this build contains.
+pub fn models<'a>(zoo: &'a Zoo, filter: &ModelFilter) -> Vec<ModelSummary<'a>> {
+    let mut models = zoo.models(filter);
+    models.retain(|model| {
+        let learner = model.model.split('/').next().unwrap_or_default();
+        registry().entries().iter().any(|entry| entry.spec.name == learner)
+    });
+    models
 }
 
 /// Returns the zoo with the options of the environment.

@@ -57,7 +57,7 @@ mod smaller;
 pub mod tiling;
 mod tune;
 
-pub use by_name::{download, learner, learner_with};
+pub use by_name::{download, learner, learner_with, models};
 pub use export::{export, network};
 pub use fit::{
     FitData, FitEnvironments, FitOptions, Fitted, check_fit, fit, fit_active, fit_policy, teacher,

@@ -1,11 +1,13 @@
 //! Model cards: the models of a learner, their licences and their sources.
 
 use std::collections::BTreeMap;
+use std::fmt;
+use std::str::FromStr;
 
 use opendr_engine::model::{Licence, Sha256};
 use opendr_engine::params::ParamMap;
 use opendr_engine::{Error, Result, Task};
-use serde::{Deserialize, Deserializer};
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value};
 
 use crate::source::Source;
@@ -73,9 +75,15 @@ pub struct Variant {
     pub inputs: Map<String, Value>,
     /// Terms of use.
     pub licence: Licence,
+    /// Data that the weights were trained and measured on; `None` for an algorithm without weights.
+    #[serde(default)]
+    pub grade: Option<Grade>,
     /// Accuracy on named data.
     #[serde(default)]
     pub metrics: Map<String, Value>,
+    /// The one of `metrics` to compare models by.
+    #[serde(default)]
+    pub headline: Option<Headline>,
     /// Speed and memory measured by `opendr bench`.
     #[serde(default)]
     pub speed: Option<Speed>,
@@ -91,6 +99,92 @@ pub struct Variant {
     /// Sources of the files, in the order of use; empty without files.
     #[serde(default)]
     pub sources: Vec<Source>,
+}
+
+/// Data that weights were trained and measured on; a later one is better.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Grade {
+    /// Not measured on real data: learnt in simulation or from drawings.
+    Demonstration,
+    /// Measured on real data, trained on others.
+    Transfer,
+    /// Trained and measured on real data.
+    Real,
+}
+
+impl Grade {
+    /// All grades, the best first.
+    pub const ALL: [Self; 3] = [Self::Real, Self::Transfer, Self::Demonstration];
+
+    /// Returns its name in a card.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Demonstration => "demonstration",
+            Self::Transfer => "transfer",
+            Self::Real => "real",
+        }
+    }
+}
+
+impl FromStr for Grade {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self> {
+        Self::ALL.into_iter().find(|grade| grade.name() == name).ok_or_else(|| {
+            let names = Self::ALL.map(Self::name).join(", ");
+            Error::invalid_input(format!("unknown grade {name:?}; the grades are {names}"))
+        })
+    }
+}
+
+/// Which of a variant's metrics models are compared by, and its confidence interval.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct Headline {
+    /// Data set: a key of the variant's metrics.
+    pub data: String,
+    /// Metric: a key of the data set's numbers.
+    pub metric: String,
+    /// Lower and upper bound of the 95 % confidence interval: `opendr eval`'s bootstrap, or Wilson's for a share.
+    #[serde(default)]
+    pub interval: Option<(f64, f64)>,
+    /// Key of the number of samples among the data set's numbers.
+    #[serde(default = "samples")]
+    pub of: String,
+}
+
+/// The accuracy of a variant: the number that its headline names.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Accuracy<'a> {
+    /// Data set.
+    pub data: &'a str,
+    /// Metric.
+    pub metric: &'a str,
+    /// Value of the metric.
+    pub value: f64,
+    /// Lower and upper bound of the 95 % confidence interval, if known.
+    pub interval: Option<(f64, f64)>,
+    /// Number of samples, if known.
+    pub count: Option<u64>,
+    /// What was counted: `"samples"`, `"faces"`.
+    pub of: &'a str,
+}
+
+impl fmt::Display for Accuracy<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", self.value, self.metric)?;
+        if let Some((low, high)) = self.interval {
+            write!(f, " ({low} to {high})")?;
+        }
+        match self.count {
+            Some(count) => write!(f, ", {count} {} of {}", self.of, self.data),
+            None => write!(f, ", {}", self.data),
+        }
+    }
 }
 
 /// Speed and memory, as `opendr bench` measured them.
@@ -210,6 +304,10 @@ fn one_or_several<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Impo
     })
 }
 
+fn samples() -> String {
+    "samples".to_owned()
+}
+
 fn model_onnx() -> String {
     "model.onnx".to_owned()
 }
@@ -243,5 +341,19 @@ impl Variant {
     /// Returns the total size of its files in bytes; a package that contains them may be larger.
     pub fn size(&self) -> u64 {
         self.files.iter().map(|file| file.size).sum()
+    }
+
+    /// Returns the accuracy that the headline names; `None` without one.
+    pub fn accuracy(&self) -> Option<Accuracy<'_>> {
+        let Headline { data, metric, interval, of } = self.headline.as_ref()?;
+        let numbers = self.metrics.get(data)?;
+        let value = numbers.get(metric)?.as_f64()?;
+        let count = numbers.get(of).and_then(Value::as_u64);
+        Some(Accuracy { data, metric, value, interval: *interval, count, of })
+    }
+
+    /// Returns whether it consists of weights, its own or those of its parts.
+    pub fn has_weights(&self) -> bool {
+        !self.files.is_empty() || !self.parts.is_empty()
     }
 }

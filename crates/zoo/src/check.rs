@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use opendr_engine::model::member_path;
 use opendr_engine::{Error, Result, ResultExt};
 
-use crate::card::{Card, Import, ItemKind, Variant};
+use crate::card::{Card, Grade, Headline, Import, ItemKind, Variant};
 use crate::embedded::classes;
 use crate::source::{FilePlaces, Package, Source};
 
@@ -68,6 +68,7 @@ fn check_variant(kind: ItemKind, variant: &Variant) -> Result<()> {
         ensure(classes(list).is_some(), || format!("models/classes/{list}.txt does not exist"))?;
     }
     check_imports(variant)?;
+    check_accuracy(variant)?;
     match kind {
         ItemKind::Sample => {
             ensure(variant.files.len() == 1, || "a sample must have exactly one file".into())?
@@ -85,6 +86,24 @@ fn check_variant(kind: ItemKind, variant: &Variant) -> Result<()> {
         ensure(complete, || "the source must name a place for each file and for no other".into())
             .and_then(|()| check_source(source))
             .context(|| source.to_string())
+    })
+}
+
+fn check_accuracy(variant: &Variant) -> Result<()> {
+    if let Some(grade) = variant.grade {
+        ensure(variant.has_weights(), || "a grade is for weights: remove it".into())?;
+        ensure(grade == Grade::Demonstration || variant.headline.is_some(), || {
+            format!("the grade {} needs a headline: the metric and the data it was measured on", grade.name())
+        })?;
+    }
+    let Some(Headline { data, metric, of, .. }) = &variant.headline else { return Ok(()) };
+    let accuracy = variant.accuracy().ok_or_else(|| {
+        Error::format(format!("the headline names {metric:?} of {data:?}, which metrics does not have"))
+    })?;
+    ensure(of == "samples" || accuracy.count.is_some(), || format!("metrics.{data} has no number {of:?}"))?;
+    let Some((low, high)) = accuracy.interval else { return Ok(()) };
+    ensure((low..=high).contains(&accuracy.value), || {
+        format!("the interval {low} to {high} does not contain {}", accuracy.value)
     })
 }
 

@@ -43,10 +43,11 @@ mod repository;
 mod source;
 mod source_errors;
 mod stop;
+mod summary;
 mod work_folder;
 mod zoo;
 
-pub use card::{Card, CardFile, Import, ItemKind, Speed, Variant};
+pub use card::{Accuracy, Card, CardFile, Grade, Headline, Import, ItemKind, Speed, Variant};
 pub use embedded::embedded_cards;
 pub use import_files::import_files;
 pub use item::Item;
@@ -54,6 +55,7 @@ pub use onnx_runtime::{InstalledRuntime, install_onnx_runtime};
 pub use opendr_import::ImportOptions;
 pub use options::ZooOptions;
 pub use source::{FilePlaces, Package, Source};
+pub use summary::{ModelFilter, ModelSummary};
 pub use zoo::Zoo;
 
 use stop::stopped;

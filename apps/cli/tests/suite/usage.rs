@@ -62,6 +62,14 @@ fn models_are_listed_and_filtered() {
     let task = all[0]["task"].as_str().unwrap();
     let of_task = models(&place, &["--task", task]);
     assert!(!of_task.is_empty() && of_task.iter().all(|row| row["task"] == task));
+    let real = models(&place, &["--grade", "real"]);
+    assert!(real.iter().all(|row| row["grade"] == "real" && row["accuracy"]["value"].is_number()));
+    assert!(real.iter().any(|row| row["accuracy"]["interval"][0].is_number()));
+    let transfer = models(&place, &["--grade", "transfer"]);
+    assert!(
+        real.len() < transfer.len() && transfer.len() < models(&place, &["--grade", "demonstration"]).len()
+    );
+    place.run(["models", "--grade", "perfect"]).ends_with(2);
     let unknown = place.run(["models", "--task", "nonsense"]).ends_with(13);
     assert!(unknown.stderr.contains(task), "{}", unknown.stderr);
 }

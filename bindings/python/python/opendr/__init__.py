@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     )
     from opendr._opendr import __version__
     from opendr._pipeline import Pipeline
-    from opendr._registered import check_learner, learner, learners, register
+    from opendr._registered import check_learner, learner, learners, list_models, register
     from opendr._source import Source
 
 __all__ = [
@@ -54,6 +54,7 @@ __all__ = [
     "check_learner",
     "learner",
     "learners",
+    "list_models",
     "register",
 ]
 
@@ -65,7 +66,7 @@ _HOMES = {
     "Pipeline": "opendr._pipeline",
     "Source": "opendr._source",
     "__version__": "opendr._opendr",
-    **dict.fromkeys(("check_learner", "learner", "learners", "register"), "opendr._registered"),
+    **dict.fromkeys(("check_learner", "learner", "learners", "list_models", "register"), "opendr._registered"),
 }
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import types
-from typing import Any, TypeVar
+from typing import Any, Optional, TypeVar
 
 from opendr import _opendr
 from opendr._errors import NotFound
@@ -81,6 +81,30 @@ def learner(spec: str, verbose: bool = True, **arguments: Any) -> Any:
     return created
 
 
+def list_models(
+    task: Optional[str] = None, *, grade: Optional[str] = None, commercial: bool = False, cached: bool = False
+) -> list[dict[str, Any]]:
+    """Returns the pretrained models, one dictionary each: a table for ``pandas.DataFrame``.
+
+    Keys are those of ``opendr models --json`` (docs/command-line.md): ``model``, ``task``, ``grade``, ``accuracy``, ``bytes``,
+    ``licence``, ``fps`` and others. ``opendr.learner(model["model"])`` loads one.
+
+    Args:
+        task: Only models for this task, such as ``"object_detection_2d"``.
+        grade: Only models of this grade or a better one: ``"real"`` (trained and measured on real data), ``"transfer"`` (measured on
+            real data, trained on others) or ``"demonstration"``.
+        commercial: Whether to leave out models whose licences do not allow commercial use, or do not say so.
+        cached: Whether to list only models on this machine.
+
+    Raises:
+        ValueError: The task or the grade does not exist.
+    """
+    import json
+
+    listed: list[dict[str, Any]] = json.loads(_opendr.list_models(task, grade, commercial, cached))
+    return listed
+
+
 def register(cls: T) -> T:
     """Adds a learner written in Python to the registry; usable as a decorator.
 
@@ -127,4 +151,4 @@ def check_learner(name: str, model: str, scratch: str, calls: list[dict[str, Any
     _opendr.check_learner(name, model, scratch, calls)
 
 
-__all__ = ["Learner", "check_learner", "learner", "learners", "register", "register_installed", "task_modules"]
+__all__ = ["Learner", "check_learner", "learner", "learners", "list_models", "register", "register_installed", "task_modules"]

@@ -2,7 +2,7 @@
 
 use crate::place::{Place, card};
 use opendr_engine::{ErrorKind, Model, Silent, Task};
-use opendr_zoo::{Card, ItemKind, Source, Zoo, embedded_cards};
+use opendr_zoo::{Card, Grade, ItemKind, Source, Zoo, embedded_cards};
 
 const URL: &str =
     "[[variants.sources]]\nkind = \"url\"\nfiles = { \"model.onnx\" = \"https://example.org/a\" }\n";
@@ -28,6 +28,48 @@ fn built_in_cards_are_valid_and_named_after_their_learner() {
                 Zoo::with_cards(Place::new().options(), cards.clone()).find(part).unwrap();
             }
         }
+    }
+}
+
+/// Weights state what they were trained and measured on, and no default is worse than another variant.
+#[test]
+fn weights_have_a_grade_and_defaults_the_best() {
+    for card in embedded_cards().unwrap().iter().filter(|card| card.kind == ItemKind::Model) {
+        for variant in &card.variants {
+            assert_eq!(variant.grade.is_some(), variant.has_weights(), "{}/{}", card.learner, variant.name);
+            let default = card.variant(None).unwrap();
+            assert!(default.grade >= variant.grade, "{}: {} is better", card.learner, variant.name);
+            assert!(!variant.demo || variant.grade == Some(Grade::Real), "{}/{}", card.learner, variant.name);
+        }
+    }
+}
+
+#[test]
+fn the_headline_is_a_measured_number() {
+    let with = |lines: &str| {
+        let text = card(b"x", NPM).replace("default = true\n", &format!("default = true\n{lines}"));
+        Card::from_toml(&text).map(|card| card.variants[0].clone())
+    };
+    let metrics = "metrics.faces = { recall = 0.9, faces = 10 }\n";
+    let variant = with(&format!(
+        "grade = \"transfer\"\n{metrics}headline = {{ data = \"faces\", metric = \"recall\", interval = [0.6, 0.98], of = \"faces\" }}\n"
+    ))
+    .unwrap();
+    assert_eq!(variant.grade, Some(Grade::Transfer));
+    let accuracy = variant.accuracy().unwrap();
+    assert_eq!((accuracy.value, accuracy.count), (0.9, Some(10)));
+    assert_eq!(accuracy.to_string(), "0.9 recall (0.6 to 0.98), 10 faces of faces");
+    assert!(Grade::Real > Grade::Transfer && Grade::Transfer > Grade::Demonstration);
+    for fault in [
+        "grade = \"real\"\n".to_owned(),
+        "grade = \"excellent\"\n".to_owned(),
+        "headline = { data = \"faces\", metric = \"recall\" }\n".to_owned(),
+        format!("{metrics}headline = {{ data = \"faces\", metric = \"precision\" }}\n"),
+        format!("{metrics}headline = {{ data = \"faces\", metric = \"recall\", of = \"persons\" }}\n"),
+        format!("{metrics}headline = {{ data = \"faces\", metric = \"recall\", interval = [0.91, 1.0] }}\n"),
+        format!("{metrics}headline = {{ data = \"faces\", metric = \"recall\", interval = [1.0, 0.1] }}\n"),
+    ] {
+        assert!(with(&fault).is_err(), "{fault}");
     }
 }
 
