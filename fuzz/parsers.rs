@@ -26,6 +26,7 @@ pub const PARSERS: [(&str, Parser); 27] = [
     ("coco_json", coco_json),
     ("voc_xml", voc_xml),
     ("yolo_text", yolo_text),
+    ("icdar_text", icdar_text),
     ("wav", wav),
     ("npy", npy),
     ("pickle", pickle),
@@ -141,6 +142,10 @@ fn coco_json(bytes: &[u8]) {
 
 fn voc_xml(bytes: &[u8]) {
     opendr_datasets::fuzzing::voc_xml(&String::from_utf8_lossy(bytes));
+}
+
+fn icdar_text(bytes: &[u8]) {
+    opendr_datasets::fuzzing::icdar_text(&String::from_utf8_lossy(bytes));
 }
 
 fn yolo_text(bytes: &[u8]) {

@@ -26,6 +26,8 @@ from opendr.engine.target import (
     PoseList,
     RlTarget,
     SpeechCommand,
+    TextRegion,
+    TextRegionList,
     Target,
     TrackingAnnotation,
     TrackingAnnotation3D,
@@ -62,6 +64,9 @@ def pose(**more):
     return Pose(points, 0.75, **more)
 
 
+CORNERS = [[1, 2], [11, 2.5], [11, 8], [1, 7.5]]
+
+
 def every_target():
     coco = CocoBoundingBox(1, 1, 2, 3, 4, [[1, 2, 4, 2, 4, 6]], 6, 1, 0.5, class_name="cat", landmarks=[[1, 2]])
     return [
@@ -83,6 +88,8 @@ def every_target():
         PoseList([pose(), Pose([[1.5, 2.5]] * 17, 0.5, keypoint_confidences=[0.5] * 17)]),
         Heatmap(np.array([[0, 1], [1, 0]], np.uint32), {0: "road", 1: "car"}),
         Heatmap(np.array([0.5, 0.25], np.float32)),
+        TextRegion("EXIT", CORNERS, 0.75),
+        TextRegionList([TextRegion("EXIT", CORNERS, 0.75), TextRegion("###", CORNERS)]),
         SpeechCommand("stop", 0.75, (0.5, 1.25)),
         SpeechCommand(3),
         RlTarget([0.5, -1.0]),

@@ -29,6 +29,15 @@ pub fn yolo_text(text: &str) {
     }
 }
 
+/// Parses an ICDAR annotation file.
+pub fn icdar_text(text: &str) {
+    for line in text.lines() {
+        if let Ok(region) = crate::icdar::region_from_line(line) {
+            assert!(region.corners.iter().flatten().all(|number| number.is_finite()));
+        }
+    }
+}
+
 /// Parses a WAVE file.
 pub fn wav(bytes: &[u8]) {
     if let Ok(audio) = crate::audio_from_wav(bytes) {
@@ -91,6 +100,7 @@ mod tests {
             "coco_json",
             "voc_xml",
             "yolo_text",
+            "icdar_text",
             "wav",
             "npy",
             "pickle",
@@ -108,6 +118,7 @@ mod tests {
                     "coco_json" => coco_json(&bytes),
                     "voc_xml" => voc_xml(&text),
                     "yolo_text" => yolo_text(&text),
+                    "icdar_text" => icdar_text(&text),
                     "wav" => wav(&bytes),
                     "npy" => npy(&bytes),
                     "pickle" => pickle(&bytes),

@@ -41,6 +41,7 @@ mod from_above;
 #[doc(hidden)]
 pub mod fuzzing;
 mod hands;
+mod icdar;
 mod imagenet;
 mod kinetics;
 mod kitti;
@@ -79,6 +80,7 @@ pub use coco::{Coco, CocoInfrared, CocoPanoptic, coco_results};
 pub use contact_sheet::{contact_sheet, draw_sample};
 pub use format::{Format, OpenOptions, WriteOptions};
 pub use hands::Hands;
+pub use icdar::Icdar;
 pub use imagenet::ImageNet;
 pub use kinetics::Kinetics;
 pub use kitti::{

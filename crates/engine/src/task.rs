@@ -75,6 +75,8 @@ tasks! {
     GraspDetection = "grasp_detection";
     /// Classification of images from compressed measurements.
     CompressiveLearning = "compressive_learning";
+    /// Detection and recognition of text in an image.
+    TextRecognition = "text_recognition";
     /// Keypoints of persons in an image.
     PoseEstimation = "pose_estimation";
     /// Keypoints of hands in an image.

@@ -11,7 +11,8 @@ use crate::data::{
 };
 use crate::target::{
     Action, BaseTranscription, BoundingBox3DList, BoundingBoxList, Category, Heatmap, PoseList, RlTarget,
-    SpeechCommand, TrackingAnnotation3DList, TrackingAnnotationList, VoskTranscription, WhisperTranscription,
+    SpeechCommand, TextRegionList, TrackingAnnotation3DList, TrackingAnnotationList, VoskTranscription,
+    WhisperTranscription,
 };
 use crate::{Error, Header, Result};
 
@@ -218,6 +219,7 @@ values! {
         PoseList = "poses",
         Category = "category",
         Heatmap = "heatmap",
+        TextRegionList = "texts",
         SpeechCommand = "command",
         BaseTranscription = "transcription",
         WhisperTranscription = "transcription",

@@ -24,6 +24,7 @@ pub fn metric_of(task: Task) -> Result<&'static str> {
         Task::PanopticSegmentation => Ok("panoptic"),
         Task::InstanceSegmentation => Ok("coco_segmentation"),
         Task::PoseEstimation => Ok("coco_keypoints"),
+        Task::TextRecognition => Ok("text"),
         Task::GestureRecognition
         | Task::ActivityRecognition
         | Task::MultimodalHumanCentric

@@ -52,6 +52,7 @@ mod roc;
 mod segmentation;
 mod sequences;
 mod success;
+mod text;
 mod tracking_3d;
 mod tracking_frame;
 mod transcription;
@@ -84,6 +85,7 @@ pub use segmentation::{ClassPixels, Segmentation, SegmentationParams, Segmentati
 pub use success::{
     Episode, Interval, Success, SuccessParams, bootstrap_interval, interquartile_mean, wilson_interval,
 };
+pub use text::{Text, TextParams};
 pub use tracking_3d::{Tracking3d, Tracking3dParams};
 pub use tracking_frame::TrackingFrame;
 pub use transcription::{Transcription, TranscriptionParams, split_words};

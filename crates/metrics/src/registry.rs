@@ -24,6 +24,7 @@ pub const fn metrics() -> &'static [MetricEntry] {
             MetricEntry::of::<crate::Reidentification>(),
             MetricEntry::of::<crate::Roc>(),
             MetricEntry::of::<crate::Segmentation>(),
+            MetricEntry::of::<crate::Text>(),
             MetricEntry::of::<crate::Tracking3d>(),
             MetricEntry::of::<crate::Transcription>(),
             MetricEntry::of::<crate::Verification>(),

@@ -36,6 +36,7 @@ mod point_cloud_with_calibration;
 mod pose_list;
 mod rl_target;
 mod speech_command;
+mod text_region;
 mod tracking_annotation_3d_list;
 mod tracking_annotation_list;
 mod transcription;

@@ -199,6 +199,13 @@ def _write_heatmap(heatmap: target.Heatmap) -> Fields:
     return {**fields, "classes": names} if names else fields
 
 
+def _write_texts(texts: target.TextRegionList) -> Fields:
+    regions = [
+        {"text": region.text, "corners": region.corners.tolist(), "confidence": region.confidence} for region in texts.data
+    ]
+    return {"type": "TextRegionList", "regions": regions}
+
+
 def _write_command(command: target.SpeechCommand) -> Fields:
     fields = {"type": "SpeechCommand", "command": command.data, "confidence": command.confidence}
     return fields if command.span_s is None else {**fields, "span_s": command.span_s}
@@ -228,6 +235,7 @@ _WRITERS: dict[type[Any], Callable[[Any], Fields]] = {
     target.PoseList: _write_poses,
     target.Category: _write_category,
     target.Heatmap: _write_heatmap,
+    target.TextRegionList: _write_texts,
     target.SpeechCommand: _write_command,
     target.WhisperTranscription: _write_whisper,
     target.VoskTranscription: _write_vosk,
@@ -345,6 +353,9 @@ _READERS: dict[str, Callable[[Fields], Any]] = {
     "PoseList": _read_poses,
     "Category": _read_category,
     "Heatmap": _read_heatmap,
+    "TextRegionList": lambda fields: target.TextRegionList(
+        [target.TextRegion(region["text"], region["corners"], region["confidence"]) for region in fields["regions"]]
+    ),
     "SpeechCommand": _read_command,
     "RlTarget": lambda fields: target.RlTarget(fields["values"]),
     "BaseTranscription": lambda fields: target.BaseTranscription(fields["text"]),

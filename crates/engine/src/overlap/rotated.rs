@@ -1,5 +1,7 @@
 //! Overlap of rotated rectangles on a plane, and of 3D boxes with a vertical axis.
 
+use super::polygon::Polygon;
+
 /// A rectangle on a plane, rotated about its center.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RotatedRectangle {
@@ -96,58 +98,6 @@ impl UprightBox3D {
     /// Returns the intersection over union of the volumes; 0 for a box without volume.
     pub fn iou(&self, other: &Self) -> f64 {
         self.iou_with_base_intersection(other, self.base.intersection_area(&other.base))
-    }
-}
-
-/// A convex polygon of at most eight corners: four, and one more per clipping line.
-#[derive(Debug, Clone, Copy)]
-struct Polygon {
-    corners: [[f64; 2]; 8],
-    len: usize,
-}
-
-impl Polygon {
-    fn new(rectangle: [[f64; 2]; 4]) -> Self {
-        let mut corners = [[0.0; 2]; 8];
-        corners[..4].copy_from_slice(&rectangle);
-        Self { corners, len: 4 }
-    }
-
-    fn push(&mut self, corner: [f64; 2]) {
-        if let Some(place) = self.corners.get_mut(self.len) {
-            *place = corner;
-            self.len += 1;
-        }
-    }
-
-    /// Returns the part where `sign` times the coordinate along `axis` is at most `limit`.
-    fn below(&self, axis: usize, limit: f64, sign: f64) -> Self {
-        let mut clipped = Self { len: 0, ..*self };
-        let corners = &self.corners[..self.len];
-        let nexts = corners.iter().cycle().skip(1);
-        for (corner, next) in corners.iter().zip(nexts) {
-            let (here, there) = (sign * corner[axis], sign * next[axis]);
-            if here <= limit {
-                clipped.push(*corner);
-            }
-            if (here <= limit) != (there <= limit) {
-                let share = (limit - here) / (there - here);
-                let other = 1 - axis;
-                let mut crossing = [0.0; 2];
-                crossing[axis] = sign * limit;
-                crossing[other] = corner[other] + share * (next[other] - corner[other]);
-                clipped.push(crossing);
-            }
-        }
-        clipped
-    }
-
-    /// Returns the area by the shoelace formula.
-    fn area(&self) -> f64 {
-        let corners = &self.corners[..self.len];
-        let nexts = corners.iter().cycle().skip(1);
-        let doubled: f64 = corners.iter().zip(nexts).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum();
-        doubled.abs() / 2.0
     }
 }
 

@@ -20,11 +20,11 @@ impl Nullable for f32 {
 
 macro_rules! arrays {
     ($($length:literal)*) => {$(
-        impl Nullable for [f32; $length] {
-            type Json<'de> = [Option<f32>; $length];
+        impl<T: Nullable> Nullable for [T; $length] {
+            type Json<'de> = [T::Json<'de>; $length];
 
             fn from_json(json: Self::Json<'_>) -> Self {
-                json.map(f32::from_json)
+                json.map(T::from_json)
             }
         }
     )*};

@@ -179,6 +179,17 @@ fn heatmap() -> impl Strategy<Value = Value> {
     )
 }
 
+fn texts() -> impl Strategy<Value = Value> {
+    let corners = proptest::array::uniform4([number(), number()]);
+    let region = (".{0,8}", corners, number()).prop_map(|(text, corners, confidence)| TextRegion {
+        text,
+        corners,
+        confidence,
+    });
+    (header(), vec(region, 0..4), action())
+        .prop_map(|(header, regions, action)| TextRegionList { header, regions, action }.into())
+}
+
 fn command() -> impl Strategy<Value = Value> {
     (header(), name(), number(), option::of([number(), number()]), action()).prop_map(
         |(header, command, confidence, span_s, action)| {
@@ -236,6 +247,7 @@ fn target() -> impl Strategy<Value = Value> {
         poses(),
         category(),
         heatmap(),
+        texts(),
         command(),
         rl_target(),
         transcription(),

@@ -171,6 +171,14 @@ messages! {
         ros2: "RIHS01_80304b750850f5ec136c760188e878d97a55174ea2b2c4e4ad8b299c7cceedb9", "string name\nfloat32 x\nfloat32 y\nfloat32 confidence\n", [];
         ros1: same() "opendr_msgs/Pose2DKeypoint", "44da523a970b7ae73865e7610db408e6", "string name\nfloat32 x\nfloat32 y\nfloat32 confidence\n", [];
     }
+    OpendrMsgsTextRegion(opendr_msgs::TextRegion) = "opendr_msgs", "TextRegion" {
+        ros2: "RIHS01_1158f3f0f705d87e21b2c41843715b2e75df17171c1b8485664685934bf00752", "string text\nfloat32 confidence\nfloat32[8] corners\n", [];
+        ros1: same() "opendr_msgs/TextRegion", "0c7818c01a4e0d418f58a3e627da193d", "string text\nfloat32 confidence\nfloat32[8] corners\n", [];
+    }
+    OpendrMsgsTextRegionArray(opendr_msgs::TextRegionArray) = "opendr_msgs", "TextRegionArray" header {
+        ros2: "RIHS01_0d60f11f2bc7d2039a45cebba1654afe9207246c7a022842387287eb183bbf36", "std_msgs/Header header\nopendr_msgs/TextRegion[] regions\n", ["builtin_interfaces/Time", "opendr_msgs/TextRegion", "std_msgs/Header"];
+        ros1: same() "opendr_msgs/TextRegionArray", "9323d6770e38cec90add04b4e2862424", "std_msgs/Header header\nopendr_msgs/TextRegion[] regions\n", ["opendr_msgs/TextRegion", "std_msgs/Header"];
+    }
     OpendrMsgsTranscription(opendr_msgs::Transcription) = "opendr_msgs", "Transcription" header {
         ros2: "RIHS01_5ce95f0d0265560151f4ab2ca1c29ce41740d7b1d6d76205294c1c33341a0235", "std_msgs/Header header\nstring text\nstring language\nbool is_final\nopendr_msgs/TranscriptionSegment[] segments\n", ["builtin_interfaces/Time", "opendr_msgs/TranscriptionSegment", "std_msgs/Header"];
         ros1: same() "opendr_msgs/Transcription", "dec3d95c4a2e4dd88714c92768513810", "std_msgs/Header header\nstring text\nstring language\nbool is_final\nopendr_msgs/TranscriptionSegment[] segments\n", ["opendr_msgs/TranscriptionSegment", "std_msgs/Header"];

@@ -104,6 +104,25 @@ pub struct Pose2DKeypoint {
     pub confidence: f32,
 }
 
+/// `opendr_msgs/TextRegion`: A line of text in an image.
+#[allow(missing_docs)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct TextRegion {
+    pub text: String,
+    /// 0 to 1.
+    pub confidence: f32,
+    /// Corners in pixels, clockwise from the top left one of the text: x and y of each.
+    pub corners: [f32; 8],
+}
+
+/// `opendr_msgs/TextRegionArray`: The lines of text in an image, in reading order.
+#[allow(missing_docs)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct TextRegionArray {
+    pub header: crate::std_msgs::Header,
+    pub regions: Vec<TextRegion>,
+}
+
 /// `opendr_msgs/Transcription`: A transcription of speech.
 #[allow(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]

@@ -6,9 +6,9 @@ use opendr_engine::data::{
 };
 use opendr_engine::target::{
     BaseTranscription, BoundingBox, BoundingBox3D, BoundingBox3DList, BoundingBoxList, Category, Classes,
-    Heatmap, Keypoint, Name, Pose, PoseList, RlTarget, Skeleton, SpeechCommand, TrackingAnnotation,
-    TrackingAnnotation3D, TrackingAnnotation3DList, TrackingAnnotationList, VoskTranscription,
-    WhisperSegment, WhisperTranscription,
+    Heatmap, Keypoint, Name, Pose, PoseList, RlTarget, Skeleton, SpeechCommand, TextRegion, TextRegionList,
+    TrackingAnnotation, TrackingAnnotation3D, TrackingAnnotation3DList, TrackingAnnotationList,
+    VoskTranscription, WhisperSegment, WhisperTranscription,
 };
 use opendr_engine::{Header, Value, ValueType};
 use opendr_messages::{Message, MessageType, WireFormat};
@@ -137,6 +137,10 @@ fn values(value_type: ValueType) -> Vec<Value> {
             let maps =
                 [small, labels(vec![0, 256, 3, 65_535]), labels(vec![u32::MAX, 0, 1, 70_000]), scores, flat];
             return maps.map(with_header).into();
+        }
+        ValueType::TextRegionList => {
+            let corners = [[1.0, 2.0], [9.5, 2.5], [9.0, 6.0], [1.0, 5.5]];
+            TextRegionList::from(vec![TextRegion::new("EXIT", corners, 0.75)]).into()
         }
         ValueType::SpeechCommand => SpeechCommand::new(7, 0.25).into(),
         ValueType::BaseTranscription => {

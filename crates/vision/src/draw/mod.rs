@@ -18,6 +18,7 @@ mod poses;
 mod score_mask;
 mod style;
 mod text;
+mod text_regions;
 mod tracks;
 
 #[cfg(test)]
@@ -33,6 +34,7 @@ pub use palette::{COLOURS, Colour, colour_of_index, colour_of_name};
 pub use poses::draw_poses;
 pub use score_mask::draw_score_mask;
 pub use style::Style;
+pub use text_regions::draw_text_regions;
 pub use tracks::{Trails, draw_tracks};
 
 use opendr_engine::ValueRef;
@@ -48,6 +50,7 @@ pub fn draw<'a>(image: &mut Image, target: impl Into<ValueRef<'a>>, style: &Styl
         ValueRef::PoseList(poses) => draw_poses(image, poses, style),
         ValueRef::Category(category) => draw_category(image, category, style),
         ValueRef::Heatmap(map) => draw_heatmap(image, map, style),
+        ValueRef::TextRegionList(regions) => draw_text_regions(image, regions, style),
         _ => {}
     }
 }

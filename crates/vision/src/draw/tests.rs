@@ -2,7 +2,7 @@ use super::*;
 use opendr_engine::data::PixelFormat;
 use opendr_engine::target::{
     BoundingBox, BoundingBoxList, Category, Heatmap, Keypoint, Pose, PoseList, Rle, Segmentation, Skeleton,
-    TrackingAnnotation, TrackingAnnotationList,
+    TextRegion, TextRegionList, TrackingAnnotation, TrackingAnnotationList,
 };
 
 fn grey(width: usize, height: usize) -> Image {
@@ -223,4 +223,21 @@ fn trails_have_a_single_colour() {
     let mut image = grey(400, 400);
     draw_tracks(&mut image, &at(300.0), &trails, &Style { labels: false, scale: 4.0, ..Style::default() });
     assert!((30..120).all(|x| pixel(&image, x, 70) == colour_of_index(4)));
+}
+
+#[test]
+fn text_regions_are_outlined_and_labelled() {
+    let region = |corners| TextRegion::new("EXIT", corners, 0.5);
+    let regions = TextRegionList::from(vec![
+        region([[20.0, 40.0], [60.0, 44.0], [58.0, 60.0], [18.0, 56.0]]),
+        region([[f32::NAN, 0.0]; 4]),
+    ]);
+    let bare = Style { labels: false, ..Style::default() };
+    let (mut outlined, mut labelled) = (grey(100, 100), grey(100, 100));
+    draw_text_regions(&mut outlined, &regions, &bare);
+    draw_text_regions(&mut labelled, &regions, &Style::default());
+    let is_lit = |image: &Image, x: usize, y: usize| pixel(image, x, y) != pixel(&grey(100, 100), 0, 0);
+    let lit = |image: &Image| (0..10_000).filter(|at| is_lit(image, at % 100, at / 100)).count();
+    assert!(lit(&outlined) > 100 && lit(&labelled) > lit(&outlined));
+    assert!(is_lit(&outlined, 40, 42) && !is_lit(&outlined, 39, 50));
 }

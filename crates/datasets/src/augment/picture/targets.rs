@@ -1,6 +1,6 @@
 //! Transformation of targets.
 
-use opendr_engine::target::{Heatmap, HeatmapValues, Keypoint, Pose, PoseList};
+use opendr_engine::target::{Heatmap, HeatmapValues, Keypoint, Pose, PoseList, TextRegionList};
 use opendr_engine::{Error, Result, Value};
 
 use crate::augment::picture::border::Border;
@@ -17,6 +17,7 @@ pub(super) fn follow(target: &mut Value, map: &AffineMap, border: &Border) -> Re
         }
         Value::PoseList(list) => map_poses(list, map, border),
         Value::Heatmap(heatmap) => map_heatmap(heatmap, map, border),
+        Value::TextRegionList(list) => map_text(list, map),
         Value::Category(_)
         | Value::SpeechCommand(_)
         | Value::BaseTranscription(_)
@@ -56,6 +57,23 @@ fn map_poses(list: &mut PoseList, map: &AffineMap, border: &Border) -> Result<()
         }
         Ok(nothing_before || joints(pose) > 0 || pose.region.is_some())
     })
+}
+
+/// Maps the corners of text; regions whose centre leaves the image are dropped.
+fn map_text(list: &mut TextRegionList, map: &AffineMap) -> Result<()> {
+    if map.mirrors() {
+        return Err(Error::unsupported(
+            "mirrored text cannot be read; remove the flip from the augmentation",
+        ));
+    }
+    let [width, height] = map.output_size().map(|side| side as f64);
+    list.regions.retain_mut(|region| {
+        let corners = region.corners.map(|[x, y]| map.output_from_input([x.into(), y.into()]));
+        region.corners = corners.map(|corner| corner.map(|number| number as f32));
+        let [x, y] = [0, 1].map(|axis| corners.iter().map(|corner| corner[axis]).sum::<f64>() / 4.0);
+        (0.0..=width).contains(&x) && (0.0..=height).contains(&y)
+    });
+    Ok(())
 }
 
 fn map_keypoint(joint: &mut Keypoint, map: &AffineMap) {

@@ -15,6 +15,7 @@ from opendr.engine.target.keypoint import Keypoint
 from opendr.engine.target.pose import Pose, PoseList
 from opendr.engine.target.rl_target import RlTarget
 from opendr.engine.target.speech_command import SpeechCommand
+from opendr.engine.target.text_region import TextRegion, TextRegionList
 from opendr.engine.target.tracking_annotation import TrackingAnnotation, TrackingAnnotationList
 from opendr.engine.target.tracking_annotation_3d import TrackingAnnotation3D, TrackingAnnotation3DList
 from opendr.engine.target.transcription import BaseTranscription, VoskTranscription, WhisperTranscription
@@ -37,6 +38,8 @@ __all__ = [
     "RlTarget",
     "SpeechCommand",
     "Target",
+    "TextRegion",
+    "TextRegionList",
     "TrackingAnnotation",
     "TrackingAnnotation3D",
     "TrackingAnnotation3DList",
