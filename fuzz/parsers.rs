@@ -11,7 +11,7 @@ use opendr_metrics::coco::files::{CocoFiles, CocoKind};
 pub type Parser = fn(&[u8]);
 
 /// Every parser by the name of its target and corpus.
-pub const PARSERS: [(&str, Parser); 27] = [
+pub const PARSERS: [(&str, Parser); 28] = [
     ("manifest_json", manifest_json),
     ("tfjs_json", tfjs_json),
     ("tflite", tflite),

@@ -4,7 +4,7 @@ import subprocess
 import sys
 
 import pytest
-from conftest import ROOT
+from command import ROOT
 
 
 @pytest.mark.parametrize("script", ["compare.py", "compare_tflite.py"])

@@ -176,7 +176,7 @@ fn suites(
         suite(
             "tests against reference tools",
             &environments.references,
-            &["tests/metrics", "tests/datasets", "tests/training", "tests/simulation"],
+            &["tests/metrics", "tests/datasets", "tests/training", "tests/simulation", "tests/text"],
             &[programs],
         ),
         suite(

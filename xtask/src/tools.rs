@@ -65,6 +65,7 @@ pub const REFERENCES: Requirements = Requirements {
         "tests/training/requirements.txt",
         "tests/simulation/requirements.txt",
         "tests/bags/requirements.txt",
+        "tests/text/requirements.txt",
     ],
     alone: Some("tests/metrics/requirements_without_dependencies.txt"),
 };

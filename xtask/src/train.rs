@@ -35,8 +35,10 @@ struct Recipe {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Source {
-    /// Path in the folder of OPENDR_TEST_DATA.
+    /// Path in the folder of OPENDR_TEST_DATA, or in the repository.
     path: String,
+    /// `OWNER/NAME@COMMIT` of a public repository on GitHub, of which the path is put into `{out}/sources/OWNER+NAME`.
+    repository: Option<String>,
     source: String,
     licence: String,
     /// Which part is trained on, and which measured.
@@ -62,7 +64,7 @@ struct Evaluation {
     others: Vec<String>,
 }
 
-/// Folders that stand in a recipe as `{data}` and `{out}`.
+/// Folders that stand in a recipe as `{data}` (of OPENDR_TEST_DATA) and `{out}`.
 struct Places {
     data: PathBuf,
     out: PathBuf,
@@ -88,10 +90,14 @@ pub fn run(name: &str, is_on_gpu: bool) -> Result<()> {
     let recipe = read(name)?;
     let data = std::env::var_os("OPENDR_TEST_DATA").ok_or("OPENDR_TEST_DATA is not set")?;
     let places = Places { data: PathBuf::from(data).join("data"), out: root().join("runs").join(name) };
-    for Source { path, source, licence, part } in &recipe.data {
-        let folder = places.data.join(path);
-        if !folder.exists() {
-            return Err(format!("{} is missing: {source}", folder.display()));
+    for data in &recipe.data {
+        let Source { path, source, licence, part, repository } = data;
+        match repository {
+            Some(repository) => check_out(repository, path, &places.out)?,
+            None if !places.data.join(path).exists() => {
+                return Err(format!("{} is missing: {source}", places.data.join(path).display()));
+            }
+            None => {}
         }
         println!("{path}: {source}; {licence}; {part}");
     }
@@ -140,6 +146,33 @@ pub fn run(name: &str, is_on_gpu: bool) -> Result<()> {
         let card = with_line(&card, variant, "headline = ", &headline)?;
         with_line(&card, variant, "files = ", &files_of(&bytes))
     })
+}
+
+/// Puts a path of `OWNER/NAME@COMMIT` into `sources/OWNER+NAME` of the output folder, from `OWNER+NAME/repo` of the folder in
+/// OPENDR_SOURCES, or from GitHub.
+fn check_out(repository: &str, path: &str, out: &Path) -> Result<()> {
+    let (name, commit) =
+        repository.split_once('@').ok_or_else(|| format!("{repository:?} is not OWNER/NAME@COMMIT"))?;
+    let flat = name.replace('/', "+");
+    let sources = out.join("sources");
+    let tree = sources.join(&flat);
+    if tree.join(path).exists() {
+        return Ok(());
+    }
+    fs::create_dir_all(&tree).map_err(|error| format!("{}: {error}", tree.display()))?;
+    let stored =
+        std::env::var_os("OPENDR_SOURCES").map(|folder| PathBuf::from(folder).join(&flat).join("repo"));
+    let git_dir =
+        stored.filter(|folder| folder.is_dir()).unwrap_or_else(|| sources.join(format!("{flat}.git")));
+    if !git_dir.is_dir() {
+        let address = format!("https://github.com/{name}");
+        let mut clone = command("git");
+        clone.args(["clone", "--quiet", "--bare", "--filter=blob:none", &address]).arg(&git_dir);
+        step("clone", &mut clone)?;
+    }
+    let mut git = command("git");
+    git.arg("--git-dir").arg(&git_dir).arg("--work-tree").arg(&tree).args(["checkout", commit, "--", path]);
+    step("sources", git.env("GIT_INDEX_FILE", sources.join(format!("{flat}.index"))))
 }
 
 /// Returns the card's line of files for a network.

@@ -39,6 +39,7 @@ typedef struct opendr_tracking_annotation_3d_list opendr_tracking_annotation_3d_
 typedef struct opendr_pose_list opendr_pose_list;
 typedef struct opendr_category opendr_category;
 typedef struct opendr_heatmap opendr_heatmap;
+typedef struct opendr_text_region_list opendr_text_region_list;
 typedef struct opendr_speech_command opendr_speech_command;
 typedef struct opendr_base_transcription opendr_base_transcription;
 typedef struct opendr_whisper_transcription opendr_whisper_transcription;
@@ -405,6 +406,16 @@ typedef struct opendr_speech_command_fields {
     // End within the audio, seconds; NaN when unknown.
     float end_s;
 } opendr_speech_command_fields;
+
+// A line of text in an image.
+typedef struct opendr_text_region {
+    // The text.
+    const char *text;
+    // Corners, pixels: x and y of each, clockwise from the top left one of the text.
+    float corners[8];
+    // Score of the text, 0 to 1.
+    float confidence;
+} opendr_text_region;
 
 // The 3D box of a tracked object at one time.
 typedef struct opendr_tracking_annotation_3d {
@@ -841,6 +852,19 @@ enum opendr_status opendr_speech_command_read(const opendr_speech_command *comma
                                               struct opendr_speech_command_fields *fields);
 
 // Creates a list of items, which are copied.
+enum opendr_status opendr_text_region_list_create(const struct opendr_text_region *items,
+                                                  size_t count,
+                                                  opendr_text_region_list **list);
+
+// Returns the number of regions; 0 if the handle is not such a list.
+size_t opendr_text_region_list_count(const opendr_text_region_list *list);
+
+// Writes an item of the list into item; its text is valid as long as the list.
+enum opendr_status opendr_text_region_list_get(const opendr_text_region_list *list,
+                                               size_t index,
+                                               struct opendr_text_region *item);
+
+// Creates a list of items, which are copied.
 enum opendr_status opendr_tracking_annotation_3d_list_create(const struct opendr_tracking_annotation_3d *items,
                                                              size_t count,
                                                              opendr_tracking_annotation_3d_list **list);
@@ -1035,6 +1059,7 @@ OPENDR_VALUE_FUNCTIONS(opendr_tracking_annotation_3d_list)
 OPENDR_VALUE_FUNCTIONS(opendr_pose_list)
 OPENDR_VALUE_FUNCTIONS(opendr_category)
 OPENDR_VALUE_FUNCTIONS(opendr_heatmap)
+OPENDR_VALUE_FUNCTIONS(opendr_text_region_list)
 OPENDR_VALUE_FUNCTIONS(opendr_speech_command)
 OPENDR_VALUE_FUNCTIONS(opendr_base_transcription)
 OPENDR_VALUE_FUNCTIONS(opendr_whisper_transcription)
@@ -1048,6 +1073,7 @@ OPENDR_TARGET_FUNCTIONS(opendr_tracking_annotation_3d_list, "TrackingAnnotation3
 OPENDR_TARGET_FUNCTIONS(opendr_pose_list, "PoseList")
 OPENDR_TARGET_FUNCTIONS(opendr_category, "Category")
 OPENDR_TARGET_FUNCTIONS(opendr_heatmap, "Heatmap")
+OPENDR_TARGET_FUNCTIONS(opendr_text_region_list, "TextRegionList")
 OPENDR_TARGET_FUNCTIONS(opendr_speech_command, "SpeechCommand")
 OPENDR_TARGET_FUNCTIONS(opendr_base_transcription, "BaseTranscription")
 OPENDR_TARGET_FUNCTIONS(opendr_whisper_transcription, "WhisperTranscription")
@@ -2928,6 +2954,46 @@ static inline opendr_status opendr_infer_semi_global_matching(const opendr_learn
     else opendr_value_free(&outputs_[1].value);
     if (obstacles != NULL) *obstacles = (opendr_bounding_box_3d_list *)outputs_[2].value;
     else opendr_value_free(&outputs_[2].value);
+    return status_;
+}
+
+/*
+ * PpOcrLearner: PP-OCR detects lines of text in an image and reads them; tiny and fast.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, live, default 0.5): Score of the text below which regions are dropped.
+ *   map_threshold (a float 0..=1, live, default 0.3): Probability of text above which pixels belong to a region.
+ *   region_threshold (a float 0..=1, live, default 0.6): Mean probability of text below which regions are not read.
+ *   unclip_ratio (a float 0..=5, live, default 1.5): Growth of regions, which the detector learned shrunken: area / perimeter times this on each side.
+ *   max_side (an int 32..=8192 px, live, default 960): Maximum side of the detector's input. A larger image is scaled down to it; smaller text is found with a larger one.
+ *   turn (a bool, live, default true): Whether lines that are upside down are turned, if the model has a classifier of the orientation.
+ *   read_twice (a bool, live, default true): Whether each line is read a second time, with a margin: spaces between words are recognised there that the first reading misses (38 and 58 of 60 rendered lines without an error), but distant letters less well.
+ *   max_regions (an int 1..=1000, live, default 1000): Maximum number of regions per image that are read.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   texts (TextRegionList)
+ */
+static inline opendr_status opendr_load_pp_ocr(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("pp_ocr", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_pp_ocr(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_text_region_list **texts) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "texts";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (texts != NULL) *texts = (opendr_text_region_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
     return status_;
 }
 

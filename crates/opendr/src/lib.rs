@@ -97,6 +97,8 @@ pub use opendr_signals::{beats, heart_anomaly_detection};
 pub use opendr_speech::{speech_recognition, speech_transcription, voice_activity, voice_activity_detection};
 #[cfg(feature = "stereo")]
 pub use opendr_stereo::stereo_matching;
+#[cfg(feature = "text")]
+pub use opendr_text::text_recognition;
 #[cfg(feature = "tracking")]
 pub use opendr_tracking::{object_tracking_2d, object_tracking_3d, tracking};
 #[cfg(feature = "viewer")]

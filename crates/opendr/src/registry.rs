@@ -69,6 +69,8 @@ use opendr_speech::{
 };
 #[cfg(feature = "stereo")]
 use opendr_stereo::stereo_matching::SemiGlobalMatching;
+#[cfg(feature = "text")]
+use opendr_text::text_recognition::PpOcr;
 #[cfg(feature = "tracking")]
 use opendr_tracking::{
     object_tracking_2d::{ByteTrack, CBiou, DeepSort, FairMot, NanoTrack, OcSort, Sort},
@@ -157,6 +159,10 @@ pub fn registry() -> &'static Registry {
             #[cfg(feature = "stereo")]
             {
                 SemiGlobalMatching,
+            },
+            #[cfg(feature = "text")]
+            {
+                PpOcr,
             },
             #[cfg(feature = "grasping")]
             {

@@ -207,14 +207,14 @@ fn stream_predictions_equal_clip_predictions() {
     }
 }
 
-/// Models with the weights of `examples/train_actions.rs`.
+/// The models of the zoo with the same weights, clip by clip and frame by frame.
 fn trained(folder: &Folder) -> Option<(Handle<SpatioTemporalGcn>, Handle<CoStGcn>)> {
     let weights = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../models/weights");
     if !weights.join("co_st_gcn").is_dir() {
         println!("skipped: no weights");
         return None;
     }
-    let (channels, kernel) = (vec![16, 24, 32], 7);
+    let (channels, kernel) = (vec![32, 48, 64], 7);
     let clip = SpatioTemporalGcnParams {
         num_frames: 32,
         channels: channels.clone(),
