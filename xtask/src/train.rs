@@ -226,7 +226,7 @@ fn headline_of(report: &Value, evaluation: &Evaluation) -> String {
     let Evaluation { data, metric, .. } = evaluation;
     let bound = |name: &str| report["interval"][name].as_f64();
     let interval = match (bound("low"), bound("high")) {
-        (Some(low), Some(high)) if report["headline"] == Value::from(metric.as_str()) => {
+        (Some(low), Some(high)) if report["headline"] == metric.as_str() => {
             format!(", interval = [{low:.4}, {high:.4}]")
         }
         _ => String::new(),

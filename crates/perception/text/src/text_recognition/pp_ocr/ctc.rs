@@ -1,55 +1,18 @@
 //! Greedy decoding of connectionist temporal classification (CTC).
 
-use std::fmt;
+use opendr_engine::{Error, Result};
 
-/// The characters of a recognizer. Class 0 of its network is the blank, and the classes after it are the characters in order.
+/// The characters of a recogniser. Class 0 of its network is the blank, and the classes after it are the characters in order.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Characters(Vec<Box<str>>);
 
-/// Why probabilities cannot be decoded.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum CtcError {
-    /// The network has another number of classes than the blank and the characters.
-    Classes {
-        /// The classes of the network.
-        found: usize,
-        /// The classes that the characters need.
-        expected: usize,
-    },
-    /// The probabilities are not whole steps.
-    Length {
-        /// How many there are.
-        found: usize,
-        /// How many a step has.
-        classes: usize,
-    },
-}
-
-impl fmt::Display for CtcError {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Classes { found, expected } => {
-                write!(
-                    formatter,
-                    "the network has {found} classes, the blank and the characters are {expected}"
-                )
-            }
-            Self::Length { found, classes } => {
-                write!(formatter, "{found} probabilities are not whole steps of {classes} classes")
-            }
-        }
-    }
-}
-
-impl std::error::Error for CtcError {}
-
 impl Characters {
-    /// The lines of a dictionary of PaddleOCR, and a space at the end if its network has one.
+    /// Creates the characters from the lines of a dictionary of PaddleOCR, and a space at the end if its network has one.
     pub fn from_dictionary(dictionary: &str, space: bool) -> Self {
         Self(dictionary.lines().chain(space.then_some(" ")).map(Box::from).collect())
     }
 
-    /// How many classes a network for these characters has.
+    /// Returns the number of classes of a network for these characters.
     pub fn classes(&self) -> usize {
         self.0.len() + 1
     }
@@ -57,13 +20,19 @@ impl Characters {
     /// Writes the text of probabilities of steps by classes to `text`, and returns its confidence: the mean probability of its
     /// characters, 0 without any. Each step has its most probable class, the first one of equals. Repetitions count once, and blanks
     /// are left out. After an error the text is empty.
-    pub fn decode(&self, probabilities: &[f32], classes: usize, text: &mut String) -> Result<f32, CtcError> {
+    pub fn decode(&self, probabilities: &[f32], classes: usize, text: &mut String) -> Result<f32> {
         text.clear();
         if classes != self.classes() {
-            return Err(CtcError::Classes { found: classes, expected: self.classes() });
+            return Err(Error::format(format!(
+                "the recogniser has {classes} classes, not {} for the blank and the characters; load files of one model",
+                self.classes()
+            )));
         }
         if !probabilities.len().is_multiple_of(classes) {
-            return Err(CtcError::Length { found: probabilities.len(), classes });
+            return Err(Error::format(format!(
+                "{} probabilities are not whole steps of {classes} classes",
+                probabilities.len()
+            )));
         }
         let (mut sum, mut count, mut previous) = (0.0, 0_u32, 0);
         for step in probabilities.chunks_exact(classes) {
@@ -150,20 +119,11 @@ mod tests {
     fn other_sizes_are_errors() {
         let characters = Characters::from_dictionary("a\nb", false);
         let mut text = String::from("before");
-        assert_eq!(
-            characters.decode(&[0.0; 8], 4, &mut text),
-            Err(CtcError::Classes { found: 4, expected: 3 })
-        );
-        assert_eq!(text, "");
-        assert_eq!(
-            characters.decode(&[0.0; 8], 3, &mut text),
-            Err(CtcError::Length { found: 8, classes: 3 })
-        );
-        assert_eq!(
-            characters.decode(&[0.0; 8], 0, &mut text),
-            Err(CtcError::Classes { found: 0, expected: 3 })
-        );
-        assert_eq!(Characters::from_dictionary("", false).decode(&[1.0; 3], 1, &mut text), Ok(0.0));
+        for (count, classes) in [(8, 4), (8, 3), (8, 0)] {
+            assert!(characters.decode(&vec![0.0; count], classes, &mut text).is_err());
+            assert_eq!(text, "");
+        }
+        assert_eq!(Characters::from_dictionary("", false).decode(&[1.0; 3], 1, &mut text).unwrap(), 0.0);
     }
 
     #[test]
@@ -171,7 +131,7 @@ mod tests {
         let characters = Characters::from_dictionary(" \nß\nch\n", false);
         let mut text = String::new();
         let probabilities = [0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
-        assert_eq!(characters.decode(&probabilities, 4, &mut text), Ok(1.0));
+        assert_eq!(characters.decode(&probabilities, 4, &mut text).unwrap(), 1.0);
         assert_eq!(text, "ch ß");
     }
 }

@@ -5,7 +5,7 @@
 pub struct Homography([f64; 8]);
 
 impl Homography {
-    /// The map that takes (0, 0), (1, 0), (1, 1) and (0, 1) to the corners of a strictly convex quadrilateral. `None` if it is not one
+    /// Returns the map that takes (0, 0), (1, 0), (1, 1) and (0, 1) to the corners of a strictly convex quadrilateral. `None` if it is not one
     /// or has corners that are not finite.
     pub fn from_unit_square(corners: &[[f64; 2]; 4]) -> Option<Self> {
         if !is_convex(corners) {
@@ -20,7 +20,7 @@ impl Homography {
         matrix.iter().all(|value| value.is_finite()).then_some(Self(matrix))
     }
 
-    /// Where a point goes.
+    /// Returns where a point goes.
     pub fn apply(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         let [a, b, c, d, e, f, g, h] = self.0;
         let scale = 1.0 / (g * u + h * v + 1.0);

@@ -248,14 +248,12 @@ impl PpOcr {
         text: &mut String,
     ) -> Result<f32> {
         text.clear();
-        let Ok(width) = region.scaled_width(self.height, condense) else { return Ok(0.0) };
+        let Some(width) = region.scaled_width(self.height, condense) else { return Ok(0.0) };
         let width = width.next_multiple_of(STRIDE).clamp(MIN_ASPECT * self.height, MAX_ASPECT * self.height);
         let mut confidence = 0.0;
         let shape = InputShape { height: self.height, width, condense };
         run(&self.recogniser, image, region, shape, input, |probabilities, classes| {
-            confidence = self.characters.decode(probabilities, classes, text).map_err(|error| {
-                Error::format(format!("{RECOGNITION} with {CHARACTERS}: {error}; load files of one model"))
-            })?;
+            confidence = self.characters.decode(probabilities, classes, text)?;
             Ok(())
         })?;
         Ok(confidence)
@@ -307,7 +305,7 @@ fn run(
 ) -> Result<()> {
     let dims = [1, 3, shape.height, shape.width];
     input.resize(dims.iter().product(), 0.0);
-    if rectify(image, region, shape, input).is_err() {
+    if rectify(image, region, shape, input).is_none() {
         return Ok(());
     }
     session.run(&[TensorView::new(&dims, &input[..])?], |outputs| {

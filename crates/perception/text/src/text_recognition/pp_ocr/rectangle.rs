@@ -18,7 +18,7 @@ pub struct Rectangle {
 }
 
 impl Rectangle {
-    /// The rectangle of least area around a convex polygon of [`convex_hull`], by rotating calipers. Of rectangles of equal area it is
+    /// Returns the rectangle of least area around a convex polygon of [`convex_hull`], by rotating calipers. Of rectangles of equal area it is
     /// the one with the least tilt. `None` without points.
     pub fn around(hull: &[Pixel]) -> Option<Self> {
         let mut best = Self { center: to_point(*hull.first()?), axis: [1.0, 0.0], half: [0.0; 2] };
@@ -44,17 +44,17 @@ impl Rectangle {
         4.0 * self.half[0] * self.half[1]
     }
 
-    /// The length of its outline.
+    /// Returns the length of its outline.
     pub fn perimeter(&self) -> f64 {
         4.0 * (self.half[0] + self.half[1])
     }
 
-    /// The length of its shorter side.
+    /// Returns the length of its shorter side.
     pub fn short_side(&self) -> f64 {
         2.0 * self.half[0].min(self.half[1])
     }
 
-    /// The rectangle with each side moved outwards by `distance`.
+    /// Returns the rectangle with each side moved outwards by `distance`.
     pub fn grown(self, distance: f64) -> Self {
         Self { half: self.half.map(|half| half + distance), ..self }
     }
@@ -122,7 +122,7 @@ impl Touching {
     }
 }
 
-/// The convex hull of pixels that are sorted by row and then by column, without the points on its edges.
+/// Computes the convex hull of pixels that are sorted by row and then by column, without the points on its edges.
 pub fn convex_hull(points: &[Pixel], hull: &mut Vec<Pixel>) {
     hull.clear();
     for &point in points {

@@ -1,7 +1,5 @@
 //! Upright crops of text as inputs of a network.
 
-use std::fmt;
-
 use super::homography::Homography;
 
 /// Text with a height of at least 3 / 2 of its width is turned.
@@ -47,51 +45,25 @@ pub struct Quadrilateral {
     pub upside_down: bool,
 }
 
-/// Why a crop cannot be made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RectifyError {
-    /// The quadrilateral has no area, is not convex, has a side shorter than a pixel or has corners that are not finite.
-    Degenerate,
-    /// The quadrilateral lies outside of the image.
-    Outside,
-    /// The image has no pixels, or its data end before its last row.
-    Image,
-    /// The input has no values, or the slice for it has another length.
-    Input,
-}
-
-impl fmt::Display for RectifyError {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(match self {
-            Self::Degenerate => "the quadrilateral is degenerate",
-            Self::Outside => "the quadrilateral lies outside of the image",
-            Self::Image => "the image has no pixels or too few data",
-            Self::Input => "the input is empty or its slice has another length",
-        })
-    }
-}
-
-impl std::error::Error for RectifyError {}
-
 impl Quadrilateral {
-    /// The width and height of its text in pixels of the image: its longest horizontal and vertical edges, rounded down, and swapped if
+    /// Returns the width and height of its text in pixels of the image: its longest horizontal and vertical edges, rounded down, and swapped if
     /// it is turned.
-    pub fn text_size(&self) -> Result<[usize; 2], RectifyError> {
+    pub fn text_size(&self) -> Option<[usize; 2]> {
         self.upright().map(|(_, size)| size)
     }
 
-    /// The width of its text scaled to a height and condensed, rounded up. An input of a batch is as wide as the widest of its texts.
-    pub fn scaled_width(&self, height: usize, condense: f64) -> Result<usize, RectifyError> {
+    /// Returns the width of its text scaled to a height and condensed, rounded up. An input of a batch is as wide as the widest of its texts.
+    pub fn scaled_width(&self, height: usize, condense: f64) -> Option<usize> {
         self.text_size().map(|size| scaled_width(size, height, condense))
     }
 
-    /// The corners from the top left of the text as it is read; those of a quadrilateral without text as they are.
+    /// Returns the corners from the top left of the text as it is read; those of a quadrilateral without text as they are.
     pub fn reading_corners(&self) -> [[f32; 2]; 4] {
         self.upright()
             .map_or(self.corners, |(corners, _)| corners.map(|corner| corner.map(|value| value as f32)))
     }
 
-    /// The quadrilateral with each edge moved outwards by `margin` times its shorter edge.
+    /// Returns the quadrilateral with each edge moved outwards by `margin` times its shorter edge.
     pub fn grown(&self, margin: f32) -> Self {
         let [a, b, c, d] = self.corners;
         let length = |from: [f32; 2], to: [f32; 2]| (to[0] - from[0]).hypot(to[1] - from[1]);
@@ -110,15 +82,15 @@ impl Quadrilateral {
 
     /// The corners from the top left of the upright text on, and its size. Text that is much higher than wide is turned by 90 degrees
     /// counterclockwise.
-    fn upright(&self) -> Result<([[f64; 2]; 4], [usize; 2]), RectifyError> {
+    fn upright(&self) -> Option<([[f64; 2]; 4], [usize; 2])> {
         if !self.corners.as_flattened().iter().all(|value| value.abs() <= MAX_COORDINATE) {
-            return Err(RectifyError::Degenerate);
+            return None;
         }
         let mut corners = self.corners.map(|corner| corner.map(f64::from));
         let edge = |a: usize, b: usize| (corners[a][0] - corners[b][0]).hypot(corners[a][1] - corners[b][1]);
         let mut size = [edge(0, 1).max(edge(2, 3)), edge(0, 3).max(edge(1, 2))].map(|length| length as usize);
         if size.contains(&0) {
-            return Err(RectifyError::Degenerate);
+            return None;
         }
         if size[1] * TURN_ABOVE[1] >= size[0] * TURN_ABOVE[0] {
             corners.rotate_left(1);
@@ -127,7 +99,7 @@ impl Quadrilateral {
         if self.upside_down {
             corners.rotate_left(2);
         }
-        Ok((corners, size))
+        Some((corners, size))
     }
 }
 
@@ -135,21 +107,21 @@ impl Quadrilateral {
 /// ratio kept, but at most to its width, values from -1 to 1, and 0 to the right of the text. Returns the width of the text in the input.
 ///
 /// Each pixel is sampled once from the image, bilinearly, or several times and averaged if the text shrinks by more than 2. Outside of
-/// the image are the pixels of its border. After an error the input is as before.
+/// the image are the pixels of its border. `None` for a quadrilateral without a convex area of a pixel or
+/// more, one outside the image, and for an image or input of another size than stated; the input is as before then.
 pub fn rectify(
     image: &RgbPixels<'_>,
     quadrilateral: &Quadrilateral,
     shape: InputShape,
     input: &mut [f32],
-) -> Result<usize, RectifyError> {
+) -> Option<usize> {
     image.check()?;
-    let plane =
-        shape.height.checked_mul(shape.width).filter(|&plane| plane > 0).ok_or(RectifyError::Input)?;
+    let plane = shape.height.checked_mul(shape.width).filter(|&plane| plane > 0)?;
     if plane.checked_mul(3) != Some(input.len()) {
-        return Err(RectifyError::Input);
+        return None;
     }
     let (corners, size) = quadrilateral.upright()?;
-    let map = Homography::from_unit_square(&corners).ok_or(RectifyError::Degenerate)?;
+    let map = Homography::from_unit_square(&corners)?;
     image.check_touched(&corners)?;
     let width = scaled_width(size, shape.height, shape.condense).clamp(1, shape.width);
     let grid = Grid {
@@ -159,7 +131,7 @@ pub fn rectify(
     };
     input.chunks_exact_mut(shape.width).for_each(|row| row[width..].fill(0.0));
     grid.write(image, shape, input);
-    Ok(width)
+    Some(width)
 }
 
 fn scaled_width([width, text_height]: [usize; 2], height: usize, condense: f64) -> usize {
@@ -218,21 +190,21 @@ impl Grid {
 }
 
 impl RgbPixels<'_> {
-    fn check(&self) -> Result<(), RectifyError> {
+    fn check(&self) -> Option<()> {
         let row = self.width.checked_mul(3).filter(|&row| row > 0 && row <= self.stride);
         let rows = self.height.checked_sub(1).and_then(|rows| rows.checked_mul(self.stride));
         let needed = row.zip(rows).and_then(|(row, rows)| rows.checked_add(row));
-        needed.filter(|&needed| needed <= self.data.len()).map(|_| ()).ok_or(RectifyError::Image)
+        needed.filter(|&needed| needed <= self.data.len()).map(|_| ())
     }
 
     /// Whether the bounding rectangle of corners touches the image.
-    fn check_touched(&self, corners: &[[f64; 2]; 4]) -> Result<(), RectifyError> {
+    fn check_touched(&self, corners: &[[f64; 2]; 4]) -> Option<()> {
         let touched = [self.width, self.height].into_iter().enumerate().all(|(direction, size)| {
             let least = corners.iter().map(|corner| corner[direction]).fold(f64::INFINITY, f64::min);
             let most = corners.iter().map(|corner| corner[direction]).fold(f64::NEG_INFINITY, f64::max);
             most > 0.0 && least < size as f64
         });
-        if touched { Ok(()) } else { Err(RectifyError::Outside) }
+        touched.then_some(())
     }
 
     /// The bilinear colour at a point.
@@ -285,7 +257,7 @@ mod tests {
         upside_down: bool,
         height: usize,
         width: usize,
-    ) -> Result<(usize, Vec<f32>), RectifyError> {
+    ) -> Option<(usize, Vec<f32>)> {
         let (data, stride) = gradient(200, 100);
         let image = RgbPixels { data: &data, width: 200, height: 100, stride };
         let mut input = vec![f32::NAN; 3 * height * width];
@@ -294,7 +266,7 @@ mod tests {
         // Planes of red, green and blue.
         let plane = height * width;
         (0..plane).for_each(|at| input.swap(at, 2 * plane + at));
-        Ok((text, input.iter().map(|value| (value + 1.0) * 127.5).collect()))
+        Some((text, input.iter().map(|value| (value + 1.0) * 127.5).collect()))
     }
 
     fn rectangle(left: f32, top: f32, right: f32, bottom: f32) -> [[f32; 2]; 4] {
@@ -332,10 +304,10 @@ mod tests {
     #[test]
     fn high_text_is_turned_counterclockwise() {
         let quadrilateral = Quadrilateral { corners: rectangle(10.0, 20.0, 18.0, 32.0), upside_down: false };
-        assert_eq!(quadrilateral.text_size(), Ok([12, 8]));
+        assert_eq!(quadrilateral.text_size(), Some([12, 8]));
         assert_eq!(quadrilateral.reading_corners(), [[18.0, 20.0], [18.0, 32.0], [10.0, 32.0], [10.0, 20.0]]);
-        assert_eq!(quadrilateral.scaled_width(48, 1.0), Ok(72));
-        assert_eq!(quadrilateral.scaled_width(48, 0.5), Ok(36));
+        assert_eq!(quadrilateral.scaled_width(48, 1.0), Some(72));
+        assert_eq!(quadrilateral.scaled_width(48, 0.5), Some(36));
         let (text, values) = crop(quadrilateral.corners, false, 8, 12).unwrap();
         assert_eq!(text, 12);
         assert_near(values[0], 17.0);
@@ -345,7 +317,7 @@ mod tests {
         assert_near(values[84], 10.0);
         assert_near(values[96 + 84], 20.0);
         let lower = Quadrilateral { corners: rectangle(10.0, 20.0, 18.0, 31.0), upside_down: false };
-        assert_eq!(lower.text_size(), Ok([8, 11]));
+        assert_eq!(lower.text_size(), Some([8, 11]));
     }
 
     #[test]
@@ -388,7 +360,7 @@ mod tests {
         let quadrilateral = Quadrilateral { corners: rectangle(0.0, 0.0, 160.0, 40.0), upside_down: false };
         let shape = InputShape { height: 8, width: 32, condense: 1.0 };
         let mut input = vec![f32::NAN; 3 * 8 * 32];
-        assert_eq!(rectify(&image, &quadrilateral, shape, &mut input), Ok(32));
+        assert_eq!(rectify(&image, &quadrilateral, shape, &mut input), Some(32));
         // An odd number of stripes per pixel: a fifth remains.
         assert!(input.iter().all(|value| value.abs() <= 0.21), "{input:?}");
     }
@@ -400,7 +372,7 @@ mod tests {
         let quadrilateral = Quadrilateral { corners: rectangle(0.0, 0.0, 100.0, 10.0), upside_down: false };
         let shape = InputShape { height: 4, width: 5, condense: 1.0 };
         let mut input = vec![f32::NAN; 60];
-        assert_eq!(rectify(&image, &quadrilateral, shape, &mut input), Ok(5));
+        assert_eq!(rectify(&image, &quadrilateral, shape, &mut input), Some(5));
         assert_near(input[0], 7.0 / 127.5 - 1.0);
         assert!(input[44] > input[40]);
     }
@@ -416,17 +388,11 @@ mod tests {
             rectangle(5.0, 5.0, f32::INFINITY, 20.0),
             rectangle(f32::MIN, f32::MIN, f32::MAX, f32::MAX),
         ] {
-            assert_eq!(crop(corners, false, 8, 16).unwrap_err(), RectifyError::Degenerate, "{corners:?}");
+            assert_eq!(crop(corners, false, 8, 16), None, "{corners:?}");
         }
-        assert_eq!(
-            crop(rectangle(500.0, 5.0, 550.0, 20.0), false, 8, 16).unwrap_err(),
-            RectifyError::Outside
-        );
-        assert_eq!(
-            crop(rectangle(5.0, -50.0, 50.0, -20.0), false, 8, 16).unwrap_err(),
-            RectifyError::Outside
-        );
-        assert!(crop(rectangle(-1e6, -1e5, 1e6, 1e5), false, 8, 16).is_ok());
+        assert_eq!(crop(rectangle(500.0, 5.0, 550.0, 20.0), false, 8, 16), None);
+        assert_eq!(crop(rectangle(5.0, -50.0, 50.0, -20.0), false, 8, 16), None);
+        assert!(crop(rectangle(-1e6, -1e5, 1e6, 1e5), false, 8, 16).is_some());
     }
 
     #[test]
@@ -438,13 +404,13 @@ mod tests {
             [(0, 10, 30), (10, 0, 30), (10, 10, 29), (10, 11, 30), (usize::MAX, 2, usize::MAX)]
         {
             let image = RgbPixels { data: &data, width, height, stride };
-            assert_eq!(rectify(&image, &quadrilateral, shape, &mut [0.0; 48]), Err(RectifyError::Image));
+            assert_eq!(rectify(&image, &quadrilateral, shape, &mut [0.0; 48]), None);
         }
         let image = RgbPixels { data: &data, width: 10, height: 10, stride: 30 };
-        assert_eq!(rectify(&image, &quadrilateral, shape, &mut [0.0; 47]), Err(RectifyError::Input));
+        assert_eq!(rectify(&image, &quadrilateral, shape, &mut [0.0; 47]), None);
         for (height, width) in [(0, 4), (4, 0), (usize::MAX, usize::MAX), (usize::MAX, 1)] {
             let shape = InputShape { height, width, ..shape };
-            assert_eq!(rectify(&image, &quadrilateral, shape, &mut []), Err(RectifyError::Input));
+            assert_eq!(rectify(&image, &quadrilateral, shape, &mut []), None);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Text boxes of the probability map of a text detector with differentiable binarization (DB).
+//! Text boxes of the probability map of a text detector with differentiable binarisation (DB).
 
 use super::rectangle::{Pixel, Rectangle, convex_hull};
 
