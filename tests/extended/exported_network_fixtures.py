@@ -4,7 +4,7 @@ predictions of the packages' own post-processing on one image.
     python tests/extended/exported_network_fixtures.py crates/perception [PACKAGE...]
 
 It needs torch, torchvision, ultralytics, transformers, YOLOX from its repository, onnx and onnxruntime, and downloads nothing. Each
-fixture is a container NAME.zip and the predictions NAME.json in tests/imported of detection, pose and classification; that of YOLOX is the
+fixture is a container NAME.zip and the predictions NAME.json in tests/imported of detection, pose, classification and segmentation; that of YOLOX is the
 model of the test data (OPENDR_TEST_DATA). The packages' code is run, not copied; no weights of theirs are involved.
 """
 
@@ -339,12 +339,66 @@ def transformers(folder):
         write(folder, name, f"{name}.onnx", torch.cat(rows, 1), [SIDE, SIDE], threshold)
 
 
+def write_labels(root, name, onnx, labels):
+    """Writes a container of a segmenter and the classes of every pixel, a text of digits for each row."""
+    folder = imported(root, "segmentation")
+    write_container(folder / f"{name}.zip", onnx, "segmenter", "semantic_segmentation")
+    rows = ["".join(map(str, row)) for row in np.asarray(labels).tolist()]
+    assert len(set("".join(rows))) > 1, f"{name} predicts one class only"
+    (folder / f"{name}.json").write_text(json.dumps({"image": [SIDE, SIDE], "labels": rows}) + "\n")
+
+
+def segmenters(folder):
+    """Segmenters of torchvision and transformers."""
+    from torchvision.models._utils import IntermediateLayerGetter
+    from torchvision.models.segmentation.fcn import FCN, FCNHead
+    from transformers import SegformerConfig, SegformerForSemanticSegmentation, SegformerImageProcessor
+
+    levels = image(SIDE, SIDE).astype(np.float32).transpose(2, 0, 1)[None] / 255
+    mean, std = np.array([0.485, 0.456, 0.406]), np.array([0.229, 0.224, 0.225])
+    pixels = torch.from_numpy(((levels - mean[:, None, None]) / std[:, None, None]).astype(np.float32))
+
+    layers = torch.nn.Sequential()
+    layers.add_module("low", torch.nn.Sequential(torch.nn.Conv2d(3, 16, 3, 4, 1), torch.nn.ReLU()))
+    layers.add_module("high", torch.nn.Sequential(torch.nn.Conv2d(16, 16, 3, 2, 1), torch.nn.ReLU()))
+    backbone = IntermediateLayerGetter(layers, {"low": "aux", "high": "out"})
+    model = FCN(backbone, FCNHead(16, 4), FCNHead(16, 4))
+    randomise(model, 11)
+    model.eval()
+    names = {"input_names": ["input"], "output_names": ["out", "aux"]}
+    torch.onnx.export(model, (pixels,), "fcn.onnx", opset_version=17, dynamo=False, **names)
+    with torch.no_grad():
+        write_labels(folder, "torchvision_fcn", "fcn.onnx", model(pixels)["out"].argmax(1)[0])
+
+    config = SegformerConfig(
+        num_labels=5, depths=[1, 1, 1, 1], hidden_sizes=[8, 8, 16, 16], num_attention_heads=[1, 1, 2, 2], decoder_hidden_size=16
+    )
+    torch.manual_seed(5)
+    model = SegformerForSemanticSegmentation(config)
+    randomise(model, 5)
+    model.eval()
+
+    class Logits(torch.nn.Module):
+        def __init__(self, inner):
+            super().__init__()
+            self.inner = inner
+
+        def forward(self, pixel_values):
+            return self.inner(pixel_values=pixel_values, return_dict=True).logits
+
+    names = {"input_names": ["pixel_values"], "output_names": ["logits"]}
+    torch.onnx.export(Logits(model), (pixels,), "segformer.onnx", opset_version=17, dynamo=False, **names)
+    found = type("Found", (), {"logits": torch.from_numpy(outputs_of("segformer.onnx", pixel_values=pixels.numpy())[0])})()
+    [labels] = SegformerImageProcessor().post_process_semantic_segmentation(found, [(SIDE, SIDE)])
+    write_labels(folder, "segformer", "segformer.onnx", labels)
+
+
 def main():
     folder = Path(sys.argv[1]).resolve()
     wanted = sys.argv[2:]
     with tempfile.TemporaryDirectory() as scratch:
         os.chdir(scratch)
-        for package in (ultralytics, yolox, torchvision, transformers):
+        for package in (ultralytics, yolox, torchvision, transformers, segmenters):
             if not wanted or package.__name__ in wanted:
                 package(folder)
 

@@ -57,7 +57,7 @@ use opendr_rl::{DqnLearner, PpoLearner, SacLearner, Td3Learner};
 use opendr_segmentation::{
     binary_high_resolution::HighResolutionPatches,
     instance_segmentation::BodyPix,
-    semantic_segmentation::{Bisenet, Deeplab, SelfieSegmentation, TiledSegmentation},
+    semantic_segmentation::{Bisenet, Deeplab, ImportedSegmenter, SelfieSegmentation, TiledSegmentation},
 };
 #[cfg(feature = "signals")]
 use opendr_signals::heart_anomaly_detection::{AttentionNeuralBagOfFeature, GatedRecurrentUnit};
@@ -145,6 +145,7 @@ pub fn registry() -> &'static Registry {
             #[cfg(feature = "segmentation")]
             {
                 Deeplab,
+                ImportedSegmenter,
                 Bisenet,
                 SelfieSegmentation,
                 TiledSegmentation,

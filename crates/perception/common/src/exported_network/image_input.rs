@@ -49,6 +49,16 @@ impl ImageInput {
         Ok(found)
     }
 
+    /// Returns whether the input consists of bytes, not floats.
+    pub fn is_bytes(&self) -> bool {
+        self.is_bytes
+    }
+
+    /// Returns whether channels or pixels are next to each other in memory.
+    pub fn layout(&self) -> Layout {
+        self.layout
+    }
+
     fn of(index: usize, input: &TensorInfo, side: usize) -> Option<Self> {
         let is_bytes = match input.element_type {
             ElementType::F32 => false,

@@ -2,6 +2,7 @@
 
 mod bisenet;
 mod deeplab;
+mod imported_segmenter;
 mod nearest;
 mod segmenters;
 mod selfie_segmentation;
@@ -11,6 +12,7 @@ mod tiled_segmentation;
 pub use bisenet::BisenetFitParams;
 pub use bisenet::{Bisenet, BisenetParams};
 pub use deeplab::{Deeplab, DeeplabParams};
+pub use imported_segmenter::{ImportedSegmenter, ImportedSegmenterParams, MapFormat};
 pub(crate) use nearest::nearest;
 pub use segmenters::SEGMENTERS;
 pub use selfie_segmentation::{SelfieSegmentation, SelfieSegmentationParams};
