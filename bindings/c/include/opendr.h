@@ -2614,6 +2614,46 @@ static inline opendr_status opendr_infer_deeplab(const opendr_learner *learner,
 }
 
 /*
+ * ImportedSegmenterLearner: Runs your own semantic segmentation, exported to ONNX by another tool; recognises input and map of classes.
+ *
+ * Parameters:
+ *   full_size (a bool, live, default true): Whether the map has the size of the image, to which scores are interpolated before the class with the highest one is chosen; else it has that of the network's output.
+ *   map (a str, one of auto, channels_first, channels_last, labels, default auto): What the output has for each pixel.
+ *   output (a str, default none): Name of the output; recognised from the network if absent.
+ *   resize (a str, one of auto, letterbox, top_left, top_left_truncated, stretch, default auto): How an image becomes the network's input.
+ *   padding (an int 0..=255, default none): Level of the padding of a letterbox; recognised from the network if absent.
+ *   colour (a str, one of auto, rgb, bgr, default auto): Order of the colour channels of the network's input.
+ *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, default auto): Range of the samples of the network's input.
+ *   size (an int 32..=4096 px, default 640): Side of the network's input, for models of dynamic size.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   heatmap (Heatmap)
+ */
+static inline opendr_status opendr_load_segmenter(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("segmenter", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_segmenter(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_heatmap **heatmap) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "heatmap";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (heatmap != NULL) *heatmap = (opendr_heatmap *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
  * BisenetLearner: BiSeNet predicts the class of every pixel; trainable on your own masks.
  *
  * Parameters:

@@ -41,6 +41,49 @@ class DeeplabLearner(NativeLearner):
     @overload
     def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, full_size: bool = ...) -> Iterator[Heatmap]: ...
 
+class ImportedSegmenterLearner(NativeLearner):
+    """Runs your own semantic segmentation, exported to ONNX by another tool; recognises input and map of classes.
+
+    Task: semantic_segmentation. ``infer`` takes:
+
+        image: Image.
+
+    and returns: Heatmap.
+
+    Args:
+        full_size: Whether the map has the size of the image, to which scores are interpolated before the class
+            with the highest one is chosen; else it has that of the network's output. (default True; live: may
+            change while running, and for one call of infer)
+        map: What the output has for each pixel. (default 'auto'; one of 'auto', 'channels_first',
+            'channels_last', 'labels')
+        output: Name of the output; recognised from the network if absent. (default None)
+        resize: How an image becomes the network's input. (default 'auto'; one of 'auto', 'letterbox', 'top_left',
+            'top_left_truncated', 'stretch')
+        padding: Level of the padding of a letterbox; recognised from the network if absent. (default None; 0 to
+            255)
+        colour: Order of the colour channels of the network's input. (default 'auto'; one of 'auto', 'rgb', 'bgr')
+        levels: Range of the samples of the network's input. (default 'auto'; one of 'auto', '0_255', '0_1',
+            '-1_1', 'imagenet')
+        size: Side of the network's input, for models of dynamic size. (default 640; 32 to 4096 px)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+    """
+
+    full_size: bool
+    map: Literal['auto', 'channels_first', 'channels_last', 'labels']
+    output: Optional[str]
+    resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch']
+    padding: Optional[int]
+    colour: Literal['auto', 'rgb', 'bgr']
+    levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet']
+    size: int
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, full_size: bool = ..., map: Literal['auto', 'channels_first', 'channels_last', 'labels'] = ..., output: Optional[str] = ..., resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch'] = ..., padding: Optional[int] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet'] = ..., size: int = ...) -> None: ...
+    @overload
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, full_size: bool = ...) -> Heatmap: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, full_size: bool = ...) -> list[Heatmap]: ...
+    @overload
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, full_size: bool = ...) -> Iterator[Heatmap]: ...
+
 class BisenetLearner(NativeLearner):
     """BiSeNet predicts the class of every pixel; trainable on your own masks.
 
