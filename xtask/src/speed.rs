@@ -31,8 +31,8 @@ fn speed_of(report: &Value, processor: &str) -> Result<String> {
     // The path of the library is specific to this machine.
     let runtime = report["runtime"].as_str().unwrap_or_default();
     let runtime = runtime.split([',', '(']).next().unwrap_or_default().trim();
-    let size = match &report["picture"] {
-        Value::Object(picture) => format!(", {}x{}", picture["width"], picture["height"]),
+    let size = match &report["image"] {
+        Value::Object(image) => format!(", {}x{}", image["width"], image["height"]),
         _ => String::new(),
     };
     Ok(format!(
@@ -58,7 +58,7 @@ mod tests {
     fn audio_has_a_real_time_factor() {
         let mut report = json!({
             "runtime": "ONNX Runtime 1.31.1 (/x.so), cpu, 2 threads", "frames_per_second": 25.04, "p50_ms": { "total": 40.126 },
-            "peak_memory_mb": 95.4, "picture": { "source": "s", "width": 1920, "height": 1080 },
+            "peak_memory_mb": 95.4, "image": { "source": "s", "width": 1920, "height": 1080 },
         });
         let on = "on = \"2 cores of a Z80, ONNX Runtime 1.31.1, 1920x1080\"";
         assert_eq!(
