@@ -2619,7 +2619,7 @@ static inline opendr_status opendr_infer_deeplab(const opendr_learner *learner,
  * Parameters:
  *   full_size (a bool, live, default true): Whether the map has the size of the image, to which scores are interpolated before the class with the highest one is chosen; else it has that of the network's output.
  *   map (a str, one of auto, channels_first, channels_last, labels, default auto): What the output has for each pixel.
- *   output (a str, default none): Name of the output; recognised from the network if absent.
+ *   map_output (a str, default none): Name of the output; recognised from the network if absent.
  *   resize (a str, one of auto, letterbox, top_left, top_left_truncated, stretch, default auto): How an image becomes the network's input.
  *   padding (an int 0..=255, default none): Level of the padding of a letterbox; recognised from the network if absent.
  *   colour (a str, one of auto, rgb, bgr, default auto): Order of the colour channels of the network's input.

@@ -114,7 +114,7 @@ fn what_is_not_stated_is_an_error_that_names_the_parameter() {
     let error = load(channels("silent", false, false), ImportedSegmenterParams::default()).err().unwrap();
     assert_eq!(error.kind(), ErrorKind::Unsupported);
     assert!(format!("{error:#}").contains("set resize, colour, levels"), "{error:#}");
-    let params = ImportedSegmenterParams { output: Some("masks".into()), ..stretched() };
+    let params = ImportedSegmenterParams { map_output: Some("masks".into()), ..stretched() };
     let error = load(channels("named", false, false), params).err().unwrap();
     assert!(format!("{error:#}").contains("no output \"masks\""), "{error:#}");
     let params = ImportedSegmenterParams { map: MapFormat::Labels, ..stretched() };

@@ -56,7 +56,7 @@ class ImportedSegmenterLearner(NativeLearner):
             change while running, and for one call of infer)
         map: What the output has for each pixel. (default 'auto'; one of 'auto', 'channels_first',
             'channels_last', 'labels')
-        output: Name of the output; recognised from the network if absent. (default None)
+        map_output: Name of the output; recognised from the network if absent. (default None)
         resize: How an image becomes the network's input. (default 'auto'; one of 'auto', 'letterbox', 'top_left',
             'top_left_truncated', 'stretch')
         padding: Level of the padding of a letterbox; recognised from the network if absent. (default None; 0 to
@@ -70,13 +70,13 @@ class ImportedSegmenterLearner(NativeLearner):
 
     full_size: bool
     map: Literal['auto', 'channels_first', 'channels_last', 'labels']
-    output: Optional[str]
+    map_output: Optional[str]
     resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch']
     padding: Optional[int]
     colour: Literal['auto', 'rgb', 'bgr']
     levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet']
     size: int
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, full_size: bool = ..., map: Literal['auto', 'channels_first', 'channels_last', 'labels'] = ..., output: Optional[str] = ..., resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch'] = ..., padding: Optional[int] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet'] = ..., size: int = ...) -> None: ...
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, full_size: bool = ..., map: Literal['auto', 'channels_first', 'channels_last', 'labels'] = ..., map_output: Optional[str] = ..., resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch'] = ..., padding: Optional[int] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet'] = ..., size: int = ...) -> None: ...
     @overload
     def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, full_size: bool = ...) -> Heatmap: ...  # type: ignore[overload-overlap]
     @overload

@@ -27,7 +27,7 @@ pub(super) fn map_output(facts: &Facts, name: Option<&str>) -> Result<usize> {
             Some(name) => format!("the network has no output {name:?} ({})", facts.describe()),
             None => format!(
                 "the network has not one output of a map of classes, [1, classes, height, width], [1, height, width, classes] or \
-                 [1, height, width] with integers; set output if it has several ({})",
+                 [1, height, width] with integers; set map_output if it has several ({})",
                 facts.describe()
             ),
         })

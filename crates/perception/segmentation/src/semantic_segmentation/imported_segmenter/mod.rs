@@ -54,7 +54,7 @@ impl Learner for ImportedSegmenter {
     fn load(model: &Model, mut params: ImportedSegmenterParams, device: Device) -> Result<Self> {
         let (session, facts) = Facts::open(model, device)?;
         let image = ImageInput::find(&facts, params.input.size)?;
-        let output = map_output(&facts, params.output.as_deref())?;
+        let output = map_output(&facts, params.map_output.as_deref())?;
         let input = params.input.settle(known_input(&facts, &image));
         let missing: Vec<_> = input.missing().collect();
         if !missing.is_empty() {
@@ -76,7 +76,7 @@ impl Learner for ImportedSegmenter {
                 classes.len()
             )));
         }
-        params.output = Some(facts.outputs[output].name.clone());
+        params.map_output = Some(facts.outputs[output].name.clone());
         let network = ExportedNetwork::new(session, image, &input)?;
         Ok(Self { params, classes, network, output, size: image.size, scratch: Pool::default() })
     }

@@ -27,7 +27,7 @@ pub struct ImportedSegmenterParams {
     /// What the output has for each pixel.
     pub map: MapFormat,
     /// Name of the output; recognised from the network if absent.
-    pub output: Option<String>,
+    pub map_output: Option<String>,
     /// The network's input.
     #[param(flatten)]
     pub input: InputParams,
