@@ -9,7 +9,7 @@ import subprocess
 import hotcoco
 import numpy as np
 import pytest
-from conftest import ROOT
+from programs import ROOT
 from pycocotools import mask as masks
 from pycocotools.coco import COCO
 from pycocotools.cocoeval import COCOeval
