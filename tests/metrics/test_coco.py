@@ -9,11 +9,10 @@ import subprocess
 import hotcoco
 import numpy as np
 import pytest
-from programs import ROOT
 from pycocotools import mask as masks
 from pycocotools.coco import COCO
 from pycocotools.cocoeval import COCOeval
-from programs import example
+from programs import ROOT, example
 
 OBJECT_KEYS = "map map50 map75 map_small map_medium map_large mar1 mar10 mar mar_small mar_medium mar_large".split()
 PERSON_KEYS = "map map50 map75 map_medium map_large mar mar50 mar75 mar_medium mar_large".split()
