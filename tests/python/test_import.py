@@ -4,7 +4,7 @@ import subprocess
 import sys
 
 import pytest
-from command import ROOT
+from programs import ROOT
 
 
 @pytest.mark.parametrize("script", ["compare.py", "compare_tflite.py"])

@@ -48,7 +48,7 @@ pub fn models<'a>(zoo: &'a Zoo, filter: &ModelFilter) -> Vec<ModelSummary<'a>> {
     let mut models = zoo.models(filter);
     models.retain(|model| {
         let learner = model.model.split('/').next().unwrap_or_default();
-        registry().entries().iter().any(|entry| entry.spec.name == learner)
+        registry().find(learner).is_ok()
     });
     models
 }

@@ -81,15 +81,15 @@ mod tests {
     #[test]
     fn classes_change_where_interpolated_scores_cross() {
         // One row of two columns: class 0 falls from 1 to 0, class 1 rises from 0 to 3; they cross at a quarter.
-        let first = [1.0, 0.0, 0.0, 3.0];
-        let last = [1.0, 0.0, 0.0, 3.0];
+        // Channels first and channels last lie alike in memory.
+        let scores = [1.0, 0.0, 0.0, 3.0];
         let columns: Vec<Between> =
             [0.0, 0.2, 0.25, 0.3, 1.0].map(|position| Between::at(position, 2)).into();
         let row = Between::at(0.0, 1);
         let (mut memory, mut labels) = (RowScores::default(), [9; 5]);
-        classes_of_row(&first, [2, 2], [2, 2, 1], row, &columns, &mut memory, &mut labels);
+        classes_of_row(&scores, [2, 2], [2, 2, 1], row, &columns, &mut memory, &mut labels);
         assert_eq!(labels, [0, 0, 0, 1, 1]);
-        classes_of_row(&last, [2, 2], [1, 4, 2], row, &columns, &mut memory, &mut labels);
+        classes_of_row(&scores, [2, 2], [1, 4, 2], row, &columns, &mut memory, &mut labels);
         assert_eq!(labels, [0, 0, 0, 1, 1]);
         let nothing = [f32::NAN; 4];
         classes_of_row(&nothing, [2, 2], [2, 2, 1], row, &columns, &mut memory, &mut labels);
