@@ -84,7 +84,7 @@ impl Zoo {
             download_bytes: item.download_size(),
             licence: &variant.licence,
             source: item.public_source().map(ToString::to_string).unwrap_or_default(),
-            cached: self.cached(&item.to_string()).is_some(),
+            cached: self.ready(&item).is_some(),
             fps: speed.and_then(|speed| speed.fps),
             real_time_factor: speed.and_then(|speed| speed.real_time_factor),
             p50_ms: speed.and_then(|speed| speed.p50_ms),

@@ -198,7 +198,7 @@ impl Zoo {
     }
 
     /// Returns the path of the item, if all its files have the right sizes.
-    fn ready(&self, item: &Item<'_>) -> Option<PathBuf> {
+    pub(crate) fn ready(&self, item: &Item<'_>) -> Option<PathBuf> {
         if let Some(path) = self.own_container(item) {
             return Some(path);
         }
