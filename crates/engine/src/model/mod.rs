@@ -34,6 +34,8 @@ use store::Store;
 
 /// Name of the manifest file of a container.
 pub const MANIFEST_NAME: &str = "model.json";
+/// Name of the network in a model of one network.
+const NETWORK_NAME: &str = "model.onnx";
 
 /// Maximum size of `model.json`, in bytes.
 const MAX_MANIFEST_BYTES: u64 = 16 << 20;
@@ -116,12 +118,14 @@ impl Model {
         )))
     }
 
-    /// Returns the bytes of the file `name`, checked against size and sha256.
+    /// Returns the bytes of the file `name`, checked against size and sha256. `model.onnx` also names the only ONNX file of a
+    /// model that was not written by a learner, such as `bisenet.onnx`.
     ///
     /// # Errors
     /// Returns `NotFound` if the model lists no such file or it is missing, `Integrity` if it is damaged.
     pub fn file(&self, name: &str) -> Result<Vec<u8>> {
-        let file = self.manifest.files.iter().find(|file| file.name == name).ok_or_else(|| {
+        let listed = self.manifest.files.iter().find(|file| file.name == name);
+        let file = listed.or_else(|| self.only_onnx().filter(|_| name == NETWORK_NAME)).ok_or_else(|| {
             let names: Vec<_> = self.manifest.files.iter().map(|file| file.name.as_str()).collect();
             Error::not_found(format!(
                 "the model {} has no file {name:?}; it has {}",
@@ -147,18 +151,26 @@ impl Model {
     /// # Errors
     /// Returns `NotFound` if it lists none, `InvalidInput` if it lists several; otherwise as [`Model::file`].
     pub fn onnx(&self) -> Result<Vec<u8>> {
-        let mut names =
-            self.own_files().map(|file| file.name.as_str()).filter(|name| is_onnx(Path::new(name)));
-        match (names.next(), names.next()) {
-            (Some(name), None) => self.file(name),
-            (None, _) => {
-                Err(Error::not_found(format!("the model {} names no ONNX file", self.path.display())))
-            }
-            (Some(first), Some(second)) => Err(Error::invalid_input(format!(
-                "the model {} has several ONNX files ({first}, {second}, ...); name one",
-                self.path.display()
+        let mut files = self.onnx_files();
+        match (self.only_onnx(), files.next(), files.next()) {
+            (Some(file), ..) => self.file(&file.name),
+            (None, Some(first), Some(second)) => Err(Error::invalid_input(format!(
+                "the model {} has several ONNX files ({}, {}, ...); name one",
+                self.path.display(),
+                first.name,
+                second.name
             ))),
+            _ => Err(Error::not_found(format!("the model {} names no ONNX file", self.path.display()))),
         }
+    }
+
+    fn only_onnx(&self) -> Option<&ModelFile> {
+        let mut files = self.onnx_files();
+        files.next().filter(|_| files.next().is_none())
+    }
+
+    fn onnx_files(&self) -> impl Iterator<Item = &ModelFile> {
+        self.own_files().filter(|file| is_onnx(Path::new(&file.name)))
     }
 }
 

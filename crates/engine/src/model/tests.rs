@@ -241,6 +241,8 @@ fn opendr_json_with_onnx_is_read() {
         folder.write("nanodet_m.json", metadata(paths, "onnx").to_string());
         let model = Model::open(&folder.0).unwrap();
         assert_eq!(model.onnx().unwrap(), b"network");
+        assert_eq!(model.file("model.onnx").unwrap(), b"network");
+        assert!(model.file("iris.onnx").unwrap_err().to_string().contains("it has nanodet_m.onnx"));
         assert_eq!(model.classes().iter().collect::<Vec<_>>(), ["person", "cat"]);
         assert_eq!(model.params()["conf_threshold"], ParamValue::Float(0.35));
         assert_eq!(model.params()["backbone"], ParamValue::Text("mobilenet".into()));

@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 
 use opendr_datasets::{OpenOptions, Problems};
-use opendr_detection::object_detection_2d::{Nanodet, NanodetFitParams, NanodetFreeze, NanodetParams};
+use opendr_detection::object_detection_2d::{FrozenPart, Nanodet, NanodetFitParams, NanodetParams};
 use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, ExternalDataset, Sample, Subset};
 use opendr_engine::learner::{Fit, FitJob, Learner};
 use opendr_engine::model::Model;
@@ -201,7 +201,7 @@ fn a_new_head_learns_from_64_pictures() {
         "trained",
         64,
         &params(|params| {
-            params.freeze = NanodetFreeze::Features;
+            params.freeze = FrozenPart::Features;
             params.training.epochs = 20;
             params.training.val_after = 5;
             for pair in chosen.split_whitespace() {

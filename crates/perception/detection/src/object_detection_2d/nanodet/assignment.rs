@@ -3,21 +3,14 @@
 
 use std::collections::BTreeMap;
 
+use crate::object_detection_2d::ground_truth::{GroundTruthBox, iou};
+
 /// Number of cells per level, nearest to a box, that are candidates for it.
 const NEAREST: usize = 9;
 /// Side of the square around a cell that is compared with boxes, in strides.
 const SQUARE: f32 = 8.0;
 /// Minimum distance of a cell's point from the sides of its box, in pixels.
 const INSIDE: f32 = 0.01;
-
-/// A ground truth box.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct GroundTruthBox {
-    /// Class index.
-    pub class: usize,
-    /// Corners `[x0, y0, x1, y1]`, in pixels of the network's input.
-    pub corners: [f32; 4],
-}
 
 /// A cell that is assigned to a box.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -119,7 +112,7 @@ impl GridLevel {
         let (far_x, far_y) = (x - (x0 + x1) / 2.0, y - (y0 + y1) / 2.0);
         Candidate {
             far: far_x * far_x + far_y * far_y,
-            overlap: overlap([x - half, y - half, x + half, y + half], ground_truth.corners),
+            overlap: iou([x - half, y - half, x + half, y + half], ground_truth.corners),
             inside: sides.iter().all(|side| *side > INSIDE),
             positive: Positive {
                 cell: self.first + row * self.columns + column,
@@ -128,13 +121,6 @@ impl GridLevel {
             },
         }
     }
-}
-
-/// Returns the IoU of two boxes.
-fn overlap(a: [f32; 4], b: [f32; 4]) -> f32 {
-    let area = |[x0, y0, x1, y1]: [f32; 4]| (x1 - x0).max(0.0) * (y1 - y0).max(0.0);
-    let both = area([a[0].max(b[0]), a[1].max(b[1]), a[2].min(b[2]), a[3].min(b[3])]);
-    both / (area(a) + area(b) - both).max(f32::EPSILON)
 }
 
 /// Returns mean plus standard deviation of the overlaps, the threshold of a cell.

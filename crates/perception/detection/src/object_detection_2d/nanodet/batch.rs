@@ -6,11 +6,9 @@ use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes, Name};
 use opendr_engine::{Error, Result, Value};
 use opendr_vision::InputGeometry;
 
-use super::assignment::{Grid, GroundTruthBox, Positive};
+use super::assignment::{Grid, Positive};
 use super::{STRIDES, preprocess};
-
-/// Side below which boxes are ignored, in pixels of the network's input.
-const SMALLEST: f32 = 2.0;
+use crate::object_detection_2d::ground_truth::{GroundTruthBox, input_corners, is_crowd, is_large_enough};
 
 /// Collates images with boxes.
 pub struct Batches {
@@ -35,15 +33,13 @@ impl Batches {
     fn truth_boxes(&self, boxes: &BoundingBoxList, geometry: &InputGeometry) -> Result<Vec<GroundTruthBox>> {
         let mut truth_boxes = Vec::with_capacity(boxes.boxes.len());
         for found in &boxes.boxes {
-            if found.segment.as_ref().is_some_and(|segment| segment.iscrowd) {
+            if is_crowd(found) {
                 continue;
             }
             let class = self.class(found)?;
-            let [x0, y0, x1, y1] = found.corners();
-            let ([x0, y0], [x1, y1]) =
-                (geometry.input_from_image([x0, y0]), geometry.input_from_image([x1, y1]));
-            if x1 - x0 >= SMALLEST && y1 - y0 >= SMALLEST {
-                truth_boxes.push(GroundTruthBox { class, corners: [x0, y0, x1, y1] });
+            let corners = input_corners(found, geometry);
+            if is_large_enough(corners) {
+                truth_boxes.push(GroundTruthBox { class, corners });
             }
         }
         Ok(truth_boxes)

@@ -13,24 +13,13 @@ use opendr_training::{ScheduleKind, TrainingParams, fit_learner, open_for_traini
 use super::network::{DISTANCES, NanodetNetwork};
 use super::objective::NanodetObjective;
 use super::{Nanodet, NanodetParams};
-
-opendr_engine::choices! {
-    /// Layers that do not train.
-    pub enum NanodetFreeze {
-        /// All layers train.
-        None = "none",
-        /// The backbone is frozen; no gradient is computed for it.
-        Backbone = "backbone",
-        /// Backbone and pyramid are frozen; only the heads train, in a third of the time.
-        Features = "features",
-    }
-}
+use crate::object_detection_2d::FrozenPart;
 
 /// Training parameters of [`Nanodet`].
 #[derive(Debug, Clone, Params)]
 pub struct NanodetFitParams {
     /// Layers that do not train, for few images or a short training.
-    pub freeze: NanodetFreeze,
+    pub freeze: FrozenPart,
     /// Whether images are cropped, flipped and recoloured at random.
     #[param(default = true)]
     pub augment: bool,
@@ -77,9 +66,9 @@ impl Fit for Nanodet {
         let known = base.is_some_and(|base| base.manifest().classes == classes);
         let network = if known { network } else { network.with_classes(classes.len()) };
         let network = match freeze {
-            NanodetFreeze::None => network,
-            NanodetFreeze::Backbone => network.freeze_backbone(),
-            NanodetFreeze::Features => network.freeze_features(),
+            FrozenPart::None => network,
+            FrozenPart::Backbone => network.freeze_backbone(),
+            FrozenPart::Features => network.freeze_features(),
         };
         let manifest = manifest(classes.clone(), base);
         let objective = NanodetObjective::new(classes, *augment, manifest);

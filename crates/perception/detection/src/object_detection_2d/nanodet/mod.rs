@@ -26,7 +26,7 @@ mod network;
 mod objective;
 
 #[cfg(feature = "training")]
-pub use fit::{NanodetFitParams, NanodetFreeze};
+pub use fit::NanodetFitParams;
 #[cfg(feature = "training")]
 pub use network::NanodetNetwork;
 

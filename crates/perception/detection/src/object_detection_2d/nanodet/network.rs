@@ -12,6 +12,7 @@ use burn::tensor::ops::{AvgPoolOptions, InterpolateMode, InterpolateOptions, Max
 use burn::tensor::{Device, Tensor};
 
 use super::{BINS, STRIDES};
+use crate::object_detection_2d::cells::cells;
 
 /// Channels of the pyramid.
 const WIDTH: usize = 128;
@@ -186,12 +187,6 @@ impl Head {
     fn forward(&self, features: Tensor<4>) -> Tensor<4> {
         self.output.forward(activated(&self.conv, features))
     }
-}
-
-/// Returns one row per cell of a level, row by row: `[images, cells, channels]`.
-pub fn cells(level: Tensor<4>) -> Tensor<3> {
-    let [pictures, channels, height, width] = level.dims();
-    level.reshape([pictures, channels, height * width]).swap_dims(1, 2)
 }
 
 fn conv(inputs: usize, outputs: usize, side: usize, stride: usize, device: &Device) -> Conv2d {

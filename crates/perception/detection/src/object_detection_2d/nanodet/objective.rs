@@ -12,8 +12,9 @@ use opendr_training::{Container, Loss, Objective};
 
 use super::assignment::Positive;
 use super::batch::{Batch, Batches};
-use super::network::{DISTANCES, NanodetNetwork, cells};
+use super::network::{DISTANCES, NanodetNetwork};
 use super::{BINS, DISTANCE_OUTPUTS, SCORE_OUTPUTS, SIDE};
+use crate::object_detection_2d::cells::cells;
 
 /// Weights of the parts of the loss, from NanoDet-g's configuration.
 const BOX_WEIGHT: f64 = 2.0;

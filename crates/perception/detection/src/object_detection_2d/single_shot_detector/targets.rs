@@ -2,7 +2,7 @@
 
 use opendr_datasets::loader::Collate;
 use opendr_engine::dataset::Sample;
-use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes, Name};
+use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Error, Result, Value};
 use opendr_vision::{InputGeometry, Preprocess};
 
@@ -10,6 +10,7 @@ use super::anchors::Anchor;
 use super::coding::offsets_from_corners;
 use super::layout::Layout;
 use super::matching::{Match, Matching};
+use crate::object_detection_2d::ground_truth::GroundTruth;
 
 /// Collates images with boxes into [`DetectionBatch`]es.
 pub struct DetectionBatches {
@@ -39,9 +40,6 @@ pub struct DetectionBatch {
     pub counts: Vec<f32>,
 }
 
-/// Side below which objects are ignored, in pixels of the network's input.
-const LEAST_SIDE: f32 = 2.0;
-
 impl DetectionBatches {
     /// Creates a collator for a network of `layout` and `classes`. Boxes below `least_score` are neither object nor
     /// background.
@@ -56,44 +54,18 @@ impl DetectionBatches {
         }
     }
 
-    /// Returns the class index of a box; `None` when the network does not have its class.
-    fn class(&self, list: &BoundingBoxList, found: &BoundingBox) -> Option<usize> {
-        match (list.label(found), &found.name) {
-            (Some(label), _) => usize::try_from(self.classes.index(label)?).ok(),
-            (None, Name::Index(index)) => {
-                usize::try_from(*index).ok().filter(|index| *index < self.classes.len())
-            }
-            (None, Name::Label(_)) => None,
-        }
-    }
-
     fn add_targets(&self, batch: &mut DetectionBatch, list: &BoundingBoxList, geometry: &InputGeometry) {
-        let (mut objects, mut classes, mut crowds) = (Vec::new(), Vec::new(), Vec::new());
-        for found in &list.boxes {
-            let Some(class) = self.class(list, found) else { continue };
-            let [x0, y0, x1, y1] = found.corners();
-            let ([x0, y0], [x1, y1]) =
-                (geometry.input_from_image([x0, y0]), geometry.input_from_image([x1, y1]));
-            let corners = [x0, y0, x1, y1];
-            let crowd = found.segment.as_ref().is_some_and(|segment| segment.iscrowd);
-            // Written so that NaN is ignored.
-            let clear =
-                x1 - x0 >= LEAST_SIDE && y1 - y0 >= LEAST_SIDE && found.confidence >= self.least_score;
-            if crowd || !clear {
-                crowds.push(corners);
-            } else {
-                objects.push(corners);
-                classes.push(class as i64);
-            }
-        }
+        let GroundTruth { objects, ignored } =
+            GroundTruth::new(list, &self.classes, self.least_score, geometry);
+        let corners: Vec<[f32; 4]> = objects.iter().map(|object| object.corners).collect();
         let first = batch.counts.len();
-        let matches = self.matching.run(&self.anchors, &objects, &crowds);
+        let matches = self.matching.run(&self.anchors, &corners, &ignored);
         for (at, (anchor, matched)) in self.anchors.iter().zip(matches).enumerate() {
             batch.counts.push(if matched == Match::Ignored { 0.0 } else { 1.0 });
             if let Match::Object(object) = matched {
                 batch.objects.push((first + at) as i64);
-                batch.object_classes.push(classes[object]);
-                batch.object_offsets.extend(offsets_from_corners(objects[object], anchor));
+                batch.object_classes.push(objects[object].class as i64);
+                batch.object_offsets.extend(offsets_from_corners(corners[object], anchor));
             }
         }
     }
@@ -137,7 +109,7 @@ impl Collate for DetectionBatches {
 #[cfg(test)]
 mod tests {
     use opendr_engine::data::Image;
-    use opendr_engine::target::{Segment, Segmentation};
+    use opendr_engine::target::{BoundingBox, Segment, Segmentation};
 
     use super::super::anchors::{AnchorLevel, Anchors};
     use super::super::layout::{ImageLayout, Resizing};

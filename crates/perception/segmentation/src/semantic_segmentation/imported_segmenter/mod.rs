@@ -21,7 +21,7 @@ use opendr_vision::InputGeometry;
 
 use self::layout::{Map, map_output, recognised};
 pub use self::params::{ImportedSegmenterParams, MapFormat};
-use self::upsample::{Between, RowScores, classes_of_row};
+use self::upsample::{Between, Scores, Upsampling};
 
 /// A loaded segmenter of another tool.
 pub struct ImportedSegmenter {
@@ -38,7 +38,7 @@ pub struct ImportedSegmenter {
 #[derive(Default)]
 struct Scratch {
     columns: Vec<Between>,
-    row: RowScores,
+    upsampling: Upsampling,
 }
 
 impl Learner for ImportedSegmenter {
@@ -101,7 +101,7 @@ impl Learner for ImportedSegmenter {
             let size = if self.params.full_size { image_size } else { [columns, rows] };
             let places =
                 Places { geometry, input: self.size, map: [columns, rows], is_image: self.params.full_size };
-            self.write(found, [classes, columns], &places, map.labels_mut(&[size[1], size[0]]), size)
+            self.write(found, [classes, rows, columns], &places, map.labels_mut(&[size[1], size[0]]), size)
         })
     }
 }
@@ -111,24 +111,28 @@ impl ImportedSegmenter {
     fn write(
         &self,
         map: Map<'_>,
-        counts: [usize; 2],
+        counts: [usize; 3],
         places: &Places<'_>,
         labels: &mut [u32],
         [width, height]: [usize; 2],
     ) -> Result<()> {
-        let Scratch { columns, row: memory } = &mut *self.scratch.take();
+        let Scratch { columns, upsampling } = &mut *self.scratch.take();
         columns.clear();
         columns.extend((0..width).map(|x| places.between(0, x)));
+        if let Map::Scores { values, strides } = map {
+            upsampling.begin(Scores { values, counts, strides });
+        }
         for (y, line) in (0..height).zip(labels.chunks_exact_mut(width.max(1))) {
             let row = places.between(1, y);
             match map {
                 Map::Scores { values, strides } => {
-                    classes_of_row(values, counts, strides, row, columns, memory, line);
+                    let scores = Scores { values, counts, strides };
+                    upsampling.classes_of_row(scores, row, columns, line);
                 }
                 Map::Labels(found) => {
                     let nearest =
                         |place: &Between| if place.share < 0.5 { place.first } else { place.second };
-                    let begin = nearest(&row) * counts[1];
+                    let begin = nearest(&row) * counts[2];
                     for (label, column) in line.iter_mut().zip(columns.iter()) {
                         *label = found.at(begin + nearest(column))?;
                     }

@@ -1,4 +1,4 @@
-//! YOLOX: an anchor-free one-stage detector.
+//! YOLOX: an anchor-free one-stage detector, trainable on own classes.
 //!
 //! Ge et al., YOLOX: Exceeding YOLO Series in 2021, arXiv 2107.08430; code and weights Apache-2.0. The variant `nano` is the most
 //! precise of the light detectors and has the smallest file.
@@ -9,11 +9,28 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Device, Pool, Result, Task};
+use opendr_inference::TensorInfo;
 use opendr_perception_common::boxes_from_candidates::boxes_from_candidates;
 use opendr_perception_common::exported_network::{Rows, Selection, decode_grid};
 use opendr_perception_common::image_network::{ImageNetwork, preprocess_from_input};
 use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
-use opendr_vision::{ChannelOrder, LetterboxAlign};
+use opendr_vision::{ChannelOrder, LetterboxAlign, Preprocess};
+
+#[cfg(feature = "training")]
+mod assignment;
+#[cfg(feature = "training")]
+mod batch;
+#[cfg(feature = "training")]
+mod fit;
+#[cfg(feature = "training")]
+mod network;
+#[cfg(feature = "training")]
+mod objective;
+
+#[cfg(feature = "training")]
+pub use fit::YoloxFitParams;
+#[cfg(feature = "training")]
+pub use network::{YoloxNetwork, YoloxSize};
 
 /// Parameters of [`Yolox`].
 #[derive(Debug, Clone, Params)]
@@ -54,21 +71,33 @@ struct Scratch {
 const STRIDES: [usize; 3] = [8, 16, 32];
 /// Level of the padding.
 const PADDING: f32 = 114.0;
+/// File of the network in a container.
+const FILE: &str = "model.onnx";
+/// Side of the input of a network that trains from random weights, in pixels.
+#[cfg(feature = "training")]
+const SIDE: usize = 416;
+
+/// Returns the pre-processing for the network's `input`.
+fn preprocess(input: &TensorInfo) -> Result<Preprocess> {
+    preprocess_from_input(input).map(for_yolox)
+}
+
+/// Adds padding and order of the colours.
+fn for_yolox(preprocess: Preprocess) -> Preprocess {
+    preprocess.letterbox(LetterboxAlign::TopLeftTruncated, PADDING).order(ChannelOrder::Bgr)
+}
 
 impl Learner for Yolox {
     const SPEC: Spec = Spec::new("yolox", Task::ObjectDetection2d)
         .class("YoloxLearner")
-        .about("YOLOX detects the 80 COCO classes; the nano variant is the most precise light detector.");
+        .about("YOLOX, an anchor-free detector; the most precise light detector of the 80 COCO classes, trainable on own ones.");
     type Params = YoloxParams;
     type Input<'a> = &'a Image;
     type Target = BoundingBoxList;
     type State = ();
 
     fn load(model: &Model, params: YoloxParams, device: Device) -> Result<Self> {
-        let network = ImageNetwork::open_file(model, "model.onnx", device, |input| {
-            let preprocess = preprocess_from_input(input)?;
-            Ok(preprocess.letterbox(LetterboxAlign::TopLeftTruncated, PADDING).order(ChannelOrder::Bgr))
-        })?;
+        let network = ImageNetwork::open_file(model, FILE, device, preprocess)?;
         Ok(Self { params, classes: model.classes().clone(), network, scratch: Pool::default() })
     }
 
