@@ -1169,7 +1169,7 @@ static inline opendr_status opendr_infer_nanodet(const opendr_learner *learner,
 }
 
 /*
- * YoloxLearner: YOLOX detects the 80 COCO classes; the nano variant is the most precise light detector.
+ * YoloxLearner: YOLOX, an anchor-free detector; the most precise light detector of the 80 COCO classes, trainable on own ones.
  *
  * Parameters:
  *   threshold (a float 0..=1, live, default 0.3): Score below which detections are dropped.

@@ -166,7 +166,7 @@ class NanodetLearner(NativeLearner):
     def optimize_c_model(self, *args: Any, **kwargs: Any) -> NoReturn: ...
 
 class YoloxLearner(NativeLearner):
-    """YOLOX detects the 80 COCO classes; the nano variant is the most precise light detector.
+    """YOLOX, an anchor-free detector; the most precise light detector of the 80 COCO classes, trainable on own ones.
 
     Task: object_detection_2d. ``infer`` takes:
 
@@ -186,19 +186,69 @@ class YoloxLearner(NativeLearner):
         suppression: Method of non-maximum suppression. (default 'hard'; one of 'hard', 'soft', 'fast', 'cluster';
             live: may change while running, and for one call of infer)
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+
+    Parameters of ``fit``, for one call or, given here, for all of them:
+        size: Size of a network that trains from random weights; a loaded model keeps its own. (default 'nano';
+            one of 'nano', 'tiny', 's', 'm', 'l')
+        side: Side of the network's input in pixels, a multiple of 32. None: that of the loaded model, or 416.
+            (default None; 32 to 2048)
+        classes: Names of the classes to detect, of those of the data set; all when empty. (default [])
+        freeze: Layers that do not train, for few images or a short training. (default 'none'; one of 'none',
+            'backbone', 'features')
+        min_score: Score below which boxes, such as those of a teacher, are neither object nor background.
+            (default 0.5; 0 to 1)
+        augment: Whether images are augmented at random: mosaic, scale, shift, flip, colour. (default True)
+        mosaic: Share of the images that are mosaics of four. (default 0.5; 0 to 1)
+        epochs: Number of epochs. (default 100; 1 to 1e+06; in OpenDR iters)
+        max_steps: Maximum number of optimiser steps, whatever the number of epochs; 0 for no limit. (default 0; 0
+            to 1e+09)
+        batch_size: Number of samples per batch. (default 16; 1 to 65536)
+        accumulate: Number of batches whose gradients are accumulated for one optimiser step. (default 1; 1 to
+            4096; in OpenDR batches_per_iter)
+        lr: Maximum learning rate. (default 0.001; 0 to 100)
+        optimizer: Optimiser. (default 'adamw'; one of 'adamw', 'adam', 'sgd', 'rmsprop'; in OpenDR
+            optimizer_name)
+        momentum: Momentum of `sgd` and `rmsprop`. (default 0.9; 0 to 1)
+        weight_decay: Weight decay: decoupled from the gradient in `adamw`, added to it in the others. (default
+            0.0005; 0 to 10)
+        lr_schedule: Learning rate schedule after the warm-up. (default 'cosine'; one of 'constant', 'step',
+            'cosine', 'linear')
+        warmup_steps: Number of steps over which the learning rate rises from `warmup_ratio` of itself. (default
+            50; 0 to 1e+08)
+        warmup_ratio: Share of the learning rate at the start of the warm-up. (default 0.01; 0 to 1)
+        lr_min: Learning rate at the end of `cosine` and `linear`. (default 5e-05; 0 to 100; in OpenDR
+            lr_schedule_eta_min)
+        lr_steps: Epochs at which `step` lowers the learning rate. (default []; in OpenDR drop_after_epoch)
+        lr_gamma: Factor on the learning rate at each of `lr_steps`. (default 0.1; 0 to 1; in OpenDR lr_decay)
+        grad_clip: Maximum norm of the gradient over all weights; larger gradients are scaled down. 0 for no
+            limit. (default 35.0; 0 to 1e+09)
+        ema: Decay of the exponential moving average of the weights, e.g. 0.999; the average is validated and
+            saved. 0 for no average. (default 0.999; 0 to 0.999999)
+        early_stop: Number of validations without improvement after which training ends; 0 for never. (default 0;
+            0 to 100000)
+        val_after: Number of epochs between validations. (default 5; 1 to 1e+06)
+        checkpoint_after_iter: Number of steps between checkpoints; 0 for time-based checkpoints only. (default 0;
+            0 to 1e+08)
+        checkpoint_minutes: Minutes between checkpoints; 0 for no time-based checkpoints. (default 10.0; 0 to
+            10000 min)
+        checkpoints_kept: Number of checkpoints to keep, besides the best. (default 2; 1 to 1000)
+        log_after: Number of steps between lines of the log. (default 10; 1 to 1e+06)
+        num_workers: Number of threads that read and augment samples. (default 2; 0 to 1024)
+        seed: Seed of initial weights, sample order, augmentation and dropout. (default 0)
     """
 
     iou_threshold: float
     max_detections: int
     multi_label: bool
     suppression: Literal['hard', 'soft', 'fast', 'cluster']
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> None: ...
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, size: Literal['nano', 'tiny', 's', 'm', 'l'] = ..., side: Optional[int] = ..., classes: list[Any] = ..., freeze: Literal['none', 'backbone', 'features'] = ..., min_score: float = ..., augment: bool = ..., mosaic: float = ..., epochs: int = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> None: ...
     @overload
     def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> BoundingBoxList: ...  # type: ignore[overload-overlap]
     @overload
     def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> list[BoundingBoxList]: ...
     @overload
     def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> Iterator[BoundingBoxList]: ...
+    def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, out: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., teacher_map: Optional[Mapping[str, str]] = ..., teacher_by_number: bool = ..., keep_empty: bool = ..., skip_broken: bool = ..., size: Literal['nano', 'tiny', 's', 'm', 'l'] = ..., side: Optional[int] = ..., classes: list[Any] = ..., freeze: Literal['none', 'backbone', 'features'] = ..., min_score: float = ..., augment: bool = ..., mosaic: float = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ...) -> dict[str, Any]: ...
 
 class FastestDetLearner(NativeLearner):
     """FastestDet detects the 80 COCO classes with a network of 1 MB; the fastest detector, for small processors.
