@@ -93,8 +93,7 @@ fn published(folder: &Folder) -> Option<Model> {
 }
 
 fn params(epochs: usize, set: impl FnOnce(&mut YoloxFitParams)) -> YoloxFitParams {
-    let mut params = YoloxFitParams::default();
-    params.augment = false;
+    let mut params = YoloxFitParams { augment: false, ..YoloxFitParams::default() };
     params.training.epochs = epochs;
     params.training.batch_size = 4;
     params.training.num_workers = 0;
