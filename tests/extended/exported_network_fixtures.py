@@ -4,7 +4,7 @@ predictions of the packages' own post-processing on one image.
     python tests/extended/exported_network_fixtures.py crates/perception [PACKAGE...]
 
 It needs torch, torchvision, ultralytics, transformers, YOLOX from its repository, onnx and onnxruntime, and downloads nothing. Each
-fixture is a container NAME.zip and the predictions NAME.json in tests/imported of detection, pose, classification and segmentation; that of YOLOX is the
+fixture is a container NAME.zip and the predictions NAME.json in tests/imported of detection, pose, classification, segmentation and depth; that of YOLOX is the
 model of the test data (OPENDR_TEST_DATA). The packages' code is run, not copied; no weights of theirs are involved.
 """
 
@@ -393,12 +393,130 @@ def segmenters(folder):
     write_labels(folder, "segformer", "segformer.onnx", labels)
 
 
+def write_depths(root, name, onnx, depths, kind, side):
+    """Writes a container of a depth estimator and the depth of every pixel; `side` is that of an input of dynamic size."""
+    folder = imported(root, "depth")
+    write_container(folder / f"{name}.zip", onnx, "depth_estimator", "depth_estimation")
+    depths = depths.detach().numpy()
+    assert depths.std() > 0.01 * abs(depths).max() and (depths == 0).mean() < 0.5, f"{name} predicts one depth only"
+    rows = [[round(float(depth), 5) for depth in row] for row in depths]
+    expected = {"image": list(reversed(depths.shape)), "kind": kind, "size": side, "depths": rows}
+    (folder / f"{name}.json").write_text(json.dumps(expected) + "\n")
+
+
+def resized(width, height, to):
+    """The image in 0 to 1, resized to `to` (width, height) as our preprocessing does: bilinear, without antialiasing."""
+    levels = torch.from_numpy(image(width, height).astype(np.float32).transpose(2, 0, 1)[None] / 255)
+    return torch.nn.functional.interpolate(levels, tuple(reversed(to)), mode="bilinear", align_corners=False)
+
+
+def depth_estimators(folder):
+    """Depth estimators of transformers and Ultralytics."""
+    import yaml
+    from transformers import (
+        BeitConfig,
+        DepthAnythingConfig,
+        DepthAnythingForDepthEstimation,
+        Dinov2Config,
+        DPTConfig,
+        DPTForDepthEstimation,
+        DPTImageProcessor,
+        GLPNConfig,
+        GLPNForDepthEstimation,
+        GLPNImageProcessor,
+        ZoeDepthConfig,
+        ZoeDepthForDepthEstimation,
+        ZoeDepthImageProcessor,
+    )
+    from transformers.models.depth_anything import modeling_depth_anything
+    from transformers.models.dpt.image_processing_dpt import get_resize_output_image_size
+    from ultralytics import YOLO
+
+    imagenet = [0.485, 0.456, 0.406], [0.229, 0.224, 0.225]
+    signed = [0.5] * 3, [0.5] * 3
+    stages = ["stage1", "stage2", "stage3", "stage4"]
+    small = {"hidden_size": 16, "num_hidden_layers": 4, "num_attention_heads": 2, "intermediate_size": 16}
+    neck = {"neck_hidden_sizes": [8, 8, 8, 8], "fusion_hidden_size": 8}
+    dpt = DPTConfig(image_size=64, patch_size=16, backbone_out_indices=[0, 1, 2, 3], **small, **neck)
+    backbone = {"num_hidden_layers": 4, "num_attention_heads": 2, "hidden_size": 16, "mlp_ratio": 1}
+    dino = Dinov2Config(image_size=56, patch_size=14, out_features=stages, apply_layernorm=True, reshape_hidden_states=False, **backbone)
+    anything = {"backbone_config": dino, "reassemble_hidden_size": 16, "head_hidden_size": 8, **neck}
+    glpn = GLPNConfig(
+        depths=[1, 1, 1, 1], hidden_sizes=[8, 8, 16, 16], num_attention_heads=[1, 1, 2, 2], decoder_hidden_size=8, mlp_ratios=[1] * 4
+    )
+    beit = BeitConfig(image_size=64, patch_size=16, out_features=stages, reshape_hidden_states=False, use_relative_position_bias=True, **small)
+    zoe = ZoeDepthConfig(
+        backbone_config=beit, bottleneck_features=8, bin_embedding_dim=8, num_relative_features=8, num_attractors=[4, 2, 2, 1],
+        bin_configurations=[{"n_bins": 8, "min_depth": 0.001, "max_depth": 10.0, "name": "nyu"}], **neck,
+    )
+    relative, metric = "inverse_relative", "metric"
+    cases = [
+        # Name, network, image processor, mean and deviation, width and height of the input (a side if dynamic), quantity.
+        ("dpt", DPTForDepthEstimation(dpt), DPTImageProcessor(), signed, (64, 64), relative),
+        ("dpt_dynamo", DPTForDepthEstimation(dpt), DPTImageProcessor(), signed, (64, 64), relative),
+        ("depth_anything", DepthAnythingForDepthEstimation(DepthAnythingConfig(**anything)), DPTImageProcessor(), imagenet, 56, relative),
+        (
+            "depth_anything_metric",
+            DepthAnythingForDepthEstimation(DepthAnythingConfig(depth_estimation_type="metric", max_depth=10, **anything)),
+            DPTImageProcessor(), imagenet, (70, 56), metric,
+        ),
+        ("glpn", GLPNForDepthEstimation(glpn), GLPNImageProcessor(), ([0] * 3, [1] * 3), (64, 64), metric),
+        ("zoe_depth", ZoeDepthForDepthEstimation(zoe), ZoeDepthImageProcessor(do_pad=False), signed, (64, 64), metric),
+    ]
+    width, height = 45, 36
+    for name, model, processor, (mean, deviation), size, kind in cases:
+        randomise(model, 3, density=1.0)
+        if name.startswith("dpt"):
+            # Depths beyond the rectifier at the end.
+            model.head.head[4].bias.data.fill_(120.0)
+
+        class Depth(torch.nn.Module):
+            def __init__(self, inner):
+                super().__init__()
+                self.inner = inner
+
+            def forward(self, pixel_values):
+                return self.inner(pixel_values=pixel_values, return_dict=True).predicted_depth
+
+        side, export = None, {"opset_version": 17, "dynamo": False}
+        if isinstance(size, int):
+            side = size
+            target = get_resize_output_image_size(torch.zeros(3, height, width), (side, side), True, 14)
+            size = target.width, target.height
+            export["dynamic_axes"] = {"pixel_values": {2: "height", 3: "width"}, "predicted_depth": {1: "height", 2: "width"}}
+            # The head interpolates to `int(...)` of traced sides, which would fix them in the file.
+            modeling_depth_anything.int = lambda traced: traced
+        if name.endswith("dynamo"):
+            export = {"dynamo": True, "external_data": False}
+        pixels = (resized(width, height, size) - torch.tensor(mean)[:, None, None]) / torch.tensor(deviation)[:, None, None]
+        names = {"input_names": ["pixel_values"], "output_names": ["predicted_depth"]}
+        # Dynamic sizes are exported at another size than the one that is compared.
+        example = pixels if side is None else torch.zeros(1, 3, 70, 84)
+        # The exporter restores the mode of the outer module, in the inner ones too.
+        model = Depth(model).eval()
+        torch.onnx.export(model, (example,), f"{name}.onnx", **names, **export)
+        with torch.no_grad():
+            found = type("Found", (), {"predicted_depth": model(pixels)})()
+        [processed] = processor.post_process_depth_estimation(found, target_sizes=[(height, width)])
+        write_depths(folder, name, f"{name}.onnx", processed["predicted_depth"], kind, side)
+
+    layers = [[-1, 1, "Conv", [16, 3, 2]]] * 3 + [[-1, 1, "Conv", [16, 3, 2]], [-1, 1, "Conv", [16, 3, 2]]]
+    spec = {"nc": 1, "scales": {"n": [1, 1, 1024]}, "backbone": layers, "head": [[[2, 3, 4], 1, "Depth", [24]]]}
+    Path("yolo26n-depth-tiny.yaml").write_text(yaml.safe_dump(spec))
+    model = YOLO("yolo26n-depth-tiny.yaml", task="depth")
+    randomise(model.model, 13)
+    onnx = model.export(format="onnx", imgsz=SIDE, simplify=False, opset=17)
+    depths = outputs_of(onnx, images=resized(width, height, (SIDE, SIDE)).numpy())[0]
+    depths = torch.nn.functional.interpolate(torch.from_numpy(depths), (height, width), mode="bilinear", align_corners=True)
+    write_depths(folder, "yolo_depth", onnx, depths[0, 0], metric, None)
+
+
 def main():
     folder = Path(sys.argv[1]).resolve()
     wanted = sys.argv[2:]
     with tempfile.TemporaryDirectory() as scratch:
         os.chdir(scratch)
-        for package in (ultralytics, yolox, torchvision, transformers, segmenters):
+        for package in (ultralytics, yolox, torchvision, transformers, segmenters, depth_estimators):
             if not wanted or package.__name__ in wanted:
                 package(folder)
 

@@ -23,6 +23,7 @@ const FORMATS: &[FormatEntry] = &[
     FormatEntry::of::<crate::WiderFace>(),
     FormatEntry::of::<crate::Cityscapes>(),
     FormatEntry::of::<crate::CamVid>(),
+    FormatEntry::of::<crate::DepthMaps>(),
     FormatEntry::of::<crate::Icdar>(),
     FormatEntry::of::<crate::Mot>(),
     FormatEntry::of::<crate::Kitti>(),

@@ -20,6 +20,11 @@ pub trait Progress: Send + Sync {
     fn begin(&self, what: &str, total: Option<u64>, unit: Unit);
     /// Adds `amount` to the work done.
     fn advance(&self, amount: u64);
+    /// Adds `amount` that was done before the operation started, by a run that it resumes: it counts for the position, and not for
+    /// the speed and the time left.
+    fn advance_resumed(&self, amount: u64) {
+        self.advance(amount);
+    }
     /// Ends the operation, complete or not.
     fn end(&self);
     /// Sets a short status, e.g. "loss 0.31, 42 images/s"; surfaces show it beside the bar until the next one.

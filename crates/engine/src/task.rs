@@ -67,6 +67,8 @@ tasks! {
     InstanceSegmentation = "instance_segmentation";
     /// Disparity or depth from the images of two cameras.
     StereoMatching = "stereo_matching";
+    /// Depth of every pixel from one image.
+    DepthEstimation = "depth_estimation";
     /// Ambiguity of the best position in a map of scores.
     AmbiguityMeasure = "ambiguity_measure";
     /// Binary classification of the regions of a high-resolution image.

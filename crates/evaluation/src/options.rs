@@ -132,7 +132,19 @@ impl EvalJob<'_> {
         subject: Subject,
         progress: &dyn Progress,
     ) -> Result<Outcome> {
-        self.evaluation(subject, progress).run(learners, entry, &self.dataset)
+        let mut evaluation = self.evaluation(subject, progress);
+        if self.is_of_task(entry) {
+            let needed = learners.first().map(|learner| learner.metric_params()).unwrap_or_default();
+            for (name, value) in needed {
+                evaluation.metric_params.entry(name).or_insert(value);
+            }
+        }
+        evaluation.run(learners, entry, &self.dataset)
+    }
+
+    /// Returns whether the metric is that of the task of a learner.
+    fn is_of_task(&self, entry: &Entry) -> bool {
+        metric_of(entry.spec.task).is_ok_and(|name| name == self.metric.name)
     }
 
     /// Evaluates pipelines with the inputs `ports`, with as many samples in parallel; `classes` are the classes of their predictions,

@@ -25,6 +25,7 @@ pub fn metric_of(task: Task) -> Result<&'static str> {
         Task::InstanceSegmentation => Ok("coco_segmentation"),
         Task::PoseEstimation => Ok("coco_keypoints"),
         Task::TextRecognition => Ok("text"),
+        Task::DepthEstimation => Ok("depth"),
         Task::GestureRecognition
         | Task::ActivityRecognition
         | Task::MultimodalHumanCentric

@@ -1,11 +1,16 @@
 //! Depth and stereo: relative and squared errors, fraction of pixels within a factor, fraction of bad pixels.
 
+mod alignment;
+mod pixels;
+
 use std::collections::BTreeMap;
 
 use opendr_engine::params::Params;
 use opendr_engine::target::{Heatmap, HeatmapValues};
 use opendr_engine::{Error, Result};
 
+pub use self::alignment::{AlignedDepth, DepthAlignment};
+use self::pixels::pairs;
 use crate::average::ratio;
 use crate::{Metric, Report};
 
@@ -24,6 +29,8 @@ opendr_engine::choices! {
 pub struct DepthParams {
     /// Quantity in the maps.
     pub quantity: DepthQuantity,
+    /// How the predictions of an image are aligned with its ground truth, for depths that are known up to scale and shift.
+    pub alignment: DepthAlignment,
     /// Smallest depth: smaller ground truth is ignored, smaller predictions are raised to it.
     #[param(default = 1e-3, range = 1e-9..=1e6, unit = "m")]
     pub min_depth: f64,
@@ -51,14 +58,20 @@ pub struct DepthErrors {
 
 impl DepthErrors {
     /// Computes the errors over the pixels of an image whose ground truth is finite and within `range` metres; `None` if
-    /// there are none.
+    /// there are none. Predictions are aligned and then limited to `range`.
     ///
     /// # Errors
-    /// Returns `InvalidInput` if the maps differ in size or the prediction of such a pixel is NaN.
-    pub fn of(ground_truth: &[f32], predicted: &[f32], range: [f64; 2]) -> Result<Option<Self>> {
+    /// As [`DepthAlignment::align`].
+    pub fn of(
+        ground_truth: &[f32],
+        predicted: &[f32],
+        range: [f64; 2],
+        alignment: DepthAlignment,
+    ) -> Result<Option<Self>> {
+        let Some(aligned) = alignment.align(ground_truth, predicted, range)? else { return Ok(None) };
         let (mut count, mut sums, mut within) = (0_u64, [0.0; 5], [0_u64; 3]);
         for (ground_truth, predicted) in pairs(ground_truth, predicted, range)? {
-            let predicted = predicted.clamp(range[0], range[1]);
+            let predicted = aligned.depth(predicted).clamp(range[0], range[1]);
             let (error, log) = (predicted - ground_truth, (predicted / ground_truth).ln());
             let terms =
                 [error.abs() / ground_truth, error * error / ground_truth, error * error, log * log, log];
@@ -71,7 +84,7 @@ impl DepthErrors {
         }
         let [absolute_relative, squared_relative, squared, log_squared, log] =
             sums.map(|sum| sum / count as f64);
-        Ok((count > 0).then(|| Self {
+        Ok(Some(Self {
             absolute_relative,
             squared_relative,
             rmse: squared.sqrt(),
@@ -142,31 +155,6 @@ impl DisparityErrors {
     }
 }
 
-/// Returns ground truth and prediction of the pixels with ground truth within `range`, after a check for NaN.
-fn pairs(
-    ground_truth: &[f32],
-    predicted: &[f32],
-    range: [f64; 2],
-) -> Result<impl Iterator<Item = (f64, f64)>> {
-    if ground_truth.len() != predicted.len() {
-        let (expected, given) = (ground_truth.len(), predicted.len());
-        return Err(Error::invalid_input(format!(
-            "a map of {given} pixels cannot be compared with one of {expected}; give maps of the same size"
-        )));
-    }
-    let all = ground_truth
-        .iter()
-        .zip(predicted)
-        .map(|(ground_truth, predicted)| (f64::from(*ground_truth), f64::from(*predicted)));
-    let valid = all.filter(move |(ground_truth, _)| {
-        (range[0]..=range[1]).contains(ground_truth) && ground_truth.is_finite()
-    });
-    match valid.clone().any(|(_, predicted)| predicted.is_nan()) {
-        true => Err(Error::invalid_input("the prediction of a pixel with ground truth is NaN; give numbers")),
-        false => Ok(valid),
-    }
-}
-
 /// Accumulates errors over images. Errors of depth are means over images, as in benchmarks; errors of disparity are over
 /// all pixels.
 #[derive(Debug, Clone, Default)]
@@ -189,14 +177,16 @@ impl Depth {
 /// Predictions and ground truth are maps of scores `[height, width]`; ground truth of 0, NaN or infinity is ignored.
 impl Metric for Depth {
     const NAME: &'static str = "depth";
-    const ABOUT: &'static str =
-        "relative and root errors and delta of depth; end-point error, bad pixels and D1 of disparity";
+    const ABOUT: &'static str = "errors and delta of depth (Eigen et al. 2014), also of aligned relative depth; end-point error, bad pixels and D1 of disparity";
     const NUMBERS: &'static [(&'static str, &'static str)] = &[
         ("abs_rel", "Mean of |prediction - ground truth| / ground truth."),
         ("sq_rel", "Mean of (prediction - ground truth)^2 / ground truth, in metres."),
         ("rmse", "Root mean square error in metres, the mean over images."),
         ("rmse_log", "Root mean square error of logarithms."),
-        ("silog", "Scale-invariant error of logarithms (Eigen et al. 2014)."),
+        (
+            "silog",
+            "Scale-invariant error: standard deviation of the error of logarithms (KITTI's, not times 100; Eigen et al. 2014).",
+        ),
         ("delta<n>", "Fraction of pixels whose ratio to the ground truth is below 1.25^n."),
         ("end_point_error", "Mean absolute error of disparities, in pixels."),
         ("bad_<n>", "Fraction of pixels with an error of more than n pixels."),
@@ -224,6 +214,17 @@ impl Metric for Depth {
         if max.is_some_and(|max| max < min) {
             return Err(Error::invalid_param(format!("max_depth = {max:?} is below min_depth = {min}")));
         }
+        if params.alignment == DepthAlignment::InverseScaleShift && max.is_none() {
+            return Err(Error::invalid_param(
+                "alignment inverse_scale_shift needs max_depth, to which inverse depths of 0 and less are set; papers use 10 m \
+                 indoors (NYU) and 80 m on roads (KITTI)",
+            ));
+        }
+        if params.alignment != DepthAlignment::None && params.quantity == DepthQuantity::Disparity {
+            return Err(Error::invalid_param(
+                "disparities are in pixels and are not aligned; leave alignment out",
+            ));
+        }
         Ok(Self { params: params.clone(), ..Self::default() })
     }
 
@@ -246,7 +247,9 @@ impl Metric for Depth {
             return Ok(1.0 - ratio(errors.outliers, errors.pixels).unwrap_or(0.0));
         }
         let range = [self.params.min_depth, self.params.max_depth.unwrap_or(f64::MAX)];
-        let Some(errors) = DepthErrors::of(expected, given, range)? else { return Ok(1.0) };
+        let Some(errors) = DepthErrors::of(expected, given, range, self.params.alignment)? else {
+            return Ok(1.0);
+        };
         self.add(errors.numbers());
         self.images += 1;
         Ok(errors.within[0])
@@ -284,6 +287,7 @@ mod tests {
     use super::*;
 
     const ALL: [f64; 2] = [1e-3, f64::MAX];
+    const NONE: DepthAlignment = DepthAlignment::None;
 
     fn map(depths: &[f32]) -> Heatmap {
         Heatmap::from_scores(depths.to_vec(), &[1, depths.len()]).unwrap()
@@ -292,7 +296,8 @@ mod tests {
     #[test]
     fn depths_by_hand() {
         let ground_truth = [2.0, 4.0, 0.0, f32::NAN, f32::INFINITY];
-        let errors = DepthErrors::of(&ground_truth, &[2.0, 5.0, 9.0, 9.0, f32::NAN], ALL).unwrap().unwrap();
+        let errors =
+            DepthErrors::of(&ground_truth, &[2.0, 5.0, 9.0, 9.0, f32::NAN], ALL, NONE).unwrap().unwrap();
         assert_eq!(errors.absolute_relative, 0.125);
         assert_eq!(errors.squared_relative, 0.125);
         assert_eq!(errors.rmse, 0.5_f64.sqrt());
@@ -305,9 +310,21 @@ mod tests {
 
     #[test]
     fn predictions_are_clamped_to_the_range() {
-        let errors = DepthErrors::of(&[10.0, 90.0], &[100.0, 1.0], [1.0, 80.0]).unwrap().unwrap();
+        let errors = DepthErrors::of(&[10.0, 90.0], &[100.0, 1.0], [1.0, 80.0], NONE).unwrap().unwrap();
         assert_eq!(errors.absolute_relative, 7.0);
-        assert_eq!(DepthErrors::of(&[90.0], &[1.0], [1.0, 80.0]).unwrap(), None);
+        assert_eq!(DepthErrors::of(&[90.0], &[1.0], [1.0, 80.0], NONE).unwrap(), None);
+    }
+
+    #[test]
+    fn relative_depths_are_aligned_before_they_are_limited() {
+        // 1 / depth = 0.25 d, and the last pixel's inverse depth is aligned to 0: as far as the limit.
+        let (ground_truth, predicted) = ([4.0, 2.0, 1.0, 80.0], [1.0, 2.0, 4.0, 0.05]);
+        let errors =
+            DepthErrors::of(&ground_truth, &predicted, [1e-3, 80.0], DepthAlignment::InverseScaleShift);
+        let errors = errors.unwrap().unwrap();
+        assert!(errors.absolute_relative < 1e-6 && errors.within[0] == 1.0, "{errors:?}");
+        let metres = DepthErrors::of(&ground_truth, &predicted, [1e-3, 80.0], NONE).unwrap().unwrap();
+        assert!(metres.within[0] < 0.5);
     }
 
     #[test]
@@ -341,5 +358,11 @@ mod tests {
         assert!(DisparityErrors::of(&[1.0], &[f32::INFINITY]).is_err());
         let params = DepthParams { min_depth: 2.0, max_depth: Some(1.0), ..DepthParams::default() };
         assert!(Depth::new(&params).is_err());
+        let relative = DepthAlignment::InverseScaleShift;
+        let params = DepthParams { alignment: relative, ..DepthParams::default() };
+        assert!(Depth::new(&params).unwrap_err().to_string().contains("needs max_depth"));
+        let quantity = DepthQuantity::Disparity;
+        let params = DepthParams { quantity, max_depth: Some(80.0), ..params };
+        assert!(Depth::new(&params).unwrap_err().to_string().contains("leave alignment out"));
     }
 }

@@ -64,7 +64,9 @@ pub use calibration::{Calibration, CalibrationBin};
 pub use classification::{Classification, ClassificationParams};
 pub use clear_mot::{ClearMot, ClearMotCounts, TrackMatchingParams};
 pub use coco::{CocoDetection, CocoKeypoints, CocoSegmentation};
-pub use depth::{Depth, DepthErrors, DepthParams, DepthQuantity, DisparityErrors};
+pub use depth::{
+    AlignedDepth, Depth, DepthAlignment, DepthErrors, DepthParams, DepthQuantity, DisparityErrors,
+};
 pub use edit_distance::EditCounts;
 pub use hota::{Hota, HotaCounts, HotaParams, HotaScores};
 pub use identity::{Identity, IdentityCounts};

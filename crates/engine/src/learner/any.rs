@@ -112,6 +112,11 @@ pub trait AnyLearner: Send {
     /// Returns the classes that the learner predicts.
     fn classes(&self) -> Classes;
 
+    /// As [`Learner::metric_params`]; none before a model is loaded.
+    fn metric_params(&self) -> ParamMap {
+        ParamMap::new()
+    }
+
     /// Returns the requested device.
     fn device(&self) -> Device;
 
@@ -240,6 +245,10 @@ impl<L: Learner> AnyLearner for Typed<L> {
 
     fn classes(&self) -> Classes {
         self.handle.classes()
+    }
+
+    fn metric_params(&self) -> ParamMap {
+        self.handle.metric_params()
     }
 
     fn device(&self) -> Device {

@@ -5,7 +5,7 @@ use std::sync::{Arc, PoisonError, RwLock};
 
 use crate::learner::{Learner, Stream};
 use crate::model::{Manifest, Model, ModelWriter};
-use crate::params::{ParamValue, Params};
+use crate::params::{ParamMap, ParamValue, Params};
 use crate::target::Classes;
 use crate::{Device, Error, Result, ResultExt};
 
@@ -153,6 +153,13 @@ impl<L: Learner> Handle<L> {
             Some(ready) => ready.stream.learner().read().unwrap_or_else(PoisonError::into_inner).classes(),
             None => Classes::default(),
         }
+    }
+
+    /// As [`Learner::metric_params`]; none before `load`.
+    pub fn metric_params(&self) -> ParamMap {
+        let ready = self.ready.as_ref();
+        let learner = ready.map(|ready| ready.stream.learner().read().unwrap_or_else(PoisonError::into_inner));
+        learner.map(|learner| learner.metric_params()).unwrap_or_default()
     }
 
     /// Sets a parameter. While a model is loaded, only `live` parameters can be set; every stream uses the new value from

@@ -37,7 +37,7 @@ pub use stream::Stream;
 pub use streaming::Streaming;
 
 use crate::model::Model;
-use crate::params::Params;
+use crate::params::{ParamMap, Params};
 use crate::target::Classes;
 use crate::{Device, Result};
 
@@ -72,6 +72,12 @@ pub trait Learner: Sized + Send + Sync + 'static {
     /// Returns the classes that the learner predicts.
     fn classes(&self) -> Classes {
         Classes::default()
+    }
+
+    /// Returns parameters of its task's metric without which the predictions cannot be compared, such as the alignment of depths of
+    /// unknown scale. Those that the user gives override them.
+    fn metric_params(&self) -> ParamMap {
+        ParamMap::new()
     }
 
     /// Writes the prediction for `input` into `target`. The memory of `target` is reused; after the first frames nothing is

@@ -15,22 +15,28 @@ pub(crate) fn resize(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opti
     if planner.kind(x) != Kind::F32 {
         return Err(node.refused("its input"));
     }
+    if node.text("mode", "nearest") == "cubic" {
+        let Axes { shape, positions: [rows, columns] } = Axes::new(planner, node, inputs)?;
+        let rows = Cubic::of_axis(node, &rows, dims[2])?;
+        let columns = Cubic::of_axis(node, &columns, dims[3])?;
+        let x = planner.channels_last(x)?;
+        let step = CubicStep { rows, columns, input: [dims[2], dims[3]], channels: dims[1] };
+        return Ok(vec![planner.emit_one(step, &[x], Kind::F32, shape, Layout::ChannelsLast)?]);
+    }
     let Geometry { shape, rows, columns, is_linear } = Geometry::new(planner, node, inputs)?;
     let x = planner.channels_last(x)?;
     let step = ResizeStep { rows, columns, input: [dims[2], dims[3]], channels: dims[1], is_linear };
     Ok(vec![planner.emit_one(step, &[x], Kind::F32, shape, Layout::ChannelsLast)?])
 }
 
-/// Shape of the output, and what each row and column of it is made of.
-pub(crate) struct Geometry {
-    pub(crate) shape: Vec<usize>,
-    pub(crate) rows: Vec<Point>,
-    pub(crate) columns: Vec<Point>,
-    pub(crate) is_linear: bool,
+/// Shape of the output, and the positions of its rows and columns in the input.
+struct Axes {
+    shape: Vec<usize>,
+    positions: [Vec<f64>; 2],
 }
 
-impl Geometry {
-    pub(crate) fn new(planner: &Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Self> {
+impl Axes {
+    fn new(planner: &Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Self> {
         let dims = planner.shape(required(node, inputs, 0)?);
         let old = planner.graph.opset < 11;
         if dims.len() != 4 || node.find("axes").is_some() || node.int_or("antialias", 0) != 0 {
@@ -68,9 +74,7 @@ impl Geometry {
         }
         let place =
             node.text("coordinate_transformation_mode", if old { "asymmetric" } else { "half_pixel" });
-        let rounding = node.text("nearest_mode", if old { "floor" } else { "round_prefer_floor" });
-        let mut axes = Vec::new();
-        for d in 2..4 {
+        let positions = |d: usize| -> Result<Vec<f64>> {
             let (input, output, scale) = (dims[d], shape[d], scales[d]);
             let at = |i: usize| -> Option<f64> {
                 let i = i as f64;
@@ -84,11 +88,37 @@ impl Geometry {
                     _ => return None,
                 })
             };
-            let points = (0..output).map(|i| {
-                // Frameworks compute positions in single precision.
-                let at = f64::from(at(i)? as f32);
-                let last = (input - 1) as f64;
-                if node.text("mode", "nearest") == "linear" {
+            // Frameworks compute positions in single precision.
+            let positions: Option<Vec<f64>> = (0..output).map(|i| Some(f64::from(at(i)? as f32))).collect();
+            positions.ok_or_else(|| node.refused(&format!("mode {place:?}")))
+        };
+        let positions = [positions(2)?, positions(3)?];
+        Ok(Self { shape, positions })
+    }
+}
+
+/// Shape of the output, and what each row and column of it is made of.
+pub(crate) struct Geometry {
+    pub(crate) shape: Vec<usize>,
+    pub(crate) rows: Vec<Point>,
+    pub(crate) columns: Vec<Point>,
+    pub(crate) is_linear: bool,
+}
+
+impl Geometry {
+    pub(crate) fn new(planner: &Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Self> {
+        let Axes { shape, positions: [rows, columns] } = Axes::new(planner, node, inputs)?;
+        let dims = planner.shape(required(node, inputs, 0)?);
+        let mode = node.text("mode", "nearest");
+        if mode != "linear" && mode != "nearest" {
+            return Err(node.refused(&format!("mode {mode:?}")));
+        }
+        let old = planner.graph.opset < 11;
+        let rounding = node.text("nearest_mode", if old { "floor" } else { "round_prefer_floor" });
+        let points = |positions: &[f64], input: usize| -> Result<Vec<Point>> {
+            let last = (input - 1) as f64;
+            let points = positions.iter().map(|&at| {
+                if mode == "linear" {
                     let at = at.clamp(0.0, last);
                     let first = at.floor();
                     let next = (first + 1.0).min(last);
@@ -104,16 +134,84 @@ impl Geometry {
                 Some(([near.clamp(0.0, last) as usize; 2], 0.0))
             });
             let points: Option<Vec<Point>> = points.collect();
-            axes.push(points.ok_or_else(|| node.refused(&format!("mode {place:?} with {rounding:?}")))?);
-        }
-        let mode = node.text("mode", "nearest");
-        if mode != "linear" && mode != "nearest" {
-            return Err(node.refused(&format!("mode {mode:?}")));
-        }
-        let (Some(columns), Some(rows)) = (axes.pop(), axes.pop()) else {
-            return Err(node.damaged("its sizes"));
+            points.ok_or_else(|| node.refused(&format!("nearest mode {rounding:?}")))
         };
+        let (rows, columns) = (points(&rows, dims[2])?, points(&columns, dims[3])?);
         Ok(Self { shape, rows, columns, is_linear: mode == "linear" })
+    }
+}
+
+/// Four neighbours of a position along an axis and their weights.
+#[derive(Clone, Copy)]
+struct Cubic {
+    places: [usize; 4],
+    weights: [f32; 4],
+}
+
+impl Cubic {
+    /// Returns the neighbours of each position; those outside of `0..input` are at the edge, or excluded if the node states so.
+    fn of_axis(node: &NodeProto, positions: &[f64], input: usize) -> Result<Vec<Self>> {
+        let a = f64::from(node.float("cubic_coeff_a", -0.75));
+        let excludes = node.int_or("exclude_outside", 0) != 0;
+        let last = input as f64 - 1.0;
+        let cubics = positions.iter().map(|&at| {
+            let whole = at.floor();
+            let share = at - whole;
+            let near = |x: f64| ((a + 2.0) * x - (a + 3.0)) * x * x + 1.0;
+            let far = |x: f64| ((a * x - 5.0 * a) * x + 8.0 * a) * x - 4.0 * a;
+            let mut weights = [far(share + 1.0), near(share), near(1.0 - share), far(2.0 - share)];
+            let places = [-1.0, 0.0, 1.0, 2.0].map(|step| whole + step);
+            if excludes {
+                for (weight, place) in weights.iter_mut().zip(places) {
+                    if !(0.0..=last).contains(&place) {
+                        *weight = 0.0;
+                    }
+                }
+                let sum: f64 = weights.iter().sum();
+                weights = weights.map(|weight| weight / sum);
+            }
+            Self {
+                places: places.map(|place| place.clamp(0.0, last) as usize),
+                weights: weights.map(|weight| weight as f32),
+            }
+        });
+        let cubics: Vec<Self> = cubics.collect();
+        let is_finite = cubics.iter().flat_map(|cubic| cubic.weights).all(f32::is_finite);
+        if is_finite { Ok(cubics) } else { Err(node.damaged("its positions or \"cubic_coeff_a\"")) }
+    }
+}
+
+struct CubicStep {
+    rows: Vec<Cubic>,
+    columns: Vec<Cubic>,
+    input: [usize; 2],
+    channels: usize,
+}
+
+impl Kernel for CubicStep {
+    fn run(&self, io: &mut Io<'_>) -> Result<()> {
+        let (x, y) = (io.read::<f32>(0), io.write::<f32>());
+        let channels = self.channels;
+        if y.is_empty() {
+            return Ok(());
+        }
+        let [height, width] = self.input;
+        io.compute.pool().run_on_pieces(y, self.columns.len() * channels, |index, y| {
+            let (image, oy) = (index / self.rows.len(), index % self.rows.len());
+            let row = &self.rows[oy];
+            y.fill(0.0);
+            for (place, down) in row.places.into_iter().zip(row.weights) {
+                let line = &x[(image * height + place) * width * channels..][..width * channels];
+                for (y, column) in y.chunks_exact_mut(channels).zip(&self.columns) {
+                    for (place, across) in column.places.into_iter().zip(column.weights) {
+                        let weight = down * across;
+                        let values = &line[place * channels..][..channels];
+                        y.iter_mut().zip(values).for_each(|(y, value)| *y += weight * value);
+                    }
+                }
+            }
+        });
+        Ok(())
     }
 }
 

@@ -8,7 +8,7 @@
 //!   [`boxes_from_candidates`], [`part_tree`] (PersonLab's decoder of poses), [`joints`], [`rotated_square`].
 //! * Second passes over parts of a large image: [`regions`].
 //! * Training, with the feature `training`: [`labelled`], [`trainable_weights`], [`frozen_layers`], [`dynamic_sides`],
-//!   [`small_backbone`] and [`small_classifier`].
+//!   [`small_backbone`] and [`small_classifier`]; [`progressive`] (networks that grow).
 //!
 //! Data and target types are in `opendr-engine`, sessions in `opendr-inference`, image pre-processing in `opendr-vision`, the
 //! training loop in `opendr-training`, tiles of large images in `opendr-tiling`. Code that only one family needs is in the crate
@@ -45,6 +45,7 @@ pub mod joints;
 pub mod labelled;
 pub mod manifest_preprocess;
 pub mod part_tree;
+pub mod progressive;
 pub mod regions;
 pub mod rotated_square;
 #[cfg(feature = "training")]

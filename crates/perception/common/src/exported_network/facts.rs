@@ -17,6 +17,9 @@ const SHAPED: [&str; 9] =
 /// Operators of layers with weights, at which an output's computation is followed no further.
 const LAYERS: [&str; 4] = ["Conv", "ConvTranspose", "Gemm", "MatMul"];
 
+/// Minimum side of the patches of a vision transformer, in pixels; kernels that small belong to other networks.
+const MIN_PATCH: usize = 8;
+
 /// Facts about a network.
 pub struct Facts {
     /// Inputs.
@@ -25,6 +28,8 @@ pub struct Facts {
     pub outputs: Vec<TensorInfo>,
     metadata: HashMap<String, String>,
     operators: HashSet<String>,
+    /// Dimensions of the weights, by name.
+    weights: HashMap<String, Vec<i64>>,
     graph: GraphProto,
 }
 
@@ -52,12 +57,13 @@ impl Facts {
     fn new(onnx: &[u8], inputs: Vec<TensorInfo>, outputs: Vec<TensorInfo>) -> Result<Self> {
         let model = model_from_bytes(onnx)?;
         let mut graph = model.graph.unwrap_or_default();
-        graph.initializer.clear();
+        let weights = graph.initializer.drain(..).map(|tensor| (tensor.name, tensor.dims)).collect();
         Ok(Self {
             inputs,
             outputs,
             metadata: model.metadata_props.into_iter().map(|entry| (entry.key, entry.value)).collect(),
             operators: graph.node.iter().map(|node| node.op_type.clone()).collect(),
+            weights,
             graph,
         })
     }
@@ -92,6 +98,28 @@ impl Facts {
     /// Returns whether the network has an operator.
     pub fn has_operator(&self, name: &str) -> bool {
         self.operators.contains(name)
+    }
+
+    /// Returns whether the name of a tensor of weights contains `part`. Exporters of PyTorch name it by the module that it belongs to.
+    pub fn has_weights_of(&self, part: &str) -> bool {
+        self.weights.keys().any(|name| name.contains(part))
+    }
+
+    /// Returns whether an operator named `kind` reads an input of the network.
+    pub fn reads_input_by(&self, kind: &str) -> bool {
+        let is_input = |name: &String| self.inputs.iter().any(|input| input.name == *name);
+        self.graph.node.iter().any(|node| node.op_type == kind && node.input.iter().any(is_input))
+    }
+
+    /// Returns the side of the patches of a vision transformer: that of a convolution whose kernel covers each pixel once.
+    pub fn patch_side(&self) -> Option<usize> {
+        self.graph.node.iter().filter(|node| node.op_type == "Conv").find_map(|node| {
+            let strides = node.attribute.iter().find(|attribute| attribute.name == "strides")?;
+            let kernel = self.weights.get(node.input.get(1)?)?.get(2..)?;
+            let [height, width] = *kernel else { return None };
+            let covers = strides.ints == kernel && height == width;
+            usize::try_from(height).ok().filter(|side| covers && *side >= MIN_PATCH)
+        })
     }
 
     /// Returns the index of the output whose name contains `part`.

@@ -23,6 +23,8 @@ pub struct ImageInput {
     has_batch: bool,
     /// Width and height, in pixels.
     pub size: [usize; 2],
+    /// Whether the network takes images of any width and height.
+    pub is_dynamic: bool,
 }
 
 impl ImageInput {
@@ -40,12 +42,7 @@ impl ImageInput {
                     facts.describe()
                 ))
             })?;
-        let [width, height] = found.size;
-        if !(1..=MAX_PIXELS).contains(&width.saturating_mul(height)) {
-            return Err(Error::unsupported(format!(
-                "the network's input has {width} x {height} pixels; at most {MAX_PIXELS} are supported"
-            )));
-        }
+        check_size(found.size)?;
         Ok(found)
     }
 
@@ -78,8 +75,19 @@ impl ImageInput {
         };
         let is_single = batch.flatten().is_none_or(|batch| batch == 1);
         let size = [width.unwrap_or(side), height.unwrap_or(side)];
-        is_single.then_some(Self { index, is_bytes, layout, has_batch: batch.is_some(), size })
+        let is_dynamic = width.is_none() && height.is_none();
+        is_single.then_some(Self { index, is_bytes, layout, has_batch: batch.is_some(), size, is_dynamic })
     }
+}
+
+/// Checks width and height of the network's input.
+fn check_size([width, height]: [usize; 2]) -> Result<()> {
+    if (1..=MAX_PIXELS).contains(&width.saturating_mul(height)) {
+        return Ok(());
+    }
+    Err(Error::unsupported(format!(
+        "the network's input has {width} x {height} pixels; at most {MAX_PIXELS} are supported"
+    )))
 }
 
 /// The inputs of a network, with its session.
@@ -156,19 +164,42 @@ impl ExportedNetwork {
     pub fn run(
         &self,
         image: ImageView<'_>,
+        sink: impl FnMut(&[TensorView<'_>], &InputGeometry) -> Result<()>,
+    ) -> Result<()> {
+        self.run_through(&self.preprocess, image, sink)
+    }
+
+    /// Runs a network of dynamic size, whose only input is the image, with an input of `width` x `height` pixels.
+    ///
+    /// # Errors
+    /// `Unsupported` for an input that is too large.
+    pub fn run_sized(
+        &self,
+        image: ImageView<'_>,
+        [width, height]: [usize; 2],
+        sink: impl FnMut(&[TensorView<'_>], &InputGeometry) -> Result<()>,
+    ) -> Result<()> {
+        check_size([width, height])?;
+        self.run_through(&self.preprocess.with_size(width, height), image, sink)
+    }
+
+    fn run_through(
+        &self,
+        preprocess: &Preprocess,
+        image: ImageView<'_>,
         mut sink: impl FnMut(&[TensorView<'_>], &InputGeometry) -> Result<()>,
     ) -> Result<()> {
-        let shape = self.preprocess.shape();
+        let shape = preprocess.shape();
         let shape = if self.image.has_batch { &shape[..] } else { &shape[1..] };
         if self.image.is_bytes {
             let mut input = self.bytes.take();
-            input.resize(self.preprocess.len(), 0);
-            let geometry = self.preprocess.run_into(image, &mut input[..])?;
+            input.resize(preprocess.len(), 0);
+            let geometry = preprocess.run_into(image, &mut input[..])?;
             self.run_on(TensorView::new(shape, &input[..])?, |outputs| sink(outputs, &geometry))
         } else {
             let mut input = self.floats.take();
-            input.resize(self.preprocess.len(), 0.0);
-            let geometry = self.preprocess.run_into(image, &mut input[..])?;
+            input.resize(preprocess.len(), 0.0);
+            let geometry = preprocess.run_into(image, &mut input[..])?;
             self.run_on(TensorView::new(shape, &input[..])?, |outputs| sink(outputs, &geometry))
         }
     }

@@ -58,9 +58,9 @@ pub struct InputParams {
     pub colour: InputColour,
     /// Range of the samples of the network's input.
     pub levels: InputLevels,
-    /// Side of the network's input, for models of dynamic size.
-    #[param(default = 640, range = 32..=4096, unit = "px")]
-    pub size: usize,
+    /// Side of the network's input, for models of dynamic size; if absent that of its convention, 640 for most.
+    #[param(range = 32..=4096, unit = "px")]
+    pub size: Option<usize>,
 }
 
 /// What is known of a network's image input; `Auto` where a parameter has to state it.
@@ -74,12 +74,19 @@ pub struct InputConvention {
     pub colour: InputColour,
     /// Range of the samples.
     pub levels: InputLevels,
+    /// Side of an input of dynamic size.
+    pub size: usize,
 }
 
 impl InputConvention {
-    /// Nothing is known.
-    pub const UNKNOWN: Self =
-        Self { resize: InputResize::Auto, padding: 0, colour: InputColour::Auto, levels: InputLevels::Auto };
+    /// Nothing is known but the usual side of inputs of dynamic size.
+    pub const UNKNOWN: Self = Self {
+        resize: InputResize::Auto,
+        padding: 0,
+        colour: InputColour::Auto,
+        levels: InputLevels::Auto,
+        size: 640,
+    };
 
     /// Input of YOLOv3 to v12 and YOLO26: letterbox with padding of 114, RGB, 0 to 1.
     pub const YOLO: Self = Self {
@@ -87,6 +94,7 @@ impl InputConvention {
         padding: 114,
         colour: InputColour::Rgb,
         levels: InputLevels::Unit,
+        ..Self::UNKNOWN
     };
 
     /// Returns the names of the parameters that are still to be set.
@@ -101,6 +109,11 @@ impl InputConvention {
 }
 
 impl InputParams {
+    /// Returns the side of an input of dynamic size.
+    pub fn side(&self) -> usize {
+        self.size.unwrap_or(InputConvention::UNKNOWN.size)
+    }
+
     /// Combines the parameters with what was recognised, and writes the result into the parameters.
     pub fn settle(&mut self, known: InputConvention) -> InputConvention {
         if self.resize == InputResize::Auto {
@@ -113,6 +126,7 @@ impl InputParams {
             self.levels = known.levels;
         }
         let padding = *self.padding.get_or_insert(known.padding);
-        InputConvention { resize: self.resize, padding, colour: self.colour, levels: self.levels }
+        let size = self.size.unwrap_or(known.size);
+        InputConvention { resize: self.resize, padding, colour: self.colour, levels: self.levels, size }
     }
 }

@@ -2,7 +2,12 @@
 
 use opendr_inference::{ElementType, TensorInfo};
 
-use super::Facts;
+use super::{Facts, ImageInput};
+
+/// Names of an output of depths, as exporters write them.
+const DEPTH_NAMES: [&str; 4] = ["predicted_depth", "depth", "pred_depth", "metric_depth"];
+/// Modules of networks whose only map are depths: the decoders of MiDaS and Depth Anything, also in transformers.
+const DEPTH_MODULES: [&str; 2] = ["scratch.output_conv", "neck.fusion_stage."];
 
 /// The task of a network that another tool exported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -11,6 +16,10 @@ pub enum NetworkKind {
     Classifier,
     /// A map of classes.
     Segmenter,
+    /// A map of depths.
+    DepthEstimator,
+    /// A map of one value for each pixel, which may be depths or a mask: nothing in the file distinguishes them.
+    ValueMap,
     /// Boxes with keypoints.
     PoseEstimator,
     /// Boxes; also what is not recognised, since a detector's error names what is to be set.
@@ -24,11 +33,14 @@ impl NetworkKind {
             "classify" => Self::Classifier,
             "pose" => Self::PoseEstimator,
             "detect" | "segment" | "obb" => Self::Detector,
+            "depth" => Self::DepthEstimator,
             _ if ["dets", "keypoints"].iter().all(|name| facts.output_named(name).is_some()) => {
                 Self::PoseEstimator
             }
             _ if facts.outputs.len() == 1 && facts.outputs.iter().all(is_class_scores) => Self::Classifier,
+            _ if depth_output(facts).is_some() => Self::DepthEstimator,
             _ if is_segmenter(facts) => Self::Segmenter,
+            _ if is_value_map_of_input(facts) => Self::ValueMap,
             _ => Self::Detector,
         }
     }
@@ -62,6 +74,58 @@ pub fn is_class_map(output: &TensorInfo) -> bool {
         | ([batch, rows, columns, Some(1)], ElementType::I64 | ElementType::I32 | ElementType::U8) => {
             is_one(batch) && is_side(rows) && is_side(columns)
         }
+        _ => false,
+    }
+}
+
+/// Returns whether an output may have one value for each pixel of one image: floats in two dimensions, and others of size 1.
+pub fn is_value_map(output: &TensorInfo) -> bool {
+    value_map_sides(output).is_some()
+}
+
+/// Returns height and width of an output with one value for each pixel; `None` for another output.
+fn value_map_sides(output: &TensorInfo) -> Option<[Option<usize>; 2]> {
+    let is_one = |dim: &Option<usize>| dim.is_none_or(|dim| dim == 1);
+    let is_side = |dim: Option<usize>| dim.is_none_or(|dim| dim > 1);
+    let (batch, height, width) = match output.dims[..] {
+        [batch, height, width] | [batch, Some(1), height, width] | [batch, height, width, Some(1)] => {
+            (batch, height, width)
+        }
+        _ => return None,
+    };
+    let is_map = output.element_type == ElementType::F32 && is_one(&batch);
+    (is_map && is_side(height) && is_side(width)).then_some([height, width])
+}
+
+/// Returns the index of the output of depths: by the names that exporters give it, else the only output with one value for each pixel of
+/// a network whose metadata or modules are those of a depth estimator.
+pub fn depth_output(facts: &Facts) -> Option<usize> {
+    let named = |name: &&str| {
+        let output = facts.outputs.iter().position(|output| output.name == *name)?;
+        is_value_map(&facts.outputs[output]).then_some(output)
+    };
+    let is_depth = |output: &TensorInfo| {
+        is_value_map(output) && ["depth", "disparity"].iter().any(|part| output.name.contains(part))
+    };
+    let states_depth = || {
+        facts.metadata("task") == "depth" || DEPTH_MODULES.iter().any(|module| facts.has_weights_of(module))
+    };
+    DEPTH_NAMES
+        .iter()
+        .find_map(named)
+        .or_else(|| facts.only_output(is_depth))
+        .or_else(|| facts.only_output(is_value_map).filter(|_| states_depth()))
+}
+
+/// Returns whether the only output of a network has one value for each pixel of its image, or for each square of several.
+fn is_value_map_of_input(facts: &Facts) -> bool {
+    let ([output], Ok(image)) = (&facts.outputs[..], ImageInput::find(facts, 1)) else { return false };
+    let [columns, rows] = image.size;
+    match value_map_sides(output) {
+        Some([Some(height), Some(width)]) => {
+            rows % height == 0 && columns % width == 0 && rows / height == columns / width
+        }
+        Some([None, None]) => output.dims.len() == 4,
         _ => false,
     }
 }
