@@ -1,4 +1,4 @@
-//! Batches, loss and container of both learners.
+//! Batches, loss and container of the learners.
 
 use burn::tensor::Device;
 use opendr_datasets::augment::Pipeline;
@@ -20,6 +20,8 @@ use super::sizes::NetworkSizes;
 
 /// Training objective: cross-entropy with label smoothing.
 pub(super) struct ActionObjective {
+    /// Name of the learner.
+    pub learner: &'static str,
     pub sizes: NetworkSizes,
     pub form: Form,
     pub params: ParamMap,
@@ -78,23 +80,21 @@ impl Objective for ActionObjective {
 
     fn container(&self, network: &Self::Network) -> Result<Container> {
         let (features, joints) = (self.sizes.features(), self.sizes.graph.joints());
-        let (name, model) = match self.form {
+        let model = match self.form {
             Form::Clip => {
                 let input = Input::new("clip", [1, features, self.sizes.frames, joints]);
-                let model = export::onnx(network, input, &["logits"], ActionNetwork::forward)?;
-                ("spatio_temporal_gcn", model)
+                export::onnx(network, input, &["logits"], ActionNetwork::forward)?
             }
             Form::Step => {
                 let frame = Input::new("frame", [1, features, 1, joints]);
                 let state = Input::new("state", [1, self.sizes.state()?]);
                 let names = ["logits", "next_state"];
-                let model = export::onnx(network, (frame, state), &names, |network, (frame, state)| {
+                export::onnx(network, (frame, state), &names, |network, (frame, state)| {
                     network.step(frame, state)
-                })?;
-                ("co_st_gcn", model)
+                })?
             }
         };
-        let mut manifest = Manifest::new(name, "");
+        let mut manifest = Manifest::new(self.learner, "");
         manifest.task = Some(Task::SkeletonBasedActionRecognition);
         manifest.params.clone_from(&self.params);
         manifest.inputs = self.inputs();

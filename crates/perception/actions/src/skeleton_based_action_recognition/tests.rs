@@ -1,3 +1,6 @@
+mod architectures;
+mod growth;
+
 use std::path::{Path, PathBuf};
 
 use burn::tensor::Device as Trainer;
@@ -20,18 +23,21 @@ use super::*;
 const JOINTS: usize = 15;
 
 fn sizes() -> NetworkSizes {
-    NetworkSizes { graph: GraphType::Jhmdb, coordinates: 2, frames: 20, channels: vec![8, 12, 12], kernel: 5 }
+    clip_params().sizes().unwrap()
 }
 
-fn clip_params() -> SpatioTemporalGcnParams {
-    SpatioTemporalGcnParams {
+fn clip() -> SkeletonClipParams {
+    SkeletonClipParams {
         graph_type: GraphType::Jhmdb,
         in_channels: 2,
         num_frames: 20,
-        channels: vec![8, 12, 12],
         temporal_kernel: 5,
         ..Default::default()
     }
+}
+
+fn clip_params() -> SpatioTemporalGcnParams {
+    SpatioTemporalGcnParams { clip: clip(), channels: Some(vec![8, 12, 12]), ..Default::default() }
 }
 
 fn step_params() -> CoStGcnParams {
@@ -46,11 +52,12 @@ fn step_params() -> CoStGcnParams {
 }
 
 fn objective(form: Form) -> ActionObjective {
-    let params = match form {
-        Form::Clip => clip_params().to_map(),
-        Form::Step => step_params().to_map(),
+    let (learner, params) = match form {
+        Form::Clip => (SpatioTemporalGcn::SPEC.name, clip_params().to_map()),
+        Form::Step => (CoStGcn::SPEC.name, step_params().to_map()),
     };
-    ActionObjective { sizes: sizes(), form, params, classes: Walks.classes(), smoothing: 0.0, augment: false }
+    let (sizes, classes) = (sizes(), Walks.classes());
+    ActionObjective { learner, sizes, form, params, classes, smoothing: 0.0, augment: false }
 }
 
 /// Persons whose joints move at random; some joints are missing.
@@ -216,9 +223,8 @@ fn trained(folder: &Folder) -> Option<(Handle<SpatioTemporalGcn>, Handle<CoStGcn
     }
     let (channels, kernel) = (vec![32, 48, 64], 7);
     let clip = SpatioTemporalGcnParams {
-        num_frames: 32,
-        channels: channels.clone(),
-        temporal_kernel: kernel,
+        clip: SkeletonClipParams { num_frames: 32, temporal_kernel: kernel, ..clip() },
+        channels: Some(channels.clone()),
         ..clip_params()
     };
     let step = CoStGcnParams { sequence_len: 32, channels, temporal_kernel: kernel, ..step_params() };
@@ -326,15 +332,17 @@ fn invalid_models_and_inputs_are_refused() {
         let mut handle = Handle::<SpatioTemporalGcn>::new(params, Device::Cpu).unwrap();
         handle.fit(&SpatioTemporalGcnFitParams::default(), dataset.into(), None, &job).unwrap_err().kind()
     };
+    let with = |clip: SkeletonClipParams| SpatioTemporalGcnParams { clip, ..clip_params() };
     for params in [
-        SpatioTemporalGcnParams { num_point: Some(25), ..clip_params() },
-        SpatioTemporalGcnParams { temporal_kernel: 4, ..clip_params() },
-        SpatioTemporalGcnParams { num_frames: 12, ..clip_params() },
-        SpatioTemporalGcnParams { channels: Vec::new(), ..clip_params() },
+        with(SkeletonClipParams { num_point: Some(25), ..clip() }),
+        with(SkeletonClipParams { temporal_kernel: 4, ..clip() }),
+        with(SkeletonClipParams { num_frames: 12, ..clip() }),
+        SpatioTemporalGcnParams { channels: Some(Vec::new()), ..clip_params() },
     ] {
         assert_eq!(refused(params), ErrorKind::InvalidParam);
     }
-    let other = SpatioTemporalGcnParams { num_class: Some(9), ..Default::default() };
+    let other = SkeletonClipParams { num_class: Some(9), ..Default::default() };
+    let other = SpatioTemporalGcnParams { clip: other, ..Default::default() };
     let mut handle = Handle::<SpatioTemporalGcn>::new(other, Device::Cpu).unwrap();
     assert_eq!(handle.load(folder.0.join("clip")).unwrap_err().kind(), ErrorKind::InvalidParam);
 }
@@ -342,7 +350,14 @@ fn invalid_models_and_inputs_are_refused() {
 #[test]
 fn defaults_are_those_of_opendr() {
     let params = SpatioTemporalGcnParams::default();
-    assert_eq!((params.num_person, params.in_channels, params.num_frames), (2, 3, 300));
+    assert_eq!((params.clip.num_person, params.clip.in_channels, params.clip.num_frames), (2, 3, 300));
+    assert_eq!(
+        (params.method_name, params.stbln_symmetric, params.num_subframes),
+        (Method::StGcn, false, 100)
+    );
+    let growth = ProgressiveSpatioTemporalGcnParams::default().growth;
+    assert_eq!((growth.blocksize, growth.num_blocks, growth.num_layers), (20, 10, 10));
+    assert_eq!((growth.layer_threshold, growth.block_threshold, growth.topology.len()), (1e-4, 1e-4, 0));
     let training = SpatioTemporalGcnFitParams::default().training;
     assert_eq!(
         (training.epochs, training.batch_size, training.lr, training.lr_steps),

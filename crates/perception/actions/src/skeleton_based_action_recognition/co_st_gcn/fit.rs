@@ -1,11 +1,11 @@
-//! Training of CoST-GCN: on clips, as [`SpatioTemporalGcn`](crate::skeleton_based_action_recognition::SpatioTemporalGcn); one
-//! time step is exported.
+//! Training of CoST-GCN, CoA-GCN and CoS-TR: on clips, as
+//! [`SpatioTemporalGcn`](crate::skeleton_based_action_recognition::SpatioTemporalGcn); one time step is exported.
 
 use opendr_engine::dataset::DatasetRef;
 use opendr_engine::learner::{Fit, FitJob, Learner};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
-use opendr_engine::{Result, ResultExt, Statistics};
+use opendr_engine::{Error, Result, ResultExt, Statistics};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::network_from_base;
 use opendr_training::{
@@ -13,9 +13,11 @@ use opendr_training::{
     training_device,
 };
 
-use super::{CoStGcn, CoStGcnParams, joints_of};
+use super::{CoStGcn, CoStGcnParams};
+use crate::skeleton_based_action_recognition::model_checks::joints_of;
 use crate::skeleton_based_action_recognition::network::ActionNetwork;
 use crate::skeleton_based_action_recognition::objective::{ActionObjective, Form};
+use crate::skeleton_based_action_recognition::sizes::{Architecture, NetworkSizes};
 use crate::skeleton_based_action_recognition::{SpatioTemporalGcn, SpatioTemporalGcnParams};
 
 /// Training parameters of [`CoStGcn`].
@@ -62,6 +64,7 @@ impl Fit for CoStGcn {
         let network = ActionNetwork::new(&sizes, classes.len(), fit_params.dropout, &device)?;
         let network = network_from_base(network, base)?;
         let objective = ActionObjective {
+            learner: Self::SPEC.name,
             sizes,
             form: Form::Step,
             params: params.to_map(),
@@ -76,27 +79,37 @@ impl Fit for CoStGcn {
 /// Returns the container of a [`CoStGcn`] with the weights of a [`SpatioTemporalGcn`] that was trained by this crate.
 ///
 /// # Errors
-/// `Format` when `model` is of another learner or has no trainable weights.
+/// `Format` when `model` is of another learner, has no trainable weights, or is not a network of `method_name = stgcn`.
 pub fn co_st_gcn_from(model: &Model) -> Result<Container> {
     let context = || format!("converting {} to CoST-GCN", model.path().display());
     model.check_learner(SpatioTemporalGcn::SPEC.name).context(context)?;
     let clip_wise = SpatioTemporalGcnParams::from_map(model.params()).context(context)?;
+    let NetworkSizes { architecture, channels, .. } = clip_wise.sizes().context(context)?;
+    if architecture != Architecture::StGcn {
+        return Err(Error::format(format!(
+            "{} has method_name = {}, which has no form for single frames; convert a model of stgcn",
+            model.path().display(),
+            clip_wise.method_name.name()
+        )));
+    }
+    let clip = clip_wise.clip;
     let params = CoStGcnParams {
-        num_classes: clip_wise.num_class,
-        num_point: clip_wise.num_point,
-        num_person: clip_wise.num_person,
-        in_channels: clip_wise.in_channels,
-        graph_type: clip_wise.graph_type,
+        num_classes: clip.num_class,
+        num_point: clip.num_point,
+        num_person: clip.num_person,
+        in_channels: clip.in_channels,
+        graph_type: clip.graph_type,
         backbone: super::Backbone::CoStGcn,
-        sequence_len: clip_wise.num_frames,
-        channels: clip_wise.channels,
-        temporal_kernel: clip_wise.temporal_kernel,
+        sequence_len: clip.num_frames,
+        channels,
+        temporal_kernel: clip.temporal_kernel,
     };
     let classes = model.manifest().classes.clone();
     let (sizes, device) = (params.sizes(), training_device(opendr_engine::Device::Cpu)?);
     let network = ActionNetwork::new(&sizes, classes.len(), 0.0, &device)?;
     let network = network_from_base(network, Some(model)).context(context)?;
     let (params, form) = (params.to_map(), Form::Step);
-    let objective = ActionObjective { sizes, form, params, classes, smoothing: 0.0, augment: false };
+    let learner = CoStGcn::SPEC.name;
+    let objective = ActionObjective { learner, sizes, form, params, classes, smoothing: 0.0, augment: false };
     objective.container(&network)
 }

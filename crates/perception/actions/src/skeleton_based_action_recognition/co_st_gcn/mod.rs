@@ -1,8 +1,9 @@
-//! CoST-GCN: the spatio-temporal graph convolutions of [`SpatioTemporalGcn`](super::SpatioTemporalGcn), one frame at a time.
+//! CoST-GCN: spatio-temporal graph convolutions as those of [`SpatioTemporalGcn`](super::SpatioTemporalGcn), one frame at a time.
 //!
 //! Hedegaard, Heidari and Iosifidis, Continual Spatio-Temporal Graph Convolutional Networks, 2022. Every convolution through
 //! time keeps the frames that it still needs, so each frame is computed once and not once for every clip that contains it: with
-//! clips of 40 frames, a twentieth of the arithmetic per prediction.
+//! clips of 40 frames, a twentieth of the arithmetic per prediction. The parameter `backbone` chooses the architecture; in all of
+//! them, joints exchange features within a frame only.
 //!
 //! # Delay and padding
 //!
@@ -27,14 +28,19 @@ use opendr_inference::{Session, TensorView};
 use opendr_perception_common::frame_features::{FEATURES_PER_COORDINATE, FrameFeatures, LastFrame};
 
 use super::GraphType;
-use super::sizes::NetworkSizes;
-use super::spatio_temporal_gcn::{add_to, check_classes, joints_of, mean_category};
+use super::model_checks::{check_architecture, check_classes, joints_of};
+use super::persons::{add_to, mean_category};
+use super::sizes::{Architecture, NetworkSizes};
 
 opendr_engine::choices! {
     /// Network architecture.
     pub enum Backbone {
-        /// Continual spatial-temporal graph convolutions (Hedegaard et al., 2022).
+        /// Spatial-temporal graph convolutions (Yan et al., 2018).
         CoStGcn = "costgcn",
+        /// Adaptive graph convolutions: edges from the similarity of joints, too (Shi et al., 2019).
+        CoAGcn = "coagcn",
+        /// Spatial transformer: self-attention among the joints from the fourth block on (Plizzari et al., 2021).
+        CoSTr = "costr",
     }
 }
 
@@ -60,7 +66,7 @@ pub struct CoStGcnParams {
     /// Number of frames that a prediction covers.
     #[param(default = 300, range = 1..=10_000)]
     pub sequence_len: usize,
-    /// Output channels of each block.
+    /// Output channels of each block; in `costr`, multiples of 32 from the fourth block on.
     #[param(default = vec![64, 64, 64, 64, 128, 128, 128, 256, 256, 256], range = 1..=4096)]
     pub channels: Vec<usize>,
     /// Kernel size in time of each block; odd.
@@ -69,8 +75,14 @@ pub struct CoStGcnParams {
 }
 
 impl CoStGcnParams {
-    fn sizes(&self) -> NetworkSizes {
+    /// Returns the sizes of the network.
+    pub(super) fn sizes(&self) -> NetworkSizes {
         NetworkSizes {
+            architecture: match self.backbone {
+                Backbone::CoStGcn => Architecture::StGcn,
+                Backbone::CoAGcn => Architecture::AGcn,
+                Backbone::CoSTr => Architecture::STr,
+            },
             graph: self.graph_type,
             coordinates: self.in_channels,
             frames: self.sequence_len,
@@ -113,7 +125,7 @@ const FILE: &str = "model.onnx";
 impl Learner for CoStGcn {
     const SPEC: Spec = Spec::new("co_st_gcn", Task::SkeletonBasedActionRecognition)
         .class("CoSTGCNLearner")
-        .about("CoST-GCN classifies the action of a moving skeleton, updated with every frame; trainable.")
+        .about("CoST-GCN, CoA-GCN or CoS-TR classifies the action of a moving skeleton, updated with every frame; trainable.")
         .without_effect(&[
             ("network_head", "only classification is supported"),
             ("loss", "always cross-entropy"),
@@ -126,6 +138,7 @@ impl Learner for CoStGcn {
     type State = CoStGcnState;
 
     fn load(model: &Model, params: CoStGcnParams, device: Device) -> Result<Self> {
+        check_architecture("backbone", &params.backbone, model)?;
         let session = Session::open(&model.file(FILE)?, device)?;
         let ([frame, state], [logits, next]) = (session.inputs(), session.outputs()) else {
             return Err(Error::format(format!("{FILE} does not have two inputs and two outputs")));

@@ -1,7 +1,7 @@
-//! Training of ST-GCN.
+//! Training of ST-GCN, TA-GCN and ST-BLN.
 
 use opendr_engine::dataset::DatasetRef;
-use opendr_engine::learner::{Fit, FitJob};
+use opendr_engine::learner::{Fit, FitJob, Learner as _};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, Statistics};
@@ -11,12 +11,11 @@ use opendr_training::{
     OptimizerKind, ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device,
 };
 
-use super::{SpatioTemporalGcn, SpatioTemporalGcnParams, joints_of};
+use super::{SpatioTemporalGcn, SpatioTemporalGcnParams};
 use crate::skeleton_based_action_recognition::network::ActionNetwork;
 use crate::skeleton_based_action_recognition::objective::{ActionObjective, Form};
-use crate::skeleton_based_action_recognition::sizes::NetworkSizes;
 
-/// Training parameters of [`SpatioTemporalGcn`].
+/// Training parameters of the learners that classify clips of skeletons.
 #[derive(Debug, Clone, Params)]
 pub struct SpatioTemporalGcnFitParams {
     /// Parameters common to all trainings.
@@ -55,19 +54,14 @@ impl Fit for SpatioTemporalGcn {
     ) -> Result<Statistics> {
         let training = &fit_params.training;
         let dataset = open_for_training::<Self>(dataset, job)?;
-        let classes = classes_to_train(&*dataset, params.num_class, "num_class")?;
-        joints_of(params.graph_type, params.num_point)?;
-        let sizes = NetworkSizes {
-            graph: params.graph_type,
-            coordinates: params.in_channels,
-            frames: params.num_frames,
-            channels: params.channels.clone(),
-            kernel: params.temporal_kernel,
-        };
+        let classes = classes_to_train(&*dataset, params.clip.num_class, "num_class")?;
+        let sizes = params.sizes()?;
+        let params = SpatioTemporalGcnParams { channels: Some(sizes.channels.clone()), ..params.clone() };
         let device = seeded_device(job, training)?;
         let network = ActionNetwork::new(&sizes, classes.len(), fit_params.dropout, &device)?;
         let network = network_from_base(network, base)?;
         let objective = ActionObjective {
+            learner: Self::SPEC.name,
             sizes,
             form: Form::Clip,
             params: params.to_map(),
@@ -75,6 +69,6 @@ impl Fit for SpatioTemporalGcn {
             smoothing: fit_params.label_smoothing,
             augment: fit_params.augment,
         };
-        fit_learner::<Self, _>(&objective, network, params, training, &*dataset, val_dataset, job)
+        fit_learner::<Self, _>(&objective, network, &params, training, &*dataset, val_dataset, job)
     }
 }

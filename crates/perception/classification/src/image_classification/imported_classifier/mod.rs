@@ -41,7 +41,7 @@ impl Learner for ImportedClassifier {
 
     fn load(model: &Model, mut params: ImportedClassifierParams, device: Device) -> Result<Self> {
         let (session, facts) = Facts::open(model, device)?;
-        let image = ImageInput::find(&facts, params.input.size)?;
+        let image = ImageInput::find(&facts, params.input.side())?;
         let output = facts.only_output(is_class_scores).ok_or_else(|| {
             Error::unsupported(format!(
                 "the network has not one output of class scores [1, classes], as a classifier has ({})",

@@ -57,7 +57,7 @@ impl Learner for ImportedDetector {
 
     fn load(model: &Model, mut params: ImportedDetectorParams, device: Device) -> Result<Self> {
         let (session, facts) = Facts::open(model, device)?;
-        let image = ImageInput::find(&facts, params.input.size)?;
+        let image = ImageInput::find(&facts, params.input.side())?;
         let classes = facts.classes(model);
         let convention = settled::settle(&mut params, convention::recognise(&facts, image.size)?, &facts)?;
         let roles = Roles::find(convention.layout, &facts, classes.len())?;

@@ -6,7 +6,7 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Error, Result, Statistics};
 use opendr_perception_common::labelled::classes_to_train;
-use opendr_perception_common::trainable_weights::network_from_base;
+use opendr_perception_common::progressive::{Stage, train_topology};
 use opendr_training::{
     OptimizerKind, ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device,
 };
@@ -46,28 +46,55 @@ impl Fit for ProgressiveSpatioTemporalBln {
         val_dataset: Option<DatasetRef<'_>>,
         job: &FitJob<'_>,
     ) -> Result<Statistics> {
-        let ProgressiveSpatioTemporalBlnFitParams { training, dropout } = fit_params;
         let dataset = open_for_training::<Self>(dataset, job)?;
         let classes = classes_to_train(&*dataset, params.num_class, "num_class")?;
-        let sizes = sizes(params, &*dataset)?;
-        let params = ProgressiveSpatioTemporalBlnParams { num_point: Some(sizes.points), ..params.clone() };
-        let network = BilinearNetwork::new(&sizes, classes.len(), *dropout, &seeded_device(job, training)?);
-        let network = network_from_base(network, base)?;
-        let objective = ExpressionObjective { params: &params, classes, sizes };
-        fit_learner::<Self, _>(&objective, network, &params, training, &*dataset, val_dataset, job)
+        let points = points(params, &*dataset)?;
+        let mut train = |stage: &Stage<'_>| {
+            let device = seeded_device(stage.job, stage.training)?;
+            let network = |topology: &[usize]| {
+                let params = params.sized(points, topology);
+                let sizes = sizes(&params, points);
+                (BilinearNetwork::new(&sizes, classes.len(), fit_params.dropout, &device), sizes, params)
+            };
+            let (initial, sizes, params) = network(stage.topology);
+            let initial = stage.network(initial, |topology| Ok(network(topology).0))?;
+            let objective = ExpressionObjective { params: &params, classes: classes.clone(), sizes };
+            fit_learner::<Self, _>(
+                &objective,
+                initial,
+                &params,
+                stage.training,
+                &*dataset,
+                val_dataset,
+                stage.job,
+            )
+        };
+        train_topology(&params.growth, &fit_params.training, base, job, &mut train)
     }
 }
 
-/// Returns the network's sizes; the number of landmarks defaults to that of the first sample.
-fn sizes(params: &ProgressiveSpatioTemporalBlnParams, dataset: &dyn DatasetIterator) -> Result<NetworkSizes> {
+impl ProgressiveSpatioTemporalBlnParams {
+    /// Returns the parameters of a network of a number of landmarks and a topology.
+    fn sized(&self, points: usize, topology: &[usize]) -> Self {
+        Self { num_point: Some(points), growth: self.growth.with_topology(topology), ..self.clone() }
+    }
+}
+
+/// Returns the number of landmarks; it defaults to that of the first sample.
+fn points(params: &ProgressiveSpatioTemporalBlnParams, dataset: &dyn DatasetIterator) -> Result<usize> {
     if dataset.is_empty() {
         return Err(Error::invalid_input("the data set is empty; give one with samples"));
     }
     let there = sequence_of(&dataset.get(0)?)?.shape()[3];
-    Ok(NetworkSizes {
+    Ok(params.num_point.unwrap_or(there))
+}
+
+/// Returns the network's sizes.
+fn sizes(params: &ProgressiveSpatioTemporalBlnParams, points: usize) -> NetworkSizes {
+    NetworkSizes {
         features: KINDS * params.in_channels,
         frames: params.num_frames,
-        points: params.num_point.unwrap_or(there),
-        channels: params.topology.iter().map(|blocks| blocks * params.blocksize).collect(),
-    })
+        points,
+        channels: params.growth.channels(),
+    }
 }

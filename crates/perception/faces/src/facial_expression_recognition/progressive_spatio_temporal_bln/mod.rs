@@ -2,8 +2,8 @@
 //!
 //! Heidari and Iosifidis, Progressive Spatio-Temporal Bilinear Network with Monte Carlo Dropout for Landmark-based Facial
 //! Expression Recognition with Uncertainty Estimation, 2021: each layer mixes all landmarks by a learned matrix instead of
-//! a given graph, and the channels by another one, then convolves over time. The paper grows layers block by block; here
-//! `topology` sets their sizes, and `opendr tune` searches it as any other parameter.
+//! a given graph, and the channels by another one, then convolves over time. Without a given `topology`, `fit` starts with one layer
+//! of one block and adds blocks and layers while the training loss decreases ([`progressive`](opendr_perception_common::progressive)).
 
 #[cfg(feature = "training")]
 mod fit;
@@ -26,6 +26,7 @@ use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
 use opendr_perception_common::category_scores::category_from_logits;
 use opendr_perception_common::frame_features::{ClipScratch, FrameFeatures};
+use opendr_perception_common::progressive::TopologyParams;
 
 /// Parameters of [`ProgressiveSpatioTemporalBln`]. Sizes are those of a network to train; a loaded model has its own.
 #[derive(Debug, Clone, Params)]
@@ -42,12 +43,9 @@ pub struct ProgressiveSpatioTemporalBlnParams {
     /// Frames of a clip: the last ones of a longer recording; a shorter one is extended by its first frame.
     #[param(default = 20, range = 1..=10_000)]
     pub num_frames: usize,
-    /// Channels of a block.
-    #[param(default = 5, range = 1..=256)]
-    pub blocksize: usize,
-    /// Number of blocks of each layer.
-    #[param(default = vec![2, 2, 4, 4], range = 1..=1000)]
-    pub topology: Vec<usize>,
+    /// Topology of the network, and limits of its growth.
+    #[param(flatten, blocksize = 5, num_blocks = 100)]
+    pub growth: TopologyParams,
 }
 
 /// A loaded network.
@@ -70,7 +68,7 @@ const KINDS: usize = 2;
 impl Learner for ProgressiveSpatioTemporalBln {
     const SPEC: Spec = Spec::new("progressive_spatio_temporal_bln", Task::FacialExpressionRecognition)
         .class("ProgressiveSpatioTemporalBLNLearner")
-        .about("PST-BLN classifies facial expressions from sequences of landmarks; trainable.")
+        .about("PST-BLN classifies facial expressions from sequences of landmarks; its network grows in the training.")
         .without_effect(&[
             ("experiment_name", "the output folder of a training names it"),
             ("device_indices", "`device` sets it"),
@@ -78,10 +76,6 @@ impl Learner for ProgressiveSpatioTemporalBln {
             ("start_epoch", "`resume` of `fit` continues a training"),
             ("dataset_name", "the data set defines it"),
             ("num_person", "a recording has one face, the first that occurs"),
-            ("num_blocks", "`topology` sets it"),
-            ("num_layers", "`topology` sets it"),
-            ("layer_threshold", "layers do not grow: `topology` sets their sizes"),
-            ("block_threshold", "layers do not grow: `topology` sets their sizes"),
         ]);
     type Params = ProgressiveSpatioTemporalBlnParams;
     type Input<'a> = &'a SkeletonSequence;

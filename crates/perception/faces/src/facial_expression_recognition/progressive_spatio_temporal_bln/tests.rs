@@ -14,7 +14,11 @@ const POINTS: usize = 12;
 const FRAMES: usize = 6;
 
 fn params() -> ProgressiveSpatioTemporalBlnParams {
-    ProgressiveSpatioTemporalBlnParams { num_frames: FRAMES, topology: vec![1, 2], ..Default::default() }
+    growing(TopologyParams { topology: vec![1, 2], ..ProgressiveSpatioTemporalBlnParams::default().growth })
+}
+
+fn growing(growth: TopologyParams) -> ProgressiveSpatioTemporalBlnParams {
+    ProgressiveSpatioTemporalBlnParams { num_frames: FRAMES, growth, ..Default::default() }
 }
 
 /// Points on a circle, of which a third moves outwards: the upper, the lower right or the lower left one.
@@ -88,4 +92,33 @@ fn infer_loads_the_model_of_fit() {
     let mut other = Handle::<ProgressiveSpatioTemporalBln>::new(params, Device::Cpu).unwrap();
     assert_eq!(other.load(job.model()).unwrap_err().kind(), ErrorKind::InvalidParam);
     std::fs::remove_dir_all(&output).ok();
+}
+
+#[test]
+fn the_network_grows() {
+    let output = std::env::temp_dir().join(format!("opendr-pst-bln-grows-{}", std::process::id()));
+    std::fs::remove_dir_all(&output).ok();
+    let mut fit_params = ProgressiveSpatioTemporalBlnFitParams { dropout: 0.0, ..Default::default() };
+    (fit_params.training.epochs, fit_params.training.batch_size, fit_params.training.lr) = (15, 12, 0.05);
+    let job = FitJob { device: Device::Cpu, ..FitJob::new(&output) };
+    let limits = TopologyParams { num_blocks: 2, num_layers: 2, ..params().growth };
+    let params = growing(TopologyParams { topology: Vec::new(), block_threshold: 0.05, ..limits });
+    let mut handle = Handle::<ProgressiveSpatioTemporalBln>::new(params, Device::Cpu).unwrap();
+    let dataset = DatasetRef::from(&Faces as &dyn DatasetIterator);
+    let statistics = handle.fit(&fit_params, dataset, None, &job).unwrap();
+    let losses = &statistics.curves["growth_loss"];
+    assert!(losses.iter().copied().fold(f64::MAX, f64::min) < losses[0], "{losses:?}");
+    let topology = &handle.params().growth.topology;
+    assert!(topology.iter().sum::<usize>() > 1, "it grew: {topology:?}");
+    let mut fresh = Handle::<ProgressiveSpatioTemporalBln>::new(Default::default(), Device::Cpu).unwrap();
+    fresh.load(job.model()).unwrap();
+    assert_eq!(fresh.infer(&face(3)).unwrap(), handle.infer(&face(3)).unwrap());
+    std::fs::remove_dir_all(&output).ok();
+}
+
+#[test]
+fn defaults_are_those_of_opendr() {
+    let TopologyParams { blocksize, num_blocks, num_layers, topology, .. } =
+        ProgressiveSpatioTemporalBlnParams::default().growth;
+    assert_eq!((blocksize, num_blocks, num_layers, topology.len()), (5, 100, 10, 0));
 }

@@ -23,6 +23,7 @@ const RTMO: InputConvention = InputConvention {
     padding: 114,
     colour: InputColour::Bgr,
     levels: InputLevels::Bytes,
+    ..InputConvention::UNKNOWN
 };
 
 /// Recognises the convention of a network.

@@ -42,7 +42,7 @@ impl Learner for ImportedPoseEstimator {
 
     fn load(model: &Model, mut params: ImportedPoseEstimatorParams, device: Device) -> Result<Self> {
         let (session, facts) = Facts::open(model, device)?;
-        let image = ImageInput::find(&facts, params.input.size)?;
+        let image = ImageInput::find(&facts, params.input.side())?;
         let classes = facts.classes(model);
         let recognised = convention::recognise(&facts)?;
         let (layout, input) = convention::settle(&mut params, recognised, &facts, &classes)?;

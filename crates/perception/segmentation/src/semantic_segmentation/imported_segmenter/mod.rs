@@ -53,7 +53,7 @@ impl Learner for ImportedSegmenter {
 
     fn load(model: &Model, mut params: ImportedSegmenterParams, device: Device) -> Result<Self> {
         let (session, facts) = Facts::open(model, device)?;
-        let image = ImageInput::find(&facts, params.input.size)?;
+        let image = ImageInput::find(&facts, params.input.side())?;
         let output = map_output(&facts, params.map_output.as_deref())?;
         let input = params.input.settle(known_input(&facts, &image));
         let missing: Vec<_> = input.missing().collect();
@@ -178,6 +178,7 @@ fn known_input(facts: &Facts, image: &ImageInput) -> InputConvention {
             padding: 0,
             colour: InputColour::Rgb,
             levels: InputLevels::ImageNet,
+            ..InputConvention::UNKNOWN
         };
     }
     let levels = if image.is_bytes() { InputLevels::Bytes } else { InputLevels::Auto };

@@ -8,9 +8,10 @@ use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::network_from_base;
 use opendr_training::{fit_learner, open_for_training, seeded_device};
 
+use super::HeartLearner;
 use super::objective::HeartObjective;
 use super::trainable::{HeartSizes, TrainableHeart};
-use super::{HeartLearner, check_size};
+use crate::model_checks::check_size;
 
 impl<K: TrainableHeart> Fit for HeartLearner<K> {
     type FitParams = K::FitParams;

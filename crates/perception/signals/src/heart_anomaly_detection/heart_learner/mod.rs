@@ -19,6 +19,7 @@ use opendr_inference::{Session, TensorView};
 use opendr_perception_common::category_scores::category_from_logits;
 
 use crate::heart_anomaly_detection::beat_stream::{BeatStream, Beats};
+use crate::model_checks::{check_finite, check_size};
 
 #[cfg(feature = "training")]
 pub use trainable::{HeartSizes, TrainableHeart};
@@ -161,16 +162,6 @@ impl<K: HeartKind> Streaming for HeartLearner<K> {
     }
 }
 
-/// Checks a size that the user gave, where there is one, against the model or the data.
-fn check_size(name: &str, wanted: Option<usize>, actual: usize) -> Result<()> {
-    match wanted {
-        Some(wanted) if wanted != actual => Err(Error::invalid_param(format!(
-            "{name} = {wanted}, but it is {actual} here; omit {name}, or choose another model or data set"
-        ))),
-        _ => Ok(()),
-    }
-}
-
 /// Checks that a series has the shape `[time, features]` and no missing measurements.
 fn check_series(series: &Timeseries, shape: [usize; 2]) -> Result<()> {
     if series.shape() != shape {
@@ -180,14 +171,7 @@ fn check_series(series: &Timeseries, shape: [usize; 2]) -> Result<()> {
              {wanted_features}; cut, resample or transpose it"
         )));
     }
-    match series.as_slice().iter().position(|number| !number.is_finite()) {
-        Some(at) => Err(Error::invalid_input(format!(
-            "measurement {} of the series is {}; fill in missing values",
-            at,
-            series.as_slice()[at]
-        ))),
-        None => Ok(()),
-    }
+    check_finite(series)
 }
 
 #[cfg(test)]
