@@ -2,6 +2,8 @@
 
 import json
 
+from patience import free_port
+
 SMALL = "--total-timesteps 512 --view-episodes 40 --epochs 1 --kernels 4 --hidden 16 --n-envs 4 --calibration-episodes 50".split()
 
 
@@ -21,6 +23,12 @@ def test_a_camera_is_trained_measured_and_moved(opendr, tmp_path):
     assert rows[0]["mean_views"] == 1 and rows[4]["episodes"] == 5
     assert (tmp_path / "eval/episodes.png").exists() and (tmp_path / "eval/report.json").exists()
 
+    # A page changes no figure. On other interfaces its address has a token, which is printed with --quiet, too.
+    page = f"--view=0.0.0.0:{free_port()}"
+    done = opendr.run("eval", *model, "--episodes", "5", page, "--json", "--quiet")
+    assert done.returncode == 0 and json.loads(done.stdout)["rows"] == rows, done.stderr
+    assert done.stderr.startswith("viewer: http://0.0.0.0:") and "/?token=" in done.stderr
+
     strip = tmp_path / "strip.png"
     done = opendr.run("infer", *model, "--rig", "SphereView-Pose-v1", "--rig-seed", "3", "--json", "--out", strip, "--quiet")
     assert done.returncode == 0, done.stderr
@@ -30,6 +38,9 @@ def test_a_camera_is_trained_measured_and_moved(opendr, tmp_path):
     assert "action" not in views[-1] or views[-1]["action"] is None
     done = opendr.run("infer", *model, "--rig", strip, "--quiet")
     assert done.returncode == 0 and "after" in done.stdout, done.stderr
+    for option, word in [(["--env-param", "size=1"], "--env-param"), (["--rig-seed", "3"], "has no seed")]:
+        done = opendr.run("infer", *model, "--rig", strip, *option)
+        assert done.returncode != 0 and word in done.stderr, done.stderr
     # An image without a rig: the target has the motion to the next view.
     line = opendr.infer(*model, strip)[0]
     assert len(line["outputs"]["category"].get("action", [0, 0, 0])) == 3

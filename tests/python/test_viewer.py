@@ -205,6 +205,21 @@ def test_episodes_of_an_environment(opendr, browser):
         assert browser.errors() == []
 
 
+def test_episodes_of_an_evaluation(opendr, browser):
+    with Page(opendr, "eval", "ppo", "--env", "CartPole-v1", "--episodes", "1000000", "--quiet") as page:
+        # --quiet hides notes, and not where the page is.
+        assert page.process.stderr.readline() == f"viewer: {page.url}\n"
+        browser.open(page.url)
+        browser.wait(is_shown("picture"))
+        first = browser.run("return document.getElementById('input').textContent")
+        assert "CartPole-v1 seed 10" in first
+        headings = browser.wait("[...document.querySelectorAll('#outputs h3')].map((heading) => heading.textContent)")
+        assert headings[:3] == ["reward", "return", "action"]
+        # Episodes go on; the page skips those between two images.
+        browser.wait(f"document.getElementById('input').textContent !== {json.dumps(first)}")
+        assert browser.errors() == []
+
+
 def test_samples_of_an_evaluation(opendr, browser, tmp_path):
     images = [{"id": index, "file_name": f"{index}.png", "width": 640, "height": 480} for index in range(400)]
     boxes = [{"id": index + 1, "image_id": index, "category_id": 1, "bbox": [9, 9, 90, 90], "area": 8100, "iscrowd": 0} for index in range(400)]

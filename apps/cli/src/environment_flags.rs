@@ -9,7 +9,7 @@ use opendr::{Error, Result, ValueType};
 use crate::dataset_flags;
 
 const ENV: &str = "env";
-const ENV_PARAM: &str = "env-param";
+pub const ENV_PARAM: &str = "env-param";
 
 /// Returns whether a learner is a policy: it predicts actions of an environment.
 pub fn is_policy(entry: &Entry) -> bool {
@@ -18,7 +18,7 @@ pub fn is_policy(entry: &Entry) -> bool {
 
 /// Returns whether a learner is one of active perception: it moves a camera in environments.
 pub fn is_active(entry: &Entry) -> bool {
-    entry.capabilities.fit_in && entry.ports.iter().any(|port| port.value_type == ValueType::Image)
+    opendr::active::has_camera_policy(entry)
 }
 
 /// Replaces the data set of a command by the environment, and adds the number of episodes.

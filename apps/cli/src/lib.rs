@@ -36,6 +36,7 @@ mod report_file;
 mod stdout;
 mod then_flag;
 mod timings;
+mod viewed_environment;
 mod viewing;
 mod writer;
 

@@ -105,10 +105,14 @@ fn entry_of_model(path: &Path) -> Result<&'static Entry> {
     }
     let onnx = model.onnx()?;
     let recognises = |entry: &&'static Entry| entry.spec.recognises_network.is_some_and(|is| is(&onnx));
-    opendr::registry().entries().into_iter().find(recognises).ok_or_else(|| {
+    let entries = opendr::registry().entries();
+    entries.iter().copied().find(recognises).ok_or_else(|| {
+        let takes_networks = entries.iter().filter(|entry| entry.spec.recognises_network.is_some());
+        let names: Vec<_> = takes_networks.map(|entry| entry.spec.name).collect();
         Error::unsupported(format!(
-            "{} names no learner, and no learner of this build recognises its network; write \"LEARNER --model {0}\"",
-            path.display()
+            "{} names no learner, and nothing in it states which of {} its network is; write \"LEARNER --model {0}\"",
+            path.display(),
+            names.join(", ")
         ))
     })
 }

@@ -94,6 +94,17 @@ impl Progress for ProgressBar {
         }
     }
 
+    fn advance_resumed(&self, amount: u64) {
+        match &mut *self.state() {
+            State::Idle => {}
+            State::Bar(bar, _) => {
+                bar.inc(amount);
+                bar.reset_eta();
+            }
+            State::Lines(lines) => lines.advance_resumed(amount),
+        }
+    }
+
     fn end(&self) {
         if let State::Bar(bar, _) = std::mem::replace(&mut *self.state(), State::Idle) {
             bar.finish_and_clear();

@@ -14,6 +14,8 @@ pub struct ProgressLines {
     total: Option<u64>,
     unit: Unit,
     done: u64,
+    /// What was done before it began.
+    resumed: u64,
     status: String,
     begun: Instant,
     last_print: Instant,
@@ -32,6 +34,7 @@ impl ProgressLines {
             total,
             unit,
             done: 0,
+            resumed: 0,
             status: String::new(),
             begun: now,
             last_print: now,
@@ -47,6 +50,12 @@ impl ProgressLines {
         }
     }
 
+    /// Adds `amount` that was done before.
+    pub fn advance_resumed(&mut self, amount: u64) {
+        self.done += amount;
+        self.resumed += amount;
+    }
+
     /// Sets the status text of the next line.
     pub fn status(&mut self, text: &str) {
         text.clone_into(&mut self.status);
@@ -56,8 +65,14 @@ impl ProgressLines {
         let amount = |count| if self.unit == Unit::Bytes { megabytes(count) } else { count.to_string() };
         let status = if self.status.is_empty() { String::new() } else { format!(", {}", self.status) };
         let Some(total) = self.total else { return amount(self.done) + &status };
-        let left = total.saturating_sub(self.done) as f64 / self.done.max(1) as f64 * elapsed.as_secs_f64();
-        format!("{} of {}, {left:.0} s left{status}", amount(self.done), amount(total))
+        let position = format!("{} of {}", amount(self.done), amount(total));
+        match self.done - self.resumed {
+            0 => position + &status,
+            now => {
+                let left = total.saturating_sub(self.done) as f64 / now as f64 * elapsed.as_secs_f64();
+                format!("{position}, {left:.0} s left{status}")
+            }
+        }
     }
 }
 
@@ -74,6 +89,11 @@ mod tests {
         let mut lines = ProgressLines::begin("model", Some(20_000_000), Unit::Bytes);
         lines.advance(5_000_000);
         assert_eq!(lines.state(Duration::from_secs(2)), "5.0 MB of 20.0 MB, 6 s left");
+        let mut resumed = ProgressLines::begin("training", Some(100), Unit::Steps);
+        resumed.advance_resumed(80);
+        assert_eq!(resumed.state(Duration::from_secs(2)), "80 of 100");
+        resumed.advance(10);
+        assert_eq!(resumed.state(Duration::from_secs(2)), "90 of 100, 2 s left");
         let mut frames = ProgressLines::begin("frames", None, Unit::Items);
         frames.advance(7);
         assert_eq!(frames.state(Duration::from_secs(2)), "7");

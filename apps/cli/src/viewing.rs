@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use opendr::learner::{AnyLearner, Entry, Outputs};
 use opendr::viewer::{CurveSource, Shown, Viewer, ViewerOptions};
-use opendr::{Error, Progress, Result, ValueRef};
+use opendr::{Error, Result, ValueRef};
 
 use crate::item::{Datum, Item};
 use crate::progress_bar::{ProgressBar, interrupted};
@@ -98,7 +98,8 @@ fn start(options: ViewerOptions, matches: &ArgMatches, bar: &ProgressBar) -> Res
         };
     };
     let viewer = Viewer::bind(*address, options)?;
-    bar.note(&format!("viewer: {}", viewer.url()));
+    // With --quiet, too: without its address, which may have a token, nobody can open the page.
+    bar.suspend(|| eprintln!("viewer: {}", viewer.url()));
     Ok(Some(viewer))
 }
 

@@ -1,12 +1,15 @@
 //! Active perception on a rig.
 
 use opendr_engine::data::Image;
+use opendr_engine::learner::{AnyLearner, Entry};
 use opendr_engine::rig::{Limit, ViewPose, ViewRig};
 use opendr_engine::target::Action;
 use opendr_engine::{Error, Result};
 use serde::Serialize;
 
+use crate::any_recogniser::AnyRecogniser;
 use crate::fusion::Belief;
+use crate::learner::{ActiveContainer, has_camera_policy};
 use crate::model::ActiveModel;
 use crate::recogniser::ViewRecogniser;
 use crate::session::ActiveSession;
@@ -57,6 +60,39 @@ pub struct Outcome {
     pub probabilities: Vec<f32>,
     /// Why the run stopped.
     pub reason: StopReason,
+}
+
+impl Active<Box<dyn ViewRecogniser>> {
+    /// Makes a loaded learner of the registry active: one of active perception by its own camera policy, any other learner of images
+    /// with classes by `camera_policy`.
+    ///
+    /// # Errors
+    /// Returns `InvalidParam` where the camera policy is missing, or given to a learner that has one; otherwise as
+    /// [`AnyRecogniser::new`] and [`ActiveContainer::of`].
+    pub fn of_learner(
+        learner: &dyn AnyLearner,
+        entry: &Entry,
+        camera_policy: Option<&ActiveModel>,
+    ) -> Result<Self> {
+        match (camera_policy, has_camera_policy(entry)) {
+            (None, true) => {
+                let ActiveContainer { model, recogniser, .. } = ActiveContainer::of(learner)?;
+                Self::new(Box::new(recogniser), &model)
+            }
+            (Some(model), false) => {
+                let recogniser = AnyRecogniser::new(learner, entry, learner.classes().len())?;
+                Self::new(Box::new(recogniser), model)
+            }
+            (Some(_), true) => Err(Error::invalid_param(format!(
+                "{} has a camera policy of its own; omit camera_policy (--camera-policy)",
+                entry.spec.class
+            ))),
+            (None, false) => Err(Error::invalid_param(format!(
+                "{} has no camera policy; give one as camera_policy (--camera-policy), trained by \"opendr fit active_object_recognition\"",
+                entry.spec.class
+            ))),
+        }
+    }
 }
 
 impl<R: ViewRecogniser> Active<R> {

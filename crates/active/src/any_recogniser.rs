@@ -4,7 +4,7 @@ use opendr_engine::data::Image;
 use opendr_engine::learner::{AnyLearner, AnyStream, Entry, Ports};
 use opendr_engine::{Error, Result, Value, ValueType};
 
-use crate::evidence::ClassEvidence as _;
+use crate::evidence::{ClassEvidence as _, logarithms};
 use crate::recogniser::ViewRecogniser;
 
 /// A learner of the registry, with an image port and a target that has classes, as a recogniser of views.
@@ -47,21 +47,19 @@ impl ViewRecogniser for AnyRecogniser {
     fn recognise(&mut self, image: &Image, evidence: &mut [f32]) -> Result<()> {
         self.stream.reset();
         let outputs = self.stream.infer(&Ports::default().with(self.port, image))?;
-        let mut is_written = false;
-        for (_, value) in outputs.iter() {
-            match value {
-                Value::Category(target) => target.class_probabilities(evidence),
-                Value::BoundingBoxList(target) => target.class_probabilities(evidence),
-                Value::PoseList(target) => target.class_probabilities(evidence),
-                _ => continue,
-            }
-            is_written = true;
-            break;
-        }
-        if !is_written {
-            return Err(Error::internal("a learner without its declared output"));
-        }
-        evidence.iter_mut().for_each(|probability| *probability = probability.max(1e-6).ln());
-        Ok(())
+        let is_written = outputs.iter().any(|(_, value)| write_evidence(value, evidence));
+        if is_written { Ok(()) } else { Err(Error::internal("a learner without its declared output")) }
     }
+}
+
+/// Writes the logarithm of the probability of each class that a target states. Returns whether it is a target with classes.
+pub fn write_evidence(target: &Value, evidence: &mut [f32]) -> bool {
+    match target {
+        Value::Category(target) => target.class_probabilities(evidence),
+        Value::BoundingBoxList(target) => target.class_probabilities(evidence),
+        Value::PoseList(target) => target.class_probabilities(evidence),
+        _ => return false,
+    }
+    logarithms(evidence);
+    true
 }

@@ -8,6 +8,11 @@ pub trait ClassEvidence {
     fn class_probabilities(&self, probabilities: &mut [f32]);
 }
 
+/// Replaces probabilities by their logarithms, which stay finite.
+pub fn logarithms(probabilities: &mut [f32]) {
+    probabilities.iter_mut().for_each(|probability| *probability = probability.max(1e-6).ln());
+}
+
 /// Gives a class its confidence, and the others equal shares of the rest.
 fn with_confidence(class: Option<usize>, confidence: f32, probabilities: &mut [f32]) {
     let count = probabilities.len();

@@ -94,8 +94,11 @@ impl Belief {
     /// Adds a view: logarithms of the probability of each class, up to a constant.
     ///
     /// # Errors
-    /// `InvalidInput` for another number of classes and for NaN.
+    /// `InvalidInput` for another number of classes, for NaN, and for a pose that is not finite.
     pub fn add(&mut self, pose: ViewPose, evidence: &[f32]) -> Result<()> {
+        if [pose.azimuth, pose.elevation, pose.distance].iter().any(|number| !number.is_finite()) {
+            return Err(Error::invalid_input(format!("a view from {pose:?}; give a pose of finite numbers")));
+        }
         let highest = evidence.iter().copied().fold(f32::NEG_INFINITY, f32::max);
         if evidence.len() != self.classes || !highest.is_finite() || evidence.iter().any(|log| log.is_nan()) {
             return Err(Error::invalid_input(format!(
@@ -262,6 +265,8 @@ mod tests {
         for evidence in [&[0.0; 2][..], &[0.0, f32::NAN, 0.0], &[f32::NEG_INFINITY; 3]] {
             assert!(belief.add(at(0.0), evidence).is_err());
         }
+        assert!(belief.add(at(f64::NAN), &[0.0; 3]).is_err());
+        assert!(belief.add(ViewPose { distance: f64::INFINITY, ..at(0.0) }, &[0.0; 3]).is_err());
         assert_eq!((belief.views(), belief.best().1), (0, 1.0 / 3.0));
     }
 }

@@ -120,18 +120,33 @@ impl GainNetwork {
         Ok(Self::new(network, parameters, axes))
     }
 
-    /// Returns the expected gains of several motions, one after the other, from one observation.
+    /// Predicts the expected gains of several motions, one after the other, from one observation.
     ///
-    /// # Panics
-    /// When the observation is not of [`Observer::LEN`] numbers.
-    pub fn predict(&mut self, compute: &Compute, observation: &[f32], actions: &[f32]) -> &[f32] {
-        assert_eq!(observation.len(), Observer::LEN, "an observation of another length");
+    /// # Errors
+    /// `InvalidInput` for an observation that is not of [`Observer::LEN`] numbers and for motions of another number of axes, `Internal`
+    /// if damaged parameters give gains that are not finite.
+    pub fn predict(&mut self, compute: &Compute, observation: &[f32], actions: &[f32]) -> Result<&[f32]> {
+        if observation.len() != Observer::LEN || !actions.len().is_multiple_of(self.axes) {
+            return Err(Error::invalid_input(format!(
+                "an observation of {} numbers and motions of {} in all; give {} and {} for each motion",
+                observation.len(),
+                actions.len(),
+                Observer::LEN,
+                self.axes
+            )));
+        }
         self.input.clear();
         for action in actions.chunks_exact(self.axes) {
             self.input.extend_from_slice(observation);
             self.input.extend_from_slice(action);
         }
-        self.network.forward(compute, &self.parameters, &self.input, &mut self.tape)
+        let gains = self.network.forward(compute, &self.parameters, &self.input, &mut self.tape);
+        match gains.iter().find(|gain| !gain.is_finite()) {
+            None => Ok(gains),
+            Some(gain) => Err(Error::internal(format!(
+                "the network of gains returned {gain}, its parameters are damaged; load or train it again"
+            ))),
+        }
     }
 
     /// Returns the number of axes of a motion.
@@ -156,11 +171,13 @@ mod tests {
         let compute = Compute::single();
         let mut network = GainNetwork::fit(&samples, 2, 12, 1, &compute).unwrap();
         observation[3] = 0.8;
-        let gains = network.predict(&compute, &observation, &[1.0, 0.0, -1.0, 0.0, 0.0, 1.0]);
+        let gains = network.predict(&compute, &observation, &[1.0, 0.0, -1.0, 0.0, 0.0, 1.0]).unwrap();
         assert!(
             (gains[0] - 0.4).abs() < 0.1 && (gains[1] + 0.4).abs() < 0.1 && gains[2].abs() < 0.1,
             "{gains:?}"
         );
+        assert!(network.predict(&compute, &observation[1..], &[1.0, 0.0]).is_err());
+        assert!(network.predict(&compute, &observation, &[1.0, 0.0, 1.0]).is_err());
         assert!(GainNetwork::fit(&GainSamples::default(), 2, 1, 1, &compute).is_err());
     }
 }

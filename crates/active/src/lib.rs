@@ -43,6 +43,7 @@ mod observation;
 mod parameter_bytes;
 mod recogniser;
 mod report;
+mod rgb_image;
 mod scene;
 mod session;
 mod stop;
@@ -53,7 +54,7 @@ mod view_loop;
 pub mod rig;
 
 pub use active::{Active, Outcome, View};
-pub use any_recogniser::AnyRecogniser;
+pub use any_recogniser::{AnyRecogniser, write_evidence};
 pub use calibration::{Trajectory, fit_fusion, negative_log_likelihood};
 pub use camera_policy::{
     CameraContext, CameraPolicy, GreedyPolicy, OracleBaseline, OrbitBaseline, RandomBaseline, StaticBaseline,
@@ -65,12 +66,13 @@ pub use environment_rig::EnvironmentRig;
 pub use environment_scene::EnvironmentScene;
 pub use episode::{ActiveEpisode, run_episode};
 pub use episode_strip::{episode_strip, strip_of_views};
-pub use evidence::ClassEvidence;
+pub use evidence::{ClassEvidence, logarithms};
 pub use fusion::{Belief, Fusion};
 pub use gain::{GainNetwork, GainSamples};
 pub use learner::{
     ActiveContainer, ActiveFaceRecognition, ActiveFitParams, ActiveInput, ActiveKind, ActiveLearner,
-    ActiveObjectRecognition, ActiveParams, ActivePoseRecognition, ActiveState, write_active_model,
+    ActiveObjectRecognition, ActiveParams, ActivePoseRecognition, ActiveState, has_camera_policy,
+    write_active_model,
 };
 pub use model::ActiveModel;
 pub use observation::Observer;

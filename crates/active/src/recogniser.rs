@@ -4,7 +4,7 @@ use opendr_engine::Result;
 use opendr_engine::data::Image;
 use opendr_engine::learner::Learner;
 
-use crate::evidence::ClassEvidence;
+use crate::evidence::{ClassEvidence, logarithms};
 
 /// A recogniser of one view.
 pub trait ViewRecogniser: Send {
@@ -68,7 +68,7 @@ where
     fn recognise(&mut self, image: &Image, evidence: &mut [f32]) -> Result<()> {
         self.learner.infer_into(&mut self.state, image, &mut self.target)?;
         self.target.class_probabilities(evidence);
-        evidence.iter_mut().for_each(|probability| *probability = probability.max(1e-6).ln());
+        logarithms(evidence);
         Ok(())
     }
 }

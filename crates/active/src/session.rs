@@ -74,7 +74,8 @@ impl ActiveSession {
     /// Adds a view and decides on the next motion.
     ///
     /// # Errors
-    /// Returns `InvalidInput` for an image that is not of 8 bits or evidence of another number of classes.
+    /// Returns `InvalidInput` for an image that is not of 8 bits, evidence of another number of classes and numbers that are not
+    /// finite, `Internal` for networks whose outputs are not finite.
     pub fn add(
         &mut self,
         image: &Image,
@@ -88,7 +89,7 @@ impl ActiveSession {
         observer.set_image(image)?;
         observer.observe(&pose, belief, observation);
         policy.choose(&CameraContext { observation, pose, axes, best: None }, deflections)?;
-        let expected_gain = gain.predict(compute, observation, deflections).first().copied().unwrap_or(0.0);
+        let expected_gain = gain.predict(compute, observation, deflections)?.first().copied().unwrap_or(0.0);
         let (class, confidence) = belief.best();
         let reason = stop.reason(motions, confidence, Some(expected_gain));
         let action = if reason.is_some() { None } else { Some(Action::new(deflections)?) };

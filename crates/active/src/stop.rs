@@ -53,7 +53,7 @@ impl StopRule {
         if moves >= self.moves {
             return Some(StopReason::Budget);
         }
-        expected_gain.filter(|gain| *gain < self.gain).map(|_| StopReason::NoGain)
+        expected_gain.filter(|gain| self.gain > 0.0 && *gain < self.gain).map(|_| StopReason::NoGain)
     }
 }
 
@@ -69,6 +69,8 @@ mod tests {
         assert_eq!(rule.reason(2, 0.5, Some(0.5)), Some(StopReason::Budget));
         assert_eq!(rule.reason(1, 0.5, Some(0.01)), Some(StopReason::NoGain));
         assert_eq!(StopRule { gain: 0.0, ..rule }.reason(1, 0.5, Some(0.0)), None);
+        assert_eq!(StopRule { gain: 0.0, ..rule }.reason(1, 0.5, Some(-0.1)), None, "disabled");
+        assert_eq!(rule.reason(1, 0.5, Some(-0.1)), Some(StopReason::NoGain));
         assert!(StopRule { confidence: 1.5, ..rule }.check().is_err());
     }
 }

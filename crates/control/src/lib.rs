@@ -1,8 +1,10 @@
 //! Classical controllers, and online fine-tuning of policies with guard, monitor and rollback.
 //!
-//! [`Pid`] and [`Lqr`] are feedback laws for one axis and for a linear model; [`TrackingPid`] and [`TrackingLqr`] run them on the
-//! observations of an environment, whose places a [`TrackingTask`](opendr_engine::environment::TrackingTask) states. All are
-//! [`Controller`](opendr_engine::environment::Controller)s. [`online`] adapts a pre-trained policy while it controls.
+//! [`Pid`] and [`Lqr`] are feedback laws for one axis and for a linear model. [`TrackingPid`] and [`TrackingLqr`] run them on the
+//! observations of an environment, whose places a [`TrackingTask`](opendr_engine::environment::TrackingTask) states, and
+//! [`ObservationPid`] and [`ObservationLqr`] on places that you choose. All four are
+//! [`Controller`](opendr_engine::environment::Controller)s; [`priors()`] has those of the built-in environments by name.
+//! [`online`] adapts a pre-trained policy while it controls.
 //!
 //! Not here: policies and their training (`opendr-rl`), environments such as `QuadTrack-v1` (`opendr-simulation`).
 //!
@@ -15,12 +17,18 @@
 //! # Ok::<_, opendr_engine::Error>(())
 //! ```
 
+mod actuator;
+mod feedback;
 mod lqr;
 mod matrix;
 pub mod online;
 mod pid;
+mod priors;
 mod tracking;
 
+pub use actuator::Actuator;
+pub use feedback::{AxisInput, ObservationLqr, ObservationPid};
 pub use lqr::Lqr;
 pub use pid::{Pid, PidGains};
+pub use priors::{priors, quad_track_gains};
 pub use tracking::{TrackingLqr, TrackingPid};

@@ -18,13 +18,15 @@ const LARGEST: usize = 256;
 const DOUBLINGS: usize = 64;
 
 impl Lqr {
-    /// Designs the regulator from matrices by rows: A is `states x states`, B is `states x inputs`, Q and R are symmetric.
+    /// Designs the regulator from matrices by rows: A is `states x states`, B is `states x inputs`, Q and R are symmetric, Q is
+    /// positive semidefinite and R positive definite.
     ///
     /// The discrete algebraic Riccati equation is solved by the structure-preserving doubling algorithm (Chu, Fan and Lin, 2005),
     /// which converges quadratically.
     ///
     /// # Errors
-    /// `InvalidParam` for matrices that do not fit, an R that is singular, and a plant that Q and R do not stabilise.
+    /// `InvalidParam` for matrices that do not fit together or have another definiteness, and where no regulator has a finite cost:
+    /// (A, B) is not stabilisable, or Q has no weight on a state that does not decay by itself.
     pub fn design(states: usize, inputs: usize, a: &[f64], b: &[f64], q: &[f64], r: &[f64]) -> Result<Self> {
         if !(1..=LARGEST).contains(&states) || !(1..=LARGEST).contains(&inputs) {
             return Err(Error::invalid_param(format!(
@@ -33,10 +35,11 @@ impl Lqr {
         }
         let (a, b) = (Dense::new(states, states, a)?, Dense::new(states, inputs, b)?);
         let (q, r) = (Dense::new(states, states, q)?, Dense::new(inputs, inputs, r)?);
+        check_weights(&q, &r)?;
         let singular =
             || Error::invalid_param("R is singular; give every input a positive weight of its own");
         let spread = r.solve(&b.transposed()).map(|right| b.times(&right)).ok_or_else(singular)?;
-        let cost = riccati(&a, spread, &q)?;
+        let cost = riccati(&a, &spread, &q).ok_or_else(|| no_regulator(&a, &spread))?;
         let weight = r.plus(&b.transposed().times(&cost).times(&b), 1.0);
         let gain = weight.solve(&b.transposed().times(&cost).times(&a)).ok_or_else(singular)?;
         Ok(Self { gain, cost })
@@ -51,6 +54,16 @@ impl Lqr {
         let a = [1.0, period, 0.0, 1.0];
         let b = [0.5 * period * period, period];
         Self::design(2, 1, &a, &b, &[error, 0.0, 0.0, rate], &[effort])
+    }
+
+    /// Returns the number of states.
+    pub fn states(&self) -> usize {
+        self.gain.columns
+    }
+
+    /// Returns the number of inputs.
+    pub fn inputs(&self) -> usize {
+        self.gain.rows
     }
 
     /// Returns the gain K by rows, `inputs x states`.
@@ -75,36 +88,63 @@ impl Lqr {
     }
 }
 
-/// The stabilising solution of `P = Q + Aᵀ P (1 + G P)^-1 A` with `G = B R^-1 Bᵀ`.
-fn riccati(a: &Dense, spread: Dense, q: &Dense) -> Result<Dense> {
-    let unstabilised = || {
-        Error::invalid_param(
-            "no feedback stabilises this plant at this cost; give every unstable state an input and a weight",
-        )
-    };
-    let size = a.rows;
-    let mut identity = Dense { numbers: vec![0.0; size * size], ..*a };
-    (0..size).for_each(|at| identity.numbers[at * size + at] = 1.0);
-    let (mut a, mut g, mut h) = (a.clone(), spread, q.clone());
+/// Checks symmetry and definiteness of the weights.
+fn check_weights(q: &Dense, r: &Dense) -> Result<()> {
+    for (name, weights) in [("Q", q), ("R", r)] {
+        if let Some((row, column)) = weights.asymmetry() {
+            return Err(Error::invalid_param(format!(
+                "{name} has {} in row {row}, column {column} and {} in row {column}, column {row}; give a symmetric matrix",
+                weights.at(row, column),
+                weights.at(column, row)
+            )));
+        }
+    }
+    if !q.is_positive_semidefinite() {
+        return Err(Error::invalid_param(
+            "Q is not positive semidefinite: some deviation of the state would have a negative cost; give weights of at least 0",
+        ));
+    }
+    if !r.is_positive_definite() {
+        return Err(Error::invalid_param(
+            "R is not positive definite: some command would have no cost; give every input a positive weight of its own",
+        ));
+    }
+    Ok(())
+}
+
+/// Why a plant with positive semidefinite weights has no regulator.
+#[cold]
+fn no_regulator(a: &Dense, spread: &Dense) -> Error {
+    // With a weight on every state, only an input can be missing.
+    match riccati(a, spread, &Dense::identity(a.rows)) {
+        Some(_) => Error::invalid_param(
+            "Q has no weight on a state that does not decay by itself, so that its cost is not bounded by the feedback; give it a weight",
+        ),
+        None => Error::invalid_param(
+            "(A, B) is not stabilisable: no input moves a state that does not decay by itself; correct A or B, or leave that state out",
+        ),
+    }
+}
+
+/// The stabilising solution of `P = Q + Aᵀ P (1 + G P)^-1 A` with `G = B R^-1 Bᵀ`; none where there is none.
+fn riccati(a: &Dense, spread: &Dense, q: &Dense) -> Option<Dense> {
+    let identity = Dense::identity(a.rows);
+    let (mut a, mut g, mut h) = (a.clone(), spread.clone(), q.clone());
     for _ in 0..DOUBLINGS {
         let w = identity.plus(&g.times(&h), 1.0);
-        let moved = w.solve(&a).ok_or_else(unstabilised)?;
-        let spread = w.solve(&g).ok_or_else(unstabilised)?;
+        let (moved, spread) = (w.solve(&a)?, w.solve(&g)?);
         g = g.plus(&a.times(&spread).times(&a.transposed()), 1.0);
         let added = a.transposed().times(&h).times(&moved);
         h = h.plus(&added, 1.0);
         a = a.times(&moved);
         if !h.largest().is_finite() {
-            return Err(unstabilised());
+            return None;
         }
         if added.largest() <= 1e-14 * h.largest() {
-            return match a.largest() < 1e-3 {
-                true => Ok(h),
-                false => Err(unstabilised()),
-            };
+            return (a.largest() < 1e-3).then_some(h);
         }
     }
-    Err(unstabilised())
+    None
 }
 
 #[cfg(test)]
@@ -163,8 +203,28 @@ mod tests {
 
     #[test]
     fn what_has_no_solution_is_refused() {
-        assert!(Lqr::design(1, 1, &[2.0], &[0.0], &[1.0], &[1.0]).is_err(), "nothing moves it");
-        assert!(Lqr::design(1, 1, &[1.0], &[1.0], &[1.0], &[0.0]).is_err(), "R is singular");
+        let message = |a: &[f64], b: &[f64], q: &[f64], r: &[f64]| {
+            let [states, inputs] = [a.len().isqrt(), r.len().isqrt()];
+            let error = Lqr::design(states, inputs, a, b, q, r).unwrap_err();
+            assert_eq!(error.kind(), opendr_engine::ErrorKind::InvalidParam, "{error}");
+            error.to_string()
+        };
+        let stabilisable = "(A, B) is not stabilisable";
+        assert!(message(&[2.0], &[0.0], &[1.0], &[1.0]).contains(stabilisable), "nothing moves it");
+        // The second state grows, and only the first has an input; one that decays needs none.
+        let (b, q) = ([1.0, 0.0], [1.0, 0.0, 0.0, 1.0]);
+        assert!(message(&[0.5, 0.0, 0.0, 1.1], &b, &q, &[1.0]).contains(stabilisable));
+        assert!(message(&[0.5, 0.0, 0.0, 1.0], &b, &q, &[1.0]).contains(stabilisable), "on the unit circle");
+        assert!(Lqr::design(2, 1, &[1.5, 0.0, 0.0, 0.9], &b, &q, &[1.0]).is_ok());
+        assert!(message(&[2.0], &[1.0], &[0.0], &[1.0]).contains("Q has no weight on a state"));
+        assert!(message(&[1.0], &[1.0], &[1.0], &[0.0]).contains("R is not positive definite"));
+        assert!(message(&[1.0], &[1.0], &[-1.0], &[1.0]).contains("Q is not positive semidefinite"));
+        let a = [1.0, 0.1, 0.0, 1.0];
+        let rotated = [1.0, 2.0, 2.0, 1.0];
+        assert!(message(&a, &[0.0, 0.1], &rotated, &[1.0]).contains("Q is not positive semidefinite"));
+        let lopsided = message(&a, &[0.0, 0.1], &[1.0, 0.5, 0.0, 1.0], &[1.0]);
+        assert!(lopsided.contains("Q has 0.5 in row 0, column 1 and 0 in row 1, column 0"), "{lopsided}");
+        assert!(Lqr::design(2, 1, &a, &[0.0, 0.1], &[1.0, 1.0, 1.0, 1.0], &[1.0]).is_ok(), "of rank 1");
         assert!(Lqr::design(2, 1, &[1.0], &[1.0], &[1.0], &[1.0]).is_err(), "sizes");
         assert!(Lqr::design(1, 1, &[f64::NAN], &[1.0], &[1.0], &[1.0]).is_err());
     }

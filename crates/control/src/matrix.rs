@@ -28,6 +28,12 @@ impl Dense {
         Self { rows, columns, numbers: vec![0.0; rows * columns] }
     }
 
+    pub fn identity(size: usize) -> Self {
+        let mut identity = Self::zeros(size, size);
+        (0..size).for_each(|at| identity.numbers[at * size + at] = 1.0);
+        identity
+    }
+
     pub fn at(&self, row: usize, column: usize) -> f64 {
         self.numbers[row * self.columns + column]
     }
@@ -80,6 +86,40 @@ impl Dense {
             (0..width).for_each(|at| b[row * width + at] /= a[row * size + row]);
         }
         Some(Self { rows: size, columns: width, numbers: b })
+    }
+
+    /// Returns the first place above the diagonal whose number differs from the one across it.
+    pub fn asymmetry(&self) -> Option<(usize, usize)> {
+        let tolerance = 1e-9 * self.largest();
+        let pairs = (0..self.rows).flat_map(|row| (row + 1..self.columns).map(move |column| (row, column)));
+        let mut pairs =
+            pairs.filter(|(row, column)| (self.at(*row, *column) - self.at(*column, *row)).abs() > tolerance);
+        pairs.next()
+    }
+
+    /// Returns whether a symmetric matrix is positive definite: whether it has a Cholesky factor.
+    pub fn is_positive_definite(&self) -> bool {
+        let size = self.rows;
+        let mut factor = Self::zeros(size, size);
+        for column in 0..size {
+            for row in column..size {
+                let inner: f64 = (0..column).map(|at| factor.at(row, at) * factor.at(column, at)).sum();
+                let rest = self.at(row, column) - inner;
+                factor.numbers[row * size + column] = match row == column {
+                    false => rest / factor.at(column, column),
+                    // A remainder of rounding errors is zero.
+                    true if rest > 1e-13 * self.at(row, row) => rest.sqrt(),
+                    true => return false,
+                };
+            }
+        }
+        true
+    }
+
+    /// Returns whether a symmetric matrix is positive semidefinite, up to rounding errors of its largest number.
+    pub fn is_positive_semidefinite(&self) -> bool {
+        let largest = self.largest();
+        largest == 0.0 || self.plus(&Self::identity(self.rows), 1e-10 * largest).is_positive_definite()
     }
 
     pub fn largest(&self) -> f64 {

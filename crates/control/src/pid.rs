@@ -1,5 +1,6 @@
 //! PID control of one axis.
 
+use opendr_engine::environment::{Snapshot, StateReader};
 use opendr_engine::params::Params;
 use opendr_engine::{Error, Result};
 
@@ -57,6 +58,24 @@ impl Pid {
     /// Forgets integral and derivative.
     pub fn reset(&mut self) {
         (self.integral, self.derivative, self.previous) = (0.0, 0.0, None);
+    }
+
+    /// Writes the state that the next commands depend on.
+    pub fn save(&self, snapshot: &mut Snapshot) {
+        snapshot.push(u64::from(self.previous.is_some()));
+        snapshot.extend_numbers([self.integral, self.derivative, self.previous.unwrap_or(0.0)]);
+    }
+
+    /// Reads the state that [`save`](Self::save) wrote.
+    ///
+    /// # Errors
+    /// `Format` for the state of something else.
+    pub fn load(&mut self, state: &mut StateReader<'_>) -> Result<()> {
+        let has_previous = state.flag()?;
+        let [integral, derivative, previous] = [state.finite()?, state.finite()?, state.finite()?];
+        (self.integral, self.derivative) = (integral, derivative);
+        self.previous = has_previous.then_some(previous);
+        Ok(())
     }
 
     /// Returns the command for an error whose rate is not measured. `saturated` states that the last command was cut by an

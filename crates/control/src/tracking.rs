@@ -1,9 +1,10 @@
 //! Feedback laws on the observations of a tracking task.
 
-use opendr_engine::environment::{Controller, TrackingLayout, TrackingTask};
+use opendr_engine::environment::{Controller, Snapshot, StateReader, TrackingLayout, TrackingTask};
 use opendr_engine::{Error, Result};
 
-use crate::{Lqr, Pid, PidGains};
+use crate::lqr::Lqr;
+use crate::pid::{Pid, PidGains};
 
 /// Tracks a reference by one [`Pid`] per axis, with the reference's acceleration as feedforward where the layout has it. With
 /// `ki = 0` its only state is the filter of the derivative.
@@ -75,6 +76,15 @@ impl Controller for TrackingPid {
         }
         Ok(())
     }
+
+    fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
+        self.axes.iter().for_each(|pid| pid.save(snapshot));
+        Ok(())
+    }
+
+    fn load_state(&mut self, state: &mut StateReader<'_>) -> Result<()> {
+        self.axes.iter_mut().try_for_each(|pid| pid.load(state))
+    }
 }
 
 impl TrackingLqr {
@@ -104,6 +114,14 @@ impl Controller for TrackingLqr {
             let sum = feedback[0] + f64::from(layout.feedforward(observation, at));
             *command = sum.clamp(-self.limit, self.limit) as f32;
         }
+        Ok(())
+    }
+
+    fn save_state(&self, _: &mut Snapshot) -> Result<()> {
+        Ok(())
+    }
+
+    fn load_state(&mut self, _: &mut StateReader<'_>) -> Result<()> {
         Ok(())
     }
 }

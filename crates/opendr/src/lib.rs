@@ -43,6 +43,11 @@
 //! assert!(opendr::registry().find("no_such_learner").is_err());
 //! ```
 
+/// The programs of the tutorial are documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/tutorials/rust.md")]
+struct Tutorial;
+
 mod by_name;
 pub mod data_generation;
 pub mod environments;
@@ -51,6 +56,7 @@ mod fit;
 mod online;
 mod pipeline;
 mod policy_evaluation;
+mod priors;
 mod registry;
 mod smaller;
 #[cfg(any(feature = "detection", feature = "segmentation"))]
@@ -71,6 +77,8 @@ pub use opendr_audio::{mfcc, resampler};
 pub use opendr_classification::{compressive_learning, image_classification};
 #[cfg(feature = "clouds")]
 pub use opendr_clouds::{object_detection_3d, pillars, range_image};
+#[cfg(feature = "depth")]
+pub use opendr_depth::depth_estimation;
 #[cfg(feature = "detection")]
 pub use opendr_detection::object_detection_2d;
 pub use opendr_engine::*;
@@ -92,7 +100,7 @@ pub use opendr_pose::{fall_detection, pose_estimation};
 #[cfg(feature = "segmentation")]
 pub use opendr_segmentation::{binary_high_resolution, instance_segmentation, semantic_segmentation};
 #[cfg(feature = "signals")]
-pub use opendr_signals::{beats, heart_anomaly_detection};
+pub use opendr_signals::{beats, heart_anomaly_detection, sequence_classification};
 #[cfg(feature = "speech")]
 pub use opendr_speech::{speech_recognition, speech_transcription, voice_activity, voice_activity_detection};
 #[cfg(feature = "stereo")]
@@ -109,6 +117,7 @@ pub use pipeline::Pipeline;
 pub use policy_evaluation::{
     PolicyController, PolicyEvaluation, evaluate_learner, evaluate_policy, training_environment,
 };
+pub use priors::priors;
 pub use registry::registry;
 pub use smaller::optimize_loaded;
 pub use tune::{

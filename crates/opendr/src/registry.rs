@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 #[cfg(feature = "actions")]
 use opendr_actions::{
     activity_recognition::{CoX3d, X3d},
-    skeleton_based_action_recognition::{CoStGcn, SpatioTemporalGcn},
+    skeleton_based_action_recognition::{CoStGcn, ProgressiveSpatioTemporalGcn, SpatioTemporalGcn},
 };
 use opendr_active::{ActiveFaceRecognition, ActiveObjectRecognition, ActivePoseRecognition};
 #[cfg(feature = "classification")]
@@ -15,6 +15,8 @@ use opendr_classification::{
 };
 #[cfg(feature = "clouds")]
 use opendr_clouds::object_detection_3d::VoxelObjectDetection3d;
+#[cfg(feature = "depth")]
+use opendr_depth::depth_estimation::ImportedDepthEstimator;
 #[cfg(feature = "detection")]
 use opendr_detection::object_detection_2d::{
     CenterNet, FastestDet, Gem, ImportedDetector, Nanodet, Seq2SeqNms, SingleShotDetector, TiledDetection,
@@ -60,7 +62,10 @@ use opendr_segmentation::{
     semantic_segmentation::{Bisenet, Deeplab, ImportedSegmenter, SelfieSegmentation, TiledSegmentation},
 };
 #[cfg(feature = "signals")]
-use opendr_signals::heart_anomaly_detection::{AttentionNeuralBagOfFeature, GatedRecurrentUnit};
+use opendr_signals::{
+    heart_anomaly_detection::{AttentionNeuralBagOfFeature, GatedRecurrentUnit},
+    sequence_classification::CoTransEnc,
+};
 #[cfg(feature = "speech")]
 use opendr_speech::{
     speech_recognition::{DsCnn, EdgeSpeechNets, MatchboxNet, QuadraticSelfOnn},
@@ -77,11 +82,13 @@ use opendr_tracking::{
     object_tracking_3d::{Ab3dmot, Vpit},
 };
 
-/// Returns the registry of all learners: those of this build, and those that the program adds.
+/// Returns the registry of all learners: those of this build, and those that the program adds. The priors of `opendr-control`, which
+/// parameters of these learners name, are provided with it.
 #[rustfmt::skip] // One line per learner.
 pub fn registry() -> &'static Registry {
     static REGISTRY: OnceLock<Registry> = OnceLock::new();
     REGISTRY.get_or_init(|| {
+        opendr_rl::prior::Prior::provide(opendr_control::priors());
         learners![
             #[cfg(feature = "detection")]
             {
@@ -161,6 +168,10 @@ pub fn registry() -> &'static Registry {
             {
                 SemiGlobalMatching,
             },
+            #[cfg(feature = "depth")]
+            {
+                ImportedDepthEstimator,
+            },
             #[cfg(feature = "text")]
             {
                 PpOcr,
@@ -173,6 +184,7 @@ pub fn registry() -> &'static Registry {
             #[cfg(feature = "actions")]
             {
                 SpatioTemporalGcn,
+                ProgressiveSpatioTemporalGcn,
                 CoStGcn,
                 X3d,
                 CoX3d,
@@ -186,6 +198,7 @@ pub fn registry() -> &'static Registry {
             {
                 GatedRecurrentUnit,
                 AttentionNeuralBagOfFeature,
+                CoTransEnc,
             },
             #[cfg(feature = "speech")]
             {

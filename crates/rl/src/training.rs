@@ -148,7 +148,7 @@ impl<A: Algorithm> Training<'_, A> {
         let (total, progress) = (self.params.total_timesteps, self.job.progress);
         let mut done = self.algorithm.report().timesteps;
         progress.begin("training", Some(total), Unit::Steps);
-        progress.advance(done.min(total));
+        progress.advance_resumed(done.min(total));
         let outcome = loop {
             if done >= total {
                 break self.measure();

@@ -17,6 +17,7 @@ use opendr::{Error, JsonFormat, Pipeline, Progress, Result};
 
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
+use crate::viewed_environment::ViewedSource;
 use crate::{
     class_flags, dataset_flags, environment_flags, learner_flags, loading, named_value, report_file, stdout,
     then_flag, viewing,
@@ -31,6 +32,7 @@ Examples:
   opendr eval nanodet MOT17/train/ --then byte_track           a pipeline, by its last learner's metric
   opendr eval LEARNER mine/ --classes lorry=truck,tram=train   classes whose names differ
   opendr eval ppo --env CartPole-v1 --episodes 500             a policy in an environment
+  opendr eval ppo --env CartPole-v1 --view                     ... with its episodes on a web page
   opendr eval residual_ppo --model runs/mine/model             prior, policy and both on the same episodes
   opendr eval active_face_recognition --model MODEL --episodes 500   a moving camera, beside baselines
   opendr eval td3/quad_track --env QuadTrack-v1 --online       ... adapted in flight, beside frozen and conventional
@@ -166,10 +168,12 @@ fn in_environment(
     if let Some(seed) = matches.get_one::<u64>("first-seed") {
         protocol.first_seed = *seed;
     }
+    let viewer = viewing::of_items(entry.spec.class, matches, bar)?;
+    let mut environment = ViewedSource::new(&source, viewer).make()?;
     if super::online::is_online(matches) {
-        return super::online::evaluate(learner.as_ref(), &source, &protocol, matches, bar);
+        let environment = environment.as_mut();
+        return super::online::evaluate(learner.as_ref(), &source, environment, &protocol, matches, bar);
     }
-    let mut environment = source.make()?;
     let report = opendr::evaluate_learner(learner.as_ref(), entry, environment.as_mut(), &protocol, bar)?;
     if matches.get_flag("json") {
         stdout::print_json(POLICY_REPORT, &report)?;

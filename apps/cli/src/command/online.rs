@@ -10,10 +10,11 @@ use opendr::learner::AnyLearner;
 use opendr::params::Params as _;
 use opendr::rl::EvaluationProtocol;
 use opendr::simulation::{Recording, RegisteredSource};
-use opendr::{Error, JsonFormat, OnlineTuning, Progress, Result, Unit};
+use opendr::{JsonFormat, OnlineTuning, Progress, Result, Unit};
 
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
+use crate::viewed_environment::rendered;
 use crate::{named_value, report_file, stdout};
 
 const REPORT: JsonFormat = JsonFormat::new("evaluation of online adaptation", 1);
@@ -57,16 +58,17 @@ fn tuning(learner: &dyn AnyLearner, source: &RegisteredSource) -> Result<OnlineT
     OnlineTuning::new(learner, &RegisteredSource::new(source.id(), &Default::default())?)
 }
 
-/// Evaluates a policy frozen, adapted and beside the conventional controller.
+/// Evaluates a policy frozen, adapted and beside the conventional controller, in `environment`, which is one of `source`.
 pub fn evaluate(
     learner: &dyn AnyLearner,
     source: &RegisteredSource,
+    environment: &mut dyn Environment,
     protocol: &EvaluationProtocol,
     matches: &ArgMatches,
     bar: &ProgressBar,
 ) -> Result<Outcome> {
     let params = params(matches)?;
-    let report = tuning(learner, source)?.compare(source.make()?.as_mut(), &params, protocol, bar)?;
+    let report = tuning(learner, source)?.compare(environment, &params, protocol, bar)?;
     if matches.get_flag("json") {
         stdout::print_json(REPORT, &report)?;
     } else {
@@ -135,8 +137,7 @@ impl Flight {
     }
 
     fn render(&mut self) -> Result<Image> {
-        let image = self.environment.render()?;
-        image.ok_or_else(|| Error::unsupported(format!("{} does not render", self.environment.spec().id)))
+        rendered(self.environment.as_mut())
     }
 
     fn step(&mut self) -> Result<bool> {

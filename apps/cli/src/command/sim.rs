@@ -7,13 +7,14 @@ use clap::{Arg, ArgMatches, Command, value_parser};
 use opendr::data::Image;
 use opendr::environment::{Controller, Environment, EnvironmentSource, ResetOptions, Space, Step};
 use opendr::learner::Outputs;
-use opendr::rl::prior::{Prior, PriorId, SafetyRule};
+use opendr::rl::prior::{PriorId, SafetyRule};
 use opendr::simulation::{Recording, Registry};
 use opendr::viewer::{Shown, Viewer};
-use opendr::{Error, PolicyController, Progress, Random, Result, Unit};
+use opendr::{PolicyController, Progress, Random, Result, Unit};
 
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
+use crate::viewed_environment::{episode_name, notes, rendered};
 use crate::{environment_flags, loading, stdout, viewing};
 
 const EXAMPLES: &str = "\
@@ -142,7 +143,7 @@ fn list(matches: &ArgMatches) -> Result<Outcome> {
 }
 
 fn priors() -> Result<Outcome> {
-    for prior in Prior::all() {
+    for prior in opendr::priors() {
         let PriorId { name, version } = prior.id();
         let commands = if prior.has_commands() { ", follows commands" } else { "" };
         stdout::print(format_args!("{name:28} version {version}{commands}: {}", prior.description()))?;
@@ -264,31 +265,17 @@ fn episode(
     environment.reset(Some(seed), &ResetOptions::new(), &mut observation)?;
     acting.reset();
     let (mut earned, mut length) = (0.0, 0u64);
-    let no_render = || Error::unsupported(format!("{} does not render", spec.id));
-    let name = format!("{} seed {seed}", spec.id);
-    screen.put(&name, 0, environment.render()?.ok_or_else(no_render)?, Vec::new)?;
+    let name = episode_name(&spec.id, seed);
+    screen.put(&name, 0, rendered(environment)?, Vec::new)?;
     loop {
         acting.act(&observation, &mut action)?;
         let step = environment.step(&action, &mut observation)?;
         (earned, length) = (earned + step.reward, length + 1);
-        let image = environment.render()?.ok_or_else(no_render)?;
-        screen.put(&name, length, image, || notes(&step, earned, &action))?;
+        screen.put(&name, length, rendered(environment)?, || notes(&step, earned, &action))?;
         if step.is_over() || bar.stopped() {
             return Ok(format!("seed {seed}: return {earned:.2} in {length} steps, {}", ending(&step)));
         }
     }
-}
-
-/// Returns what a page displays beside the image of a step.
-fn notes(step: &Step, earned: f64, action: &[f32]) -> Vec<(String, String)> {
-    let action: Vec<_> = action.iter().map(|value| format!("{value:.3}")).collect();
-    let info = step.info.iter().map(|(name, value)| (name.to_string(), format!("{value:.3}")));
-    let own = [
-        ("reward", format!("{:.3}", step.reward)),
-        ("return", format!("{earned:.3}")),
-        ("action", action.join(", ")),
-    ];
-    own.into_iter().map(|(name, text)| (name.to_owned(), text)).chain(info).collect()
 }
 
 fn ending(step: &Step) -> String {

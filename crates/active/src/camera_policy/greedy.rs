@@ -1,6 +1,6 @@
 //! The motion with the highest expected gain.
 
-use opendr_engine::Result;
+use opendr_engine::{Error, Result};
 use opendr_kernels::Compute;
 
 use super::{CameraContext, CameraPolicy};
@@ -27,9 +27,15 @@ impl GreedyPolicy {
 
 impl CameraPolicy for GreedyPolicy {
     fn choose(&mut self, context: &CameraContext<'_>, action: &mut [f32]) -> Result<()> {
-        let gains = self.gain.predict(&self.compute, context.observation, &self.candidates);
+        let axes = self.gain.axes();
+        if action.len() != axes {
+            return Err(Error::invalid_input(format!(
+                "gains of motions of {axes} axes for a rig of {}; train them on this rig",
+                action.len()
+            )));
+        }
+        let gains = self.gain.predict(&self.compute, context.observation, &self.candidates)?;
         let best = gains.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(at, _)| at);
-        let axes = action.len();
         action.copy_from_slice(&self.candidates[best * axes..(best + 1) * axes]);
         Ok(())
     }

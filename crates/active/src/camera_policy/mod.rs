@@ -31,9 +31,10 @@ pub trait CameraPolicy {
         let _ = seed;
     }
 
-    /// Writes the deflection of each axis, each in [-1, 1].
+    /// Writes the deflection of each axis of the rig, each in [-1, 1].
     ///
     /// # Errors
-    /// Returns errors of a network.
+    /// Returns `InvalidInput` for a rig of another number of axes, and `Internal` for a network whose outputs are not finite: clipped to
+    /// the axes, they would look like a decision.
     fn choose(&mut self, context: &CameraContext<'_>, action: &mut [f32]) -> Result<()>;
 }

@@ -33,6 +33,7 @@ impl CameraPolicy for TrainedPolicy {
 
     fn choose(&mut self, context: &CameraContext<'_>, action: &mut [f32]) -> Result<()> {
         let Self { policy, compute, memory } = self;
+        // The mean of a Gaussian may lie outside of the axes; outputs that are not finite are errors before they are clipped.
         policy.act(compute, context.observation, ActionMode::Deterministic, memory, action)?;
         action.iter_mut().for_each(|axis| *axis = axis.clamp(-1.0, 1.0));
         Ok(())

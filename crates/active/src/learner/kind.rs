@@ -1,12 +1,17 @@
 //! The learners of active perception by what they recognise.
 
 use opendr_engine::Task;
-use opendr_engine::learner::Spec;
+use opendr_engine::learner::{Entry, Spec};
 
 /// What a learner recognises.
 pub trait ActiveKind: Send + Sync + 'static {
     /// Name, task and class name of the learner.
     const SPEC: Spec;
+}
+
+/// Returns whether the learners of an entry are those of active perception, whose models have a camera policy.
+pub fn has_camera_policy(entry: &Entry) -> bool {
+    entry.spec.task == Task::ActivePerception
 }
 
 /// Persons by their faces.

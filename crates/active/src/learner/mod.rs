@@ -9,7 +9,7 @@ mod state;
 
 pub use active_learner::{ActiveInput, ActiveLearner};
 pub use container::{ActiveContainer, write_active_model};
-pub use kind::ActiveKind;
+pub use kind::{ActiveKind, has_camera_policy};
 pub use params::{ActiveFitParams, ActiveParams};
 pub use state::ActiveState;
 

@@ -1,10 +1,12 @@
 //! A camera that pans, tilts and zooms over a large image.
 
-use opendr_engine::data::{Image, Layout, Pixels};
+use opendr_engine::data::{Image, Pixels};
 use opendr_engine::rig::{Achieved, ViewAxis, ViewPose, ViewRig, ViewSphere};
 use opendr_engine::target::Action;
 use opendr_engine::{Error, Result};
 use opendr_vision::resize;
+
+use crate::rgb_image::rgb_image;
 
 /// A window of a large image, as a camera in its middle sees it.
 ///
@@ -18,18 +20,13 @@ pub struct PanTiltZoom {
 }
 
 impl PanTiltZoom {
-    /// Creates a camera over an image of RGB bytes, pixel after pixel, whose width is `field` rad; its images have `width` x
-    /// `height` pixels. It begins with the whole image.
+    /// Creates a camera over an image of bytes whose width is `field` rad; its images are RGB, of `width` x `height` pixels. It begins
+    /// with the whole image.
     ///
     /// # Errors
     /// `InvalidInput` for an image of other samples, `InvalidParam` for a field that is not in 0..=pi.
     pub fn new(image: Image, field: f64, [width, height]: [usize; 2]) -> Result<Self> {
-        if !matches!(image.pixels(), Pixels::U8(_)) || image.layout() != Layout::Hwc || image.channels() != 3
-        {
-            return Err(Error::invalid_input(
-                "a pan-tilt-zoom camera takes an image of RGB bytes; convert it",
-            ));
-        }
+        let image = rgb_image(&image)?.into_owned();
         if !(field > 0.0 && field <= std::f64::consts::PI) {
             return Err(Error::invalid_param(format!("a field of view of {field} rad; give one in 0..=pi")));
         }

@@ -1,14 +1,15 @@
 //! Views with their classes, to train a classifier on.
 
-use opendr_engine::data::{Image, Layout, Pixels};
+use opendr_engine::data::Pixels;
 use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::rig::ViewRig as _;
 use opendr_engine::target::Action;
-use opendr_engine::{Error, Random, Result, Value, map_in_order};
+use opendr_engine::{Error, Random, Result, ResultExt as _, Value, map_in_order};
 use opendr_vision::resize;
 
 use crate::camera_policy::{CameraContext, CameraPolicy as _, OracleBaseline};
 use crate::environment_rig::EnvironmentRig;
+use crate::rgb_image::rgb_image;
 
 /// Views with their class indices.
 #[derive(Debug, Clone, Default)]
@@ -81,7 +82,7 @@ impl LabelledViews {
             let sample = dataset.get(index)?;
             let refused = |what: &str| {
                 Error::invalid_input(format!(
-                    "{}: {what}; give RGB images with class indices below {classes}",
+                    "{}: {what}; give images with class indices below {classes}",
                     dataset.name(index)
                 ))
             };
@@ -96,13 +97,12 @@ impl LabelledViews {
             let label = label
                 .filter(|label| *label < classes)
                 .ok_or_else(|| refused("no class of the environment"))?;
-            let image: Image = resize(image.ok_or_else(|| refused("no image"))?, side, side)?;
-            match image.pixels() {
-                Pixels::U8(pixels) if image.channels() == 3 && image.layout() == Layout::Hwc => {
-                    views.pixels.extend_from_slice(pixels);
-                }
-                _ => return Err(refused("no RGB image of 8 bits")),
-            }
+            let image =
+                rgb_image(image.ok_or_else(|| refused("no image"))?).context(|| dataset.name(index))?;
+            let Pixels::U8(pixels) = resize(&image, side, side)?.into_pixels() else {
+                return Err(Error::internal("an image of bytes that was resized to other samples"));
+            };
+            views.pixels.extend_from_slice(&pixels);
             views.labels.push(label);
         }
         Ok(views)

@@ -5,7 +5,7 @@ mod labelled_views;
 
 use std::sync::Arc;
 
-use opendr_engine::data::{Image, Layout, Pixels};
+use opendr_engine::data::{Image, Pixels};
 use opendr_engine::{Error, Result};
 use opendr_kernels::{Activation, Compute, Conv2d, Dense, Layer, Network, Tape};
 use opendr_vision::resize;
@@ -15,6 +15,7 @@ pub use fit::{ViewTraining, fit_view_classifier};
 pub use labelled_views::LabelledViews;
 
 use crate::recogniser::ViewRecogniser;
+use crate::rgb_image::rgb_image;
 
 /// Sizes of a classifier.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -114,6 +115,7 @@ impl ViewRecogniser for ViewClassifier {
 
     fn recognise(&mut self, image: &Image, evidence: &mut [f32]) -> Result<()> {
         let side = self.config.side;
+        let image = &*rgb_image(image)?;
         let resized;
         let image = if [image.width(), image.height()] == [side; 2] {
             image
@@ -121,17 +123,11 @@ impl ViewRecogniser for ViewClassifier {
             resized = resize(image, side, side)?;
             &resized
         };
-        match image.pixels() {
-            Pixels::U8(pixels) if image.channels() == 3 && image.layout() == Layout::Hwc => {
-                self.input.resize(pixels.len(), 0.0);
-                normalised_planes(pixels, &mut self.input);
-            }
-            _ => {
-                return Err(Error::invalid_input(
-                    "a classifier of views takes RGB images of 8 bits; convert the image",
-                ));
-            }
-        }
+        let Pixels::U8(pixels) = image.pixels() else {
+            return Err(Error::internal("an image of bytes that was resized to other samples"));
+        };
+        self.input.resize(pixels.len(), 0.0);
+        normalised_planes(pixels, &mut self.input);
         let Self { config, network, parameters, compute, tape, input } = self;
         let (weights, directions) = parameters.split_at(network.parameters());
         let embedding = network.forward(compute, weights, input, tape);

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod allocation;
+mod camera_policies;
 mod learner;
 mod learning;
 mod rigs;

@@ -1,8 +1,9 @@
 //! Rigs without a simulator.
 
-use opendr_active::rig::{PanTiltZoom, RecordedViews};
+use opendr_active::rig::{PanTiltZoom, RecordedViews, RigOptions};
 use opendr_engine::ErrorKind;
 use opendr_engine::data::{Image, Pixels};
+use opendr_engine::params::ParamValue;
 use opendr_engine::rig::{Limit, ViewRig as _};
 use opendr_engine::target::Action;
 
@@ -64,5 +65,42 @@ fn recorded_views_are_captured_where_they_are_nearest() {
     assert_eq!(RecordedViews::open(&index).err().map(|error| error.kind()), Some(ErrorKind::Format));
     std::fs::write(&index, "{}").unwrap();
     assert_eq!(RecordedViews::open(&index).err().map(|error| error.kind()), Some(ErrorKind::Format));
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+#[test]
+fn rigs_are_opened_by_name_with_the_options_of_their_kind() {
+    let folder = std::env::temp_dir().join(format!("opendr-named-rigs-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let (hall, index) = (folder.join("hall.png"), folder.join("views.json"));
+    let image = Image::from_rgb8(vec![70; 3 * 40 * 20], 40, 20).unwrap();
+    opendr_vision::save(&image, &hall).unwrap();
+    let axes = r#"[{"name": "azimuth", "step": 0.6, "low": -3.14, "high": 3.14, "wraps": true}]"#;
+    let pose = r#"{"azimuth": 0, "elevation": 0, "distance": 1}"#;
+    let text = format!(r#"{{"axes": {axes}, "views": [{{"image": "hall.png", "pose": {pose}}}]}}"#);
+    std::fs::write(&index, text).unwrap();
+    let [hall, index] = [hall, index].map(|path| path.display().to_string());
+
+    let plain = RigOptions::default();
+    let seeded = RigOptions { seed: Some(3), ..RigOptions::default() };
+    let wide = RigOptions { field_of_view: Some(2.0), ..RigOptions::default() };
+    let axes_of = |options: &RigOptions, rig: &str| options.open(rig).map(|rig| rig.axes().to_vec());
+    let world = "SphereView-Pose-v1";
+    for (options, rig, count) in
+        [(&plain, world, 3), (&seeded, world, 3), (&plain, &index, 1), (&plain, &hall, 3), (&wide, &hall, 3)]
+    {
+        assert_eq!(axes_of(options, rig).unwrap().len(), count, "{rig}");
+    }
+    let high = |options| axes_of(options, &hall).unwrap()[0].high;
+    assert_eq!((high(&plain), high(&wide)), (0.5, 1.0));
+    assert_ne!(plain.open(world).unwrap().capture().unwrap(), seeded.open(world).unwrap().capture().unwrap());
+    for (options, rig) in [(&wide, world), (&wide, &index), (&seeded, &index), (&seeded, &hall)] {
+        let error = axes_of(options, rig).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::InvalidParam, "{rig}: {error}");
+    }
+    let parameter = [("unknown".to_owned(), ParamValue::Int(1))];
+    let wrong = RigOptions { params: parameter.into(), ..RigOptions::default() };
+    assert!(axes_of(&wrong, world).is_err() && axes_of(&wrong, &hall).is_err());
+    assert_eq!(axes_of(&plain, "nowhere").unwrap_err().kind(), ErrorKind::NotFound);
     std::fs::remove_dir_all(&folder).unwrap();
 }

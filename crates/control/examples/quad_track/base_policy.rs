@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use opendr_control::online::{Calibration, NeuralPolicy, OnlineAdapter};
-use opendr_control::{PidGains, TrackingPid};
+use opendr_control::{TrackingPid, quad_track_gains};
 use opendr_engine::environment::{Controller, Environment as _, EnvironmentSpec, ResetOptions, TrackingTask};
 use opendr_engine::{Error, Random, Result};
 use opendr_kernels::Compute;
@@ -16,17 +16,13 @@ use opendr_simulation::quad_track::{CONTROL_PERIOD, MAX_ACCELERATION, QuadTrack,
 
 use crate::settings::Settings;
 
-/// Gains on the nominal plant, by `cargo run --release -p opendr-control --example tune_pid 400`.
-const HORIZONTAL: PidGains = PidGains { kp: 8.344, ki: 0.384, kd: 5.199, filter: 0.00427, limit: 8.0 };
-const VERTICAL: PidGains = PidGains { kp: 15.449, ki: 0.0732, kd: 2.909, filter: 0.0399, limit: 8.0 };
-
 pub fn task(spec: &EnvironmentSpec) -> Result<&TrackingTask> {
     spec.tracking.as_ref().ok_or_else(|| Error::internal("QuadTrack-v1 states no tracking task"))
 }
 
 pub fn tuned_pid() -> Result<TrackingPid> {
     let spec = QuadTrack::new(&QuadTrackParams::default())?.spec().clone();
-    TrackingPid::new(task(&spec)?.layout, &[HORIZONTAL, HORIZONTAL, VERTICAL], CONTROL_PERIOD)
+    TrackingPid::new(task(&spec)?.layout, &quad_track_gains(), CONTROL_PERIOD)
 }
 
 pub struct Base {

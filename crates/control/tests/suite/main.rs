@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod online;
+mod priors;
 
 #[global_allocator]
 static ALLOCATOR: opendr_test_allocator::CountingAllocator = opendr_test_allocator::CountingAllocator;

@@ -38,9 +38,10 @@ pub fn fit_policy(
 ) -> Result<Fitted> {
     check_options(options)?;
     let FitEnvironments { env, val_env } = environments;
-    fit_with(learner, entry, options, progress, |learner, job| {
+    let fitted = fit_with(learner, entry, options, progress, |learner, job| {
         learner.fit_in(&options.params, env, val_env, job)
-    })
+    })?;
+    finish(fitted, progress)
 }
 
 /// Trains a learner of active perception: perception on a data set, and the camera motion in environments from `env`.
@@ -59,19 +60,25 @@ pub fn fit_active(
     let opener = DatasetOpener::new(entry, true, &problems, progress);
     let samples = opener.open_training(dataset, options.split.as_deref())?;
     let samples = Subset::first(samples, options.limit.unwrap_or(usize::MAX));
-    let count = samples.len();
-    let mut fitted = fit_with(learner, entry, options, progress, |learner, job| {
+    let path = match dataset {
+        DatasetRef::External(external) => external.path().display().to_string(),
+        DatasetRef::Iterator(_) => String::new(),
+    };
+    let fitted = fit_with(learner, entry, options, progress, |learner, job| {
         let dataset = DatasetRef::Iterator(&samples);
         learner.fit_active(&options.params, Some(dataset), env, job)
     })?;
-    fitted.samples = count;
-    if let DatasetRef::External(external) = dataset {
-        fitted.dataset = external.path().display().to_string();
-    }
-    Ok(fitted)
+    let fitted = Fitted {
+        dataset: options.name.clone().unwrap_or(path),
+        samples: samples.len(),
+        skipped: problems.count(),
+        problems: problems.list(),
+        ..fitted
+    };
+    finish(fitted, progress)
 }
 
-/// Trains by `train` and reports the result.
+/// Trains by `train`, and returns what is to be reported.
 fn fit_with(
     learner: &mut dyn AnyLearner,
     entry: &'static Entry,
@@ -103,7 +110,7 @@ fn fit_with(
         true => Statistics::default(),
         false => train(learner, &job)?,
     };
-    let fitted = Fitted {
+    Ok(Fitted {
         learner: entry.spec.name.to_owned(),
         environment: Some(training_environment(learner).unwrap_or_default().to_owned()),
         dataset: String::new(),
@@ -116,8 +123,7 @@ fn fit_with(
         skipped: 0,
         problems: Vec::new(),
         output,
-    };
-    finish(fitted, progress)
+    })
 }
 
 /// Refuses options that apply to data sets only.

@@ -4,6 +4,8 @@
 
 mod conformance;
 mod corpus;
+#[cfg(feature = "depth")]
+mod depth_eval;
 #[cfg(all(feature = "faces", feature = "training"))]
 mod faces;
 #[cfg(all(feature = "faces", feature = "pose"))]

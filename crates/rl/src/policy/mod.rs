@@ -175,8 +175,8 @@ impl Policy {
     /// policy continues from the states in `memory`; a different number of rows resets them.
     ///
     /// # Errors
-    /// `InvalidInput` for wrong lengths and for observations that are not finite; `Internal` if damaged parameters give actions that
-    /// are not finite.
+    /// `InvalidInput` for wrong lengths and for observations that are not finite; `Internal` if damaged parameters give outputs or
+    /// actions that are not finite.
     pub fn act(
         &self,
         compute: &Compute,
@@ -196,11 +196,14 @@ impl Policy {
         let mut encoded = std::mem::take(&mut memory.encoded);
         encoded.resize(rows * self.encoder.encoded_len(), 0.0);
         let outcome = self.encoder.encode(observations, &mut encoded);
+        let mut damaged = None;
         if outcome.is_ok() {
             memory.provide(rows, self.trunk.state_len());
             self.advance(compute, &encoded, memory);
             let PolicyMemory { trunk, likelihood, .. } = memory;
             let outputs = trunk.output();
+            // Clipped to the bounds, an infinite mean would look like a decision, and so would the first of choices that are NaN.
+            damaged = outputs.iter().find(|output| !output.is_finite()).copied();
             match acting {
                 ActionMode::Deterministic => self.head.most_likely(outputs, actions),
                 ActionMode::Sampled(random) => {
@@ -211,10 +214,11 @@ impl Policy {
         }
         memory.encoded = encoded;
         outcome?;
-        match actions.iter().find(|action| !action.is_finite()) {
+        // Deviations of a Gaussian are no outputs.
+        match damaged.or_else(|| actions.iter().find(|action| !action.is_finite()).copied()) {
             None => Ok(()),
-            Some(action) => Err(Error::internal(format!(
-                "the policy returned the action {action}, its parameters are damaged; load or train it again"
+            Some(number) => Err(Error::internal(format!(
+                "the policy's network returned {number}, its parameters are damaged; load or train it again"
             ))),
         }
     }

@@ -7,7 +7,7 @@ use opendr_simulation::uav_corridor::{
     PurePursuit, ReactiveController, compact_space,
 };
 
-use super::named_prior::{BoxedController, Prior};
+use super::named_prior::{BoxedController, Prior, unread_space};
 use super::{BoxedCommanded, CommandLaw, CommandedController};
 
 /// The share of its headings that the weak reactive controller flies.
@@ -29,12 +29,12 @@ pub(super) fn builtin() -> Vec<Prior> {
             .about("pure pursuit of the middle line, without regard to obstacles, in UavDepthCorridor"),
         Prior::new("pendulum-energy", 1, |space| match space.len() {
             3 => Ok(Box::new(pendulum)),
-            _ => Err(unread("pendulum-energy", space)),
+            _ => Err(unread_space("pendulum-energy", space)),
         })
         .about("swings up by the energy and balances by a PD law, in Pendulum-v1")
         .with_commands(|space| match space.len() {
             3 => Ok(Box::new(CommandLaw::new(Space::symmetric(&[1.0; 2]), 1, commanded_pendulum))),
-            _ => Err(unread("pendulum-energy", space)),
+            _ => Err(unread_space("pendulum-energy", space)),
         }),
     ]
 }
@@ -46,7 +46,7 @@ fn corridor<C: CorridorController + Send + 'static>(controller: C, space: &Space
     }
     match CorridorObservation::default().read(space, &vec![0.0; space.len()]) {
         Ok(()) => Ok(Box::new(ObservationController::new(controller, space.clone()))),
-        Err(_) => Err(unread("this controller of UavDepthCorridor", space)),
+        Err(_) => Err(unread_space("this controller of UavDepthCorridor", space)),
     }
 }
 
@@ -70,7 +70,7 @@ fn commanded_corridor(space: &Space) -> Result<BoxedCommanded> {
             let controller = ObservationController::new(reactive, space.clone());
             Ok(Box::new(CommandedCorridor { controller, commands }))
         }
-        Err(_) => Err(unread("this controller of UavDepthCorridor", space)),
+        Err(_) => Err(unread_space("this controller of UavDepthCorridor", space)),
     }
 }
 
@@ -105,12 +105,6 @@ impl<C: Controller + AsMut<ReactiveController> + Send> CommandedController for C
     fn load_state(&mut self, state: &mut StateReader<'_>) -> Result<()> {
         self.controller.load_state(state)
     }
-}
-
-fn unread(name: &str, space: &Space) -> Error {
-    Error::unsupported(format!(
-        "{name} reads no observations {space}; select a prior of this environment (\"opendr sim priors\" lists them)"
-    ))
 }
 
 /// Swing-up by energy (Astrom and Furuta, Swinging up a pendulum by energy control, 2000) and a PD law near the top.

@@ -10,7 +10,7 @@ use super::named_prior::{Prior, PriorId};
 static REGISTERED: RwLock<Vec<Prior>> = RwLock::new(Vec::new());
 
 impl Prior {
-    /// Returns all priors of this process: the built-in ones, then those that were registered.
+    /// Returns all priors of this process: the built-in ones, then those that were provided and registered.
     pub fn all() -> Vec<Self> {
         let registered = REGISTERED.read().unwrap_or_else(PoisonError::into_inner);
         [builtin(), registered.clone()].concat()
@@ -33,13 +33,27 @@ impl Prior {
         Ok(())
     }
 
+    /// Adds the priors of a crate above this one, as built-in ones; programs call [`Self::register`]. Where a program has registered one
+    /// of the same name and version before, [`Self::find`] refuses both, since a policy may have been trained on either.
+    pub fn provide(priors: Vec<Self>) {
+        REGISTERED.write().unwrap_or_else(PoisonError::into_inner).extend(priors);
+    }
+
     /// Returns the prior of this name and version.
     ///
     /// # Errors
-    /// `NotFound` where this process has none; the message lists those that it has.
+    /// `NotFound` where this process has none; the message lists those that it has. `InvalidInput` where it has two.
     pub fn find(id: &PriorId) -> Result<Self> {
         let known = Self::all();
-        known.iter().find(|prior| prior.id() == id).cloned().ok_or_else(|| not_found(id, &known))
+        let mut own = known.iter().filter(|prior| prior.id() == id);
+        match (own.next(), own.next()) {
+            (Some(prior), None) => Ok(prior.clone()),
+            (None, _) => Err(not_found(id, &known)),
+            (Some(_), Some(_)) => Err(Error::invalid_input(format!(
+                "{} version {} is a prior of this toolkit and one that the program registered; give the program's another name",
+                id.name, id.version
+            ))),
+        }
     }
 
     /// Returns the newest version of a prior.
@@ -48,9 +62,9 @@ impl Prior {
     /// As [`Self::find`].
     pub fn newest(name: &str) -> Result<Self> {
         let known = Self::all();
-        let own = known.iter().filter(|prior| prior.id().name == name);
-        let newest = own.max_by_key(|prior| prior.id().version).cloned();
-        newest.ok_or_else(|| not_found(&PriorId { name: name.to_owned(), version: 1 }, &known))
+        let own = known.iter().map(Self::id).filter(|id| id.name == name);
+        let newest = own.max_by_key(|id| id.version).cloned();
+        Self::find(&newest.unwrap_or_else(|| PriorId { name: name.to_owned(), version: 1 }))
     }
 }
 
@@ -87,5 +101,11 @@ mod tests {
         Prior::new("test-half", 3, make).register().unwrap();
         assert!(Prior::new("test-half", 3, make).register().is_err());
         assert_eq!(Prior::newest("test-half").unwrap().id().version, 3);
+        // One of the program and one that is provided later are two controllers: neither is taken silently.
+        Prior::provide(vec![Prior::new("test-half", 4, make), Prior::new("test-half", 3, make)]);
+        assert_eq!(Prior::newest("test-half").unwrap().id().version, 4);
+        let id = PriorId { name: "test-half".to_owned(), version: 3 };
+        assert_eq!(Prior::find(&id).err().unwrap().kind(), ErrorKind::InvalidInput);
+        assert!(Prior::new("test-half", 4, make).register().is_err());
     }
 }

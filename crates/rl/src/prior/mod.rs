@@ -42,7 +42,7 @@ pub use demonstration_params::{
 pub(crate) use demonstrations::DemonstrationReplay;
 pub use demonstrations::{DemonstratedSteps, begin_as_clone};
 pub use model_controllers::{ModelController, controllers_of_model};
-pub use named_prior::{BoxedController, Prior, PriorId};
+pub use named_prior::{BoxedController, Prior, PriorId, unread_space};
 pub use report::{PriorReport, ReportedController};
 pub use residual::{Residual, begin_as_prior};
 pub use residual_config::ResidualConfig;

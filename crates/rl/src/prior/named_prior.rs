@@ -97,3 +97,11 @@ impl Prior {
         (self.make)(space)
     }
 }
+
+/// Returns the error of a prior that does not read observations of `space`.
+#[cold]
+pub fn unread_space(prior: &str, space: &Space) -> Error {
+    Error::unsupported(format!(
+        "{prior} reads no observations {space}; select a prior of this environment (\"opendr sim priors\" lists them)"
+    ))
+}

@@ -12,7 +12,8 @@ use opendr::{JsonFormat, Progress as _, Result, Unit};
 
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
-use crate::{environment_flags, learner_flags, loading, report_file, stdout};
+use crate::viewed_environment::ViewedSource;
+use crate::{environment_flags, learner_flags, loading, report_file, stdout, viewing};
 
 const COMPARISON: JsonFormat = JsonFormat::new("comparison of camera policies", 1);
 /// Number of episodes by default, and of those that calibrate the belief for another recogniser.
@@ -44,8 +45,10 @@ pub fn run(spec: &str, entry: &'static Entry, matches: &ArgMatches, bar: &Progre
     }
     let episodes = matches.get_one("episodes").copied().unwrap_or(EPISODES);
     let first_seed = matches.get_one("first-seed").copied().unwrap_or(FIRST_EVALUATION_SEED);
+    let viewed = ViewedSource::new(&source, viewing::of_items(entry.spec.class, matches, bar)?);
+    let viewed = EnvironmentScene::new(&viewed, make()?)?;
     bar.begin("episodes", Some(CAMERA_POLICIES * episodes), Unit::Items);
-    let comparison = compare(scene()?, &container.model, first_seed, episodes, bar);
+    let comparison = compare(viewed, &container.model, first_seed, episodes, bar);
     bar.end();
     let comparison = comparison?;
     if let Some(folder) = matches.get_one::<PathBuf>("out") {

@@ -1,17 +1,14 @@
 //! `opendr infer LEARNER --rig RIG`: moves a camera until the class is certain.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Arg, ArgMatches, Command, value_parser};
-use opendr::active::rig::{PanTiltZoom, RecordedViews};
-use opendr::active::{
-    Active, ActiveContainer, AnyRecogniser, EnvironmentRig, Outcome as Run, ViewRecogniser, strip_of_views,
-};
-use opendr::environment::EnvironmentSource as _;
+use opendr::active::rig::RigOptions;
+use opendr::active::{Active, ActiveContainer, Outcome as Run, strip_of_views};
 use opendr::learner::{AnyLearner, Entry};
 use opendr::model::Model;
-use opendr::rig::ViewRig;
-use opendr::simulation::{RegisteredSource, Registry};
+use opendr::params::ParamMap;
+use opendr::simulation::Registry;
 use opendr::target::ActionBase as _;
 use opendr::{Error, JsonFormat, Result};
 
@@ -25,8 +22,6 @@ pub const RIG: &str = "rig";
 const CAMERA_POLICY: &str = "camera-policy";
 const FIELD: &str = "field-of-view";
 const SEED: &str = "rig-seed";
-/// Width and height of the images of a pan-tilt-zoom camera, in pixels.
-const WINDOW: [usize; 2] = [224, 224];
 
 /// Adds the flags of the rig, which conflict with input files.
 pub fn add(command: Command) -> Command {
@@ -38,11 +33,11 @@ pub fn add(command: Command) -> Command {
         flag(CAMERA_POLICY).requires(RIG).value_parser(value_parser!(PathBuf)).value_name("PATH").help(
             "Model of active perception whose camera policy moves the rig, for a learner that has none",
         ),
-        flag(FIELD).requires(RIG).value_parser(value_parser!(f64)).default_value("1.0").value_name("RAD").help(
-            "Horizontal field of view of the whole image, for a rig in a large image",
+        flag(FIELD).requires(RIG).value_parser(value_parser!(f64)).value_name("RAD").help(
+            "Horizontal field of view of the whole image, for a rig in a large image [default: 1.0]",
         ),
-        flag(SEED).requires(RIG).value_parser(value_parser!(u64)).default_value("0").value_name("N").help(
-            "Seed of the episode, for a rig in an environment",
+        flag(SEED).requires(RIG).value_parser(value_parser!(u64)).value_name("N").help(
+            "Seed of the episode, for a rig in an environment [default: 0]",
         ),
         environment_flags::param_flag(),
     ])
@@ -57,9 +52,11 @@ pub fn run(
     bar: &ProgressBar,
 ) -> Result<Outcome> {
     let learner = loading::load(spec, &learner_flags::params(entry, matches)?, matches, bar)?;
-    let (container, recogniser) = parts(learner.as_ref(), entry, matches)?;
-    let mut rig = open(rig, matches)?;
-    let run = Active::new(recogniser, &container.model)?.run(rig.as_mut())?;
+    let policy = matches.get_one::<PathBuf>(CAMERA_POLICY);
+    let policy = policy.map(|path| ActiveContainer::read(&Model::open(path)?)).transpose()?;
+    let policy = policy.as_ref().map(|container| &container.model);
+    let mut active = Active::of_learner(learner.as_ref(), entry, policy)?;
+    let run = active.run(rig_options(rig, matches)?.open(rig)?.as_mut())?;
     if let Some(path) = matches.get_one::<PathBuf>("out") {
         opendr::vision::save(&strip_of_views(&run)?, path)?;
     }
@@ -71,54 +68,20 @@ pub fn run(
     Ok(Outcome::Done)
 }
 
-/// Returns the camera policy and the recogniser: both of the learner, or the policy of `--camera-policy`.
-fn parts(
-    learner: &dyn AnyLearner,
-    entry: &'static Entry,
-    matches: &ArgMatches,
-) -> Result<(ActiveContainer, Box<dyn ViewRecogniser>)> {
-    let policy = matches.get_one::<PathBuf>(CAMERA_POLICY);
-    match policy {
-        None if environment_flags::is_active(entry) => {
-            let container = ActiveContainer::of(learner)?;
-            let recogniser = Box::new(container.recogniser.clone());
-            Ok((container, recogniser))
+/// Returns the options of a rig that the user set.
+fn rig_options(rig: &str, matches: &ArgMatches) -> Result<RigOptions> {
+    let params = match Registry::builtin().get(rig) {
+        Ok(_) => environment_flags::params(rig, matches)?,
+        Err(_) if matches.contains_id(environment_flags::ENV_PARAM) => {
+            return Err(Error::invalid_param(format!(
+                "--{} is for a rig in an environment, and {rig} is none; omit it",
+                environment_flags::ENV_PARAM
+            )));
         }
-        Some(path) if !environment_flags::is_active(entry) => {
-            let container = ActiveContainer::read(&Model::open(path)?)?;
-            let recogniser = AnyRecogniser::new(learner, entry, learner.classes().len())?;
-            Ok((container, Box::new(recogniser)))
-        }
-        Some(_) => Err(Error::invalid_param(format!(
-            "{} has a camera policy of its own; omit --{CAMERA_POLICY}",
-            entry.spec.class
-        ))),
-        None => Err(Error::invalid_param(format!(
-            "{} has no camera policy; give one by --{CAMERA_POLICY}, trained by \"opendr fit active_object_recognition\"",
-            entry.spec.class
-        ))),
-    }
-}
-
-/// Opens an environment, an index of recorded views, or a large image.
-fn open(rig: &str, matches: &ArgMatches) -> Result<Box<dyn ViewRig>> {
-    if Registry::builtin().get(rig).is_ok() {
-        let source = RegisteredSource::new(rig, &environment_flags::params(rig, matches)?)?;
-        let mut rig = EnvironmentRig::new(source.make()?)?;
-        rig.begin(matches.get_one(SEED).copied().unwrap_or_default())?;
-        return Ok(Box::new(rig));
-    }
-    let path = Path::new(rig);
-    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
-        return Ok(Box::new(RecordedViews::open(path)?));
-    }
-    if !path.exists() {
-        return Err(Error::not_found(format!(
-            "no rig {rig:?}: neither an environment (see \"opendr sim list\") nor a file; give SphereView-Face-v1, an index of recorded views (.json) or an image"
-        )));
-    }
-    let field = matches.get_one(FIELD).copied().unwrap_or(1.0);
-    Ok(Box::new(PanTiltZoom::new(opendr::vision::open(path)?, field, WINDOW)?))
+        Err(_) => ParamMap::new(),
+    };
+    let (seed, field_of_view) = (matches.get_one(SEED).copied(), matches.get_one(FIELD).copied());
+    Ok(RigOptions { params, seed, field_of_view })
 }
 
 fn print(run: &Run, learner: &dyn AnyLearner) -> Result<()> {
