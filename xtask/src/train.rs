@@ -1,5 +1,6 @@
 //! `cargo xtask train NAME`: makes the weights of `models/training/NAME.toml`, measures them and writes them with the card's metrics.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -9,9 +10,6 @@ use sha2::{Digest, Sha256};
 
 use crate::card::{edited_card, with_line};
 use crate::shell::{Result, command, output, root, step, target};
-
-/// File of a container that the package of models has.
-const NETWORK: &str = "model.onnx";
 
 /// How weights are made and measured.
 #[derive(Debug, Deserialize)]
@@ -28,7 +26,22 @@ struct Recipe {
     steps: Vec<Vec<String>>,
     /// The container that the steps make.
     container: String,
+    /// End of the file in the package of models for each file of the container, after `LEARNER/VARIANT`.
+    #[serde(default = "single_network")]
+    files: BTreeMap<String, String>,
     evaluation: Evaluation,
+}
+
+fn single_network() -> BTreeMap<String, String> {
+    BTreeMap::from([("model.onnx".to_owned(), ".onnx".to_owned())])
+}
+
+impl Recipe {
+    /// Returns the files of the container, by name, and those of the package of models.
+    fn weights(&self) -> impl Iterator<Item = (&str, PathBuf)> {
+        let weights = root().join("models/weights");
+        self.files.iter().map(move |(name, end)| (&name[..], weights.join(format!("{}{end}", self.model))))
+    }
 }
 
 /// A data set of a recipe.
@@ -137,14 +150,17 @@ pub fn run(name: &str, is_on_gpu: bool) -> Result<()> {
     if (value - expected).abs() > *within {
         return Err(format!("{metric} is {value:.4}; expected {expected} within {within}"));
     }
-    let weights = root().join(format!("models/weights/{}.onnx", recipe.model));
-    let bytes =
-        fs::read(Path::new(&container).join(NETWORK)).map_err(|error| format!("{container}: {error}"))?;
-    fs::write(&weights, &bytes).map_err(|error| format!("{}: {error}", weights.display()))?;
+    let mut files = Vec::new();
+    for (name, weights) in recipe.weights() {
+        let bytes =
+            fs::read(Path::new(&container).join(name)).map_err(|error| format!("{container}: {error}"))?;
+        fs::write(&weights, &bytes).map_err(|error| format!("{}: {error}", weights.display()))?;
+        files.push((name, bytes));
+    }
     edited_card(&recipe.model, |card, variant| {
         let card = with_line(card, variant, &format!("metrics.{} = ", recipe.evaluation.data), &metrics)?;
         let card = with_line(&card, variant, "headline = ", &headline)?;
-        with_line(&card, variant, "files = ", &files_of(&bytes))
+        with_line(&card, variant, "files = ", &files_of(&files))
     })
 }
 
@@ -175,10 +191,13 @@ fn check_out(repository: &str, path: &str, out: &Path) -> Result<()> {
     step("sources", git.env("GIT_INDEX_FILE", sources.join(format!("{flat}.index"))))
 }
 
-/// Returns the card's line of files for a network.
-fn files_of(network: &[u8]) -> String {
-    let sha256: String = Sha256::digest(network).iter().map(|byte| format!("{byte:02x}")).collect();
-    format!("files = [{{ name = {NETWORK:?}, size = {}, sha256 = {sha256:?} }}]", network.len())
+/// Returns the card's line of files, given with their names.
+fn files_of(files: &[(&str, Vec<u8>)]) -> String {
+    let entries = files.iter().map(|(name, bytes)| {
+        let sha256: String = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+        format!("{{ name = {name:?}, size = {}, sha256 = {sha256:?} }}", bytes.len())
+    });
+    format!("files = [{}]", entries.collect::<Vec<_>>().join(", "))
 }
 
 fn opendr() -> std::process::Command {
@@ -244,7 +263,8 @@ mod tests {
     fn every_recipe_is_of_a_card_with_its_figure() {
         assert!(!names().is_empty());
         for name in names() {
-            let Recipe { model, evaluation, steps, .. } = read(&name).unwrap();
+            let recipe = read(&name).unwrap();
+            let Recipe { model, evaluation, steps, .. } = &recipe;
             let (learner, variant) = model.split_once('/').unwrap();
             let card = fs::read_to_string(root().join(format!("models/{learner}.toml"))).unwrap();
             let card: toml::Table = toml::from_str(&card).unwrap();
@@ -252,8 +272,9 @@ mod tests {
             let variant = variants.iter().find(|entry| entry["name"].as_str() == Some(variant)).unwrap();
             let value = variant["metrics"][&evaluation.data][&evaluation.metric].as_float().unwrap();
             assert!((value - evaluation.expected).abs() <= evaluation.within, "{name}: {value}");
-            let weights = fs::read(root().join(format!("models/weights/{model}.onnx"))).unwrap();
-            let files: toml::Table = toml::from_str(&files_of(&weights)).unwrap();
+            let files =
+                recipe.weights().map(|(name, path)| (name, fs::read(path).unwrap())).collect::<Vec<_>>();
+            let files: toml::Table = toml::from_str(&files_of(&files)).unwrap();
             assert_eq!(variant["files"], files["files"], "{name}");
             assert!(steps.iter().any(|words| words[0] == "fit"), "{name}");
         }
