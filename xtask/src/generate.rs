@@ -5,10 +5,10 @@ use crate::shell::{Result, command, root, step, target};
 use crate::surfaces::TEST_LEARNER;
 use crate::wheel;
 
-/// Writes the table of the crates in README.md, the diagram of the layers in DESIGN.md, the ROS messages, the type stubs of Python,
-/// `docs/{learners,metrics,datasets}.md`, OpenDR's table in `docs/python.md` and the C headers. Tests fail if they are not up to date.
+/// Writes the ROS messages, the type stubs of Python, `docs/{learners,metrics,datasets}.md`, OpenDR's names in `docs/python.md`, the
+/// tables of the crates, the models and OpenDR's classes, the diagram of the layers and the C headers. Tests fail if they are not up to
+/// date.
 pub fn run() -> Result<()> {
-    pages::write()?;
     let mut messages = command("cargo");
     messages.args(["test", "-p", "opendr-message-generator", "--test", "messages"]).env("OPENDR_UPDATE", "1");
     step("ROS messages", &mut messages)?;
@@ -20,6 +20,8 @@ pub fn run() -> Result<()> {
     let mut stubs = command("python3");
     stubs.arg(root().join("bindings/python/stubs.py")).env("PYTHONPATH", &folder);
     step("stubs and pages", &mut stubs)?;
+    // OpenDR's table is made from files that the step before writes.
+    pages::write()?;
     let mut headers = command("cargo");
     headers.args(["test", "--workspace", TEST_LEARNER, "--test", "header"]).env("OPENDR_UPDATE", "1");
     step("C headers", &mut headers)

@@ -12,8 +12,10 @@ mod inputs;
 mod install_c;
 mod junit;
 mod layers;
+mod learner_table;
 mod lexer;
 mod models;
+mod opendr;
 mod pages;
 mod parity;
 mod passages;
@@ -22,6 +24,7 @@ mod ros;
 mod rust_tests;
 mod shell;
 mod ship;
+mod site;
 mod speed;
 mod suite;
 mod surfaces;
@@ -50,10 +53,13 @@ usage: cargo xtask VERB
              run the tests of the feature zenoh with a Zenoh router and peer; not part of the task test
   generate   write the generated stubs, C headers, pages of docs/, and parts of README.md and DESIGN.md
   generate --crates
-             write only the table of the crates in README.md and the diagram of the layers in DESIGN.md
+             write only what needs no build: the tables of README.md, docs/models.md and docs/opendr.md, and the diagram of DESIGN.md
   words      fail if documentation or messages have a phrase of xtask/words.tsv, and print the term to use; or if the documentation of
              a public function does not begin with a verb
   layers     fail if a crate depends on a higher layer of xtask/layers.tsv, or if two files of a crate import each other
+  site       build the documentation site into target/site, with the predictions of the built command, or of OPENDR_BIN, on photographs
+  site --check
+             build it without predictions; fail on broken links, missing anchors, and pages outside of the navigation
   realtime   fail if a task has no learner with 25 frames per second in 1 GB on 2 cores
   realtime --write
              also write the measurements into the cards; needs an otherwise idle machine
@@ -82,6 +88,8 @@ fn main() -> ExitCode {
         ["layers"] => layers::run(),
         ["generate"] => generate::run(),
         ["generate", "--crates"] => pages::write(),
+        ["site"] => site::run(site::Show::Everything),
+        ["site", "--check"] => site::run(site::Show::Pages),
         ["realtime"] => realtime::run(),
         ["realtime", "--write"] => realtime::run_and_write(),
         ["train", name] => train::run(name, false),

@@ -1,10 +1,11 @@
-//! The generated tables of the models in docs/models.md and README.md.
+//! The generated tables of the models in docs/models.md and README.md, and the cards that other tables take accuracies from.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 
 use serde::Deserialize;
 
+use crate::learner_table::{Learner, Training};
 use crate::shell::{Result, root};
 
 /// Metrics of which a smaller number is better.
@@ -12,32 +13,66 @@ const LOWER_IS_BETTER: [&str; 3] = ["bad_2", "nme", "wer"];
 
 /// What the tables show of `models/*.toml`.
 #[derive(Debug, Deserialize)]
-struct Card {
+pub struct Card {
     #[serde(default)]
     kind: String,
-    learner: String,
+    /// Registry name of the learner.
+    pub learner: String,
     #[serde(default)]
     task: String,
     #[serde(default)]
-    variants: Vec<Variant>,
+    /// Its variants; none where there are no pretrained weights.
+    pub variants: Vec<Variant>,
 }
 
+/// One model of a card.
 #[derive(Debug, Deserialize)]
-struct Variant {
-    name: String,
+pub struct Variant {
+    /// Name after the slash.
+    pub name: String,
     #[serde(default)]
     default: bool,
+    /// Data that the weights know; `None` for an algorithm without weights.
     #[serde(default)]
-    grade: Option<String>,
+    pub grade: Option<String>,
     #[serde(default)]
     headline: Option<Headline>,
     #[serde(default)]
     metrics: toml::Table,
+    /// What it is, in a sentence.
     #[serde(default)]
-    speed: Option<Speed>,
+    pub description: String,
+    /// Its speed, where it was measured.
+    #[serde(default)]
+    pub speed: Option<Speed>,
     #[serde(default)]
     files: Vec<File>,
-    licence: Licence,
+    /// Models of the zoo that it contains: name of the part, and `LEARNER/VARIANT`.
+    #[serde(default)]
+    pub parts: BTreeMap<String, String>,
+    #[serde(default)]
+    import: Imports,
+    /// Its licences.
+    pub licence: Licence,
+}
+
+/// The conversions of a variant's files: a table, or a list of tables.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+enum Imports {
+    One(Import),
+    Several(Vec<Import>),
+}
+
+impl Default for Imports {
+    fn default() -> Self {
+        Self::Several(Vec::new())
+    }
+}
+
+#[derive(Debug, Deserialize)]
+struct Import {
+    format: String,
 }
 
 #[derive(Debug, Deserialize)]
@@ -49,10 +84,20 @@ struct Headline {
     of: Option<String>,
 }
 
+/// Speed and memory of a variant.
 #[derive(Debug, Deserialize)]
-struct Speed {
-    fps: Option<f64>,
-    peak_mb: f64,
+pub struct Speed {
+    /// Inputs per second.
+    pub fps: Option<f64>,
+    /// Time over the duration of the audio.
+    pub real_time_factor: Option<f64>,
+    /// Median latency in milliseconds.
+    pub p50_ms: Option<f64>,
+    /// Peak memory of the process in MB.
+    pub peak_mb: f64,
+    /// The machine.
+    #[serde(default)]
+    pub on: String,
 }
 
 #[derive(Debug, Deserialize)]
@@ -60,15 +105,75 @@ struct File {
     size: u64,
 }
 
+/// Licences of a variant.
 #[derive(Debug, Deserialize)]
-struct Licence {
+pub struct Licence {
+    /// That of its code.
     #[serde(default)]
-    weights: String,
+    pub code: String,
+    /// That of its weights; empty without weights.
     #[serde(default)]
-    commercial: Option<bool>,
+    pub weights: String,
+    /// That of the data that it was trained on.
+    #[serde(default)]
+    pub data: String,
+    /// Whether commercial use is permitted, where that is known.
+    #[serde(default)]
+    pub commercial: Option<bool>,
+}
+
+impl Card {
+    /// Parses the text of a card.
+    pub fn parse(text: &str) -> Result<Self> {
+        toml::from_str(text).map_err(|error| error.to_string())
+    }
+
+    /// Returns the variant that the learner's name alone means; `None` for a learner without pretrained weights.
+    pub fn default_variant(&self) -> Option<&Variant> {
+        self.variants.iter().find(|variant| variant.default)
+    }
+}
+
+/// Accuracy of a variant as cells of a table; empty where the card states nothing.
+#[derive(Default)]
+pub struct AccuracyCells {
+    /// Value and metric.
+    pub value: String,
+    /// 95 % confidence interval.
+    pub interval: String,
+    /// Data set and number of samples.
+    pub data: String,
 }
 
 impl Variant {
+    /// Returns whether it has files of its own; else it is a rule, or consists of its parts.
+    pub fn has_files(&self) -> bool {
+        !self.files.is_empty()
+    }
+
+    /// Returns the formats that its files are converted from.
+    pub fn formats(&self) -> impl Iterator<Item = &str> {
+        let imports = match &self.import {
+            Imports::One(import) => std::slice::from_ref(import),
+            Imports::Several(imports) => imports,
+        };
+        imports.iter().map(|import| import.format.as_str())
+    }
+
+    /// Returns its accuracy as the headline names it.
+    pub fn accuracy_cells(&self) -> AccuracyCells {
+        let Some((headline, value)) = self.accuracy() else { return AccuracyCells::default() };
+        let of = headline.of.as_deref().unwrap_or("samples");
+        let count = self.metrics[&headline.data].get(of).and_then(toml::Value::as_integer);
+        let count = count.map(|count| format!(", {count} {of}"));
+        let interval = headline.interval.map(|(low, high)| format!("{} to {}", rounded(low), rounded(high)));
+        AccuracyCells {
+            value: format!("{} {}", rounded(value), headline.metric),
+            interval: interval.unwrap_or_default(),
+            data: format!("{}{}", headline.data, count.unwrap_or_default()),
+        }
+    }
+
     /// Returns the value of the headline.
     fn accuracy(&self) -> Option<(&Headline, f64)> {
         let headline = self.headline.as_ref()?;
@@ -87,19 +192,33 @@ impl Models {
         let paths = files.flatten().map(|file| file.path());
         let paths: BTreeSet<_> =
             paths.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
-        let mut tasks = BTreeMap::<String, Vec<Card>>::new();
-        for path in paths {
+        let cards = paths.into_iter().map(|path| {
             let text = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-            let card: Card = toml::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))?;
-            if card.kind != "sample" {
-                tasks.entry(card.task.clone()).or_default().push(card);
-            }
-        }
-        Ok(Self(tasks))
+            Card::parse(&text).map_err(|error| format!("{}: {error}", path.display()))
+        });
+        Ok(Self::of(cards.collect::<Result<Vec<_>>>()?))
     }
 
-    /// Returns the tables of docs/models.md: one per task, with every variant.
-    pub fn tables(&self) -> String {
+    /// Sorts cards by task, without those of samples.
+    pub fn of(cards: Vec<Card>) -> Self {
+        let mut tasks = BTreeMap::<String, Vec<Card>>::new();
+        for card in cards.into_iter().filter(|card| card.kind != "sample") {
+            tasks.entry(card.task.clone()).or_default().push(card);
+        }
+        Self(tasks)
+    }
+
+    /// Returns the card of a learner.
+    pub fn card(&self, learner: &str) -> Option<&Card> {
+        self.0.values().flatten().find(|card| card.learner == learner)
+    }
+
+    /// Returns the tables of docs/models.md: one per task, with every variant of the learners in `registry`.
+    pub fn tables(&self, registry: &[Learner]) -> String {
+        let runs_yours = |name: &str| {
+            let learner = registry.iter().find(|learner| learner.name == name);
+            learner.is_some_and(|learner| learner.takes_networks && learner.trains == Training::Nothing)
+        };
         let mut text = String::new();
         for (task, cards) in &self.0 {
             text += &format!(
@@ -108,7 +227,13 @@ impl Models {
             );
             for card in cards {
                 if card.variants.is_empty() {
-                    text += &format!("| `{}` | no weights: `opendr fit` | | | | | | | | |\n", card.learner);
+                    let name = &card.learner;
+                    let instead = if runs_yours(name) {
+                        "your network: `opendr import`"
+                    } else {
+                        "no weights: `opendr fit`"
+                    };
+                    text += &format!("| `{name}` | {instead} | | | | | | | | |\n");
                 }
                 for variant in &card.variants {
                     text += &self.row(card, variant);
@@ -123,28 +248,14 @@ impl Models {
             format!("`{}/{}`{}", card.learner, variant.name, if variant.default { " (default)" } else { "" });
         let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.0}"));
         let bytes: u64 = variant.files.iter().map(|file| file.size).sum();
-        let (accuracy, interval, data) = match variant.accuracy() {
-            None => Default::default(),
-            Some((headline, value)) => {
-                let of = headline.of.as_deref().unwrap_or("samples");
-                let count = variant.metrics[&headline.data].get(of).and_then(toml::Value::as_integer);
-                let count = count.map(|count| format!(", {count} {of}"));
-                let interval =
-                    headline.interval.map(|(low, high)| format!("{} to {}", rounded(low), rounded(high)));
-                (
-                    format!("{} {}", rounded(value), headline.metric),
-                    interval.unwrap_or_default(),
-                    format!("{}{}", headline.data, count.unwrap_or_default()),
-                )
-            }
-        };
+        let AccuracyCells { value, interval, data } = variant.accuracy_cells();
         let commercial = match variant.licence.commercial {
             Some(true) => "",
             Some(false) => "; not commercial",
             None => "; commercial use unknown",
         };
         format!(
-            "| {name} | {} | {accuracy} | {interval} | {data} | {} | {} | {} | {:.1} | {}{commercial} |\n",
+            "| {name} | {} | {value} | {interval} | {data} | {} | {} | {} | {:.1} | {}{commercial} |\n",
             variant.grade.as_deref().unwrap_or("no weights"),
             self.best(variant).unwrap_or_default(),
             number(variant.speed.as_ref().and_then(|speed| speed.fps)),
@@ -225,7 +336,7 @@ mod tests {
     #[test]
     fn the_best_model_is_the_best_by_the_same_metric() {
         let card = |learner: &str, metric: &str, value: f64| {
-            toml::from_str::<Card>(&format!(
+            Card::parse(&format!(
                 "learner = \"{learner}\"\ntask = \"t\"\n[[variants]]\nname = \"a\"\ndefault = true\ngrade = \"real\"\nlicence = {{}}\n\
                  headline = {{ data = \"d\", metric = \"{metric}\" }}\nmetrics.d = {{ {metric} = {value:?}, samples = 7 }}\n"
             ))
@@ -237,8 +348,8 @@ mod tests {
             card("z", "wer", 0.25),
             card("w", "wer", 0.5),
         ];
-        let models = Models([("t".to_owned(), cards)].into());
-        let rows = models.tables();
+        let models = Models::of(cards);
+        let rows = models.tables(&[]);
         let row = |name: &str| rows.lines().find(|row| row.starts_with(&format!("| `{name}/a`"))).unwrap();
         assert!(row("x").contains("| 0.5 map |  | d, 7 samples | `y/a` 0.75 |"), "{rows}");
         assert!(row("w").contains("| `z/a` 0.25 |") && row("y").contains("samples |  |"), "{rows}");

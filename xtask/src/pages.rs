@@ -1,11 +1,14 @@
-//! The generated parts of README.md, DESIGN.md and docs/models.md: the tables of the crates and the models, and the diagram of the layers.
+//! The generated parts of README.md, DESIGN.md, docs/architecture.md, docs/models.md and docs/opendr.md: the tables of the crates, the
+//! models and OpenDR's classes, and the diagram of the layers.
 
 use std::collections::BTreeSet;
 use std::fs;
 
 use crate::inputs;
 use crate::layers::Layers;
+use crate::learner_table;
 use crate::models::Models;
+use crate::opendr::Opendr;
 use crate::shell::{Result, root};
 use crate::workspace::{Package, packages};
 
@@ -27,7 +30,7 @@ pub fn is_input(file: &str) -> bool {
 }
 
 /// Returns the pages with their generated parts.
-fn pages() -> Result<[(&'static str, String); 3]> {
+fn pages() -> Result<[(&'static str, String); 5]> {
     let (packages, layers) = (packages()?, Layers::read()?);
     let packages = ordered(&packages, &layers);
     let models = Models::read()?;
@@ -41,7 +44,9 @@ fn pages() -> Result<[(&'static str, String); 3]> {
     Ok([
         with("README.md", &[("models", models.overview()), ("crates", table(&packages)?)])?,
         with("DESIGN.md", &[("layers", diagram(&packages))])?,
-        with("docs/models.md", &[("models", models.tables())])?,
+        with("docs/architecture.md", &[("layers", diagram(&packages))])?,
+        with("docs/models.md", &[("models", models.tables(&learner_table::read()?))])?,
+        with("docs/opendr.md", &[("opendr", Opendr::read()?.tables(&models)?)])?,
     ])
 }
 

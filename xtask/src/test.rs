@@ -11,7 +11,7 @@ use crate::shell::{Result, command, output, root, step, target, task};
 use crate::suite::Suite;
 use crate::surfaces::TEST_LEARNER;
 use crate::tools::{self, Python, install_debian};
-use crate::{install_c, layers, parity, ros, rust_tests, surfaces, wheel, words};
+use crate::{install_c, layers, parity, ros, rust_tests, site, surfaces, wheel, words};
 
 /// Features that need a GPU, and ROS 2 over Zenoh.
 const DEVICES: &str = "--features=opendr-training/cuda,opendr-training/wgpu,opendr-ros/zenoh";
@@ -50,6 +50,9 @@ fn check_all(checks: &Checks, tree: Option<&Tree>) -> Result<()> {
         }
         let environments =
             environments.join().map_err(|_| "the installation of the tests' dependencies panicked")??;
+        // After the installation, since this task installs an environment too.
+        let pages = tree.map(|tree| tree.of(site::is_input, &[]));
+        checks.run("site", pages, Output::Live, None, task("site")?.arg("--check"))?;
         let environment = Environment::of(&environments.outside)?;
         let tests = |arguments: &[&str]| {
             let mut cargo = cargo(arguments);
@@ -223,12 +226,13 @@ fn concerns(suite: &Suite, file: &str) -> bool {
     own || !others && !file.ends_with(".rs")
 }
 
-/// Returns whether a file affects cargo's builds or tests: all but the tests in Python and the Python files of the package.
+/// Returns whether a file affects cargo's builds or tests: all but the tests in Python, the Python files of the package, and the pages
+/// without documentation tests.
 fn is_source(file: &str) -> bool {
     !(file.ends_with(".py")
         || file.ends_with(".pyi")
         || file.starts_with("tests/")
-        || file.starts_with("docs/"))
+        || file.starts_with("docs/") && file != "docs/tutorials/rust.md")
 }
 
 /// Returns the hash of all programs that the tests start.
