@@ -1263,7 +1263,7 @@ static inline opendr_status opendr_infer_fastest_det(const opendr_learner *learn
  *   padding (an int 0..=255, default none): Level of the padding of a letterbox; recognised from the network if absent.
  *   colour (a str, one of auto, rgb, bgr, default auto): Order of the colour channels of the network's input.
  *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, default auto): Range of the samples of the network's input.
- *   size (an int 32..=4096 px, default 640): Side of the network's input, for models of dynamic size.
+ *   size (an int 32..=4096 px, default none): Side of the network's input, for models of dynamic size; if absent that of its convention, 640 for most.
  *
  * Inputs:
  *   image (Image)
@@ -2047,15 +2047,19 @@ static inline opendr_status opendr_infer_facial_emotion(const opendr_learner *le
 }
 
 /*
- * ProgressiveSpatioTemporalBLNLearner: PST-BLN classifies facial expressions from sequences of landmarks; trainable.
+ * ProgressiveSpatioTemporalBLNLearner: PST-BLN classifies facial expressions from sequences of landmarks; its network grows in the training.
  *
  * Parameters:
  *   num_class (an int 2..=10000, default none): Number of classes; by default that of the data set.
  *   num_point (an int 2..=1000, default none): Number of landmarks of a face; by default that of the data set.
  *   in_channels (an int 2..=3, default 2): Coordinates of a landmark: 2 (an optional third channel has scores) or 3.
  *   num_frames (an int 1..=10000, default 20): Frames of a clip: the last ones of a longer recording; a shorter one is extended by its first frame.
- *   blocksize (an int 1..=256, default 5): Channels of a block.
- *   topology (a list 1..=1000, default 2,2,4,4): Number of blocks of each layer.
+ *   blocksize (an int 1..=256, default 5): Output channels of a block.
+ *   num_blocks (an int 1..=1000, default 100): Maximum number of blocks of a layer of a network that grows.
+ *   num_layers (an int 1..=100, default 10): Maximum number of layers of a network that grows.
+ *   topology (a list 1..=1000, default ): Number of blocks of each layer. Empty: `fit` finds it; the network grows while its training loss decreases.
+ *   layer_threshold (a float 0..=1, default 0.0001): Relative decrease of the training loss that a further layer must exceed.
+ *   block_threshold (a float 0..=1, default 0.0001): Relative decrease of the training loss that a further block must exceed.
  *
  * Inputs:
  *   skeleton_sequence (SkeletonSequence)
@@ -2292,7 +2296,7 @@ static inline opendr_status opendr_infer_blazepose(const opendr_learner *learner
  *   padding (an int 0..=255, default none): Level of the padding of a letterbox; recognised from the network if absent.
  *   colour (a str, one of auto, rgb, bgr, default auto): Order of the colour channels of the network's input.
  *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, default auto): Range of the samples of the network's input.
- *   size (an int 32..=4096 px, default 640): Side of the network's input, for models of dynamic size.
+ *   size (an int 32..=4096 px, default none): Side of the network's input, for models of dynamic size; if absent that of its convention, 640 for most.
  *
  * Inputs:
  *   image (Image)
@@ -2515,7 +2519,7 @@ static inline opendr_status opendr_infer_image_classifier(const opendr_learner *
  *   padding (an int 0..=255, default none): Level of the padding of a letterbox; recognised from the network if absent.
  *   colour (a str, one of auto, rgb, bgr, default auto): Order of the colour channels of the network's input.
  *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, default auto): Range of the samples of the network's input.
- *   size (an int 32..=4096 px, default 640): Side of the network's input, for models of dynamic size.
+ *   size (an int 32..=4096 px, default none): Side of the network's input, for models of dynamic size; if absent that of its convention, 640 for most.
  *
  * Inputs:
  *   image (Image)
@@ -2624,7 +2628,7 @@ static inline opendr_status opendr_infer_deeplab(const opendr_learner *learner,
  *   padding (an int 0..=255, default none): Level of the padding of a letterbox; recognised from the network if absent.
  *   colour (a str, one of auto, rgb, bgr, default auto): Order of the colour channels of the network's input.
  *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, default auto): Range of the samples of the network's input.
- *   size (an int 32..=4096 px, default 640): Side of the network's input, for models of dynamic size.
+ *   size (an int 32..=4096 px, default none): Side of the network's input, for models of dynamic size; if absent that of its convention, 640 for most.
  *
  * Inputs:
  *   image (Image)
@@ -2998,6 +3002,50 @@ static inline opendr_status opendr_infer_semi_global_matching(const opendr_learn
 }
 
 /*
+ * ImportedDepthEstimatorLearner: Runs your own depth estimator, exported to ONNX by another tool; recognises input and quantity.
+ *
+ * Parameters:
+ *   full_size (a bool, live, default true): Whether the map has the size of the image, to which it is interpolated; else it has that of the network's output.
+ *   kind (a str, one of auto, inverse_relative, relative, metric, default auto): Quantity in the output.
+ *   scale (a float 0.000001..=1000000 m, default 1): Metres per unit of the output of a metric network: 0.001 for millimetres, the largest depth for fractions of it, the focal length of the network's input divided by 1000 pixels for Metric3D.
+ *   interpolation (a str, one of auto, bicubic, bilinear_corners, default auto): How the map is interpolated to the size of the image.
+ *   keep_aspect (a bool, default true): Whether an input of dynamic size has the aspect ratio of the image, scaled as little as possible until one side is `size`; else it is a square.
+ *   multiple (an int 1..=256 px, default none): Number of which the sides of an input of dynamic size are multiples; recognised from the network if absent.
+ *   depth_output (a str, default none): Name of the output; recognised from the network if absent.
+ *   resize (a str, one of auto, letterbox, top_left, top_left_truncated, stretch, default auto): How an image becomes the network's input.
+ *   padding (an int 0..=255, default none): Level of the padding of a letterbox; recognised from the network if absent.
+ *   colour (a str, one of auto, rgb, bgr, default auto): Order of the colour channels of the network's input.
+ *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, default auto): Range of the samples of the network's input.
+ *   size (an int 32..=4096 px, default none): Side of the network's input, for models of dynamic size; if absent that of its convention, 640 for most.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   heatmap (Heatmap)
+ */
+static inline opendr_status opendr_load_depth_estimator(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("depth_estimator", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_depth_estimator(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_heatmap **heatmap) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "heatmap";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (heatmap != NULL) *heatmap = (opendr_heatmap *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
  * PpOcrLearner: PP-OCR detects lines of text in an image and reads them; tiny and fast.
  *
  * Parameters:
@@ -3117,7 +3165,7 @@ static inline opendr_status opendr_infer_gr_conv_net(const opendr_learner *learn
 }
 
 /*
- * SpatioTemporalGCNLearner: ST-GCN classifies the action in a clip of a moving skeleton; trainable.
+ * SpatioTemporalGCNLearner: ST-GCN, TA-GCN or ST-BLN classifies the action in a clip of a moving skeleton; trainable.
  *
  * Parameters:
  *   num_class (an int 2..=10000, default none): Number of classes. None: the number of classes in the data set.
@@ -3125,10 +3173,12 @@ static inline opendr_status opendr_infer_gr_conv_net(const opendr_learner *learn
  *   num_person (an int 1..=64, default 2): Maximum number of persons, the first ones of a recording; the prediction is the mean over those present.
  *   in_channels (an int 2..=3, default 3): Number of coordinates of a joint: 2 (a third channel of the input holds scores) or 3.
  *   graph_type (a str, one of ntu, kinetics, coco, jhmdb, kinect, default ntu): Skeleton: joints and bones.
- *   method_name (a str, one of stgcn, default stgcn): Network architecture.
  *   num_frames (an int 1..=10000, default 300): Number of frames of a clip: the last ones of a longer recording; a shorter one is preceded by its repeated first frame.
- *   channels (a list 1..=4096, default 64,64,64,64,128,128,128,256,256,256): Output channels of each block.
  *   temporal_kernel (an int 3..=101, default 9): Kernel size in time of each block; odd.
+ *   method_name (a str, one of stgcn, tagcn, stbln, default stgcn): Network architecture.
+ *   stbln_symmetric (a bool, default false): Whether the matrices of `stbln` are symmetric.
+ *   num_subframes (an int 1..=10000, default 100): Number of frames that `tagcn` selects.
+ *   channels (a list 1..=4096, default none): Output channels of each block; the first two of `tagcn` do not convolve through time. None: 64, 64, 64, 64, 128, 128, 128, 256, 256, 256; for `tagcn` 64, 64, 128, 128, 256, 256.
  *
  * Inputs:
  *   skeleton_sequence (SkeletonSequence)
@@ -3158,7 +3208,52 @@ static inline opendr_status opendr_infer_spatio_temporal_gcn(const opendr_learne
 }
 
 /*
- * CoSTGCNLearner: CoST-GCN classifies the action of a moving skeleton, updated with every frame; trainable.
+ * ProgressiveSpatioTemporalGCNLearner: PST-GCN classifies the action in a clip of a moving skeleton; its network grows in the training.
+ *
+ * Parameters:
+ *   num_class (an int 2..=10000, default none): Number of classes. None: the number of classes in the data set.
+ *   num_point (an int 2..=1000, default none): Number of joints. None: that of the graph.
+ *   num_person (an int 1..=64, default 2): Maximum number of persons, the first ones of a recording; the prediction is the mean over those present.
+ *   in_channels (an int 2..=3, default 3): Number of coordinates of a joint: 2 (a third channel of the input holds scores) or 3.
+ *   graph_type (a str, one of ntu, kinetics, coco, jhmdb, kinect, default ntu): Skeleton: joints and bones.
+ *   num_frames (an int 1..=10000, default 300): Number of frames of a clip: the last ones of a longer recording; a shorter one is preceded by its repeated first frame.
+ *   temporal_kernel (an int 3..=101, default 9): Kernel size in time of each block; odd.
+ *   blocksize (an int 1..=256, default 20): Output channels of a block.
+ *   num_blocks (an int 1..=1000, default 10): Maximum number of blocks of a layer of a network that grows.
+ *   num_layers (an int 1..=100, default 10): Maximum number of layers of a network that grows.
+ *   topology (a list 1..=1000, default ): Number of blocks of each layer. Empty: `fit` finds it; the network grows while its training loss decreases.
+ *   layer_threshold (a float 0..=1, default 0.0001): Relative decrease of the training loss that a further layer must exceed.
+ *   block_threshold (a float 0..=1, default 0.0001): Relative decrease of the training loss that a further block must exceed.
+ *
+ * Inputs:
+ *   skeleton_sequence (SkeletonSequence)
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_progressive_spatio_temporal_gcn(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("progressive_spatio_temporal_gcn", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_progressive_spatio_temporal_gcn(const opendr_learner *learner,
+    const opendr_skeleton_sequence *skeleton_sequence,
+    opendr_category **category) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "skeleton_sequence";
+    inputs_[0].value = (const opendr_value *)skeleton_sequence;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * CoSTGCNLearner: CoST-GCN, CoA-GCN or CoS-TR classifies the action of a moving skeleton, updated with every frame; trainable.
  *
  * Parameters:
  *   num_classes (an int 2..=10000, default none): Number of classes. None: the number of classes in the data set.
@@ -3166,9 +3261,9 @@ static inline opendr_status opendr_infer_spatio_temporal_gcn(const opendr_learne
  *   num_person (an int 1..=64, default 2): Maximum number of persons, the first ones of a recording; the prediction is the mean over those present so far.
  *   in_channels (an int 2..=3, default 3): Number of coordinates of a joint: 2 (a third channel of the input holds scores) or 3.
  *   graph_type (a str, one of ntu, kinetics, coco, jhmdb, kinect, default ntu): Skeleton: joints and bones.
- *   backbone (a str, one of costgcn, default costgcn): Network architecture.
+ *   backbone (a str, one of costgcn, coagcn, costr, default costgcn): Network architecture.
  *   sequence_len (an int 1..=10000, default 300): Number of frames that a prediction covers.
- *   channels (a list 1..=4096, default 64,64,64,64,128,128,128,256,256,256): Output channels of each block.
+ *   channels (a list 1..=4096, default 64,64,64,64,128,128,128,256,256,256): Output channels of each block; in `costr`, multiples of 32 from the fourth block on.
  *   temporal_kernel (an int 3..=101, default 9): Kernel size in time of each block; odd.
  *
  * Inputs:
@@ -3416,6 +3511,46 @@ static inline opendr_status opendr_load_attention_neural_bag_of_feature(const ch
 }
 
 static inline opendr_status opendr_infer_attention_neural_bag_of_feature(const opendr_learner *learner,
+    const opendr_timeseries *timeseries,
+    opendr_category **category) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "timeseries";
+    inputs_[0].value = (const opendr_value *)timeseries;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * CoTransEncLearner: A continual transformer encoder classifies a stream of feature vectors, updated with every vector; trainable.
+ *
+ * Parameters:
+ *   num_layers (an int 1..=2, default 1): Number of encoder layers.
+ *   input_dims (an int 1..=65536, default none): Number of features of an input vector. None: that of the data set.
+ *   token_dims (an int 1..=65536, default none): Number of features of a token, to which input vectors are projected; a multiple of `num_heads`. None: input vectors are tokens, without a projection.
+ *   hidden_dims (an int 1..=65536, default 1024): Number of features between the two linear maps of a layer.
+ *   sequence_len (an int 2..=100000, default 64): Number of vectors that a prediction covers.
+ *   num_heads (an int 1..=1024, default 8): Number of attention heads.
+ *   num_classes (an int 2..=10000, default none): Number of classes. None: the number of classes in the data set.
+ *   positional_encoding_learned (a bool, default false): Whether the positional encoding is learnt; otherwise it consists of sines and cosines.
+ *
+ * Inputs:
+ *   timeseries (Timeseries)
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_co_trans_enc(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("co_trans_enc", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_co_trans_enc(const opendr_learner *learner,
     const opendr_timeseries *timeseries,
     opendr_category **category) {
     opendr_input inputs_[1];

@@ -39,6 +39,10 @@ impl Progress for PythonBar {
         self.bar.advance(amount);
     }
 
+    fn advance_resumed(&self, amount: u64) {
+        self.bar.advance_resumed(amount);
+    }
+
     fn end(&self) {
         self.bar.end();
     }

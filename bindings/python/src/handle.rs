@@ -275,6 +275,16 @@ impl Handle {
     pub fn with_learner<R>(&self, work: impl FnOnce(&dyn AnyLearner) -> R) -> R {
         work(lock(&self.learner).as_ref())
     }
+
+    /// Calls `work` with the learner, which it may change. Callers have released the GIL.
+    pub fn with_learner_mut<R>(&self, work: impl FnOnce(&mut dyn AnyLearner) -> R) -> R {
+        work(lock(&self.learner).as_mut())
+    }
+
+    /// Returns the entry of the registry.
+    pub fn entry(&self) -> &'static Entry {
+        self.entry
+    }
 }
 
 #[pymethods]
@@ -295,7 +305,8 @@ impl Stream {
     }
 }
 
-fn options_from_json(json: &str) -> opendr::Result<FitOptions> {
+/// Reads the options of a training.
+pub fn options_from_json(json: &str) -> opendr::Result<FitOptions> {
     serde_json::from_str(json)
         .map_err(|error| Error::invalid_param("invalid options of fit").with_source(error))
 }

@@ -8,6 +8,7 @@
 //!
 //! Begin with `Handle` in `handle.rs`, a learner, and with `datum.rs` and `target.rs`, the conversions of values.
 
+mod active;
 mod array;
 mod bar;
 mod command;
@@ -20,6 +21,7 @@ mod evaluate;
 mod generation;
 mod handle;
 mod header;
+mod mask;
 mod metric;
 mod online;
 mod param;
@@ -53,6 +55,7 @@ fn _opendr(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<environment::Environment>()?;
     module.add_class::<environment::VectorEnvironment>()?;
     module.add_class::<environment::SharedArray>()?;
+    module.add_class::<active::Active>()?;
     module.add_class::<online::OnlineAdapter>()?;
     module.add_class::<study::Study>()?;
     #[cfg(feature = "ros")]
@@ -76,6 +79,9 @@ fn _opendr(module: &Bound<'_, PyModule>) -> PyResult<()> {
         wrap_pyfunction!(plugin::register, module)?,
         wrap_pyfunction!(prior::priors, module)?,
         wrap_pyfunction!(prior::register_prior, module)?,
+        wrap_pyfunction!(prior::register_pid, module)?,
+        wrap_pyfunction!(prior::register_lqr, module)?,
+        wrap_pyfunction!(active::fit_active, module)?,
         wrap_pyfunction!(plugin::check_learner, module)?,
         wrap_pyfunction!(command::main, module)?,
         wrap_pyfunction!(convert::json, module)?,
@@ -89,7 +95,9 @@ fn _opendr(module: &Bound<'_, PyModule>) -> PyResult<()> {
         wrap_pyfunction!(convert::from_mot, module)?,
         wrap_pyfunction!(convert::from_kitti, module)?,
         wrap_pyfunction!(datum::open_value, module)?,
+        wrap_pyfunction!(mask::masks, module)?,
         wrap_pyfunction!(pixels::save_image, module)?,
+        wrap_pyfunction!(pixels::png, module)?,
         wrap_pyfunction!(pixels::draw, module)?,
         wrap_pyfunction!(zoo::download, module)?,
         wrap_pyfunction!(zoo::sample, module)?,

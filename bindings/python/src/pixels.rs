@@ -8,7 +8,7 @@ use opendr::vision::draw::Style;
 use opendr::{Value, vision};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 
 use crate::array::{ArrayMemory, Element, StorageLayout, array_interface};
 use crate::error::ToPython;
@@ -131,6 +131,15 @@ pub fn save_image(py: Python<'_>, image: &Bound<'_, PyAny>, path: PathBuf) -> Py
     py.detach(|| vision::save(&image, path)).to_python(py)
 }
 
+/// Returns the bytes of a PNG file of a Python `Image`.
+#[pyfunction]
+pub fn png<'py>(image: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyBytes>> {
+    let py = image.py();
+    let image = image_from_python(image, Vec::new())?;
+    let file = py.detach(|| vision::encode_png(&image)).to_python(py)?;
+    Ok(PyBytes::new(py, &file))
+}
+
 /// Returns a Python `Image` with a target drawn on it; `class_names` replace those of the target.
 #[pyfunction]
 #[pyo3(signature = (image, target, class_names=None))]
@@ -148,6 +157,9 @@ pub fn draw<'py>(
             Value::BoundingBoxList(list) => list.classes = classes,
             Value::TrackingAnnotationList(list) => list.classes = classes,
             Value::Heatmap(map) => map.classes = classes,
+            Value::Category(category) => {
+                category.description = classes.name(category.class).cloned().or(category.description.take());
+            }
             _ => {}
         }
     }

@@ -16,7 +16,7 @@ pub fn entries(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
 }
 
 fn table<'py>(py: Python<'py>, entry: &Entry) -> PyResult<Bound<'py, PyDict>> {
-    let Spec { name, task, class, about, without_effect, .. } = entry.spec;
+    let Spec { name, task, class, about, without_effect, recognises_network } = entry.spec;
     let Capabilities { fit, fit_in, streaming } = entry.capabilities;
     let table = PyDict::new(py);
     table.set_item("name", name)?;
@@ -37,6 +37,7 @@ fn table<'py>(py: Python<'py>, entry: &Entry) -> PyResult<Bound<'py, PyDict>> {
     table.set_item("fit", fit)?;
     table.set_item("fit_in", fit_in)?;
     table.set_item("streaming", streaming)?;
+    table.set_item("recognises_networks", recognises_network.is_some())?;
     Ok(table)
 }
 

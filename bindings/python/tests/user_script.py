@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
+import pandas
+import supervision
 from numpy.typing import NDArray
 
 import opendr
@@ -67,8 +69,22 @@ def watch(folder: Path) -> Iterator[tuple[int, BoundingBoxList]]:
     learner = YunetLearner()
     learner.load(verbose=False)
     source = opendr.Source(folder, str(folder))
-    for faces in learner.infer(source):
+    for faces in learner.infer(source, progress=False):
         yield source.number, faces
+
+
+def results(found: BoundingBoxList, people: PoseList, photo: Path, folder: Path) -> None:
+    drawing: Image = found.plot()
+    named: Image = people[0].plot(Image.open(photo), class_names={0: "person"})
+    table: pandas.DataFrame = found.to_pandas()
+    best: float = table["confidence"].max()
+    detections: supervision.Detections = found.to_supervision(image_size=(480, 640))
+    key_points: supervision.KeyPoints = people.to_supervision()
+    classes: supervision.Classifications = Category(0, confidence=0.5).to_supervision()
+    masks: supervision.Detections = Heatmap(np.ones((2, 2), np.uint8)).to_supervision()
+    for name in ("found.jpg", "found.json", "found.csv"):
+        found.save(folder / name)
+    print(drawing.width, named.height, best, len(detections), len(key_points), len(classes), len(masks))
 
 
 def data() -> None:
@@ -129,8 +145,7 @@ class Photos(DatasetIterator):
 
 
 def main(photo: Path, folder: Path) -> None:
-    detect(photo, folder)
-    poses(photo)
+    results(detect(photo, folder), poses(photo), photo, folder)
     for number, faces in watch(photo):
         print(number, len(faces))
     data()

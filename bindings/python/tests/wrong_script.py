@@ -20,6 +20,10 @@ found.keypoints  # wrong: boxes have none
 found.add_box("person")  # wrong: type of the item
 found[0].left.upper()  # wrong: a number
 count: str = len(found)  # wrong: an int
+found.plot(7)  # wrong: no image
+found.save()  # wrong: no path
+found.plot().to_pandas()  # wrong: an image is no table
+detector.infer(["street.jpg"], progress="no")  # wrong: type
 poses: Pose = detector.infer("street.jpg")  # wrong: boxes
 one: BoundingBoxList = detector.infer(["street.jpg", "park.jpg"])  # wrong: a list of them
 for frame in Source("street.mp4"):

@@ -222,7 +222,7 @@ impl<'a, O: Objective> Training<'a, O> {
         let loader = self.loader(options)?;
         check_memory(loader.options().batch_size, || self.trial_step())?;
         self.job.progress.begin("training", Some(self.steps), Unit::Steps);
-        self.job.progress.advance(self.state.step);
+        self.job.progress.advance_resumed(self.state.step);
         while self.state.epoch < self.params.epochs as u64 && self.halt.is_none() {
             let (epoch, position) = (self.state.epoch, self.state.position);
             let skipped = loader.for_each(epoch, position, |batch| self.batch(batch))?;
@@ -378,7 +378,7 @@ impl<'a, O: Objective> Training<'a, O> {
         let Score { name, value, is_error, numbers, image: picture } = validate(&candidate)?;
         // The evaluation used the progress bar.
         self.job.progress.begin("training", Some(self.steps), Unit::Steps);
-        self.job.progress.advance(self.state.step);
+        self.job.progress.advance_resumed(self.state.step);
         let step = self.state.step;
         for (name, value) in &numbers {
             self.state.statistics.push(format!("val_{name}"), *value);

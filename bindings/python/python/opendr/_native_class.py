@@ -16,6 +16,7 @@ from opendr._upstream.arguments import methods
 from opendr._upstream.modules import learner
 from opendr._upstream.rows import Learner as Row
 from opendr._upstream.rows import arguments
+from opendr.engine import target
 from opendr.engine._parameters import Parameter
 from opendr.engine.learners import BaseLearner
 
@@ -36,6 +37,7 @@ def native_class(entry: Table, module: str) -> type[NativeBase]:
         "_row": row,
         "_positional": arguments(row.init or " ".join(BaseLearner.__signature__.parameters)),
         "_outputs": staticmethod(namedtuple(f"{entry['class_name']}Outputs", names)),
+        "_image_ports": _image_ports(entry["ports"]),
         **{field["name"]: field["default"] for field in fields},
     }
     built: Any = type(entry["class_name"], (parent,), namespace)
@@ -43,6 +45,12 @@ def native_class(entry: Table, module: str) -> type[NativeBase]:
     if "classes" in {field["name"] for field in fields}:
         built.classes = _Classes(vars(built)["classes"])
     return built  # type: ignore[no-any-return]
+
+
+def _image_ports(ports: list[Table]) -> list[str]:
+    """Returns the names of the inputs with pixels: images, then targets."""
+    images = [port["name"] for port in ports if port["type"] in ("Image", "ImageWithDetections")]
+    return images + [port["name"] for port in ports if hasattr(target, port["type"])]
 
 
 def _parent(entry: Table, row: Row) -> type[NativeBase]:

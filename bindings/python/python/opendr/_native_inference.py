@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any, ClassVar
+import operator
+from collections.abc import Iterator, Sequence
+from typing import Any, ClassVar, Optional
 
 from opendr._errors import InternalError, InvalidInput
 from opendr._input_value import input_value
 from opendr._native_arguments import NativeArguments
+from opendr._progress import with_progress
+from opendr.engine._image_reference import ImageReference
+from opendr.engine.target import BaseTarget
 
 
 class NativeInference(NativeArguments):
@@ -21,11 +25,13 @@ class NativeInference(NativeArguments):
                 array (layout guessed by the rule of ``Image``), or the path of a file; the same holds for audio (WAVE),
                 time series (CSV, NPY) and scans (KITTI). For a list of inputs the result is a list of predictions, for
                 an iterator such as a ``Source`` an iterator of predictions.
-            arguments: Inputs by name, and live parameters for this call only.
+            arguments: Inputs by name, live parameters for this call only, and ``progress``: whether the progress of several
+                inputs is shown on standard error if that is a terminal, where their number is known or after two seconds;
+                True by default.
 
         Returns:
             The prediction, with the time stamp and frame id of the input; a named tuple where the learner has several
-            outputs.
+            outputs. It refers to the image that it was predicted from without keeping it in memory (``plot``, ``show``).
 
         Raises:
             FileNotFoundError: Nothing is loaded yet, or a file does not exist.
@@ -33,17 +39,18 @@ class NativeInference(NativeArguments):
             ValueError: A value is out of range.
             opendr.InternalError: The network returned NaN or an infinite number; the message says where.
         """
+        progress = arguments.pop("progress", True)
         ports, overrides = self._arguments(inputs, arguments)
         first = ports.get(self._entry["ports"][0]["name"])
         if isinstance(first, Iterator):
-            return self._infer_each(ports, overrides)
+            return self._with_progress(self._infer_each(ports, overrides), first, progress)
         if isinstance(first, (list, tuple)):
             init = {port["name"] for port in self._entry["ports"] if port["init"]}
             items = {name: value for name, value in ports.items() if name not in init}
             lengths = {name: len(value) for name, value in items.items() if isinstance(value, (list, tuple))}
             if len(set(lengths.values())) > 1:
                 raise ValueError(f"the inputs have different lengths: {lengths}; give the same number of each")
-            return list(self._infer_each(ports, overrides))
+            return list(self._with_progress(self._infer_each(ports, overrides), first, progress))
         return self._infer_one(self._handle, ports, overrides)
 
     def reset(self) -> None:
@@ -89,15 +96,32 @@ class NativeInference(NativeArguments):
             yield self._infer_one(self._handle, {**same, **dict(zip(several, items))}, overrides)
             same = {port["name"]: same[port["name"]] for port in table if port["name"] in same and not port["init"]}
 
+    def _with_progress(self, predictions: Iterator[Any], inputs: Any, progress: bool) -> Iterator[Any]:
+        """Returns the predictions for ``inputs``, whose progress is shown."""
+        if not progress:
+            return predictions
+        remaining = operator.length_hint(inputs, -1)
+        return with_progress(predictions, self._entry["name"], None if remaining < 0 else remaining)
+
     def _infer_one(self, handle: Any, ports: dict[str, Any], overrides: dict[str, Any]) -> Any:
         outputs = handle.infer(self._values(ports), overrides) if overrides else handle.infer(self._values(ports))
-        return self._prediction(outputs)
+        return self._prediction(outputs, self._image_of(ports))
+
+    def _image_of(self, ports: dict[str, Any]) -> Optional[ImageReference]:
+        """Returns a reference to the image among the inputs, or to that of a target among them."""
+        for name in self._image_ports:
+            value = ports.get(name)
+            if value is not None:
+                image = value._image if isinstance(value, BaseTarget) else ImageReference.to(value)
+                if image is not None:
+                    return image
+        return None
 
     def _values(self, ports: dict[str, Any]) -> dict[str, Any]:
         types = {port["name"]: port["type"] for port in self._entry["ports"]}
         return {name: input_value(value, name, types[name]) for name, value in ports.items()}
 
-    def _prediction(self, outputs: list[Any]) -> Any:
+    def _prediction(self, outputs: list[Any], image: Optional[ImageReference] = None) -> Any:
         from opendr._schema import target_from_json
 
         try:
@@ -106,10 +130,15 @@ class NativeInference(NativeArguments):
             raise InternalError(
                 f"{self._entry['name']} returned an invalid target: {error}; check the model and its input"
             ) from error
+        if image is not None:
+            for target in targets:
+                target._image = image
         return targets[0] if len(targets) == 1 else self._outputs(*targets)
 
     #: The named tuple of several outputs.
     _outputs: ClassVar[Any] = None
+    #: The inputs that are images, then those that are targets, which may refer to an image.
+    _image_ports: ClassVar[Sequence[str]] = ()
 
 
 class Stream:

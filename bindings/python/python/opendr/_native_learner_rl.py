@@ -57,22 +57,12 @@ class NativeLearnerRL(NativeBase, LearnerRL):
             ValueError: Environment, policy and parameters do not fit together.
             RuntimeError: The environment raised an exception; the last checkpoint is kept.
         """
-        place = under_older_name(out, "out", fit_params, "output") or self.temp_path or None
-        options = {
-            "params": self._fit_params(fit_params),
-            "out": None if place is None else os.fspath(place),
-            "logging_path": os.fspath(logging_path) if logging_path else None,
-            "resume": resume or self.checkpoint_load_iter > 0,
-        }
+        options = self._training(out, logging_path, resume, fit_params)
         training, evaluation = self._environments(env, env_params), None
         if val_env is not None:
             evaluation = self._environments(val_env, env_params)
         report, text = self._handle.fit_in(training, evaluation, json.dumps(options), silent)
-        vars(self).update(self._handle.params())
-        if verbose and not silent:
-            print(text, end="")
-        outcome = json.loads(report)
-        return {**outcome.get("curves", {}), **outcome.get("scalars", {}), "report": outcome}
+        return self._trained(report, text, verbose and not silent)
 
     def eval(
         self,
@@ -108,6 +98,26 @@ class NativeLearnerRL(NativeBase, LearnerRL):
         if "controllers" in report:
             numbers["controllers"] = report["controllers"]
         return numbers
+
+    def _training(
+        self, out: Optional[PathLike], logging_path: PathLike, resume: bool, fit_params: dict[str, Any]
+    ) -> dict[str, Any]:
+        """Returns the options of a training."""
+        place = under_older_name(out, "out", fit_params, "output") or self.temp_path or None
+        return {
+            "params": self._fit_params(fit_params),
+            "out": None if place is None else os.fspath(place),
+            "logging_path": os.fspath(logging_path) if logging_path else None,
+            "resume": resume or self.checkpoint_load_iter > 0,
+        }
+
+    def _trained(self, report: str, text: str, is_printed: bool) -> dict[str, Any]:
+        """Returns the outcome of a training from its report."""
+        vars(self).update(self._handle.params())
+        if is_printed:
+            print(text, end="")
+        outcome = json.loads(report)
+        return {**outcome.get("curves", {}), **outcome.get("scalars", {}), "report": outcome}
 
     def _environments(self, env: Any, params: Optional[dict[str, Any]]) -> Any:
         """Converts an environment to the argument of the native module: a name with parameters, or a function that creates

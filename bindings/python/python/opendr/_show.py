@@ -19,16 +19,25 @@ _PROBE = "import cv2; cv2.namedWindow('OpenDR'); cv2.waitKey(1); cv2.destroyAllW
 
 
 def show_image(image: Image) -> None:
-    """Opens a window and waits for a key, or for the window to be closed. Without OpenCV or a display, writes a file with
-    an unused name into the current folder (else the folder for temporary files) and prints its path.
+    """Shows an image in the cell of a notebook; else opens a window and waits for a key, or for the window to be closed. Without
+    OpenCV or a display, writes a file with an unused name into the current folder (else the folder for temporary files) and prints
+    its path.
 
     Raises:
         OSError: The file cannot be written.
     """
-    if window_works():
+    if in_notebook():
+        importlib.import_module("IPython.display").display(image)
+    elif window_works():
         _show_window(image.opencv())
     else:
         print(f"image written to {write_image(image)}")
+
+
+def in_notebook() -> bool:
+    """Returns whether the program is the code of a notebook, whose kernel displays images."""
+    ipython: Any = sys.modules.get("IPython")
+    return ipython is not None and hasattr(ipython.get_ipython(), "kernel")
 
 
 def window_works() -> bool:

@@ -28,6 +28,7 @@ class Source(Iterator[Image]):
 
     def __init__(self, *inputs: PathLike) -> None:
         self._frames = _opendr.Source([os.fspath(path) for path in inputs])
+        self._read = 0
         #: The file or device of the last image; None before the first.
         self.path: Optional[str] = None
         #: Index of the last image in its video or camera, from 0; 0 for an image file.
@@ -35,8 +36,13 @@ class Source(Iterator[Image]):
 
     def __next__(self) -> Image:
         image, path, self.number = next(self._frames)
+        self._read += 1
         self.path = os.fspath(path)
         return image
+
+    def __length_hint__(self) -> int:
+        """Returns the number of images that are left."""
+        return NotImplemented if self.length is None else max(self.length - self._read, 0)
 
     @property
     def length(self) -> Optional[int]:

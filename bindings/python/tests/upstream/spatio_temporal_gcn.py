@@ -13,9 +13,6 @@ learner.load("./pretrained_models", "stgcn_nturgbd")
 frames = np.random.default_rng(0).normal(size=(1, 2, 40, 15, 1)).astype(np.float32)
 category = learner.infer(SkeletonSequence(frames))
 assert category.description in learner.classes
-try:
-    SpatioTemporalGCNLearner(method_name="tagcn", device="cpu")
-except NotImplementedError as error:
-    assert "TAGCN is not available yet" in str(error)
-else:
-    raise AssertionError("there is a TAGCN")
+for method_name in ("tagcn", "stbln"):
+    learner = SpatioTemporalGCNLearner(method_name=method_name, num_frames=60, num_subframes=40, device="cpu")
+    assert learner.method_name == method_name

@@ -48,8 +48,7 @@ class FilteredLearnerWrapper:
         kept = BoundingBoxList(
             [box for box in found.data if box.name in numbers], found.image_id, classes=found.classes
         )
-        kept.timestamp, kept.frame_id = found.timestamp, found.frame_id
-        return kept
+        return found._with_header_in(kept)
 
     def __getattr__(self, name: str) -> Any:
         if name == "learner":

@@ -5,6 +5,7 @@ from opendr.perception import activity_recognition as activity_recognition
 from opendr.perception import ambiguity_measure as ambiguity_measure
 from opendr.perception import binary_high_resolution as binary_high_resolution
 from opendr.perception import compressive_learning as compressive_learning
+from opendr.perception import depth_estimation as depth_estimation
 from opendr.perception import face_detection as face_detection
 from opendr.perception import face_recognition as face_recognition
 from opendr.perception import facial_expression_recognition as facial_expression_recognition

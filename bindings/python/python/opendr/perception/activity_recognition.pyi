@@ -13,7 +13,7 @@ from opendr._upstream.video_datasets import DummyTimeseriesDataset as DummyTimes
 from opendr._upstream.video_datasets import KineticsDataset as KineticsDataset
 from opendr._input_value import PathLike
 from opendr._native_learner import NativeLearner
-from opendr.engine.data import Image, Video
+from opendr.engine.data import Image, Timeseries, Video
 from opendr.engine.datasets import Dataset
 from opendr.engine.learners import Learner
 from opendr.engine.target import Category
@@ -93,9 +93,9 @@ class X3DLearner(NativeLearner):
     @overload
     def infer(self, video: Union[Video, ArrayLike], *, network_head: Any = ..., loss: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> Category: ...  # type: ignore[overload-overlap]
     @overload
-    def infer(self, video: Sequence[Union[Video, ArrayLike]], *, network_head: Any = ..., loss: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> list[Category]: ...
+    def infer(self, video: Sequence[Union[Video, ArrayLike]], *, progress: bool = ..., network_head: Any = ..., loss: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> list[Category]: ...
     @overload
-    def infer(self, video: Iterator[Union[Video, ArrayLike]], *, network_head: Any = ..., loss: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> Iterator[Category]: ...
+    def infer(self, video: Iterator[Union[Video, ArrayLike]], *, progress: bool = ..., network_head: Any = ..., loss: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> Iterator[Category]: ...
     def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., epochs: int = ..., steps: Any = ..., *, logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., out: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., teacher_map: Optional[Mapping[str, str]] = ..., teacher_by_number: bool = ..., keep_empty: bool = ..., skip_broken: bool = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., dropout: float = ..., augment: bool = ...) -> dict[str, Any]: ...
     def eval(self, dataset: Dataset, steps: Optional[int] = ..., *, metric: Optional[str] = ..., split: Optional[str] = ..., limit: Optional[int] = ..., out: Optional[PathLike] = ..., skip_broken: bool = ..., classes: Optional[Mapping[str, str]] = ..., by_number: bool = ..., resamples: int = ..., verbose: bool = ..., **metric_params: Any) -> dict[str, Any]: ...
     def optimize(self, do_constant_folding: Any = ..., *, target_device: str = ..., out: Optional[PathLike] = ..., precision: str = ..., calibration: Union[None, Dataset] = ..., validation: Union[None, Dataset] = ..., verbose: bool = ..., **options: Any) -> dict[str, Any]: ...
@@ -177,21 +177,103 @@ class CoX3DLearner(NativeLearner):
     @overload
     def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, network_head: Any = ..., loss: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> Category: ...  # type: ignore[overload-overlap]
     @overload
-    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, network_head: Any = ..., loss: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> list[Category]: ...
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ..., network_head: Any = ..., loss: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> list[Category]: ...
     @overload
-    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, network_head: Any = ..., loss: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> Iterator[Category]: ...
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ..., network_head: Any = ..., loss: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> Iterator[Category]: ...
     def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., epochs: int = ..., steps: Any = ..., *, logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., out: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., teacher_map: Optional[Mapping[str, str]] = ..., teacher_by_number: bool = ..., keep_empty: bool = ..., skip_broken: bool = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., dropout: float = ..., augment: bool = ...) -> dict[str, Any]: ...
     def eval(self, dataset: Dataset, steps: Optional[int] = ..., *, metric: Optional[str] = ..., split: Optional[str] = ..., limit: Optional[int] = ..., out: Optional[PathLike] = ..., skip_broken: bool = ..., classes: Optional[Mapping[str, str]] = ..., by_number: bool = ..., resamples: int = ..., verbose: bool = ..., **metric_params: Any) -> dict[str, Any]: ...
     def optimize(self, do_constant_folding: Any = ..., *, target_device: str = ..., out: Optional[PathLike] = ..., precision: str = ..., calibration: Union[None, Dataset] = ..., validation: Union[None, Dataset] = ..., verbose: bool = ..., **options: Any) -> dict[str, Any]: ...
     @classmethod
     def download(cls, path: Optional[PathLike] = ..., model_names: Any = ..., *, mode: str = ..., verbose: bool = ..., url: Optional[str] = ..., variant: Optional[str] = ...) -> str: ...
 
+class CoTransEncLearner(NativeLearner):
+    """A continual transformer encoder classifies a stream of feature vectors, updated with every vector; trainable.
+
+    Task: activity_recognition. ``infer`` takes:
+
+        timeseries: Timeseries.
+
+    and returns: Category.
+
+    Args:
+        num_layers: Number of encoder layers. (default 1; 1 to 2)
+        input_dims: Number of features of an input vector. None: that of the data set. (default None; 1 to 65536)
+        token_dims: Number of features of a token, to which input vectors are projected; a multiple of
+            `num_heads`. None: input vectors are tokens, without a projection. (default None; 1 to 65536)
+        hidden_dims: Number of features between the two linear maps of a layer. (default 1024; 1 to 65536)
+        sequence_len: Number of vectors that a prediction covers. (default 64; 2 to 100000)
+        num_heads: Number of attention heads. (default 8; 1 to 1024)
+        num_classes: Number of classes. None: the number of classes in the data set. (default None; 2 to 10000)
+        positional_encoding_learned: Whether the positional encoding is learnt; otherwise it consists of sines and
+            cosines. (default False)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+
+    Parameters of ``fit``, for one call or, given here, for all of them:
+        epochs: Number of epochs. (default 10; 1 to 1e+06; in OpenDR iters)
+        max_steps: Maximum number of optimiser steps, whatever the number of epochs; 0 for no limit. (default 0; 0
+            to 1e+09)
+        batch_size: Number of samples per batch. (default 64; 1 to 65536)
+        accumulate: Number of batches whose gradients are accumulated for one optimiser step. (default 1; 1 to
+            4096; in OpenDR batches_per_iter)
+        lr: Maximum learning rate. (default 0.01; 0 to 100)
+        optimizer: Optimiser. (default 'sgd'; one of 'adamw', 'adam', 'sgd', 'rmsprop'; in OpenDR optimizer_name)
+        momentum: Momentum of `sgd` and `rmsprop`. (default 0.9; 0 to 1)
+        weight_decay: Weight decay: decoupled from the gradient in `adamw`, added to it in the others. (default
+            0.0001; 0 to 10)
+        lr_schedule: Learning rate schedule after the warm-up. (default 'constant'; one of 'constant', 'step',
+            'cosine', 'linear')
+        warmup_steps: Number of steps over which the learning rate rises from `warmup_ratio` of itself. (default
+            0; 0 to 1e+08)
+        warmup_ratio: Share of the learning rate at the start of the warm-up. (default 0.1; 0 to 1)
+        lr_min: Learning rate at the end of `cosine` and `linear`. (default 0.0; 0 to 100; in OpenDR
+            lr_schedule_eta_min)
+        lr_steps: Epochs at which `step` lowers the learning rate. (default []; in OpenDR drop_after_epoch)
+        lr_gamma: Factor on the learning rate at each of `lr_steps`. (default 0.1; 0 to 1; in OpenDR lr_decay)
+        grad_clip: Maximum norm of the gradient over all weights; larger gradients are scaled down. 0 for no
+            limit. (default 0.0; 0 to 1e+09)
+        ema: Decay of the exponential moving average of the weights, e.g. 0.999; the average is validated and
+            saved. 0 for no average. (default 0.0; 0 to 0.999999)
+        early_stop: Number of validations without improvement after which training ends; 0 for never. (default 0;
+            0 to 100000)
+        val_after: Number of epochs between validations. (default 1; 1 to 1e+06)
+        checkpoint_after_iter: Number of steps between checkpoints; 0 for time-based checkpoints only. (default 0;
+            0 to 1e+08)
+        checkpoint_minutes: Minutes between checkpoints; 0 for no time-based checkpoints. (default 10.0; 0 to
+            10000 min)
+        checkpoints_kept: Number of checkpoints to keep, besides the best. (default 2; 1 to 1000)
+        log_after: Number of steps between lines of the log. (default 10; 1 to 1e+06)
+        num_workers: Number of threads that read and augment samples. (default 2; 0 to 1024)
+        seed: Seed of initial weights, sample order, augmentation and dropout. (default 123)
+        dropout: Dropout probability of attention weights and of the outputs of linear maps. (default 0.1; 0 to
+            0.99)
+
+    Arguments of OpenDR that are accepted and have no effect:
+        network_head: no effect: only classification is supported.
+        loss: no effect: always cross-entropy.
+        drop_last: no effect: an incomplete last batch is always dropped.
+        pin_memory: no effect: page-locked memory is not used.
+    """
+
+    num_layers: int
+    input_dims: Optional[int]
+    token_dims: Optional[int]
+    hidden_dims: int
+    sequence_len: int
+    num_heads: int
+    num_classes: Optional[int]
+    positional_encoding_learned: bool
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., network_head: str = ..., num_layers: int = ..., input_dims: Optional[int] = ..., hidden_dims: int = ..., sequence_len: int = ..., num_heads: int = ..., dropout: float = ..., num_classes: Optional[int] = ..., positional_encoding_learned: bool = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., loss: Any = ..., weight_decay: float = ..., momentum: float = ..., drop_last: Any = ..., pin_memory: Any = ..., num_workers: int = ..., seed: int = ..., *, backbone: str = ..., threshold: float = ..., scale: float = ..., epochs: int = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., token_dims: Optional[int] = ...) -> None: ...
+    @overload
+    def infer(self, timeseries: Union[Timeseries, ArrayLike], *, network_head: Any = ..., loss: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> Category: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, timeseries: Sequence[Union[Timeseries, ArrayLike]], *, progress: bool = ..., network_head: Any = ..., loss: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> list[Category]: ...
+    @overload
+    def infer(self, timeseries: Iterator[Union[Timeseries, ArrayLike]], *, progress: bool = ..., network_head: Any = ..., loss: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> Iterator[Category]: ...
+    def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., epochs: int = ..., steps: Any = ..., *, logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., out: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., teacher_map: Optional[Mapping[str, str]] = ..., teacher_by_number: bool = ..., keep_empty: bool = ..., skip_broken: bool = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., dropout: float = ...) -> dict[str, Any]: ...
+    def eval(self, dataset: Dataset, steps: Optional[int] = ..., *, metric: Optional[str] = ..., split: Optional[str] = ..., limit: Optional[int] = ..., out: Optional[PathLike] = ..., skip_broken: bool = ..., classes: Optional[Mapping[str, str]] = ..., by_number: bool = ..., resamples: int = ..., verbose: bool = ..., **metric_params: Any) -> dict[str, Any]: ...
+    def optimize(self, do_constant_folding: Any = ..., *, target_device: str = ..., out: Optional[PathLike] = ..., precision: str = ..., calibration: Union[None, Dataset] = ..., validation: Union[None, Dataset] = ..., verbose: bool = ..., **options: Any) -> dict[str, Any]: ...
+
 class CLASSES:
     """Not available yet: `classes` of the loaded learner has the class names."""
-
-    def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...
-
-class CoTransEncLearner:
-    """Not available yet: use GatedRecurrentUnitLearner of heart_anomaly_detection for classes of time series."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...

@@ -53,13 +53,13 @@ class FacialEmotionLearner(FacialEmotion):
     @overload
     def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, input_kind: Literal['frame', 'face'] = ..., device_ind: Any = ..., validation_interval: Any = ..., max_training_epoch: Any = ..., momentum: Any = ..., ensemble_size: Any = ..., base_path_experiment: Any = ..., name_experiment: Any = ..., dimensional_finetune: Any = ..., categorical_train: Any = ..., base_path_to_dataset: Any = ..., max_tuning_epoch: Any = ..., diversify: Any = ...) -> Category: ...  # type: ignore[overload-overlap]
     @overload
-    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, input_kind: Literal['frame', 'face'] = ..., device_ind: Any = ..., validation_interval: Any = ..., max_training_epoch: Any = ..., momentum: Any = ..., ensemble_size: Any = ..., base_path_experiment: Any = ..., name_experiment: Any = ..., dimensional_finetune: Any = ..., categorical_train: Any = ..., base_path_to_dataset: Any = ..., max_tuning_epoch: Any = ..., diversify: Any = ...) -> list[Category]: ...
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ..., input_kind: Literal['frame', 'face'] = ..., device_ind: Any = ..., validation_interval: Any = ..., max_training_epoch: Any = ..., momentum: Any = ..., ensemble_size: Any = ..., base_path_experiment: Any = ..., name_experiment: Any = ..., dimensional_finetune: Any = ..., categorical_train: Any = ..., base_path_to_dataset: Any = ..., max_tuning_epoch: Any = ..., diversify: Any = ...) -> list[Category]: ...
     @overload
-    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, input_kind: Literal['frame', 'face'] = ..., device_ind: Any = ..., validation_interval: Any = ..., max_training_epoch: Any = ..., momentum: Any = ..., ensemble_size: Any = ..., base_path_experiment: Any = ..., name_experiment: Any = ..., dimensional_finetune: Any = ..., categorical_train: Any = ..., base_path_to_dataset: Any = ..., max_tuning_epoch: Any = ..., diversify: Any = ...) -> Iterator[Category]: ...
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ..., input_kind: Literal['frame', 'face'] = ..., device_ind: Any = ..., validation_interval: Any = ..., max_training_epoch: Any = ..., momentum: Any = ..., ensemble_size: Any = ..., base_path_experiment: Any = ..., name_experiment: Any = ..., dimensional_finetune: Any = ..., categorical_train: Any = ..., base_path_to_dataset: Any = ..., max_tuning_epoch: Any = ..., diversify: Any = ...) -> Iterator[Category]: ...
     def optimize(self, do_constant_folding: Any = ..., *, target_device: str = ..., out: Optional[PathLike] = ..., precision: str = ..., calibration: Union[None, Dataset] = ..., validation: Union[None, Dataset] = ..., verbose: bool = ..., **options: Any) -> dict[str, Any]: ...
 
 class ProgressiveSpatioTemporalBLNLearner(NativeLearner):
-    """PST-BLN classifies facial expressions from sequences of landmarks; trainable.
+    """PST-BLN classifies facial expressions from sequences of landmarks; its network grows in the training.
 
     Task: facial_expression_recognition. ``infer`` takes:
 
@@ -73,8 +73,16 @@ class ProgressiveSpatioTemporalBLNLearner(NativeLearner):
         in_channels: Coordinates of a landmark: 2 (an optional third channel has scores) or 3. (default 2; 2 to 3)
         num_frames: Frames of a clip: the last ones of a longer recording; a shorter one is extended by its first
             frame. (default 20; 1 to 10000)
-        blocksize: Channels of a block. (default 5; 1 to 256)
-        topology: Number of blocks of each layer. (default [2, 2, 4, 4]; 1 to 1000)
+        blocksize: Output channels of a block. (default 5; 1 to 256)
+        num_blocks: Maximum number of blocks of a layer of a network that grows. (default 100; 1 to 1000; in
+            OpenDR numblocks)
+        num_layers: Maximum number of layers of a network that grows. (default 10; 1 to 100; in OpenDR numlayers)
+        topology: Number of blocks of each layer. Empty: `fit` finds it; the network grows while its training loss
+            decreases. (default []; 1 to 1000)
+        layer_threshold: Relative decrease of the training loss that a further layer must exceed. (default 0.0001;
+            0 to 1)
+        block_threshold: Relative decrease of the training loss that a further block must exceed. (default 0.0001;
+            0 to 1)
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
 
     Parameters of ``fit``, for one call or, given here, for all of them:
@@ -122,10 +130,6 @@ class ProgressiveSpatioTemporalBLNLearner(NativeLearner):
         start_epoch: no effect: `resume` of `fit` continues a training.
         dataset_name: no effect: the data set defines it.
         num_person: no effect: a recording has one face, the first that occurs.
-        num_blocks: no effect: `topology` sets it.
-        num_layers: no effect: `topology` sets it.
-        layer_threshold: no effect: layers do not grow: `topology` sets their sizes.
-        block_threshold: no effect: layers do not grow: `topology` sets their sizes.
     """
 
     num_class: Optional[int]
@@ -133,14 +137,18 @@ class ProgressiveSpatioTemporalBLNLearner(NativeLearner):
     in_channels: int
     num_frames: int
     blocksize: int
+    num_blocks: int
+    num_layers: int
     topology: list[Any]
-    def __init__(self, lr: float = ..., batch_size: int = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., num_workers: int = ..., epochs: int = ..., experiment_name: Any = ..., device_indices: Any = ..., val_batch_size: Any = ..., drop_after_epoch: list[Any] = ..., start_epoch: Any = ..., dataset_name: Any = ..., num_class: Optional[int] = ..., num_point: Optional[int] = ..., num_person: Any = ..., in_channels: int = ..., blocksize: int = ..., num_blocks: Any = ..., num_layers: Any = ..., topology: list[Any] = ..., layer_threshold: Any = ..., block_threshold: Any = ..., *, iters: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., backbone: str = ..., network_head: str = ..., threshold: float = ..., scale: float = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., momentum: float = ..., weight_decay: float = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., seed: int = ..., dropout: float = ..., num_frames: int = ...) -> None: ...
+    layer_threshold: float
+    block_threshold: float
+    def __init__(self, lr: float = ..., batch_size: int = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., num_workers: int = ..., epochs: int = ..., experiment_name: Any = ..., device_indices: Any = ..., val_batch_size: Any = ..., drop_after_epoch: list[Any] = ..., start_epoch: Any = ..., dataset_name: Any = ..., num_class: Optional[int] = ..., num_point: Optional[int] = ..., num_person: Any = ..., in_channels: int = ..., blocksize: int = ..., num_blocks: int = ..., num_layers: int = ..., topology: list[Any] = ..., layer_threshold: float = ..., block_threshold: float = ..., *, iters: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., backbone: str = ..., network_head: str = ..., threshold: float = ..., scale: float = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., momentum: float = ..., weight_decay: float = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., seed: int = ..., dropout: float = ..., num_frames: int = ..., numblocks: int = ..., numlayers: int = ...) -> None: ...
     @overload
-    def infer(self, skeleton_sequence: Union[SkeletonSequence, ArrayLike], monte_carlo_dropout: Any = ..., mcdo_repeats: Any = ..., *, experiment_name: Any = ..., device_indices: Any = ..., val_batch_size: Any = ..., start_epoch: Any = ..., dataset_name: Any = ..., num_person: Any = ..., num_blocks: Any = ..., num_layers: Any = ..., layer_threshold: Any = ..., block_threshold: Any = ...) -> Category: ...  # type: ignore[overload-overlap]
+    def infer(self, skeleton_sequence: Union[SkeletonSequence, ArrayLike], monte_carlo_dropout: Any = ..., mcdo_repeats: Any = ..., *, experiment_name: Any = ..., device_indices: Any = ..., val_batch_size: Any = ..., start_epoch: Any = ..., dataset_name: Any = ..., num_person: Any = ...) -> Category: ...  # type: ignore[overload-overlap]
     @overload
-    def infer(self, skeleton_sequence: Sequence[Union[SkeletonSequence, ArrayLike]], monte_carlo_dropout: Any = ..., mcdo_repeats: Any = ..., *, experiment_name: Any = ..., device_indices: Any = ..., val_batch_size: Any = ..., start_epoch: Any = ..., dataset_name: Any = ..., num_person: Any = ..., num_blocks: Any = ..., num_layers: Any = ..., layer_threshold: Any = ..., block_threshold: Any = ...) -> list[Category]: ...
+    def infer(self, skeleton_sequence: Sequence[Union[SkeletonSequence, ArrayLike]], monte_carlo_dropout: Any = ..., mcdo_repeats: Any = ..., *, progress: bool = ..., experiment_name: Any = ..., device_indices: Any = ..., val_batch_size: Any = ..., start_epoch: Any = ..., dataset_name: Any = ..., num_person: Any = ...) -> list[Category]: ...
     @overload
-    def infer(self, skeleton_sequence: Iterator[Union[SkeletonSequence, ArrayLike]], monte_carlo_dropout: Any = ..., mcdo_repeats: Any = ..., *, experiment_name: Any = ..., device_indices: Any = ..., val_batch_size: Any = ..., start_epoch: Any = ..., dataset_name: Any = ..., num_person: Any = ..., num_blocks: Any = ..., num_layers: Any = ..., layer_threshold: Any = ..., block_threshold: Any = ...) -> Iterator[Category]: ...
+    def infer(self, skeleton_sequence: Iterator[Union[SkeletonSequence, ArrayLike]], monte_carlo_dropout: Any = ..., mcdo_repeats: Any = ..., *, progress: bool = ..., experiment_name: Any = ..., device_indices: Any = ..., val_batch_size: Any = ..., start_epoch: Any = ..., dataset_name: Any = ..., num_person: Any = ...) -> Iterator[Category]: ...
     def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., momentum: float = ..., nesterov: Any = ..., weight_decay: float = ..., monte_carlo_dropout: Any = ..., mcdo_repeats: Any = ..., train_data_filename: Any = ..., train_labels_filename: Any = ..., val_data_filename: Any = ..., val_labels_filename: Any = ..., *, out: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., teacher_map: Optional[Mapping[str, str]] = ..., teacher_by_number: bool = ..., keep_empty: bool = ..., skip_broken: bool = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., dropout: float = ...) -> dict[str, Any]: ...
     def eval(self, val_dataset: Dataset = ..., val_loader: Any = ..., epoch: Any = ..., monte_carlo_dropout: Any = ..., mcdo_repeats: Any = ..., silent: Any = ..., verbose: bool = ..., val_data_filename: Any = ..., val_labels_filename: Any = ..., save_score: Any = ..., wrong_file: Any = ..., result_file: Any = ..., show_topk: Any = ..., *, dataset: Dataset = ..., metric: Optional[str] = ..., split: Optional[str] = ..., limit: Optional[int] = ..., out: Optional[PathLike] = ..., skip_broken: bool = ..., classes: Optional[Mapping[str, str]] = ..., by_number: bool = ..., resamples: int = ..., **metric_params: Any) -> dict[str, Any]: ...
     def optimize(self, do_constant_folding: Any = ..., *, target_device: str = ..., out: Optional[PathLike] = ..., precision: str = ..., calibration: Union[None, Dataset] = ..., validation: Union[None, Dataset] = ..., verbose: bool = ..., **options: Any) -> dict[str, Any]: ...

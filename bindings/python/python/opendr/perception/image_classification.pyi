@@ -84,9 +84,9 @@ class ImageClassifierLearner(NativeLearner):
     @overload
     def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, probabilities: bool = ...) -> Category: ...  # type: ignore[overload-overlap]
     @overload
-    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, probabilities: bool = ...) -> list[Category]: ...
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ..., probabilities: bool = ...) -> list[Category]: ...
     @overload
-    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, probabilities: bool = ...) -> Iterator[Category]: ...
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ..., probabilities: bool = ...) -> Iterator[Category]: ...
     def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, out: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., teacher_map: Optional[Mapping[str, str]] = ..., teacher_by_number: bool = ..., keep_empty: bool = ..., skip_broken: bool = ..., side: int = ..., width: int = ..., dropout: float = ..., crop: float = ..., flip: float = ..., label_smoothing: float = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ...) -> dict[str, Any]: ...
 
 class ImportedClassifierLearner(NativeLearner):
@@ -112,7 +112,8 @@ class ImportedClassifierLearner(NativeLearner):
         colour: Order of the colour channels of the network's input. (default 'auto'; one of 'auto', 'rgb', 'bgr')
         levels: Range of the samples of the network's input. (default 'auto'; one of 'auto', '0_255', '0_1',
             '-1_1', 'imagenet')
-        size: Side of the network's input, for models of dynamic size. (default 640; 32 to 4096 px)
+        size: Side of the network's input, for models of dynamic size; if absent that of its convention, 640 for
+            most. (default None; 32 to 4096 px)
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
     """
 
@@ -123,11 +124,11 @@ class ImportedClassifierLearner(NativeLearner):
     padding: Optional[int]
     colour: Literal['auto', 'rgb', 'bgr']
     levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet']
-    size: int
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, probabilities: bool = ..., scores: Literal['auto', 'probabilities', 'logits'] = ..., crop: Optional[float] = ..., resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch'] = ..., padding: Optional[int] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet'] = ..., size: int = ...) -> None: ...
+    size: Optional[int]
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, probabilities: bool = ..., scores: Literal['auto', 'probabilities', 'logits'] = ..., crop: Optional[float] = ..., resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch'] = ..., padding: Optional[int] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet'] = ..., size: Optional[int] = ...) -> None: ...
     @overload
     def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, probabilities: bool = ...) -> Category: ...  # type: ignore[overload-overlap]
     @overload
-    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, probabilities: bool = ...) -> list[Category]: ...
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ..., probabilities: bool = ...) -> list[Category]: ...
     @overload
-    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, probabilities: bool = ...) -> Iterator[Category]: ...
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ..., probabilities: bool = ...) -> Iterator[Category]: ...

@@ -17,7 +17,7 @@ from opendr.engine.learners import Learner
 from opendr.engine.target import Category
 
 class SpatioTemporalGCNLearner(NativeLearner):
-    """ST-GCN classifies the action in a clip of a moving skeleton; trainable.
+    """ST-GCN, TA-GCN or ST-BLN classifies the action in a clip of a moving skeleton; trainable.
 
     Task: skeleton_based_action_recognition. ``infer`` takes:
 
@@ -34,12 +34,15 @@ class SpatioTemporalGCNLearner(NativeLearner):
             (default 3; 2 to 3)
         graph_type: Skeleton: joints and bones. (default 'ntu'; one of 'ntu', 'kinetics', 'coco', 'jhmdb',
             'kinect')
-        method_name: Network architecture. (default 'stgcn'; one of 'stgcn')
         num_frames: Number of frames of a clip: the last ones of a longer recording; a shorter one is preceded by
             its repeated first frame. (default 300; 1 to 10000)
-        channels: Output channels of each block. (default [64, 64, 64, 64, 128, 128, 128, 256, 256, 256]; 1 to
-            4096)
         temporal_kernel: Kernel size in time of each block; odd. (default 9; 3 to 101)
+        method_name: Network architecture. (default 'stgcn'; one of 'stgcn', 'tagcn', 'stbln')
+        stbln_symmetric: Whether the matrices of `stbln` are symmetric. (default False)
+        num_subframes: Number of frames that `tagcn` selects. (default 100; 1 to 10000)
+        channels: Output channels of each block; the first two of `tagcn` do not convolve through time. None: 64,
+            64, 64, 64, 128, 128, 128, 256, 256, 256; for `tagcn` 64, 64, 128, 128, 256, 256. (default None; 1 to
+            4096)
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
 
     Parameters of ``fit``, for one call or, given here, for all of them:
@@ -90,8 +93,6 @@ class SpatioTemporalGCNLearner(NativeLearner):
         val_batch_size: no effect: validation runs the learner on one clip at a time.
         start_epoch: no effect: use `resume` of `fit`.
         dataset_name: no effect: the data set has a name.
-        stbln_symmetric: no effect: the bilinear network is not included.
-        num_subframes: no effect: only networks with temporal attention select frames.
     """
 
     num_class: Optional[int]
@@ -99,17 +100,19 @@ class SpatioTemporalGCNLearner(NativeLearner):
     num_person: int
     in_channels: int
     graph_type: Literal['ntu', 'kinetics', 'coco', 'jhmdb', 'kinect']
-    method_name: Literal['stgcn']
     num_frames: int
-    channels: list[Any]
     temporal_kernel: int
-    def __init__(self, lr: float = ..., batch_size: int = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., num_workers: int = ..., epochs: int = ..., experiment_name: Any = ..., device_ind: Any = ..., val_batch_size: Any = ..., drop_after_epoch: list[Any] = ..., start_epoch: Any = ..., dataset_name: Any = ..., num_class: Optional[int] = ..., num_point: Optional[int] = ..., num_person: int = ..., in_channels: int = ..., graph_type: Literal['ntu', 'kinetics', 'coco', 'jhmdb', 'kinect'] = ..., method_name: Literal['stgcn'] = ..., stbln_symmetric: Any = ..., num_frames: int = ..., num_subframes: Any = ..., *, iters: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., backbone: str = ..., network_head: str = ..., threshold: float = ..., scale: float = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., momentum: float = ..., weight_decay: float = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., seed: int = ..., dropout: float = ..., label_smoothing: float = ..., augment: bool = ..., channels: list[Any] = ..., temporal_kernel: int = ...) -> None: ...
+    method_name: Literal['stgcn', 'tagcn', 'stbln']
+    stbln_symmetric: bool
+    num_subframes: int
+    channels: Optional[list[Any]]
+    def __init__(self, lr: float = ..., batch_size: int = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., num_workers: int = ..., epochs: int = ..., experiment_name: Any = ..., device_ind: Any = ..., val_batch_size: Any = ..., drop_after_epoch: list[Any] = ..., start_epoch: Any = ..., dataset_name: Any = ..., num_class: Optional[int] = ..., num_point: Optional[int] = ..., num_person: int = ..., in_channels: int = ..., graph_type: Literal['ntu', 'kinetics', 'coco', 'jhmdb', 'kinect'] = ..., method_name: Literal['stgcn', 'tagcn', 'stbln'] = ..., stbln_symmetric: bool = ..., num_frames: int = ..., num_subframes: int = ..., *, iters: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., backbone: str = ..., network_head: str = ..., threshold: float = ..., scale: float = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., momentum: float = ..., weight_decay: float = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., seed: int = ..., dropout: float = ..., label_smoothing: float = ..., augment: bool = ..., temporal_kernel: int = ..., channels: Optional[list[Any]] = ...) -> None: ...
     @overload
-    def infer(self, skeleton_sequence: Union[SkeletonSequence, ArrayLike], *, experiment_name: Any = ..., device_ind: Any = ..., val_batch_size: Any = ..., start_epoch: Any = ..., dataset_name: Any = ..., stbln_symmetric: Any = ..., num_subframes: Any = ...) -> Category: ...  # type: ignore[overload-overlap]
+    def infer(self, skeleton_sequence: Union[SkeletonSequence, ArrayLike], *, experiment_name: Any = ..., device_ind: Any = ..., val_batch_size: Any = ..., start_epoch: Any = ..., dataset_name: Any = ...) -> Category: ...  # type: ignore[overload-overlap]
     @overload
-    def infer(self, skeleton_sequence: Sequence[Union[SkeletonSequence, ArrayLike]], *, experiment_name: Any = ..., device_ind: Any = ..., val_batch_size: Any = ..., start_epoch: Any = ..., dataset_name: Any = ..., stbln_symmetric: Any = ..., num_subframes: Any = ...) -> list[Category]: ...
+    def infer(self, skeleton_sequence: Sequence[Union[SkeletonSequence, ArrayLike]], *, progress: bool = ..., experiment_name: Any = ..., device_ind: Any = ..., val_batch_size: Any = ..., start_epoch: Any = ..., dataset_name: Any = ...) -> list[Category]: ...
     @overload
-    def infer(self, skeleton_sequence: Iterator[Union[SkeletonSequence, ArrayLike]], *, experiment_name: Any = ..., device_ind: Any = ..., val_batch_size: Any = ..., start_epoch: Any = ..., dataset_name: Any = ..., stbln_symmetric: Any = ..., num_subframes: Any = ...) -> Iterator[Category]: ...
+    def infer(self, skeleton_sequence: Iterator[Union[SkeletonSequence, ArrayLike]], *, progress: bool = ..., experiment_name: Any = ..., device_ind: Any = ..., val_batch_size: Any = ..., start_epoch: Any = ..., dataset_name: Any = ...) -> Iterator[Category]: ...
     def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., momentum: float = ..., nesterov: Any = ..., weight_decay: float = ..., train_data_filename: Any = ..., train_labels_filename: Any = ..., val_data_filename: Any = ..., val_labels_filename: Any = ..., skeleton_data_type: Any = ..., *, out: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., teacher_map: Optional[Mapping[str, str]] = ..., teacher_by_number: bool = ..., keep_empty: bool = ..., skip_broken: bool = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., dropout: float = ..., label_smoothing: float = ..., augment: bool = ...) -> dict[str, Any]: ...
     def eval(self, val_dataset: Dataset = ..., val_loader: Any = ..., epoch: Any = ..., silent: Any = ..., verbose: bool = ..., val_data_filename: Any = ..., val_labels_filename: Any = ..., skeleton_data_type: Any = ..., save_score: Any = ..., wrong_file: Any = ..., result_file: Any = ..., show_topk: Any = ..., *, dataset: Dataset = ..., metric: Optional[str] = ..., split: Optional[str] = ..., limit: Optional[int] = ..., out: Optional[PathLike] = ..., skip_broken: bool = ..., classes: Optional[Mapping[str, str]] = ..., by_number: bool = ..., resamples: int = ..., **metric_params: Any) -> dict[str, Any]: ...
     def optimize(self, do_constant_folding: Any = ..., *, target_device: str = ..., out: Optional[PathLike] = ..., precision: str = ..., calibration: Union[None, Dataset] = ..., validation: Union[None, Dataset] = ..., verbose: bool = ..., **options: Any) -> dict[str, Any]: ...
@@ -118,8 +121,118 @@ class SpatioTemporalGCNLearner(NativeLearner):
     def download(cls, path: Optional[PathLike] = ..., method_name: Any = ..., mode: str = ..., verbose: bool = ..., url: Optional[str] = ..., file_name: Any = ..., *, variant: Optional[str] = ...) -> str: ...
     def multi_stream_eval(self, *args: Any, **kwargs: Any) -> NoReturn: ...
 
+class ProgressiveSpatioTemporalGCNLearner(NativeLearner):
+    """PST-GCN classifies the action in a clip of a moving skeleton; its network grows in the training.
+
+    Task: skeleton_based_action_recognition. ``infer`` takes:
+
+        skeleton_sequence: SkeletonSequence.
+
+    and returns: Category.
+
+    Args:
+        num_class: Number of classes. None: the number of classes in the data set. (default None; 2 to 10000)
+        num_point: Number of joints. None: that of the graph. (default None; 2 to 1000)
+        num_person: Maximum number of persons, the first ones of a recording; the prediction is the mean over
+            those present. (default 2; 1 to 64)
+        in_channels: Number of coordinates of a joint: 2 (a third channel of the input holds scores) or 3.
+            (default 3; 2 to 3)
+        graph_type: Skeleton: joints and bones. (default 'ntu'; one of 'ntu', 'kinetics', 'coco', 'jhmdb',
+            'kinect')
+        num_frames: Number of frames of a clip: the last ones of a longer recording; a shorter one is preceded by
+            its repeated first frame. (default 300; 1 to 10000)
+        temporal_kernel: Kernel size in time of each block; odd. (default 9; 3 to 101)
+        blocksize: Output channels of a block. (default 20; 1 to 256)
+        num_blocks: Maximum number of blocks of a layer of a network that grows. (default 10; 1 to 1000; in OpenDR
+            numblocks)
+        num_layers: Maximum number of layers of a network that grows. (default 10; 1 to 100; in OpenDR numlayers)
+        topology: Number of blocks of each layer. Empty: `fit` finds it; the network grows while its training loss
+            decreases. (default []; 1 to 1000)
+        layer_threshold: Relative decrease of the training loss that a further layer must exceed. (default 0.0001;
+            0 to 1)
+        block_threshold: Relative decrease of the training loss that a further block must exceed. (default 0.0001;
+            0 to 1)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+
+    Parameters of ``fit``, for one call or, given here, for all of them:
+        epochs: Number of epochs. (default 50; 1 to 1e+06; in OpenDR iters)
+        max_steps: Maximum number of optimiser steps, whatever the number of epochs; 0 for no limit. (default 0; 0
+            to 1e+09)
+        batch_size: Number of samples per batch. (default 128; 1 to 65536)
+        accumulate: Number of batches whose gradients are accumulated for one optimiser step. (default 1; 1 to
+            4096; in OpenDR batches_per_iter)
+        lr: Maximum learning rate. (default 0.1; 0 to 100)
+        optimizer: Optimiser. (default 'sgd'; one of 'adamw', 'adam', 'sgd', 'rmsprop'; in OpenDR optimizer_name)
+        momentum: Momentum of `sgd` and `rmsprop`. (default 0.9; 0 to 1)
+        weight_decay: Weight decay: decoupled from the gradient in `adamw`, added to it in the others. (default
+            0.0001; 0 to 10)
+        lr_schedule: Learning rate schedule after the warm-up. (default 'step'; one of 'constant', 'step',
+            'cosine', 'linear')
+        warmup_steps: Number of steps over which the learning rate rises from `warmup_ratio` of itself. (default
+            0; 0 to 1e+08)
+        warmup_ratio: Share of the learning rate at the start of the warm-up. (default 0.1; 0 to 1)
+        lr_min: Learning rate at the end of `cosine` and `linear`. (default 0.0; 0 to 100; in OpenDR
+            lr_schedule_eta_min)
+        lr_steps: Epochs at which `step` lowers the learning rate. (default [30, 40]; in OpenDR drop_after_epoch)
+        lr_gamma: Factor on the learning rate at each of `lr_steps`. (default 0.1; 0 to 1; in OpenDR lr_decay)
+        grad_clip: Maximum norm of the gradient over all weights; larger gradients are scaled down. 0 for no
+            limit. (default 0.0; 0 to 1e+09)
+        ema: Decay of the exponential moving average of the weights, e.g. 0.999; the average is validated and
+            saved. 0 for no average. (default 0.0; 0 to 0.999999)
+        early_stop: Number of validations without improvement after which training ends; 0 for never. (default 0;
+            0 to 100000)
+        val_after: Number of epochs between validations. (default 1; 1 to 1e+06)
+        checkpoint_after_iter: Number of steps between checkpoints; 0 for time-based checkpoints only. (default 0;
+            0 to 1e+08)
+        checkpoint_minutes: Minutes between checkpoints; 0 for no time-based checkpoints. (default 10.0; 0 to
+            10000 min)
+        checkpoints_kept: Number of checkpoints to keep, besides the best. (default 2; 1 to 1000)
+        log_after: Number of steps between lines of the log. (default 10; 1 to 1e+06)
+        num_workers: Number of threads that read and augment samples. (default 2; 0 to 1024)
+        seed: Seed of initial weights, sample order, augmentation and dropout. (default 0)
+        dropout: Dropout probability between layers. (default 0.0; 0 to 0.99)
+        label_smoothing: Label smoothing: weight of the uniform distribution over the classes in the target.
+            (default 0.0; 0 to 0.9)
+        augment: Whether skeletons are mirrored, rotated, stretched, cut in time and changed in speed at random.
+            (default True)
+
+    Arguments of OpenDR that are accepted and have no effect:
+        experiment_name: no effect: the output folder names the run.
+        device_ind: no effect: use `device`.
+        val_batch_size: no effect: validation runs the learner on one clip at a time.
+        start_epoch: no effect: use `resume` of `fit`.
+        dataset_name: no effect: the data set has a name.
+    """
+
+    num_class: Optional[int]
+    num_point: Optional[int]
+    num_person: int
+    in_channels: int
+    graph_type: Literal['ntu', 'kinetics', 'coco', 'jhmdb', 'kinect']
+    num_frames: int
+    temporal_kernel: int
+    blocksize: int
+    num_blocks: int
+    num_layers: int
+    topology: list[Any]
+    layer_threshold: float
+    block_threshold: float
+    def __init__(self, lr: float = ..., batch_size: int = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., num_workers: int = ..., epochs: int = ..., experiment_name: Any = ..., device_ind: Any = ..., val_batch_size: Any = ..., drop_after_epoch: list[Any] = ..., start_epoch: Any = ..., dataset_name: Any = ..., num_class: Optional[int] = ..., num_point: Optional[int] = ..., num_person: int = ..., in_channels: int = ..., graph_type: Literal['ntu', 'kinetics', 'coco', 'jhmdb', 'kinect'] = ..., blocksize: int = ..., numblocks: int = ..., numlayers: int = ..., topology: list[Any] = ..., layer_threshold: float = ..., block_threshold: float = ..., *, iters: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., backbone: str = ..., network_head: str = ..., threshold: float = ..., scale: float = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., momentum: float = ..., weight_decay: float = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., seed: int = ..., dropout: float = ..., label_smoothing: float = ..., augment: bool = ..., num_frames: int = ..., temporal_kernel: int = ..., num_blocks: int = ..., num_layers: int = ...) -> None: ...
+    @overload
+    def infer(self, skeleton_sequence: Union[SkeletonSequence, ArrayLike], *, experiment_name: Any = ..., device_ind: Any = ..., val_batch_size: Any = ..., start_epoch: Any = ..., dataset_name: Any = ...) -> Category: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, skeleton_sequence: Sequence[Union[SkeletonSequence, ArrayLike]], *, progress: bool = ..., experiment_name: Any = ..., device_ind: Any = ..., val_batch_size: Any = ..., start_epoch: Any = ..., dataset_name: Any = ...) -> list[Category]: ...
+    @overload
+    def infer(self, skeleton_sequence: Iterator[Union[SkeletonSequence, ArrayLike]], *, progress: bool = ..., experiment_name: Any = ..., device_ind: Any = ..., val_batch_size: Any = ..., start_epoch: Any = ..., dataset_name: Any = ...) -> Iterator[Category]: ...
+    def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., momentum: float = ..., nesterov: Any = ..., weight_decay: float = ..., train_data_filename: Any = ..., train_labels_filename: Any = ..., val_data_filename: Any = ..., val_labels_filename: Any = ..., skeleton_data_type: Any = ..., *, out: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., teacher_map: Optional[Mapping[str, str]] = ..., teacher_by_number: bool = ..., keep_empty: bool = ..., skip_broken: bool = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., dropout: float = ..., label_smoothing: float = ..., augment: bool = ...) -> dict[str, Any]: ...
+    def eval(self, val_dataset: Dataset = ..., val_loader: Any = ..., epoch: Any = ..., silent: Any = ..., verbose: bool = ..., val_data_filename: Any = ..., val_labels_filename: Any = ..., skeleton_data_type: Any = ..., save_score: Any = ..., wrong_file: Any = ..., result_file: Any = ..., show_topk: Any = ..., *, dataset: Dataset = ..., metric: Optional[str] = ..., split: Optional[str] = ..., limit: Optional[int] = ..., out: Optional[PathLike] = ..., skip_broken: bool = ..., classes: Optional[Mapping[str, str]] = ..., by_number: bool = ..., resamples: int = ..., **metric_params: Any) -> dict[str, Any]: ...
+    def optimize(self, do_constant_folding: Any = ..., *, target_device: str = ..., out: Optional[PathLike] = ..., precision: str = ..., calibration: Union[None, Dataset] = ..., validation: Union[None, Dataset] = ..., verbose: bool = ..., **options: Any) -> dict[str, Any]: ...
+    def load(self, path: Optional[PathLike] = ..., model_name: Any = ..., verbose: bool = ..., *, variant: Optional[str] = ...) -> bool: ...
+    def multi_stream_eval(self, *args: Any, **kwargs: Any) -> NoReturn: ...
+    def network_builder(self, *args: Any, **kwargs: Any) -> NoReturn: ...
+
 class CoSTGCNLearner(NativeLearner):
-    """CoST-GCN classifies the action of a moving skeleton, updated with every frame; trainable.
+    """CoST-GCN, CoA-GCN or CoS-TR classifies the action of a moving skeleton, updated with every frame; trainable.
 
     Task: skeleton_based_action_recognition. ``infer`` takes:
 
@@ -136,10 +249,10 @@ class CoSTGCNLearner(NativeLearner):
             (default 3; 2 to 3)
         graph_type: Skeleton: joints and bones. (default 'ntu'; one of 'ntu', 'kinetics', 'coco', 'jhmdb',
             'kinect')
-        backbone: Network architecture. (default 'costgcn'; one of 'costgcn')
+        backbone: Network architecture. (default 'costgcn'; one of 'costgcn', 'coagcn', 'costr')
         sequence_len: Number of frames that a prediction covers. (default 300; 1 to 10000)
-        channels: Output channels of each block. (default [64, 64, 64, 64, 128, 128, 128, 256, 256, 256]; 1 to
-            4096)
+        channels: Output channels of each block; in `costr`, multiples of 32 from the fourth block on. (default
+            [64, 64, 64, 64, 128, 128, 128, 256, 256, 256]; 1 to 4096)
         temporal_kernel: Kernel size in time of each block; odd. (default 9; 3 to 101)
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
 
@@ -200,13 +313,13 @@ class CoSTGCNLearner(NativeLearner):
     sequence_len: int
     channels: list[Any]
     temporal_kernel: int
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., backbone: Literal['costgcn'] = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., loss: Any = ..., weight_decay: float = ..., momentum: float = ..., drop_last: Any = ..., pin_memory: Any = ..., num_workers: int = ..., seed: int = ..., num_classes: Optional[int] = ..., num_point: Optional[int] = ..., num_person: int = ..., in_channels: int = ..., graph_type: Literal['ntu', 'kinetics', 'coco', 'jhmdb', 'kinect'] = ..., sequence_len: int = ..., *, threshold: float = ..., scale: float = ..., epochs: int = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., dropout: float = ..., label_smoothing: float = ..., augment: bool = ..., channels: list[Any] = ..., temporal_kernel: int = ...) -> None: ...
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., backbone: Literal['costgcn', 'coagcn', 'costr'] = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., loss: Any = ..., weight_decay: float = ..., momentum: float = ..., drop_last: Any = ..., pin_memory: Any = ..., num_workers: int = ..., seed: int = ..., num_classes: Optional[int] = ..., num_point: Optional[int] = ..., num_person: int = ..., in_channels: int = ..., graph_type: Literal['ntu', 'kinetics', 'coco', 'jhmdb', 'kinect'] = ..., sequence_len: int = ..., *, threshold: float = ..., scale: float = ..., epochs: int = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., dropout: float = ..., label_smoothing: float = ..., augment: bool = ..., channels: list[Any] = ..., temporal_kernel: int = ...) -> None: ...
     @overload
     def infer(self, skeleton_sequence: Union[SkeletonSequence, ArrayLike], *, network_head: Any = ..., loss: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> Category: ...  # type: ignore[overload-overlap]
     @overload
-    def infer(self, skeleton_sequence: Sequence[Union[SkeletonSequence, ArrayLike]], *, network_head: Any = ..., loss: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> list[Category]: ...
+    def infer(self, skeleton_sequence: Sequence[Union[SkeletonSequence, ArrayLike]], *, progress: bool = ..., network_head: Any = ..., loss: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> list[Category]: ...
     @overload
-    def infer(self, skeleton_sequence: Iterator[Union[SkeletonSequence, ArrayLike]], *, network_head: Any = ..., loss: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> Iterator[Category]: ...
+    def infer(self, skeleton_sequence: Iterator[Union[SkeletonSequence, ArrayLike]], *, progress: bool = ..., network_head: Any = ..., loss: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> Iterator[Category]: ...
     def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., epochs: int = ..., steps: Any = ..., *, logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., out: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., teacher_map: Optional[Mapping[str, str]] = ..., teacher_by_number: bool = ..., keep_empty: bool = ..., skip_broken: bool = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., dropout: float = ..., label_smoothing: float = ..., augment: bool = ...) -> dict[str, Any]: ...
     def eval(self, dataset: Dataset, steps: Optional[int] = ..., *, metric: Optional[str] = ..., split: Optional[str] = ..., limit: Optional[int] = ..., out: Optional[PathLike] = ..., skip_broken: bool = ..., classes: Optional[Mapping[str, str]] = ..., by_number: bool = ..., resamples: int = ..., verbose: bool = ..., **metric_params: Any) -> dict[str, Any]: ...
     def optimize(self, do_constant_folding: Any = ..., *, target_device: str = ..., out: Optional[PathLike] = ..., precision: str = ..., calibration: Union[None, Dataset] = ..., validation: Union[None, Dataset] = ..., verbose: bool = ..., **options: Any) -> dict[str, Any]: ...
@@ -223,17 +336,12 @@ class KineticsFeeder:
 
     def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...
 
-class ProgressiveSpatioTemporalGCNLearner:
-    """Not available yet: use SpatioTemporalGCNLearner, whose `channels` define its size."""
-
-    def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...
-
 class STBLN:
-    """Not available yet: use SpatioTemporalGCNLearner, whose network is ST-GCN."""
+    """Not available yet: use SpatioTemporalGCNLearner(method_name="stbln")."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...
 
 class TAGCN:
-    """Not available yet: use SpatioTemporalGCNLearner, whose network is ST-GCN."""
+    """Not available yet: use SpatioTemporalGCNLearner(method_name="tagcn")."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Optional
 from opendr._errors import Unsupported
 from opendr._input_value import input_value
 from opendr._native_learner import NativeLearner
+from opendr.engine._image_reference import ImageReference
 from opendr.engine.target import BoundingBox, BoundingBoxList
 
 if TYPE_CHECKING:
@@ -26,16 +27,16 @@ class SingleShotDetector(NativeLearner):
         if not hasattr(custom_nms, "run_nms"):
             given = arguments if custom_nms is None else {**arguments, "custom_nms": custom_nms}
             return super().infer(image, **given)
-        if isinstance(image, Iterator):
-            return (self._suppressed(one, custom_nms, arguments) for one in image)
-        if isinstance(image, (list, tuple)):
-            return [self._suppressed(one, custom_nms, arguments) for one in image]
-        return self._suppressed(image, custom_nms, arguments)
+        progress = arguments.pop("progress", True)
+        if not isinstance(image, (Iterator, list, tuple)):
+            return self._suppressed(image, custom_nms, arguments)
+        each = self._with_progress((self._suppressed(one, custom_nms, arguments) for one in image), image, progress)
+        return each if isinstance(image, Iterator) else list(each)
 
     def _suppressed(self, image: Any, custom_nms: Any, arguments: dict[str, Any]) -> BoundingBoxList:
         import numpy as np
 
-        image = input_value(image, "image", "Image")
+        given, image = image, input_value(image, "image", "Image")
         known = self._known(arguments, stacklevel=6)
         # No IoU exceeds 1, so all boxes are kept.
         every = {"iou_threshold": 1.0, "suppression": "hard", "max_detections": known.get("max_candidates", 400)}
@@ -49,7 +50,8 @@ class SingleShotDetector(NativeLearner):
         boxes = chosen[0] if isinstance(chosen, tuple) else chosen
         named = [_with_class(box, self.classes) for box in boxes.data]
         target = BoundingBoxList(named[: known.get("max_detections")], classes=self.classes)
-        target.timestamp, target.frame_id = found.timestamp, found.frame_id
+        target = found._with_header_in(target)
+        target._image = ImageReference.to(given)
         return target
 
 

@@ -141,7 +141,7 @@ class SingleObject(NativeLearner):
 
 
 def _only(tracks: TrackingAnnotationList) -> Optional[TrackingAnnotation]:
-    return tracks.data[0] if len(tracks) else None
+    return tracks._with_header_in(tracks.data[0]) if len(tracks) else None
 
 
 class Vpit(NativeLearner):

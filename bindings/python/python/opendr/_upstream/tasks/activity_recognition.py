@@ -7,11 +7,7 @@ from opendr._upstream.rows import HERE, Absent, Home, Learner
 _TIMESERIES = "opendr._upstream.video_datasets"
 
 MODULES: dict[str, dict[str, Home]] = {
-    "continual_transformer_encoder.continual_transformer_encoder_learner": {
-        "CoTransEncLearner": Absent(
-            "use GatedRecurrentUnitLearner of heart_anomaly_detection for classes of time series"
-        )
-    },
+    "continual_transformer_encoder.continual_transformer_encoder_learner": {"CoTransEncLearner": HERE},
     "cox3d.cox3d_learner": {"CoX3DLearner": HERE},
     "datasets.dummy_timeseries_dataset": {"DummyTimeseriesDataset": _TIMESERIES},
     "datasets.kinetics": {
@@ -54,5 +50,19 @@ LEARNERS = {
         folder="x3d_{model_names=s}.pyth",
         demos="online_recognition",
         differs=("as X3DLearner; images are not normalised before `infer`",),
+    ),
+    "CoTransEncLearner": Learner(
+        init="lr iters batch_size optimizer lr_schedule network_head num_layers input_dims hidden_dims sequence_len"
+        " num_heads dropout num_classes positional_encoding_learned checkpoint_after_iter checkpoint_load_iter temp_path"
+        " device loss weight_decay momentum drop_last pin_memory num_workers seed",
+        infer="x>timeseries",
+        fit=_FIT,
+        eval="dataset steps>limit",
+        optimize="do_constant_folding!onnx",
+        demos="–",
+        differs=(
+            "a step is a Timeseries of one row, `[1, input_dims]`; the first one already yields a prediction",
+            "there is no pretrained model, as in OpenDR",
+        ),
     ),
 }

@@ -53,8 +53,8 @@ LEARNERS = {
         " show_topk!csv",
         optimize="do_constant_folding!onnx",
         load="path model_name verbose",
-        methods={"network_builder": "give `topology` to the constructor, and fit"},
+        methods={"network_builder": "call `fit`, which grows the network while `topology` is empty"},
         demos="–",
-        differs=("the network does not grow: `topology` defines it; there is no pretrained model",),
+        differs=("`fit` grows the network where `topology` is empty; there is no pretrained model",),
     ),
 }

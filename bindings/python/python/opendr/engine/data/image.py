@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 
 from opendr import _opendr
 from opendr.engine._arrays import array_of
+from opendr.engine._image_reference import ImageFile
 from opendr.engine.data.array_data import ArrayData
 
 if TYPE_CHECKING:
@@ -45,6 +46,8 @@ class Image(ArrayData):
 
     #: The image in native memory, until other data are set.
     _pixels: Any = None
+    #: The file that the image was read from, until other data are set.
+    _file: Optional[ImageFile] = None
     #: The type that new data are converted to; empty: that of the current data.
     _target_dtype: str = ""
 
@@ -76,7 +79,9 @@ class Image(ArrayData):
         path = os.fspath(filename)
         if not os.path.exists(path):
             raise FileNotFoundError("The image file does not exist.")
+        file = ImageFile.at(path)
         picture: Image = _opendr.open_value("Image", path)
+        picture._file = file
         return picture
 
     @classmethod
@@ -102,10 +107,10 @@ class Image(ArrayData):
 
     @data.setter
     def data(self, data: ArrayLike) -> None:
-        self._data, self._pixels = self._checked(data), None
+        self._data, self._pixels, self._file = self._checked(data), None, None
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_data": self.data, "_pixels": None}
+        return {**self.__dict__, "_data": self.data, "_pixels": None, "_file": None}
 
     @property
     def dtype(self) -> Any:
@@ -162,6 +167,13 @@ class Image(ArrayData):
         """
         _opendr.save_image(self, os.fspath(path))
 
+    def _repr_png_(self) -> Optional[bytes]:
+        """Returns the image as a PNG file for a notebook; uint16 and float32 from their lowest (black) to their highest sample (white)."""
+        try:
+            return _opendr.png(self if self.dtype == "uint8" else Image(_scaled(self.data), guess_format=False))
+        except Exception:  # The notebook shows the text.
+            return None
+
     def to_pil(self) -> PIL.Image.Image:
         """Returns the image as one of Pillow; the samples must be uint8.
 
@@ -208,6 +220,16 @@ def _chw_from_guess(data: ArrayLike) -> NDArray[Any]:
     if array.shape[2] == 3:
         array = array[:, :, ::-1]
     return array.transpose(2, 0, 1)
+
+
+def _scaled(array: NDArray[Any]) -> NDArray[Any]:
+    """Returns samples as uint8, scaled from their finite range; others are 0."""
+    import numpy as np
+
+    finite = np.isfinite(array)
+    low, high = (float(array[finite].min()), float(array[finite].max())) if finite.any() else (0.0, 0.0)
+    scaled = (np.where(finite, array, low) - low) * (255.0 / (high - low) if high > low else 0.0)
+    return np.round(scaled).astype("uint8")
 
 
 def _converted(array: NDArray[Any], dtype: str) -> NDArray[Any]:

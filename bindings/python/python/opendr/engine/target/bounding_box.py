@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Optional, SupportsIndex, Union
 from opendr import _opendr
 from opendr.engine._checks import Real, class_name_or_index, real, reals, text, whole
 from opendr.engine.target._coco import boxes_from_entries, entries_from_boxes
+from opendr.engine.target._table import Table, box_columns
 from opendr.engine.target.base_target import Target
 from opendr.engine.target.target_list import NamedTargetList
 
@@ -132,12 +133,23 @@ class BoundingBoxList(NamedTargetList[BoundingBox]):
         """
         return boxes_from_entries(boxes_coco, whole(image_id, "image_id"))
 
-    def to_supervision(self) -> supervision.Detections:
-        """Returns the boxes as ``supervision.Detections``.
+    def to_supervision(self, image_size: Optional[tuple[int, int]] = None) -> supervision.Detections:
+        """Returns the boxes as ``supervision.Detections``, with their masks where one of them has a mask; a box without is empty in
+        ``mask``.
+
+        Args:
+            image_size: Height and width of the image, for masks that are polygons.
 
         Raises:
             ImportError: The package supervision is not installed.
+            opendr.InvalidInput: The masks are polygons, and ``image_size`` is missing; or they have different sizes.
         """
         from opendr.engine.target._supervision import detections
 
-        return detections(self.data, self.classes)
+        return detections(self, image_size)
+
+    def _is_drawn(self) -> bool:
+        return True
+
+    def _table(self) -> Table:
+        return box_columns(self.data, self.classes)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Optional, SupportsIndex, Union
 from opendr import _opendr
 from opendr.engine._checks import Real, class_name_or_index, real, reals, text, whole
 from opendr.engine.target._kitti import arrays_from_columns, columns_from_arrays
+from opendr.engine.target._table import Table, box_3d_columns
 from opendr.engine.target.base_target import Target
 from opendr.engine.target.target_list import NamedTargetList
 
@@ -161,6 +162,9 @@ class BoundingBox3DList(NamedTargetList[BoundingBox3D]):
         """
         boxes: BoundingBox3DList = _opendr.from_kitti(columns_from_arrays(boxes_kitti), None, None)
         return boxes
+
+    def _table(self) -> Table:
+        return box_3d_columns(self.data, self.classes)
 
 
 def _level(occluded: Union[SupportsIndex, float]) -> int:

@@ -6,10 +6,12 @@ from typing import TYPE_CHECKING, Any, ClassVar, Optional, SupportsIndex, Union
 
 from opendr.engine._arrays import array_of
 from opendr.engine._checks import real, text, whole
+from opendr.engine.target._table import Column, Table, ints, texts
 from opendr.engine.target.base_target import Target
 
 if TYPE_CHECKING:
     import numpy as np
+    import supervision
     from numpy.typing import ArrayLike, NDArray
 
 
@@ -65,6 +67,27 @@ class Category(Target):
             self._confidence, self.probabilities = None, _scores(confidence)
         else:
             self._confidence = None if confidence is None else real(confidence, "confidence")
+
+    def to_supervision(self) -> supervision.Classifications:
+        """Returns the class as ``supervision.Classifications``: all classes where their scores are known, else only this one.
+
+        Raises:
+            ImportError: The package supervision is not installed.
+        """
+        from opendr.engine.target._supervision import classifications
+
+        return classifications(self)
+
+    def _is_drawn(self) -> bool:
+        return True
+
+    def _table(self) -> Table:
+        scores = {self.data: self._confidence} if self.probabilities is None else dict(enumerate(self.probabilities))
+        return {
+            "name": ints(scores),
+            "class_name": texts(self.description if index == self.data else None for index in scores),
+            "confidence": Column(list(scores.values())),
+        }
 
 
 def _scores(values: ArrayLike) -> NDArray[np.float32]:

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, Optional
 
 from opendr.engine._checks import text
 from opendr.engine._equality import is_array
+from opendr.engine.target._table import Column, Table, floats, ints, texts
 from opendr.engine.target.base_target import Target
 
 if TYPE_CHECKING:
+    import supervision
     from numpy.typing import NDArray
 
 
@@ -78,3 +80,42 @@ class Heatmap(Target):
         from opendr.engine._arrays import as_array
 
         return as_array(self.data, dtype, copy)
+
+    def to_supervision(self) -> supervision.Detections:
+        """Returns the classes in a map of class indices as ``supervision.Detections`` with their masks, in the order of the class
+        indices; ``confidence`` is None. Class 0 is left out where it is called ``background`` or has no name, as in drawings.
+
+        Raises:
+            ImportError: The package supervision is not installed.
+            opendr.Unsupported: The map has scores, or another shape than ``[height, width]``.
+        """
+        from opendr.engine.target._supervision import class_masks
+
+        return class_masks(self)
+
+    def label_of(self, index: int) -> str:
+        """Returns the name of a class index, or the index as a text where it has no name."""
+        return (self.class_names or {}).get(index) or str(index)
+
+    def _is_map_of_classes(self) -> bool:
+        """Returns whether the data are ``[height, width]`` class indices."""
+        return self.data.ndim == 2 and self.data.dtype.kind != "f"
+
+    def _is_drawn(self) -> bool:
+        is_scores = self.data.dtype.kind == "f" and self.data.ndim in (2, 3)
+        return self.data.size > 0 and (is_scores or self._is_map_of_classes())
+
+    def _table(self) -> Optional[Table]:
+        if self.data.ndim == 1:
+            return {"index": ints(range(len(self.data))), "value": Column(list(self.data))}
+        if not self._is_map_of_classes():
+            return None
+        import numpy as np
+
+        indices, counts = np.unique(self.data, return_counts=True)
+        return {
+            "name": ints(indices.tolist()),
+            "class_name": texts(self.label_of(index) for index in indices.tolist()),
+            "pixels": ints(counts.tolist()),
+            "share": floats(count / self.data.size for count in counts.tolist()),
+        }

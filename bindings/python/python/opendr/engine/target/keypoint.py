@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Optional, Union
 
 from opendr.engine._checks import Real, real, reals
+from opendr.engine.target._table import Table, floats
 from opendr.engine.target.base_target import Target
 
 if TYPE_CHECKING:
@@ -87,3 +88,6 @@ class Keypoint(Target):
         import numpy as np
 
         return np.array([self.x, self.y], dtype=np.float32)
+
+    def _table(self) -> Table:
+        return {"x": floats([self.x]), "y": floats([self.y]), "confidence": floats([self.confidence])}

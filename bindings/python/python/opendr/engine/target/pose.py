@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Optional, SupportsIndex, Union
 
 from opendr.engine._arrays import array_of
 from opendr.engine._checks import Real, real, whole
+from opendr.engine.target._table import Column, Table, floats, ints, texts
 from opendr.engine.target.base_target import Target
 from opendr.engine.target.bounding_box import BoundingBox
 from opendr.engine.target.keypoint import Keypoint
@@ -14,6 +15,7 @@ from opendr.engine.target.skeleton import JOINTS, skeleton_of
 from opendr.engine.target.target_list import TargetList
 
 if TYPE_CHECKING:
+    import supervision
     from numpy.typing import ArrayLike, NDArray
 
 
@@ -148,3 +150,37 @@ class PoseList(TargetList[Pose]):
     def poses(self) -> list[Pose]:
         """The poses; the same list as ``data``."""
         return self.data
+
+    def to_supervision(self) -> supervision.KeyPoints:
+        """Returns the poses as ``supervision.KeyPoints``: ``xy``, ``keypoint_confidence``, ``detection_confidence``, ``visible``
+        (False for a joint that is not detected), in ``data`` ``"tracker_id"`` (-1 for a pose without one) where a pose has an id,
+        and ``"xyxy"`` where every pose has a region.
+
+        Raises:
+            ImportError: The package supervision, 0.29 or later, is not installed.
+            opendr.Unsupported: The poses have different numbers of joints.
+        """
+        from opendr.engine.target._supervision import key_points
+
+        return key_points(self.data)
+
+    def _is_drawn(self) -> bool:
+        return True
+
+    def _table(self) -> Table:
+        # The pose of each joint, with its index.
+        poses = [(at, pose) for at, pose in enumerate(self.data) for _ in range(len(pose))]
+        return {
+            "pose": ints(at for at, _ in poses),
+            "id": ints(pose.id for _, pose in poses),
+            "keypoint": texts(name for pose in self.data for name in _names(pose)),
+            "x": Column([x for pose in self.data for x in pose.data[:, 0]], "float32"),
+            "y": Column([y for pose in self.data for y in pose.data[:, 1]], "float32"),
+            "confidence": Column([score for pose in self.data for score in pose.keypoint_confidences], "float32"),
+            "pose_confidence": floats(pose.confidence for _, pose in poses),
+        }
+
+
+def _names(pose: Pose) -> list[str]:
+    """Returns a name for each joint: its index where the skeleton has no name for it."""
+    return [pose.joints[index] if index < len(pose.joints) else str(index) for index in range(len(pose))]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, ClassVar, Optional
 
 from opendr.engine._arrays import array_of
+from opendr.engine.target._table import Column, Table, ints
 from opendr.engine.target.base_target import Target
 
 if TYPE_CHECKING:
@@ -53,3 +54,6 @@ class RlTarget(Target):
 
     def __float__(self) -> float:
         return float(self.data.item())
+
+    def _table(self) -> Table:
+        return {"index": ints(range(len(self))), "value": Column(list(self.data), "float32")}

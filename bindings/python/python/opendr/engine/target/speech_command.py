@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import ClassVar, Optional, SupportsIndex, Union
 
 from opendr.engine._checks import Real, class_name_or_index, real, reals
+from opendr.engine.target._table import Column, Table, floats
 from opendr.engine.target.base_target import Target
 
 
@@ -48,3 +49,12 @@ class SpeechCommand(Target):
     def command(self) -> Union[int, str]:
         """Class index, or word."""
         return self.data
+
+    def _table(self) -> Table:
+        start, end = self.span_s or (None, None)
+        return {
+            "command": Column([self.command], None),
+            "confidence": floats([self.confidence]),
+            "start_s": floats([start]),
+            "end_s": floats([end]),
+        }

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Any, ClassVar, Optional
 from opendr.engine._arrays import array_of
 from opendr.engine._checks import Real, real
 from opendr.engine._checks import text as checked_text
+from opendr.engine.target._table import Column, Table, floats, texts
 from opendr.engine.target.base_target import Target
 from opendr.engine.target.target_list import TargetList
 
 if TYPE_CHECKING:
+    import supervision
     from numpy.typing import ArrayLike, NDArray
 
 
@@ -85,3 +87,25 @@ class TextRegionList(TargetList[TextRegion]):
     def text(self) -> str:
         """The texts, a line each."""
         return "\n".join(region.text for region in self.data)
+
+    def to_supervision(self) -> supervision.Detections:
+        """Returns the regions as ``supervision.Detections`` of class 0: the boxes around the corners, which are in
+        ``data["xyxyxyxy"]``, and the texts in ``data["class_name"]``, as of EasyOCR.
+
+        Raises:
+            ImportError: The package supervision is not installed.
+        """
+        from opendr.engine.target._supervision import text_detections
+
+        return text_detections(self.data)
+
+    def _is_drawn(self) -> bool:
+        return True
+
+    def _table(self) -> Table:
+        sides = {f"{axis}{corner}": (corner, at) for corner in range(4) for at, axis in enumerate("xy")}
+        return {
+            "text": texts(region.text for region in self.data),
+            "confidence": floats(region.confidence for region in self.data),
+            **{name: Column([region.corners[at] for region in self.data], "float32") for name, at in sides.items()},
+        }

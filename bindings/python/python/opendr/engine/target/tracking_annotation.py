@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, ClassVar, Optional, SupportsIndex, Union
 from opendr import _opendr
 from opendr.engine._checks import Real, class_name_or_index, real, reals, text, whole
 from opendr.engine.target._segmentation import Segmentation, segmentation_of
+from opendr.engine.target._table import Table, box_columns, ints
 from opendr.engine.target.base_target import Target
 from opendr.engine.target.bounding_box import BoundingBox, BoundingBoxList
 from opendr.engine.target.coco_bounding_box import CocoBoundingBox
@@ -159,12 +160,21 @@ class TrackingAnnotationList(NamedTargetList[TrackingAnnotation]):
         boxes = BoundingBoxList([track.bounding_box() for track in self.data], classes=self.classes)
         return self._with_header_in(boxes)
 
-    def to_supervision(self) -> supervision.Detections:
-        """Returns the objects as ``supervision.Detections`` with ``tracker_id``.
+    def to_supervision(self, image_size: Optional[tuple[int, int]] = None) -> supervision.Detections:
+        """Returns the objects as ``supervision.Detections`` with ``tracker_id``; otherwise as
+        :meth:`BoundingBoxList.to_supervision`.
 
         Raises:
             ImportError: The package supervision is not installed.
+            opendr.InvalidInput: The masks are polygons, and ``image_size`` is missing; or they have different sizes.
         """
         from opendr.engine.target._supervision import detections
 
-        return detections(self.data, self.classes)
+        return detections(self, image_size)
+
+    def _is_drawn(self) -> bool:
+        return True
+
+    def _table(self) -> Table:
+        identity = {name: ints(getattr(track, name) for track in self.data) for name in ("frame", "id")}
+        return {**identity, **box_columns(self.data, self.classes)}

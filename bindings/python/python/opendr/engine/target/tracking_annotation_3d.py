@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Optional, SupportsIndex, Union
 from opendr import _opendr
 from opendr.engine._checks import Real, whole
 from opendr.engine.target._kitti import arrays_from_columns, columns_from_arrays
+from opendr.engine.target._table import Table, box_3d_columns, ints
 from opendr.engine.target.bounding_box_3d import BoundingBox3D, BoundingBox3DList
 from opendr.engine.target.target_list import NamedTargetList
 
@@ -141,3 +142,7 @@ class TrackingAnnotation3DList(NamedTargetList[TrackingAnnotation3D]):
         """Returns the boxes without their identities."""
         boxes = BoundingBox3DList([track.bounding_box_3d() for track in self.data], classes=self.classes)
         return self._with_header_in(boxes)
+
+    def _table(self) -> Table:
+        identity = {name: ints(getattr(track, name) for track in self.data) for name in ("frame", "id")}
+        return {**identity, **box_3d_columns(self.data, self.classes)}

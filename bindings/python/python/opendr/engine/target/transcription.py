@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import Any, ClassVar
 
 from opendr.engine._checks import text as checked_text
+from opendr.engine.target._table import Column, Table, floats, ints, texts
 from opendr.engine.target.base_target import Target
 
 
@@ -38,6 +39,9 @@ class BaseTranscription(Target):
         """The text."""
         return self.data
 
+    def _table(self) -> Table:
+        return {"text": texts([self.text])}
+
 
 class WhisperTranscription(BaseTranscription):
     """A transcription with its segments.
@@ -61,6 +65,17 @@ class WhisperTranscription(BaseTranscription):
             if not isinstance(segment, dict):
                 raise TypeError(f"a segment should be a dictionary, e.g. {{'start': 0.5, ...}}, not {segment!r:.200}")
 
+    def _table(self) -> Table:
+        # A text without segments is one segment of unknown time.
+        segments = self.segments or [{"text": self.text}]
+        numbers = ("avg_logprob", "compression_ratio", "no_speech_prob", "temperature")
+        return {
+            "id": ints(segment.get("id") for segment in segments),
+            **{name: floats(segment.get(name) for segment in segments) for name in ("start", "end")},
+            "text": texts(segment.get("text") for segment in segments),
+            **{name: floats(segment.get(name) for segment in segments) for name in numbers},
+        }
+
 
 class VoskTranscription(BaseTranscription):
     """An intermediate or final transcription of a streaming recogniser.
@@ -78,3 +93,6 @@ class VoskTranscription(BaseTranscription):
     def __init__(self, text: str, accept_waveform: bool = False) -> None:
         super().__init__(text)
         self.accept_waveform = bool(accept_waveform)
+
+    def _table(self) -> Table:
+        return {**super()._table(), "accept_waveform": Column([self.accept_waveform], "bool")}
