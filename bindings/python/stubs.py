@@ -9,6 +9,7 @@ With --check nothing is written: the exit code is 1 if a file is not up to date.
 """
 
 import difflib
+import importlib
 import inspect
 import re
 import sys
@@ -21,7 +22,7 @@ from opendr._input_value import OF_SEVERAL_PARTS
 from opendr._reference import document
 from opendr._registered import _DRAWING
 from opendr._upstream.modules import TASKS, names_of, rows
-from opendr._upstream.rows import HERE, Absent
+from opendr._upstream.rows import HERE, Absent, Runs
 from opendr._upstream.rows import arguments as arguments_of
 from opendr.engine.learners import BaseLearner
 
@@ -155,7 +156,8 @@ def arguments(entry):
 
 def learner_class(entry):
     """Returns the class of a learner."""
-    return opendr.learners()[entry["name"]]
+    found = opendr.learners()[entry["name"]]
+    return getattr(sys.modules[found.__module__], entry["class_name"])
 
 
 def keywords(fields, without=()):
@@ -280,6 +282,7 @@ def learner(entry):
 def module(package, task, entries):
     kinds = {row["type"] for entry in entries for row in (*entry["ports"], *entry["outputs"])}
     kinds |= {kind for of in kinds for kind in ALSO.get(of, ()) if kind.isidentifier() and kind != "str"}
+    entries = [*entries, *runners(package, task)]
     own = {entry["class_name"] for entry in entries}
     homes = {name: "opendr._drawing" for kind in kinds for name in _DRAWING.get(kind, ())}
     others = {name: home for name, home in names_of(f"opendr.{package}.{task}").items() if name not in {*homes, *own}}
@@ -294,6 +297,13 @@ def module(package, task, entries):
     for home in sorted({module for module, _ in wanted}):
         imports += f"from {home} import {', '.join(sorted(name for module, name in wanted if module == home))}\n"
     return HEADER.format(task=task) + imports + "\n" + text
+
+
+def runners(package, task):
+    """Returns entries of OpenDR's learners whose networks a learner of the registry runs."""
+    names = names_of(f"opendr.{package}.{task}")
+    found = importlib.import_module(f"opendr.{package}.{task}")
+    return [getattr(found, name)._entry for name, home in sorted(names.items()) if isinstance(home, Runs)]
 
 
 def absent(name, home):
@@ -402,7 +412,9 @@ def names_table():
         if home == HERE and name not in learners:
             raise LookupError(f"{name} of opendr/_upstream is no class of a learner; correct its home in the module of {task}")
         instead = home.use if isinstance(home, Absent) else NOTHING
-        text += "\t".join((task, name, learners[name] if home == HERE else NOTHING, instead)) + "\n"
+        runner = home.by.partition(":")[2] if isinstance(home, Runs) else name
+        learner = learners[runner] if home == HERE or isinstance(home, Runs) else NOTHING
+        text += "\t".join((task, name, learner, instead)) + "\n"
     return text
 
 

@@ -194,9 +194,9 @@ impl Name {
             match (learner, instead) {
                 (NOTHING, NOTHING) => Here::Same,
                 (learner, NOTHING) => {
-                    let place = learners.iter().position(|one| one.name == learner && one.class == name);
+                    let place = learners.iter().position(|one| one.name == learner);
                     Here::Learner(place.ok_or_else(|| {
-                        format!("{name} is no class of a learner {learner:?} of {LEARNERS}")
+                        format!("{name} names {learner:?}, which {LEARNERS} does not have")
                     })?)
                 }
                 (NOTHING, instead) => {

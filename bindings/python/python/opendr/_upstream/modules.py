@@ -10,7 +10,7 @@ from importlib.machinery import ModuleSpec
 from typing import Any, Optional
 
 from opendr._upstream.absent import absent
-from opendr._upstream.rows import HERE, Absent, Home, Learner
+from opendr._upstream.rows import HERE, Absent, Home, Learner, Runs
 
 #: OpenDR's packages and further modules in the table.
 TASKS = (
@@ -122,7 +122,26 @@ def add_names(module: types.ModuleType) -> None:
 def _value(module: str, name: str, home: Home) -> Any:
     if isinstance(home, Absent):
         return absent(name, module, f"{name} is not available yet; {home.use}")
+    if isinstance(home, Runs):
+        return _runner(module, name, home)
     if home != HERE:
         return getattr(import_module(home), name)
     found = vars(import_module(f"opendr.{_task(module)}")).get(name)
-    return found or absent(name, module, f"{name} is not in this build of opendr; install a build with all learners")
+    return found or _not_built(name, module)
+
+
+def _runner(module: str, name: str, home: Runs) -> Any:
+    """Returns the class of a learner of OpenDR whose networks another one runs; the same in all module paths of the package."""
+    from opendr._native_class import native_class
+
+    task = _task(module) or ""
+    package = import_module(f"opendr.{task}")
+    if module != package.__name__:
+        return getattr(package, name)
+    path, _, of = home.by.partition(":")
+    base, row = getattr(import_module(path), of, None), learner(task, name)
+    return _not_built(name, module) if base is None or row is None else native_class(base._entry, module, (name, row))
+
+
+def _not_built(name: str, module: str) -> Any:
+    return absent(name, module, f"{name} is not in this build of opendr; install a build with all learners")

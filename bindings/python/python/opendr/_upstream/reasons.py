@@ -11,6 +11,7 @@ REASONS = {
     "dropout": "a prediction is one pass without dropout",
     "epoch": "it would only appear in a log",
     "evaluate": "`val_dataset` determines whether there is an evaluation",
+    "file": "the network of the file that is loaded defines it",
     "flush": "every number is written at once",
     "half": "the runtime chooses the precision",
     "images": "there is one sample image",

@@ -15,8 +15,16 @@ class Absent(NamedTuple):
     use: str
 
 
-#: Home of a name: a module, an empty str for a learner of the registry, or the replacement of a missing name.
-Home = Union[str, Absent]
+class Runs(NamedTuple):
+    """A learner of OpenDR whose networks a learner of the registry runs, exported to ONNX."""
+
+    #: The class of that learner, ``module:class``.
+    by: str
+
+
+#: Home of a name: a module, an empty str for a learner of the registry, the learner that runs its networks, or the replacement of a
+#: missing name.
+Home = Union[str, Runs, Absent]
 HERE = ""
 
 

@@ -27,6 +27,7 @@ from opendr._upstream.suppression import SoftNMS as SoftNMS
 from opendr._input_value import PathLike
 from opendr._native_learner import NativeLearner
 from opendr._upstream.learners.detection import Seq2SeqNms, SingleShotDetector
+from opendr._upstream.learners.own_networks import Detr, OwnNetwork, YoloV3
 from opendr.engine.data import Image
 from opendr.engine.datasets import Dataset
 from opendr.engine.learners import Learner
@@ -695,6 +696,231 @@ class GemLearner(NativeLearner):
     def fit(self, m1_train_edataset: Dataset = ..., m2_train_edataset: Any = ..., annotations_folder: Any = ..., m1_train_annotations_file: Any = ..., m2_train_annotations_file: Any = ..., m1_train_images_folder: Optional[str] = ..., m2_train_images_folder: Any = ..., out_dir: Optional[PathLike] = ..., trial_dir: Any = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., m1_val_edataset: Optional[Dataset] = ..., m2_val_edataset: Any = ..., m1_val_annotations_file: Any = ..., m2_val_annotations_file: Any = ..., m1_val_images_folder: Optional[str] = ..., m2_val_images_folder: Any = ..., *, dataset: Dataset = ..., val_dataset: Optional[Dataset] = ..., out: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., teacher_map: Optional[Mapping[str, str]] = ..., teacher_by_number: bool = ..., keep_empty: bool = ..., skip_broken: bool = ..., backbone: Literal['mobilenet0.75', 'mobilenet1.0', 'mobilenet0.5', 'mobilenet0.25'] = ..., img_size: int = ..., resizing: Literal['stretch', 'letterbox'] = ..., stride: int = ..., aspect_ratios: list[Any] = ..., anchor_scales: list[Any] = ..., classes: list[Any] = ..., drop_sensor: float = ..., augment: bool = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ...) -> dict[str, Any]: ...
     def eval(self, m1_edataset: Dataset = ..., m2_edataset: Any = ..., m1_images_folder: Optional[str] = ..., m2_images_folder: Any = ..., annotations_folder: Any = ..., m1_annotations_file: Any = ..., m2_annotations_file: Any = ..., verbose: bool = ..., *, dataset: Dataset = ..., metric: Optional[str] = ..., split: Optional[str] = ..., limit: Optional[int] = ..., out: Optional[PathLike] = ..., skip_broken: bool = ..., classes: Optional[Mapping[str, str]] = ..., by_number: bool = ..., resamples: int = ..., **metric_params: Any) -> dict[str, Any]: ...
 
+class DetrLearner(Detr):
+    """Runs your own detector, exported to ONNX by another tool; recognises the layout of its outputs.
+
+    Task: object_detection_2d. ``infer`` takes:
+
+        image: Image.
+
+    and returns: BoundingBoxList.
+
+    Args:
+        threshold: Score below which detections are dropped. (default 0.25; 0 to 1; live: may change while
+            running, and for one call of infer)
+        iou_threshold: IoU above which candidates of one class count as one object; detections and queries are not
+            suppressed. (default 0.65; 0 to 1; live: may change while running, and for one call of infer)
+        max_detections: Maximum number of boxes per image. (default 300; 1 to 1000; live: may change while
+            running, and for one call of infer)
+        multi_label: Whether a candidate may be a detection of several classes, or of that with the highest score
+            only. (default False; live: may change while running, and for one call of infer)
+        suppression: Method of non-maximum suppression of upright candidates; rotated ones have Fast NMS by the
+            probabilistic IoU. (default 'hard'; one of 'hard', 'soft', 'fast', 'cluster'; live: may change while
+            running, and for one call of infer)
+        layout: What the rows of the outputs are. (default 'auto'; one of 'auto', 'candidates', 'grid_candidates',
+            'detections', 'queries')
+        boxes: The four values of a box. (default 'auto'; one of 'auto', 'xyxy', 'cxcywh', 'xywh', 'yxyx')
+        unit: Unit of boxes. (default 'auto'; one of 'auto', 'pixels', 'fractions')
+        scores: What the class scores are. (default 'auto'; one of 'auto', 'probabilities', 'sigmoid', 'softmax')
+        objectness: Whether rows of candidates have an objectness. (default 'auto'; one of 'auto', 'present',
+            'absent')
+        row_order: Order of the values of a detection in one output. (default 'auto'; one of 'auto',
+            'box_score_class', 'class_score_box', 'batch_box_class_score', 'batch_box_score_class')
+        angle: Whether the boxes are rotated; the segment of a rotated box is its polygon. (default 'auto'; one of
+            'auto', 'absent', 'last')
+        masks: Whether the detections have masks. (default 'auto'; one of 'auto', 'absent', 'prototypes')
+        first_class: Class index of the network that is the first of the class names; recognised from the network
+            if absent. (default None; 0 to 1000)
+        resize: How an image becomes the network's input. (default 'auto'; one of 'auto', 'letterbox', 'top_left',
+            'top_left_truncated', 'stretch')
+        padding: Level of the padding of a letterbox; recognised from the network if absent. (default None; 0 to
+            255)
+        colour: Order of the colour channels of the network's input. (default 'auto'; one of 'auto', 'rgb', 'bgr')
+        levels: Range of the samples of the network's input. (default 'auto'; one of 'auto', '0_255', '0_1',
+            '-1_1', 'imagenet')
+        size: Side of the network's input, for models of dynamic size; if absent that of its convention, 640 for
+            most. (default None; 32 to 4096 px)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+    """
+
+    iou_threshold: float
+    max_detections: int
+    multi_label: bool
+    suppression: Literal['hard', 'soft', 'fast', 'cluster']
+    layout: Literal['auto', 'candidates', 'grid_candidates', 'detections', 'queries']
+    boxes: Literal['auto', 'xyxy', 'cxcywh', 'xywh', 'yxyx']
+    unit: Literal['auto', 'pixels', 'fractions']
+    scores: Literal['auto', 'probabilities', 'sigmoid', 'softmax']
+    objectness: Literal['auto', 'present', 'absent']
+    row_order: Literal['auto', 'box_score_class', 'class_score_box', 'batch_box_class_score', 'batch_box_score_class']
+    angle: Literal['auto', 'absent', 'last']
+    masks: Literal['auto', 'absent', 'prototypes']
+    first_class: Optional[int]
+    resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch']
+    padding: Optional[int]
+    colour: Literal['auto', 'rgb', 'bgr']
+    levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet']
+    size: Optional[int]
+    def __init__(self, model_config_path: Any = ..., iters: int = ..., lr: float = ..., batch_size: int = ..., optimizer: str = ..., backbone: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., num_classes: Any = ..., panoptic_segmentation: Any = ..., *, lr_schedule: str = ..., network_head: str = ..., scale: float = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ..., layout: Literal['auto', 'candidates', 'grid_candidates', 'detections', 'queries'] = ..., boxes: Literal['auto', 'xyxy', 'cxcywh', 'xywh', 'yxyx'] = ..., unit: Literal['auto', 'pixels', 'fractions'] = ..., scores: Literal['auto', 'probabilities', 'sigmoid', 'softmax'] = ..., objectness: Literal['auto', 'present', 'absent'] = ..., row_order: Literal['auto', 'box_score_class', 'class_score_box', 'batch_box_class_score', 'batch_box_score_class'] = ..., angle: Literal['auto', 'absent', 'last'] = ..., masks: Literal['auto', 'absent', 'prototypes'] = ..., first_class: Optional[int] = ..., resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch'] = ..., padding: Optional[int] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet'] = ..., size: Optional[int] = ...) -> None: ...
+    @overload
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> BoundingBoxList: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ..., threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> list[BoundingBoxList]: ...
+    @overload
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ..., threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> Iterator[BoundingBoxList]: ...
+    def eval(self, dataset: Dataset, images_folder: Optional[str] = ..., annotations_folder: Any = ..., annotations_file: Any = ..., verbose: bool = ..., *, metric: Optional[str] = ..., split: Optional[str] = ..., limit: Optional[int] = ..., out: Optional[PathLike] = ..., skip_broken: bool = ..., classes: Optional[Mapping[str, str]] = ..., by_number: bool = ..., resamples: int = ..., **metric_params: Any) -> dict[str, Any]: ...
+    def optimize(self, do_constant_folding: Any = ..., *, target_device: str = ..., out: Optional[PathLike] = ..., precision: str = ..., calibration: Union[None, Dataset] = ..., validation: Union[None, Dataset] = ..., verbose: bool = ..., **options: Any) -> dict[str, Any]: ...
+    def download(self, *args: Any, **kwargs: Any) -> NoReturn: ...
+
+class YOLOv3DetectorLearner(YoloV3):
+    """Runs your own detector, exported to ONNX by another tool; recognises the layout of its outputs.
+
+    Task: object_detection_2d. ``infer`` takes:
+
+        image: Image.
+
+    and returns: BoundingBoxList.
+
+    Args:
+        threshold: Score below which detections are dropped. (default 0.25; 0 to 1; live: may change while
+            running, and for one call of infer)
+        iou_threshold: IoU above which candidates of one class count as one object; detections and queries are not
+            suppressed. (default 0.65; 0 to 1; live: may change while running, and for one call of infer)
+        max_detections: Maximum number of boxes per image. (default 300; 1 to 1000; live: may change while
+            running, and for one call of infer)
+        multi_label: Whether a candidate may be a detection of several classes, or of that with the highest score
+            only. (default False; live: may change while running, and for one call of infer)
+        suppression: Method of non-maximum suppression of upright candidates; rotated ones have Fast NMS by the
+            probabilistic IoU. (default 'hard'; one of 'hard', 'soft', 'fast', 'cluster'; live: may change while
+            running, and for one call of infer)
+        layout: What the rows of the outputs are. (default 'auto'; one of 'auto', 'candidates', 'grid_candidates',
+            'detections', 'queries')
+        boxes: The four values of a box. (default 'auto'; one of 'auto', 'xyxy', 'cxcywh', 'xywh', 'yxyx')
+        unit: Unit of boxes. (default 'auto'; one of 'auto', 'pixels', 'fractions')
+        scores: What the class scores are. (default 'auto'; one of 'auto', 'probabilities', 'sigmoid', 'softmax')
+        objectness: Whether rows of candidates have an objectness. (default 'auto'; one of 'auto', 'present',
+            'absent')
+        row_order: Order of the values of a detection in one output. (default 'auto'; one of 'auto',
+            'box_score_class', 'class_score_box', 'batch_box_class_score', 'batch_box_score_class')
+        angle: Whether the boxes are rotated; the segment of a rotated box is its polygon. (default 'auto'; one of
+            'auto', 'absent', 'last')
+        masks: Whether the detections have masks. (default 'auto'; one of 'auto', 'absent', 'prototypes')
+        first_class: Class index of the network that is the first of the class names; recognised from the network
+            if absent. (default None; 0 to 1000)
+        resize: How an image becomes the network's input. (default 'auto'; one of 'auto', 'letterbox', 'top_left',
+            'top_left_truncated', 'stretch')
+        padding: Level of the padding of a letterbox; recognised from the network if absent. (default None; 0 to
+            255)
+        colour: Order of the colour channels of the network's input. (default 'auto'; one of 'auto', 'rgb', 'bgr')
+        levels: Range of the samples of the network's input. (default 'auto'; one of 'auto', '0_255', '0_1',
+            '-1_1', 'imagenet')
+        size: Side of the network's input, for models of dynamic size; if absent that of its convention, 640 for
+            most. (default None; 32 to 4096 px)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+    """
+
+    iou_threshold: float
+    max_detections: int
+    multi_label: bool
+    suppression: Literal['hard', 'soft', 'fast', 'cluster']
+    layout: Literal['auto', 'candidates', 'grid_candidates', 'detections', 'queries']
+    boxes: Literal['auto', 'xyxy', 'cxcywh', 'xywh', 'yxyx']
+    unit: Literal['auto', 'pixels', 'fractions']
+    scores: Literal['auto', 'probabilities', 'sigmoid', 'softmax']
+    objectness: Literal['auto', 'present', 'absent']
+    row_order: Literal['auto', 'box_score_class', 'class_score_box', 'batch_box_class_score', 'batch_box_score_class']
+    angle: Literal['auto', 'absent', 'last']
+    masks: Literal['auto', 'absent', 'prototypes']
+    first_class: Optional[int]
+    resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch']
+    padding: Optional[int]
+    colour: Literal['auto', 'rgb', 'bgr']
+    levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet']
+    size: Optional[int]
+    def __init__(self, lr: float = ..., epochs: Any = ..., batch_size: int = ..., device: str = ..., backbone: str = ..., img_size: Any = ..., lr_schedule: str = ..., temp_path: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., val_after: Any = ..., log_after: Any = ..., num_workers: Any = ..., weight_decay: Any = ..., momentum: Any = ..., mixup: Any = ..., no_mixup_epochs: Any = ..., label_smoothing: Any = ..., random_shape: Any = ..., warmup_epochs: Any = ..., lr_decay_period: Any = ..., lr_decay_epoch: Any = ..., lr_decay: Any = ..., *, iters: int = ..., optimizer: str = ..., network_head: str = ..., threshold: float = ..., scale: float = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ..., layout: Literal['auto', 'candidates', 'grid_candidates', 'detections', 'queries'] = ..., boxes: Literal['auto', 'xyxy', 'cxcywh', 'xywh', 'yxyx'] = ..., unit: Literal['auto', 'pixels', 'fractions'] = ..., scores: Literal['auto', 'probabilities', 'sigmoid', 'softmax'] = ..., objectness: Literal['auto', 'present', 'absent'] = ..., row_order: Literal['auto', 'box_score_class', 'class_score_box', 'batch_box_class_score', 'batch_box_score_class'] = ..., angle: Literal['auto', 'absent', 'last'] = ..., masks: Literal['auto', 'absent', 'prototypes'] = ..., first_class: Optional[int] = ..., resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch'] = ..., padding: Optional[int] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet'] = ..., size: Optional[int] = ...) -> None: ...
+    @overload
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], threshold: float = ..., keep_size: Any = ..., *, iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> BoundingBoxList: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], threshold: float = ..., keep_size: Any = ..., *, progress: bool = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> list[BoundingBoxList]: ...
+    @overload
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], threshold: float = ..., keep_size: Any = ..., *, progress: bool = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> Iterator[BoundingBoxList]: ...
+    def eval(self, dataset: Dataset, use_subset: Any = ..., subset_size: Any = ..., verbose: bool = ..., *, metric: Optional[str] = ..., split: Optional[str] = ..., limit: Optional[int] = ..., out: Optional[PathLike] = ..., skip_broken: bool = ..., classes: Optional[Mapping[str, str]] = ..., by_number: bool = ..., resamples: int = ..., **metric_params: Any) -> dict[str, Any]: ...
+    def download(self, *args: Any, **kwargs: Any) -> NoReturn: ...
+
+class YOLOv5DetectorLearner(OwnNetwork):
+    """Runs your own detector, exported to ONNX by another tool; recognises the layout of its outputs.
+
+    Task: object_detection_2d. ``infer`` takes:
+
+        image: Image.
+
+    and returns: BoundingBoxList.
+
+    Args:
+        threshold: Score below which detections are dropped. (default 0.25; 0 to 1; live: may change while
+            running, and for one call of infer)
+        iou_threshold: IoU above which candidates of one class count as one object; detections and queries are not
+            suppressed. (default 0.65; 0 to 1; live: may change while running, and for one call of infer)
+        max_detections: Maximum number of boxes per image. (default 300; 1 to 1000; live: may change while
+            running, and for one call of infer)
+        multi_label: Whether a candidate may be a detection of several classes, or of that with the highest score
+            only. (default False; live: may change while running, and for one call of infer)
+        suppression: Method of non-maximum suppression of upright candidates; rotated ones have Fast NMS by the
+            probabilistic IoU. (default 'hard'; one of 'hard', 'soft', 'fast', 'cluster'; live: may change while
+            running, and for one call of infer)
+        layout: What the rows of the outputs are. (default 'auto'; one of 'auto', 'candidates', 'grid_candidates',
+            'detections', 'queries')
+        boxes: The four values of a box. (default 'auto'; one of 'auto', 'xyxy', 'cxcywh', 'xywh', 'yxyx')
+        unit: Unit of boxes. (default 'auto'; one of 'auto', 'pixels', 'fractions')
+        scores: What the class scores are. (default 'auto'; one of 'auto', 'probabilities', 'sigmoid', 'softmax')
+        objectness: Whether rows of candidates have an objectness. (default 'auto'; one of 'auto', 'present',
+            'absent')
+        row_order: Order of the values of a detection in one output. (default 'auto'; one of 'auto',
+            'box_score_class', 'class_score_box', 'batch_box_class_score', 'batch_box_score_class')
+        angle: Whether the boxes are rotated; the segment of a rotated box is its polygon. (default 'auto'; one of
+            'auto', 'absent', 'last')
+        masks: Whether the detections have masks. (default 'auto'; one of 'auto', 'absent', 'prototypes')
+        first_class: Class index of the network that is the first of the class names; recognised from the network
+            if absent. (default None; 0 to 1000)
+        resize: How an image becomes the network's input. (default 'auto'; one of 'auto', 'letterbox', 'top_left',
+            'top_left_truncated', 'stretch')
+        padding: Level of the padding of a letterbox; recognised from the network if absent. (default None; 0 to
+            255)
+        colour: Order of the colour channels of the network's input. (default 'auto'; one of 'auto', 'rgb', 'bgr')
+        levels: Range of the samples of the network's input. (default 'auto'; one of 'auto', '0_255', '0_1',
+            '-1_1', 'imagenet')
+        size: Side of the network's input, for models of dynamic size; if absent that of its convention, 640 for
+            most. (default None; 32 to 4096 px)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+    """
+
+    iou_threshold: float
+    max_detections: int
+    multi_label: bool
+    suppression: Literal['hard', 'soft', 'fast', 'cluster']
+    layout: Literal['auto', 'candidates', 'grid_candidates', 'detections', 'queries']
+    boxes: Literal['auto', 'xyxy', 'cxcywh', 'xywh', 'yxyx']
+    unit: Literal['auto', 'pixels', 'fractions']
+    scores: Literal['auto', 'probabilities', 'sigmoid', 'softmax']
+    objectness: Literal['auto', 'present', 'absent']
+    row_order: Literal['auto', 'box_score_class', 'class_score_box', 'batch_box_class_score', 'batch_box_score_class']
+    angle: Literal['auto', 'absent', 'last']
+    masks: Literal['auto', 'absent', 'prototypes']
+    first_class: Optional[int]
+    resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch']
+    padding: Optional[int]
+    colour: Literal['auto', 'rgb', 'bgr']
+    levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet']
+    size: Optional[int]
+    def __init__(self, model_name: Any = ..., path: Any = ..., device: str = ..., temp_path: str = ..., force_reload: Any = ..., *, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., threshold: float = ..., scale: float = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ..., layout: Literal['auto', 'candidates', 'grid_candidates', 'detections', 'queries'] = ..., boxes: Literal['auto', 'xyxy', 'cxcywh', 'xywh', 'yxyx'] = ..., unit: Literal['auto', 'pixels', 'fractions'] = ..., scores: Literal['auto', 'probabilities', 'sigmoid', 'softmax'] = ..., objectness: Literal['auto', 'present', 'absent'] = ..., row_order: Literal['auto', 'box_score_class', 'class_score_box', 'batch_box_class_score', 'batch_box_score_class'] = ..., angle: Literal['auto', 'absent', 'last'] = ..., masks: Literal['auto', 'absent', 'prototypes'] = ..., first_class: Optional[int] = ..., resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch'] = ..., padding: Optional[int] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet'] = ..., size: Optional[int] = ...) -> None: ...
+    @overload
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], size: Any = ..., *, threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> BoundingBoxList: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], size: Any = ..., *, progress: bool = ..., threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> list[BoundingBoxList]: ...
+    @overload
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], size: Any = ..., *, progress: bool = ..., threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> Iterator[BoundingBoxList]: ...
+    def download(self, *args: Any, **kwargs: Any) -> NoReturn: ...
+
 class Dataset_NMS:
     """Not available yet: give fit of Seq2SeqNMSLearner an ExternalDataset, and `detector` for the boxes."""
 
@@ -702,11 +928,6 @@ class Dataset_NMS:
 
 class Detectron2Learner:
     """Not available yet: use ImportedDetectorLearner with an ONNX export of your model, or CenterNetDetectorLearner."""
-
-    def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...
-
-class DetrLearner:
-    """Not available yet: use ImportedDetectorLearner with an ONNX export of DETR, or CenterNetDetectorLearner."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...
 
@@ -722,15 +943,5 @@ class ImageToNDArrayTransform:
 
 class RetinaFaceLearner:
     """Not available yet: use YunetLearner of face_detection, its variant `masked` for faces in masks."""
-
-    def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...
-
-class YOLOv3DetectorLearner:
-    """Not available yet: use ImportedDetectorLearner with an ONNX export of YOLOv3, or YoloxLearner."""
-
-    def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...
-
-class YOLOv5DetectorLearner:
-    """Not available yet: use ImportedDetectorLearner with an ONNX export of YOLOv5, or YoloxLearner."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from opendr._upstream.rows import HERE, Absent, Home, Learner
+from opendr._upstream.rows import HERE, Absent, Home, Learner, Runs
 
 _NMS = "opendr._upstream.suppression"
 _DATASETS = "opendr._upstream.detection_datasets"
 _TRANSFORMS = "opendr._upstream.detection_transforms"
 _DRAWING = "opendr._upstream.drawing"
+_DETECTOR = Runs("opendr.perception.object_detection_2d:ImportedDetectorLearner")
 
 MODULES: dict[str, dict[str, Home]] = {
     "": {"draw_bounding_boxes": _DRAWING},
@@ -36,7 +37,7 @@ MODULES: dict[str, dict[str, Home]] = {
     "detectron2.detectron2_learner": {
         "Detectron2Learner": Absent("use ImportedDetectorLearner with an ONNX export of your model, or CenterNetDetectorLearner")
     },
-    "detr.detr_learner": {"DetrLearner": Absent("use ImportedDetectorLearner with an ONNX export of DETR, or CenterNetDetectorLearner")},
+    "detr.detr_learner": {"DetrLearner": _DETECTOR},
     "gem.algorithm.util.draw": {"draw": _DRAWING},
     "gem.gem_learner": {"GemLearner": HERE},
     "nanodet.nanodet_learner": {"NanodetLearner": HERE},
@@ -58,15 +59,13 @@ MODULES: dict[str, dict[str, Home]] = {
     "ssd.ssd_learner": {"SingleShotDetectorLearner": HERE},
     "utils.class_filter_wrapper": {"FilteredLearnerWrapper": "opendr._upstream.filtering"},
     "utils.vis_utils": {"draw_bounding_boxes": _DRAWING, "draw_detections": _DRAWING},
-    "yolov3.yolov3_learner": {
-        "YOLOv3DetectorLearner": Absent("use ImportedDetectorLearner with an ONNX export of YOLOv3, or YoloxLearner")
-    },
-    "yolov5.yolov5_learner": {
-        "YOLOv5DetectorLearner": Absent("use ImportedDetectorLearner with an ONNX export of YOLOv5, or YoloxLearner")
-    },
+    "yolov3.yolov3_learner": {"YOLOv3DetectorLearner": _DETECTOR},
+    "yolov5.yolov5_learner": {"YOLOv5DetectorLearner": _DETECTOR},
 }
 
 _SUBSET = "dataset use_subset subset_size verbose"
+_OWN = "opendr._upstream.learners.own_networks"
+_NO_WEIGHTS = {"download": "export your network to ONNX and give load the file; YoloxLearner and NanodetLearner have weights"}
 
 LEARNERS = {
     "SingleShotDetectorLearner": Learner(
@@ -113,6 +112,37 @@ LEARNERS = {
             '`optimize` quantises the model (`calibration=`) or converts it to FP16 (`precision="fp16"`); there is no TorchScript',
             "boxes are in descending order of confidence",
         ),
+    ),
+    "YOLOv3DetectorLearner": Learner(
+        init="lr epochs!training batch_size device backbone img_size>size lr_schedule temp_path checkpoint_after_iter"
+        " checkpoint_load_iter val_after!training log_after!training num_workers!training weight_decay!training"
+        " momentum!training mixup!training no_mixup_epochs!training label_smoothing!training random_shape!training"
+        " warmup_epochs!training lr_decay_period!training lr_decay_epoch!training lr_decay!training",
+        infer="img>image threshold keep_size!size",
+        eval=_SUBSET,
+        mixin=f"{_OWN}:YoloV3",
+        methods=_NO_WEIGHTS,
+        demos="–",
+        differs=("it runs your network, `load(\"yolov3.onnx\")`; there are no weights, and it cannot be trained",),
+    ),
+    "YOLOv5DetectorLearner": Learner(
+        init="model_name!file path device temp_path force_reload!file",
+        infer="img>image size!size",
+        mixin=f"{_OWN}:OwnNetwork",
+        methods=_NO_WEIGHTS,
+        demos="–",
+        differs=("`path` is your network, exported to ONNX; no weights are downloaded by `model_name`",),
+    ),
+    "DetrLearner": Learner(
+        init="model_config_path!file iters lr batch_size optimizer backbone checkpoint_after_iter checkpoint_load_iter"
+        " temp_path device threshold num_classes!file panoptic_segmentation!file",
+        infer="image",
+        eval="dataset images_folder>split annotations_folder!part annotations_file!part verbose",
+        optimize="do_constant_folding!onnx",
+        mixin=f"{_OWN}:Detr",
+        methods=_NO_WEIGHTS,
+        demos="–",
+        differs=("it runs your network, `load(\"detr.onnx\")`; there are no weights, and it cannot be trained",),
     ),
     "GemLearner": Learner(
         init="model_config_path dataset_config_path iters lr batch_size optimizer backbone checkpoint_after_iter"
