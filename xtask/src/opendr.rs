@@ -190,26 +190,26 @@ fn link(learner: &Learner) -> String {
 
 impl Name {
     fn parse([package, name, learner, instead]: [&str; 4], learners: &[Learner]) -> Result<Self> {
-        let here =
-            match (learner, instead) {
-                (NOTHING, NOTHING) => Here::Same,
-                (learner, NOTHING) => {
-                    let place = learners.iter().position(|one| one.name == learner);
-                    Here::Learner(place.ok_or_else(|| {
-                        format!("{name} names {learner:?}, which {LEARNERS} does not have")
-                    })?)
+        let here = match (learner, instead) {
+            (NOTHING, NOTHING) => Here::Same,
+            (learner, NOTHING) => {
+                let place = learners.iter().position(|one| one.name == learner);
+                Here::Learner(
+                    place
+                        .ok_or_else(|| format!("{name} names {learner:?}, which {LEARNERS} does not have"))?,
+                )
+            }
+            (NOTHING, instead) => {
+                let is_known = |class: &&str| learners.iter().any(|learner| learner.class == *class);
+                if let Some(unknown) = classes(instead).find(|class| !is_known(class)) {
+                    return Err(format!(
+                        "the replacement of {name} names {unknown}, which {LEARNERS} does not have"
+                    ));
                 }
-                (NOTHING, instead) => {
-                    let is_known = |class: &&str| learners.iter().any(|learner| learner.class == *class);
-                    if let Some(unknown) = classes(instead).find(|class| !is_known(class)) {
-                        return Err(format!(
-                            "the replacement of {name} names {unknown}, which {LEARNERS} does not have"
-                        ));
-                    }
-                    Here::Instead(instead.to_owned())
-                }
-                _ => return Err(format!("{name} has a learner and a replacement; leave one out")),
-            };
+                Here::Instead(instead.to_owned())
+            }
+            _ => return Err(format!("{name} has a learner and a replacement; leave one out")),
+        };
         Ok(Self { package: package.to_owned(), name: name.to_owned(), here })
     }
 

@@ -1,7 +1,9 @@
 //! Execution of other programs.
 
+use std::io;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
+use std::sync::OnceLock;
 use std::time::Instant;
 
 /// A result whose error is a message for the terminal.
@@ -28,7 +30,10 @@ pub fn command(program: impl AsRef<std::ffi::OsStr>) -> Command {
 
 /// Returns the command of another task of this program.
 pub fn task(name: &str) -> Result<Command> {
-    let program = std::env::current_exe().map_err(|error| format!("path of this program: {error}"))?;
+    // A build replaces the file of this program, which then has another path for the system.
+    static PROGRAM: OnceLock<io::Result<PathBuf>> = OnceLock::new();
+    let program = PROGRAM.get_or_init(std::env::current_exe);
+    let program = program.as_ref().map_err(|error| format!("path of this program: {error}"))?;
     let mut task = command(program);
     task.arg(name);
     Ok(task)

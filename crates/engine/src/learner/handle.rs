@@ -158,7 +158,8 @@ impl<L: Learner> Handle<L> {
     /// As [`Learner::metric_params`]; none before `load`.
     pub fn metric_params(&self) -> ParamMap {
         let ready = self.ready.as_ref();
-        let learner = ready.map(|ready| ready.stream.learner().read().unwrap_or_else(PoisonError::into_inner));
+        let learner =
+            ready.map(|ready| ready.stream.learner().read().unwrap_or_else(PoisonError::into_inner));
         learner.map(|learner| learner.metric_params()).unwrap_or_default()
     }
 

@@ -40,7 +40,8 @@ fn noise(seed: u64) -> Timeseries {
 
 /// Returns the number of allocations of a bare run of the network for `features`, `tokens` and `layers`.
 fn allocations_of_run(model: &Path, [features, tokens, layers]: [usize; 3]) -> usize {
-    let session = Session::open(&Model::open(model).unwrap().file("model.onnx").unwrap(), Device::Cpu).unwrap();
+    let session =
+        Session::open(&Model::open(model).unwrap().file("model.onnx").unwrap(), Device::Cpu).unwrap();
     let kept = features * if layers > 1 { 4 } else { 2 };
     let (vector, memory) = (vec![0.0; features], vec![0.0; (tokens - 1) * kept]);
     let inputs = [
