@@ -44,7 +44,7 @@ impl<'g> Constants<'g> {
                     let value = attribute(node, "value").and_then(|value| value.t.as_ref());
                     known.tensors.extend(value.map(|tensor| (output.as_str(), tensor)));
                 }
-                "Identity" | "DequantizeLinear" => {
+                "Identity" | "DequantizeLinear" | "Cast" => {
                     known.makers.insert(output, node);
                 }
                 _ => {}
@@ -77,12 +77,18 @@ impl<'g> Constants<'g> {
         element_count(&shape_of(self.chain(name)?.1)?)
     }
 
-    /// Returns the tensor `name`, if it is constant and numeric.
+    /// Returns the tensor `name`, if it is constant and numeric. A tensor that is stored in half precision has the name of the
+    /// tensor that it is cast to.
     ///
     /// # Errors
     /// `Format` for inconsistent data.
-    pub fn get(&self, name: &str) -> Result<Option<Constant>> {
-        let Some((name, tensor, nodes)) = self.chain(name) else { return Ok(None) };
+    pub fn get(&self, requested: &str) -> Result<Option<Constant>> {
+        let Some((stored, tensor, nodes)) = self.chain(requested) else { return Ok(None) };
+        let cast = nodes.iter().find(|node| node.op_type == "Cast");
+        if cast.is_some_and(|node| !is_to_float(node)) {
+            return Ok(None);
+        }
+        let name = if cast.is_some() { requested } else { stored };
         let damaged =
             || Error::format(format!("ONNX: the weight {name:.80?} is damaged; download the file again"));
         let shape = shape_of(tensor).ok_or_else(damaged)?;
@@ -127,6 +133,12 @@ impl<'g> Constants<'g> {
         };
         Some(numbers.iter().enumerate().map(number).collect())
     }
+}
+
+/// Returns whether a cast returns floats.
+fn is_to_float(cast: &NodeProto) -> bool {
+    let kind = attribute(cast, "to").and_then(|to| DataType::try_from(i32::try_from(to.i).ok()?).ok());
+    matches!(kind, Some(DataType::Float | DataType::Double | DataType::Float16 | DataType::Bfloat16))
 }
 
 fn shape_of(tensor: &TensorProto) -> Option<Vec<usize>> {

@@ -77,6 +77,32 @@ fn integers_are_dequantised() {
 }
 
 #[test]
+fn half_precision_has_the_names_of_the_tensors_it_is_cast_to() {
+    let graph = |to: DataType| GraphProto {
+        initializer: vec![
+            tensor(
+                "k.weight/half",
+                DataType::Float16,
+                &[1, 1, 1, 2],
+                [0x3800_u16, 0xc000].map(u16::to_le_bytes).concat(),
+            ),
+            tensor("k.bias/half", DataType::Float16, &[1], 0x4200_u16.to_le_bytes().to_vec()),
+        ],
+        node: vec![
+            int(node("Cast", &["k.weight/half"], "k.weight"), "to", to as i64),
+            int(node("Cast", &["k.bias/half"], "k.bias"), "to", to as i64),
+            node("Conv", &["x", "k.weight", "k.bias"], "y"),
+        ],
+        ..GraphProto::default()
+    };
+    let bytes = |to| bytes_from_model(&model_from_graph(graph(to)));
+    let table = WeightTable::from_bytes(&bytes(DataType::Float)).unwrap();
+    let weights: Vec<_> = table.weights().iter().map(|weight| (weight.name(), weight.values())).collect();
+    assert_eq!(weights, [("k.weight", &[0.5, -2.0][..]), ("k.bias", &[3.0][..])]);
+    assert_eq!(WeightTable::from_bytes(&bytes(DataType::Int32)).unwrap_err().kind(), ErrorKind::Format);
+}
+
+#[test]
 fn cyclic_graphs_and_external_files_are_refused() {
     let mut looped = GraphProto {
         node: vec![
