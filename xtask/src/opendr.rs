@@ -190,26 +190,28 @@ fn link(learner: &Learner) -> String {
 
 impl Name {
     fn parse([package, name, learner, instead]: [&str; 4], learners: &[Learner]) -> Result<Self> {
-        let here = match (learner, instead) {
-            (NOTHING, NOTHING) => Here::Same,
-            (learner, NOTHING) => {
-                let place = learners.iter().position(|one| one.name == learner);
-                Here::Learner(
-                    place
-                        .ok_or_else(|| format!("{name} names {learner:?}, which {LEARNERS} does not have"))?,
-                )
-            }
-            (NOTHING, instead) => {
-                let is_known = |class: &&str| learners.iter().any(|learner| learner.class == *class);
-                if let Some(unknown) = classes(instead).find(|class| !is_known(class)) {
-                    return Err(format!(
-                        "the replacement of {name} names {unknown}, which {LEARNERS} does not have"
-                    ));
+        let here =
+            match (learner, instead) {
+                (NOTHING, NOTHING) => Here::Same,
+                (learner, NOTHING) => {
+                    // Networks of a class of OpenDR are run by a learner with another class.
+                    let is_of = |one: &Learner| one.class == name || one.takes_networks;
+                    let place = learners.iter().position(|one| one.name == learner && is_of(one));
+                    Here::Learner(place.ok_or_else(|| {
+                        format!("{name} is no class of a learner {learner:?} of {LEARNERS}")
+                    })?)
                 }
-                Here::Instead(instead.to_owned())
-            }
-            _ => return Err(format!("{name} has a learner and a replacement; leave one out")),
-        };
+                (NOTHING, instead) => {
+                    let is_known = |class: &&str| learners.iter().any(|learner| learner.class == *class);
+                    if let Some(unknown) = classes(instead).find(|class| !is_known(class)) {
+                        return Err(format!(
+                            "the replacement of {name} names {unknown}, which {LEARNERS} does not have"
+                        ));
+                    }
+                    Here::Instead(instead.to_owned())
+                }
+                _ => return Err(format!("{name} has a learner and a replacement; leave one out")),
+            };
         Ok(Self { package: package.to_owned(), name: name.to_owned(), here })
     }
 
@@ -308,10 +310,10 @@ mod tests {
         for name in &opendr.names {
             match &name.here {
                 Here::Learner(place) => {
-                    let learner = &opendr.learners[*place].name;
+                    let Learner { name: learner, class, .. } = &opendr.learners[*place];
                     let row = row(&page, &name.name);
                     assert!(row.contains(&format!("[`{learner}`](learners.md#")), "{row}");
-                    assert!(registry.contains(&format!("\n### {}: `{learner}`\n", name.name)), "{row}");
+                    assert!(registry.contains(&format!("\n### {class}: `{learner}`\n")), "{row}");
                 }
                 Here::Instead(instead) if name.is_learner() => {
                     assert!(row(&page, &name.name).contains(instead), "{}", name.name);
