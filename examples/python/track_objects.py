@@ -1,4 +1,4 @@
-"""Tracks persons over the frames of a folder, with a detector and a tracker in sequence. Input: frames/*.jpg, of a camera."""
+"""Tracks objects over the frames of a folder, with a detector and a tracker in sequence. Input: frames/*.jpg, of a camera."""
 
 import opendr
 

@@ -33,8 +33,8 @@ pub const EXAMPLES: [&str; 22] = [
     "tflite_to_onnx",
 ];
 
-/// Returns the arguments of `cargo build` for the command, the C library and [`EXAMPLES`], with the test learner. Packages and features
-/// are those of the tests, so that nothing is compiled twice; only the wheel's module is compiled again, for Python.
+/// Returns the arguments of `cargo build` for the command, the C library, `examples/rust` and [`EXAMPLES`], with the test learner. Packages
+/// and features are those of the tests, so that nothing is compiled twice; only the wheel's module is compiled again, for Python.
 pub fn arguments() -> Vec<&'static str> {
     let words = ["build", "--workspace", "--lib", "--bins", TEST_LEARNER];
     words.into_iter().chain(EXAMPLES.into_iter().flat_map(|name| ["--example", name])).collect()
@@ -57,7 +57,8 @@ pub fn opendr() -> PathBuf {
 
 /// Returns the built programs that exist, for their hashes.
 pub fn programs() -> impl Iterator<Item = PathBuf> {
-    let library = ["debug/libopendr_c.so", "debug/libopendr_c.a"].map(|name| target().join(name));
+    let others = ["libopendr_c.so", "libopendr_c.a", "opendr-examples"];
+    let others = others.map(|name| target().join("debug").join(name));
     let examples = EXAMPLES.iter().map(|name| example(name));
-    std::iter::once(opendr()).chain(library).chain(examples).filter(|path| path.is_file())
+    std::iter::once(opendr()).chain(others).chain(examples).filter(|path| path.is_file())
 }

@@ -1,9 +1,10 @@
 //! `cargo xtask site`: builds the documentation site.
 //!
 //! The pages of the repository stay where they are, and their links work on a forge too. This task copies them beside `mkdocs.yml`
-//! ([`page`]), writes a page for each learner of the registry ([`learners`]) with its predictions on photographs ([`predictions`]), and
-//! runs MkDocs, which fails on broken links, missing anchors and pages outside of the navigation.
+//! ([`page`]), writes a page for each learner of the registry ([`learners`]) with its predictions on photographs ([`predictions`]) and one of
+//! the examples ([`examples`]), and runs MkDocs, which fails on broken links, missing anchors and pages outside of the navigation.
 
+mod examples;
 mod learners;
 mod page;
 mod predictions;
@@ -17,6 +18,7 @@ use std::process::Command;
 use crate::inputs;
 use crate::shell::{Result, command, is_installed, root, step, target};
 use crate::tools::{Python, requirements};
+use examples::{Drawings, Examples};
 use learners::Learners;
 use predictions::Predictions;
 
@@ -43,13 +45,19 @@ pub fn run(show: Show) -> Result<()> {
     let python = Python::install(&requirements("site-venv", &["xtask/site/requirements.txt"]))?;
     let source = target().join("site-source");
     let learners = Learners::read()?;
-    let predictions = match show {
-        Show::Everything => Predictions::make(&python, &learners.of_images())?,
-        Show::Pages => Predictions::default(),
+    let (predictions, drawings) = match show {
+        Show::Everything => {
+            let program = predictions::program()?;
+            let photographs = predictions::photographs(&python)?;
+            let predictions = Predictions::make(&program, &photographs, &learners.of_images())?;
+            (predictions, Drawings::make(&program, &photographs)?)
+        }
+        Show::Pages => Default::default(),
     };
-    let pages = pages(&learners, &predictions)?;
+    let pages = pages(&learners, &predictions, &drawings)?;
     write(&source, &pages)?;
     predictions.copy(&source.join("docs").join(learners::FOLDER))?;
+    drawings.copy(&source.join("docs"))?;
     add_mermaid(&source.join("docs/assets"))?;
     let site = target().join("site");
     step("site", &mut mkdocs(&python.program(), &source, &site))?;
@@ -75,6 +83,7 @@ pub fn is_input(file: &str) -> bool {
         || file.starts_with("xtask/")
         // Pages link to sources.
         || file.ends_with(".rs") && file.contains("/examples/")
+        || file.starts_with("examples/")
 }
 
 /// The files of the site.
@@ -86,9 +95,11 @@ struct Pages {
     files: BTreeSet<String>,
 }
 
-/// Returns the pages of the repository and of the learners.
-fn pages(learners: &Learners, predictions: &Predictions) -> Result<Pages> {
+/// Returns the pages of the repository, of the learners and of the examples.
+fn pages(learners: &Learners, predictions: &Predictions, drawings: &Drawings) -> Result<Pages> {
     let mut texts = learners.pages(predictions);
+    let examples = Examples::read()?;
+    texts.insert(examples::PAGE.to_owned(), examples.page(drawings, page::place));
     let config = inputs::text("mkdocs.yml")?;
     let (before, after) =
         config.split_once(LEARNERS).ok_or_else(|| format!("mkdocs.yml: write the line {LEARNERS:?}"))?;
@@ -97,7 +108,7 @@ fn pages(learners: &Learners, predictions: &Predictions) -> Result<Pages> {
     let of_docs =
         inputs::files()?.into_iter().filter(|file| file.starts_with("docs/") && file.ends_with(".md"));
     let mut waiting: Vec<String> = of_docs.chain(PAGES.map(str::to_owned)).collect();
-    let mut files = BTreeSet::new();
+    let mut files: BTreeSet<String> = examples.images().collect();
     while let Some(file) = waiting.pop() {
         let place = page::place(&file);
         if !file.ends_with(".md") {
@@ -161,7 +172,7 @@ mod tests {
 
     #[test]
     fn every_learner_of_the_registry_has_a_page_in_the_navigation() {
-        let pages = pages(&Learners::read().unwrap(), &Predictions::default()).unwrap();
+        let pages = pages(&Learners::read().unwrap(), &Predictions::default(), &Drawings::default()).unwrap();
         let registry = inputs::text("xtask/learners.tsv").unwrap();
         let names: Vec<_> = registry
             .lines()
@@ -220,7 +231,7 @@ mod tests {
 
     #[test]
     fn every_page_of_the_documentation_is_on_the_site() {
-        let pages = pages(&Learners::read().unwrap(), &Predictions::default()).unwrap();
+        let pages = pages(&Learners::read().unwrap(), &Predictions::default(), &Drawings::default()).unwrap();
         for file in
             inputs::files().unwrap().iter().filter(|file| file.starts_with("docs/") && file.ends_with(".md"))
         {

@@ -35,18 +35,10 @@ pub enum Prediction {
 }
 
 impl Predictions {
-    /// Runs each learner on the photographs with the program `OPENDR_BIN`, else with that of the build folder. Predictions of an unchanged
-    /// program and unchanged photographs are kept. Fails where a program fails for another reason than a missing model.
-    pub fn make(python: &Python, learners: &[&str]) -> Result<Self> {
-        let program = std::env::var_os("OPENDR_BIN").map_or_else(surfaces::opendr, PathBuf::from);
-        if !program.is_file() {
-            return Err(format!(
-                "{} does not exist; build it with `cargo build --package opendr-cli`, or set OPENDR_BIN",
-                program.display()
-            ));
-        }
-        let photographs = photographs(python)?;
-        let mut key = of_file(&program)?;
+    /// Runs each learner on the photographs. Predictions of an unchanged program and unchanged photographs are kept. Fails where a program
+    /// fails for another reason than a missing model.
+    pub fn make(program: &Path, photographs: &Path, learners: &[&str]) -> Result<Self> {
+        let mut key = of_file(program)?;
         for (photograph, _) in PHOTOGRAPHS {
             key = key.rotate_left(7) ^ of_file(&photographs.join(photograph))?;
         }
@@ -59,7 +51,7 @@ impl Predictions {
             for _ in 0..lanes {
                 scope.spawn(|| {
                     while let Some(learner) = next() {
-                        let prediction = predict(&program, &photographs, learner, key);
+                        let prediction = predict(program, photographs, learner, key);
                         let mut made = made.lock().unwrap_or_else(PoisonError::into_inner);
                         made.push(prediction.map(|prediction| (learner.to_owned(), prediction)));
                     }
@@ -96,8 +88,20 @@ pub fn arguments(learner: &str) -> Vec<String> {
     ["infer", learner].into_iter().chain(photographs).map(str::to_owned).collect()
 }
 
+/// Returns the command that predicts: `OPENDR_BIN`, else that of the build folder.
+pub fn program() -> Result<PathBuf> {
+    let program = std::env::var_os("OPENDR_BIN").map_or_else(surfaces::opendr, PathBuf::from);
+    if !program.is_file() {
+        return Err(format!(
+            "{} does not exist; build it with `cargo build --package opendr-cli`, or set OPENDR_BIN",
+            program.display()
+        ));
+    }
+    Ok(program)
+}
+
 /// Writes the photographs and returns their folder.
-fn photographs(python: &Python) -> Result<PathBuf> {
+pub fn photographs(python: &Python) -> Result<PathBuf> {
     let folder = target().join("site-photographs");
     if PHOTOGRAPHS.iter().any(|(photograph, _)| !folder.join(photograph).is_file()) {
         let mut write = command(python.program());
