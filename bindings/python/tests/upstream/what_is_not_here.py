@@ -6,21 +6,15 @@ from opendr.control.single_demo_grasp import SingleDemoGraspLearner
 from opendr.perception.continual_slam.continual_slam_learner import ContinualSLAMLearner
 from opendr.perception.gesture_recognition.gesture_recognition_learner import GestureRecognitionLearner
 from opendr.perception.multimodal_human_centric import IntentRecognitionLearner
-from opendr.perception.object_detection_2d import (
-    DetrLearner,
-    FSeq2NMSLearner,
-    RetinaFaceLearner,
-    YOLOv3DetectorLearner,
-    YOLOv5DetectorLearner,
-)
+from opendr.perception.object_detection_2d import FSeq2NMSLearner, RetinaFaceLearner
 from opendr.perception.semantic_segmentation import YOLOv8SegLearner
 from opendr.perception.speech_transcription import VoskLearner
 from opendr.simulation.human_model_generation import PIFuGeneratorLearner
 
 for learner in (
     MobileRLLearner, MultiObjectSearchRLLearner, SingleDemoGraspLearner,
-    ContinualSLAMLearner, GestureRecognitionLearner, IntentRecognitionLearner, DetrLearner,
-    FSeq2NMSLearner, RetinaFaceLearner, YOLOv3DetectorLearner, YOLOv5DetectorLearner, YOLOv8SegLearner,
+    ContinualSLAMLearner, GestureRecognitionLearner, IntentRecognitionLearner,
+    FSeq2NMSLearner, RetinaFaceLearner, YOLOv8SegLearner,
     VoskLearner, PIFuGeneratorLearner,
 ):  # fmt: skip
     try:

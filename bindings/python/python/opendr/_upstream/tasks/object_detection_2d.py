@@ -65,7 +65,10 @@ MODULES: dict[str, dict[str, Home]] = {
 
 _SUBSET = "dataset use_subset subset_size verbose"
 _OWN = "opendr._upstream.learners.own_networks"
-_NO_WEIGHTS = {"download": "export your network to ONNX and give load the file; YoloxLearner and NanodetLearner have weights"}
+_NOT_OF_OWN = {
+    "download": "export your network to ONNX and give load the file; YoloxLearner and NanodetLearner have weights",
+    "fit": "train your network in its own tool; YoloxLearner and NanodetLearner train here",
+}
 
 LEARNERS = {
     "SingleShotDetectorLearner": Learner(
@@ -121,7 +124,7 @@ LEARNERS = {
         infer="img>image threshold keep_size!size",
         eval=_SUBSET,
         mixin=f"{_OWN}:YoloV3",
-        methods=_NO_WEIGHTS,
+        methods=_NOT_OF_OWN,
         demos="–",
         differs=("it runs your network, `load(\"yolov3.onnx\")`; there are no weights, and it cannot be trained",),
     ),
@@ -129,7 +132,7 @@ LEARNERS = {
         init="model_name!file path device temp_path force_reload!file",
         infer="img>image size!size",
         mixin=f"{_OWN}:OwnNetwork",
-        methods=_NO_WEIGHTS,
+        methods=_NOT_OF_OWN,
         demos="–",
         differs=("`path` is your network, exported to ONNX; no weights are downloaded by `model_name`",),
     ),
@@ -140,7 +143,7 @@ LEARNERS = {
         eval="dataset images_folder>split annotations_folder!part annotations_file!part verbose",
         optimize="do_constant_folding!onnx",
         mixin=f"{_OWN}:Detr",
-        methods=_NO_WEIGHTS,
+        methods=_NOT_OF_OWN,
         demos="–",
         differs=("it runs your network, `load(\"detr.onnx\")`; there are no weights, and it cannot be trained",),
     ),
