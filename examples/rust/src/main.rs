@@ -1,4 +1,6 @@
-//! Runs an example by its name; without a name, lists them. `README.md` beside the folders of the examples shows what they draw.
+//! Examples of at most 40 lines, each run by its name; without a name, lists them
+//!
+//! `README.md` beside the folders of the examples shows what they draw.
 //!
 //! Each file is a program of its own: as `src/main.rs` of a package that depends on `opendr`, it runs as it is.
 
