@@ -1,4 +1,4 @@
-//! Examples of at most 40 lines, each run by its name; without a name, lists them
+//! Examples of at most 40 lines, each run by its name; without a name, lists them.
 //!
 //! `README.md` beside the folders of the examples shows what they draw.
 //!
