@@ -160,6 +160,11 @@ impl Variant {
         imports.iter().map(|import| import.format.as_str())
     }
 
+    /// Returns its grade as a cell of a table.
+    pub fn grade_cell(&self) -> &str {
+        self.grade.as_deref().unwrap_or("no weights")
+    }
+
     /// Returns its accuracy as the headline names it.
     pub fn accuracy_cells(&self) -> AccuracyCells {
         let Some((headline, value)) = self.accuracy() else { return AccuracyCells::default() };
@@ -256,7 +261,7 @@ impl Models {
         };
         format!(
             "| {name} | {} | {value} | {interval} | {data} | {} | {} | {} | {:.1} | {}{commercial} |\n",
-            variant.grade.as_deref().unwrap_or("no weights"),
+            variant.grade_cell(),
             self.best(variant).unwrap_or_default(),
             number(variant.speed.as_ref().and_then(|speed| speed.fps)),
             number(variant.speed.as_ref().map(|speed| speed.peak_mb)),

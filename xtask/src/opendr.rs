@@ -38,7 +38,8 @@ enum Here {
 
 /// The tables of [`LEARNERS`] and [`NAMES`].
 pub struct Opendr {
-    learners: Vec<Learner>,
+    /// The learners in the order of the registry.
+    pub learners: Vec<Learner>,
     names: Vec<Name>,
 }
 

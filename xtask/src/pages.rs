@@ -6,7 +6,6 @@ use std::fs;
 
 use crate::inputs;
 use crate::layers::Layers;
-use crate::learner_table;
 use crate::models::Models;
 use crate::opendr::Opendr;
 use crate::shell::{Result, root};
@@ -33,7 +32,7 @@ pub fn is_input(file: &str) -> bool {
 fn pages() -> Result<[(&'static str, String); 5]> {
     let (packages, layers) = (packages()?, Layers::read()?);
     let packages = ordered(&packages, &layers);
-    let models = Models::read()?;
+    let (models, opendr) = (Models::read()?, Opendr::read()?);
     let with = |file: &'static str, parts: &[(&str, String)]| {
         let mut page = inputs::text(file)?;
         for (part, text) in parts {
@@ -45,8 +44,8 @@ fn pages() -> Result<[(&'static str, String); 5]> {
         with("README.md", &[("models", models.overview()), ("crates", table(&packages)?)])?,
         with("DESIGN.md", &[("layers", diagram(&packages))])?,
         with("docs/architecture.md", &[("layers", diagram(&packages))])?,
-        with("docs/models.md", &[("models", models.tables(&learner_table::read()?))])?,
-        with("docs/opendr.md", &[("opendr", Opendr::read()?.tables(&models)?)])?,
+        with("docs/models.md", &[("models", models.tables(&opendr.learners))])?,
+        with("docs/opendr.md", &[("opendr", opendr.tables(&models)?)])?,
     ])
 }
 

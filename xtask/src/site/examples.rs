@@ -7,6 +7,8 @@ use std::process::Stdio;
 use crate::inputs;
 use crate::shell::{Result, command, line, target};
 
+/// Page of the repository that lists the examples, in whose place the site has the page with their code.
+pub const LIST: &str = "examples/README.md";
 /// Place of the page on the site, and folder of the images that are drawn for it.
 pub const PAGE: &str = "examples.md";
 const DRAWN: &str = "examples";

@@ -3,10 +3,11 @@
 
 use std::collections::BTreeMap;
 
+use super::generated::{Port, declarations, modules, rows_of, sections, topics_of};
 use super::predictions::{self, PHOTOGRAPHS, Prediction, Predictions};
 use crate::inputs;
 use crate::learner_table::{self, Training};
-use crate::models::{Card, Licence, Variant};
+use crate::models::{AccuracyCells, Card, Licence, Variant};
 use crate::shell::Result;
 
 /// Folder of the pages on the site.
@@ -42,14 +43,6 @@ struct Learner {
     /// C declarations.
     declarations: String,
     card: Card,
-}
-
-/// An input of a learner.
-#[derive(Debug, PartialEq)]
-struct Port {
-    name: String,
-    kind: String,
-    required: bool,
 }
 
 impl Learners {
@@ -196,7 +189,7 @@ impl Learner {
             None => rows.push(("default model", "none: to be trained first, or your own".to_owned())),
             Some(variant) => {
                 rows.push(("default model", format!("`{}/{}`", self.name, variant.name)));
-                rows.extend(self.measurements(variant));
+                rows.extend(Self::measurements(variant));
                 rows.push(("licence of the weights", weights_licence(&variant.licence)));
             }
         }
@@ -205,18 +198,12 @@ impl Learner {
     }
 
     /// Returns grade, accuracy, speed and memory of a variant, as far as its card states them.
-    fn measurements(&self, variant: &Variant) -> Vec<(&'static str, String)> {
-        let mut rows = Vec::new();
-        let name = format!("| `{}/{}`", self.name, variant.name);
-        let row = self.models.iter().find(|row| row.starts_with(&name));
-        let cells: Vec<_> = row.into_iter().flat_map(|row| row.split(" | ")).map(str::trim).collect();
-        if let [_, grade, accuracy, interval, data, ..] = cells[..] {
-            rows.push(("grade", format!("[{grade}](../models.md)")));
-            if !accuracy.is_empty() {
-                let interval =
-                    if interval.is_empty() { interval.to_owned() } else { format!(" (95 %: {interval})") };
-                rows.push(("accuracy", format!("{accuracy}{interval} on {data}")));
-            }
+    fn measurements(variant: &Variant) -> Vec<(&'static str, String)> {
+        let mut rows = vec![("grade", format!("[{}](../models.md)", variant.grade_cell()))];
+        let AccuracyCells { value, interval, data } = variant.accuracy_cells();
+        if !value.is_empty() {
+            let interval = if interval.is_empty() { interval } else { format!(" (95 %: {interval})") };
+            rows.push(("accuracy", format!("{value}{interval} on {data}")));
         }
         if let Some(speed) = &variant.speed {
             let p50 = speed.p50_ms.map(|ms| format!("p50 {ms} ms"));
@@ -392,95 +379,6 @@ fn weights_licence(licence: &Licence) -> String {
     format!("{}; {commercial}", if licence.weights.is_empty() { "none" } else { &licence.weights })
 }
 
-/// A section of `docs/learners.md`.
-struct Section<'a> {
-    about: &'a str,
-    signature: &'a str,
-    tables: Vec<&'a str>,
-}
-
-impl Section<'_> {
-    fn inputs(&self) -> Vec<Port> {
-        let takes = self.signature.split("; returns ").next().unwrap_or_default();
-        let ports = names(takes).map(|(name, note)| {
-            let kind = note.split(',').next().unwrap_or_default();
-            Port { name: name.to_owned(), kind: kind.to_owned(), required: !note.contains(", optional") }
-        });
-        ports.collect()
-    }
-
-    fn outputs(&self) -> Vec<String> {
-        let returns = self.signature.split("; returns ").nth(1).unwrap_or_default();
-        names(returns).map(|(name, _)| name.to_owned()).collect()
-    }
-}
-
-/// Returns each name between backticks with what is in the parentheses after it.
-fn names(list: &str) -> impl Iterator<Item = (&str, &str)> {
-    list.split("), ").filter_map(|part| {
-        let (_, rest) = part.split_once('`')?;
-        let (name, rest) = rest.split_once("` (")?;
-        Some((name, rest.split(')').next().unwrap_or(rest)))
-    })
-}
-
-/// Returns the sections of `docs/learners.md` by the learner's name.
-fn sections(page: &str) -> BTreeMap<&str, Section<'_>> {
-    let found = page.split("\n### ").skip(1).filter_map(|text| {
-        let text = text.split("\n## ").next().unwrap_or(text);
-        let mut parts = text.trim_end().split("\n\n");
-        let name = parts.next()?.split('`').nth(1)?;
-        Some((name, Section { about: parts.next()?, signature: parts.next()?, tables: parts.collect() }))
-    });
-    found.collect()
-}
-
-/// Returns the rows of a page's tables whose first cell is wanted.
-fn rows_of(page: &str, is_wanted: impl Fn(&str) -> bool) -> Vec<String> {
-    let rows = page.lines().filter(|line| {
-        let cell = line.strip_prefix("| ").and_then(|line| line.split(" |").next());
-        cell.is_some_and(&is_wanted)
-    });
-    rows.map(|row| format!("{row}\n")).collect()
-}
-
-/// Returns the rows of a learner's topics without its name: the named row, and those below it without a name.
-fn topics_of(page: &str, name: &str) -> Vec<String> {
-    let begin = format!("| `{name}` |");
-    let mut lines = page.lines().skip_while(|line| !line.starts_with(&begin));
-    let first = lines.next();
-    let rows = first.into_iter().chain(lines.take_while(|line| line.starts_with("|  |")));
-    rows.filter_map(|row| Some(format!("|{}\n", row.strip_prefix("| ")?.split_once('|')?.1))).collect()
-}
-
-/// Returns the C declarations that load and run a learner.
-fn declarations(header: &str, name: &str) -> Option<String> {
-    let of = |function: &str| {
-        let begin = header.find(&format!("static inline opendr_status opendr_{function}_{name}("))?;
-        let length = header[begin..].find(" {")?;
-        Some(header[begin..begin + length].trim_start_matches("static inline ").to_owned() + ";")
-    };
-    Some(format!("#include <opendr.h>\n\n{}\n\n{}", of("load")?, of("infer")?))
-}
-
-/// Returns the modules of the Python classes, from their stubs.
-fn modules() -> Result<BTreeMap<String, String>> {
-    let folder = "bindings/python/python/";
-    let mut modules = BTreeMap::new();
-    for file in inputs::files()? {
-        let Some(module) = file.strip_prefix(folder).and_then(|path| path.strip_suffix(".pyi")) else {
-            continue;
-        };
-        for line in inputs::text(&file)?.lines() {
-            if let Some((class, _)) = line.strip_prefix("class ").and_then(|line| line.split_once(['(', ':']))
-            {
-                modules.insert(class.to_owned(), module.replace('/', "."));
-            }
-        }
-    }
-    Ok(modules)
-}
-
 /// Returns the name of a file for an input in an example.
 fn file_of(port: &Port) -> String {
     let end = match port.kind.as_str() {
@@ -506,45 +404,6 @@ fn title(task: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const PAGE: &str = "# Learners\n\nText.\n\n## tasks_2d\n\n### ALearner: `a`\n\nFinds `b`.\n\nTakes `image` (Image), \
-                        `box` (Box, with the first input of a stream), `depth` (Image, optional); returns `boxes` (BoxList), `map` (Map).\n\n\
-                        | parameter |\n|---|\n| `x` |\n\n| parameter of `fit` |\n|---|\n\n## other\n\n### BLearner: `b`\n\nB.\n\n\
-                        Takes `c` (C); returns `d` (D).\n\n| parameter |\n|---|\n";
-
-    #[test]
-    fn a_section_ends_where_the_next_begins() {
-        let sections = sections(PAGE);
-        assert_eq!(sections.keys().collect::<Vec<_>>(), [&"a", &"b"]);
-        let a = &sections["a"];
-        assert_eq!(a.about, "Finds `b`.");
-        assert_eq!(a.tables, ["| parameter |\n|---|\n| `x` |", "| parameter of `fit` |\n|---|"]);
-        let port = |name: &str, kind: &str, required| Port { name: name.into(), kind: kind.into(), required };
-        assert_eq!(
-            a.inputs(),
-            [port("image", "Image", true), port("box", "Box", true), port("depth", "Image", false)]
-        );
-        assert_eq!(a.outputs(), ["boxes", "map"]);
-        assert_eq!(sections["b"].inputs(), [port("c", "C", true)]);
-    }
-
-    #[test]
-    fn rows_of_topics_are_those_below_the_name() {
-        let page =
-            "| `a` | `x` | `X` | `y` | `Y` |\n|  | `z` | `Z` |  |  |\n| `ab` | `q` | `Q` | `r` | `R` |\n";
-        assert_eq!(topics_of(page, "a"), ["| `x` | `X` | `y` | `Y` |\n", "| `z` | `Z` |  |  |\n"]);
-        assert_eq!(topics_of(page, "ab"), ["| `q` | `Q` | `r` | `R` |\n"]);
-    }
-
-    #[test]
-    fn declarations_are_those_of_the_header() {
-        let header = "static inline opendr_status opendr_load_a(const char *path) {\n}\n\
-                      static inline opendr_status opendr_infer_a(int a,\n    int b) {\n}\n";
-        let expected = "#include <opendr.h>\n\nopendr_status opendr_load_a(const char *path);\n\n\
-                        opendr_status opendr_infer_a(int a,\n    int b);";
-        assert_eq!(declarations(header, "a").unwrap(), expected);
-        assert_eq!(declarations(header, "b"), None);
-    }
 
     #[test]
     fn titles_are_words() {

@@ -5,6 +5,7 @@
 //! the examples ([`examples`]), and runs MkDocs, which fails on broken links, missing anchors and pages outside of the navigation.
 
 mod examples;
+mod generated;
 mod learners;
 mod page;
 mod predictions;

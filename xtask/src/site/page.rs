@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::examples;
 use crate::shell::{Result, root};
 
 /// Folder of the site with the files outside `docs/` that pages link to.
@@ -17,6 +18,9 @@ pub struct Page {
 
 /// Returns the place of a file of the repository on the site: the files of `docs/` are at the root.
 pub fn place(file: &str) -> String {
+    if file == examples::LIST {
+        return examples::PAGE.to_owned();
+    }
     file.strip_prefix("docs/").map_or_else(|| format!("{REPOSITORY}/{file}"), str::to_owned)
 }
 
