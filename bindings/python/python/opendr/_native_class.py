@@ -21,13 +21,11 @@ from opendr.engine._parameters import Parameter
 from opendr.engine.learners import BaseLearner
 
 
-def native_class(entry: Table, module: str, named: Optional[tuple[str, Row]] = None) -> type[NativeBase]:
-    """Builds the class of a learner of the registry, or that of a learner of OpenDR which it runs, with name and row."""
-    if named is not None:
-        entry = {**entry, "class_name": named[0]}
-        row = named[1]
-    else:
-        row = learner(f"{entry['package']}.{entry['task']}", entry["class_name"]) or Row()
+def native_class(entry: Table, module: str) -> type[NativeBase]:
+    """Builds the class ``class_name`` of a learner of the registry."""
+    row = learner(f"{entry['package']}.{entry['task']}", entry["class_name"]) or Row()
+    params = [{**field, "default": row.defaults.get(field["name"], field["default"])} for field in entry["params"]]
+    entry = {**entry, "params": params}
     parent = _parent(entry, row)
     names = [output["name"] for output in entry["outputs"]]
     fields = [*entry["fit_params"], *entry["params"]]

@@ -134,13 +134,12 @@ def _runner(module: str, name: str, home: Runs) -> Any:
     """Returns the class of a learner of OpenDR whose networks another one runs; the same in all module paths of the package."""
     from opendr._native_class import native_class
 
-    task = _task(module) or ""
-    package = import_module(f"opendr.{task}")
+    package = import_module(f"opendr.{_task(module)}")
     if module != package.__name__:
         return getattr(package, name)
     path, _, of = home.by.partition(":")
-    base, row = getattr(import_module(path), of, None), learner(task, name)
-    return _not_built(name, module) if base is None or row is None else native_class(base._entry, module, (name, row))
+    base = getattr(import_module(path), of, None)
+    return _not_built(name, module) if base is None else native_class({**base._entry, "class_name": name}, module)
 
 
 def _not_built(name: str, module: str) -> Any:

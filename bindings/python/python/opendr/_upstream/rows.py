@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple, Optional, Union
+from typing import Any, NamedTuple, Optional, Union
 
 from opendr._upstream.reasons import REASONS
 
@@ -57,6 +57,8 @@ class Learner(NamedTuple):
     methods: Mapping[str, str] = {}
     #: The base class with further methods of this learner, ``module:class``.
     mixin: str = ""
+    #: OpenDR's defaults that are not those of the learner in the registry.
+    defaults: Mapping[str, Any] = {}
     #: Values of arguments that only OpenDR has, and their equivalents in this package.
     same: Mapping[str, Mapping[str, str]] = {}
     #: Values of arguments that only OpenDR has, separated by blanks, and are replaced by the default.

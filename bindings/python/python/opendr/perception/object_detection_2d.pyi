@@ -27,7 +27,7 @@ from opendr._upstream.suppression import SoftNMS as SoftNMS
 from opendr._input_value import PathLike
 from opendr._native_learner import NativeLearner
 from opendr._upstream.learners.detection import Seq2SeqNms, SingleShotDetector
-from opendr._upstream.learners.own_networks import Detr, OwnNetwork, YoloV3
+from opendr._upstream.learners.own_networks import OwnNetwork
 from opendr.engine.data import Image
 from opendr.engine.datasets import Dataset
 from opendr.engine.learners import Learner
@@ -696,7 +696,7 @@ class GemLearner(NativeLearner):
     def fit(self, m1_train_edataset: Dataset = ..., m2_train_edataset: Any = ..., annotations_folder: Any = ..., m1_train_annotations_file: Any = ..., m2_train_annotations_file: Any = ..., m1_train_images_folder: Optional[str] = ..., m2_train_images_folder: Any = ..., out_dir: Optional[PathLike] = ..., trial_dir: Any = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., m1_val_edataset: Optional[Dataset] = ..., m2_val_edataset: Any = ..., m1_val_annotations_file: Any = ..., m2_val_annotations_file: Any = ..., m1_val_images_folder: Optional[str] = ..., m2_val_images_folder: Any = ..., *, dataset: Dataset = ..., val_dataset: Optional[Dataset] = ..., out: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., teacher_map: Optional[Mapping[str, str]] = ..., teacher_by_number: bool = ..., keep_empty: bool = ..., skip_broken: bool = ..., backbone: Literal['mobilenet0.75', 'mobilenet1.0', 'mobilenet0.5', 'mobilenet0.25'] = ..., img_size: int = ..., resizing: Literal['stretch', 'letterbox'] = ..., stride: int = ..., aspect_ratios: list[Any] = ..., anchor_scales: list[Any] = ..., classes: list[Any] = ..., drop_sensor: float = ..., augment: bool = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ...) -> dict[str, Any]: ...
     def eval(self, m1_edataset: Dataset = ..., m2_edataset: Any = ..., m1_images_folder: Optional[str] = ..., m2_images_folder: Any = ..., annotations_folder: Any = ..., m1_annotations_file: Any = ..., m2_annotations_file: Any = ..., verbose: bool = ..., *, dataset: Dataset = ..., metric: Optional[str] = ..., split: Optional[str] = ..., limit: Optional[int] = ..., out: Optional[PathLike] = ..., skip_broken: bool = ..., classes: Optional[Mapping[str, str]] = ..., by_number: bool = ..., resamples: int = ..., **metric_params: Any) -> dict[str, Any]: ...
 
-class DetrLearner(Detr):
+class DetrLearner(OwnNetwork):
     """Runs your own detector, exported to ONNX by another tool; recognises the layout of its outputs.
 
     Task: object_detection_2d. ``infer`` takes:
@@ -706,8 +706,8 @@ class DetrLearner(Detr):
     and returns: BoundingBoxList.
 
     Args:
-        threshold: Score below which detections are dropped. (default 0.25; 0 to 1; live: may change while
-            running, and for one call of infer)
+        threshold: Score below which detections are dropped. (default 0.7; 0 to 1; live: may change while running,
+            and for one call of infer)
         iou_threshold: IoU above which candidates of one class count as one object; detections and queries are not
             suppressed. (default 0.65; 0 to 1; live: may change while running, and for one call of infer)
         max_detections: Maximum number of boxes per image. (default 300; 1 to 1000; live: may change while
@@ -773,7 +773,7 @@ class DetrLearner(Detr):
     def download(self, *args: Any, **kwargs: Any) -> NoReturn: ...
     def fit(self, *args: Any, **kwargs: Any) -> NoReturn: ...
 
-class YOLOv3DetectorLearner(YoloV3):
+class YOLOv3DetectorLearner(OwnNetwork):
     """Runs your own detector, exported to ONNX by another tool; recognises the layout of its outputs.
 
     Task: object_detection_2d. ``infer`` takes:
@@ -783,8 +783,8 @@ class YOLOv3DetectorLearner(YoloV3):
     and returns: BoundingBoxList.
 
     Args:
-        threshold: Score below which detections are dropped. (default 0.25; 0 to 1; live: may change while
-            running, and for one call of infer)
+        threshold: Score below which detections are dropped. (default 0.1; 0 to 1; live: may change while running,
+            and for one call of infer)
         iou_threshold: IoU above which candidates of one class count as one object; detections and queries are not
             suppressed. (default 0.65; 0 to 1; live: may change while running, and for one call of infer)
         max_detections: Maximum number of boxes per image. (default 300; 1 to 1000; live: may change while

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 from opendr._native_learner import NativeLearner
 from opendr._upstream.arguments import by_name
@@ -14,21 +14,6 @@ class OwnNetwork(NativeLearner):
     def __init__(self, *given: Any, **named: Any) -> None:
         found = by_name(type(self).__name__, self._positional, given, named, stacklevel=3)
         path = found.pop("path", None)
-        super().__init__(**{**self._DEFAULTS, **found})
+        super().__init__(**found)
         if path is not None:
             self.load(path)
-
-    #: OpenDR's defaults that are not those of this package.
-    _DEFAULTS: ClassVar[dict[str, Any]] = {}
-
-
-class YoloV3(OwnNetwork):
-    """YOLOv3, with OpenDR's threshold."""
-
-    _DEFAULTS: ClassVar[dict[str, Any]] = {"threshold": 0.1}
-
-
-class Detr(OwnNetwork):
-    """DETR, with OpenDR's threshold."""
-
-    _DEFAULTS: ClassVar[dict[str, Any]] = {"threshold": 0.7}

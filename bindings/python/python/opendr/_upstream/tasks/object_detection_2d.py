@@ -64,7 +64,7 @@ MODULES: dict[str, dict[str, Home]] = {
 }
 
 _SUBSET = "dataset use_subset subset_size verbose"
-_OWN = "opendr._upstream.learners.own_networks"
+_OWN_NETWORK = "opendr._upstream.learners.own_networks:OwnNetwork"
 _NOT_OF_OWN = {
     "download": "export your network to ONNX and give load the file; YoloxLearner and NanodetLearner have weights",
     "fit": "train your network in its own tool; YoloxLearner and NanodetLearner train here",
@@ -123,7 +123,8 @@ LEARNERS = {
         " warmup_epochs!training lr_decay_period!training lr_decay_epoch!training lr_decay!training",
         infer="img>image threshold keep_size!size",
         eval=_SUBSET,
-        mixin=f"{_OWN}:YoloV3",
+        mixin=_OWN_NETWORK,
+        defaults={"threshold": 0.1},
         methods=_NOT_OF_OWN,
         demos="–",
         differs=("it runs your network, `load(\"yolov3.onnx\")`; there are no weights, and it cannot be trained",),
@@ -131,7 +132,7 @@ LEARNERS = {
     "YOLOv5DetectorLearner": Learner(
         init="model_name!file path device temp_path force_reload!file",
         infer="img>image size!size",
-        mixin=f"{_OWN}:OwnNetwork",
+        mixin=_OWN_NETWORK,
         methods=_NOT_OF_OWN,
         demos="–",
         differs=("`path` is your network, exported to ONNX; no weights are downloaded by `model_name`",),
@@ -142,7 +143,8 @@ LEARNERS = {
         infer="image",
         eval="dataset images_folder>split annotations_folder!part annotations_file!part verbose",
         optimize="do_constant_folding!onnx",
-        mixin=f"{_OWN}:Detr",
+        mixin=_OWN_NETWORK,
+        defaults={"threshold": 0.7},
         methods=_NOT_OF_OWN,
         demos="–",
         differs=("it runs your network, `load(\"detr.onnx\")`; there are no weights, and it cannot be trained",),
