@@ -8,9 +8,10 @@ use opendr_engine::target::{Heatmap, HeatmapValues};
 use opendr_engine::{Error, Progress, Result, ResultExt, Value, ValueType};
 use opendr_vision::{Decoder, encode_depth_png};
 
-use crate::folder::{PICTURES, files_in, past_end, read_text, write_file};
+use crate::folder::{PICTURES, files_in, read_text, write_file};
+use crate::image_pairs::ImagePairs;
 use crate::picture_files::{PictureWriter, open_picture, split_name, write_each};
-use crate::{Format, OpenOptions, Problem, Problems, Recognition, WriteOptions};
+use crate::{Format, OpenOptions, Problems, Recognition, WriteOptions};
 
 /// Names of parts as folders, the preferred one first.
 const SPLITS: [&str; 3] = ["val", "test", "train"];
@@ -28,7 +29,7 @@ const UNITS_FILE: &str = "units_per_metre.txt";
 #[derive(Debug)]
 pub struct DepthMaps {
     /// Images and their depth maps.
-    samples: Vec<[PathBuf; 2]>,
+    pairs: ImagePairs,
     units_per_metre: f64,
 }
 
@@ -95,12 +96,8 @@ fn units_from_text(text: &str) -> Result<f64> {
 }
 
 impl DepthMaps {
-    fn sample(&self, index: usize) -> Result<&[PathBuf; 2]> {
-        self.samples.get(index).ok_or_else(|| past_end(index, self.samples.len()))
-    }
-
     fn depths(&self, index: usize) -> Result<Heatmap> {
-        let [_, file] = self.sample(index)?;
+        let [_, file] = self.pairs.get(index)?;
         let image = Decoder::default().open_depth(file)?;
         let Pixels::U16(units) = image.pixels() else {
             return Err(Error::internal("a depth image without 16 bits"));
@@ -153,13 +150,13 @@ impl Dataset for DepthMaps {}
 
 impl DatasetIterator for DepthMaps {
     fn len(&self) -> usize {
-        self.samples.len()
+        self.pairs.len()
     }
 
     fn get(&self, index: usize) -> Result<Sample> {
         let map = self.depths(index)?;
         let size = if let [height, width] = map.shape() { [*width as u32, *height as u32] } else { [0, 0] };
-        let image = open_picture(&self.sample(index)?[0], size)?;
+        let image = open_picture(&self.pairs.get(index)?[0], size)?;
         Ok(Sample { data: vec![image.into()], target: Some(map.into()) })
     }
 
@@ -168,12 +165,11 @@ impl DatasetIterator for DepthMaps {
     }
 
     fn name(&self, index: usize) -> String {
-        let name = self.sample(index).ok().and_then(|[image, _]| image.file_name()?.to_str());
-        name.map_or_else(|| index.to_string(), str::to_owned)
+        self.pairs.name(index)
     }
 
     fn path(&self, index: usize) -> Option<PathBuf> {
-        self.sample(index).ok().map(|[image, _]| image.clone())
+        self.pairs.image(index)
     }
 }
 
@@ -199,17 +195,8 @@ impl Format for DepthMaps {
             let split = options.split.as_deref().map_or(String::new(), |split| format!("{split}/"));
             Error::not_found(format!("no {split}images with {split}depth/NAME.png in {}", path.display()))
         })?;
-        let mut samples = Vec::new();
-        for name in files_in(&folders.images, PICTURES) {
-            let (image, depth) = (folders.images.join(&name), folders.depth_of(&name));
-            if depth.is_file() {
-                samples.push([image, depth]);
-            } else {
-                let message = format!("its depth map {} is missing", depth.display());
-                problems.report(Problem::new(image, message))?;
-            }
-        }
-        Ok(Self { samples, units_per_metre: folders.units(path)? })
+        let pairs = ImagePairs::find(&folders.images, "depth map", |name| folders.depth_of(name), problems)?;
+        Ok(Self { pairs, units_per_metre: folders.units(path)? })
     }
 
     /// Writes depths in millimetres, or in KITTI's units where the farthest is more than 65.535 m away.

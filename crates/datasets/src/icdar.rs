@@ -8,7 +8,8 @@ use opendr_engine::target::{TextRegion, TextRegionList};
 use opendr_engine::{Error, Progress, Result, Value, ValueType};
 
 use crate::fields::lines;
-use crate::folder::{PICTURES, files_in, has_extension, past_end, read_text, write_file};
+use crate::folder::{files_in, has_extension, read_text, write_file};
+use crate::image_pairs::ImagePairs;
 use crate::picture_files::{PictureWriter, open_picture, split_name, write_each};
 use crate::{Format, OpenOptions, Problem, Problems, Recognition, WriteOptions};
 
@@ -25,7 +26,7 @@ const SPLITS: [&str; 3] = ["val", "test", "train"];
 #[derive(Debug)]
 pub struct Icdar {
     /// Images and their annotations.
-    samples: Vec<[PathBuf; 2]>,
+    pairs: ImagePairs,
 }
 
 /// Returns the folders of images and annotations of a part.
@@ -86,12 +87,8 @@ fn line_of_region(region: &TextRegion) -> Result<String> {
 }
 
 impl Icdar {
-    fn sample(&self, index: usize) -> Result<&[PathBuf; 2]> {
-        self.samples.get(index).ok_or_else(|| past_end(index, self.samples.len()))
-    }
-
     fn regions(&self, index: usize) -> Result<TextRegionList> {
-        let [_, file] = self.sample(index)?;
+        let [_, file] = self.pairs.get(index)?;
         let text = read_text(file)?;
         let regions = lines(&text).map(|(number, line)| {
             region_from_line(line)
@@ -105,12 +102,12 @@ impl Dataset for Icdar {}
 
 impl DatasetIterator for Icdar {
     fn len(&self) -> usize {
-        self.samples.len()
+        self.pairs.len()
     }
 
     fn get(&self, index: usize) -> Result<Sample> {
         let regions = self.regions(index)?;
-        let image = open_picture(&self.sample(index)?[0], [0, 0])?;
+        let image = open_picture(&self.pairs.get(index)?[0], [0, 0])?;
         Ok(Sample { data: vec![image.into()], target: Some(regions.into()) })
     }
 
@@ -119,12 +116,11 @@ impl DatasetIterator for Icdar {
     }
 
     fn name(&self, index: usize) -> String {
-        let name = self.sample(index).ok().and_then(|[image, _]| image.file_name()?.to_str());
-        name.map_or_else(|| index.to_string(), str::to_owned)
+        self.pairs.name(index)
     }
 
     fn path(&self, index: usize) -> Option<PathBuf> {
-        self.sample(index).ok().map(|[image, _]| image.clone())
+        self.pairs.image(index)
     }
 }
 
@@ -148,18 +144,11 @@ impl Format for Icdar {
             let split = options.split.as_deref().map_or(String::new(), |split| format!("{split}/"));
             Error::not_found(format!("no {split}images with {split}gt/gt_NAME.txt in {}", path.display()))
         })?;
-        let mut samples = Vec::new();
-        for name in files_in(&images, PICTURES) {
-            let stem = name.rsplit_once('.').map_or(name.as_str(), |(stem, _)| stem);
-            let text = texts.join(format!("gt_{stem}.txt"));
-            if text.is_file() {
-                samples.push([images.join(&name), text]);
-            } else {
-                let message = format!("its annotation {} is missing", text.display());
-                problems.report(Problem::new(images.join(&name), message))?;
-            }
-        }
-        Ok(Self { samples })
+        let text_of = |name: &str| {
+            let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+            texts.join(format!("gt_{stem}.txt"))
+        };
+        Ok(Self { pairs: ImagePairs::find(&images, "annotation", text_of, problems)? })
     }
 
     fn write(

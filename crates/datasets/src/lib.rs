@@ -43,6 +43,7 @@ mod from_above;
 pub mod fuzzing;
 mod hands;
 mod icdar;
+mod image_pairs;
 mod imagenet;
 mod kinetics;
 mod kitti;
