@@ -20,12 +20,13 @@ pub(crate) fn resize(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opti
         let rows = Cubic::of_axis(node, &rows, dims[2])?;
         let columns = Cubic::of_axis(node, &columns, dims[3])?;
         let x = planner.channels_last(x)?;
-        let step = CubicStep { rows, columns, input: [dims[2], dims[3]], channels: dims[1] };
+        let step = CubicStep(Lines { rows, columns, input: [dims[2], dims[3]], channels: dims[1] });
         return Ok(vec![planner.emit_one(step, &[x], Kind::F32, shape, Layout::ChannelsLast)?]);
     }
     let Geometry { shape, rows, columns, is_linear } = Geometry::new(planner, node, inputs)?;
     let x = planner.channels_last(x)?;
-    let step = ResizeStep { rows, columns, input: [dims[2], dims[3]], channels: dims[1], is_linear };
+    let lines = Lines { rows, columns, input: [dims[2], dims[3]], channels: dims[1] };
+    let step = ResizeStep { lines, is_linear };
     Ok(vec![planner.emit_one(step, &[x], Kind::F32, shape, Layout::ChannelsLast)?])
 }
 
@@ -181,28 +182,46 @@ impl Cubic {
     }
 }
 
-struct CubicStep {
-    rows: Vec<Cubic>,
-    columns: Vec<Cubic>,
+/// What each row and column of the output is made of, and the size of an input image and its number of channels.
+struct Lines<P> {
+    rows: Vec<P>,
+    columns: Vec<P>,
     input: [usize; 2],
     channels: usize,
 }
 
+impl<P: Sync> Lines<P> {
+    /// Calls `fill` for each row of the output: with what it is made of, the input image, and the row.
+    fn for_each(&self, io: &mut Io<'_>, fill: impl Fn(&P, &[f32], &mut [f32]) + Sync) {
+        let (x, y) = (io.read::<f32>(0), io.write::<f32>());
+        if y.is_empty() {
+            return;
+        }
+        let image = self.input.iter().product::<usize>() * self.channels;
+        io.compute.pool().run_on_pieces(y, self.columns.len() * self.channels, |index, y| {
+            let (at, row) = (index / self.rows.len(), index % self.rows.len());
+            fill(&self.rows[row], &x[at * image..][..image], y);
+        });
+    }
+
+    /// Returns a row of an input image.
+    fn line<'x>(&self, image: &'x [f32], row: usize) -> &'x [f32] {
+        let length = self.input[1] * self.channels;
+        &image[row * length..][..length]
+    }
+}
+
+struct CubicStep(Lines<Cubic>);
+
 impl Kernel for CubicStep {
     fn run(&self, io: &mut Io<'_>) -> Result<()> {
-        let (x, y) = (io.read::<f32>(0), io.write::<f32>());
-        let channels = self.channels;
-        if y.is_empty() {
-            return Ok(());
-        }
-        let [height, width] = self.input;
-        io.compute.pool().run_on_pieces(y, self.columns.len() * channels, |index, y| {
-            let (image, oy) = (index / self.rows.len(), index % self.rows.len());
-            let row = &self.rows[oy];
+        let Self(lines) = self;
+        let channels = lines.channels;
+        lines.for_each(io, |row, image, y| {
             y.fill(0.0);
             for (place, down) in row.places.into_iter().zip(row.weights) {
-                let line = &x[(image * height + place) * width * channels..][..width * channels];
-                for (y, column) in y.chunks_exact_mut(channels).zip(&self.columns) {
+                let line = lines.line(image, place);
+                for (y, column) in y.chunks_exact_mut(channels).zip(&lines.columns) {
                     for (place, across) in column.places.into_iter().zip(column.weights) {
                         let weight = down * across;
                         let values = &line[place * channels..][..channels];
@@ -219,32 +238,22 @@ impl Kernel for CubicStep {
 pub(crate) type Point = ([usize; 2], f32);
 
 struct ResizeStep {
-    rows: Vec<Point>,
-    columns: Vec<Point>,
-    input: [usize; 2],
-    channels: usize,
+    lines: Lines<Point>,
     is_linear: bool,
 }
 
 impl Kernel for ResizeStep {
     fn run(&self, io: &mut Io<'_>) -> Result<()> {
-        let (x, y) = (io.read::<f32>(0), io.write::<f32>());
-        let channels = self.channels;
-        if y.is_empty() {
-            return Ok(());
-        }
-        let [height, width] = self.input;
-        io.compute.pool().run_on_pieces(y, self.columns.len() * channels, |index, y| {
-            let (image, oy) = (index / self.rows.len(), index % self.rows.len());
-            let ([top, bottom], down) = self.rows[oy];
-            let line = |row: usize| &x[(image * height + row) * width * channels..][..width * channels];
-            let (above, below) = (line(top), line(bottom));
-            for (y, &([left, right], across)) in y.chunks_exact_mut(channels).zip(&self.columns) {
+        let Self { lines, is_linear } = self;
+        let channels = lines.channels;
+        lines.for_each(io, |&([top, bottom], down), image, y| {
+            let (above, below) = (lines.line(image, top), lines.line(image, bottom));
+            for (y, &([left, right], across)) in y.chunks_exact_mut(channels).zip(&lines.columns) {
                 let at = |line: &'_ [f32], column: usize| {
                     column * channels..column * channels + channels.min(line.len())
                 };
                 let a = &above[at(above, left)];
-                if !self.is_linear {
+                if !is_linear {
                     y.copy_from_slice(a);
                     continue;
                 }
