@@ -1,9 +1,7 @@
 //! Growth of PST-GCN.
 
-use std::sync::atomic::{AtomicU64, Ordering};
-
-use opendr_engine::{Progress, Unit};
 use opendr_perception_common::progressive::TopologyParams;
+use opendr_perception_testing::stop_at::StopAt;
 
 use super::*;
 
@@ -63,26 +61,6 @@ fn the_network_grows_and_the_model_is_loaded() {
     assert_eq!(handle.params().growth.topology, topology);
 }
 
-/// Stops after a number of steps.
-struct StopAt(u64, AtomicU64);
-
-impl Progress for StopAt {
-    fn begin(&self, _: &str, _: Option<u64>, unit: Unit) {
-        assert_eq!(unit, Unit::Steps);
-        self.1.store(0, Ordering::Relaxed);
-    }
-
-    fn advance(&self, amount: u64) {
-        self.1.fetch_add(amount, Ordering::Relaxed);
-    }
-
-    fn end(&self) {}
-
-    fn stopped(&self) -> bool {
-        self.1.load(Ordering::Relaxed) >= self.0
-    }
-}
-
 #[test]
 fn a_stopped_growth_resumes_bit_for_bit() {
     let folder = Folder::new("resumes");
@@ -90,7 +68,7 @@ fn a_stopped_growth_resumes_bit_for_bit() {
     let job = FitJob { device: Device::Cpu, ..FitJob::new(&whole) };
     let wanted = fit(params(&[]), 3, &job).unwrap();
     for steps in [2, 5, 6, u64::MAX] {
-        let progress = StopAt(steps, AtomicU64::new(0));
+        let progress = StopAt::new(steps);
         let job = FitJob { device: Device::Cpu, resume: true, progress: &progress, ..FitJob::new(&parts) };
         let handle = fit(params(&[]), 3, &job).unwrap();
         if steps == u64::MAX {

@@ -1,10 +1,10 @@
 use std::cell::RefCell;
 use std::path::Path;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use opendr_engine::model::{Manifest, ModelWriter};
 use opendr_engine::params::ParamValue;
-use opendr_engine::{ErrorKind, Progress, Unit};
+use opendr_engine::{ErrorKind, Unit};
+use opendr_perception_testing::stop_at::StopAt;
 
 use super::*;
 
@@ -129,29 +129,10 @@ fn max_steps_limits_all_stages_together() {
     assert_eq!(topology(&job.model()), "2", "the third block is not better");
 }
 
-/// Stops after a number of steps, as the tuner does.
-struct StopAt(u64, AtomicU64);
-
-impl Progress for StopAt {
-    fn begin(&self, _: &str, _: Option<u64>, _: Unit) {
-        self.1.store(0, Ordering::Relaxed);
-    }
-
-    fn advance(&self, amount: u64) {
-        self.1.fetch_add(amount, Ordering::Relaxed);
-    }
-
-    fn end(&self) {}
-
-    fn stopped(&self) -> bool {
-        self.1.load(Ordering::Relaxed) >= self.0
-    }
-}
-
 #[test]
 fn a_stop_counts_the_steps_of_all_stages() {
     let folder = Folder::new("stop");
-    let progress = StopAt(35, AtomicU64::new(0));
+    let progress = StopAt::new(35);
     let job = FitJob { progress: &progress, ..FitJob::new(&folder.0) };
     let (stages, _) = grown(&params(10, 10), &TrainingParams::default(), &job, best_at_two);
     assert_eq!(stages, ["1", "2", "3", "2-1"]);
