@@ -7,6 +7,7 @@ use opendr_engine::params::ParamMap;
 use opendr_engine::{Error, Result};
 
 use crate::classic_control::{Acrobot, CartPole, MountainCar, MountainCarContinuous, Pendulum};
+use crate::planar_push::PlanarPush;
 use crate::quad_track::QuadTrack;
 use crate::registration::Registration;
 use crate::vector::{VecEnvironment, VectorOptions};
@@ -25,6 +26,7 @@ static BUILTIN: LazyLock<Registry> = LazyLock::new(|| {
         Registration::of::<MountainCar>(),
         Registration::of::<MountainCarContinuous>(),
         Registration::of::<Pendulum>(),
+        Registration::of::<PlanarPush>(),
         Registration::of::<QuadTrack>(),
     ];
     let further = uav_corridor::registrations().into_iter().chain(sphere_view::registrations());
