@@ -38,11 +38,8 @@ impl DriveImpulse {
             let off = |at: usize| body.velocity[at] - drive.target[at];
             let length = drive.length.max(1e-6);
             // Forces along x and y, and the torque over the length.
-            let wanted = [
-                self.0[0] - mass * off(0),
-                self.0[1] - mass * off(1),
-                self.0[2] - mass * length * off(2),
-            ];
+            let wanted =
+                [self.0[0] - mass * off(0), self.0[1] - mass * off(1), self.0[2] - mass * length * off(2)];
             let size = norm([norm([wanted[0], wanted[1]]), wanted[2]]);
             let scale = (drive.force * seconds / size.max(1e-12)).min(1.0);
             let change: [f64; 3] = std::array::from_fn(|at| wanted[at] * scale - self.0[at]);

@@ -14,10 +14,12 @@ mod shape;
 #[cfg(test)]
 mod tests;
 pub(crate) mod vector;
+mod way;
 mod world;
 
 pub(crate) use body::{Body, Part, Pose};
 pub(crate) use drive::Drive;
 pub(crate) use episode_key::EpisodeKey;
 pub(crate) use shape::Convex;
+pub(crate) use way::Ring;
 pub(crate) use world::World;

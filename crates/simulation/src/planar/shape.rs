@@ -49,7 +49,9 @@ impl Convex {
     /// Returns the polygon turned, then moved.
     pub fn placed(&self, place: Vector2, turn: (f64, f64)) -> Self {
         let mut moved = *self;
-        moved.corners[..self.count].iter_mut().for_each(|corner| *corner = plus(place, turned(*corner, turn), 1.0));
+        moved.corners[..self.count]
+            .iter_mut()
+            .for_each(|corner| *corner = plus(place, turned(*corner, turn), 1.0));
         moved
     }
 

@@ -3,7 +3,8 @@ use super::*;
 
 fn block(mass: f64, friction: f64) -> Body {
     let part = Part { shape: Convex::rectangle([0.0; 2], [0.05, 0.02]), slides: 0.0 };
-    let mut body = Body::fixed(&[part], 0.5).with_mass(mass, mass * (0.05_f64.powi(2) + 0.02_f64.powi(2)) / 3.0);
+    let mut body =
+        Body::fixed(&[part], 0.5).with_mass(mass, mass * (0.05_f64.powi(2) + 0.02_f64.powi(2)) / 3.0);
     body.drive = Drive::table_friction(friction, mass, 0.028);
     body
 }
@@ -12,7 +13,8 @@ fn block(mass: f64, friction: f64) -> Body {
 fn distances_are_those_of_geometry() {
     let shape = Convex::rectangle([0.1, 0.0], [0.05, 0.02]);
     for (point, wanted) in
-        [([0.2, 0.0], 0.05), ([0.1, 0.0], -0.02), ([0.18, 0.06], 0.05), ([0.1, -0.03], 0.01)] as [(Vector2, f64); 4]
+        [([0.2, 0.0], 0.05), ([0.1, 0.0], -0.02), ([0.18, 0.06], 0.05), ([0.1, -0.03], 0.01)]
+            as [(Vector2, f64); 4]
     {
         assert!((shape.distance(point) - wanted).abs() < 1e-12, "{point:?}");
     }
@@ -75,7 +77,8 @@ fn bodies_do_not_pass_through_walls() {
     let mut world = World::new(vec![runner, wall]);
     for _ in 0..300 {
         world.advance(0.01);
-        let corners: Vec<Vector2> = world.bodies[0].placed().flat_map(|(shape, _)| shape.corners().to_vec()).collect();
+        let corners: Vec<Vector2> =
+            world.bodies[0].placed().flat_map(|(shape, _)| shape.corners().to_vec()).collect();
         assert!(corners.iter().all(|corner| corner[0] < 0.182), "{corners:?}");
     }
 }
@@ -83,10 +86,8 @@ fn bodies_do_not_pass_through_walls() {
 /// Fingers that close hold a block, and carry it.
 #[test]
 fn a_gripper_holds_what_it_closes_on() {
-    let finger = |side: f64| Part {
-        shape: Convex::rectangle([side * 0.005, 0.0], [0.005, 0.012]),
-        slides: side,
-    };
+    let finger =
+        |side: f64| Part { shape: Convex::rectangle([side * 0.005, 0.0], [0.005, 0.012]), slides: side };
     let mut gripper = Body::fixed(&[finger(1.0), finger(-1.0)], 0.8).with_mass(1.0, 1e-3);
     gripper.slide_mass = 0.2;
     gripper.slide = 0.04;

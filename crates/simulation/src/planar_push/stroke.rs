@@ -4,8 +4,8 @@ use opendr_engine::Random;
 
 use super::table::Table;
 use super::{PUSHER_RADIUS, REACH};
-use crate::planar::vector::{Vector2, plus, turned};
 use crate::planar::Pose;
+use crate::planar::vector::{Vector2, plus, turned};
 
 /// Share of the fastest speed at which a stroke pushes.
 pub(super) const PUSH_SPEED: f64 = 0.5;

@@ -2,7 +2,9 @@
 
 use opendr_engine::Random;
 
-use super::{CONTROL_PERIOD, MAX_SPEED, OBSERVATION_LEN, PUSHER_RADIUS, PlanarPushParams, REACH, TABLE, TOLERANCE};
+use super::{
+    CONTROL_PERIOD, MAX_SPEED, OBSERVATION_LEN, PUSHER_RADIUS, PlanarPushParams, REACH, TABLE, TOLERANCE,
+};
 use crate::planar::vector::{Vector2, limited, norm};
 use crate::planar::{Body, Convex, Drive, Part, Pose, World};
 use crate::sine_cosine::sine_cosine;
@@ -34,7 +36,8 @@ impl Table {
         hand.pose.place = pusher;
         hand.drive = Drive { force: 30.0, length: 0.01, ..Drive::default() };
         let (parts, radius) = tee_parts();
-        let mut body = Body::fixed(&parts, params.contact_friction).with_mass(params.mass, params.mass * radius * radius);
+        let mut body = Body::fixed(&parts, params.contact_friction)
+            .with_mass(params.mass, params.mass * radius * radius);
         body.pose = tee;
         body.drive = Drive::table_friction(params.table_friction, params.mass, FRICTION_LENGTH * radius);
         Self { world: World::new(vec![hand, body]) }
@@ -113,7 +116,8 @@ impl Table {
     pub fn observe(&self, observation: &mut [f32]) {
         let (pusher, pose) = (self.pusher(), self.tee().pose);
         let (sine, cosine) = pose.turn();
-        let scaled = [pusher[0], pusher[1], pose.place[0], pose.place[1]].map(|part| (part / REACH).clamp(-1.2, 1.2));
+        let scaled =
+            [pusher[0], pusher[1], pose.place[0], pose.place[1]].map(|part| (part / REACH).clamp(-1.2, 1.2));
         let seen = scaled.into_iter().chain([cosine, sine]);
         observation.iter_mut().zip(seen).for_each(|(own, number)| *own = number as f32);
     }
@@ -138,7 +142,8 @@ fn tee_parts() -> ([Part; 2], f64) {
     let moments = shapes.map(|shape| shape.moments());
     let area: f64 = moments.iter().map(|(area, ..)| area).sum();
     let middle = [0, 1].map(|axis| moments.iter().map(|(_, first, _)| first[axis]).sum::<f64>() / area);
-    let parts = shapes.map(|shape| Part { shape: shape.placed(middle.map(|part| -part), (0.0, 1.0)), slides: 0.0 });
+    let parts =
+        shapes.map(|shape| Part { shape: shape.placed(middle.map(|part| -part), (0.0, 1.0)), slides: 0.0 });
     let second: f64 = parts.iter().map(|part| part.shape.moments().2).sum();
     (parts, (second / area).sqrt())
 }

@@ -7,7 +7,8 @@ use super::stroke::{self, PUSH_SPEED, Stroke};
 use super::table::Table;
 use super::{CONTROL_PERIOD, MAX_SPEED, OBSERVATION_LEN, PUSHER_RADIUS, PlanarPushParams};
 use crate::multirotor::numbers;
-use crate::planar::vector::{Vector2, cross, dot, left, limited, norm, plus, unit};
+use crate::planar::Ring;
+use crate::planar::vector::{Vector2, dot, limited, norm, plus, unit};
 
 /// Demonstrates `PlanarPush-v1` by strokes.
 ///
@@ -21,7 +22,7 @@ pub struct PushTeacher {
     random: Option<Random>,
     phase: Phase,
     stroke: Stroke,
-    /// Side on which the T is passed: 1 to the left, -1 to the right.
+    /// Sense in which the T is passed: 1 counter-clockwise, -1 clockwise.
     side: f64,
     /// Control periods that are left of a pause or a push.
     left: usize,
@@ -133,7 +134,8 @@ impl PushTeacher {
             return None;
         }
         // The direction in which the distance from the T grows most.
-        let rise = |axis: Vector2| tee.distance(plus(pusher, axis, 1e-4)) - tee.distance(plus(pusher, axis, -1e-4));
+        let rise =
+            |axis: Vector2| tee.distance(plus(pusher, axis, 1e-4)) - tee.distance(plus(pusher, axis, -1e-4));
         let gradient = unit([rise([1.0, 0.0]), rise([0.0, 1.0])]);
         let outward = unit(plus(pusher, tee.pose.place, -1.0));
         let near = tee.distance(pusher) < PUSHER_RADIUS + 0.008;
@@ -143,11 +145,8 @@ impl PushTeacher {
 
     /// Chooses the side on which the T is passed.
     fn go_around(&mut self, table: &Table, random: &mut Random) {
-        let middle = table.tee().pose.place;
-        let (from, to) = (plus(table.pusher(), middle, -1.0), plus(self.gate(table), middle, -1.0));
-        let shorter = cross(from, to).signum();
-        let either = dot(unit(from), unit(to)) < EITHER_WAY;
-        self.side = if either && random.chance(0.5) { -shorter } else { shorter };
+        let (shorter, cosine) = Ring::shorter(table.tee().pose.place, table.pusher(), self.gate(table));
+        self.side = if cosine < EITHER_WAY && random.chance(0.5) { -shorter } else { shorter };
         self.phase = Phase::Around;
     }
 
@@ -160,21 +159,14 @@ impl PushTeacher {
     }
 
     fn around(&self, table: &Table) -> Option<Vector2> {
-        let (pusher, middle, gate) = (table.pusher(), table.tee().pose.place, self.gate(table));
-        let (from, to) = (plus(pusher, middle, -1.0), plus(gate, middle, -1.0));
-        if norm(plus(gate, pusher, -1.0)) < 0.012 {
+        let (pusher, gate) = (table.pusher(), self.gate(table));
+        let left = norm(plus(gate, pusher, -1.0));
+        if left < 0.012 {
             return None;
         }
-        // Straight on where the line does not cross the ring.
-        let line = plus(to, from, -1.0);
-        let nearest = plus(from, line, (-dot(from, line) / dot(line, line)).clamp(0.0, 1.0));
-        if norm(nearest) > RING - 0.006 && cross(from, to) * self.side >= 0.0 {
-            return Some(towards(pusher, gate));
-        }
-        let outward = unit(from);
-        let tangent = left(outward).map(|part| part * self.side);
-        let way = plus(tangent, outward, ((RING - norm(from)) * 40.0).clamp(-1.0, 1.0));
-        Some(unit(way).map(|part| part * WAY_SPEED))
+        let ring = Ring { centre: table.tee().pose.place, radius: RING, sense: self.side };
+        let share = (left / (CONTROL_PERIOD * MAX_SPEED)).min(WAY_SPEED);
+        Some(ring.direction(pusher, gate).map(|part| part * share))
     }
 }
 
