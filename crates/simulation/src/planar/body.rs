@@ -37,12 +37,6 @@ impl Pose {
     pub fn outside(&self, point: Vector2) -> Vector2 {
         plus(self.place, turned(point, self.turn()), 1.0)
     }
-
-    /// Returns the point of the body at a place in the world.
-    pub fn inside(&self, place: Vector2) -> Vector2 {
-        let (sine, cosine) = self.turn();
-        turned(plus(place, self.place, -1.0), (-sine, cosine))
-    }
 }
 
 /// A convex part of a body.

@@ -21,7 +21,7 @@ const FINGER_FRICTION: f64 = 0.9;
 /// Depth of the slot, and the rounding of its edges by a chamfer, m.
 const SLOT: (f64, f64) = (0.06, 0.008);
 /// Force of a closing finger, N.
-const GRIP: f64 = 15.0;
+const GRIP: f64 = 6.0;
 const GRIPPER: usize = 0;
 const PEG_BODY: usize = 1;
 
@@ -43,7 +43,7 @@ impl Bench {
         let (palm, behind) = PALM;
         let parts = [finger(1.0), finger(-1.0), part([0.0, -behind], palm, 0.0)];
         let mut hand = Body::fixed(&parts, FINGER_FRICTION).with_mass(1.0, 1e-3);
-        (hand.pose, hand.slide, hand.slide_mass) = (gripper, OPENING, 0.1);
+        (hand.pose, hand.slide, hand.slide_mass) = (gripper, OPENING, 0.3);
         hand.drive = Drive { force: 30.0, length: 0.03, slide_force: GRIP, ..Drive::default() };
         let radius = ((PEG[0] * PEG[0] + PEG[1] * PEG[1]) / 3.0).sqrt();
         let mut block = Body::fixed(&[part([0.0; 2], [PEG[1], PEG[0]], 0.0)], params.friction)
@@ -86,11 +86,6 @@ impl Bench {
 
     pub fn peg(&self) -> &Body {
         &self.world.bodies[PEG_BODY]
-    }
-
-    /// Returns the place of the slot along the wall, m.
-    pub fn slot(&self) -> f64 {
-        self.slot
     }
 
     /// Advances by a control period with the velocities of an action as shares of [`MAX_SPEEDS`].

@@ -55,7 +55,7 @@ const PHASES: [Phase; 8] = [
 /// How far the gripper is behind the centre of the peg in a grasp, m.
 const GRASP: f64 = PEG[0] - 0.012;
 /// How far behind it the gripper is before the grasp, m, and the way around the peg.
-const STANDOFF: f64 = GRASP + 0.06;
+const STANDOFF: f64 = GRASP + 0.08;
 const RING: f64 = 0.11;
 /// Distance from the middle at which the post is passed, and the height before it, m.
 const POST_WAY: [f64; 2] = [0.105, -0.09];
