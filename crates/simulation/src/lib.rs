@@ -35,6 +35,7 @@ mod sine_cosine;
 pub mod classic_control;
 pub mod lidar;
 pub mod person_scenes;
+pub mod planar_grasp;
 pub mod planar_peg;
 pub mod planar_push;
 pub mod quad_track;

@@ -7,6 +7,7 @@ use opendr_engine::params::ParamMap;
 use opendr_engine::{Error, Result};
 
 use crate::classic_control::{Acrobot, CartPole, MountainCar, MountainCarContinuous, Pendulum};
+use crate::planar_grasp::PlanarGrasp;
 use crate::planar_peg::PlanarPeg;
 use crate::planar_push::PlanarPush;
 use crate::quad_track::QuadTrack;
@@ -27,6 +28,7 @@ static BUILTIN: LazyLock<Registry> = LazyLock::new(|| {
         Registration::of::<MountainCar>(),
         Registration::of::<MountainCarContinuous>(),
         Registration::of::<Pendulum>(),
+        Registration::of::<PlanarGrasp>(),
         Registration::of::<PlanarPeg>(),
         Registration::of::<PlanarPush>(),
         Registration::of::<QuadTrack>(),

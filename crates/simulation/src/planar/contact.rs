@@ -15,7 +15,7 @@ const SLOP: f64 = 2e-5;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Contact {
     /// Indices of the bodies; the normal points to the first.
-    bodies: [usize; 2],
+    pub bodies: [usize; 2],
     levers: [Vector2; 2],
     slides: [Vector2; 2],
     normal: Vector2,
@@ -84,6 +84,11 @@ impl Contact {
         let rubbed = (self.rubbed - speed * self.mass(bodies, tangent)).clamp(-limit, limit);
         self.push(bodies, tangent, rubbed - self.rubbed);
         self.rubbed = rubbed;
+    }
+
+    /// Returns the impulse along the normal, N s.
+    pub fn pressed(&self) -> f64 {
+        self.pressed
     }
 
     fn relative(&self, bodies: &[Body]) -> Vector2 {

@@ -3,7 +3,7 @@
 use super::vector::{Vector2, cross, dot, left, norm, plus, turned, unit};
 
 /// Most corners of a polygon.
-pub(crate) const MAX_CORNERS: usize = 6;
+pub(crate) const MAX_CORNERS: usize = 8;
 
 /// A convex polygon with its corners counter-clockwise, grown by a radius on all sides. One corner makes a disc.
 #[derive(Debug, Clone, Copy, PartialEq)]

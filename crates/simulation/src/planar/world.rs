@@ -51,6 +51,12 @@ impl World {
         bodies.iter_mut().for_each(|body| body.advance(seconds));
     }
 
+    /// Returns the impulse with which two bodies were pressed together in the last step, N s.
+    pub fn pressed(&self, pair: [usize; 2]) -> f64 {
+        let between = self.contacts.iter().filter(|contact| contact.bodies == pair);
+        between.map(Contact::pressed).sum()
+    }
+
     pub fn save(&self, snapshot: &mut Snapshot) {
         self.bodies.iter().for_each(|body| body.save(snapshot));
     }
