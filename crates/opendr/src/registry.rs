@@ -39,6 +39,7 @@ use opendr_hands::{
     gesture_recognition::{HandGesture, KeypointGesture},
     hand_pose_estimation::HandPose,
 };
+use opendr_manipulation::SingleDemoGrasp;
 #[cfg(feature = "multimodal")]
 use opendr_multimodal::multimodal_human_centric::{AudiovisualEmotion, RgbdHandGesture};
 #[cfg(feature = "panoptic")]
@@ -223,6 +224,7 @@ pub fn registry() -> &'static Registry {
                 ActiveFaceRecognition,
                 ActiveObjectRecognition,
                 ActivePoseRecognition,
+                SingleDemoGrasp,
             },
             #[cfg(feature = "test-learner")]
             {
