@@ -1,9 +1,9 @@
 //! Success of predicted grasps in physics.
 
+use opendr_engine::Result;
+use opendr_engine::data::Image;
 use opendr_engine::environment::{Environment as _, ResetOptions};
 use opendr_engine::target::PoseList;
-use opendr_engine::data::Image;
-use opendr_engine::Result;
 use opendr_simulation::RegisteredEnvironment as _;
 use opendr_simulation::planar_grasp::{Outcome, PlanarGrasp, PlanarGraspParams};
 

@@ -10,6 +10,6 @@ mod single_demo_grasp;
 
 pub use grasp_success::{GraspSuccess, GraspTolerance, grasp_success};
 pub use single_demo_grasp::{
-    GraspExample, GraspNetwork, GraspTraining, SingleDemoGrasp, SingleDemoGraspFitParams, SingleDemoGraspParams,
-    train_from_demonstration,
+    GraspExample, GraspNetwork, GraspTraining, SingleDemoGrasp, SingleDemoGraspFitParams,
+    SingleDemoGraspParams, train_from_demonstration,
 };

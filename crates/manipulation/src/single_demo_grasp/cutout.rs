@@ -102,7 +102,9 @@ fn connected(difference: &[f32], threshold: f32, jaws: &[[f32; 2]; 2]) -> Vec<bo
     let [left, right] = jaws;
     for step in 0..=2 * SIDE {
         let share = step as f32 / (2 * SIDE) as f32;
-        let part = |axis: usize| (left[axis] + share * (right[axis] - left[axis])).clamp(0.0, SIDE as f32 - 1.0) as usize;
+        let part = |axis: usize| {
+            (left[axis] + share * (right[axis] - left[axis])).clamp(0.0, SIDE as f32 - 1.0) as usize
+        };
         open.push(part(1) * SIDE + part(0));
     }
     while let Some(at) = open.pop() {

@@ -29,7 +29,10 @@ impl Fit for SingleDemoGrasp {
             )));
         }
         if !matches!(job.device, Device::Auto | Device::Cpu) {
-            return Err(Error::device(format!("{name} trains on the CPU, not on {}; set the device to \"cpu\"", job.device)));
+            return Err(Error::device(format!(
+                "{name} trains on the CPU, not on {}; set the device to \"cpu\"",
+                job.device
+            )));
         }
         let DatasetRef::Iterator(dataset) = dataset else {
             return Err(Error::invalid_input("an unopened data set; open it by its format first"));

@@ -91,7 +91,8 @@ impl GraspNetwork {
         let (values, rest) = bytes.as_chunks::<4>();
         let parameters: Vec<f32> = values.iter().map(|value| f32::from_le_bytes(*value)).collect();
         let wanted = network.parameters();
-        if parameters.len() != wanted || !rest.is_empty() || parameters.iter().any(|value| !value.is_finite()) {
+        if parameters.len() != wanted || !rest.is_empty() || parameters.iter().any(|value| !value.is_finite())
+        {
             return Err(Error::format(format!(
                 "the network of grasps has {} bytes, or numbers that are not finite; it needs {wanted} numbers of 4 bytes: train the model again",
                 bytes.len()
@@ -138,9 +139,11 @@ pub(super) fn normalise(planes: &mut [f32]) {
 /// Returns the place that the maps of a jaw state: that of the most likely cell and its neighbours, by their squared probability.
 fn decode(maps: &[f32]) -> SeenJaw {
     let (logits, places) = maps.split_at(CELLS);
-    let (best, logit) = logits.iter().copied().enumerate().fold((0, f32::NEG_INFINITY), |best, cell| {
-        if cell.1 > best.1 { cell } else { best }
-    });
+    let (best, logit) = logits
+        .iter()
+        .copied()
+        .enumerate()
+        .fold((0, f32::NEG_INFINITY), |best, cell| if cell.1 > best.1 { cell } else { best });
     let (column, row) = (best % GRID, best / GRID);
     let around = |at: usize| at.saturating_sub(1)..=(at + 1).min(GRID - 1);
     let (mut sum, mut place) = (0.0, [0.0; 2]);

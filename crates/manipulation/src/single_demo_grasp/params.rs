@@ -22,7 +22,7 @@ pub struct SingleDemoGraspFitParams {
     #[param(default = 600, range = 1..=1_000_000, log)]
     pub iters: u32,
     /// Augmented images of a step.
-    #[param(default = 16, range = 1..=1024, alias = "img_per_step")]
+    #[param(default = 16, range = 1..=1024)]
     pub batch_size: usize,
     /// Number of threads.
     #[param(default = 2, range = 1..=256)]
@@ -36,6 +36,12 @@ impl SingleDemoGraspFitParams {
     /// Returns the training.
     pub(super) fn training(&self) -> GraspTraining {
         let Self { lr, iters, batch_size, num_workers, seed } = *self;
-        GraspTraining { rate: lr, steps: iters as usize, batch: batch_size, threads: num_workers as usize, seed }
+        GraspTraining {
+            rate: lr,
+            steps: iters as usize,
+            batch: batch_size,
+            threads: num_workers as usize,
+            seed,
+        }
     }
 }

@@ -52,7 +52,9 @@ pub fn train_from_demonstration(
         }
         let output = network.forward(&compute, &parameters, &input, &mut tape);
         let samples = output.chunks_exact(OUTPUTS).zip(doutput.chunks_exact_mut(OUTPUTS)).zip(&jaws);
-        let sum: f32 = samples.map(|((output, doutput), jaws)| loss(output, jaws.as_ref(), 1.0 / batch as f32, doutput)).sum();
+        let sum: f32 = samples
+            .map(|((output, doutput), jaws)| loss(output, jaws.as_ref(), 1.0 / batch as f32, doutput))
+            .sum();
         if !sum.is_finite() {
             return Err(Error::internal(format!(
                 "the loss of step {step} is {sum}: the training diverged; lower lr"

@@ -98,10 +98,14 @@ impl Bench {
                 true => 0.0,
                 false => velocity[axis],
             };
-            let slide = action[3] * open;
-            let held = (slide > 0.0 && hand.slide >= OPENING) || (slide < 0.0 && hand.slide <= 0.0);
-            hand.drive.target = [inward(0), inward(1), action[2] * turn, if held { 0.0 } else { slide }];
+            hand.drive.target = [inward(0), inward(1), action[2] * turn, action[3] * open];
             self.world.advance(CONTROL_PERIOD / SUBSTEPS as f64);
+            // The stops of the slide.
+            let hand = &mut self.world.bodies[GRIPPER];
+            let stopped = hand.slide.clamp(0.0, OPENING);
+            if stopped != hand.slide {
+                (hand.slide, hand.velocity[3]) = (stopped, 0.0);
+            }
         }
     }
 
@@ -143,7 +147,7 @@ impl Bench {
             scaled(hand.pose.place[1]),
             hand_cosine,
             hand_sine,
-            (hand.slide / OPENING).clamp(-0.2, 1.2),
+            hand.slide / OPENING,
             scaled(peg.place[0]),
             scaled(peg.place[1]),
             peg_cosine,

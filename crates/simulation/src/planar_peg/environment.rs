@@ -57,7 +57,7 @@ impl RegisteredEnvironment for PlanarPeg {
 
 /// Returns the space of the observations.
 pub(super) fn observation_space() -> Space {
-    Space::symmetric(&[1.2, 1.2, 1.0, 1.0, 1.2, 1.2, 1.2, 1.0, 1.0, 1.2])
+    Space::symmetric(&[1.2, 1.2, 1.0, 1.0, 1.0, 1.2, 1.2, 1.0, 1.0, 1.2])
 }
 
 impl Episode {

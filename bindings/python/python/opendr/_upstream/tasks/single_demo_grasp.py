@@ -12,6 +12,8 @@ MODULES: dict[str, dict[str, Home]] = {
 
 LEARNERS = {
     "SingleDemoGraspLearner": Learner(
+        init="object_name!object data_directory!path lr batch_size!regions img_per_step>batch_size num_workers num_classes!object"
+        " iters threshold device",
         demos="–",
         differs=(
             "`fit` takes the data set as argument, one image with one pose of two key points, instead of `object_name` and "
