@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod online;
+mod planar;
 mod priors;
 
 #[global_allocator]

@@ -141,11 +141,17 @@ impl PlanarGrasp {
         self.episode.as_ref().ok_or_else(|| not_begun(&self.spec))
     }
 
-    fn see(&mut self, observation: &mut [f32]) {
+    /// Renders the present view.
+    fn look(&mut self) {
         let Some(episode) = &self.episode else { return };
         let view = (episode.object, episode.pose);
         let images = (&mut self.colours[..], &mut self.depths[..]);
         render(&episode.params, &episode.surroundings, view, &mut episode.random(), images);
+    }
+
+    /// Renders the present view and writes it.
+    fn see(&mut self, observation: &mut [f32]) {
+        self.look();
         let (depths, colours) = observation.split_at_mut(self.depths.len());
         depths.copy_from_slice(&self.depths);
         colours.copy_from_slice(&self.colours);
@@ -212,6 +218,7 @@ impl Environment for PlanarGrasp {
         let [x, y, angle] = numbers(state)?;
         (episode.pose, episode.attempts) = (Pose::new([x, y], angle), attempts);
         self.episode = Some(episode);
+        self.look();
         Ok(())
     }
 
