@@ -17,9 +17,9 @@ use opendr_simulation::planar_grasp::{GraspDemonstration, GraspObject, PlanarGra
 
 fn main() -> Result<()> {
     let mut arguments = std::env::args().skip(1).map(|text| text.parse().unwrap_or(0));
-    let (poses, steps) = (arguments.next().unwrap_or(500), arguments.next().unwrap_or(600));
+    let (poses, steps) = (arguments.next().unwrap_or(500), arguments.next().unwrap_or(2000));
     let objects = arguments.next().unwrap_or(5);
-    let training = GraspTraining { rate: 2e-3, steps: steps as usize, batch: 16, threads: 2, seed: 0 };
+    let training = GraspTraining { rate: 1e-3, steps: steps as usize, batch: 16, threads: 2, seed: 0 };
     for object in GraspObject::ALL.into_iter().take(objects as usize) {
         let shown = GraspDemonstration::record(object, &PlanarGraspParams::default())?;
         let example = GraspExample::new(&shown.image, shown.jaws)?;

@@ -16,10 +16,10 @@ pub struct SingleDemoGraspParams {
 #[derive(Debug, Clone, PartialEq, Params)]
 pub struct SingleDemoGraspFitParams {
     /// Learning rate of Adam at the start; it falls to 0.
-    #[param(default = 2e-3, range = 1e-6..=0.1, log)]
+    #[param(default = 1e-3, range = 1e-6..=0.1, log)]
     pub lr: f32,
     /// Number of steps.
-    #[param(default = 600, range = 1..=1_000_000, log)]
+    #[param(default = 2000, range = 1..=1_000_000, log)]
     pub iters: u32,
     /// Augmented images of a step.
     #[param(default = 16, range = 1..=1024)]
