@@ -22,6 +22,7 @@
 //! # Ok::<_, opendr_engine::Error>(())
 //! ```
 
+mod arctangent;
 mod drawing;
 mod film;
 mod multirotor;
@@ -33,7 +34,9 @@ mod registry;
 mod sine_cosine;
 
 pub mod classic_control;
+pub mod kinematics;
 pub mod lidar;
+pub mod mobile_manipulation;
 pub mod person_scenes;
 pub mod planar_grasp;
 pub mod planar_peg;

@@ -13,7 +13,7 @@ use crate::planar_push::PlanarPush;
 use crate::quad_track::QuadTrack;
 use crate::registration::Registration;
 use crate::vector::{VecEnvironment, VectorOptions};
-use crate::{sphere_view, uav_corridor};
+use crate::{mobile_manipulation, sphere_view, uav_corridor};
 
 /// Environments by name and version.
 #[derive(Clone)]
@@ -34,6 +34,7 @@ static BUILTIN: LazyLock<Registry> = LazyLock::new(|| {
         Registration::of::<QuadTrack>(),
     ];
     let further = uav_corridor::registrations().into_iter().chain(sphere_view::registrations());
+    let further = further.chain(mobile_manipulation::registrations());
     Registry { entries: classic.into_iter().chain(further).collect() }
 });
 
