@@ -37,6 +37,7 @@ pub mod classic_control;
 pub mod kinematics;
 pub mod lidar;
 pub mod mobile_manipulation;
+pub mod object_search;
 pub mod person_scenes;
 pub mod planar_grasp;
 pub mod planar_peg;

@@ -13,6 +13,7 @@ use crate::planar_push::PlanarPush;
 use crate::quad_track::QuadTrack;
 use crate::registration::Registration;
 use crate::vector::{VecEnvironment, VectorOptions};
+use crate::object_search::{FrontierSearch, ObjectSearch};
 use crate::{mobile_manipulation, sphere_view, uav_corridor};
 
 /// Environments by name and version.
@@ -27,6 +28,8 @@ static BUILTIN: LazyLock<Registry> = LazyLock::new(|| {
         Registration::of::<CartPole>(),
         Registration::of::<MountainCar>(),
         Registration::of::<MountainCarContinuous>(),
+        Registration::of::<ObjectSearch>(),
+        Registration::of::<FrontierSearch>(),
         Registration::of::<Pendulum>(),
         Registration::of::<PlanarGrasp>(),
         Registration::of::<PlanarPeg>(),
