@@ -15,6 +15,7 @@ use opendr_classification::{
 };
 #[cfg(feature = "clouds")]
 use opendr_clouds::object_detection_3d::VoxelObjectDetection3d;
+use opendr_control::{MobileRl, MultiObjectSearchRl};
 #[cfg(feature = "depth")]
 use opendr_depth::depth_estimation::ImportedDepthEstimator;
 #[cfg(feature = "detection")]
@@ -220,6 +221,8 @@ pub fn registry() -> &'static Registry {
                 ResidualTd3Learner,
                 ShapedPpoLearner,
                 ShapedSacLearner,
+                MobileRl,
+                MultiObjectSearchRl,
                 EndToEndPlanningRl,
                 ActiveFaceRecognition,
                 ActiveObjectRecognition,

@@ -66,10 +66,13 @@ impl RollArm {
                 )));
             }
         }
-        let along = |index: usize| joints.get(index).map_or(0.0, |joint: &super::Joint| joint.origin.position[0]);
+        let along =
+            |index: usize| joints.get(index).map_or(0.0, |joint: &super::Joint| joint.origin.position[0]);
         let Transform { position: [hand, y, z], rotation } = chain.tip;
         if y.abs().max(z.abs()) > 1e-9 || rotation != Transform::default().rotation {
-            return Err(Error::unsupported("a tip beside the last axis; give a link along x of the last joint"));
+            return Err(Error::unsupported(
+                "a tip beside the last axis; give a link along x of the last joint",
+            ));
         }
         let height = joints.get(1).map_or(0.0, |joint| joint.origin.position[2]);
         let origin = joints.first().map_or([0.0; 3], |joint| joint.origin.position);

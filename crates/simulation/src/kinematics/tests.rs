@@ -16,7 +16,8 @@ fn random_angles(arm: &RollArm, random: &mut Random) -> JointAngles {
 }
 
 fn distance(one: &Transform, other: &Transform) -> f64 {
-    let parts = |pose: &Transform| pose.rotation.into_iter().flatten().chain(pose.position).collect::<Vec<_>>();
+    let parts =
+        |pose: &Transform| pose.rotation.into_iter().flatten().chain(pose.position).collect::<Vec<_>>();
     parts(one).iter().zip(parts(other)).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
 }
 
@@ -48,7 +49,10 @@ fn poses_out_of_reach_are_refused() {
     for part in [f64::NAN, f64::INFINITY, 1e300] {
         let target = Transform { position: [part, 0.0, 0.0], ..Transform::default() };
         assert_eq!(arm.inverse(&target, &[part; 7]), None);
-        assert_eq!(arm.inverse(&Transform { rotation: [[part; 3]; 3], ..arm.forward(&[0.0; 7]) }, &[0.0; 7]), None);
+        assert_eq!(
+            arm.inverse(&Transform { rotation: [[part; 3]; 3], ..arm.forward(&[0.0; 7]) }, &[0.0; 7]),
+            None
+        );
     }
 }
 
@@ -93,7 +97,9 @@ fn wrong_descriptions_are_refused() {
     assert_eq!(kind("<robot", "a"), ErrorKind::Format);
     assert_eq!(kind("<model/>", "a"), ErrorKind::Format);
     let joint = |body: &str, joint: &str| {
-        format!("<robot><joint name='j' type='{joint}'><parent link='a'/><child link='b'/>{body}</joint></robot>")
+        format!(
+            "<robot><joint name='j' type='{joint}'><parent link='a'/><child link='b'/>{body}</joint></robot>"
+        )
     };
     assert_eq!(kind(&joint("", "prismatic"), "b"), ErrorKind::Unsupported);
     for body in ["<axis xyz='0 0 0'/>", "<axis xyz='0 1'/>", "<origin xyz='0 0 nan'/>"] {

@@ -89,10 +89,7 @@ impl Transform {
     #[must_use]
     pub fn relative(&self, other: &Self) -> Self {
         let seen = |vector: Vector| self.rotation.map(|axis| dot(axis, vector));
-        Self {
-            position: seen(minus(other.position, self.position, 1.0)),
-            rotation: other.rotation.map(seen),
-        }
+        Self { position: seen(minus(other.position, self.position, 1.0)), rotation: other.rotation.map(seen) }
     }
 
     /// Returns a vector of this frame in the outer frame.

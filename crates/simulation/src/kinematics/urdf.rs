@@ -51,7 +51,8 @@ fn read(node: Node<'_, '_>, name: &str) -> Result<Connection> {
         },
         None => Transform::default(),
     };
-    let axis = child(node, "axis").map_or(Ok([1.0, 0.0, 0.0]), |axis| vector(axis, "xyz", [1.0, 0.0, 0.0]))?;
+    let axis =
+        child(node, "axis").map_or(Ok([1.0, 0.0, 0.0]), |axis| vector(axis, "xyz", [1.0, 0.0, 0.0]))?;
     if dot(axis, axis) < 1e-12 {
         return Err(Error::format("its axis has no direction"));
     }
@@ -82,9 +83,8 @@ fn child<'a>(node: Node<'a, 'a>, tag: &str) -> Option<Node<'a, 'a>> {
 }
 
 fn attribute<'a>(node: Node<'a, '_>, name: &str) -> Result<&'a str> {
-    node.attribute(name).ok_or_else(|| {
-        Error::format(format!("<{}> without the attribute {name:?}", node.tag_name().name()))
-    })
+    node.attribute(name)
+        .ok_or_else(|| Error::format(format!("<{}> without the attribute {name:?}", node.tag_name().name())))
 }
 
 fn missing(tag: &str) -> Error {

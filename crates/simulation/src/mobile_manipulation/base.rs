@@ -48,7 +48,9 @@ fn omni(action: &[f64], gripper: [f64; 2], strategy: Strategy) -> ([f64; 3], f64
     let wanted = [planned[0] + STRIDE * ahead, planned[1] + STRIDE * left];
     let cost = match strategy {
         Strategy::Dirvel | Strategy::Relvelm => turn * turn + ahead * ahead + left * left,
-        Strategy::Relveld => turn * turn + (wanted[0] * wanted[0] + wanted[1] * wanted[1]) / (STRIDE * STRIDE),
+        Strategy::Relveld => {
+            turn * turn + (wanted[0] * wanted[0] + wanted[1] * wanted[1]) / (STRIDE * STRIDE)
+        }
     };
     let [ahead, left] = clipped(wanted);
     ([ahead, left, TURN * turn], cost)

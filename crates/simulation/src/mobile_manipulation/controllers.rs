@@ -59,7 +59,8 @@ impl Seen {
         }
         let number = |at: usize| f64::from(observation.get(at).copied().unwrap_or(0.0));
         let pointing = |first: usize| {
-            let [[x, y, _], ..] = axes([number(first + 6), number(first + 3), number(first + 4), number(first + 5)]);
+            let [[x, y, _], ..] =
+                axes([number(first + 6), number(first + 3), number(first + 4), number(first + 5)]);
             [x, y]
         };
         Ok(Self {
@@ -72,8 +73,8 @@ impl Seen {
 
 /// Writes speeds in m/s and rad/s as an action of the drive; to the left only if it can.
 fn write(base: BaseKind, [ahead, left]: [f64; 2], turn: f64, action: &mut [f32]) {
-    let [ahead, left, turn] = [ahead / BASE_SPEED, left / BASE_SPEED, turn / TURN_RATE]
-        .map(|share| share.clamp(-1.0, 1.0) as f32);
+    let [ahead, left, turn] =
+        [ahead / BASE_SPEED, left / BASE_SPEED, turn / TURN_RATE].map(|share| share.clamp(-1.0, 1.0) as f32);
     match (base, action) {
         (BaseKind::Omni, [.., first, second, third]) => [*first, *second, *third] = [turn, ahead, left],
         (BaseKind::Diff, [.., first, second]) => [*first, *second] = [ahead, turn],

@@ -23,7 +23,9 @@ pub use environment::MobileManipulation;
 pub use options::{BaseKind, MobileManipulationParams, Strategy};
 pub use task::Task;
 pub(crate) use variants::registrations;
-pub use variants::{DiffDoor, DiffDrawer, DiffPickPlace, DiffReach, OmniDoor, OmniDrawer, OmniPickPlace, OmniReach};
+pub use variants::{
+    DiffDoor, DiffDrawer, DiffPickPlace, DiffReach, OmniDoor, OmniDrawer, OmniPickPlace, OmniReach,
+};
 
 /// Seconds of one step.
 pub const CONTROL_PERIOD: f64 = 0.1;

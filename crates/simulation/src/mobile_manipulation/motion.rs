@@ -72,7 +72,8 @@ impl Motion {
     fn after_step(&self, speed: Option<f64>) -> f64 {
         let [slowest, fastest] = GRIPPER_SPEEDS.map(|speed| speed * CONTROL_PERIOD);
         let rest = self.length - self.travelled;
-        let step = speed.map_or_else(|| (rest / 100.0).clamp(slowest, fastest), |speed| speed * CONTROL_PERIOD);
+        let step =
+            speed.map_or_else(|| (rest / 100.0).clamp(slowest, fastest), |speed| speed * CONTROL_PERIOD);
         self.travelled + step.min(rest)
     }
 

@@ -70,7 +70,9 @@ fn run(robot: &mut dyn Environment, seen: &mut [f32], steps: usize) -> Vec<u32> 
 
 #[test]
 fn episodes_repeat_and_come_back() {
-    for id in ["MobileManipReach-v1", "MobileManipPickPlace-diff-v1", "MobileManipDoor-v1", "MobileManipDrawer-v1"] {
+    for id in
+        ["MobileManipReach-v1", "MobileManipPickPlace-diff-v1", "MobileManipDoor-v1", "MobileManipDrawer-v1"]
+    {
         let mut robot = with(id, &[("base_noise", 0.01.into()), ("ik_fail_limit", 5000.into())]);
         let mut seen = [0.0; OBSERVATION_LEN];
         robot.reset(Some(4), &ResetOptions::new(), &mut seen).unwrap();

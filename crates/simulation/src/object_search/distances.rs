@@ -49,7 +49,9 @@ impl Distances {
                 }
                 let [x, y] = column_row(cell as usize);
                 for ([right, down], step) in NEIGHBOURS {
-                    let Some(next) = index([x + right, y + down]).filter(|next| free(*next)) else { continue };
+                    let Some(next) = index([x + right, y + down]).filter(|next| free(*next)) else {
+                        continue;
+                    };
                     if length + step < self.lengths[next] {
                         self.lengths[next] = length + step;
                         self.buckets[(length + step) as usize % BUCKETS].push(next as u32);
@@ -63,9 +65,10 @@ impl Distances {
 
     /// Returns the length of the path to a cell in metres; none if there is no path.
     pub fn metres(&self, cell: usize) -> Option<f64> {
-        self.lengths.get(cell).filter(|length| **length < u32::MAX).map(|length| {
-            f64::from(*length) * CELL / f64::from(STRAIGHT)
-        })
+        self.lengths
+            .get(cell)
+            .filter(|length| **length < u32::MAX)
+            .map(|length| f64::from(*length) * CELL / f64::from(STRAIGHT))
     }
 
     /// Writes the cells of a shortest path to `end`, without the start; none if there is no path.

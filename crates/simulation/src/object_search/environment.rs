@@ -116,7 +116,8 @@ impl ObjectSearch {
             let (sine, cosine) = sine_cosine(arctangent2(place[1] - y, place[0] - x) - yaw);
             ([cosine, sine], from_here(&place) / 5.0)
         });
-        let share = |flags: &[bool; OBJECTS]| flags.iter().filter(|flag| **flag).count() as f64 / OBJECTS as f64;
+        let share =
+            |flags: &[bool; OBJECTS]| flags.iter().filter(|flag| **flag).count() as f64 / OBJECTS as f64;
         let numbers = [
             share(&episode.found),
             share(&episode.seen),

@@ -6,7 +6,8 @@ use opendr_engine::{Error, Random, Result};
 use super::grid::distance;
 use super::sensor::{reveal, sees};
 use super::{
-    CONTROL_PERIOD, FOUND, FloorPlan, KnownMap, MOST_COLLISIONS, OBJECTS, ObjectSearchParams, SPEED, TURN_RATE,
+    CONTROL_PERIOD, FOUND, FloorPlan, KnownMap, MOST_COLLISIONS, OBJECTS, ObjectSearchParams, SPEED,
+    TURN_RATE,
 };
 use crate::arctangent::wrapped;
 use crate::multirotor::numbers;
@@ -127,7 +128,8 @@ impl Episode {
     }
 
     pub fn save(&self, snapshot: &mut Snapshot) {
-        let flags = |flags: &[bool; OBJECTS]| flags.iter().rev().fold(0, |word, flag| word << 1 | u64::from(*flag));
+        let flags =
+            |flags: &[bool; OBJECTS]| flags.iter().rev().fold(0, |word, flag| word << 1 | u64::from(*flag));
         let Place { stream, episode } = self.place;
         let words = [
             stream,
@@ -147,7 +149,8 @@ impl Episode {
         let [stream, number] = [state.word()?, state.word()?];
         let [seen, found, collisions, steps] = [state.word()?, state.word()?, state.word()?, state.word()?];
         let params = ObjectSearchParams::from_numbers(numbers(state)?)?;
-        let count = |word| u32::try_from(word).map_err(|_| Error::format("a snapshot with too large a count"));
+        let count =
+            |word| u32::try_from(word).map_err(|_| Error::format("a snapshot with too large a count"));
         let mut episode = Self::begin(params, Place { stream, episode: number });
         let [x, y, yaw, path] = numbers(state)?;
         (episode.pose, episode.path) = ([x, y, yaw], path);

@@ -124,7 +124,9 @@ fn rooms(random: &mut Random) -> Vec<bool> {
     let side = SIDE as i32;
     for at in 0..side {
         for border in [[at, 0], [at, side - 1], [0, at], [side - 1, at]] {
-            index(border).map_or((), |cell| occupied[cell] = true);
+            if let Some(cell) = index(border) {
+                occupied[cell] = true;
+            }
         }
     }
     let mut rectangles: Vec<Rectangle> = vec![[1, 1, side - 1, side - 1]];
@@ -148,16 +150,18 @@ fn split(occupied: &mut [bool], [x0, y0, x1, y1]: Rectangle, random: &mut Random
     let is_wall = |occupied: &[bool], across, along| at(across, along).is_some_and(|cell| occupied[cell]);
     // A wall must not end in a door.
     let across = (0..30).map(|_| between(from + SHORTEST, to - SHORTEST)).find(|across| {
-        (-1..=1).all(|aside| is_wall(occupied, across + aside, begin - 1) && is_wall(occupied, across + aside, end))
+        (-1..=1).all(|aside| {
+            is_wall(occupied, across + aside, begin - 1) && is_wall(occupied, across + aside, end)
+        })
     })?;
-    for along in begin..end {
-        at(across, along).map_or((), |cell| occupied[cell] = true);
+    for cell in (begin..end).filter_map(|along| at(across, along)) {
+        occupied[cell] = true;
     }
     let doors = if end - begin > 3 * DOOR && between(0, 3) == 0 { 2 } else { 1 };
     for _ in 0..doors {
         let first = between(begin + 2, end - DOOR - 2);
-        for along in first..first + DOOR {
-            at(across, along).map_or((), |cell| occupied[cell] = false);
+        for cell in (first..first + DOOR).filter_map(|along| at(across, along)) {
+            occupied[cell] = false;
         }
     }
     Some(if wide {

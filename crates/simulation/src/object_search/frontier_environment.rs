@@ -43,6 +43,8 @@ const FEATURES: usize = 9;
 const FURTHER: usize = 5;
 /// Steps after which another choice is made.
 const LONGEST_DRIVE: u32 = 150;
+/// Steps of a full turn.
+const LOOKS: u32 = 17;
 /// Cost of a metre.
 const METRE: f64 = 0.1;
 
@@ -72,9 +74,10 @@ impl RegisteredEnvironment for FrontierSearch {
     fn new(params: &ObjectSearchParams) -> Result<Self> {
         params.check()?;
         let numbers = [f32::INFINITY; CANDIDATES * FEATURES + FURTHER];
-        let spec = EnvironmentSpec::new(Self::ID, Space::symmetric(&numbers), Space::discrete(CANDIDATES as u32))
-            .with_max_episode_steps(LIMIT)
-            .with_reward_range(-METRE * 100.0, OBJECTS as f64);
+        let spec =
+            EnvironmentSpec::new(Self::ID, Space::symmetric(&numbers), Space::discrete(CANDIDATES as u32))
+                .with_max_episode_steps(LIMIT)
+                .with_reward_range(-METRE * 100.0, OBJECTS as f64);
         Ok(Self {
             spec,
             params: params.clone(),
@@ -119,7 +122,8 @@ impl FrontierSearch {
                 *seen = number as f32;
             }
         }
-        let share = |flags: &[bool; OBJECTS]| flags.iter().filter(|flag| **flag).count() as f64 / OBJECTS as f64;
+        let share =
+            |flags: &[bool; OBJECTS]| flags.iter().filter(|flag| **flag).count() as f64 / OBJECTS as f64;
         let further = [
             share(&episode.found),
             share(&episode.seen),
@@ -140,11 +144,16 @@ impl FrontierSearch {
         self.route.begin(middle(candidate.look));
         self.last = middle(candidate.look);
         let before = episode.path;
+        let mut looks = 0;
         for _ in 0..LONGEST_DRIVE {
-            let Some([speed, turn]) = self.route.command(episode.pose) else {
+            let command = if looks == 0 { self.route.command(episode.pose) } else { None };
+            if command.is_none() && looks == LOOKS {
                 self.frontiers.give_up(candidate.look);
                 break;
-            };
+            }
+            // At the end the robot looks around before it gives up.
+            looks += u32::from(command.is_none());
+            let [speed, turn] = command.unwrap_or([0.0, 1.0]);
             let outcome = episode.advance(speed, turn);
             let [x, y, _] = episode.pose;
             self.path.push([x, y]);
@@ -206,6 +215,11 @@ impl Environment for FrontierSearch {
         let candidate = last.and_then(|last| self.frontiers.candidates.get(choice.min(last)).copied());
         let (found, metres) = candidate.map_or(Ok((0, 0.0)), |candidate| self.drive(&candidate))?;
         self.find()?;
+        if self.frontiers.candidates.is_empty() {
+            // Perhaps they can be resolved from elsewhere.
+            self.frontiers.reset();
+            self.find()?;
+        }
         self.observe(observation)?;
         let episode = self.episode.as_ref().ok_or_else(|| not_begun(&self.spec))?;
         let terminated = episode.is_over() || self.frontiers.candidates.is_empty();
@@ -234,7 +248,8 @@ impl Environment for FrontierSearch {
         self.frontiers.reset();
         for first in (0..CELLS).step_by(64) {
             let word = state.word()?;
-            (first..(first + 64).min(CELLS)).for_each(|cell| self.frontiers.set_given_up(cell, word >> (cell - first) & 1 == 1));
+            (first..(first + 64).min(CELLS))
+                .for_each(|cell| self.frontiers.set_given_up(cell, word >> (cell - first) & 1 == 1));
         }
         self.path = vec![[x, y]];
         self.find()

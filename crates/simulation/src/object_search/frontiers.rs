@@ -88,7 +88,14 @@ impl Frontiers {
             let look = episode.plan.objects().get(object).and_then(|place| cell_of(*place));
             let nearest = look.and_then(|look| Some((look, self.nearest(look, OBJECT_REACH)?)));
             let Some((look, (target, length))) = nearest else { continue };
-            self.candidates.push(Candidate { target, look, object: Some(object), length, size: 0, unknown: 0.0 });
+            self.candidates.push(Candidate {
+                target,
+                look,
+                object: Some(object),
+                length,
+                size: 0,
+                unknown: 0.0,
+            });
         }
         self.taken.fill(false);
         for cell in 0..CELLS {
@@ -123,10 +130,15 @@ impl Frontiers {
             return None;
         }
         let (size, count) = (self.cluster.len(), self.cluster.len() as f64);
-        let sum = self.cluster.iter().map(|cell| middle(*cell)).fold([0.0; 2], |sum, place| [sum[0] + place[0], sum[1] + place[1]]);
+        let sum = self
+            .cluster
+            .iter()
+            .map(|cell| middle(*cell))
+            .fold([0.0; 2], |sum, place| [sum[0] + place[0], sum[1] + place[1]]);
         let centre = sum.map(|part| part / count);
         let from_centre = |cell: &&usize| super::grid::distance(middle(**cell), centre);
-        let look = *self.cluster.iter().min_by(|one, other| from_centre(one).total_cmp(&from_centre(other)))?;
+        let look =
+            *self.cluster.iter().min_by(|one, other| from_centre(one).total_cmp(&from_centre(other)))?;
         let ways = self.cluster.iter().filter_map(|cell| self.nearest(*cell, REACH));
         let (target, length) = ways.min_by(|one, other| one.1.total_cmp(&other.1))?;
         let (mut unknown, mut all) = (0, 0);

@@ -37,7 +37,9 @@ pub(super) fn disc(centre: usize, radius: f64, mut visit: impl FnMut(usize)) {
     for down in -reach..=reach {
         for right in -reach..=reach {
             if f64::from(down * down + right * right) <= radius * radius {
-                index([x + right, y + down]).map_or((), &mut visit);
+                if let Some(cell) = index([x + right, y + down]) {
+                    visit(cell);
+                }
             }
         }
     }

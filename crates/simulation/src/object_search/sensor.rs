@@ -9,7 +9,12 @@ use crate::sine_cosine::sine_cosine;
 const RAY: f64 = 0.018;
 
 /// Takes what the camera sees from a pose into the map: free cells and the first occupied one on each ray.
-pub(super) fn reveal(plan: &FloorPlan, [x, y, yaw]: [f64; 3], params: &ObjectSearchParams, map: &mut KnownMap) {
+pub(super) fn reveal(
+    plan: &FloorPlan,
+    [x, y, yaw]: [f64; 3],
+    params: &ObjectSearchParams,
+    map: &mut KnownMap,
+) {
     let width = params.field_of_view.to_radians();
     let rays = (width / RAY).ceil() as i32;
     for ray in 0..=rays {
@@ -23,7 +28,12 @@ pub(super) fn reveal(plan: &FloorPlan, [x, y, yaw]: [f64; 3], params: &ObjectSea
 }
 
 /// Returns whether the camera sees a place: in its field of view and range, with nothing before it.
-pub(super) fn sees(plan: &FloorPlan, [x, y, yaw]: [f64; 3], place: [f64; 2], params: &ObjectSearchParams) -> bool {
+pub(super) fn sees(
+    plan: &FloorPlan,
+    [x, y, yaw]: [f64; 3],
+    place: [f64; 2],
+    params: &ObjectSearchParams,
+) -> bool {
     let way = [place[0] - x, place[1] - y];
     let distance = (way[0] * way[0] + way[1] * way[1]).sqrt();
     if distance < CELL {
@@ -66,5 +76,7 @@ fn cast(from: [f64; 2], direction: [f64; 2], range: f64, mut visit: impl FnMut(u
 /// Returns the cells next to a cell in the four directions.
 pub(super) fn beside(cell: usize) -> impl Iterator<Item = usize> {
     let [x, y] = column_row(cell);
-    [[1, 0], [-1, 0], [0, 1], [0, -1]].into_iter().filter_map(move |[right, down]| index([x + right, y + down]))
+    [[1, 0], [-1, 0], [0, 1], [0, -1]]
+        .into_iter()
+        .filter_map(move |[right, down]| index([x + right, y + down]))
 }
