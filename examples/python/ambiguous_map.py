@@ -5,7 +5,7 @@ import numpy as np
 import opendr
 from opendr.engine.target import Heatmap
 
-measure = opendr.learner("ambiguity_measure", threshold=0.4, device="cpu", verbose=False)
+measure = opendr.learner("ambiguity_measure", threshold=0.4)
 row, column = np.mgrid[:120, :160].astype(np.float32)
 for height in (4.0, 8.9):
     # A peak of 9 at the left, and a second one at the right.

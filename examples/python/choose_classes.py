@@ -3,7 +3,7 @@
 import opendr
 from opendr.engine.target import BoundingBoxList
 
-detector = opendr.learner("yolox", threshold=0.5, device="cpu", verbose=False)
+detector = opendr.learner("yolox", threshold=0.5)
 boxes = detector.infer("street.jpg")
 persons = [box for box in boxes if box.class_name == "person"]
 print(f"{len(persons)} of {len(boxes)} boxes are persons")

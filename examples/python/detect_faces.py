@@ -2,7 +2,7 @@
 
 import opendr
 
-detector = opendr.learner("yunet", device="cpu", verbose=False)
+detector = opendr.learner("yunet")
 faces = detector.infer("people.jpg")
 for face in faces:
     (left, _), (right, _) = face.landmarks[:2]

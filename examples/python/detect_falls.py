@@ -2,7 +2,7 @@
 
 import opendr
 
-detector = opendr.learner("fall_detector", device="cpu", verbose=False)
+detector = opendr.learner("fall_detector")
 falls, poses = detector.infer("fallen.jpg")
 for fall in falls:
     print(f"{fall.class_name or fall.name}, score {fall.confidence:.2f}")

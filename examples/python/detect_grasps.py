@@ -12,7 +12,7 @@ colour, depth = np.full((480, 640, 3), 200, np.uint8), np.full((480, 640, 1), 80
 colour[bar], depth[bar] = (40, 60, 180), 760  # depth in millimetres
 image = Image(colour)
 
-detector = opendr.learner("gr_conv_net", device="cpu", verbose=False)
+detector = opendr.learner("gr_conv_net")
 grasps = detector.infer(image, Image(depth, dtype="uint16"))
 for grasp in grasps:
     (x0, y0), (x1, y1) = grasp.data.tolist()

@@ -9,7 +9,7 @@ from opendr.engine.data import Audio, Image
 
 with wave.open("speech.wav") as file:
     samples = np.frombuffer(file.readframes(file.getnframes()), "<i2").astype(np.float32) / 32768
-detector = opendr.learner("silero_vad", device="cpu", verbose=False)
+detector = opendr.learner("silero_vad")
 # Pieces of 0.1 s, as a microphone has them; the learner returns a prediction for every 32 ms.
 voices = []
 for start in range(0, len(samples), 1600):

@@ -2,7 +2,7 @@
 
 import opendr
 
-estimator = opendr.learner("movenet/multipose", device="cpu", verbose=False)
+estimator = opendr.learner("movenet/multipose")
 poses = estimator.infer("people.jpg")
 for pose in poses:
     nose = pose["nose"]

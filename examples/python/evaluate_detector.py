@@ -7,7 +7,7 @@ from opendr.metrics import Metric
 
 opendr.simulation.render("persons", "evaluate_detector", frames=8, size=(320, 240), seed=1)
 scenes = ExternalDataset("evaluate_detector", "coco").open()
-detector = opendr.learner("single_shot_detector", device="cpu", verbose=False)
+detector = opendr.learner("single_shot_detector")
 metric, worst = Metric("coco_detection"), (2.0, 0)
 for index, (image, persons) in enumerate(scenes):
     score = metric.update(detector.infer(image), persons)

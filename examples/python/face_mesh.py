@@ -2,7 +2,7 @@
 
 import opendr
 
-mesh = opendr.learner("face_mesh", device="cpu", verbose=False)
+mesh = opendr.learner("face_mesh")
 faces = mesh.infer("astronaut.png")
 for face in faces:
     width = face.data[:, 0].max() - face.data[:, 0].min()

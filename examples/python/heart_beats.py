@@ -6,7 +6,7 @@ import opendr
 from opendr.engine.data import Image
 from opendr.engine.datasets import ExternalDataset
 
-recogniser = opendr.learner("gated_recurrent_unit", device="cpu", verbose=False)
+recogniser = opendr.learner("gated_recurrent_unit")
 beats = ExternalDataset("heart.txt", "ucr").open()
 picture, abnormal, right = np.full((240, 560, 3), 255, np.uint8), 0, 0
 for index in range(0, len(beats), 10):

@@ -5,8 +5,8 @@ import numpy as np
 import opendr
 from opendr.engine.data import Image
 
-detector = opendr.learner("voxel_object_detection_3d", device="cpu", verbose=False)
-points = np.fromfile("scan.bin", "<f4").reshape(-1, 4)
+detector = opendr.learner("voxel_object_detection_3d")
+points = np.fromfile("scan.bin", "<f4").astype(float).reshape(-1, 4)
 cars = detector.infer("scan.bin")
 # A pixel is 10 cm, ahead is up; the scan is in the lower half, since the detector processes what is ahead.
 picture = np.zeros((600, 600, 3), np.uint8)

@@ -2,7 +2,7 @@
 
 import opendr
 
-segmenter = opendr.learner("bodypix", device="cpu", verbose=False)
+segmenter = opendr.learner("bodypix")
 persons = segmenter.infer("people.jpg")
 for person in persons:
     share = person.area / (person.width * person.height)

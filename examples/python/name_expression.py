@@ -4,7 +4,7 @@ import numpy as np
 
 import opendr
 
-recogniser = opendr.learner("facial_emotion", device="cpu", verbose=False)
+recogniser = opendr.learner("facial_emotion")
 expression = recogniser.infer("astronaut.png")
 for index in np.argsort(-expression.probabilities)[:3]:
     print(f"{recogniser.classes[index]} {expression.probabilities[index]:.2f}")

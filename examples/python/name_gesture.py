@@ -2,7 +2,7 @@
 
 import opendr
 
-recogniser = opendr.learner("hand_gesture", device="cpu", verbose=False)
+recogniser = opendr.learner("hand_gesture")
 hands = recogniser.infer("hand.jpg")
 print("gestures:", ", ".join(recogniser.classes))
 for hand in hands:

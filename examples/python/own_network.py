@@ -2,7 +2,7 @@
 
 from opendr.perception.object_detection_2d import ImportedDetectorLearner
 
-detector = ImportedDetectorLearner(threshold=0.5, device="cpu")
+detector = ImportedDetectorLearner(threshold=0.5)
 detector.load("my_detector.onnx")
 boxes = detector.infer("street.jpg")
 for box in boxes:

@@ -4,7 +4,7 @@ import numpy as np
 
 import opendr
 
-segmenter = opendr.learner("efficient_ps", device="cpu", verbose=False)
+segmenter = opendr.learner("efficient_ps")
 instance, semantic = segmenter.infer("street.jpg")
 for index in np.unique(instance.data):
     pixels = instance.data == index

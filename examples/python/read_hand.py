@@ -2,7 +2,7 @@
 
 import opendr
 
-estimator = opendr.learner("hand_pose", device="cpu", verbose=False)
+estimator = opendr.learner("hand_pose")
 hands = estimator.infer("hand.jpg")
 for hand in hands:
     wrist, tip = hand[0], hand[8]

@@ -2,7 +2,7 @@
 
 import opendr
 
-reader = opendr.learner("pp_ocr", device="cpu", verbose=False)
+reader = opendr.learner("pp_ocr")
 texts = reader.infer("sign.png")
 for region in texts:
     print(f"{region.text!r} {region.confidence:.2f}")

@@ -5,7 +5,7 @@ import numpy as np
 import opendr
 from opendr.engine.data import Image
 
-recogniser = opendr.learner("spatio_temporal_gcn/utd_mhad", device="cpu", verbose=False)
+recogniser = opendr.learner("spatio_temporal_gcn/utd_mhad")
 action = recogniser.infer("skeleton.npy")
 print(f"{recogniser.classes[action.data]} {action.confidence:.2f}")
 
@@ -17,4 +17,4 @@ for frame, points in enumerate(joints):
         # Metres, y upwards; a pixel is 5 mm.
         column, row = int(200 + 200 * x), int(200 - 200 * y)
         picture[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2] = (255, shade, shade)
-action.plot(Image(picture), class_names=recogniser.classes).save("recognise_action.png")
+action.plot(Image(picture)).save("recognise_action.png")

@@ -3,7 +3,7 @@
 import opendr
 from opendr.engine.datasets import ExternalDataset
 
-recogniser = opendr.learner("face_recognition", device="cpu", verbose=False)
+recogniser = opendr.learner("face_recognition")
 recogniser.fit(ExternalDataset("known", "imagenet"), out="recognise_faces", silent=True)
 print("known:", ", ".join(recogniser.classes))
 faces = recogniser.infer("visitor.jpg")

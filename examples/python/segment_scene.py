@@ -4,7 +4,7 @@ import numpy as np
 
 import opendr
 
-segmenter = opendr.learner("deeplab", device="cpu", verbose=False)
+segmenter = opendr.learner("deeplab")
 classes = segmenter.infer("street.jpg")
 indices, pixels = np.unique(classes.data, return_counts=True)
 for index, count in zip(indices, pixels):

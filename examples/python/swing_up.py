@@ -6,7 +6,7 @@ import opendr
 from opendr.engine.data import Image
 from opendr.simulation import Environment
 
-policy = opendr.learner("sac", device="cpu", verbose=False)
+policy = opendr.learner("sac")
 env = Environment("Pendulum-v1", render_mode="rgb_array")
 observation, _ = env.reset(seed=3)
 images, total = [], 0.0

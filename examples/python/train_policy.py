@@ -5,7 +5,7 @@ import numpy as np
 from opendr.control.reinforcement_learning import PpoLearner
 from opendr.engine.data import Image
 
-policy = PpoLearner(device="cpu")
+policy = PpoLearner()
 steps = {"total_timesteps": 40_000, "eval_freq": 4_000, "n_eval_episodes": 10}
 numbers = policy.fit("CartPole-v1", silent=True, out="train_policy", **steps)
 returns = numbers["val_return"]
