@@ -30,6 +30,7 @@ fn main() -> Result<()> {
     let environment = given.first().cloned().unwrap_or_else(|| "Pendulum-v1".to_owned());
     let prior = given.get(1).cloned().unwrap_or_else(|| "pendulum-energy".to_owned());
     let seed = number(5, 0);
+    Prior::provide(opendr_control::priors());
     let mut world = opendr_simulation::make(&environment)?;
     let mut teacher = Prior::newest(&prior)?.controller(&world.spec().observation)?;
     let protocol = EvaluationProtocol { episodes: number(3, 500), ..EvaluationProtocol::default() };
@@ -47,8 +48,6 @@ fn main() -> Result<()> {
     measurement.clone()?;
     measurement.chunks::<DiffusionPolicy>(&DiffusionParams::default())?;
     measurement.chunks::<Act>(&ActParams::default())?;
-    let steps = ActParams { temporal_ensemble: false, ..ActParams::default() };
-    let _ = steps;
     Ok(())
 }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use opendr_engine::{Error, Result};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 use serde_json::{Map, Value};
 
 /// Description of a data set.
@@ -25,6 +25,7 @@ pub struct Info {
     #[serde(default = "chunks_size")]
     pub chunks_size: usize,
     /// Frames per second.
+    #[serde(serialize_with = "whole_number")]
     pub fps: f64,
     /// Ranges of episodes by name.
     #[serde(default)]
@@ -54,6 +55,14 @@ pub struct Feature {
     /// Other entries, such as those of a video.
     #[serde(flatten)]
     pub other: Map<String, Value>,
+}
+
+/// Writes a number without fraction as an integer, which LeRobot expects of frequencies.
+fn whole_number<S: Serializer>(number: &f64, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+    match number.fract() == 0.0 && number.abs() < 1e9 {
+        true => serializer.serialize_i64(*number as i64),
+        false => serializer.serialize_f64(*number),
+    }
 }
 
 fn chunks_size() -> usize {

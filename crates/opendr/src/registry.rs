@@ -56,6 +56,7 @@ use opendr_pose::{
 use opendr_rl::prior::{
     ResidualPpoLearner, ResidualSacLearner, ResidualTd3Learner, ShapedPpoLearner, ShapedSacLearner,
 };
+use opendr_imitation::{ActLearner, DiffusionPolicyLearner};
 use opendr_rl::{DqnLearner, PpoLearner, SacLearner, Td3Learner};
 #[cfg(feature = "segmentation")]
 use opendr_segmentation::{
@@ -223,6 +224,8 @@ pub fn registry() -> &'static Registry {
                 ShapedSacLearner,
                 MobileRl,
                 MultiObjectSearchRl,
+                ActLearner,
+                DiffusionPolicyLearner,
                 EndToEndPlanningRl,
                 ActiveFaceRecognition,
                 ActiveObjectRecognition,

@@ -23,7 +23,8 @@ pub(super) const POLICY_FILE: &str = "policy.safetensors";
 const CHECKPOINTS: &str = "checkpoints";
 const STATE_FILE: &str = "training.safetensors";
 const KEPT: usize = 2;
-/// Arrays of a checkpoint.
+/// Number of steps in the metadata of a checkpoint, and its arrays.
+const STEPS: &str = "steps";
 const ARRAYS: [&str; 4] = ["parameters", "current", "first_moment", "second_moment"];
 /// Key of the environment's name in the inputs of the manifest.
 const ENVIRONMENT: &str = "environment";
@@ -204,6 +205,7 @@ fn manifest<M: ImitationMethod>(params: &M::Params, source: &Source) -> Manifest
 
 fn save<M: ImitationMethod>(training: &ChunkTraining<M>, checkpoints: &Checkpoints) -> Result<()> {
     let mut file = TensorFile::default();
+    file.set_metadata(STEPS, training.steps().to_string());
     for (name, numbers) in ARRAYS.into_iter().zip(training.state()) {
         file.add_f32(name, numbers);
     }
@@ -219,7 +221,9 @@ fn resume<M: ImitationMethod>(
     let mut restore = || {
         let file = TensorFile::from_bytes(&checkpoint.file(STATE_FILE)?)?;
         let [parameters, current, first, second] = ARRAYS.map(|name| file.f32(name));
-        training.restore(checkpoint.step(), [parameters?, current?, first?, second?])
+        let steps = file.metadata(STEPS).and_then(|steps| steps.parse().ok());
+        let steps = steps.ok_or_else(|| Error::format("the checkpoint states no number of steps"))?;
+        training.restore(steps, [parameters?, current?, first?, second?])
     };
     restore().context(|| format!("resuming from {}", checkpoint.path().display()))?;
     Ok(Some(training.steps()))
