@@ -13,8 +13,8 @@ use opendr_imitation::{
 use opendr_kernels::Compute;
 use opendr_rl::prior::Prior;
 use opendr_rl::{
-    BehaviourCloningConfig, Bounds, Demonstrations, EvaluationProtocol, EvaluationReport, Head, NetworkConfig,
-    ParameterInit, Policy, clone_behaviour, evaluate, evaluate_controller,
+    BehaviourCloningConfig, Bounds, Demonstrations, EvaluationProtocol, EvaluationReport, Head,
+    NetworkConfig, ParameterInit, Policy, clone_behaviour, evaluate, evaluate_controller,
 };
 
 struct Measurement {
@@ -26,7 +26,8 @@ struct Measurement {
 
 fn main() -> Result<()> {
     let given: Vec<String> = std::env::args().skip(1).collect();
-    let number = |at: usize, default: u64| given.get(at).and_then(|text| text.parse().ok()).unwrap_or(default);
+    let number =
+        |at: usize, default: u64| given.get(at).and_then(|text| text.parse().ok()).unwrap_or(default);
     let environment = given.first().cloned().unwrap_or_else(|| "Pendulum-v1".to_owned());
     let prior = given.get(1).cloned().unwrap_or_else(|| "pendulum-energy".to_owned());
     let seed = number(5, 0);
@@ -80,7 +81,12 @@ impl Measurement {
         training.run(&mut |step, loss| {
             mean += loss;
             if step % 1000 == 0 {
-                println!("  {} step {step}: loss {:.4}, {:.0} s", M::SPEC.name, mean / 1000.0, begun.elapsed().as_secs_f64());
+                println!(
+                    "  {} step {step}: loss {:.4}, {:.0} s",
+                    M::SPEC.name,
+                    mean / 1000.0,
+                    begun.elapsed().as_secs_f64()
+                );
                 mean = 0.0;
             }
             ControlFlow::Continue(())

@@ -18,7 +18,8 @@ const OPEN: usize = 16;
 
 fn main() -> Result<()> {
     let given: Vec<String> = std::env::args().skip(1).collect();
-    let number = |at: usize, default: u64| given.get(at).and_then(|text| text.parse().ok()).unwrap_or(default);
+    let number =
+        |at: usize, default: u64| given.get(at).and_then(|text| text.parse().ok()).unwrap_or(default);
     let folder = given.first().map_or("data", String::as_str);
     let mut set = LeRobotSet::open(Path::new(folder))?;
     let present: Vec<usize> =
@@ -38,7 +39,8 @@ fn main() -> Result<()> {
         println!("repeating the last action, every {every}: {:.5}", repeated(&held_set, every));
     }
     println!("linear (ridge): {:.5}", linear(&training_set, &held_set));
-    let params = ChunkTrainingParams { training_steps: number(2, 3_000), seed: number(3, 0), ..Default::default() };
+    let params =
+        ChunkTrainingParams { training_steps: number(2, 3_000), seed: number(3, 0), ..Default::default() };
     let one = ActParams::default();
     let open = ActParams { temporal_ensemble: false, n_action_steps: OPEN, ..ActParams::default() };
     chunks::<Act>(&params, [&training_set, &held_set], [&one, &open])?;
@@ -58,7 +60,11 @@ fn chunks<M: ChunkMethod>(
     training.run(&mut |_, _| ControlFlow::Continue(()))?;
     println!("{}: {:.0} s of training", M::SPEC.name, begun.elapsed().as_secs_f64());
     println!("{}, observing every step: {:.5}", M::SPEC.name, training.policy().action_error(one, held_set)?);
-    println!("{}, observing every {OPEN}: {:.5}", M::SPEC.name, training.policy().action_error(open, held_set)?);
+    println!(
+        "{}, observing every {OPEN}: {:.5}",
+        M::SPEC.name,
+        training.policy().action_error(open, held_set)?
+    );
     Ok(())
 }
 
@@ -93,7 +99,10 @@ fn linear(training_set: &DemonstrationSet, held_set: &DemonstrationSet) -> f64 {
             let x = input(observation);
             for (at, row) in equations.iter_mut().enumerate() {
                 row.iter_mut().zip(&x).for_each(|(sum, other)| *sum += x[at] * other);
-                row[size..].iter_mut().zip(action).for_each(|(sum, action)| *sum += x[at] * f64::from(*action));
+                row[size..]
+                    .iter_mut()
+                    .zip(action)
+                    .for_each(|(sum, action)| *sum += x[at] * f64::from(*action));
             }
         }
     }

@@ -52,7 +52,11 @@ impl Affine {
     /// `Format` for numbers that are not finite, or scales that are not positive.
     pub fn check(&self, width: usize) -> Result<()> {
         let finite = self.offset.iter().chain(&self.scale).all(|x| x.is_finite());
-        if self.offset.len() != width || self.scale.len() != width || !finite || self.scale.iter().any(|&x| x <= 0.0) {
+        if self.offset.len() != width
+            || self.scale.len() != width
+            || !finite
+            || self.scale.iter().any(|&x| x <= 0.0)
+        {
             return Err(Error::format(format!(
                 "the scaling of {width} numbers is damaged; download or train the model again"
             )));
@@ -64,7 +68,9 @@ impl Affine {
     pub fn forward(&self, rows: &[f32], scaled: &mut [f32]) {
         let width = self.width();
         for (row, scaled) in rows.chunks_exact(width).zip(scaled.chunks_exact_mut(width)) {
-            for (((scaled, x), offset), scale) in scaled.iter_mut().zip(row).zip(&self.offset).zip(&self.scale) {
+            for (((scaled, x), offset), scale) in
+                scaled.iter_mut().zip(row).zip(&self.offset).zip(&self.scale)
+            {
                 *scaled = (x - offset) / scale;
             }
         }

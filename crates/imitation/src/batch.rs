@@ -73,7 +73,9 @@ impl ScaledSet {
         let [observation_len, action_len] = self.lengths;
         for back in (0..window.history).rev() {
             let at = step.saturating_sub(back).max(first);
-            batch.observations.extend_from_slice(&self.observations[at * observation_len..][..observation_len]);
+            batch
+                .observations
+                .extend_from_slice(&self.observations[at * observation_len..][..observation_len]);
         }
         for ahead in 0..window.chunk {
             let at = (step + ahead).saturating_sub(window.past).clamp(first, last);

@@ -96,13 +96,14 @@ pub fn read_demonstrations(set: &mut LeRobotSet, keep: &dyn Fn(usize) -> bool) -
         let length = record.length;
         let table = set.read(index, &|name| name == ACTION || name.starts_with(OBSERVATION))?;
         let numbers = |name: &str, width: usize| -> Result<Vec<f32>> {
-            let column = table
-                .get(name)
-                .ok_or_else(|| Error::format(format!("episode {index} has no {name:?}")))?;
+            let column =
+                table.get(name).ok_or_else(|| Error::format(format!("episode {index} has no {name:?}")))?;
             let numbers: Vec<f32> = column.numbers()?.into_iter().map(|x| x as f32).collect();
             match column.width()? == width && numbers.len() == length * width {
                 true => Ok(numbers),
-                false => Err(Error::format(format!("{name:?} of episode {index} has not {width} numbers per frame"))),
+                false => Err(Error::format(format!(
+                    "{name:?} of episode {index} has not {width} numbers per frame"
+                ))),
             }
         };
         let parts = observed.iter().map(|(name, width)| Ok((numbers(name, **width)?, **width)));
@@ -130,8 +131,8 @@ pub(crate) fn read_source(path: &Path) -> Result<Source> {
         set.episodes().iter().map(|record| record.index).zip(present).collect();
     let demonstrations = read_demonstrations(&mut set, &|index| indices.get(&index) == Some(&true))?;
     let record = set.info().other.get(RECORD).cloned().map(serde_json::from_value).transpose();
-    let record: Option<EnvironmentRecord> =
-        record.map_err(|error| Error::format("the record of the environment is damaged").with_source(error))?;
+    let record: Option<EnvironmentRecord> = record
+        .map_err(|error| Error::format("the record of the environment is damaged").with_source(error))?;
     let (spaces, environment) = match record {
         Some(record) => {
             let spaces = [record.observation.space(), record.action.space()];
@@ -143,7 +144,8 @@ pub(crate) fn read_source(path: &Path) -> Result<Source> {
             (spaces, Some(record.environment))
         }
         None => {
-            let spaces = demonstrations.row_lengths().map(|width| Space::symmetric(&vec![f32::INFINITY; width]));
+            let spaces =
+                demonstrations.row_lengths().map(|width| Space::symmetric(&vec![f32::INFINITY; width]));
             (spaces, None)
         }
     };

@@ -164,7 +164,8 @@ impl<M: ChunkMethod> ChunkPolicy<M> {
             let rows = episode.observations.chunks_exact(observation_len);
             for (observation, demonstrated) in rows.zip(episode.actions.chunks_exact(action_len)) {
                 controller.act(observation, &mut action)?;
-                let errors = action.iter().zip(demonstrated).map(|(own, other)| f64::from((own - other).abs()));
+                let errors =
+                    action.iter().zip(demonstrated).map(|(own, other)| f64::from((own - other).abs()));
                 sum += errors.sum::<f64>();
                 count += action_len as u64;
             }

@@ -82,7 +82,7 @@ impl<M: ChunkMethod> ChunkTraining<M> {
                 set.row_lengths()
             )));
         }
-        let mut policy = match base {
+        let policy = match base {
             Some(base) => base.clone(),
             None => {
                 let [observations, actions] = rows(set);
@@ -103,7 +103,6 @@ impl<M: ChunkMethod> ChunkTraining<M> {
         let set = ScaledSet::new(set, &policy.scaling[0], &policy.scaling[1]);
         let optimisation = M::optimisation();
         let count = policy.parameters.len();
-        policy.parameters.shrink_to_fit();
         Ok(Self {
             current: optimisation.averages.then(|| policy.parameters.clone()),
             policy,

@@ -195,7 +195,8 @@ fn a_training_resumes_to_the_same_policy() {
         let output = folder.join(name);
         let job = FitJob { resume, ..FitJob::new(&output) };
         let statistics =
-            <ActLearner as LearnerRl>::fit(None, &ActParams::default(), &fit_params, &env, None, &job).unwrap();
+            <ActLearner as LearnerRl>::fit(None, &ActParams::default(), &fit_params, &env, None, &job)
+                .unwrap();
         assert!(statistics.get("val_return").is_some());
         let model = Model::open(job.model()).unwrap();
         let learner = ActLearner::load(&model, ActParams::default(), Device::Cpu).unwrap();

@@ -28,7 +28,8 @@ fn print(folder: &Path) -> Result<()> {
             continue;
         }
         let table = set.read(at, &|_| true)?;
-        let sums = table.iter().map(|(name, column)| Ok((name.clone(), column.numbers()?.iter().sum::<f64>())));
+        let sums =
+            table.iter().map(|(name, column)| Ok((name.clone(), column.numbers()?.iter().sum::<f64>())));
         let sums = sums.collect::<Result<std::collections::BTreeMap<_, _>>>()?;
         let line = serde_json::json!({
             "episode": record.index, "length": record.length, "tasks": record.tasks, "sums": sums,

@@ -60,7 +60,10 @@ impl Values {
     /// `Format` where the range is not within the values.
     fn slice(&self, range: std::ops::Range<usize>) -> Result<Self> {
         let outside = || {
-            Error::format(format!("values {range:?} of a column that has {}; the table is damaged", self.len()))
+            Error::format(format!(
+                "values {range:?} of a column that has {}; the table is damaged",
+                self.len()
+            ))
         };
         Ok(match self {
             Self::Float32(values) => Self::Float32(values.get(range.clone()).ok_or_else(outside)?.to_vec()),
@@ -112,7 +115,10 @@ impl Column {
     pub fn slice(&self, rows: std::ops::Range<usize>) -> Result<Self> {
         let Some(lengths) = &self.lengths else { return Ok(Self::scalars(self.values.slice(rows)?)) };
         let own = lengths.get(rows.clone()).ok_or_else(|| {
-            Error::format(format!("rows {rows:?} of a column that has {}; the table is damaged", lengths.len()))
+            Error::format(format!(
+                "rows {rows:?} of a column that has {}; the table is damaged",
+                lengths.len()
+            ))
         })?;
         let start = lengths[..rows.start].iter().sum::<usize>();
         let values = self.values.slice(start..start + own.iter().sum::<usize>())?;
@@ -141,9 +147,8 @@ impl Column {
         match (&self.values, &self.lengths) {
             (Values::Int64(values), None) => {
                 let count = |&value: &i64| {
-                    usize::try_from(value).map_err(|_| {
-                        Error::format(format!("{value} is no index; the data set is damaged"))
-                    })
+                    usize::try_from(value)
+                        .map_err(|_| Error::format(format!("{value} is no index; the data set is damaged")))
                 };
                 values.iter().map(count).collect()
             }

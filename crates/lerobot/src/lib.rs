@@ -23,7 +23,7 @@ pub use convert::convert;
 pub use info::{Feature, Info};
 pub use record::{EpisodeRecord, VideoSegment};
 pub use set::LeRobotSet;
+pub use statistics::FeatureStatistics;
 #[doc(hidden)]
 pub use table::columns_of_bytes;
-pub use statistics::FeatureStatistics;
 pub use writer::{LeRobotWriter, SetOptions};

@@ -47,9 +47,13 @@ mod tests {
 
     #[test]
     fn no_path_leaves_the_set() {
-        for (pattern, key) in
-            [("../{video_key}", "a"), ("/etc/{video_key}", "a"), ("{video_key}/x", "../.."), ("{other}", ""), ("{x", "")]
-        {
+        for (pattern, key) in [
+            ("../{video_key}", "a"),
+            ("/etc/{video_key}", "a"),
+            ("{video_key}/x", "../.."),
+            ("{other}", ""),
+            ("{x", ""),
+        ] {
             assert!(member(Path::new("/set"), pattern, &[], key).is_err(), "{pattern}");
         }
     }

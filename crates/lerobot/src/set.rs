@@ -46,9 +46,8 @@ impl LeRobotSet {
     /// `NotFound` where the folder is no data set; `Format` for damaged files, `Unsupported` for other versions.
     pub fn open(root: &Path) -> Result<Self> {
         let path = root.join("meta/info.json");
-        let text = std::fs::read_to_string(&path).context(|| {
-            format!("{} is no data set of LeRobot: it needs meta/info.json", root.display())
-        })?;
+        let text = std::fs::read_to_string(&path)
+            .context(|| format!("{} is no data set of LeRobot: it needs meta/info.json", root.display()))?;
         let info: Info = serde_json::from_str(&text)
             .map_err(|error| Error::format(format!("{} is damaged", path.display())).with_source(error))?;
         if !info.fps.is_finite() || info.fps <= 0.0 || info.chunks_size == 0 {
@@ -101,8 +100,7 @@ impl LeRobotSet {
         let table = match self.last.take() {
             Some((last, table)) if last == path => table,
             _ => read_table(&path, &|name| {
-                name == EPISODE
-                    || self.info.features.get(name).is_some_and(|feature| feature.is_numeric())
+                name == EPISODE || self.info.features.get(name).is_some_and(|feature| feature.is_numeric())
             })?,
         };
         let cut = cut(&table, index, length, wanted).context(|| path.display().to_string());
@@ -241,7 +239,9 @@ fn tables_in(folder: &Path) -> Result<Vec<PathBuf>> {
     };
     let mut tables = Vec::new();
     for chunk in list(folder)?.into_iter().filter(|path| path.is_dir()) {
-        tables.extend(list(&chunk)?.into_iter().filter(|path| path.extension().is_some_and(|e| e == "parquet")));
+        tables.extend(
+            list(&chunk)?.into_iter().filter(|path| path.extension().is_some_and(|e| e == "parquet")),
+        );
     }
     Ok(tables)
 }

@@ -118,12 +118,7 @@ fn read<T: DataType>(mut reader: ColumnReaderImpl<T>, most: i16) -> Result<(Vec<
     loop {
         definitions.clear();
         repetitions.clear();
-        let read = reader.read_records(
-            RECORDS,
-            Some(&mut definitions),
-            Some(&mut repetitions),
-            &mut values,
-        );
+        let read = reader.read_records(RECORDS, Some(&mut definitions), Some(&mut repetitions), &mut values);
         let (records, stored, levels) = read.map_err(damaged)?;
         if records == 0 && levels == 0 {
             return Ok((values, lengths));

@@ -186,7 +186,7 @@ impl LeRobotWriter {
             }
         }
         let wanted: BTreeSet<_> = self.info.video_keys().collect();
-        if wanted != videos.keys().map(String::as_str).collect() {
+        if wanted != videos.keys().map(String::as_str).collect::<BTreeSet<_>>() {
             return Err(Error::invalid_input(format!("the videos must be those of {wanted:?}")));
         }
         length.filter(|&length| length > 0).ok_or_else(|| Error::invalid_input("the episode has no frames"))
@@ -281,8 +281,7 @@ impl LeRobotWriter {
             for (at, (row, _)) in empty.rows().into_iter().enumerate() {
                 let lengths = own().map(|statistics| statistics.rows()[at].1.len()).collect();
                 let values = own().flat_map(|statistics| statistics.rows()[at].1.iter().copied());
-                let column =
-                    Column { values: Values::Float64(values.collect()), lengths: Some(lengths) };
+                let column = Column { values: Values::Float64(values.collect()), lengths: Some(lengths) };
                 columns.push((format!("stats/{name}/{row}"), column));
             }
             let counts = own().map(|statistics| statistics.count.first().map_or(0, |&count| count as i64));
@@ -298,9 +297,7 @@ impl LeRobotWriter {
 fn statistics_of(rows: &Table) -> Result<BTreeMap<String, FeatureStatistics>> {
     let numeric = rows.iter().filter(|(_, column)| !matches!(column.values, Values::Text(_)));
     numeric
-        .map(|(name, column)| {
-            Ok((name.clone(), FeatureStatistics::of(&column.numbers()?, column.width()?)))
-        })
+        .map(|(name, column)| Ok((name.clone(), FeatureStatistics::of(&column.numbers()?, column.width()?))))
         .collect()
 }
 

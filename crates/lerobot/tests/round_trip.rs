@@ -55,13 +55,19 @@ fn episodes_are_read_as_they_were_written() {
     assert_eq!(set.tasks().values().collect::<Vec<_>>(), ["pick", "place"]);
     for (index, length) in [4, 1, 7].into_iter().enumerate() {
         let record = &set.episodes()[index];
-        assert_eq!((record.length, record.tasks[0].as_str()), (length, if index == 1 { "place" } else { "pick" }));
+        assert_eq!(
+            (record.length, record.tasks[0].as_str()),
+            (length, if index == 1 { "place" } else { "pick" })
+        );
         let written = episode(10.0 * index as f32, length);
         assert_eq!(set.read(index, &|name| written.contains_key(name)).unwrap(), written);
     }
     let times = set.read(2, &|name| name == "timestamp" || name == "index").unwrap();
     assert_eq!(times["index"].counts().unwrap(), [5, 6, 7, 8, 9, 10, 11]);
-    assert_eq!(times["timestamp"].values, Values::Float32((0..7).map(|at| (f64::from(at) / 10.0) as f32).collect()));
+    assert_eq!(
+        times["timestamp"].values,
+        Values::Float32((0..7).map(|at| (f64::from(at) / 10.0) as f32).collect())
+    );
     assert_eq!(set.read(3, &|_| true).unwrap_err().kind(), ErrorKind::NotFound);
     let copy = folder.path().join("copy");
     convert(&mut set, &copy, &|index| index != 1, &mut |_| {}).unwrap();
@@ -107,7 +113,9 @@ fn damaged_files_are_errors() {
     std::fs::write(&path, &whole).unwrap();
     let info = target.join("meta/info.json");
     let text = std::fs::read_to_string(&info).unwrap();
-    for (from, to) in [("data/chunk", "../chunk"), ("v3.0", "v9.9"), ("\"fps\": 10", "\"fps\": -1"), ("{", "")] {
+    for (from, to) in
+        [("data/chunk", "../chunk"), ("v3.0", "v9.9"), ("\"fps\": 10", "\"fps\": -1"), ("{", "")]
+    {
         std::fs::write(&info, text.replace(from, to)).unwrap();
         assert!(LeRobotSet::open(&target).is_err(), "{from}");
     }

@@ -68,7 +68,8 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let bar = ProgressBar::new(matches.get_flag("quiet"));
     let text = |name: &str| matches.get_one::<String>(name).cloned().unwrap_or_default();
     let id = text("id");
-    let mut environment = opendr::environments::source(&id, &environment_flags::params(&id, matches)?)?.make()?;
+    let mut environment =
+        opendr::environments::source(&id, &environment_flags::params(&id, matches)?)?.make()?;
     let spec = environment.spec().clone();
     let mut teacher = Prior::newest(&text("controller"))?.controller(&spec.observation)?;
     let options = RecordingOptions {

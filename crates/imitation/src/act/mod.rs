@@ -43,12 +43,7 @@ pub struct ActTape {
 
 /// Returns the sizes of a transformer of ACT.
 fn sizes(config: &ActConfig, layers: usize) -> TransformerSizes {
-    TransformerSizes {
-        size: config.dim_model,
-        heads: config.n_heads,
-        hidden: config.dim_feedforward,
-        layers,
-    }
+    TransformerSizes { size: config.dim_model, heads: config.n_heads, hidden: config.dim_feedforward, layers }
 }
 
 #[allow(private_interfaces, reason = "as the trait")]
@@ -171,8 +166,7 @@ mod tests {
         let network = Act::new(&config, [4, 2]).unwrap();
         let mut parameters = vec![0.0; network.parameters()];
         network.initialise(&mut Random::new(1), &mut parameters);
-        let batch =
-            Batch { observations: numbers(12, 2), actions: numbers(18, 3), valid: vec![3, 1, 2] };
+        let batch = Batch { observations: numbers(12, 2), actions: numbers(18, 3), valid: vec![3, 1, 2] };
         let (compute, mut gradients) = (Compute::with_threads(2), vec![0.0; parameters.len()]);
         let mut tape = ActTape::default();
         network.pass(&compute, &parameters, &batch, &mut Random::new(4), &mut tape, &mut gradients);

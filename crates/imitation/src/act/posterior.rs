@@ -142,7 +142,9 @@ impl Posterior {
         let [_, observation, action, encoder, latent] = split(parameters, self.counts());
         let [dpositions, dobservation, daction, dencoder, dlatent] = split_mut(gradients, self.counts());
         let (size, tokens, count) = (self.positions.size(), BEFORE + self.chunk, batch.valid.len());
-        let PosteriorTape { tokens: x, dtokens, rows, drows, first, dfirst, moments, dmoments, noise, .. } = tape;
+        let PosteriorTape {
+            tokens: x, dtokens, rows, drows, first, dfirst, moments, dmoments, noise, ..
+        } = tape;
         dmoments.resize(moments.len(), 0.0);
         let weight = weight / count as f32;
         let width = self.latent.outputs();

@@ -57,7 +57,8 @@ impl Denoiser {
             )));
         }
         let dense = |inputs, outputs| Dense::new(inputs, outputs, Activation::Identity);
-        let given = config.n_obs_steps.saturating_mul(observation).saturating_add(config.diffusion_step_embed_dim);
+        let given =
+            config.n_obs_steps.saturating_mul(observation).saturating_add(config.diffusion_step_embed_dim);
         let chunk = config.horizon.saturating_mul(action);
         let (width, size) = (config.width, config.cond_dim);
         Ok(Self {

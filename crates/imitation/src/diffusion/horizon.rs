@@ -41,8 +41,9 @@ impl DiffusionMemory {
             self.predict(policy, params, &step);
             self.executed = 0;
         }
-        let at = (history - 1 + self.executed) * step.action.len();
-        step.action.copy_from_slice(&self.chunk[at..][..step.action.len()]);
+        let Acting { action, .. } = step;
+        let at = (history - 1 + self.executed) * action.len();
+        action.copy_from_slice(&self.chunk[at..][..action.len()]);
         self.executed += 1;
     }
 

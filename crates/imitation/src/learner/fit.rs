@@ -72,8 +72,7 @@ pub(super) fn fit_teacher<M: ImitationMethod>(
         job.progress.advance(1);
     });
     job.progress.end();
-    let source =
-        Source { set: set?, spaces: [spec.observation, spec.action], environment: Some(spec.id) };
+    let source = Source { set: set?, spaces: [spec.observation, spec.action], environment: Some(spec.id) };
     let mut val_env = match teacher.n_eval_episodes {
         0 => None,
         _ => Some(val_env.make().context(|| "making the environment for evaluations")?),

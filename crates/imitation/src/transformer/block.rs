@@ -3,9 +3,7 @@
 use std::ops::Range;
 
 use opendr_engine::{Random, Result};
-use opendr_kernels::{
-    Activation, AttentionTape, Compute, Dense, LayerNorm, MultiHeadAttention, Sequences,
-};
+use opendr_kernels::{Activation, AttentionTape, Compute, Dense, LayerNorm, MultiHeadAttention, Sequences};
 
 use super::initialise::{initialise_dense, initialise_norm};
 
@@ -125,8 +123,7 @@ impl Block {
                     self.attention.forward(compute, of_part, [from, from], own, &mut tape.own, branch);
                 }
                 (CROSS, Some(memory)) => {
-                    let sequences =
-                        Sequences { queries: own.queries, keys: memory.tokens, lengths: None };
+                    let sequences = Sequences { queries: own.queries, keys: memory.tokens, lengths: None };
                     let both = [from, memory.values];
                     self.attention.forward(compute, of_part, both, sequences, &mut tape.cross, branch);
                 }
@@ -157,8 +154,7 @@ impl Block {
         for &part in self.parts().iter().rev() {
             let BlockTape { inputs, normed, hidden, branch, dhidden, dnormed, dinput, .. } = tape;
             let (of_norm, of_part) = parameters[self.range(part)].split_at(self.norm.parameters());
-            let (norm_gradients, own) =
-                gradients[self.range(part)].split_at_mut(self.norm.parameters());
+            let (norm_gradients, own) = gradients[self.range(part)].split_at_mut(self.norm.parameters());
             branch.copy_from_slice(dx);
             let from = &normed[part];
             dnormed.resize(dx.len(), 0.0);
@@ -190,7 +186,14 @@ impl Block {
                         Some(dhidden),
                     );
                     let ends = [&from[..], hidden];
-                    self.feed[0].backward(compute, first, ends, dhidden, Some(first_gradients), Some(dnormed));
+                    self.feed[0].backward(
+                        compute,
+                        first,
+                        ends,
+                        dhidden,
+                        Some(first_gradients),
+                        Some(dnormed),
+                    );
                 }
             }
             self.norm.backward(of_norm, &inputs[part], dnormed, Some(norm_gradients), Some(dinput));

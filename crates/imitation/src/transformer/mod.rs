@@ -8,8 +8,8 @@ pub(crate) mod tests;
 use opendr_engine::{Random, Result};
 use opendr_kernels::{Compute, LayerNorm, Sequences};
 
-pub(crate) use block::{Memory, add};
 use block::{Block, BlockTape, EPSILON};
+pub(crate) use block::{Memory, add};
 pub(crate) use initialise::{initialise_dense, initialise_norm, initialise_vectors};
 
 /// Blocks and a last normalisation.
@@ -106,7 +106,14 @@ impl Transformer {
         for (block, tape) in self.blocks.iter().zip(&mut tape.blocks).rev() {
             let range = end - block.parameters()..end;
             let memory = memory.as_mut().map(|(memory, flow)| (*memory, &mut **flow));
-            block.backward(compute, &parameters[range.clone()], dx, memory, tape, &mut gradients[range.clone()]);
+            block.backward(
+                compute,
+                &parameters[range.clone()],
+                dx,
+                memory,
+                tape,
+                &mut gradients[range.clone()],
+            );
             end = range.start;
         }
     }

@@ -22,7 +22,8 @@ pub(crate) fn assert_directions(
             loss(&at)
         };
         // Richardson's extrapolation removes the error of the second order.
-        let slope = |moved: &mut dyn FnMut(f32) -> f64, by: f32| (moved(by) - moved(-by)) / f64::from(2.0 * by);
+        let slope =
+            |moved: &mut dyn FnMut(f32) -> f64, by: f32| (moved(by) - moved(-by)) / f64::from(2.0 * by);
         let coarse = slope(&mut moved, 4.0 * step);
         let fine = slope(&mut moved, 2.0 * step);
         let difference = (4.0 * fine - coarse) / 3.0;
