@@ -20,7 +20,7 @@ const COEFFICIENTS: [f64; 11] = [
     1.628_582_011_536_578_2e-2,
 ];
 /// Angles to which arguments are reduced: arc tangents of 0.5, 1 and 1.5.
-const ANGLES: [f64; 3] = [4.636_476_090_008_061e-1, std::f64::consts::FRAC_PI_4, 9.827_937_232_473_291e-1];
+const ANGLES: [f64; 3] = [4.636_476_090_008_061e-1, std::f64::consts::FRAC_PI_4, 9.827_937_232_473_29e-1];
 
 /// Returns the arc tangent of a number that is not negative.
 fn arctangent(x: f64) -> f64 {

@@ -7,13 +7,13 @@ use opendr_engine::params::ParamMap;
 use opendr_engine::{Error, Result};
 
 use crate::classic_control::{Acrobot, CartPole, MountainCar, MountainCarContinuous, Pendulum};
+use crate::object_search::{FrontierSearch, ObjectSearch};
 use crate::planar_grasp::PlanarGrasp;
 use crate::planar_peg::PlanarPeg;
 use crate::planar_push::PlanarPush;
 use crate::quad_track::QuadTrack;
 use crate::registration::Registration;
 use crate::vector::{VecEnvironment, VectorOptions};
-use crate::object_search::{FrontierSearch, ObjectSearch};
 use crate::{mobile_manipulation, sphere_view, uav_corridor};
 
 /// Environments by name and version.

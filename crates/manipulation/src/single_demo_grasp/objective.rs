@@ -29,9 +29,9 @@ pub(super) fn loss(output: &[f32], jaws: Option<&[[f32; 2]; 2]>, share: f32, gra
             sum += weight * (logit.max(0.0) - logit * present + (-logit.abs()).exp().ln_1p());
             gradient[cell] = share * weight * (likely - present);
             if let Some(off) = off.filter(|_| present > PLACED) {
-                for axis in 0..2 {
+                for (axis, off) in off.into_iter().enumerate() {
                     let at = (axis + 1) * CELLS + cell;
-                    let error = output[at] - off[axis];
+                    let error = output[at] - off;
                     sum += PLACE * smooth(error);
                     gradient[at] = share * PLACE * error.clamp(-SMOOTH, SMOOTH) / SMOOTH;
                 }

@@ -36,10 +36,10 @@ pub(super) fn disc(centre: usize, radius: f64, mut visit: impl FnMut(usize)) {
     let ([x, y], reach) = (column_row(centre), radius as i32);
     for down in -reach..=reach {
         for right in -reach..=reach {
-            if f64::from(down * down + right * right) <= radius * radius {
-                if let Some(cell) = index([x + right, y + down]) {
-                    visit(cell);
-                }
+            if f64::from(down * down + right * right) <= radius * radius
+                && let Some(cell) = index([x + right, y + down])
+            {
+                visit(cell);
             }
         }
     }

@@ -35,7 +35,7 @@ impl Surroundings {
 
     /// Returns the texture of the table at a pixel: noise on a grid of 4 pixels.
     fn grain(&self, column: usize, row: usize) -> f32 {
-        let cell = (row as u64 / 4) << 32 | column as u64 / 4;
+        let cell = ((row as u64 / 4) << 32) | (column as u64 / 4);
         2.0 * self.grain * (hashed(self.texture ^ cell) - 0.5)
     }
 }
