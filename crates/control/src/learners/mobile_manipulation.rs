@@ -5,7 +5,7 @@ use opendr_engine::learner::Spec;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, Task};
 use opendr_kernels::Compute;
-use opendr_rl::{Method, Policy, Ppo, PpoConfig, PpoFitParams, PpoMethod, RlTrainingParams};
+use opendr_rl::{Method, Policy, Ppo, PpoConfig, PpoFitParams, PpoMethod, RlTrainingParams, Schedule};
 
 use super::WithResetOptions;
 
@@ -15,6 +15,7 @@ pub struct MobileRlFitParams {
     /// Settings of PPO.
     #[param(
         flatten,
+        learning_rate_schedule = Schedule::Linear,
         n_steps = 256,
         batch_size = 512,
         n_epochs = 5,
@@ -32,7 +33,7 @@ pub struct MobileRlFitParams {
     /// Settings of any training in environments.
     #[param(
         flatten,
-        total_timesteps = 2_000_000,
+        total_timesteps = 400_000,
         n_envs = 16,
         num_workers = 2,
         eval_freq = 0,
@@ -47,6 +48,9 @@ pub struct MobileRlMethod;
 
 /// Start of the names of the environments whose episodes have the options of [`MobileRlFitParams`].
 const FAMILY: &str = "MobileManip";
+/// Part of the names of those with a differential drive, and the steps of a training in them.
+const DIFF: &str = "-diff-";
+const DIFF_TIMESTEPS: u64 = 1_000_000;
 
 impl Method for MobileRlMethod {
     const SPEC: Spec = Spec::new("mobile_rl", Task::ReinforcementLearning).class("MobileRLLearner").about(
@@ -55,8 +59,14 @@ impl Method for MobileRlMethod {
     type FitParams = MobileRlFitParams;
     type Algorithm = Ppo;
 
-    fn with_preset(params: &MobileRlFitParams, _: &str) -> MobileRlFitParams {
-        params.clone()
+    fn with_preset(params: &MobileRlFitParams, id: &str) -> MobileRlFitParams {
+        let mut chosen = params.clone();
+        let default = MobileRlFitParams::default().training.total_timesteps;
+        let own = &mut chosen.training;
+        if own.preset && own.total_timesteps == default && id.starts_with(FAMILY) && id.contains(DIFF) {
+            own.total_timesteps = DIFF_TIMESTEPS;
+        }
+        chosen
     }
 
     fn wrap(

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod learners;
 mod online;
 mod planar;
 mod priors;
