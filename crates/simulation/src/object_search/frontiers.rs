@@ -3,7 +3,8 @@
 use super::distances::Distances;
 use super::episode::Episode;
 use super::grid::{CELLS, cell_of, column_row, disc, index, middle};
-use super::{Cell, OBJECTS};
+use super::sensor::is_clear;
+use super::{Cell, KnownMap, OBJECTS};
 
 /// A place to drive to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -86,7 +87,7 @@ impl Frontiers {
         self.distances.compute(start, |cell| map.is_passable(cell));
         for object in (0..OBJECTS).filter(|at| episode.seen[*at] && !episode.found[*at]) {
             let look = episode.plan.objects().get(object).and_then(|place| cell_of(*place));
-            let nearest = look.and_then(|look| Some((look, self.nearest(look, OBJECT_REACH)?)));
+            let nearest = look.and_then(|look| Some((look, self.nearest(map, look, OBJECT_REACH)?)));
             let Some((look, (target, length))) = nearest else { continue };
             self.candidates.push(Candidate {
                 target,
@@ -139,7 +140,7 @@ impl Frontiers {
         let from_centre = |cell: &&usize| super::grid::distance(middle(**cell), centre);
         let look =
             *self.cluster.iter().min_by(|one, other| from_centre(one).total_cmp(&from_centre(other)))?;
-        let ways = self.cluster.iter().filter_map(|cell| self.nearest(*cell, REACH));
+        let ways = self.cluster.iter().filter_map(|cell| self.nearest(&episode.map, *cell, REACH));
         let (target, length) = ways.min_by(|one, other| one.1.total_cmp(&other.1))?;
         let (mut unknown, mut all) = (0, 0);
         disc(look, AROUND, |cell| {
@@ -150,12 +151,13 @@ impl Frontiers {
         Some(Candidate { target, look, object: None, length, size, unknown })
     }
 
-    /// Returns the cell with the shortest way among those around a cell, and the length of its way.
-    fn nearest(&self, cell: usize, reach: f64) -> Option<(usize, f64)> {
+    /// Returns the cell with the shortest way among those from which a cell can be seen, and the length of its way.
+    fn nearest(&self, map: &KnownMap, cell: usize, reach: f64) -> Option<(usize, f64)> {
         let mut best: Option<(usize, f64)> = None;
         disc(cell, reach, |near| {
             if let Some(length) = self.distances.metres(near)
                 && best.is_none_or(|(_, shortest)| length < shortest)
+                && is_clear(map, near, cell)
             {
                 best = Some((near, length));
             }

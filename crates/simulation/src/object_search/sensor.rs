@@ -1,7 +1,7 @@
 //! A depth camera in the plane.
 
-use super::grid::{column_row, column_row_of, index};
-use super::{CELL, FloorPlan, KnownMap, ObjectSearchParams};
+use super::grid::{column_row, column_row_of, index, middle};
+use super::{CELL, Cell, FloorPlan, KnownMap, ObjectSearchParams};
 use crate::arctangent::{arctangent2, wrapped};
 use crate::sine_cosine::sine_cosine;
 
@@ -49,6 +49,21 @@ pub(super) fn sees(
         return clear;
     }
     false
+}
+
+/// Returns whether the map has no obstacle between the middles of two cells.
+pub(super) fn is_clear(map: &KnownMap, from: usize, to: usize) -> bool {
+    let ([x, y], [to_x, to_y]) = (middle(from), middle(to));
+    let way = [to_x - x, to_y - y];
+    let distance = (way[0] * way[0] + way[1] * way[1]).sqrt();
+    let mut clear = true;
+    if distance > 0.0 {
+        cast([x, y], way.map(|part| part / distance), distance, |cell| {
+            clear &= map.cell(cell) != Cell::Occupied;
+            clear
+        });
+    }
+    clear
 }
 
 /// Calls `visit` for the cells along a ray (Amanatides and Woo, A fast voxel traversal algorithm, 1987) until it returns false.
