@@ -11,6 +11,7 @@ mod convert;
 mod info;
 mod json_lines;
 mod member;
+mod metadata;
 mod record;
 mod set;
 mod statistics;

@@ -4,8 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use opendr_engine::{Error, Result, ResultExt as _};
-use serde_json::{Map, Value};
+use serde_json::Value;
 
+use crate::metadata::{episode_columns, tasks_index, write_json, write_table};
 use crate::record::{EpisodeRecord, VideoSegment};
 use crate::table::Table;
 use crate::table_writer::TableWriter;
@@ -39,7 +40,7 @@ pub struct LeRobotWriter {
 const DATA: &str = "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet";
 const VIDEO: &str = "videos/{video_key}/chunk-{chunk_index:03d}/file-{file_index:03d}.mp4";
 /// Files per folder, and the sizes from which on a new file begins, in MB: LeRobot's defaults.
-const CHUNK: usize = 1000;
+pub(crate) const CHUNK: usize = 1000;
 const DATA_MB: u64 = 100;
 const VIDEO_MB: u64 = 200;
 /// Features that every data set has.
@@ -230,67 +231,12 @@ impl LeRobotWriter {
             &[("task_index", &indices), ("task", &tasks)],
             Some(tasks_index().to_string()),
         )?;
-        let columns = self.episode_columns();
+        let columns = episode_columns(&self.info, &self.episodes, &self.file_of);
         let columns: Vec<_> = columns.iter().map(|(name, column)| (name.as_str(), column)).collect();
         write_table(&meta.join("episodes/chunk-000/file-000.parquet"), &columns, None)?;
         write_json(&meta.join("stats.json"), &self.statistics)?;
         write_json(&meta.join("info.json"), &self.info)?;
         Ok(self.info)
-    }
-
-    /// Returns the columns of the table of episodes.
-    fn episode_columns(&self) -> Vec<(String, Column)> {
-        let integers = |of: &dyn Fn(usize, &EpisodeRecord) -> usize| {
-            let values = self.episodes.iter().enumerate().map(|(at, record)| of(at, record) as i64);
-            Column::scalars(Values::Int64(values.collect()))
-        };
-        let starts: Vec<usize> = self
-            .episodes
-            .iter()
-            .scan(0, |end, record| {
-                let start = *end;
-                *end += record.length;
-                Some(start)
-            })
-            .collect();
-        let tasks = self.episodes.iter().flat_map(|record| record.tasks.iter().cloned()).collect();
-        let mut columns = vec![
-            ("episode_index".to_owned(), integers(&|at, _| at)),
-            ("tasks".to_owned(), Column::lists(Values::Text(tasks), 1)),
-            ("length".to_owned(), integers(&|_, record| record.length)),
-            ("data/chunk_index".to_owned(), integers(&|at, _| self.file_of[at] / CHUNK)),
-            ("data/file_index".to_owned(), integers(&|at, _| self.file_of[at] % CHUNK)),
-            ("dataset_from_index".to_owned(), integers(&|at, _| starts[at])),
-            ("dataset_to_index".to_owned(), integers(&|at, record| starts[at] + record.length)),
-        ];
-        for key in self.info.video_keys() {
-            let times = |of: &dyn Fn(&VideoSegment) -> f64| {
-                let values = self.episodes.iter().map(|record| record.videos.get(key).map_or(0.0, of));
-                Column::scalars(Values::Float64(values.collect()))
-            };
-            columns.extend([
-                (format!("videos/{key}/chunk_index"), integers(&|at, _| at / CHUNK)),
-                (format!("videos/{key}/file_index"), integers(&|at, _| at % CHUNK)),
-                (format!("videos/{key}/from_timestamp"), times(&|segment| segment.from)),
-                (format!("videos/{key}/to_timestamp"), times(&|segment| segment.to)),
-            ]);
-        }
-        for name in self.statistics.keys() {
-            let own = || self.episodes.iter().filter_map(|record| record.statistics.get(name));
-            let empty = FeatureStatistics::default();
-            for (at, (row, _)) in empty.rows().into_iter().enumerate() {
-                let lengths = own().map(|statistics| statistics.rows()[at].1.len()).collect();
-                let values = own().flat_map(|statistics| statistics.rows()[at].1.iter().copied());
-                let column = Column { values: Values::Float64(values.collect()), lengths: Some(lengths) };
-                columns.push((format!("stats/{name}/{row}"), column));
-            }
-            let counts = own().map(|statistics| statistics.count.first().map_or(0, |&count| count as i64));
-            let counts = Column::lists(Values::Int64(counts.collect()), 1);
-            columns.push((format!("stats/{name}/count"), counts));
-        }
-        columns.push(("meta/episodes/chunk_index".to_owned(), integers(&|_, _| 0)));
-        columns.push(("meta/episodes/file_index".to_owned(), integers(&|_, _| 0)));
-        columns
     }
 }
 
@@ -299,37 +245,4 @@ fn statistics_of(rows: &Table) -> Result<BTreeMap<String, FeatureStatistics>> {
     numeric
         .map(|(name, column)| Ok((name.clone(), FeatureStatistics::of(&column.numbers()?, column.width()?))))
         .collect()
-}
-
-fn write_table(path: &Path, columns: &[(&str, &Column)], pandas: Option<String>) -> Result<()> {
-    let mut table = TableWriter::create(path, columns, pandas)?;
-    table.add(columns)?;
-    table.finish()
-}
-
-fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<()> {
-    let text = serde_json::to_string_pretty(value)
-        .map_err(|error| Error::internal("the description cannot be written as JSON").with_source(error))?;
-    std::fs::write(path, text).context(|| path.display().to_string())
-}
-
-/// Returns what pandas stores about the table of tasks: tasks are the index of its rows.
-fn tasks_index() -> Value {
-    let column = |name: &str, pandas: &str, numpy: &str| {
-        let mut column = Map::new();
-        for (key, text) in
-            [("name", name), ("field_name", name), ("pandas_type", pandas), ("numpy_type", numpy)]
-        {
-            column.insert(key.to_owned(), text.into());
-        }
-        column.insert("metadata".to_owned(), Value::Null);
-        Value::Object(column)
-    };
-    serde_json::json!({
-        "index_columns": ["task"],
-        "column_indexes": [],
-        "columns": [column("task_index", "int64", "int64"), column("task", "unicode", "object")],
-        "creator": {"library": "opendr", "version": env!("CARGO_PKG_VERSION")},
-        "pandas_version": "2.0.0",
-    })
 }
