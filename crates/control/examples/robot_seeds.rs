@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use opendr_control::{MobileRl, MultiObjectSearchRl};
 use opendr_engine::environment::{Controller, Environment, Step};
-use opendr_engine::learner::{FitJob, Handle, Learner as _, LearnerRl};
+use opendr_engine::learner::{FitJob, Handle, LearnerRl};
 use opendr_engine::params::{ParamMap, Params};
 use opendr_engine::{Device, Error, Result};
 use opendr_rl::{EvaluationProtocol, POLICY_FILE, Policy, SuccessRate, evaluate, evaluate_controller};

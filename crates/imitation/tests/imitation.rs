@@ -1,5 +1,7 @@
 //! Policies of action chunks from the demonstration to the container, and what they guarantee.
 
+#![allow(clippy::unwrap_used)]
+
 use std::ops::ControlFlow;
 
 use opendr_engine::environment::{Controller, Environment, Space};

@@ -1,5 +1,7 @@
 //! Data sets that are written and read again, and damaged ones.
 
+#![allow(clippy::unwrap_used)]
+
 use std::collections::BTreeMap;
 use std::path::Path;
 
