@@ -17,6 +17,8 @@ pub(super) struct Cutout {
 
 /// Width of the border that shows the background, pixels.
 const BORDER: usize = 4;
+/// Least ratio of the difference of an object to those in the border.
+const BORDER_NOISE: f32 = 1.5;
 /// Least difference of an object from the background, of a level of 1.
 const DIFFERENCE: f32 = 0.06;
 /// Fewest pixels of an object.
@@ -36,7 +38,8 @@ impl Cutout {
                 pairs.map(|(level, own)| (level - own) * (level - own)).sum::<f32>().sqrt()
             })
             .collect();
-        let threshold = otsu(&difference).max(DIFFERENCE);
+        // An object of several colours is darker and brighter than Otsu's threshold: what the free border does not have is object.
+        let threshold = otsu(&difference).min(BORDER_NOISE * border_noise(&difference)).max(DIFFERENCE);
         let covered = connected(&difference, threshold, &example.jaws);
         if covered.iter().filter(|covered| **covered).count() < FEWEST {
             return Err(Error::invalid_input(
@@ -56,16 +59,21 @@ impl Cutout {
 
 /// Returns the median of each channel over the border.
 fn border_colour(planes: &[f32]) -> [f32; 3] {
-    let is_border = |at: usize| {
-        let inner = |part: usize| (BORDER..SIDE - BORDER).contains(&part);
-        !(inner(at % SIDE) && inner(at / SIDE))
-    };
-    [0, 1, 2].map(|channel| {
-        let mut levels: Vec<f32> =
-            (0..SQUARE).filter(|at| is_border(*at)).map(|at| planes[channel * SQUARE + at]).collect();
-        levels.sort_by(f32::total_cmp);
-        levels[levels.len() / 2]
-    })
+    [0, 1, 2].map(|channel| border_quantile(&planes[channel * SQUARE..][..SQUARE], 0.5))
+}
+
+/// Returns the difference that hardly a pixel of the border exceeds.
+fn border_noise(difference: &[f32]) -> f32 {
+    border_quantile(difference, 0.99)
+}
+
+/// Returns a quantile of the values in the border of an image.
+fn border_quantile(values: &[f32], share: f64) -> f32 {
+    let inner = |part: usize| (BORDER..SIDE - BORDER).contains(&part);
+    let is_border = |at: usize| !(inner(at % SIDE) && inner(at / SIDE));
+    let mut levels: Vec<f32> = (0..SQUARE).filter(|at| is_border(*at)).map(|at| values[at]).collect();
+    levels.sort_by(f32::total_cmp);
+    levels[((levels.len() - 1) as f64 * share) as usize]
 }
 
 /// Returns the threshold between two classes of differences, with the largest variance between them.
