@@ -8,6 +8,9 @@ use super::scene::{Surroundings, render};
 use super::{Grasp, GraspObject, PlanarGraspParams};
 use crate::planar::Pose;
 
+/// Levels of the sheet, from which every object differs.
+const SHEET: [f32; 3] = [238.0, 238.0, 232.0];
+
 /// A view of an object and the grasp that a person shows.
 #[derive(Debug, Clone)]
 pub struct GraspDemonstration {
@@ -24,7 +27,7 @@ pub struct GraspDemonstration {
 }
 
 impl GraspDemonstration {
-    /// Renders an object upright in the middle of a plain table.
+    /// Renders an object upright in the middle of a white sheet.
     ///
     /// # Errors
     /// `InvalidParam` for a parameter out of range.
@@ -33,7 +36,7 @@ impl GraspDemonstration {
         let size = params.size;
         let (mut colours, mut depths) = (vec![0.0; 3 * size * size], vec![0.0; size * size]);
         let mut random = Random::from_key([object as u64, 0xde30]);
-        let surroundings = Surroundings::draw(0.0, &mut random);
+        let surroundings = Surroundings::draw(0.0, &mut random).with_table(SHEET);
         let pose = Pose::default();
         render(params, &surroundings, (object, pose), &mut random, (&mut colours, &mut depths));
         let grasp = object.shown_grasp(&pose);

@@ -33,6 +33,11 @@ impl Surroundings {
         Self { table, light: [cosine, sine], brightness, gradient, grain, texture: random.bits() }
     }
 
+    /// Returns them with a table of these levels of red, green and blue.
+    pub fn with_table(self, table: [f32; 3]) -> Self {
+        Self { table, ..self }
+    }
+
     /// Returns the texture of the table at a pixel: noise on a grid of 4 pixels.
     fn grain(&self, column: usize, row: usize) -> f32 {
         let cell = ((row as u64 / 4) << 32) | (column as u64 / 4);
