@@ -11,7 +11,7 @@ use opendr_metrics::coco::files::{CocoFiles, CocoKind};
 pub type Parser = fn(&[u8]);
 
 /// Every parser by the name of its target and corpus.
-pub const PARSERS: [(&str, Parser); 28] = [
+pub const PARSERS: [(&str, Parser); 29] = [
     ("manifest_json", manifest_json),
     ("tfjs_json", tfjs_json),
     ("tflite", tflite),
@@ -40,7 +40,13 @@ pub const PARSERS: [(&str, Parser); 28] = [
     ("tcpros_header", opendr_ros1::fuzzing::tcpros_header),
     ("bag1", recording),
     ("mcap", recording),
+    ("parquet", parquet),
 ];
+
+/// A table of a data set of LeRobot.
+fn parquet(bytes: &[u8]) {
+    drop(opendr_lerobot::columns_of_bytes(bytes.to_vec()));
+}
 
 fn manifest_json(bytes: &[u8]) {
     let Ok(manifest) = Manifest::from_json(bytes) else { return };

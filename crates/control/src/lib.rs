@@ -1,4 +1,4 @@
-//! Classical controllers, and online fine-tuning of policies with guard, monitor and rollback.
+//! Classical controllers, policies of robots, and online fine-tuning of policies with guard, monitor and rollback.
 //!
 //! [`Pid`] and [`Lqr`] are feedback laws for one axis and for a linear model. [`TrackingPid`] and [`TrackingLqr`] run them on the
 //! observations of an environment, whose places a [`TrackingTask`](opendr_engine::environment::TrackingTask) states, and
@@ -6,7 +6,9 @@
 //! [`Controller`](opendr_engine::environment::Controller)s; [`priors()`] has those of the built-in environments by name.
 //! [`online`] adapts a pre-trained policy while it controls.
 //!
-//! Not here: policies and their training (`opendr-rl`), environments such as `QuadTrack-v1` (`opendr-simulation`).
+//! [`MobileRl`] and [`MultiObjectSearchRl`] are policies of robots as learners.
+//!
+//! Not here: other policies and their training (`opendr-rl`), environments such as `QuadTrack-v1` (`opendr-simulation`).
 //!
 //! ```
 //! use opendr_control::{Pid, PidGains};
@@ -19,6 +21,7 @@
 
 mod actuator;
 mod feedback;
+mod learners;
 mod lqr;
 mod matrix;
 pub mod online;
@@ -28,6 +31,10 @@ mod tracking;
 
 pub use actuator::Actuator;
 pub use feedback::{AxisInput, ObservationLqr, ObservationPid};
+pub use learners::{
+    MobileRl, MobileRlFitParams, MobileRlMethod, MultiObjectSearchRl, MultiObjectSearchRlFitParams,
+    MultiObjectSearchRlMethod, WithResetOptions,
+};
 pub use lqr::Lqr;
 pub use pid::{Pid, PidGains};
 pub use priors::{priors, quad_track_gains};

@@ -3,16 +3,22 @@
 //! A layer stores shapes only; its parameters are a slice of the caller's. Batches are rows. Parameter gradients are
 //! added to the existing values, so that the caller starts a batch with zeros.
 
+mod attention;
 mod conv2d;
 mod dense;
+mod embedding;
+mod gelu;
 mod gru;
 mod layer_norm;
 mod patches;
 #[cfg(test)]
 mod tests;
 
+pub use attention::{AttentionTape, MultiHeadAttention, Sequences};
 pub use conv2d::Conv2d;
 pub use dense::Dense;
+pub use embedding::Embedding;
+pub use gelu::Gelu;
 pub use gru::{Gru, GruTape};
 pub use layer_norm::LayerNorm;
 

@@ -3,8 +3,8 @@
 //! Contents:
 //! * [`Compute`]: an instruction set, chosen at run time, and a thread pool; every kernel runs on one. Begin here.
 //! * [`Product`]: single-precision matrix products with bias and activation, over [`Matrix`] and [`MatrixMut`].
-//! * [`Network`], with [`Dense`], [`Conv2d`] and [`LayerNorm`], and [`Gru`]: layers with explicit gradients on flat
-//!   parameters.
+//! * [`Network`], with [`Dense`], [`Conv2d`] and [`LayerNorm`], [`Gru`], and [`MultiHeadAttention`], [`Embedding`] and
+//!   [`Gelu`] of transformers: layers with explicit gradients on flat parameters.
 //! * [`ByteConvolution`], [`ByteDepthwise`]: layers of quantised networks, with exact sums of products of bytes.
 //! * [`Adam`], [`Momentum`], [`clip_gradient_norm`]: optimisers. [`RealFourier`]: the Fourier transform for audio.
 //!
@@ -61,7 +61,9 @@ pub use fourier::{FOURIER_FRAMES, FourierScratch, RealFourier, Spectrum};
 pub use gaussian::{gaussian_backward, gaussian_entropy, gaussian_log_density};
 pub use initialise::Initialisation;
 pub use isa::Isa;
-pub use layer::{Conv2d, Dense, Gru, GruTape, LayerNorm};
+pub use layer::{
+    AttentionTape, Conv2d, Dense, Embedding, Gelu, Gru, GruTape, LayerNorm, MultiHeadAttention, Sequences,
+};
 pub use matrix::{Matrix, MatrixMut};
 pub use network::{Layer, Network, Tape};
 pub use optimizer::{

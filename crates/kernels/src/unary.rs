@@ -128,7 +128,7 @@ impl Unary {
 
 /// erf(x), to 2e-7 (Abramowitz and Stegun, 7.1.26).
 #[inline(always)]
-unsafe fn erf<V: Lanes>(x: V) -> V {
+pub(crate) unsafe fn erf<V: Lanes>(x: V) -> V {
     // SAFETY: the contract of `Lanes`, passed on.
     unsafe {
         let one = V::splat(1.0);

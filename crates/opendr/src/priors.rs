@@ -18,9 +18,11 @@ mod tests {
     use super::*;
 
     /// The environment of each prior of `opendr-control`; `opendr-rl` tests its own.
-    const ENVIRONMENTS: [(&str, &str); 4] = [
+    const ENVIRONMENTS: [(&str, &str); 6] = [
         ("cart-pole-lqr", "CartPole-v1"),
         ("pendulum-lqr", "Pendulum-v1"),
+        ("planar-push-teacher", "PlanarPush-v1"),
+        ("planar-peg-teacher", "PlanarPeg-v1"),
         ("quad-track-pid", "QuadTrack-v1"),
         ("quad-track-lqr", "QuadTrack-v1"),
     ];

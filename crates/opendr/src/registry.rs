@@ -15,6 +15,7 @@ use opendr_classification::{
 };
 #[cfg(feature = "clouds")]
 use opendr_clouds::object_detection_3d::VoxelObjectDetection3d;
+use opendr_control::{MobileRl, MultiObjectSearchRl};
 #[cfg(feature = "depth")]
 use opendr_depth::depth_estimation::ImportedDepthEstimator;
 #[cfg(feature = "detection")]
@@ -39,6 +40,7 @@ use opendr_hands::{
     gesture_recognition::{HandGesture, KeypointGesture},
     hand_pose_estimation::HandPose,
 };
+use opendr_manipulation::SingleDemoGrasp;
 #[cfg(feature = "multimodal")]
 use opendr_multimodal::multimodal_human_centric::{AudiovisualEmotion, RgbdHandGesture};
 #[cfg(feature = "panoptic")]
@@ -54,6 +56,7 @@ use opendr_pose::{
 use opendr_rl::prior::{
     ResidualPpoLearner, ResidualSacLearner, ResidualTd3Learner, ShapedPpoLearner, ShapedSacLearner,
 };
+use opendr_imitation::{ActLearner, DiffusionPolicyLearner};
 use opendr_rl::{DqnLearner, PpoLearner, SacLearner, Td3Learner};
 #[cfg(feature = "segmentation")]
 use opendr_segmentation::{
@@ -219,10 +222,15 @@ pub fn registry() -> &'static Registry {
                 ResidualTd3Learner,
                 ShapedPpoLearner,
                 ShapedSacLearner,
+                MobileRl,
+                MultiObjectSearchRl,
+                ActLearner,
+                DiffusionPolicyLearner,
                 EndToEndPlanningRl,
                 ActiveFaceRecognition,
                 ActiveObjectRecognition,
                 ActivePoseRecognition,
+                SingleDemoGrasp,
             },
             #[cfg(feature = "test-learner")]
             {

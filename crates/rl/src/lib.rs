@@ -69,7 +69,7 @@ pub use off_policy::OffPolicyConfig;
 pub use onnx::onnx_from_policy;
 pub use policy::{
     ActionMode, ActivationFn, Bounds, Head, ImageNetwork, NetworkConfig, ObservationEncoder,
-    ObservationNormaliser, ParameterInit, Policy, PolicyMemory,
+    ObservationNormaliser, ParameterInit, Policy, PolicyMemory, SpaceRecord, TensorFile,
 };
 pub use ppo::{Ppo, PpoConfig, Trajectory, generalised_advantages};
 pub use preset::Preset;

@@ -19,6 +19,12 @@ impl Drawing {
         Ok(Self { image, height: height as f32 })
     }
 
+    /// Draws over an image of three bytes per pixel.
+    pub fn over(image: Image) -> Self {
+        let height = image.height() as f32;
+        Self { image, height }
+    }
+
     pub fn finish(self) -> Image {
         self.image
     }

@@ -22,18 +22,26 @@
 //! # Ok::<_, opendr_engine::Error>(())
 //! ```
 
+mod arctangent;
 mod drawing;
 mod film;
 mod multirotor;
 mod numpy_random;
+mod planar;
 mod registered_source;
 mod registration;
 mod registry;
 mod sine_cosine;
 
 pub mod classic_control;
+pub mod kinematics;
 pub mod lidar;
+pub mod mobile_manipulation;
+pub mod object_search;
 pub mod person_scenes;
+pub mod planar_grasp;
+pub mod planar_peg;
+pub mod planar_push;
 pub mod quad_track;
 pub mod raycast;
 pub mod sphere_view;

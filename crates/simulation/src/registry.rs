@@ -7,10 +7,14 @@ use opendr_engine::params::ParamMap;
 use opendr_engine::{Error, Result};
 
 use crate::classic_control::{Acrobot, CartPole, MountainCar, MountainCarContinuous, Pendulum};
+use crate::object_search::{FrontierSearch, ObjectSearch};
+use crate::planar_grasp::PlanarGrasp;
+use crate::planar_peg::PlanarPeg;
+use crate::planar_push::PlanarPush;
 use crate::quad_track::QuadTrack;
 use crate::registration::Registration;
 use crate::vector::{VecEnvironment, VectorOptions};
-use crate::{sphere_view, uav_corridor};
+use crate::{mobile_manipulation, sphere_view, uav_corridor};
 
 /// Environments by name and version.
 #[derive(Clone)]
@@ -24,10 +28,16 @@ static BUILTIN: LazyLock<Registry> = LazyLock::new(|| {
         Registration::of::<CartPole>(),
         Registration::of::<MountainCar>(),
         Registration::of::<MountainCarContinuous>(),
+        Registration::of::<ObjectSearch>(),
+        Registration::of::<FrontierSearch>(),
         Registration::of::<Pendulum>(),
+        Registration::of::<PlanarGrasp>(),
+        Registration::of::<PlanarPeg>(),
+        Registration::of::<PlanarPush>(),
         Registration::of::<QuadTrack>(),
     ];
     let further = uav_corridor::registrations().into_iter().chain(sphere_view::registrations());
+    let further = further.chain(mobile_manipulation::registrations());
     Registry { entries: classic.into_iter().chain(further).collect() }
 });
 

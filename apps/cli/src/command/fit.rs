@@ -150,6 +150,11 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         false => entry.make(&params, device)?,
     };
     if environment_flags::is_policy(entry) {
+        if entry.capabilities.fit && matches.contains_id(dataset_flags::DATASET) {
+            let demonstrations = dataset_flags::external(matches);
+            let fitted = opendr::fit_demonstrations(learner.as_mut(), entry, &demonstrations, &options, &bar)?;
+            return print_fitted(&fitted, matches, &bar);
+        }
         let source = environment_flags::source(matches, Some(learner.as_ref()))?;
         let environments = FitEnvironments { env: &source, val_env: None };
         let fitted = opendr::fit_policy(learner.as_mut(), entry, environments, &options, &bar)?;

@@ -22,6 +22,8 @@ mod score;
 mod sim;
 #[cfg(feature = "webots")]
 mod sim_export;
+#[cfg(feature = "lerobot")]
+mod sim_record;
 mod sim_render;
 mod tune;
 mod view;

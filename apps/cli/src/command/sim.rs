@@ -28,6 +28,7 @@ Examples:
   opendr sim view CartPole-v1 --view                            episodes on a web page, in real time
   opendr sim view UavDepthCorridor-v1 --env-param max_obstacles=10 --seed 7 --out flight.png
   opendr sim render persons rendered/ --frames 1000             a labelled data set, as COCO
+  opendr sim record PlanarPush-v1 --controller planar-push-teacher --out pushes/   demonstrations, for LeRobot
   opendr sim export UavDepthCorridor-v1 flight.wbt --seed 7     the world of an episode, for Webots";
 
 const ID: &str = "id";
@@ -79,6 +80,8 @@ pub fn grammar() -> Command {
             ),
             view,
             super::sim_render::grammar(),
+            #[cfg(feature = "lerobot")]
+            super::sim_record::grammar(),
             #[cfg(feature = "webots")]
             super::sim_export::grammar(),
         ])
@@ -96,6 +99,8 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         Some(("view", matches)) => view(matches),
         Some(("priors", _)) => priors(),
         Some(("render", matches)) => super::sim_render::run(matches),
+        #[cfg(feature = "lerobot")]
+        Some(("record", matches)) => super::sim_record::run(matches),
         #[cfg(feature = "webots")]
         Some(("export", matches)) => super::sim_export::run(matches),
         _ => Ok(Outcome::Done),

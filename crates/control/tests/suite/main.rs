@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod learners;
 mod online;
+mod planar;
 mod priors;
 
 #[global_allocator]

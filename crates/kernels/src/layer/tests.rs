@@ -168,6 +168,67 @@ fn recurrence_through_time() {
     }
 }
 
+#[test]
+fn attention_between_sequences_with_padding() {
+    for (size, heads, queries, keys, lengths) in
+        [(6, 2, 3, 4, [4, 4]), (8, 1, 1, 5, [2, 5]), (6, 3, 5, 3, [1, 2]), (16, 2, 2, 19, [19, 7])]
+    {
+        let layer = MultiHeadAttention::new(size, heads).unwrap();
+        let parameters = random(layer.parameters(), 1);
+        let (query, memory) = (random(2 * queries * size, 2), random(2 * keys * size, 3));
+        let weights = random(2 * queries * size, 4);
+        let exact = |p: &[f64], query: &[f64], memory: &[f64]| {
+            reference::attention(p, [query, memory], [size, heads], [queries, keys], &lengths)
+        };
+        let [wide_p, wide_query, wide_memory] = [&parameters, &query, &memory].map(|values| wide(values));
+        for isa in Isa::available() {
+            let compute = Compute::new(isa, Arc::new(WorkerPool::new(2)));
+            let (mut tape, mut y) = (AttentionTape::default(), vec![9.0; query.len()]);
+            for _ in 0..2 {
+                let sequences = Sequences { queries, keys, lengths: Some(&lengths) };
+                layer.forward(&compute, &parameters, [&query, &memory], sequences, &mut tape, &mut y);
+                assert_close("attention", &y, &exact(&wide_p, &wide_query, &wide_memory));
+                let (mut gradients, mut dy) = (vec![0.0; layer.parameters()], weights.clone());
+                let inputs = [&query[..], &memory];
+                let [dquery, dmemory] =
+                    layer.backward(&compute, &parameters, inputs, &mut dy, &mut tape, &mut gradients);
+                let loss = |p: &[f64], query: &[f64], memory: &[f64]| dot(&weights, &exact(p, query, memory));
+                assert_gradient("parameter", &parameters, &gradients, |p| loss(p, &wide_query, &wide_memory));
+                assert_gradient("query", &query, dquery, |query| loss(&wide_p, query, &wide_memory));
+                assert_gradient("memory", &memory, dmemory, |memory| loss(&wide_p, &wide_query, memory));
+            }
+        }
+    }
+}
+
+#[test]
+fn gaussian_error_linear_units() {
+    let (x, weights) = (random(37, 1).iter().map(|x| 4.0 * x).collect::<Vec<_>>(), random(37, 2));
+    let exact = |x: &[f64]| x.iter().map(|&x| x * reference::normal_distribution(x)).collect::<Vec<_>>();
+    for isa in Isa::available() {
+        let (mut y, mut dx) = (vec![0.0; 37], weights.clone());
+        Gelu.forward(&Compute::new(isa, Arc::new(WorkerPool::new(1))), &x, &mut y);
+        assert_close("gelu", &y, &exact(&wide(&x)));
+        Gelu.backward(isa, &x, &mut dx);
+        assert_gradient("input", &x, &dx, |x| dot(&weights, &exact(x)));
+    }
+}
+
+#[test]
+fn embeddings_of_repeated_indices() {
+    let (layer, indices) = (Embedding::new(4, 3).unwrap(), [2, 0, 2]);
+    let (parameters, weights) = (random(12, 1), random(9, 2));
+    let mut y = vec![1.0; 9];
+    layer.add_forward(&parameters, indices.into_iter(), &mut y);
+    assert_eq!([y[0], y[3], y[8]], [1.0 + parameters[6], 1.0 + parameters[0], 1.0 + parameters[8]]);
+    let mut gradients = vec![0.0; 12];
+    layer.backward(indices.into_iter(), &weights, &mut gradients);
+    assert_gradient("vector", &parameters, &gradients, |p| {
+        let rows = indices.iter().flat_map(|index| &p[index * 3..index * 3 + 3]);
+        weights.iter().zip(rows).map(|(&weight, value)| f64::from(weight) * value).sum()
+    });
+}
+
 /// A policy network for images: bit-identical on one thread and on three, forward and backward.
 #[test]
 fn threads_do_not_change_a_bit() {
@@ -223,6 +284,9 @@ fn impossible_shapes_are_errors() {
         conv([1, 4, 4], [1, 1], [0, 1]).unwrap_err(),
         conv([1, 1 << 20, 1 << 20], [1, 1], [1, 1]).unwrap_err(),
         LayerNorm::new(0, 1e-5).unwrap_err(),
+        MultiHeadAttention::new(7, 2).unwrap_err(),
+        MultiHeadAttention::new(4, 0).unwrap_err(),
+        Embedding::new(1 << 20, 1 << 20).unwrap_err(),
         Gru::new(3, 0).unwrap_err(),
         Network::new(vec![]).unwrap_err(),
         Network::dense(&[3], Activation::Tanh).unwrap_err(),

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use opendr_datasets::Problems;
-use opendr_engine::dataset::{DatasetIterator as _, DatasetRef, Subset};
+use opendr_engine::dataset::{DatasetIterator as _, DatasetRef, ExternalDataset, Subset};
 use opendr_engine::environment::EnvironmentSource;
 use opendr_engine::learner::{AnyLearner, Entry, FitJob};
 use opendr_engine::{Error, Progress, Result, Statistics};
@@ -42,6 +42,28 @@ pub fn fit_policy(
         learner.fit_in(&options.params, env, val_env, job)
     })?;
     finish(fitted, progress)
+}
+
+/// Trains a policy on demonstrations: a data set of LeRobot. The validation data of the options measure the actions that it predicts.
+///
+/// # Errors
+/// As [`fit_policy`], and errors of the data set.
+pub fn fit_demonstrations(
+    learner: &mut dyn AnyLearner,
+    entry: &'static Entry,
+    dataset: &ExternalDataset,
+    options: &FitOptions,
+    progress: &dyn Progress,
+) -> Result<Fitted> {
+    let FitOptions { val, val_format, .. } = options;
+    check_options(&FitOptions { val: None, val_format: None, ..options.clone() })?;
+    let format = val_format.as_deref().unwrap_or("auto");
+    let val = val.as_ref().map(|path| ExternalDataset::new(path, format));
+    let fitted = fit_with(learner, entry, options, progress, |learner, job| {
+        learner.fit(&options.params, dataset.into(), val.as_ref().map(DatasetRef::External), job)
+    })?;
+    let path = dataset.path().display().to_string();
+    finish(Fitted { dataset: options.name.clone().unwrap_or(path), ..fitted }, progress)
 }
 
 /// Trains a learner of active perception: perception on a data set, and the camera motion in environments from `env`.

@@ -17,7 +17,7 @@ use opendr_evaluation::{DatasetOpener, Distillation, Samples, Teacher, annotatio
 use opendr_inference as inference;
 
 pub use fitted::Fitted;
-pub use in_environment::{FitEnvironments, fit_active, fit_policy};
+pub use in_environment::{FitEnvironments, fit_active, fit_demonstrations, fit_policy};
 pub use options::FitOptions;
 
 use crate::{learner_with, registry};

@@ -1,6 +1,5 @@
-//! The file of a policy, in the safetensors format: a length, JSON, numbers.
+//! The file of a policy.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use opendr_engine::environment::EnvironmentSpec;
@@ -11,6 +10,7 @@ use opendr_simulation::wrappers::RunningMoments;
 use serde::{Deserialize, Serialize};
 
 use super::space_record::SpaceRecord;
+use super::tensor_file::TensorFile;
 use super::{Bounds, Head, NetworkConfig, ObservationNormaliser, Policy};
 
 /// JSON in the metadata of the file.
@@ -35,25 +35,8 @@ enum HeadKind {
     Greedy,
 }
 
-/// JSON header of the format: tensors by name, and metadata.
-#[derive(Serialize, Deserialize)]
-struct Header {
-    #[serde(rename = "__metadata__")]
-    metadata: BTreeMap<String, String>,
-    #[serde(flatten)]
-    tensors: BTreeMap<String, Tensor>,
-}
-
-#[derive(Serialize, Deserialize)]
-struct Tensor {
-    dtype: String,
-    shape: Vec<usize>,
-    data_offsets: [usize; 2],
-}
-
 const VERSION: u32 = 1;
 const KEY: &str = "opendr_policy";
-const MAX_HEADER_BYTES: usize = 16 << 20;
 /// Maximum number of hidden layers.
 const MAX_LAYERS: usize = 64;
 const PARAMETERS: &str = "parameters";
@@ -74,29 +57,18 @@ impl Policy {
             network: self.config.to_map(),
             clip_obs: normaliser.map(|normaliser| normaliser.clip),
         };
-        let (mut tensors, mut data) = (BTreeMap::new(), Vec::new());
-        let mut add = |name: &str, dtype: &str, count: usize, bytes: Vec<u8>| {
-            let data_offsets = [data.len(), data.len() + bytes.len()];
-            let tensor = Tensor { dtype: dtype.to_owned(), shape: vec![count], data_offsets };
-            tensors.insert(name.to_owned(), tensor);
-            data.extend(bytes);
-        };
-        // Tensors of eight-byte numbers come first, so that all are aligned.
+        let unwritable = |error| Error::internal("the policy cannot be written as JSON").with_source(error);
+        let mut file = TensorFile::default();
+        file.set_metadata(KEY, serde_json::to_string(&record).map_err(unwritable)?);
         if let Some(ObservationNormaliser { moments, .. }) = normaliser {
             for (name, numbers) in
                 MOMENTS.into_iter().zip([moments.mean(), moments.variance(), &[moments.count()]])
             {
-                add(name, "F64", numbers.len(), numbers.iter().flat_map(|x| x.to_le_bytes()).collect());
+                file.add_f64(name, numbers);
             }
         }
-        let bytes = self.parameters.iter().flat_map(|x| x.to_le_bytes()).collect();
-        add(PARAMETERS, "F32", self.parameters.len(), bytes);
-        let unwritable = |error| Error::internal("the policy cannot be written as JSON").with_source(error);
-        let metadata =
-            BTreeMap::from([(KEY.to_owned(), serde_json::to_string(&record).map_err(unwritable)?)]);
-        let mut json = serde_json::to_vec(&Header { metadata, tensors }).map_err(unwritable)?;
-        json.resize(json.len().next_multiple_of(8), b' ');
-        Ok([&(json.len() as u64).to_le_bytes()[..], &json, &data].concat())
+        file.add_f32(PARAMETERS, &self.parameters);
+        file.to_bytes()
     }
 
     /// Reads the policy from the bytes of [`Self::to_bytes`].
@@ -126,16 +98,10 @@ impl Policy {
 }
 
 fn read(bytes: &[u8]) -> Result<Policy> {
-    let damaged = || Error::format("the file is not a complete safetensors file; save the policy again");
-    let (length, rest) = bytes.split_first_chunk::<8>().ok_or_else(damaged)?;
-    let length = usize::try_from(u64::from_le_bytes(*length)).unwrap_or(usize::MAX);
-    let header = rest.get(..length).filter(|_| length <= MAX_HEADER_BYTES).ok_or_else(damaged)?;
-    let data = &rest[length..];
+    let file = TensorFile::from_bytes(bytes)?;
     let wrong = |error| Error::format("the header is not that of a policy").with_source(error);
-    let header: Header = serde_json::from_slice(header).map_err(wrong)?;
-    let record = header
-        .metadata
-        .get(KEY)
+    let record = file
+        .metadata(KEY)
         .ok_or_else(|| Error::format("the safetensors file contains no policy of OpenDR"))?;
     let record: Record = serde_json::from_str(record).map_err(wrong)?;
     if record.version != VERSION {
@@ -144,11 +110,6 @@ fn read(bytes: &[u8]) -> Result<Policy> {
             record.version
         )));
     }
-    let tensor = |name: &str, dtype: &str| {
-        let tensor = header.tensors.get(name).filter(|tensor| tensor.dtype == dtype);
-        let range = tensor.map(|tensor| tensor.data_offsets[0]..tensor.data_offsets[1]);
-        range.and_then(|range| data.get(range)).ok_or_else(damaged)
-    };
     let config = NetworkConfig::from_map(&record.network)?;
     if config.net_arch.len() > MAX_LAYERS {
         return Err(Error::format(format!(
@@ -160,7 +121,7 @@ fn read(bytes: &[u8]) -> Result<Policy> {
     let head = record.head.of_space(&action)?;
     let spec = EnvironmentSpec::new("policy", observation, action);
     let mut policy = Policy::new(&spec, head, &config, record.clip_obs)?;
-    let parameters = tensor(PARAMETERS, "F32")?.as_chunks::<4>().0;
+    let parameters = file.f32(PARAMETERS)?;
     if parameters.len() != policy.parameters.len() {
         return Err(Error::format(format!(
             "the file has {} parameters, its networks {}; save the policy again",
@@ -168,19 +129,10 @@ fn read(bytes: &[u8]) -> Result<Policy> {
             policy.parameters.len()
         )));
     }
-    for (to, bytes) in policy.parameters.iter_mut().zip(parameters) {
-        *to = f32::from_le_bytes(*bytes);
-    }
-    if let Some(at) = policy.parameters.iter().position(|parameter| !parameter.is_finite()) {
-        let number = policy.parameters[at];
-        return Err(Error::format(format!("parameter {at} is {number}; save the policy again")));
-    }
+    policy.parameters = parameters;
     if let Some(normaliser) = &mut policy.encoder.normaliser {
-        let numbers = |name| -> Result<Vec<f64>> {
-            let chunks = tensor(name, "F64")?.as_chunks::<8>().0.iter();
-            Ok(chunks.map(|bytes| f64::from_le_bytes(*bytes)).collect())
-        };
-        let [mean, variance, count] = MOMENTS.map(numbers);
+        let [mean, variance, count] = MOMENTS.map(|name| file.f64(name));
+        let damaged = || Error::format("the statistics of observations are damaged; save the policy again");
         let count = count?.first().copied().ok_or_else(damaged)?;
         let moments = RunningMoments::from_parts(mean?, variance?, count)?;
         if moments.mean().len() != normaliser.moments.mean().len() {
@@ -217,6 +169,8 @@ impl HeadKind {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use opendr_engine::Random;
     use opendr_engine::environment::Space;
 

@@ -44,7 +44,10 @@ pub(crate) const LOG_STD_BOUNDS: [f32; 2] = [-20.0, 2.0];
 
 impl Bounds {
     /// Returns the bounds of a box, which must be finite if `finite`.
-    pub(crate) fn of(space: &Space, finite: bool) -> Result<Self> {
+    ///
+    /// # Errors
+    /// `Unsupported` for another space, and for infinite bounds where they must be finite.
+    pub fn of(space: &Space, finite: bool) -> Result<Self> {
         let Space::Box { low, high, .. } = space else {
             return Err(Error::unsupported(format!("the action space is {space}; this learner needs a box")));
         };

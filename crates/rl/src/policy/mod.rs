@@ -10,6 +10,7 @@ mod observation_encoder;
 mod observation_normaliser;
 mod sampling;
 mod space_record;
+mod tensor_file;
 mod trunk;
 
 use opendr_engine::environment::{EnvironmentSpec, Space};
@@ -25,6 +26,8 @@ pub use observation_encoder::ObservationEncoder;
 pub(crate) use observation_encoder::{Part, PartKind, check_finite};
 pub(crate) use observation_normaliser::EPSILON;
 pub use observation_normaliser::ObservationNormaliser;
+pub use space_record::SpaceRecord;
+pub use tensor_file::TensorFile;
 pub(crate) use trunk::{Sequences, Trunk, TrunkMemory};
 
 /// A policy: spaces, networks, action head and parameters.

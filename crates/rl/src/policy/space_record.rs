@@ -9,12 +9,32 @@ use serde::{Deserialize, Serialize};
 /// JSON form of a space. Bounds are strings, so that infinite ones can be stored; equal ones are stored once.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum SpaceRecord {
-    Box { low: Vec<String>, high: Vec<String>, shape: Vec<usize>, dtype: String },
-    Discrete { n: u32, start: i32 },
+pub enum SpaceRecord {
+    /// Numbers within bounds.
+    Box {
+        /// Lower bounds.
+        low: Vec<String>,
+        /// Upper bounds.
+        high: Vec<String>,
+        /// Lengths of the axes.
+        shape: Vec<usize>,
+        /// Type of the numbers.
+        dtype: String,
+    },
+    /// One of `n` choices.
+    Discrete {
+        /// Number of choices.
+        n: u32,
+        /// The first one.
+        start: i32,
+    },
+    /// Several choices.
     MultiDiscrete(Vec<u32>),
+    /// Several bits.
     MultiBinary(Vec<usize>),
+    /// Spaces by name.
     Dict(BTreeMap<String, SpaceRecord>),
+    /// Spaces in order.
     Tuple(Vec<SpaceRecord>),
 }
 
@@ -22,6 +42,10 @@ pub(super) enum SpaceRecord {
 const MOST_NUMBERS: usize = 1 << 24;
 
 impl SpaceRecord {
+    /// Returns the form of a space.
+    ///
+    /// # Errors
+    /// `Unsupported` for a space that cannot be stored.
     pub fn of(space: &Space) -> Result<Self> {
         Ok(match space {
             Space::Box { low, high, shape, dtype } => Self::Box {
@@ -42,7 +66,10 @@ impl SpaceRecord {
         })
     }
 
-    /// Returns the space, if it is not too large.
+    /// Returns the space.
+    ///
+    /// # Errors
+    /// `Format` for damaged bounds, and where the space is too large.
     pub fn space(&self) -> Result<Space> {
         let mut left = MOST_NUMBERS;
         self.within(&mut left)

@@ -100,3 +100,43 @@ pub(super) fn gru(
     }
     result
 }
+
+pub(super) fn attention(
+    p: &[f64],
+    [query, memory]: [&[f64]; 2],
+    [size, heads]: [usize; 2],
+    [queries, keys]: [usize; 2],
+    lengths: &[usize],
+) -> Vec<f64> {
+    let width = size / heads;
+    let (of_query, rest) = p.split_at((size + 1) * size);
+    let (of_memory, of_output) = rest.split_at((size + 1) * 2 * size);
+    let from = dense(of_query, query, [size, size], Activation::Identity);
+    let all = dense(of_memory, memory, [size, 2 * size], Activation::Identity);
+    let mut context = vec![0.0; query.len()];
+    for (sample, &length) in lengths.iter().enumerate() {
+        for (token, head) in (0..queries).flat_map(|token| (0..heads).map(move |head| (token, head))) {
+            let own = (sample * queries + token) * size + head * width;
+            let key = |key: usize| (sample * keys + key) * 2 * size + head * width;
+            let score = |at: usize| {
+                let products = (0..width).map(|i| from[own + i] * all[key(at) + i]);
+                (products.sum::<f64>() / (width as f64).sqrt()).exp()
+            };
+            let sum: f64 = (0..length).map(score).sum();
+            for at in 0..length {
+                for i in 0..width {
+                    context[own + i] += score(at) / sum * all[key(at) + size + i];
+                }
+            }
+        }
+    }
+    dense(of_output, &context, [size, size], Activation::Identity)
+}
+
+/// Distribution function of the normal distribution, by Simpson's rule.
+pub(super) fn normal_distribution(x: f64) -> f64 {
+    let (steps, density) = (2000, |t: f64| (-0.5 * t * t).exp() / std::f64::consts::TAU.sqrt());
+    let width = x / f64::from(steps);
+    let weight = |i: i32| if i == 0 || i == steps { 1.0 } else { 2.0 + 2.0 * f64::from(i % 2) };
+    0.5 + width / 3.0 * (0..=steps).map(|i| weight(i) * density(f64::from(i) * width)).sum::<f64>()
+}
